@@ -1,0 +1,101 @@
+//! The choices of a run.
+
+use crate::error::{Error, Result, within};
+
+/// How a contact is computed. Plain fields with defaults; checked when a contact is built.
+///
+/// ```
+/// use viscocontact::contact::{Settings, TimeRule};
+///
+/// let settings = Settings { tolerance: 1e-8, time_rule: TimeRule::Backward, ..Settings::default() };
+/// assert_eq!(Settings::default().tolerance, 1e-6);
+/// # let _ = settings;
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::exhaustive_structs, reason = "users write it with ..Default::default()")]
+pub struct Settings {
+    /// When the contact problem of a step counts as solved: rms |h| in contact, relative to rms (c K p)
+    /// there; penetration outside may be ten times that (default: 1e-6; range \[1e-13, 0.1\]).
+    pub tolerance: f64,
+    /// Iterations a step may take before it fails (default: 1000; range: 1 or more).
+    pub max_iterations: usize,
+    /// The solver of the contact problem (default: [`Solver::ActiveSet`]).
+    pub solver: Solver,
+    /// The rule that advances the bodies in time (default: [`TimeRule::Automatic`]).
+    pub time_rule: TimeRule,
+    /// What happens when contact reaches the edge of the grid (default: [`Edge::Refuse`]).
+    pub edge: Edge,
+}
+
+/// The solver of the contact problem of a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Solver {
+    /// Preconditioned conjugate gradients on an active set: one convolution an iteration, and few of
+    /// them.
+    #[default]
+    ActiveSet,
+    /// The conjugate gradients of Polonsky & Keer (1999) that the source paper uses: two convolutions
+    /// an iteration.
+    PolonskyKeer,
+}
+
+/// The rule that advances the bodies in time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum TimeRule {
+    /// [`TimeRule::Exponential`] for a rheology that has an exponential series, else
+    /// [`TimeRule::Backward`].
+    #[default]
+    Automatic,
+    /// Exponential integration of the relaxation form: second order, stable for steps of any length,
+    /// one field for each relaxation time.
+    Exponential,
+    /// The rule of the source paper, a direct sum over all past steps: first order, oscillates when
+    /// a step is longer than the relaxation time of a Maxwell body and diverges beyond twice that; needs
+    /// an elastic response.
+    Rectangle,
+    /// A direct sum over all past steps that is first order and stable for steps of any length.
+    Backward,
+}
+
+/// What happens when contact reaches the outermost cells of the grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Edge {
+    /// The step fails with [`Error::ContactAtEdge`]: the bodies go on beyond the grid, so that the
+    /// answer would be wrong.
+    #[default]
+    Refuse,
+    /// The step goes on: the rigid body ends where the grid does.
+    Allow,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings {
+            tolerance: 1e-6,
+            max_iterations: 1000,
+            solver: Solver::default(),
+            time_rule: TimeRule::default(),
+            edge: Edge::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// The algorithm of the source paper whole: Polonsky–Keer, the rectangle rule, direct sums. The
+    /// baseline of every comparison.
+    pub fn paper() -> Settings {
+        Settings { solver: Solver::PolonskyKeer, time_rule: TimeRule::Rectangle, ..Settings::default() }
+    }
+
+    pub(crate) fn validate(&self) -> Result<()> {
+        let tolerance = self.tolerance;
+        within("Settings::tolerance", tolerance, (1e-13..=0.1).contains(&tolerance), "in [1e-13, 0.1]")?;
+        if self.max_iterations == 0 {
+            return Err(Error::CountOutOfRange { field: "Settings::max_iterations", value: 0, allowed: "1 or more" });
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,230 @@
+//! The one error type of the crate, and the checks that raise it.
+
+/// What went wrong, with the numbers needed to mend it.
+///
+/// Every constructor validates its arguments, so an invalid model cannot be built; a
+/// [`step`](crate::ViscoelasticContact::step) that fails leaves the contact exactly as it was.
+///
+/// ```
+/// use viscocontact::{Error, rheology::Maxwell};
+///
+/// let error = Maxwell::new(-1.0e6, 1.0e6).unwrap_err();
+/// assert_eq!(error.to_string(), "shear modulus = -1000000 is not allowed: it must be finite and > 0");
+/// ```
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A number lies outside the range its meaning allows, or is not finite.
+    #[error("{field} = {value} is not allowed: it must be {allowed}")]
+    OutOfRange {
+        /// What the number stands for.
+        field: &'static str,
+        /// The number given.
+        value: f64,
+        /// The range it must lie in.
+        allowed: &'static str,
+    },
+
+    /// A count lies outside the allowed range: cells of a grid, iterations of a solver.
+    #[error("{field} = {value} is not allowed: it must be {allowed}")]
+    CountOutOfRange {
+        /// What is counted.
+        field: &'static str,
+        /// The count given.
+        value: usize,
+        /// The range it must lie in.
+        allowed: &'static str,
+    },
+
+    /// A slice or table does not have the length it needs: a field of one value a cell, two
+    /// slices that belong together, a table too short to define a function.
+    #[error("{field} holds {len} values, but needs {expected}{}", if *.exact { "" } else { " at least" })]
+    WrongLength {
+        /// Which slice or table.
+        field: &'static str,
+        /// The length given.
+        len: usize,
+        /// The length needed.
+        expected: usize,
+        /// Whether exactly `expected` values are needed, or at least as many.
+        exact: bool,
+    },
+
+    /// A table that must be in order is not.
+    #[error("{field}[{index}] = {value} may not follow {previous}: the values must {rule}")]
+    OutOfOrder {
+        /// Which table.
+        field: &'static str,
+        /// Index of the first entry that breaks the order.
+        index: usize,
+        /// The entry.
+        value: f64,
+        /// The entry before it.
+        previous: f64,
+        /// The order that the values must keep.
+        rule: &'static str,
+    },
+
+    /// Two loads cannot be interpolated because they control different things.
+    #[error("{field} mixes loads of different kinds ({first} and {second}), which cannot be interpolated")]
+    MixedLoads {
+        /// Which history or table.
+        field: &'static str,
+        /// Kind of the first load.
+        first: &'static str,
+        /// Kind of the load that differs.
+        second: &'static str,
+    },
+
+    /// A geometry returned NaN or −∞ for the gap of a cell; allowed are finite gaps and +∞
+    /// (nothing there).
+    #[error("the initial gap at cell [{}, {}], x = ({:e}, {:e}) m, is {value}: it must be finite, or +inf where there is nothing to touch", .cell[0], .cell[1], .position[0], .position[1])]
+    InvalidGap {
+        /// Indices of the cell.
+        cell: [usize; 2],
+        /// Centre of the cell \[m\].
+        position: [f64; 2],
+        /// The gap returned.
+        value: f64,
+    },
+
+    /// The geometry is +∞ on every cell of the grid: there is nothing to touch. Check its
+    /// position and size against [`Grid::lengths`](crate::Grid::lengths).
+    #[error("no cell of the grid has a finite initial gap: nothing can touch (all {cells} cells are +inf)")]
+    NothingToTouch {
+        /// Number of cells of the grid.
+        cells: usize,
+    },
+
+    /// A [`Builder`](crate::contact::Builder) was asked to build without a part it needs.
+    #[error("a contact needs {part}: call Builder::{part} before build")]
+    Missing {
+        /// The method of the builder that supplies the part.
+        part: &'static str,
+    },
+
+    /// The [`InfluenceKernel`](crate::InfluenceKernel) given was made for another grid.
+    #[error("the kernel was made for {} × {} cells of {:e} m × {:e} m, the contact has {} × {} of {:e} m × {:e} m",
+        .kernel.cells()[0], .kernel.cells()[1], .kernel.spacing()[0], .kernel.spacing()[1],
+        .contact.cells()[0], .contact.cells()[1], .contact.spacing()[0], .contact.spacing()[1])]
+    KernelMismatch {
+        /// Grid of the kernel.
+        kernel: crate::Grid,
+        /// Grid of the contact.
+        contact: crate::Grid,
+    },
+
+    /// The body has no elastic response (J(0) = 0, as Kelvin–Voigt): it cannot follow a jump, so
+    /// a step of length zero, or the paper's rectangle rule, is impossible. Ramp the load over a
+    /// short time, or give the body a glassy compliance.
+    #[error(
+        "at t = {time} s: {what} needs an elastic response, but the material has none (its compliance at t = 0 is zero); ramp the load over a short time or add a glassy compliance"
+    )]
+    NoElasticResponse {
+        /// Time of the contact \[s\].
+        time: f64,
+        /// What was asked for.
+        what: &'static str,
+    },
+
+    /// The exponential time rule needs an exponential series of the creep compliance and the
+    /// rheology offers none ([`Rheology::creep_spectrum`](crate::rheology::Rheology::creep_spectrum)
+    /// is `None`). Choose [`TimeRule::Backward`](crate::contact::TimeRule::Backward), or
+    /// [`TimeRule::Automatic`](crate::contact::TimeRule::Automatic).
+    #[error(
+        "the exponential time rule needs the exponential series of {rheology}, which has none: use TimeRule::Backward or TimeRule::Automatic"
+    )]
+    NoExponentialSeries {
+        /// The rheology, as its `Debug` prints it.
+        rheology: String,
+    },
+
+    /// A user's creep compliance returned a value no body can have: negative, not finite, or less
+    /// than before.
+    #[error(
+        "creep compliance J({time} s) = {value} 1/Pa is not allowed: it must be finite, ≥ 0 and non-decreasing (J was {previous} before)"
+    )]
+    InvalidCompliance {
+        /// Time at which it was evaluated \[s\].
+        time: f64,
+        /// The value \[1/Pa\].
+        value: f64,
+        /// Its value at an earlier time \[1/Pa\].
+        previous: f64,
+    },
+
+    /// Contact reaches the edge of the grid, beyond which the bodies go on: the pressure there
+    /// would be wrong. Enlarge the grid, or allow it with
+    /// [`Edge::Allow`](crate::contact::Edge::Allow) where the body really ends at the grid's edge.
+    #[error(
+        "at t = {time} s the contact touches the edge of the grid on {cells} cells: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there"
+    )]
+    ContactAtEdge {
+        /// End of the step \[s\].
+        time: f64,
+        /// Number of cells in contact along the edge.
+        cells: usize,
+    },
+
+    /// The contact problem of a step was not solved within
+    /// [`Settings::max_iterations`](crate::contact::Settings::max_iterations). Try a smaller step, a larger
+    /// tolerance or more iterations.
+    #[error(
+        "at t = {time} s (step of {dt} s): residual {residual:e} after {iterations} iterations, above the tolerance {tolerance:e}"
+    )]
+    NotConverged {
+        /// End of the step \[s\].
+        time: f64,
+        /// Length of the step \[s\].
+        dt: f64,
+        /// Iterations done.
+        iterations: usize,
+        /// Residual reached.
+        residual: f64,
+        /// Residual asked for.
+        tolerance: f64,
+    },
+
+    /// Numbers left the range of `f64` inside a step: the scales of the scene (lengths, moduli,
+    /// loads, times) are too far apart to be represented.
+    #[error("at t = {time} s: {what} is not finite; the scales of the scene are too far apart for f64")]
+    Overflow {
+        /// End of the step \[s\].
+        time: f64,
+        /// The quantity that overflowed.
+        what: &'static str,
+    },
+}
+
+/// The result of every fallible call of the crate.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// Accepts finite values above zero.
+pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, value > 0.0, "finite and > 0")
+}
+
+/// Accepts finite values of zero or more.
+pub(crate) fn non_negative(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, value >= 0.0, "finite and >= 0")
+}
+
+/// Accepts any finite value.
+pub(crate) fn finite(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, true, "finite")
+}
+
+/// Accepts finite values for which `inside` holds.
+pub(crate) fn within(field: &'static str, value: f64, inside: bool, allowed: &'static str) -> Result<f64> {
+    if value.is_finite() && inside { Ok(value) } else { Err(Error::OutOfRange { field, value, allowed }) }
+}
+
+/// Accepts a slice of exactly `expected` values.
+pub(crate) fn exact_length(field: &'static str, len: usize, expected: usize) -> Result<()> {
+    if len == expected { Ok(()) } else { Err(Error::WrongLength { field, len, expected, exact: true }) }
+}
+
+/// Accepts a table of `least` entries or more.
+pub(crate) fn least_length(field: &'static str, len: usize, least: usize) -> Result<()> {
+    if len >= least { Ok(()) } else { Err(Error::WrongLength { field, len, expected: least, exact: false }) }
+}

@@ -1,0 +1,27 @@
+use crate::error::{Result, positive};
+use crate::geometry::Geometry;
+
+/// A cylinder lying on the plane with its axis along x2, as a parabola: h = x1² / 2R.
+///
+/// It has no ends: contact reaches the edges of the grid along x2, so a contact needs
+/// [`Edge::Allow`](crate::contact::Edge::Allow) and models a cylinder as long as the grid.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cylinder {
+    radius: f64,
+}
+
+impl Cylinder {
+    /// A cylinder of `radius` \[m\].
+    ///
+    /// # Errors
+    /// If the radius is not finite and positive.
+    pub fn new(radius: f64) -> Result<Cylinder> {
+        Ok(Cylinder { radius: positive("cylinder radius", radius)? })
+    }
+}
+
+impl Geometry for Cylinder {
+    fn initial_gap(&self, x1: f64, _x2: f64) -> f64 {
+        x1 * x1 / (2.0 * self.radius)
+    }
+}

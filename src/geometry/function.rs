@@ -1,0 +1,34 @@
+use std::fmt;
+
+use crate::geometry::Geometry;
+
+/// A geometry given by a closure of (x1, x2) \[m\] that returns the gap \[m\].
+///
+/// ```
+/// use viscocontact::geometry::{FnGeometry, Geometry};
+///
+/// let saddle = FnGeometry::new(|x1, x2| x1 * x1 - x2 * x2);
+/// assert_eq!(saddle.initial_gap(2.0, 1.0), 3.0);
+/// ```
+pub struct FnGeometry<F> {
+    gap: F,
+}
+
+impl<F: Fn(f64, f64) -> f64 + Send + Sync> FnGeometry<F> {
+    /// Wraps the closure; its values are checked when a contact is built.
+    pub fn new(gap: F) -> FnGeometry<F> {
+        FnGeometry { gap }
+    }
+}
+
+impl<F> fmt::Debug for FnGeometry<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("FnGeometry").finish_non_exhaustive()
+    }
+}
+
+impl<F: Fn(f64, f64) -> f64 + Send + Sync> Geometry for FnGeometry<F> {
+    fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
+        (self.gap)(x1, x2)
+    }
+}

@@ -1,0 +1,151 @@
+//! The shape of the bodies: the clearance between them before they deform.
+//!
+//! | shape | initial gap |
+//! |---|---|
+//! | [`Sphere`] | (x1² + x2²) / 2R |
+//! | [`Ellipsoid`] | x1²/2R1 + x2²/2R2 |
+//! | [`Cylinder`] | x1² / 2R, its axis along x2 |
+//! | [`Cone`] | r tan β |
+//! | [`FlatPunch`] | 0 on the face, +∞ off it |
+//! | [`Shifted`] | another shape, moved in the plane |
+//! | [`FnGeometry`] | any closure of (x1, x2) |
+
+mod cone;
+mod cylinder;
+mod ellipsoid;
+mod flat_punch;
+mod function;
+mod shifted;
+mod sphere;
+
+pub use cone::Cone;
+pub use cylinder::Cylinder;
+pub use ellipsoid::Ellipsoid;
+pub use flat_punch::FlatPunch;
+pub use function::FnGeometry;
+pub use shifted::Shifted;
+pub use sphere::Sphere;
+
+use std::fmt::Debug;
+
+use crate::Grid;
+use crate::error::{Error, Result};
+
+/// The gap between the undeformed bodies when they just touch, or would touch, at zero approach.
+///
+/// Only differences matter: adding a constant to the gap moves the approach by that constant.
+///
+/// ```
+/// use viscocontact::{Grid, geometry::Geometry};
+///
+/// /// A ridge along x2.
+/// #[derive(Debug)]
+/// struct Ridge;
+///
+/// impl Geometry for Ridge {
+///     fn initial_gap(&self, x1: f64, _x2: f64) -> f64 {
+///         x1.abs()
+///     }
+/// }
+///
+/// let grid = Grid::square(2, 2.0)?;
+/// let mut gap = vec![0.0; grid.len()];
+/// Ridge.fill_gap(&grid, &mut gap);
+/// assert_eq!(gap, [0.5; 4]);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+pub trait Geometry: Debug + Send + Sync {
+    /// Gap at the point (x1, x2) \[m\]; `+∞` where there is nothing to touch. NaN and −∞ are errors
+    /// wherever a geometry is used.
+    fn initial_gap(&self, x1: f64, x2: f64) -> f64;
+
+    /// Writes the gap at every cell centre of `grid` into `gap` \[m\], which holds one value a cell.
+    ///
+    /// Override it where a whole field is cheaper than its points one by one.
+    ///
+    /// # Panics
+    /// If `gap` is not of length [`Grid::len`].
+    fn fill_gap(&self, grid: &Grid, gap: &mut [f64]) {
+        assert_eq!(gap.len(), grid.len(), "gap must hold one value a cell");
+        let [_, n2] = grid.cells();
+        for (i, row) in gap.chunks_exact_mut(n2).enumerate() {
+            for (j, value) in row.iter_mut().enumerate() {
+                let [x1, x2] = grid.center(i, j);
+                *value = self.initial_gap(x1, x2);
+            }
+        }
+    }
+}
+
+/// The gap field of a geometry, checked: no NaN, no −∞, and something to touch.
+pub(crate) fn checked_gap(geometry: &dyn Geometry, grid: &Grid) -> Result<Vec<f64>> {
+    let mut gap = vec![f64::INFINITY; grid.len()];
+    geometry.fill_gap(grid, &mut gap);
+    if let Some(k) = gap.iter().position(|h| h.is_nan() || *h == f64::NEG_INFINITY) {
+        let cell = [k / grid.cells()[1], k % grid.cells()[1]];
+        return Err(Error::InvalidGap { cell, position: grid.center(cell[0], cell[1]), value: gap[k] });
+    }
+    if gap.iter().all(|h| h.is_infinite()) {
+        return Err(Error::NothingToTouch { cells: grid.len() });
+    }
+    Ok(gap)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shapes_match_their_formulas() {
+        let (x, y) = (0.3, -0.4);
+        let cases: [(&dyn Geometry, f64); 7] = [
+            (&Sphere::new(2.0).unwrap(), 0.25 / 4.0),
+            (&Ellipsoid::new(2.0, 5.0).unwrap(), 0.09 / 4.0 + 0.16 / 10.0),
+            (&Cylinder::new(2.0).unwrap(), 0.09 / 4.0),
+            (&Cone::new(0.1).unwrap(), 0.05),
+            (&FlatPunch::circular(0.51).unwrap(), 0.0),
+            (&FlatPunch::rectangular([0.7, 0.7]).unwrap(), f64::INFINITY),
+            (&FnGeometry::new(|x1, x2| x1 * x2), -0.12),
+        ];
+        for (shape, expected) in cases {
+            let gap = shape.initial_gap(x, y);
+            assert!(gap == expected || (gap - expected).abs() < 1e-15, "{shape:?}: {gap}");
+        }
+    }
+
+    #[test]
+    fn shifting_moves_the_shape() {
+        let shifted = Shifted::new(Sphere::new(1.0).unwrap(), [0.5, -0.25]).unwrap();
+        assert_eq!(shifted.initial_gap(0.5, -0.25), 0.0);
+        assert_eq!(shifted.initial_gap(1.5, -0.25), 0.5);
+    }
+
+    #[test]
+    fn bad_shapes_are_refused_by_name() {
+        let field = |error: Error| match error {
+            Error::OutOfRange { field, .. } => field,
+            other => panic!("unexpected {other}"),
+        };
+        assert_eq!(field(Sphere::new(0.0).unwrap_err()), "sphere radius");
+        assert_eq!(field(Ellipsoid::new(1.0, f64::NAN).unwrap_err()), "radius of curvature along x2");
+        assert_eq!(field(Cylinder::new(-1.0).unwrap_err()), "cylinder radius");
+        assert_eq!(field(Cone::new(f64::INFINITY).unwrap_err()), "cone slope tan β");
+        assert_eq!(field(FlatPunch::circular(-1.0).unwrap_err()), "punch radius");
+        assert_eq!(field(FlatPunch::rectangular([1.0, 0.0]).unwrap_err()), "punch side along x2");
+        let sphere = Sphere::new(1.0).unwrap();
+        assert_eq!(field(Shifted::new(sphere, [f64::NAN, 0.0]).unwrap_err()), "shift along x1");
+    }
+
+    #[test]
+    fn bad_gaps_are_located() {
+        let grid = Grid::new([2, 3], [2.0, 3.0]).unwrap();
+        let hole = FnGeometry::new(|x1, x2| if x1 > 0.0 && x2 > 0.0 { f64::NAN } else { 0.0 });
+        let Error::InvalidGap { cell, position, value } = checked_gap(&hole, &grid).unwrap_err() else { panic!() };
+        assert_eq!((cell, position), ([1, 2], [0.5, 1.0]));
+        assert!(value.is_nan());
+        let abyss = FnGeometry::new(|_, _| f64::NEG_INFINITY);
+        assert!(matches!(checked_gap(&abyss, &grid), Err(Error::InvalidGap { cell: [0, 0], .. })));
+        let nothing = FnGeometry::new(|_, _| f64::INFINITY);
+        assert_eq!(checked_gap(&nothing, &grid), Err(Error::NothingToTouch { cells: 6 }));
+    }
+}

@@ -1,0 +1,27 @@
+use crate::error::{Result, positive};
+use crate::geometry::Geometry;
+
+/// A sphere touching the plane at the origin, as the paraboloid of its radius of curvature:
+/// h = (x1² + x2²) / 2R.
+///
+/// For two spheres give the combined radius, 1/R = 1/R_upper + 1/R_lower.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sphere {
+    radius: f64,
+}
+
+impl Sphere {
+    /// A sphere of `radius` \[m\].
+    ///
+    /// # Errors
+    /// If the radius is not finite and positive.
+    pub fn new(radius: f64) -> Result<Sphere> {
+        Ok(Sphere { radius: positive("sphere radius", radius)? })
+    }
+}
+
+impl Geometry for Sphere {
+    fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
+        (x1 * x1 + x2 * x2) / (2.0 * self.radius)
+    }
+}

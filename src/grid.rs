@@ -1,0 +1,152 @@
+//! The rectangular grid on which every field lives.
+
+use crate::error::{Error, Result, positive};
+
+/// Most cells a grid may have: cell indices are kept in 32 bits.
+const MOST_CELLS: usize = u32::MAX as usize;
+
+/// A rectangular grid of equal cells in the common plane of contact, centred on the origin.
+///
+/// Fields hold one value a cell, constant over the cell, row-major with x2 fastest: the cell
+/// `[i, j]` is entry `i * cells()[1] + j`.
+///
+/// ```
+/// use viscocontact::Grid;
+///
+/// let grid = Grid::new([4, 2], [8.0e-3, 2.0e-3])?;
+/// assert_eq!(grid.len(), 8);
+/// assert_eq!(grid.spacing(), [2.0e-3, 1.0e-3]);
+/// assert_eq!(grid.center(0, 1), [-3.0e-3, 0.5e-3]);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    cells: [usize; 2],
+    spacing: [f64; 2],
+}
+
+impl Grid {
+    /// A grid of `cells[0]` × `cells[1]` cells on a rectangle of `lengths[0]` × `lengths[1]` \[m\].
+    ///
+    /// # Errors
+    /// If a count is zero or there are more than 2³² − 1 cells in all, or a length is not finite
+    /// and positive.
+    pub fn new(cells: [usize; 2], lengths: [f64; 2]) -> Result<Grid> {
+        for (field, count) in [("cells along x1", cells[0]), ("cells along x2", cells[1])] {
+            if count == 0 {
+                return Err(Error::CountOutOfRange { field, value: count, allowed: "1 or more" });
+            }
+        }
+        if cells[0].checked_mul(cells[1]).is_none_or(|all| all > MOST_CELLS) {
+            let value = cells[0].saturating_mul(cells[1]);
+            return Err(Error::CountOutOfRange { field: "cells of the grid", value, allowed: "4294967295 at most" });
+        }
+        positive("length along x1", lengths[0])?;
+        positive("length along x2", lengths[1])?;
+        let spacing = [
+            positive("cell side along x1", lengths[0] / cells[0] as f64)?,
+            positive("cell side along x2", lengths[1] / cells[1] as f64)?,
+        ];
+        positive("cell area", spacing[0] * spacing[1])?;
+        Ok(Grid { cells, spacing })
+    }
+
+    /// A square grid of `cells` × `cells` cells with sides of `length` \[m\].
+    ///
+    /// # Errors
+    /// As [`Grid::new`].
+    pub fn square(cells: usize, length: f64) -> Result<Grid> {
+        Grid::new([cells, cells], [length, length])
+    }
+
+    /// Number of cells along x1 and x2.
+    pub fn cells(&self) -> [usize; 2] {
+        self.cells
+    }
+
+    /// Sides of a cell \[m\].
+    pub fn spacing(&self) -> [f64; 2] {
+        self.spacing
+    }
+
+    /// Sides of the whole grid \[m\].
+    pub fn lengths(&self) -> [f64; 2] {
+        [self.spacing[0] * self.cells[0] as f64, self.spacing[1] * self.cells[1] as f64]
+    }
+
+    /// Number of cells in all: the length of every field.
+    #[expect(clippy::len_without_is_empty, reason = "a grid has at least one cell")]
+    pub fn len(&self) -> usize {
+        self.cells[0] * self.cells[1]
+    }
+
+    /// Area of a cell \[m²\].
+    pub fn cell_area(&self) -> f64 {
+        self.spacing[0] * self.spacing[1]
+    }
+
+    /// Centre of the cell `[i, j]` \[m\].
+    pub fn center(&self, i: usize, j: usize) -> [f64; 2] {
+        [self.coordinate(0, i), self.coordinate(1, j)]
+    }
+
+    /// Coordinate of the `index`-th cell centre along `axis`; exactly antisymmetric about zero.
+    pub(crate) fn coordinate(&self, axis: usize, index: usize) -> f64 {
+        (2.0 * index as f64 - (self.cells[axis] - 1) as f64) * (0.5 * self.spacing[axis])
+    }
+
+    /// Number of entries of `field` above zero that lie on the outermost cells.
+    pub(crate) fn positive_on_edge(&self, field: &[f64]) -> usize {
+        let [n1, n2] = self.cells;
+        field
+            .chunks_exact(n2)
+            .enumerate()
+            .map(|(i, row)| {
+                if i == 0 || i + 1 == n1 {
+                    row.iter().filter(|&&value| value > 0.0).count()
+                } else {
+                    let ends = if n2 == 1 { &row[..1] } else { &[row[0], row[n2 - 1]][..] };
+                    ends.iter().filter(|&&value| value > 0.0).count()
+                }
+            })
+            .sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn centres_are_symmetric_and_half_a_cell_inside() {
+        let grid = Grid::new([5, 4], [1.0, 2.0]).unwrap();
+        assert_eq!(grid.center(2, 0)[0], 0.0);
+        for i in 0..5 {
+            assert_eq!(grid.center(i, 0)[0], -grid.center(4 - i, 0)[0]);
+        }
+        assert_eq!(grid.center(0, 3), [-0.4, 0.75]);
+    }
+
+    #[test]
+    fn bad_grids_are_refused_by_name() {
+        let field = |result: Result<Grid>| match result.unwrap_err() {
+            Error::OutOfRange { field, .. } | Error::CountOutOfRange { field, .. } => field,
+            other => panic!("unexpected {other}"),
+        };
+        assert_eq!(field(Grid::new([0, 3], [1.0, 1.0])), "cells along x1");
+        assert_eq!(field(Grid::new([3, 0], [1.0, 1.0])), "cells along x2");
+        assert_eq!(field(Grid::new([usize::MAX, 2], [1.0, 1.0])), "cells of the grid");
+        assert_eq!(field(Grid::new([1 << 20, 1 << 20], [1.0, 1.0])), "cells of the grid");
+        assert_eq!(field(Grid::square(3, f64::NAN)), "length along x1");
+        assert_eq!(field(Grid::new([3, 3], [1.0, -1.0])), "length along x2");
+        assert_eq!(field(Grid::new([3, 3], [1e-200, 1e-200])), "cell area");
+    }
+
+    #[test]
+    fn edge_cells_are_counted_once() {
+        for (cells, expected) in [([3, 3], 8), ([1, 4], 4), ([4, 1], 4), ([1, 1], 1), ([2, 5], 10), ([4, 5], 14)] {
+            let grid = Grid::new(cells, [1.0, 1.0]).unwrap();
+            assert_eq!(grid.positive_on_edge(&vec![1.0; grid.len()]), expected, "{cells:?}");
+        }
+    }
+}

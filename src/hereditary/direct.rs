@@ -1,0 +1,85 @@
+//! The hereditary integral as a sum over every past increment.
+
+use crate::error::{Error, Result};
+use crate::hereditary::Change;
+use crate::rheology::Material;
+
+/// At which end of its step an increment of pressure is thought to have happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Weighting {
+    /// At the end, the rule of the source paper: u(t_n) = Σ C(t_n − t_k) (v_k − v_(k−1)). First order,
+    /// explicit in the creep, unstable for long steps.
+    End,
+    /// At the start: u(t_n) = Σ C(t_n − t_(k−1)) (v_k − v_(k−1)). First order and L-stable.
+    Start,
+}
+
+/// Cells summed together, so that they stay in the fastest cache while the past passes by.
+const BLOCK: usize = 2048;
+
+/// The history as all past increments of v = K p: one field a step, no transforms.
+#[derive(Debug, Clone)]
+pub(crate) struct Direct {
+    material: Material,
+    weighting: Weighting,
+    /// When each increment happened, by the weighting, and the increment.
+    increments: Vec<(f64, Vec<f64>)>,
+    /// What each increment contributes to u_old of the step predicted last, per unit of v.
+    weights: Vec<f64>,
+}
+
+impl Direct {
+    pub(crate) fn new(material: Material, weighting: Weighting) -> Direct {
+        Direct { material, weighting, increments: Vec::new(), weights: Vec::new() }
+    }
+
+    pub(crate) fn predict(&mut self, time: f64, dt: f64, u_old: &mut [f64]) -> Result<f64> {
+        let (age, what) = match self.weighting {
+            Weighting::End => (0.0, "the rectangle rule"),
+            Weighting::Start => (dt, "a step of length zero"),
+        };
+        let newest = self.creep(age, 0.0)?;
+        if newest == 0.0 {
+            return Err(Error::NoElasticResponse { time, what });
+        }
+        // c acts on the whole of v, so that a past increment adds only what exceeds c
+        self.weights.clear();
+        let mut younger = newest;
+        for (when, _) in self.increments.iter().rev() {
+            younger = self.creep(time - when, younger)?;
+            self.weights.push(self.material.contact_factor() * (younger - newest));
+        }
+        let past = || self.increments.iter().rev().zip(&self.weights);
+        for (block, old) in u_old.chunks_mut(BLOCK).enumerate() {
+            old.fill(0.0);
+            let first = block * BLOCK;
+            for ((_, increment), &weight) in past() {
+                for (old, &dv) in old.iter_mut().zip(&increment[first..]) {
+                    *old += weight * dv;
+                }
+            }
+        }
+        Ok(self.material.contact_factor() * newest)
+    }
+
+    pub(crate) fn commit(&mut self, change: &Change<'_>) {
+        let [before, after] = change.potential;
+        let when = match self.weighting {
+            Weighting::End => change.time,
+            Weighting::Start => change.time - change.dt,
+        };
+        let increment = after.iter().zip(before).map(|(new, old)| new - old).collect();
+        self.increments.push((when, increment));
+    }
+
+    /// J at an age, checked against J at a lesser age.
+    fn creep(&self, age: f64, younger: f64) -> Result<f64> {
+        let value = self.material.creep_compliance(age);
+        // equal ages may differ by rounding of the times they were computed from
+        if value.is_finite() && value >= younger * (1.0 - 1e-12) {
+            Ok(value)
+        } else {
+            Err(Error::InvalidCompliance { time: age, value, previous: younger })
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! The memory of the bodies: what of the displacement at the end of a step is already decided by the
+//! past.
+//!
+//! Every time rule writes the displacement at the end of a step as
+//!
+//! u = u_old + c K p,
+//!
+//! with one number c, the compliance of the step, and one field u_old. The contact problem of the step
+//! is then that of an elastic body. Two ways to keep the past:
+//!
+//! * [`Exponential`]: one field for each relaxation time, updated in place; second order, safe for
+//!   steps of any length.
+//! * [`Direct`]: every past increment of v = K p, summed anew at each step with weights from C(t);
+//!   needs no exponential series, and serves the paper's rectangle rule and the backward rule.
+
+mod direct;
+mod exponential;
+
+pub(crate) use direct::{Direct, Weighting};
+pub(crate) use exponential::Exponential;
+
+use crate::error::Result;
+
+/// The past of one contact.
+#[derive(Debug, Clone)]
+pub(crate) enum History {
+    Exponential(Exponential),
+    Direct(Direct),
+}
+
+impl History {
+    /// Writes u_old of a step of length `dt` that ends at `time` into `u_old`, given the displacement at
+    /// its start, and returns c.
+    pub(crate) fn predict(&mut self, time: f64, dt: f64, displacement: &[f64], u_old: &mut [f64]) -> Result<f64> {
+        match self {
+            History::Exponential(history) => history.predict(time, dt, displacement, u_old),
+            History::Direct(history) => history.predict(time, dt, u_old),
+        }
+    }
+
+    /// Takes the step that was predicted last into the past: `displacement` went from `before` to
+    /// `after`, and v = K p from `v_before` to `v_after`.
+    pub(crate) fn commit(&mut self, change: &Change<'_>) {
+        match self {
+            History::Exponential(history) => history.commit(change),
+            History::Direct(history) => history.commit(change),
+        }
+    }
+}
+
+/// The fields at both ends of a step.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Change<'a> {
+    pub(crate) time: f64,
+    pub(crate) dt: f64,
+    pub(crate) displacement: [&'a [f64]; 2],
+    pub(crate) potential: [&'a [f64]; 2],
+}

@@ -1,0 +1,55 @@
+use std::fmt;
+
+use crate::error::{Result, finite};
+use crate::load::{Load, LoadHistory};
+
+/// A load history given by a closure of time \[s\].
+///
+/// ```
+/// use viscocontact::load::{FnHistory, Load, LoadHistory};
+///
+/// let history = FnHistory::new(|t: f64| Load::force((1.0 - t).abs())).with_breakpoints(&[1.0])?;
+/// assert_eq!(history.at(3.0), Load::force(2.0));
+/// assert_eq!(history.next_breakpoint(0.0), Some(1.0));
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+pub struct FnHistory<F> {
+    load: F,
+    breakpoints: Vec<f64>,
+}
+
+impl<F: Fn(f64) -> Load + Send + Sync> FnHistory<F> {
+    /// Wraps the closure, taken to be smooth; its loads are checked by the steps they are given to.
+    pub fn new(load: F) -> FnHistory<F> {
+        FnHistory { load, breakpoints: Vec::new() }
+    }
+
+    /// The same history with corners at `times` \[s\], in any order: steps end exactly on them.
+    ///
+    /// # Errors
+    /// If a time is not finite.
+    pub fn with_breakpoints(mut self, times: &[f64]) -> Result<FnHistory<F>> {
+        for &time in times {
+            self.breakpoints.push(finite("breakpoint", time)?);
+        }
+        self.breakpoints.sort_by(f64::total_cmp);
+        self.breakpoints.dedup();
+        Ok(self)
+    }
+}
+
+impl<F> fmt::Debug for FnHistory<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("FnHistory").field("breakpoints", &self.breakpoints).finish_non_exhaustive()
+    }
+}
+
+impl<F: Fn(f64) -> Load + Send + Sync> LoadHistory for FnHistory<F> {
+    fn at(&self, t: f64) -> Load {
+        (self.load)(t)
+    }
+
+    fn next_breakpoint(&self, after: f64) -> Option<f64> {
+        self.breakpoints.get(self.breakpoints.partition_point(|&time| time <= after)).copied()
+    }
+}

@@ -1,0 +1,40 @@
+use crate::error::{Result, positive};
+use crate::load::{Load, LoadHistory, PiecewiseLinear};
+
+/// A load that changes linearly from one value to another in a given time, starting at t = 0, and is
+/// held before and after.
+///
+/// ```
+/// use viscocontact::load::{Load, LoadHistory, Ramp};
+///
+/// let ramp = Ramp::new(Load::force(0.0), Load::force(8.0), 2.0)?;
+/// assert_eq!(ramp.at(0.5), Load::force(2.0));
+/// assert_eq!(ramp.at(9.0), Load::force(8.0));
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ramp {
+    table: PiecewiseLinear,
+}
+
+impl Ramp {
+    /// From `from` at t = 0 to `to` at t = `duration` \[s\].
+    ///
+    /// # Errors
+    /// If the duration is not finite and positive, a load is one no step accepts, or the loads are of
+    /// different kinds.
+    pub fn new(from: Load, to: Load, duration: f64) -> Result<Ramp> {
+        positive("duration of the ramp", duration)?;
+        Ok(Ramp { table: PiecewiseLinear::new(&[(0.0, from), (duration, to)])? })
+    }
+}
+
+impl LoadHistory for Ramp {
+    fn at(&self, t: f64) -> Load {
+        self.table.at(t)
+    }
+
+    fn next_breakpoint(&self, after: f64) -> Option<f64> {
+        self.table.next_breakpoint(after)
+    }
+}

@@ -1,0 +1,37 @@
+use std::f64::consts::TAU;
+
+use crate::error::{Result, positive};
+use crate::load::{Load, LoadHistory};
+
+/// A load that swings between two values: it starts in the middle at t = 0, rising towards `high`,
+/// and is held at the middle before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sinusoid {
+    low: Load,
+    high: Load,
+    frequency: f64,
+}
+
+impl Sinusoid {
+    /// Oscillation between `low` and `high` with `frequency` cycles per second \[Hz\].
+    ///
+    /// # Errors
+    /// If the frequency is not finite and positive, a load is one no step accepts, or the loads are of
+    /// different kinds.
+    pub fn new(low: Load, high: Load, frequency: f64) -> Result<Sinusoid> {
+        low.validate()?;
+        high.validate()?;
+        Ok(Sinusoid { low, high, frequency: positive("frequency", frequency)? })
+    }
+}
+
+impl LoadHistory for Sinusoid {
+    fn at(&self, t: f64) -> Load {
+        let phase = (self.frequency * t.max(0.0)).fract();
+        self.low.towards(&self.high, 0.5 + 0.5 * (TAU * phase).sin())
+    }
+
+    fn next_breakpoint(&self, after: f64) -> Option<f64> {
+        (after < 0.0).then_some(0.0)
+    }
+}

@@ -1,0 +1,33 @@
+use crate::error::Result;
+use crate::load::{Load, LoadHistory};
+
+/// A load that is there from t = 0 on, and nothing before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StepLoad {
+    load: Load,
+}
+
+impl StepLoad {
+    /// `load` applied at t = 0 and held.
+    ///
+    /// # Errors
+    /// If the load is one no step accepts: not finite, or a negative force.
+    pub fn new(load: Load) -> Result<StepLoad> {
+        load.validate()?;
+        Ok(StepLoad { load })
+    }
+}
+
+impl LoadHistory for StepLoad {
+    fn at(&self, t: f64) -> Load {
+        if t >= 0.0 { self.load } else { Load::force(0.0) }
+    }
+
+    fn before(&self, t: f64) -> Load {
+        if t > 0.0 { self.load } else { Load::force(0.0) }
+    }
+
+    fn next_breakpoint(&self, after: f64) -> Option<f64> {
+        (after < 0.0).then_some(0.0)
+    }
+}

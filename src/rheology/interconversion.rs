@@ -1,0 +1,147 @@
+//! The reciprocal of a Stieltjes series: the algebra behind creep ⇄ relaxation.
+//!
+//! Creep and relaxation satisfy s Ĵ(s) · s Ĝ(s) = 1 (e.g. Tschoegl, *The Phenomenological Theory of
+//! Linear Viscoelastic Behavior*, Springer 1989). With s = −x, s Ĵ becomes
+//!
+//! φ(x) = c − f/x + Σ a_k p_k/(p_k − x),
+//!
+//! which rises from −∞ to +∞ between consecutive poles, so that its zeros z_k interlace with the poles
+//! (one of which is 0 if f > 0): one in every gap, and one above the last pole if c > 0. The
+//! reciprocal is then c′ + f′ s + Σ b_k s/(s + z_k) with b_k = 1/(z_k φ′(z_k)),
+//! c′ = 1/φ(0) (0 if f > 0) and f′ = 1/(f + Σ a_k p_k) (0 if c > 0).
+//!
+//! Read in σ = 1/s the reciprocal has the form of φ again, poles at the times 1/z_k: one function
+//! serves both ways.
+
+/// The coefficients of c + f/s + Σ a p/(p + s): positive strengths a at ascending, distinct poles p.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Series {
+    pub(crate) constant: f64,
+    pub(crate) slope: f64,
+    /// (strength a, pole p)
+    pub(crate) terms: Vec<(f64, f64)>,
+}
+
+/// The coefficients c′, f′ and (b_k, z_k) of the reciprocal c′ + f′ s + Σ b s/(s + z), zeros ascending.
+pub(crate) fn reciprocal(series: &Series) -> Series {
+    let Series { constant, slope, ref terms } = *series;
+    let total: f64 = terms.iter().map(|&(a, _)| a).sum();
+    let rate: f64 = terms.iter().map(|&(a, p)| a * p).sum();
+
+    let mut poles = Vec::with_capacity(terms.len() + 1);
+    if slope > 0.0 {
+        poles.push(Pole { at: 0.0, weight: slope });
+    }
+    poles.extend(terms.iter().map(|&(a, p)| Pole { at: p, weight: a * p }));
+    let function = Secular { constant, poles };
+
+    let mut zeros: Vec<(f64, f64)> = Vec::with_capacity(terms.len() + 1);
+    for zero in function.zeros() {
+        let (strength, at) = (function.residue(zero), function.position(zero));
+        match zeros.last_mut() {
+            // zeros on either side of a very weak term may round to the same number
+            Some(last) if last.1 == at => last.0 += strength,
+            _ => zeros.push((strength, at)),
+        }
+    }
+    Series {
+        constant: if slope > 0.0 { 0.0 } else { 1.0 / (constant + total) },
+        slope: if constant > 0.0 { 0.0 } else { 1.0 / (slope + rate) },
+        terms: zeros,
+    }
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Pole {
+    at: f64,
+    weight: f64,
+}
+
+/// φ(x) = constant + Σ weight/(at − x), increasing between its poles.
+struct Secular {
+    constant: f64,
+    poles: Vec<Pole>,
+}
+
+/// A point given by its signed distance from a pole, so that a zero that all but coincides with the
+/// pole of a weak term keeps its full relative accuracy.
+#[derive(Debug, Clone, Copy)]
+struct Point {
+    pole: usize,
+    offset: f64,
+}
+
+impl Secular {
+    fn zeros(&self) -> impl Iterator<Item = Point> + '_ {
+        let last = self.poles.len().wrapping_sub(1);
+        (0..self.poles.len()).filter_map(move |k| {
+            if k < last {
+                Some(self.zero_between(k))
+            } else if self.constant > 0.0 {
+                Some(self.zero_above_last())
+            } else {
+                None
+            }
+        })
+    }
+
+    /// The zero between poles k and k + 1, measured from the nearer one.
+    fn zero_between(&self, k: usize) -> Point {
+        let middle = 0.5 * (self.poles[k + 1].at - self.poles[k].at);
+        let value = self.value(Point { pole: k, offset: middle });
+        // On the side of pole q the other terms grow no further than they are in the middle, so the
+        // zero is no nearer to q than weight / (weight/middle + |φ(middle)|).
+        let pole = if value >= 0.0 { k } else { k + 1 };
+        let weight = self.poles[pole].weight;
+        let nearest = weight / (weight / middle + value.abs());
+        self.bisect(pole, if value >= 0.0 { 1.0 } else { -1.0 }, nearest, middle)
+    }
+
+    /// The zero above the last pole: weight_last/c ≤ distance ≤ Σ weight/c.
+    fn zero_above_last(&self) -> Point {
+        let last = self.poles.len() - 1;
+        let farthest = self.poles.iter().map(|pole| pole.weight).sum::<f64>() / self.constant;
+        self.bisect(last, 1.0, self.poles[last].weight / self.constant, farthest)
+    }
+
+    /// Bisection in the logarithm of the distance from `pole` on the given side.
+    fn bisect(&self, pole: usize, side: f64, nearest: f64, farthest: f64) -> Point {
+        let (mut near, mut far) = (nearest, farthest);
+        let mut middle = far;
+        while far / near - 1.0 > 2.0 * f64::EPSILON {
+            middle = near.sqrt() * far.sqrt();
+            if middle <= near || middle >= far {
+                break;
+            }
+            // φ rises with x: on the right of its pole it is negative nearby, on the left positive
+            if side * self.value(Point { pole, offset: side * middle }) < 0.0 {
+                near = middle;
+            } else {
+                far = middle;
+            }
+        }
+        Point { pole, offset: side * middle }
+    }
+
+    /// Signed distance from `point` to pole j, free of cancellation.
+    fn distance(&self, j: usize, point: Point) -> f64 {
+        (self.poles[j].at - self.poles[point.pole].at) - point.offset
+    }
+
+    fn value(&self, point: Point) -> f64 {
+        let terms = self.poles.iter().enumerate().map(|(j, pole)| pole.weight / self.distance(j, point));
+        self.constant + terms.sum::<f64>()
+    }
+
+    fn position(&self, point: Point) -> f64 {
+        self.poles[point.pole].at + point.offset
+    }
+
+    /// 1/(z φ′(z)), written so that squares of tiny distances do not underflow.
+    fn residue(&self, zero: Point) -> f64 {
+        let d = zero.offset;
+        let scaled_slope: f64 =
+            self.poles.iter().enumerate().map(|(j, pole)| pole.weight * (d / self.distance(j, zero)).powi(2)).sum();
+        (d / self.position(zero)) * (d / scaled_slope)
+    }
+}

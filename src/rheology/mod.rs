@@ -1,0 +1,87 @@
+//! Linear viscoelastic materials: how a body creeps.
+//!
+//! | model | shear creep compliance J(t) |
+//! |---|---|
+//! | [`Elastic`] | 1/G |
+//! | [`Maxwell`] | 1/G + t/η |
+//! | [`KelvinVoigt`] | (1 − e^(−t/λ))/G, λ = η/G |
+//! | [`Zener`] | 1/G + (1 − e^(−t/λ))/G_K, λ = η_K/G_K |
+//! | [`Burgers`] | 1/G + t/η + (1 − e^(−t/λ))/G_K |
+//! | [`GeneralizedKelvin`] | J_g + φ t + Σ J_k (1 − e^(−t/λ_k)) |
+//! | [`GeneralizedMaxwell`] | of the relaxation modulus G_∞ + Σ G_k e^(−t/τ_k) |
+//! | [`FnRheology`] | any closure |
+//!
+//! A [`Rheology`] describes shear; a [`Material`] adds what the volume does and yields the contact
+//! compliance C(t) that the surface responds with.
+
+mod burgers;
+mod elastic;
+mod function;
+mod generalized_kelvin;
+mod generalized_maxwell;
+mod interconversion;
+mod kelvin_voigt;
+mod material;
+mod maxwell;
+mod spectrum;
+mod zener;
+
+pub use burgers::Burgers;
+pub use elastic::Elastic;
+pub use function::FnRheology;
+pub use generalized_kelvin::GeneralizedKelvin;
+pub use generalized_maxwell::GeneralizedMaxwell;
+pub use kelvin_voigt::KelvinVoigt;
+pub use material::Material;
+pub use maxwell::Maxwell;
+pub use spectrum::{CreepSpectrum, RelaxationSpectrum};
+pub use zener::Zener;
+
+use std::fmt::Debug;
+
+/// The shear creep of a linear viscoelastic body.
+///
+/// J(t) is the shear strain at time t after a unit shear stress was applied at t = 0. It is ≥ 0 and
+/// never decreases; J(0) = 1/G is the elastic response, 0 for a body without one.
+///
+/// ```
+/// use viscocontact::rheology::Rheology;
+///
+/// /// Logarithmic creep.
+/// #[derive(Debug)]
+/// struct Logarithmic;
+///
+/// impl Rheology for Logarithmic {
+///     fn creep_compliance(&self, t: f64) -> f64 {
+///         1.0e-9 * (1.0 + 0.1 * t.ln_1p())
+///     }
+/// }
+/// assert_eq!(Logarithmic.creep_compliance(0.0), 1.0e-9);
+/// assert!(Logarithmic.creep_spectrum().is_none());
+/// ```
+pub trait Rheology: Debug + Send + Sync {
+    /// J(t) \[1/Pa\] at t ≥ 0 \[s\].
+    fn creep_compliance(&self, t: f64) -> f64;
+
+    /// The exact exponential series of J, if there is one. With it a step costs the same however
+    /// many went before; without it the whole past is summed.
+    fn creep_spectrum(&self) -> Option<CreepSpectrum> {
+        None
+    }
+}
+
+/// [`Rheology`] for a model that holds its exact series in a field `spectrum`.
+macro_rules! exponential_rheology {
+    ($model:ty) => {
+        impl $crate::rheology::Rheology for $model {
+            fn creep_compliance(&self, t: f64) -> f64 {
+                self.spectrum.compliance(t)
+            }
+
+            fn creep_spectrum(&self) -> Option<$crate::rheology::CreepSpectrum> {
+                Some(self.spectrum.clone())
+            }
+        }
+    };
+}
+use exponential_rheology;

@@ -1,0 +1,178 @@
+//! Exponential series of creep and relaxation, and the exact passage from one to the other.
+
+use crate::error::{Error, Result, least_length, non_negative, positive};
+use crate::rheology::interconversion::{Series, reciprocal};
+
+/// A creep compliance as an exponential series,
+///
+/// J(t) = J_g + φ t + Σ J_k (1 − e^(−t/λ_k)),
+///
+/// with glassy compliance J_g, fluidity φ and retardation times λ_k. Every coefficient is ≥ 0.
+///
+/// ```
+/// use viscocontact::rheology::CreepSpectrum;
+///
+/// // Zener: 1/G = 1e-6, 1/G_K = 2e-6, retardation time 0.5 s
+/// let creep = CreepSpectrum::new(1.0e-6, 0.0, &[(2.0e-6, 0.5)])?;
+/// let relaxation = creep.relaxation();
+/// assert!((relaxation.equilibrium() * 3.0e-6 - 1.0).abs() < 1e-14);
+/// assert!((relaxation.terms()[0].1 - 0.5 / 3.0).abs() < 1e-14); // relaxation is faster than creep
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct CreepSpectrum {
+    glassy: f64,
+    fluidity: f64,
+    /// Compliances and retardation times, times ascending and distinct.
+    terms: Vec<(f64, f64)>,
+}
+
+/// A relaxation modulus as an exponential series,
+///
+/// G(t) = G_∞ + Σ G_k e^(−t/τ_k) + η δ(t),
+///
+/// with equilibrium modulus G_∞, relaxation times τ_k and, for bodies without elastic response, the
+/// viscosity η of an immediate dashpot. Every coefficient is ≥ 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RelaxationSpectrum {
+    equilibrium: f64,
+    viscosity: f64,
+    /// Moduli and relaxation times, times ascending and distinct.
+    terms: Vec<(f64, f64)>,
+}
+
+impl CreepSpectrum {
+    /// A series with `glassy` compliance \[1/Pa\], `fluidity` \[1/(Pa·s)\] and `terms` of (compliance
+    /// \[1/Pa\], retardation time \[s\]) in any order; equal times are merged, zero terms dropped.
+    ///
+    /// # Errors
+    /// If a compliance or the fluidity is negative or not finite, a time is not finite and positive,
+    /// or everything is zero (a rigid body).
+    pub fn new(glassy: f64, fluidity: f64, terms: &[(f64, f64)]) -> Result<CreepSpectrum> {
+        non_negative("glassy compliance", glassy)?;
+        non_negative("fluidity", fluidity)?;
+        let terms = sorted_terms(["retarded compliance", "retardation time"], terms)?;
+        if glassy == 0.0 && fluidity == 0.0 {
+            least_length("creep spectrum", terms.len(), 1)?;
+        }
+        Ok(CreepSpectrum { glassy, fluidity, terms })
+    }
+
+    /// Compliance at t = 0, 1/G for an elastic response, 0 for a body without \[1/Pa\].
+    pub fn glassy(&self) -> f64 {
+        self.glassy
+    }
+
+    /// Rate of steady flow under unit stress, 0 for a solid \[1/(Pa·s)\].
+    pub fn fluidity(&self) -> f64 {
+        self.fluidity
+    }
+
+    /// (Compliance \[1/Pa\], retardation time \[s\]) of each term, times ascending.
+    pub fn terms(&self) -> &[(f64, f64)] {
+        &self.terms
+    }
+
+    /// J(t) \[1/Pa\] at t ≥ 0 \[s\].
+    pub fn compliance(&self, t: f64) -> f64 {
+        let retarded: f64 = self.terms.iter().map(|&(c, lambda)| -c * (-t / lambda).exp_m1()).sum();
+        let flow = if self.fluidity > 0.0 { self.fluidity * t } else { 0.0 };
+        self.glassy + retarded + flow
+    }
+
+    /// Creep rate dJ/dt \[1/(Pa·s)\] at t ≥ 0 \[s\].
+    pub fn rate(&self, t: f64) -> f64 {
+        self.fluidity + self.terms.iter().map(|&(c, lambda)| c / lambda * (-t / lambda).exp()).sum::<f64>()
+    }
+
+    /// The same compliance multiplied by a positive `factor`.
+    ///
+    /// # Errors
+    /// If the factor is not finite and positive.
+    pub fn scaled(&self, factor: f64) -> Result<CreepSpectrum> {
+        positive("factor of a creep spectrum", factor)?;
+        let terms: Vec<_> = self.terms.iter().map(|&(c, lambda)| (factor * c, lambda)).collect();
+        CreepSpectrum::new(factor * self.glassy, factor * self.fluidity, &terms)
+    }
+
+    /// The relaxation modulus of the same body, exactly: s Ĵ(s) · s Ĝ(s) = 1.
+    pub fn relaxation(&self) -> RelaxationSpectrum {
+        // s Ĵ(s) = J_g + φ/s + Σ J_k x_k/(x_k + s), poles at the rates x_k = 1/λ_k
+        let terms = self.terms.iter().rev().map(|&(c, lambda)| (c, 1.0 / lambda)).collect();
+        let series = reciprocal(&Series { constant: self.glassy, slope: self.fluidity, terms });
+        let terms = series.terms.into_iter().rev().map(|(g, rate)| (g, 1.0 / rate)).collect();
+        RelaxationSpectrum { equilibrium: series.constant, viscosity: series.slope, terms }
+    }
+}
+
+impl RelaxationSpectrum {
+    /// A series with `equilibrium` modulus \[Pa\], immediate `viscosity` \[Pa·s\] (0 unless the body has
+    /// no elastic response) and `terms` of (modulus \[Pa\], relaxation time \[s\]) in any order; equal
+    /// times are merged, zero terms dropped.
+    ///
+    /// # Errors
+    /// If a modulus or the viscosity is negative or not finite, a time is not finite and positive, or
+    /// everything is zero (no body).
+    pub fn new(equilibrium: f64, viscosity: f64, terms: &[(f64, f64)]) -> Result<RelaxationSpectrum> {
+        non_negative("equilibrium modulus", equilibrium)?;
+        non_negative("immediate viscosity", viscosity)?;
+        let terms = sorted_terms(["relaxing modulus", "relaxation time"], terms)?;
+        if equilibrium == 0.0 && viscosity == 0.0 {
+            least_length("relaxation spectrum", terms.len(), 1)?;
+        }
+        Ok(RelaxationSpectrum { equilibrium, viscosity, terms })
+    }
+
+    /// Modulus after an infinite time, 0 for a fluid \[Pa\].
+    pub fn equilibrium(&self) -> f64 {
+        self.equilibrium
+    }
+
+    /// Viscosity of the immediate dashpot, 0 for a body with elastic response \[Pa·s\].
+    pub fn viscosity(&self) -> f64 {
+        self.viscosity
+    }
+
+    /// (Modulus \[Pa\], relaxation time \[s\]) of each term, times ascending.
+    pub fn terms(&self) -> &[(f64, f64)] {
+        &self.terms
+    }
+
+    /// G(t) \[Pa\] at t ≥ 0 \[s\], without the immediate dashpot.
+    pub fn modulus(&self, t: f64) -> f64 {
+        self.equilibrium + self.terms.iter().map(|&(g, tau)| g * (-t / tau).exp()).sum::<f64>()
+    }
+
+    /// The creep compliance of the same body, exactly: s Ĵ(s) · s Ĝ(s) = 1.
+    pub fn creep(&self) -> CreepSpectrum {
+        // In σ = 1/s the modulus reads s Ĝ = G_∞ + η/σ + Σ G_k τ_k/(τ_k + σ): the form of s Ĵ with
+        // times for rates, so that the same function serves both ways.
+        let series = Series { constant: self.equilibrium, slope: self.viscosity, terms: self.terms.clone() };
+        let Series { constant, slope, terms } = reciprocal(&series);
+        CreepSpectrum { glassy: constant, fluidity: slope, terms }
+    }
+}
+
+/// Checks (strength, time) pairs, sorts them by time, merges equal times, drops zero strengths.
+fn sorted_terms([strength_name, time_name]: [&'static str; 2], terms: &[(f64, f64)]) -> Result<Vec<(f64, f64)>> {
+    let mut sorted = Vec::with_capacity(terms.len());
+    for &(strength, time) in terms {
+        non_negative(strength_name, strength)?;
+        positive(time_name, time)?;
+        if !(1.0 / time).is_finite() {
+            return Err(Error::OutOfRange { field: time_name, value: time, allowed: "at least 1e-308 s" });
+        }
+        if strength > 0.0 {
+            sorted.push((strength, time));
+        }
+    }
+    sorted.sort_by(|a, b| a.1.total_cmp(&b.1));
+    sorted.dedup_by(|next, kept| {
+        let equal = next.1 == kept.1;
+        if equal {
+            kept.0 += next.0;
+        }
+        equal
+    });
+    Ok(sorted)
+}

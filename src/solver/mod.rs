@@ -1,0 +1,11 @@
+//! The contact problem of one step, and two ways to solve it.
+
+mod active_set;
+mod cold_start;
+mod polonsky_keer;
+mod preconditioner;
+mod problem;
+
+pub(crate) use active_set::ActiveSet;
+pub(crate) use polonsky_keer::PolonskyKeer;
+pub(crate) use problem::{Counts, Problem, Solution, Stop};

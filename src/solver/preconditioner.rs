@@ -1,0 +1,32 @@
+//! An approximate inverse of the influence operator.
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use crate::Grid;
+use crate::kernel::{SpectralOperator, TransformWorkspace, smooth_length};
+
+/// M ≈ K⁻¹: on an infinite plane K multiplies the wave q by 2/|q| (Westergaard 1939), so M multiplies
+/// by |q|/2 on a periodic grid without padding, a quarter of the size of a convolution.
+#[derive(Debug, Clone)]
+pub(crate) struct Preconditioner {
+    operator: Arc<SpectralOperator>,
+    work: TransformWorkspace,
+}
+
+impl Preconditioner {
+    pub(crate) fn new(grid: &Grid) -> Preconditioner {
+        let (cells, spacing) = (grid.cells(), grid.spacing());
+        let period = [smooth_length(cells[0], 1), smooth_length(cells[1], 2)];
+        let wave_number = |axis: usize, k: usize| TAU * k as f64 / (period[axis] as f64 * spacing[axis]);
+        let operator =
+            SpectralOperator::from_symbol(cells, period, |k1, k2| 0.5 * wave_number(0, k1).hypot(wave_number(1, k2)));
+        let work = operator.workspace();
+        Preconditioner { operator: Arc::new(operator), work }
+    }
+
+    /// z ← M r.
+    pub(crate) fn apply(&mut self, r: &[f64], z: &mut [f64]) {
+        self.operator.apply(r, z, &mut self.work);
+    }
+}
