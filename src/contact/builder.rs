@@ -74,7 +74,7 @@ impl Builder {
             None => Arc::new(InfluenceKernel::half_space(&grid)?),
         };
         let solver = match settings.solver {
-            Solver::ActiveSet => ContactSolver::ActiveSet(ActiveSet::new(&grid)),
+            Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&grid))),
             Solver::PolonskyKeer => ContactSolver::PolonskyKeer(PolonskyKeer::new(grid.len())),
         };
         Ok(ViscoelasticContact::new(grid, kernel, settings, gap, history, solver))

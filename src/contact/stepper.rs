@@ -14,8 +14,8 @@ use crate::kernel::{InfluenceKernel, Workspace};
 use crate::load::{Load, LoadHistory};
 use crate::solver::{ActiveSet, Counts, PolonskyKeer, Problem, Solution, Stop};
 
-/// The first guess of a step extrapolates p and K p from the last two, which saves a convolution but
-/// lets rounding accumulate: every so many steps K p is computed afresh.
+/// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets rounding
+/// accumulate: every so many steps K p is computed afresh, a thirty-second of a convolution a step.
 const STEPS_BETWEEN_REFRESHES: usize = 32;
 
 /// A guess reaches at most this many times the length of the last step ahead.
@@ -68,7 +68,7 @@ pub struct ViscoelasticContact {
 
 #[derive(Debug, Clone)]
 pub(crate) enum ContactSolver {
-    ActiveSet(ActiveSet),
+    ActiveSet(Box<ActiveSet>),
     PolonskyKeer(PolonskyKeer),
 }
 
@@ -167,6 +167,7 @@ impl ViscoelasticContact {
         self.time = time;
         self.load = load;
         self.last_dt = dt;
+        self.steps_since_refresh = (self.steps_since_refresh + 1) % (STEPS_BETWEEN_REFRESHES + 1);
         self.contact_cells = self.current.pressure.iter().filter(|&&p| p > 0.0).count();
         Ok(self.report(dt))
     }
@@ -182,7 +183,12 @@ impl ViscoelasticContact {
             }
         };
         extrapolate(&mut trial.pressure, &self.current.pressure, &self.previous.pressure);
-        extrapolate(&mut trial.potential, &self.current.potential, &self.previous.potential);
+        if self.steps_since_refresh < STEPS_BETWEEN_REFRESHES {
+            extrapolate(&mut trial.potential, &self.current.potential, &self.previous.potential);
+        } else if matches!(self.solver, ContactSolver::ActiveSet(_)) {
+            self.kernel.apply(&trial.pressure, &mut trial.potential, &mut self.work);
+            trial.counts.convolutions += 1;
+        }
     }
 
     /// Whether the trial may be accepted.

@@ -135,6 +135,13 @@ impl SpectralOperator {
         self.rows_inverse(output, work);
     }
 
+    /// [`SpectralOperator::apply`] with one field for input and output.
+    pub(crate) fn apply_in_place(&self, field: &mut [f64], work: &mut TransformWorkspace) {
+        self.rows_forward(field, work);
+        self.columns(work);
+        self.rows_inverse(field, work);
+    }
+
     fn rows_forward(&self, input: &[f64], work: &mut TransformWorkspace) {
         let half = self.period[1] / 2 + 1;
         for (values, spectrum) in input.chunks_exact(self.cells[1]).zip(work.rows.chunks_exact_mut(half)) {

@@ -12,6 +12,7 @@ use crate::kernel::{SpectralOperator, TransformWorkspace, smooth_length};
 pub(crate) struct Preconditioner {
     operator: Arc<SpectralOperator>,
     work: TransformWorkspace,
+    diagonal: f64,
 }
 
 impl Preconditioner {
@@ -19,14 +20,25 @@ impl Preconditioner {
         let (cells, spacing) = (grid.cells(), grid.spacing());
         let period = [smooth_length(cells[0], 1), smooth_length(cells[1], 2)];
         let wave_number = |axis: usize, k: usize| TAU * k as f64 / (period[axis] as f64 * spacing[axis]);
-        let operator =
-            SpectralOperator::from_symbol(cells, period, |k1, k2| 0.5 * wave_number(0, k1).hypot(wave_number(1, k2)));
-        let work = operator.workspace();
-        Preconditioner { operator: Arc::new(operator), work }
+        let operator = SpectralOperator::from_symbol(cells, period, |k1, k2| {
+            0.5 * wave_number(0, k1).hypot(wave_number(1, k2))
+        });
+        let mut preconditioner =
+            Preconditioner { work: operator.workspace(), operator: Arc::new(operator), diagonal: 0.0 };
+        let mut impulse = vec![0.0; grid.len()];
+        impulse[0] = 1.0;
+        preconditioner.apply(&mut impulse);
+        preconditioner.diagonal = impulse[0];
+        preconditioner
     }
 
-    /// z ← M r.
-    pub(crate) fn apply(&mut self, r: &[f64], z: &mut [f64]) {
-        self.operator.apply(r, z, &mut self.work);
+    /// field ← M field.
+    pub(crate) fn apply(&mut self, field: &mut [f64]) {
+        self.operator.apply_in_place(field, &mut self.work);
+    }
+
+    /// The diagonal m of M, the same for every cell.
+    pub(crate) fn diagonal(&self) -> f64 {
+        self.diagonal
     }
 }
