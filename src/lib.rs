@@ -2,6 +2,7 @@
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
 
+pub mod analytic;
 pub mod contact;
 mod error;
 pub mod geometry;

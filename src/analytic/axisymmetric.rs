@@ -1,0 +1,243 @@
+use std::f64::consts::PI;
+use std::fmt;
+use std::sync::Arc;
+
+use crate::error::{Error, Result, finite, non_negative, positive};
+use crate::hereditary::{Change, Exponential};
+use crate::rheology::Material;
+
+/// The profile g(x) of a one-dimensional foundation that stands for an axisymmetric indenter f(r):
+/// g(x) = |x| ∫ f′(r)/√(x² − r²) dr over 0 < r < |x|.
+#[derive(Clone)]
+pub struct Profile {
+    name: &'static str,
+    depth: Arc<dyn Fn(f64) -> f64 + Send + Sync>,
+}
+
+impl Profile {
+    /// A sphere of `radius` R \[m\]: g = x²/R.
+    ///
+    /// # Errors
+    /// If the radius is not finite and positive.
+    pub fn sphere(radius: f64) -> Result<Profile> {
+        positive("sphere radius", radius)?;
+        Ok(Profile { name: "sphere", depth: Arc::new(move |x| x * x / radius) })
+    }
+
+    /// A cone with slope `tan_beta`: g = (π/2) x tan β.
+    ///
+    /// # Errors
+    /// If the slope is not finite and positive.
+    pub fn cone(tan_beta: f64) -> Result<Profile> {
+        positive("cone slope tan β", tan_beta)?;
+        Ok(Profile { name: "cone", depth: Arc::new(move |x| 0.5 * PI * x * tan_beta) })
+    }
+
+    /// A flat circular punch of `radius` \[m\]: g = 0 on the face, +∞ off it.
+    ///
+    /// # Errors
+    /// If the radius is not finite and positive.
+    pub fn punch(radius: f64) -> Result<Profile> {
+        positive("punch radius", radius)?;
+        Ok(Profile { name: "punch", depth: Arc::new(move |x| if x <= radius { 0.0 } else { f64::INFINITY }) })
+    }
+
+    /// Any other g(x) for x ≥ 0 \[m\].
+    pub fn new(depth: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Profile {
+        Profile { name: "function", depth: Arc::new(depth) }
+    }
+}
+
+impl fmt::Debug for Profile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Profile").field(&self.name).finish()
+    }
+}
+
+/// An axisymmetric indenter on a viscoelastic half-space under any history of force or approach,
+/// loading, holding, unloading and loading again, by the method of dimensionality reduction (Popov &
+/// Heß, *Method of Dimensionality Reduction in Contact Mechanics and Friction*, 2015; for viscoelastic
+/// bodies also Greenwood, Int. J. Mech. Sci. 52, 2010).
+///
+/// A row of independent elements, each with the relaxation modulus E(t) per unit length, is indented by
+/// the profile g(x). Force, approach and contact radius are those of the three-dimensional contact, as
+/// long as that is a single circle; the pressure follows from the line load q by Abel's integral.
+/// In time it advances by the exponential rule, second order in the step; in space it is second order
+/// in the width of the elements: take both fine.
+///
+/// ```
+/// use viscocontact::analytic::{AxisymmetricContact, Hertz, Profile};
+/// use viscocontact::rheology::{Elastic, Material};
+///
+/// let body = Material::incompressible(Elastic::new(1.0e6)?);
+/// let mut contact = AxisymmetricContact::new(&Profile::sphere(10.0e-3)?, &body, 4000, 2.0e-3)?;
+/// contact.press(0.0, 1.0)?;
+/// let hertz = Hertz::new(10.0e-3, 4.0e6, 1.0)?;
+/// assert!((contact.approach() / hertz.approach() - 1.0).abs() < 1e-6);
+/// assert!((contact.contact_radius() / hertz.contact_radius() - 1.0).abs() < 1e-6);
+/// assert!((contact.pressure(0.0) / hertz.peak_pressure() - 1.0).abs() < 1e-6);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct AxisymmetricContact {
+    history: Exponential,
+    /// Width of an element; the k-th is centred on (k + ½) width.
+    width: f64,
+    profile: Vec<f64>,
+    time: f64,
+    approach: f64,
+    displacement: Vec<f64>,
+    /// Line load q \[N/m\].
+    load: Vec<f64>,
+    /// g + u_old: the approach at which each element is touched.
+    touch: Vec<f64>,
+    trial_displacement: Vec<f64>,
+}
+
+impl AxisymmetricContact {
+    /// A foundation of `elements` elements from the axis to `reach` \[m\], undisturbed and without load.
+    ///
+    /// # Errors
+    /// If there are no elements, the reach is not finite and positive, a value of the profile is NaN or
+    /// −∞, or the material has no exponential series.
+    pub fn new(profile: &Profile, material: &Material, elements: usize, reach: f64) -> Result<AxisymmetricContact> {
+        if elements == 0 {
+            return Err(Error::CountOutOfRange { field: "elements", value: 0, allowed: "1 or more" });
+        }
+        positive("reach of the foundation", reach)?;
+        let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series())?;
+        let width = reach / elements as f64;
+        let depths: Vec<f64> = (0..elements).map(|k| (profile.depth)((k as f64 + 0.5) * width)).collect();
+        for &depth in &depths {
+            if depth != f64::INFINITY {
+                finite("profile", depth)?;
+            }
+        }
+        let approach = depths.iter().copied().fold(f64::INFINITY, f64::min);
+        Ok(AxisymmetricContact {
+            history: Exponential::new(&creep, elements),
+            width,
+            profile: depths,
+            time: 0.0,
+            approach,
+            displacement: vec![0.0; elements],
+            load: vec![0.0; elements],
+            touch: vec![0.0; elements],
+            trial_displacement: vec![0.0; elements],
+        })
+    }
+
+    /// Advances by `dt` \[s\] to the force `force` \[N\]; `dt` = 0 is a jump.
+    ///
+    /// # Errors
+    /// If `dt` or the force is negative or not finite, `dt` = 0 and the body has no elastic response, or
+    /// the contact reaches the end of the foundation.
+    pub fn press(&mut self, dt: f64, force: f64) -> Result<()> {
+        non_negative("force", force)?;
+        let c = self.predict(dt)?;
+        // 2 width Σ max(0, ω − touch)/c = W: convex and piecewise linear, Newton from the right ends
+        let wanted = force * c / (2.0 * self.width);
+        let lowest = self.touch.iter().copied().fold(f64::INFINITY, f64::min);
+        let mut approach = lowest + wanted;
+        loop {
+            let touched = self.touch.iter().filter(|&&touch| touch < approach);
+            let (count, sum) = touched.fold((0, 0.0), |(count, sum), touch| (count + 1, sum + (touch - lowest)));
+            let next = if count == 0 { lowest } else { lowest + (wanted + sum) / count as f64 };
+            if next >= approach {
+                break;
+            }
+            approach = next;
+        }
+        self.accept(dt, c, approach)
+    }
+
+    /// Advances by `dt` \[s\] to the approach `approach` \[m\]; `dt` = 0 is a jump.
+    ///
+    /// # Errors
+    /// If `dt` is negative, a number not finite, `dt` = 0 and the body has no elastic response, or the
+    /// contact reaches the end of the foundation.
+    pub fn indent(&mut self, dt: f64, approach: f64) -> Result<()> {
+        finite("approach", approach)?;
+        let c = self.predict(dt)?;
+        self.accept(dt, c, approach)
+    }
+
+    fn predict(&mut self, dt: f64) -> Result<f64> {
+        non_negative("time step", dt)?;
+        let c = self.history.predict(self.time + dt, dt, &self.displacement, &mut self.trial_displacement)?;
+        for ((touch, &g), &u_old) in self.touch.iter_mut().zip(&self.profile).zip(&self.trial_displacement) {
+            *touch = g + u_old;
+        }
+        Ok(c)
+    }
+
+    fn accept(&mut self, dt: f64, c: f64, approach: f64) -> Result<()> {
+        if self.touch.last().is_some_and(|&touch| touch < approach) {
+            return Err(Error::ContactAtEdge { time: self.time + dt, cells: 1 });
+        }
+        for ((q, u), &touch) in self.load.iter_mut().zip(&mut self.trial_displacement).zip(&self.touch) {
+            *q = (approach - touch).max(0.0) / c;
+            *u += c * *q;
+        }
+        self.history.commit(&Change {
+            time: self.time + dt,
+            dt,
+            displacement: [&self.displacement, &self.trial_displacement],
+            potential: [&[], &[]],
+        });
+        std::mem::swap(&mut self.displacement, &mut self.trial_displacement);
+        self.time += dt;
+        self.approach = approach;
+        Ok(())
+    }
+
+    /// Time \[s\].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Approach ω \[m\].
+    pub fn approach(&self) -> f64 {
+        self.approach
+    }
+
+    /// Force \[N\].
+    pub fn force(&self) -> f64 {
+        2.0 * self.width * self.load.iter().sum::<f64>()
+    }
+
+    /// Contact radius \[m\], to a fraction of an element: where the line load, continued linearly, vanishes.
+    pub fn contact_radius(&self) -> f64 {
+        let Some(last) = self.load.iter().rposition(|&q| q > 0.0) else { return 0.0 };
+        let center = (last as f64 + 0.5) * self.width;
+        let inside = self.approach - self.touch[last];
+        match self.touch.get(last + 1).map(|touch| touch - self.approach) {
+            Some(outside) if outside.is_finite() => center + self.width * inside / (inside + outside),
+            _ => center + 0.5 * self.width,
+        }
+    }
+
+    /// Pressure \[Pa\] at the distance `r` ≥ 0 from the axis \[m\]: −(1/π) ∫ q′(x)/√(x² − r²) dx over x > r, for
+    /// q linear between the elements and zero at the contact radius. Not for a punch, whose line load jumps.
+    pub fn pressure(&self, r: f64) -> f64 {
+        let edge = self.contact_radius();
+        let node = |k: usize| (k as f64 + 0.5) * self.width;
+        // ∫ dx/√(x² − r²) from low to high
+        let weight = |low: f64, high: f64| {
+            if r > 0.0 { (high / r).acosh() - (low / r).acosh() } else { (high / low).ln() }
+        };
+        let mut sum = 0.0;
+        for k in 0..self.load.len() {
+            if self.load[k] == 0.0 {
+                break;
+            }
+            let last = self.load.get(k + 1).is_none_or(|&q| q == 0.0);
+            let (high, next) = if last { (edge, 0.0) } else { (node(k + 1), self.load[k + 1]) };
+            let low = node(k).max(r);
+            if high > low {
+                sum += (self.load[k] - next) / (high - node(k)) * weight(low, high);
+            }
+        }
+        sum / PI
+    }
+}

@@ -1,0 +1,174 @@
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use crate::error::{Error, Result, positive};
+use crate::load::{Load, LoadHistory, StepLoad};
+use crate::quadrature::GaussLegendre;
+use crate::rheology::{CreepSpectrum, Material, RelaxationSpectrum};
+
+/// A sphere pressed onto a viscoelastic half-space by a force that never lets the contact shrink.
+///
+/// While the contact grows, the elastic solution holds with its moduli replaced by hereditary operators
+/// (Lee & Radok, J. Appl. Mech. 27, 1960; Ting, J. Appl. Mech. 33, 1966):
+///
+/// a³(t) = (3R/4) ∫ C(t − s) dW(s), ω = a²/R,
+///
+/// p(r, t) = (2/πR) [E(0) s(t) + ∫ E′(t − t′) s(t′) dt′], s(t′) = √max(0, a(t′)² − r²),
+///
+/// E being the relaxation modulus that belongs to the contact compliance C. For a step load
+/// a³ = (3/4) R W C(t); with the compliance of an incompressible Maxwell body, or of a Zener body with
+/// G = G_K, this is Table 1 of the source paper, and it holds for every other exponential series too.
+///
+/// ```
+/// use viscocontact::analytic::GrowingSphere;
+/// use viscocontact::rheology::{Material, Maxwell};
+///
+/// let body = Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?);
+/// let sphere = GrowingSphere::step(10.0e-3, &body, 1.0)?;
+/// let growth = (sphere.contact_radius(2.0) / sphere.contact_radius(0.0)).powi(3);
+/// assert!((growth - 3.0).abs() < 1e-12); // J(2τ) = 3 J(0)
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct GrowingSphere {
+    radius: f64,
+    creep: CreepSpectrum,
+    relaxation: RelaxationSpectrum,
+    load: Arc<dyn LoadHistory>,
+    /// The force of a step load, for which the hereditary integral is closed.
+    step: Option<f64>,
+    rule: GaussLegendre,
+}
+
+/// Panels by which an integral is graded towards a singular end, each a tenth of the one before.
+const GRADES: i32 = 12;
+/// Decay times after which an exponential kernel is spent: e^(−45) < 3e-20.
+const SPENT: f64 = 45.0;
+
+impl GrowingSphere {
+    /// A sphere of `radius` \[m\] under `force` \[N\] applied at t = 0 and held.
+    ///
+    /// # Errors
+    /// If the radius or the force is not finite and positive, the material has no exponential series, or
+    /// no elastic response.
+    pub fn step(radius: f64, material: &Material, force: f64) -> Result<GrowingSphere> {
+        positive("force", force)?;
+        let load = StepLoad::new(Load::force(force))?;
+        Ok(GrowingSphere { step: Some(force), ..GrowingSphere::new(radius, material, load)? })
+    }
+
+    /// A sphere of `radius` \[m\] under the forces of `load` from t = 0 on, nothing before. The answer is
+    /// right at the times up to which the contact radius has never decreased.
+    ///
+    /// # Errors
+    /// If the radius is not finite and positive, the material has no exponential series, or no elastic
+    /// response.
+    pub fn new(radius: f64, material: &Material, load: impl LoadHistory + 'static) -> Result<GrowingSphere> {
+        positive("sphere radius", radius)?;
+        let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series())?;
+        if creep.glassy() == 0.0 {
+            return Err(Error::NoElasticResponse { time: 0.0, what: "the solution for a growing contact" });
+        }
+        let relaxation = creep.relaxation();
+        Ok(GrowingSphere { radius, creep, relaxation, load: Arc::new(load), step: None, rule: GaussLegendre::new(20) })
+    }
+
+    /// Contact radius a \[m\] at time `t` ≥ 0 \[s\].
+    pub fn contact_radius(&self, t: f64) -> f64 {
+        let creep_of_force = match self.step {
+            Some(force) => force * self.creep.compliance(t),
+            // ∫ C(t − s) dW(s) = C(0) W(t) + ∫ C′(t − s) W(s) ds
+            None => {
+                let flow = self.creep.fluidity() * self.integrate(0.0, t, f64::INFINITY, &|s| self.force(s));
+                let branches = self.creep.terms().iter();
+                let retarded: f64 = branches
+                    .map(|&(c, lambda)| {
+                        c / lambda * self.integrate(0.0, t, lambda, &|s| self.force(s) * ((s - t) / lambda).exp())
+                    })
+                    .sum();
+                self.creep.glassy() * self.force(t) + flow + retarded
+            }
+        };
+        (0.75 * self.radius * creep_of_force).cbrt()
+    }
+
+    /// Approach ω \[m\] at time `t` ≥ 0 \[s\].
+    pub fn approach(&self, t: f64) -> f64 {
+        self.contact_radius(t).powi(2) / self.radius
+    }
+
+    /// Pressure \[Pa\] at the distance `r` ≥ 0 from the centre \[m\] and time `t` ≥ 0 \[s\].
+    pub fn pressure(&self, r: f64, t: f64) -> f64 {
+        let now = self.contact_radius(t);
+        if r >= now {
+            return 0.0;
+        }
+        let depth = |s: f64| {
+            let a = self.contact_radius(s);
+            ((a - r) * (a + r)).max(0.0).sqrt()
+        };
+        let entry = self.entry_time(r, t);
+        let glassy: f64 = self.relaxation.modulus(0.0);
+        let relaxed: f64 = self
+            .relaxation
+            .terms()
+            .iter()
+            .map(|&(e, tau)| e / tau * self.integrate(entry, t, tau, &|s| depth(s) * ((s - t) / tau).exp()))
+            .sum();
+        2.0 / (PI * self.radius) * (glassy * depth(t) - relaxed)
+    }
+
+    fn force(&self, t: f64) -> f64 {
+        let Load::Force { normal } = self.load.at(t);
+        normal
+    }
+
+    /// When the contact first reached `r`.
+    fn entry_time(&self, r: f64, t: f64) -> f64 {
+        if self.contact_radius(0.0) >= r {
+            return 0.0;
+        }
+        let (mut low, mut high) = (0.0, t);
+        for _ in 0..100 {
+            let middle = 0.5 * (low + high);
+            if self.contact_radius(middle) < r { low = middle } else { high = middle }
+        }
+        high
+    }
+
+    /// ∫ f over [from, to] for f = (function with root-like behaviour at `from` and corners of the load)
+    /// × e^(−(to − s)/decay): Gauss–Legendre on panels graded towards `from`, cut at the corners and
+    /// doubling in length away from `to`.
+    fn integrate(&self, from: f64, to: f64, decay: f64, f: &dyn Fn(f64) -> f64) -> f64 {
+        let start = from.max(to - SPENT * decay);
+        if start >= to {
+            return 0.0;
+        }
+        let mut edges = vec![start, to];
+        let mut age = decay;
+        while age < to - start {
+            edges.push(to - age);
+            age *= 2.0;
+        }
+        let mut corner = self.load.next_breakpoint(start);
+        while let Some(time) = corner.filter(|&time| time < to) {
+            edges.push(time);
+            corner = self.load.next_breakpoint(time);
+        }
+        edges.sort_by(f64::total_cmp);
+        let mut sum = 0.0;
+        for panel in edges.windows(2) {
+            let (low, high) = (panel[0], panel[1]);
+            let length = high - low;
+            // a corner of the load may make a root-like start of its own
+            let mut above = high;
+            for grade in 1..=GRADES {
+                let below = low + length * 0.1_f64.powi(grade);
+                sum += self.rule.integrate(below, above, f);
+                above = below;
+            }
+            sum += self.rule.integrate(low, above, f);
+        }
+        sum
+    }
+}

@@ -1,0 +1,22 @@
+//! Reference solutions, for tests and for users who want to check a scene.
+//!
+//! | solution | scene |
+//! |---|---|
+//! | [`Hertz`], [`HertzEllipse`] | sphere, paraboloid with two radii; elastic |
+//! | [`RigidPunch`] | flat circular punch, centred or eccentric; elastic |
+//! | [`GrowingSphere`] | sphere under a step load (Ting) or any load that never lets the contact shrink (Lee & Radok); viscoelastic |
+//! | [`AxisymmetricContact`] | sphere, cone or other profile under any load history, loading and unloading; viscoelastic |
+//!
+//! Contact modulus E* is 1/C of an elastic body: E* = 2G/(1 − ν), 4G if incompressible.
+
+mod axisymmetric;
+mod growing_sphere;
+mod hertz;
+mod hertz_ellipse;
+mod rigid_punch;
+
+pub use axisymmetric::{AxisymmetricContact, Profile};
+pub use growing_sphere::GrowingSphere;
+pub use hertz::Hertz;
+pub use hertz_ellipse::HertzEllipse;
+pub use rigid_punch::RigidPunch;
