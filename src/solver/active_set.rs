@@ -190,12 +190,12 @@ impl ActiveSet {
         outside.map(|k| Self::depth(problem, solution, k)).fold(0.0, f64::max)
     }
 
-    /// Takes every penetrating cell into A.
+    /// Takes every penetrating cell into A, but for those that are about to leave: they would bring a
+    /// negative pressure with them, and change the force.
     fn join(&mut self, problem: &Problem<'_>, solution: &Solution) {
         for k in 0..self.member.len() {
-            self.member[k] |= Self::depth(problem, solution, k) > 0.0;
+            self.member[k] |= solution.pressure[k] == 0.0 && Self::depth(problem, solution, k) > 0.0;
         }
-        self.leaving.retain(|&k| !self.member[k as usize]);
         self.collect_cells();
     }
 

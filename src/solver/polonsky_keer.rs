@@ -23,7 +23,7 @@ impl PolonskyKeer {
     pub(crate) fn solve(&mut self, problem: &Problem<'_>, stop: Stop, solution: &mut Solution, work: &mut Workspace) {
         make_feasible(problem, solution);
         self.direction.fill(0.0);
-        let (mut gap_square_old, mut conjugate) = (1.0, 0.0);
+        let (mut gap_square_old, mut conjugate) = (1.0, false);
         loop {
             solution.convolve(problem, work);
             let gap_square = self.measure(problem, solution);
@@ -33,7 +33,7 @@ impl PolonskyKeer {
             solution.counts.iterations += 1;
 
             // t = h + δ G/G_old t in contact
-            let beta = conjugate * gap_square / gap_square_old;
+            let beta = if conjugate && gap_square_old > 0.0 { gap_square / gap_square_old } else { 0.0 };
             gap_square_old = gap_square;
             let cells = solution.pressure.iter().zip(&self.gap);
             for (t, (&p, &h)) in self.direction.iter_mut().zip(cells) {
@@ -79,7 +79,7 @@ impl PolonskyKeer {
                 }
                 total += *p;
             }
-            conjugate = if entered { 0.0 } else { 1.0 };
+            conjugate = !entered;
             if total > 0.0 {
                 let scale = problem.total / total;
                 solution.pressure.iter_mut().for_each(|p| *p *= scale);
