@@ -144,31 +144,29 @@ impl GrowingSphere {
         if start >= to {
             return 0.0;
         }
-        let mut edges = vec![start, to];
+        // (edge, whether the integrand may start like a root there)
+        let mut edges = vec![(start, start == from), (to, false)];
         let mut age = decay;
         while age < to - start {
-            edges.push(to - age);
+            edges.push((to - age, false));
             age *= 2.0;
         }
         let mut corner = self.load.next_breakpoint(start);
         while let Some(time) = corner.filter(|&time| time < to) {
-            edges.push(time);
+            edges.push((time, true));
             corner = self.load.next_breakpoint(time);
         }
-        edges.sort_by(f64::total_cmp);
-        let mut sum = 0.0;
-        for panel in edges.windows(2) {
-            let (low, high) = (panel[0], panel[1]);
-            let length = high - low;
-            // a corner of the load may make a root-like start of its own
-            let mut above = high;
-            for grade in 1..=GRADES {
-                let below = low + length * 0.1_f64.powi(grade);
+        edges.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let panels = edges.windows(2).map(|pair| {
+            let ((low, rooted), (high, _)) = (pair[0], pair[1]);
+            let (mut above, mut sum) = (high, 0.0);
+            for grade in 1..=if rooted { GRADES } else { 0 } {
+                let below = low + (high - low) * 0.1_f64.powi(grade);
                 sum += self.rule.integrate(below, above, f);
                 above = below;
             }
-            sum += self.rule.integrate(low, above, f);
-        }
-        sum
+            sum + self.rule.integrate(low, above, f)
+        });
+        panels.sum()
     }
 }

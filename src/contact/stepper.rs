@@ -14,9 +14,11 @@ use crate::kernel::{InfluenceKernel, Workspace};
 use crate::load::{Load, LoadHistory};
 use crate::solver::{ActiveSet, Counts, PolonskyKeer, Problem, Solution, Stop};
 
-/// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets rounding
-/// accumulate: every so many steps K p is computed afresh, a thirty-second of a convolution a step.
-const STEPS_BETWEEN_REFRESHES: usize = 32;
+/// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets the rounding
+/// of K p accumulate, step by step linearly. Out of so many steps, the last two compute it afresh: two,
+/// because extrapolation reads two states, and one left stale would feed its error back, multiplied.
+/// This costs a sixteenth of a convolution a step.
+const REFRESH_CYCLE: usize = 32;
 
 /// A guess reaches at most this many times the length of the last step ahead.
 const FARTHEST_GUESS: f64 = 2.0;
@@ -58,7 +60,7 @@ pub struct ViscoelasticContact {
     /// The state one step earlier, and the length of that step: what a guess extrapolates from.
     previous: Solution,
     last_dt: f64,
-    steps_since_refresh: usize,
+    steps_in_cycle: usize,
 
     /// The step being tried; thrown away if it fails.
     trial: Solution,
@@ -97,7 +99,7 @@ impl ViscoelasticContact {
             contact_cells: 0,
             previous: Solution::zero(cells),
             last_dt: 0.0,
-            steps_since_refresh: 0,
+            steps_in_cycle: 0,
             trial: current.clone(),
             current,
             trial_displacement: vec![0.0; cells],
@@ -167,7 +169,7 @@ impl ViscoelasticContact {
         self.time = time;
         self.load = load;
         self.last_dt = dt;
-        self.steps_since_refresh = (self.steps_since_refresh + 1) % (STEPS_BETWEEN_REFRESHES + 1);
+        self.steps_in_cycle = (self.steps_in_cycle + 1) % REFRESH_CYCLE;
         self.contact_cells = self.current.pressure.iter().filter(|&&p| p > 0.0).count();
         Ok(self.report(dt))
     }
@@ -183,7 +185,7 @@ impl ViscoelasticContact {
             }
         };
         extrapolate(&mut trial.pressure, &self.current.pressure, &self.previous.pressure);
-        if self.steps_since_refresh < STEPS_BETWEEN_REFRESHES {
+        if self.steps_in_cycle < REFRESH_CYCLE - 2 {
             extrapolate(&mut trial.potential, &self.current.potential, &self.previous.potential);
         } else if matches!(self.solver, ContactSolver::ActiveSet(_)) {
             self.kernel.apply(&trial.pressure, &mut trial.potential, &mut self.work);
