@@ -38,7 +38,7 @@ impl Direct {
             Weighting::End => (0.0, "the rectangle rule"),
             Weighting::Start => (dt, "a step of length zero"),
         };
-        let newest = self.creep(age, 0.0)?;
+        let newest = self.creep(age, self.creep(0.0, 0.0)?)?;
         if newest == 0.0 {
             return Err(Error::NoElasticResponse { time, what });
         }

@@ -1,0 +1,230 @@
+//! Every solution satisfies the contact conditions, and both solvers find the same one.
+
+mod common;
+
+use common::StepLoadedSphere;
+use proptest::prelude::*;
+use viscocontact::prelude::*;
+
+/// A random elastic scene: shape, mask, roughness and mesh.
+#[derive(Debug, Clone)]
+struct Scene {
+    cells: [usize; 2],
+    aspect: f64,
+    shape: Shape,
+    mask: Mask,
+    height: f64,
+    center: [f64; 2],
+    noise: Vec<f64>,
+    force: f64,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Shape {
+    Bowl,
+    Cone,
+    Noise,
+    Waves,
+    Flat,
+    RoughBowl,
+    Saddle,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Mask {
+    Whole,
+    Disc,
+    Ring,
+    TwoFeet,
+}
+
+const MOST_CELLS: usize = 48;
+
+prop_compose! {
+    fn scenes()(
+        cells in [1..=MOST_CELLS, 1..=MOST_CELLS],
+        aspect in -1.0..1.0_f64,
+        shape in prop::sample::select(vec![
+            Shape::Bowl, Shape::Cone, Shape::Noise, Shape::Waves, Shape::Flat, Shape::RoughBowl, Shape::Saddle,
+        ]),
+        mask in prop::sample::select(vec![Mask::Whole, Mask::Whole, Mask::Disc, Mask::Ring, Mask::TwoFeet]),
+        height in -4.0..0.0_f64,
+        center in [-0.5..0.5_f64, -0.5..0.5_f64],
+        noise in prop::collection::vec(0.0..1.0_f64, MOST_CELLS * MOST_CELLS),
+        force in -5.0..0.0_f64,
+    ) -> Scene {
+        Scene { cells, aspect: 10f64.powf(aspect), shape, mask, height: 10f64.powf(height), center, noise, force: 10f64.powf(force) }
+    }
+}
+
+impl Geometry for Scene {
+    fn initial_gap(&self, x: f64, y: f64) -> f64 {
+        let y = y / self.aspect;
+        let r = x.hypot(y);
+        let inside = match self.mask {
+            Mask::Whole => true,
+            Mask::Disc => r < 0.45,
+            Mask::Ring => (0.25..0.5).contains(&r),
+            Mask::TwoFeet => x.abs() > 0.2,
+        };
+        if !inside {
+            return f64::INFINITY;
+        }
+        let (dx, dy) = (x - self.center[0], y - self.center[1]);
+        let index = |x: f64, n: usize| ((x + 0.5) * n as f64) as usize;
+        let noise = self.noise[index(x, self.cells[0]) * self.cells[1] + index(y, self.cells[1])];
+        self.height
+            * match self.shape {
+                Shape::Bowl => dx * dx + dy * dy,
+                Shape::Cone => dx.hypot(dy),
+                Shape::Noise => noise,
+                Shape::Waves => (17.0 * dx).cos() + (11.0 * dy).cos(),
+                Shape::Flat => 0.0,
+                Shape::RoughBowl => dx * dx + dy * dy + 0.1 * noise,
+                Shape::Saddle => dx * dx - dy * dy + 0.3 * dx,
+            }
+    }
+}
+
+impl Scene {
+    fn grid(&self) -> Grid {
+        Grid::new(self.cells, [1.0, self.aspect]).unwrap()
+    }
+
+    /// The solved contact, or `None` where the mask leaves no cell.
+    fn solve(&self, solver: Solver) -> Option<ViscoelasticContact> {
+        let settings =
+            Settings { tolerance: TOLERANCE, solver, edge: Edge::Allow, max_iterations: 20_000, ..Settings::default() };
+        let body = Material::incompressible(Elastic::new(0.25).unwrap());
+        let built =
+            ViscoelasticContact::builder(self.grid()).geometry(self).material(body).settings(settings).build();
+        let mut contact = match built {
+            Err(Error::NothingToTouch { .. }) => return None,
+            built => built.unwrap(),
+        };
+        contact.step(0.0, Load::force(self.force)).unwrap();
+        Some(contact)
+    }
+}
+
+const TOLERANCE: f64 = 1e-9;
+
+/// p ≥ 0, h = 0 in contact and h ≥ 0 outside to the tolerance, Σ p ΔA = W.
+fn assert_contact_conditions(contact: &ViscoelasticContact, force: f64, tolerance: f64) {
+    let mut gap = vec![0.0; contact.grid().len()];
+    contact.gap_into(&mut gap).unwrap();
+    let cells = contact.contact_cells() as f64;
+    let (mut closed, mut scale) = (0.0, 0.0);
+    for ((&p, &h), &u) in contact.pressure().iter().zip(&gap).zip(contact.displacement()) {
+        assert!(p >= 0.0);
+        if p > 0.0 {
+            closed += h * h;
+            scale += u * u;
+        }
+    }
+    let (closed, scale) = ((closed / cells).sqrt(), (scale / cells).sqrt());
+    // one unit in the last place of gaps much larger than the displacements
+    let rounding = 1e-15 * contact.approach().abs();
+    assert!(closed <= tolerance * scale + rounding, "gap in contact {closed:e}, displacement {scale:e}");
+    let deepest = gap.iter().copied().fold(0.0, f64::min);
+    assert!(deepest >= -10.0 * tolerance * scale - rounding, "penetration {deepest:e}, displacement {scale:e}");
+    assert!((contact.force() / force - 1.0).abs() < 1e-12, "force {} of {force}", contact.force());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
+
+    #[test]
+    fn both_solvers_satisfy_the_conditions_and_agree(scene in scenes()) {
+        let Some(ours) = scene.solve(Solver::ActiveSet) else { return Ok(()) };
+        let reference = scene.solve(Solver::PolonskyKeer).unwrap();
+        for contact in [&ours, &reference] {
+            assert_contact_conditions(contact, scene.force, TOLERANCE);
+        }
+        let peak = ours.pressure().iter().copied().fold(0.0, f64::max);
+        for (a, b) in ours.pressure().iter().zip(reference.pressure()) {
+            prop_assert!((a - b).abs() < 1e-6 * peak, "{a} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_viscoelastic_run_keeps_the_conditions() {
+    let scene = StepLoadedSphere::zener();
+    for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
+        let settings = Settings { tolerance: 1e-7, solver, ..Settings::default() };
+        let mut contact = scene.contact(64, settings);
+        for (dt, force) in [(0.0, 1.0), (0.1, 1.0), (0.3, 0.4), (0.3, 0.05), (0.1, 0.8), (0.0, 0.3), (5.0, 1.0)] {
+            contact.step(dt, Load::force(force)).unwrap();
+            assert_contact_conditions(&contact, force, 1e-7);
+        }
+    }
+}
+
+/// Let go and come back: the surface recovers freely in between, and both solvers tell the same story.
+#[test]
+fn separation_recovery_and_contact_again() {
+    let scene = StepLoadedSphere::zener();
+    let run = |solver| {
+        let mut contact = scene.contact(64, Settings { tolerance: 1e-9, solver, ..Settings::default() });
+        contact.step(0.0, Load::force(1.0)).unwrap();
+        contact.step(0.5, Load::force(1.0)).unwrap();
+        let pressed = contact.approach();
+        contact.step(0.0, Load::force(0.0)).unwrap();
+        assert_eq!((contact.contact_cells(), contact.force()), (0, 0.0));
+        let released = contact.approach();
+        assert!(released > 0.0 && released < pressed);
+        contact.step(1.0, Load::force(0.0)).unwrap();
+        let recovered = contact.approach();
+        assert!(recovered > 0.0 && recovered < released);
+        contact.step(0.0, Load::force(0.7)).unwrap();
+        [pressed, released, recovered, contact.approach()]
+    };
+    let (ours, reference) = (run(Solver::ActiveSet), run(Solver::PolonskyKeer));
+    for (a, b) in ours.iter().zip(&reference) {
+        assert!((a / b - 1.0).abs() < 1e-7, "{ours:?} {reference:?}");
+    }
+}
+
+/// The work of the scene that users are shown, pinned to catch silent drift of the algorithm: it may
+/// fall, and then the figures in the documents change with it.
+#[test]
+fn work_is_what_the_documents_say() {
+    let scene = StepLoadedSphere::maxwell();
+    let work = |cells, tolerance| scene.run(cells, 100, Settings { tolerance, ..Settings::default() }).1;
+    let measured = [work(64, 1e-6), work(128, 1e-6), work(128, 1e-4)];
+    println!("{measured:?}");
+    for (work, most) in measured.into_iter().zip([4.5, 5.0, 3.0]) {
+        assert!(work < most && work > 0.6 * most, "{measured:?}");
+    }
+}
+
+/// Mirrored scene, mirrored answer; shifted by whole cells, shifted answer.
+#[test]
+fn symmetry_and_shift() {
+    let grid = Grid::new([40, 32], [4.0e-3, 3.2e-3]).unwrap();
+    let solve = |shape: &dyn Geometry| {
+        let mut contact = ViscoelasticContact::builder(grid.clone())
+            .geometry(shape)
+            .material(Material::incompressible(Elastic::new(1.0e6).unwrap()))
+            .settings(Settings { tolerance: 1e-10, ..Settings::default() })
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(0.3)).unwrap();
+        contact.pressure().to_vec()
+    };
+    let lump = |x: f64, y: f64| 40.0 * (x * x + 2.0 * y * y) + 1.0e-6 * (3000.0 * x).sin() + 0.5e-6 * (2000.0 * y).sin();
+    let field = solve(&FnGeometry::new(lump));
+    let peak = field.iter().copied().fold(0.0, f64::max);
+    let mirrored = solve(&FnGeometry::new(move |x, y| lump(-x, y)));
+    let shifted = solve(&FnGeometry::new(move |x, y| lump(x - 0.3e-3, y + 0.1e-3))); // 3 and −1 cells
+    for i in 0..40 {
+        for j in 0..32 {
+            let value = field[i * 32 + j];
+            assert!((mirrored[(39 - i) * 32 + j] - value).abs() < 1e-8 * peak);
+            if i < 37 && j > 0 {
+                assert!((shifted[(i + 3) * 32 + j - 1] - value).abs() < 1e-8 * peak);
+            }
+        }
+    }
+}
