@@ -197,7 +197,7 @@ pub enum Error {
 }
 
 /// The result of every fallible call of the crate.
-pub type Result<T> = std::result::Result<T, Error>;
+pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Accepts finite values above zero.
 pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64> {

@@ -89,8 +89,7 @@ fn cone_against_the_one_dimensional_foundation() {
     let a = foundation.contact_radius();
     // Love 1939: W = (π/2) a² E* tan β
     assert!((force / (0.5 * std::f64::consts::PI * a * a * MODULUS * slope) - 1.0).abs() < 1e-6);
-    let contact =
-        press(Grid::square(256, 2.4 * a).unwrap(), &Cone::new(slope).unwrap(), force, Settings::default());
+    let contact = press(Grid::square(256, 2.4 * a).unwrap(), &Cone::new(slope).unwrap(), force, Settings::default());
     assert!((contact.approach() / foundation.approach() - 1.0).abs() < 2e-3);
     assert!(((contact.contact_area() / std::f64::consts::PI).sqrt() / a - 1.0).abs() < 5e-3);
 }

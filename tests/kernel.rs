@@ -1,6 +1,7 @@
 //! The fast convolution against the naive double sum over Love's coefficients.
 
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use viscocontact::{Error, Grid, InfluenceKernel};
 
 /// Love's four-term closed form: right to 1e-11 on the small grids of these tests, and written
@@ -31,7 +32,7 @@ fn convolve(grid: &Grid, pressure: &[f64]) -> Vec<f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(64) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2011), ..ProptestConfig::with_cases(64) })]
 
     #[test]
     fn fast_is_naive(

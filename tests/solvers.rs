@@ -4,6 +4,7 @@ mod common;
 
 use common::StepLoadedSphere;
 use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use viscocontact::prelude::*;
 
 /// A random elastic scene: shape, mask, roughness and mesh.
@@ -96,8 +97,7 @@ impl Scene {
         let settings =
             Settings { tolerance: TOLERANCE, solver, edge: Edge::Allow, max_iterations: 20_000, ..Settings::default() };
         let body = Material::incompressible(Elastic::new(0.25).unwrap());
-        let built =
-            ViscoelasticContact::builder(self.grid()).geometry(self).material(body).settings(settings).build();
+        let built = ViscoelasticContact::builder(self.grid()).geometry(self).material(body).settings(settings).build();
         let mut contact = match built {
             Err(Error::NothingToTouch { .. }) => return None,
             built => built.unwrap(),
@@ -132,7 +132,7 @@ fn assert_contact_conditions(contact: &ViscoelasticContact, force: f64, toleranc
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(500) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2011), ..ProptestConfig::with_cases(500) })]
 
     #[test]
     fn both_solvers_satisfy_the_conditions_and_agree(scene in scenes()) {
@@ -153,7 +153,7 @@ fn a_viscoelastic_run_keeps_the_conditions() {
     let scene = StepLoadedSphere::zener();
     for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
         let settings = Settings { tolerance: 1e-7, solver, ..Settings::default() };
-        let mut contact = scene.contact(64, settings);
+        let mut contact = scene.contact(64, settings).unwrap();
         for (dt, force) in [(0.0, 1.0), (0.1, 1.0), (0.3, 0.4), (0.3, 0.05), (0.1, 0.8), (0.0, 0.3), (5.0, 1.0)] {
             contact.step(dt, Load::force(force)).unwrap();
             assert_contact_conditions(&contact, force, 1e-7);
@@ -166,7 +166,7 @@ fn a_viscoelastic_run_keeps_the_conditions() {
 fn separation_recovery_and_contact_again() {
     let scene = StepLoadedSphere::zener();
     let run = |solver| {
-        let mut contact = scene.contact(64, Settings { tolerance: 1e-9, solver, ..Settings::default() });
+        let mut contact = scene.contact(64, Settings { tolerance: 1e-9, solver, ..Settings::default() }).unwrap();
         contact.step(0.0, Load::force(1.0)).unwrap();
         contact.step(0.5, Load::force(1.0)).unwrap();
         let pressed = contact.approach();
@@ -191,7 +191,7 @@ fn separation_recovery_and_contact_again() {
 #[test]
 fn work_is_what_the_documents_say() {
     let scene = StepLoadedSphere::maxwell();
-    let work = |cells, tolerance| scene.run(cells, 100, Settings { tolerance, ..Settings::default() }).1;
+    let work = |cells, tolerance| scene.run(cells, 100, Settings { tolerance, ..Settings::default() }).unwrap().1;
     let measured = [work(64, 1e-6), work(128, 1e-6), work(128, 1e-4)];
     println!("{measured:?}");
     for (work, most) in measured.into_iter().zip([4.5, 5.0, 3.0]) {
@@ -213,7 +213,8 @@ fn symmetry_and_shift() {
         contact.step(0.0, Load::force(0.3)).unwrap();
         contact.pressure().to_vec()
     };
-    let lump = |x: f64, y: f64| 40.0 * (x * x + 2.0 * y * y) + 1.0e-6 * (3000.0 * x).sin() + 0.5e-6 * (2000.0 * y).sin();
+    let lump =
+        |x: f64, y: f64| 40.0 * (x * x + 2.0 * y * y) + 1.0e-6 * (3000.0 * x).sin() + 0.5e-6 * (2000.0 * y).sin();
     let field = solve(&FnGeometry::new(lump));
     let peak = field.iter().copied().fold(0.0, f64::max);
     let mirrored = solve(&FnGeometry::new(move |x, y| lump(-x, y)));

@@ -8,7 +8,7 @@ use viscocontact::prelude::*;
 /// Central pressure at the end, solved far below the error in time.
 fn central_pressure(scene: &StepLoadedSphere, steps: usize, time_rule: TimeRule) -> f64 {
     let cells = 48;
-    let (contact, _) = scene.run(cells, steps, Settings { tolerance: 1e-9, time_rule, ..Settings::default() });
+    let (contact, _) = scene.run(cells, steps, Settings { tolerance: 1e-9, time_rule, ..Settings::default() }).unwrap();
     contact.pressure()[cells / 2 * cells + cells / 2]
 }
 
@@ -58,11 +58,11 @@ fn a_step_of_length_zero_is_elastic() {
     let scene = StepLoadedSphere::maxwell();
     for time_rule in [TimeRule::Exponential, TimeRule::Rectangle, TimeRule::Backward] {
         let settings = Settings { tolerance: 1e-10, time_rule, ..Settings::default() };
-        let mut contact = scene.contact(32, settings);
+        let mut contact = scene.contact(32, settings).unwrap();
         for load in [0.2, 0.7, 1.0] {
             contact.step(0.0, Load::force(load)).unwrap();
         }
-        let mut at_once = scene.contact(32, settings);
+        let mut at_once = scene.contact(32, settings).unwrap();
         at_once.step(0.0, Load::force(1.0)).unwrap();
         assert_eq!(contact.contact_cells(), at_once.contact_cells());
         let difference = contact.approach() / at_once.approach() - 1.0;
@@ -84,7 +84,7 @@ fn the_default_rule_takes_steps_of_any_length() {
     let (glassy, relaxed) = (exact(4.0e6).approach(), exact(2.0e6).approach());
     let mut last = 0.0;
     for exponent in (-12..=12).step_by(3) {
-        let mut contact = scene.contact(64, Settings::default());
+        let mut contact = scene.contact(64, Settings::default()).unwrap();
         contact.step(0.0, Load::force(scene.force)).unwrap();
         contact.step(10f64.powi(exponent), Load::force(scene.force)).unwrap();
         let approach = contact.approach();
@@ -131,7 +131,7 @@ fn the_rectangle_rule_is_unstable_for_long_steps() {
 fn a_closure_matches_its_series() {
     let scene = StepLoadedSphere::maxwell();
     let run = |material: Material, time_rule| {
-        let mut contact = ViscoelasticContact::builder(scene.grid(32))
+        let mut contact = ViscoelasticContact::builder(scene.grid(32).unwrap())
             .geometry(&Sphere::new(scene.radius).unwrap())
             .material(material)
             .settings(Settings { tolerance: 1e-9, time_rule, ..Settings::default() })

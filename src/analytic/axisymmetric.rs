@@ -78,7 +78,7 @@ impl fmt::Debug for Profile {
 /// assert!((contact.pressure(0.0) / hertz.peak_pressure() - 1.0).abs() < 1e-6);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct AxisymmetricContact {
     history: Exponential,
     /// Width of an element; the k-th is centred on (k + ½) width.
@@ -239,5 +239,15 @@ impl AxisymmetricContact {
             }
         }
         sum / PI
+    }
+}
+
+impl fmt::Debug for AxisymmetricContact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("AxisymmetricContact")
+            .field("elements", &self.load.len())
+            .field("time", &self.time)
+            .field("approach", &self.approach)
+            .finish_non_exhaustive()
     }
 }

@@ -1,5 +1,6 @@
 //! One contact, advanced one step at a time.
 
+use std::fmt;
 use std::sync::Arc;
 
 use crate::Grid;
@@ -41,7 +42,7 @@ const FARTHEST_GUESS: f64 = 2.0;
 /// assert!((contact.force() - 1.0).abs() < 1e-12);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct ViscoelasticContact {
     grid: Grid,
     kernel: Arc<InfluenceKernel>,
@@ -320,6 +321,19 @@ impl ViscoelasticContact {
     /// Number of cells in contact (p > 0).
     pub fn contact_cells(&self) -> usize {
         self.contact_cells
+    }
+}
+
+impl fmt::Debug for ViscoelasticContact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ViscoelasticContact")
+            .field("grid", &self.grid)
+            .field("settings", &self.settings)
+            .field("time", &self.time)
+            .field("load", &self.load)
+            .field("approach", &self.current.approach)
+            .field("contact_cells", &self.contact_cells)
+            .finish_non_exhaustive()
     }
 }
 

@@ -21,7 +21,9 @@ use love::Love;
 /// The discrete influence operator K of a grid: built once, immutable, shared by `Arc` between
 /// contacts and threads.
 ///
-/// Memory: two to four bytes of spectrum a cell for each byte of … see [`InfluenceKernel::half_space`].
+/// It keeps a quarter of the padded spectrum, which is real and even: about 8 bytes a cell. A
+/// [`Workspace`] holds one complex row spectrum a row, about 16 bytes a cell, one for each thread that
+/// convolves.
 ///
 /// ```
 /// use viscocontact::{Grid, InfluenceKernel};
@@ -54,9 +56,7 @@ impl InfluenceKernel {
     /// and for cells of any aspect ratio up to 1000, zero-padded so that the convolution is
     /// linear.
     ///
-    /// Cost: N Love integrals and one transform; memory: 8 bytes for each of about N numbers that
-    /// are kept (a quarter of the padded spectrum, which is real and even), N being the number of
-    /// cells.
+    /// Cost: one Love integral a cell and one transform.
     ///
     /// # Errors
     /// None today; the signature leaves room for grids too large to pad.

@@ -6,8 +6,7 @@ use std::collections::HashMap;
 use viscocontact::analytic::GrowingSphere;
 use viscocontact::prelude::*;
 
-/// The source paper's scene: a sphere under a force applied at t = 0 and held, on an incompressible
-/// half-space. The grid is 2.25 times the final contact diameter … wide enough for the whole run.
+/// The source paper's scene: a sphere under a force applied at t = 0 and held, on a half-space.
 #[derive(Debug, Clone)]
 pub struct StepLoadedSphere {
     pub name: &'static str,
@@ -25,7 +24,15 @@ impl StepLoadedSphere {
     /// G = 1 MPa, τ = 1 s, to t = 2τ.
     pub fn maxwell() -> StepLoadedSphere {
         let material = Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap());
-        StepLoadedSphere { name: "Maxwell", radius: 10.0e-3, force: 1.0, modulus: 1.0e6, tau: 1.0, duration: 2.0, material }
+        StepLoadedSphere {
+            name: "Maxwell",
+            radius: 10.0e-3,
+            force: 1.0,
+            modulus: 1.0e6,
+            tau: 1.0,
+            duration: 2.0,
+            material,
+        }
     }
 
     /// G = G_K = 1 MPa, retardation time 1 s, to t = 2τ.
@@ -39,34 +46,33 @@ impl StepLoadedSphere {
         StepLoadedSphere { name: "Zener", material, ..StepLoadedSphere::maxwell() }
     }
 
-    pub fn reference(&self) -> GrowingSphere {
-        GrowingSphere::step(self.radius, &self.material, self.force).unwrap()
+    pub fn reference(&self) -> Result<GrowingSphere> {
+        GrowingSphere::step(self.radius, &self.material, self.force)
     }
 
     /// A square that leaves an eighth of the final contact diameter free around it.
-    pub fn grid(&self, cells: usize) -> Grid {
-        Grid::square(cells, 2.25 * self.reference().contact_radius(self.duration)).unwrap()
+    pub fn grid(&self, cells: usize) -> Result<Grid> {
+        Grid::square(cells, 2.25 * self.reference()?.contact_radius(self.duration))
     }
 
-    pub fn contact(&self, cells: usize, settings: Settings) -> ViscoelasticContact {
-        ViscoelasticContact::builder(self.grid(cells))
-            .geometry(&Sphere::new(self.radius).unwrap())
+    pub fn contact(&self, cells: usize, settings: Settings) -> Result<ViscoelasticContact> {
+        ViscoelasticContact::builder(self.grid(cells)?)
+            .geometry(&Sphere::new(self.radius)?)
             .material(self.material.clone())
             .settings(settings)
             .build()
-            .unwrap()
     }
 
     /// The jump and `steps` equal steps; returns the contact and the convolution equivalents a step.
-    pub fn run(&self, cells: usize, steps: usize, settings: Settings) -> (ViscoelasticContact, f64) {
-        let mut contact = self.contact(cells, settings);
-        contact.step(0.0, Load::force(self.force)).unwrap();
+    pub fn run(&self, cells: usize, steps: usize, settings: Settings) -> Result<(ViscoelasticContact, f64)> {
+        let mut contact = self.contact(cells, settings)?;
+        contact.step(0.0, Load::force(self.force))?;
         let mut work = 0.0;
         for _ in 0..steps {
-            let report = contact.step(self.duration / steps as f64, Load::force(self.force)).unwrap();
+            let report = contact.step(self.duration / steps as f64, Load::force(self.force))?;
             work += report.convolution_equivalents();
         }
-        (contact, work / steps as f64)
+        Ok((contact, work / steps as f64))
     }
 }
 

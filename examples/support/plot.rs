@@ -1,0 +1,157 @@
+//! Line charts as PNG files, with a font of their own: no system library is needed.
+#![allow(dead_code, reason = "each example takes what it needs")]
+
+use std::error::Error;
+use std::path::Path;
+use std::sync::Once;
+
+use plotters::coord::ranged1d::ValueFormatter;
+pub use plotters::prelude::SeriesLabelPosition;
+use plotters::prelude::*;
+use plotters::style::register_font;
+
+/// Okabe & Ito's palette, told apart by colour-blind readers.
+pub const COLORS: [RGBColor; 7] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(230, 159, 0),
+    RGBColor(86, 180, 233),
+    RGBColor(0, 0, 0),
+];
+
+const FONT: &str = "viscocontact";
+const SIZE: (u32, u32) = (1200, 800);
+
+/// How a series is drawn.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Style {
+    Line,
+    Dots,
+    LineAndDots,
+}
+
+pub struct Series {
+    pub label: String,
+    pub points: Vec<(f64, f64)>,
+    pub color: RGBColor,
+    pub style: Style,
+}
+
+pub struct Chart {
+    pub title: String,
+    pub x: String,
+    pub y: String,
+    /// Logarithmic axes, both or none.
+    pub logarithmic: bool,
+    /// Where the legend leaves the curves free.
+    pub legend: SeriesLabelPosition,
+    pub series: Vec<Series>,
+}
+
+impl Chart {
+    pub fn new(title: &str, x: &str, y: &str, legend: SeriesLabelPosition) -> Chart {
+        Chart { title: title.into(), x: x.into(), y: y.into(), logarithmic: false, legend, series: Vec::new() }
+    }
+
+    pub fn add(&mut self, label: impl Into<String>, color: RGBColor, style: Style, points: Vec<(f64, f64)>) {
+        self.series.push(Series { label: label.into(), points, color, style });
+    }
+
+    /// Writes the chart to a PNG file.
+    pub fn save(&self, path: &Path) -> Result<(), Box<dyn Error>> {
+        register();
+        let root = BitMapBackend::new(path, SIZE).into_drawing_area();
+        root.fill(&WHITE)?;
+        let mut builder = ChartBuilder::on(&root);
+        builder
+            .caption(&self.title, (FONT, 30))
+            .margin(20)
+            .margin_right(40)
+            .x_label_area_size(65)
+            .y_label_area_size(95);
+        let ([x0, x1], [y0, y1]) = (self.range(|point| point.0), self.range(|point| point.1));
+        if self.logarithmic {
+            let mut chart = builder.build_cartesian_2d((x0..x1).log_scale(), (y0..y1).log_scale())?;
+            self.draw(&mut chart, &|v| format!("{v}"), &|v| format!("{v:.0e}"))?;
+        } else {
+            let mut chart = builder.build_cartesian_2d(x0..x1, y0..y1)?;
+            let label = |v: &f64| format!("{}", (v * 1e6).round() / 1e6);
+            self.draw(&mut chart, &label, &label)?;
+        }
+        root.present()?;
+        Ok(())
+    }
+
+    /// The extent of a coordinate over all series, with some room.
+    fn range(&self, of: impl Fn(&(f64, f64)) -> f64) -> [f64; 2] {
+        let values = || self.series.iter().flat_map(|series| &series.points).map(&of).filter(|v| v.is_finite());
+        let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+        if self.logarithmic {
+            [low / 1.5, high * 1.5]
+        } else {
+            let room = 0.04 * (high - low).max(f64::MIN_POSITIVE);
+            [if low == 0.0 { 0.0 } else { low - room }, high + room]
+        }
+    }
+
+    fn draw<'a, X, Y>(
+        &self,
+        chart: &mut ChartContext<'a, BitMapBackend<'a>, Cartesian2d<X, Y>>,
+        x_label: &dyn Fn(&f64) -> String,
+        y_label: &dyn Fn(&f64) -> String,
+    ) -> Result<(), Box<dyn Error>>
+    where
+        X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+        Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    {
+        chart
+            .configure_mesh()
+            .x_desc(&self.x)
+            .y_desc(&self.y)
+            .axis_desc_style((FONT, 26))
+            .label_style((FONT, 22))
+            .x_label_formatter(x_label)
+            .y_label_formatter(y_label)
+            .light_line_style(RGBColor(240, 240, 240))
+            .bold_line_style(RGBColor(215, 215, 215))
+            .draw()?;
+        for series in &self.series {
+            let color = series.color;
+            let line = series.style != Style::Dots;
+            if line {
+                let drawn = chart.draw_series(LineSeries::new(series.points.iter().copied(), color.stroke_width(3)))?;
+                if !series.label.is_empty() {
+                    drawn
+                        .label(&series.label)
+                        .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 28, y)], color.stroke_width(3)));
+                }
+            }
+            if series.style != Style::Line {
+                let dots = series.points.iter().map(|&point| Circle::new(point, 5, color.filled()));
+                let drawn = chart.draw_series(dots)?;
+                if !line && !series.label.is_empty() {
+                    drawn.label(&series.label).legend(move |(x, y)| Circle::new((x + 14, y), 5, color.filled()));
+                }
+            }
+        }
+        chart
+            .configure_series_labels()
+            .position(self.legend.clone())
+            .label_font((FONT, 22))
+            .background_style(WHITE.mix(0.85))
+            .border_style(RGBColor(180, 180, 180))
+            .draw()?;
+        Ok(())
+    }
+}
+
+/// Makes the font known to plotters, once.
+fn register() {
+    static ONCE: Once = Once::new();
+    ONCE.call_once(|| {
+        let known = register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
+        assert!(known.is_ok(), "the font that is compiled in is a font");
+    });
+}

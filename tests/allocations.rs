@@ -1,0 +1,56 @@
+//! A step allocates nothing: every buffer is made when the contact is built.
+
+mod common;
+
+use std::alloc::System;
+
+use common::StepLoadedSphere;
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use viscocontact::prelude::*;
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+// One test alone in this file: the allocator counts the whole process.
+#[test]
+fn steps_allocate_nothing() {
+    let scene = StepLoadedSphere::zener();
+    for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
+        for cells in [32, 45] {
+            let mut contact = scene.contact(cells, Settings { solver, ..Settings::default() }).unwrap();
+            let region = Region::new(ALLOCATOR);
+            contact.step(0.0, Load::force(1.0)).unwrap();
+            for step in 0..80 {
+                contact.step(0.02, Load::force(1.0 - 0.01 * step as f64)).unwrap();
+            }
+            let change = region.change();
+            assert_eq!((change.allocations, change.reallocations), (0, 0), "{solver:?} on {cells}²: {change:?}");
+        }
+    }
+
+    // memory of a built contact: a constant a cell, and one field of 8 bytes for each relaxation time
+    let bytes = |terms: &[(f64, f64)]| {
+        let body = Material::incompressible(GeneralizedMaxwell::new(1.0e6, terms).unwrap());
+        let scene = StepLoadedSphere { material: body, ..scene.clone() };
+        let region = Region::new(ALLOCATOR);
+        let contact = scene.contact(128, Settings::default()).unwrap();
+        let change = region.change();
+        drop(contact);
+        (change.bytes_allocated as isize + change.bytes_reallocated - change.bytes_deallocated as isize) as f64
+            / 16384.0
+    };
+    let (one, three) = (bytes(&[(1.0e6, 1.0)]), bytes(&[(1.0e6, 1.0), (1.0e6, 2.0), (1.0e6, 3.0)]));
+    println!("{one:.1} bytes a cell with one relaxation time, {three:.1} with three");
+    assert!(one < 200.0, "{one} bytes a cell");
+    assert!((three - one - 16.0).abs() < 0.1, "{} bytes a cell for two more relaxation times", three - one);
+
+    // the exponential rule keeps one field for each relaxation time, the direct sums one for each step
+    let mut contact = scene.contact(32, Settings { time_rule: TimeRule::Backward, ..Settings::default() }).unwrap();
+    let region = Region::new(ALLOCATOR);
+    for _ in 0..64 {
+        contact.step(0.02, Load::force(1.0)).unwrap();
+    }
+    let kept = region.change().bytes_allocated - region.change().bytes_deallocated;
+    let fields = 64 * 8 * 1024;
+    assert!((fields..fields + 8192).contains(&kept), "{kept} bytes for 64 steps of 1024 cells");
+}
