@@ -6,7 +6,7 @@ use crate::Grid;
 use crate::contact::settings::{Settings, Solver, TimeRule};
 use crate::contact::stepper::{ContactSolver, ViscoelasticContact};
 use crate::error::{Error, Result};
-use crate::geometry::{Geometry, checked_gap};
+use crate::geometry::{Gap, Geometry};
 use crate::hereditary::{Direct, Exponential, History, Weighting};
 use crate::kernel::InfluenceKernel;
 use crate::rheology::Material;
@@ -17,7 +17,7 @@ use crate::solver::{ActiveSet, PolonskyKeer};
 #[must_use = "a builder does nothing until it is built"]
 pub struct Builder {
     grid: Grid,
-    gap: Option<Result<Vec<f64>>>,
+    gap: Option<Result<Gap>>,
     material: Option<Material>,
     kernel: Option<Arc<InfluenceKernel>>,
     settings: Settings,
@@ -31,7 +31,7 @@ impl Builder {
     /// The shape of the bodies: the gap between them before they deform. Required; evaluated here,
     /// errors are reported by [`Builder::build`].
     pub fn geometry(mut self, geometry: &dyn Geometry) -> Builder {
-        self.gap = Some(checked_gap(geometry, &self.grid));
+        self.gap = Some(Gap::new(geometry, &self.grid));
         self
     }
 

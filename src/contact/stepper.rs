@@ -9,7 +9,7 @@ use crate::contact::follow::{Follow, Stepping};
 use crate::contact::report::StepReport;
 use crate::contact::settings::{Edge, Settings};
 use crate::error::{Error, Result, exact_length, non_negative};
-use crate::geometry::{Geometry, checked_gap};
+use crate::geometry::{Gap, Geometry};
 use crate::hereditary::{Change, History};
 use crate::kernel::{InfluenceKernel, Workspace};
 use crate::load::{Load, LoadHistory};
@@ -50,11 +50,12 @@ pub struct ViscoelasticContact {
     settings: Settings,
     solver: ContactSolver,
     history: History,
-    initial_gap: Vec<f64>,
+    initial_gap: Gap,
 
     time: f64,
     load: Load,
     displacement: Vec<f64>,
+    /// p, K p and ω, the latter from the datum of the initial gap.
     current: Solution,
     contact_cells: usize,
 
@@ -85,13 +86,12 @@ impl ViscoelasticContact {
         grid: Grid,
         kernel: Arc<InfluenceKernel>,
         settings: Settings,
-        initial_gap: Vec<f64>,
+        initial_gap: Gap,
         history: History,
         solver: ContactSolver,
     ) -> ViscoelasticContact {
         let cells = grid.len();
-        let mut current = Solution::zero(cells);
-        current.approach = lowest(&initial_gap);
+        let current = Solution::zero(cells);
         ViscoelasticContact {
             work: kernel.workspace(),
             time: 0.0,
@@ -133,7 +133,8 @@ impl ViscoelasticContact {
 
         // what the past makes of the end of the step: u = u_old + c K p
         let c = self.history.predict(time, dt, &self.displacement, &mut self.trial_displacement)?;
-        for ((gap, &initial), &u_old) in self.gap.iter_mut().zip(&self.initial_gap).zip(&self.trial_displacement) {
+        for ((gap, &initial), &u_old) in self.gap.iter_mut().zip(&self.initial_gap.above).zip(&self.trial_displacement)
+        {
             *gap = initial + u_old;
         }
 
@@ -223,7 +224,7 @@ impl ViscoelasticContact {
             preconditioner_applications,
             residual: self.current.residual,
             contact_cells: self.contact_cells,
-            approach: self.current.approach,
+            approach: self.approach(),
             force: self.force(),
         }
     }
@@ -239,7 +240,9 @@ impl ViscoelasticContact {
     /// # Errors
     /// If a gap is NaN or −∞, or none is finite; the contact then keeps the old one.
     pub fn set_geometry(&mut self, geometry: &dyn Geometry) -> Result<()> {
-        self.initial_gap = checked_gap(geometry, &self.grid)?;
+        let gap = Gap::new(geometry, &self.grid)?;
+        self.current.approach += self.initial_gap.datum - gap.datum; // the same approach, from another datum
+        self.initial_gap = gap;
         self.last_dt = 0.0; // the last change of the pressure says nothing about the next
         Ok(())
     }
@@ -286,7 +289,7 @@ impl ViscoelasticContact {
     /// If `out` does not hold one value a cell.
     pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
         exact_length("gap", out.len(), self.grid.len())?;
-        for ((h, &initial), &u) in out.iter_mut().zip(&self.initial_gap).zip(&self.displacement) {
+        for ((h, &initial), &u) in out.iter_mut().zip(&self.initial_gap.above).zip(&self.displacement) {
             *h = initial + u - self.current.approach;
         }
         Ok(())
@@ -294,7 +297,7 @@ impl ViscoelasticContact {
 
     /// Rigid-body approach ω \[m\]. Without load, the approach at which the bodies just touch.
     pub fn approach(&self) -> f64 {
-        self.current.approach
+        self.initial_gap.datum + self.current.approach
     }
 
     /// Normal force Σ p ΔA \[N\].
@@ -331,13 +334,8 @@ impl fmt::Debug for ViscoelasticContact {
             .field("settings", &self.settings)
             .field("time", &self.time)
             .field("load", &self.load)
-            .field("approach", &self.current.approach)
+            .field("approach", &self.approach())
             .field("contact_cells", &self.contact_cells)
             .finish_non_exhaustive()
     }
-}
-
-/// The lowest gap: the approach at which undeformed bodies touch.
-fn lowest(gap: &[f64]) -> f64 {
-    gap.iter().copied().fold(f64::INFINITY, f64::min)
 }

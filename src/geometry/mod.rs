@@ -77,18 +77,32 @@ pub trait Geometry: Debug + Send + Sync {
     }
 }
 
-/// The gap field of a geometry, checked: no NaN, no −∞, and something to touch.
-pub(crate) fn checked_gap(geometry: &dyn Geometry, grid: &Grid) -> Result<Vec<f64>> {
-    let mut gap = vec![f64::INFINITY; grid.len()];
-    geometry.fill_gap(grid, &mut gap);
-    if let Some(k) = gap.iter().position(|h| h.is_nan() || *h == f64::NEG_INFINITY) {
-        let cell = [k / grid.cells()[1], k % grid.cells()[1]];
-        return Err(Error::InvalidGap { cell, position: grid.center(cell[0], cell[1]), value: gap[k] });
+/// The gap field of a geometry above its lowest point, so that heights far larger than the contact is
+/// deep cost no digits.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Gap {
+    /// The lowest gap \[m\].
+    pub(crate) datum: f64,
+    /// What the gap of each cell exceeds it by \[m\]; 0 somewhere, +∞ where there is nothing to touch.
+    pub(crate) above: Vec<f64>,
+}
+
+impl Gap {
+    /// Evaluates a geometry and checks it: no NaN, no −∞, and something to touch.
+    pub(crate) fn new(geometry: &dyn Geometry, grid: &Grid) -> Result<Gap> {
+        let mut above = vec![f64::INFINITY; grid.len()];
+        geometry.fill_gap(grid, &mut above);
+        if let Some(k) = above.iter().position(|h| h.is_nan() || *h == f64::NEG_INFINITY) {
+            let cell = [k / grid.cells()[1], k % grid.cells()[1]];
+            return Err(Error::InvalidGap { cell, position: grid.center(cell[0], cell[1]), value: above[k] });
+        }
+        let datum = above.iter().copied().fold(f64::INFINITY, f64::min);
+        if datum == f64::INFINITY {
+            return Err(Error::NothingToTouch { cells: grid.len() });
+        }
+        above.iter_mut().for_each(|h| *h -= datum);
+        Ok(Gap { datum, above })
     }
-    if gap.iter().all(|h| h.is_infinite()) {
-        return Err(Error::NothingToTouch { cells: grid.len() });
-    }
-    Ok(gap)
 }
 
 #[cfg(test)]
@@ -140,12 +154,12 @@ mod tests {
     fn bad_gaps_are_located() {
         let grid = Grid::new([2, 3], [2.0, 3.0]).unwrap();
         let hole = FnGeometry::new(|x1, x2| if x1 > 0.0 && x2 > 0.0 { f64::NAN } else { 0.0 });
-        let Error::InvalidGap { cell, position, value } = checked_gap(&hole, &grid).unwrap_err() else { panic!() };
+        let Error::InvalidGap { cell, position, value } = Gap::new(&hole, &grid).unwrap_err() else { panic!() };
         assert_eq!((cell, position), ([1, 2], [0.5, 1.0]));
         assert!(value.is_nan());
         let abyss = FnGeometry::new(|_, _| f64::NEG_INFINITY);
-        assert!(matches!(checked_gap(&abyss, &grid), Err(Error::InvalidGap { cell: [0, 0], .. })));
+        assert!(matches!(Gap::new(&abyss, &grid), Err(Error::InvalidGap { cell: [0, 0], .. })));
         let nothing = FnGeometry::new(|_, _| f64::INFINITY);
-        assert_eq!(checked_gap(&nothing, &grid), Err(Error::NothingToTouch { cells: 6 }));
+        assert_eq!(Gap::new(&nothing, &grid), Err(Error::NothingToTouch { cells: 6 }));
     }
 }

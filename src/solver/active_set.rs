@@ -158,22 +158,26 @@ impl ActiveSet {
     /// Sets r and ω and takes the sums over A.
     fn measure(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> Measure {
         let c = problem.compliance;
+        // the mean is taken of what exceeds the first cell's gap: a plain sum of many nearly equal
+        // numbers would round by more than the tolerance
+        let pivot = self.cells.first().map_or(0.0, |&k| c * solution.potential[k as usize] + problem.gap[k as usize]);
         let (mut sum, mut displacement, mut negative) = (0.0, 0.0, 0.0);
         for &k in &self.cells {
             let k = k as usize;
             let u = c * solution.potential[k];
-            let h = u + problem.gap[k];
+            let h = u + problem.gap[k] - pivot;
             self.residual[k] = -h;
             sum += h;
             displacement += u * u;
             negative += solution.pressure[k].min(0.0).powi(2);
         }
         let cells = self.cells.len();
-        solution.approach = sum / cells as f64;
+        let mean = sum / cells as f64;
+        solution.approach = pivot + mean;
         let mut square = 0.0;
         for &k in &self.cells {
             let r = &mut self.residual[k as usize];
-            *r += solution.approach;
+            *r += mean;
             square += *r * *r;
         }
         Measure { square, displacement, negative, cells }

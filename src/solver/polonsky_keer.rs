@@ -92,21 +92,25 @@ impl PolonskyKeer {
     /// Gap, approach and residual of a state; returns the sum of the squared gaps in contact.
     fn measure(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> f64 {
         let c = problem.compliance;
+        // see ActiveSet::measure for the pivot
+        let first = solution.pressure.iter().position(|&p| p > 0.0).unwrap_or(0);
+        let pivot = c * solution.potential[first] + problem.gap[first];
         let (mut sum, mut displacement, mut count) = (0.0, 0.0, 0_usize);
         for ((h, (&p, &v)), &gap) in
             self.gap.iter_mut().zip(solution.pressure.iter().zip(&solution.potential)).zip(problem.gap)
         {
-            *h = c * v + gap;
+            *h = c * v + gap - pivot;
             if p > 0.0 {
                 sum += *h;
                 displacement += (c * v).powi(2);
                 count += 1;
             }
         }
-        solution.approach = sum / count as f64;
+        let mean = sum / count as f64;
+        solution.approach = pivot + mean;
         let (mut square, mut penetration) = (0.0, 0.0_f64);
         for (h, &p) in self.gap.iter_mut().zip(&solution.pressure) {
-            *h -= solution.approach;
+            *h -= mean;
             if p > 0.0 {
                 square += *h * *h;
             } else {
