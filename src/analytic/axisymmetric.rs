@@ -217,26 +217,21 @@ impl AxisymmetricContact {
         }
     }
 
-    /// Pressure \[Pa\] at the distance `r` ≥ 0 from the axis \[m\]: −(1/π) ∫ q′(x)/√(x² − r²) dx over x > r, for
-    /// q linear between the elements and zero at the contact radius. Not for a punch, whose line load jumps.
+    /// Pressure \[Pa\] at the distance `r` ≥ 0 from the axis \[m\]: −(1/π) ∫ q′(x)/√(x² − r²) dx over x > r,
+    /// for q linear in x² between the elements and zero at the contact radius. Not for a punch, whose line
+    /// load jumps there.
     pub fn pressure(&self, r: f64) -> f64 {
         let edge = self.contact_radius();
         let node = |k: usize| (k as f64 + 0.5) * self.width;
-        // ∫ dx/√(x² − r²) from low to high
-        let weight = |low: f64, high: f64| {
-            if r > 0.0 { (high / r).acosh() - (low / r).acosh() } else { (high / low).ln() }
-        };
+        let root = |x: f64| ((x - r) * (x + r)).max(0.0).sqrt();
         let mut sum = 0.0;
-        for k in 0..self.load.len() {
-            if self.load[k] == 0.0 {
-                break;
-            }
-            let last = self.load.get(k + 1).is_none_or(|&q| q == 0.0);
-            let (high, next) = if last { (edge, 0.0) } else { (node(k + 1), self.load[k + 1]) };
-            let low = node(k).max(r);
-            if high > low {
-                sum += (self.load[k] - next) / (high - node(k)) * weight(low, high);
-            }
+        for (k, &q) in self.load.iter().enumerate().take_while(|(_, q)| **q > 0.0) {
+            let next = self.load.get(k + 1).copied().unwrap_or(0.0);
+            let end = if next > 0.0 { node(k + 1) } else { edge };
+            // the first piece reaches back to the axis
+            let start = if k == 0 { 0.0 } else { node(k) };
+            let slope = (q - next) / ((end - node(k)) * (end + node(k)));
+            sum += 2.0 * slope * (root(end) - root(start));
         }
         sum / PI
     }
