@@ -65,8 +65,8 @@ pub enum Error {
         rule: &'static str,
     },
 
-    /// Two loads cannot be interpolated because they control different things.
-    #[error("{field} mixes loads of different kinds ({first} and {second}), which cannot be interpolated")]
+    /// Two loads of a history cannot be interpolated because they control different things.
+    #[error("the {field} mixes loads of different kinds ({first}; {second}), which cannot be interpolated")]
     MixedLoads {
         /// Which history or table.
         field: &'static str,
@@ -74,6 +74,57 @@ pub enum Error {
         first: &'static str,
         /// Kind of the load that differs.
         second: &'static str,
+    },
+
+    /// A load history named a corner that is not later than the time asked for
+    /// ([`LoadHistory::next_breakpoint`](crate::load::LoadHistory::next_breakpoint)).
+    #[error("the load history says that the first corner after t = {after} s is at {breakpoint} s: it must be later")]
+    InvalidBreakpoint {
+        /// The time asked for \[s\].
+        after: f64,
+        /// The corner named \[s\].
+        breakpoint: f64,
+    },
+
+    /// A load does not control what a reference solution needs.
+    #[error("{field} needs {needed}, but is given {given}")]
+    WrongLoad {
+        /// What takes the load.
+        field: &'static str,
+        /// The kind of load it needs.
+        needed: &'static str,
+        /// The kind of load given.
+        given: &'static str,
+    },
+
+    /// A force acts at a point where no pressure can balance it: outside the convex hull of the cells that
+    /// the body may touch, so that it would topple.
+    #[error("at t = {time} s the load acts at ({:e}, {:e}) m, outside the convex hull of the cells that body {body} may touch: it would topple", .at[0], .at[1])]
+    LoadOutsideHull {
+        /// End of the step \[s\].
+        time: f64,
+        /// The body, 0 for the only one.
+        body: usize,
+        /// The point at which the load acts \[m\]; a coordinate whose tilt is given does not matter and is 0.
+        at: [f64; 2],
+    },
+
+    /// The number of loads of a step is not the number of rigid bodies.
+    #[error("{loads} loads are given for {bodies} rigid bodies")]
+    WrongNumberOfLoads {
+        /// Loads given.
+        loads: usize,
+        /// Bodies of the contact.
+        bodies: usize,
+    },
+
+    /// The number of geometries is not the number of rigid bodies that the contact was built with.
+    #[error("{given} geometries are given for {bodies} rigid bodies")]
+    WrongNumberOfBodies {
+        /// Geometries given.
+        given: usize,
+        /// Bodies of the contact.
+        bodies: usize,
     },
 
     /// A geometry returned NaN or −∞ for the gap of a cell; allowed are finite gaps and +∞
@@ -88,10 +139,14 @@ pub enum Error {
         value: f64,
     },
 
-    /// The geometry is +∞ on every cell of the grid: there is nothing to touch. Check its
-    /// position and size against [`Grid::lengths`](crate::Grid::lengths).
-    #[error("no cell of the grid has a finite initial gap: nothing can touch (all {cells} cells are +inf)")]
+    /// The geometry of a body is +∞ on every cell of the grid, or lies above another body everywhere: it has
+    /// nothing to touch. Check its position and size against [`Grid::lengths`](crate::Grid::lengths).
+    #[error(
+        "body {body} has no cell with a finite initial gap of its own: it can touch nothing on the {cells} cells of the grid"
+    )]
     NothingToTouch {
+        /// The body, 0 for the only one.
+        body: usize,
         /// Number of cells of the grid.
         cells: usize,
     },
@@ -164,6 +219,16 @@ pub enum Error {
         time: f64,
         /// Number of cells in contact along the edge.
         cells: usize,
+    },
+
+    /// The contact of an [`AxisymmetricContact`](crate::analytic::AxisymmetricContact) reaches the end of its
+    /// foundation: give it a longer one.
+    #[error("at t = {time} s the contact reaches the end of the foundation, {reach:e} m from the axis: make it longer")]
+    BeyondReach {
+        /// End of the step \[s\].
+        time: f64,
+        /// Length of the foundation \[m\].
+        reach: f64,
     },
 
     /// The contact problem of a step was not solved within

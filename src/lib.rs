@@ -101,10 +101,10 @@ pub use kernel::{InfluenceKernel, Workspace};
 /// ```
 pub mod prelude {
     pub use crate::contact::{
-        Builder, Edge, Follow, Settings, Solver, StepReport, Stepping, TimeRule, ViscoelasticContact,
+        BodyState, Builder, Edge, Follow, Settings, Solver, StepReport, Stepping, TimeRule, ViscoelasticContact,
     };
     pub use crate::geometry::{Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, Shifted, Sphere};
-    pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad};
+    pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, GeneralizedKelvin, GeneralizedMaxwell, KelvinVoigt, Material, Maxwell, Rheology,
         Zener,

@@ -63,7 +63,7 @@ fn build_says_what_is_missing_or_wrong() {
     let nan = FnGeometry::new(|_, _| f64::NAN);
     assert!(matches!(build(good().geometry(&nan)), Error::InvalidGap { cell: [0, 0], .. }));
     let nothing = FnGeometry::new(|_, _| f64::INFINITY);
-    assert_eq!(build(good().geometry(&nothing)), Error::NothingToTouch { cells: 576 });
+    assert_eq!(build(good().geometry(&nothing)), Error::NothingToTouch { body: 0, cells: 576 });
 
     let other = Arc::new(InfluenceKernel::half_space(&Grid::square(24, 5.0e-3).unwrap()).unwrap());
     assert!(matches!(build(good().kernel(other)), Error::KernelMismatch { .. }));
@@ -106,7 +106,7 @@ fn a_jump_needs_an_elastic_response() {
     for time_rule in [TimeRule::Exponential, TimeRule::Backward] {
         let mut contact = contact_with(voigt(), Settings { time_rule, ..Settings::default() });
         let error = assert_untouched(&mut contact, 0.0, Load::force(0.1));
-        assert!(matches!(error, Error::NoElasticResponse { what: "a step of length zero", .. }), "{error}");
+        assert!(matches!(error, Error::NoElasticResponse { .. }), "{error}");
         assert!(error.to_string().contains("ramp the load"));
     }
     let mut contact = contact_with(voigt(), Settings::default());

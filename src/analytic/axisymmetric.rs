@@ -89,8 +89,9 @@ pub struct AxisymmetricContact {
     displacement: Vec<f64>,
     /// Line load q \[N/m\].
     load: Vec<f64>,
-    /// g + u_old: the approach at which each element is touched.
+    /// g + u_old: the approach at which each element is touched; of the last step, and of the one being tried.
     touch: Vec<f64>,
+    trial_touch: Vec<f64>,
     trial_displacement: Vec<f64>,
 }
 
@@ -98,7 +99,7 @@ impl AxisymmetricContact {
     /// A foundation of `elements` elements from the axis to `reach` \[m\], undisturbed and without load.
     ///
     /// # Errors
-    /// If there are no elements, the reach is not finite and positive, a value of the profile is NaN or
+    /// If there are no elements, the reach is not finite and positive, no value of the profile is finite or one is NaN or
     /// −∞, or the material has no exponential series.
     pub fn new(profile: &Profile, material: &Material, elements: usize, reach: f64) -> Result<AxisymmetricContact> {
         if elements == 0 {
@@ -114,6 +115,9 @@ impl AxisymmetricContact {
             }
         }
         let approach = depths.iter().copied().fold(f64::INFINITY, f64::min);
+        if approach == f64::INFINITY {
+            return Err(Error::NothingToTouch { body: 0, cells: elements });
+        }
         Ok(AxisymmetricContact {
             history: Exponential::new(&creep, elements),
             width,
@@ -123,6 +127,7 @@ impl AxisymmetricContact {
             displacement: vec![0.0; elements],
             load: vec![0.0; elements],
             touch: vec![0.0; elements],
+            trial_touch: vec![0.0; elements],
             trial_displacement: vec![0.0; elements],
         })
     }
@@ -137,10 +142,10 @@ impl AxisymmetricContact {
         let c = self.predict(dt)?;
         // 2 width Σ max(0, ω − touch)/c = W: convex and piecewise linear, Newton from the right ends
         let wanted = force * c / (2.0 * self.width);
-        let lowest = self.touch.iter().copied().fold(f64::INFINITY, f64::min);
+        let lowest = self.trial_touch.iter().copied().fold(f64::INFINITY, f64::min);
         let mut approach = lowest + wanted;
         loop {
-            let touched = self.touch.iter().filter(|&&touch| touch < approach);
+            let touched = self.trial_touch.iter().filter(|&&touch| touch < approach);
             let (count, sum) = touched.fold((0, 0.0), |(count, sum), touch| (count + 1, sum + (touch - lowest)));
             let next = if count == 0 { lowest } else { lowest + (wanted + sum) / count as f64 };
             if next >= approach {
@@ -165,17 +170,20 @@ impl AxisymmetricContact {
     fn predict(&mut self, dt: f64) -> Result<f64> {
         non_negative("time step", dt)?;
         let c = self.history.predict(self.time + dt, dt, &self.displacement, &mut self.trial_displacement)?;
-        for ((touch, &g), &u_old) in self.touch.iter_mut().zip(&self.profile).zip(&self.trial_displacement) {
+        for ((touch, &g), &u_old) in self.trial_touch.iter_mut().zip(&self.profile).zip(&self.trial_displacement) {
             *touch = g + u_old;
         }
         Ok(c)
     }
 
     fn accept(&mut self, dt: f64, c: f64, approach: f64) -> Result<()> {
-        if self.touch.last().is_some_and(|&touch| touch < approach) {
-            return Err(Error::ContactAtEdge { time: self.time + dt, cells: 1 });
+        if self.trial_touch.last().is_some_and(|&touch| touch < approach) {
+            return Err(Error::BeyondReach { time: self.time + dt, reach: self.width * self.load.len() as f64 });
         }
-        for ((q, u), &touch) in self.load.iter_mut().zip(&mut self.trial_displacement).zip(&self.touch) {
+        if !(approach.is_finite() && c.is_finite()) {
+            return Err(Error::Overflow { time: self.time + dt, what: "the approach" });
+        }
+        for ((q, u), &touch) in self.load.iter_mut().zip(&mut self.trial_displacement).zip(&self.trial_touch) {
             *q = (approach - touch).max(0.0) / c;
             *u += c * *q;
         }
@@ -186,6 +194,7 @@ impl AxisymmetricContact {
             potential: [&[], &[]],
         });
         std::mem::swap(&mut self.displacement, &mut self.trial_displacement);
+        std::mem::swap(&mut self.touch, &mut self.trial_touch);
         self.time += dt;
         self.approach = approach;
         Ok(())

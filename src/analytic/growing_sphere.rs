@@ -61,20 +61,26 @@ impl GrowingSphere {
     /// right at the times up to which the contact radius has never decreased.
     ///
     /// # Errors
-    /// If the radius is not finite and positive, the material has no exponential series, or no elastic
-    /// response.
+    /// If the radius is not finite and positive, the material has no exponential series or no elastic
+    /// response, or the load is an approach.
     pub fn new(radius: f64, material: &Material, load: impl LoadHistory + 'static) -> Result<GrowingSphere> {
         positive("sphere radius", radius)?;
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series())?;
         if creep.glassy() == 0.0 {
             return Err(Error::NoElasticResponse { time: 0.0, what: "the solution for a growing contact" });
         }
+        if let Load::Approach { .. } = load.at(0.0) {
+            return Err(Error::WrongLoad { field: "the growing sphere", needed: "a force", given: "an approach" });
+        }
         let relaxation = creep.relaxation();
         Ok(GrowingSphere { radius, creep, relaxation, load: Arc::new(load), step: None, rule: GaussLegendre::new(20) })
     }
 
-    /// Contact radius a \[m\] at time `t` ≥ 0 \[s\].
+    /// Contact radius a \[m\] at time `t` \[s\], 0 before t = 0; NaN where the history gives no finite force.
     pub fn contact_radius(&self, t: f64) -> f64 {
+        if t < 0.0 {
+            return 0.0;
+        }
         let creep_of_force = match self.step {
             Some(force) => force * self.creep.compliance(t),
             // ∫ C(t − s) dW(s) = C(0) W(t) + ∫ C′(t − s) W(s) ds
@@ -92,14 +98,17 @@ impl GrowingSphere {
         (0.75 * self.radius * creep_of_force).cbrt()
     }
 
-    /// Approach ω \[m\] at time `t` ≥ 0 \[s\].
+    /// Approach ω \[m\] at time `t` \[s\].
     pub fn approach(&self, t: f64) -> f64 {
         self.contact_radius(t).powi(2) / self.radius
     }
 
-    /// Pressure \[Pa\] at the distance `r` ≥ 0 from the centre \[m\] and time `t` ≥ 0 \[s\].
+    /// Pressure \[Pa\] at the distance `r` ≥ 0 from the centre \[m\] and time `t` \[s\].
     pub fn pressure(&self, r: f64, t: f64) -> f64 {
         let now = self.contact_radius(t);
+        if now.is_nan() {
+            return f64::NAN;
+        }
         if r >= now {
             return 0.0;
         }
@@ -119,8 +128,10 @@ impl GrowingSphere {
     }
 
     fn force(&self, t: f64) -> f64 {
-        let Load::Force { normal } = self.load.at(t);
-        normal
+        match self.load.at(t) {
+            Load::Force { normal, .. } => normal,
+            Load::Approach { .. } => f64::NAN,
+        }
     }
 
     /// When the contact first reached `r`.
@@ -154,7 +165,7 @@ impl GrowingSphere {
         let mut corner = self.load.next_breakpoint(start);
         while let Some(time) = corner.filter(|&time| time < to) {
             edges.push((time, true));
-            corner = self.load.next_breakpoint(time);
+            corner = self.load.next_breakpoint(time).filter(|&next| next > time);
         }
         edges.sort_by(|a, b| a.0.total_cmp(&b.0));
         let panels = edges.windows(2).map(|pair| {

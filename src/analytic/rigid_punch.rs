@@ -56,13 +56,14 @@ impl RigidPunch {
         self.tilt
     }
 
-    /// Pressure at the point (x1, x2) \[m\], infinite on the rim \[Pa\].
+    /// Pressure at the point (x1, x2) \[m\], infinite on the rim where it is not zero \[Pa\].
     pub fn pressure(&self, x1: f64, x2: f64) -> f64 {
         let (x, y) = (x1 / self.radius, x2 / self.radius);
         let rest = 1.0 - x * x - y * y;
         if rest < 0.0 {
             return 0.0;
         }
-        0.5 * self.mean_pressure * (1.0 + 3.0 * (self.eccentricity / self.radius) * x) / rest.sqrt()
+        let numerator = 0.5 * self.mean_pressure * (1.0 + 3.0 * (self.eccentricity / self.radius) * x);
+        if numerator == 0.0 { 0.0 } else { numerator / rest.sqrt() }
     }
 }

@@ -6,7 +6,7 @@ use crate::Grid;
 use crate::contact::settings::{Settings, Solver, TimeRule};
 use crate::contact::stepper::{ContactSolver, ViscoelasticContact};
 use crate::error::{Error, Result};
-use crate::geometry::{Gap, Geometry};
+use crate::geometry::{Gap, Geometry, evaluate};
 use crate::hereditary::{Direct, Exponential, History, Weighting};
 use crate::kernel::InfluenceKernel;
 use crate::rheology::Material;
@@ -17,7 +17,8 @@ use crate::solver::{ActiveSet, PolonskyKeer};
 #[must_use = "a builder does nothing until it is built"]
 pub struct Builder {
     grid: Grid,
-    gap: Option<Result<Gap>>,
+    /// The gap field of each rigid body.
+    gaps: Vec<Vec<f64>>,
     material: Option<Material>,
     kernel: Option<Arc<InfluenceKernel>>,
     settings: Settings,
@@ -25,13 +26,21 @@ pub struct Builder {
 
 impl Builder {
     pub(crate) fn new(grid: Grid) -> Builder {
-        Builder { grid, gap: None, material: None, kernel: None, settings: Settings::default() }
+        Builder { grid, gaps: Vec::new(), material: None, kernel: None, settings: Settings::default() }
     }
 
-    /// The shape of the bodies: the gap between them before they deform. Required; evaluated here,
-    /// errors are reported by [`Builder::build`].
+    /// The shape of the rigid body: the gap before the bodies deform. Required; evaluated here, errors are
+    /// reported by [`Builder::build`]. Replaces what was given before.
     pub fn geometry(mut self, geometry: &dyn Geometry) -> Builder {
-        self.gap = Some(Gap::new(geometry, &self.grid));
+        self.gaps = vec![evaluate(geometry, &self.grid)];
+        self
+    }
+
+    /// A further rigid body on the same creeping one, with a force, approach and tilt of its own: see
+    /// [`ViscoelasticContact::step_each`]. Gaps are measured from the same plane; a cell can be touched by one
+    /// body only, the one whose gap is lowest there.
+    pub fn another_body(mut self, geometry: &dyn Geometry) -> Builder {
+        self.gaps.push(evaluate(geometry, &self.grid));
         self
     }
 
@@ -61,9 +70,12 @@ impl Builder {
     /// range, the kernel was made for another grid, the exponential rule was chosen for a rheology
     /// without a series, or the rectangle rule for one without elastic response.
     pub fn build(self) -> Result<ViscoelasticContact> {
-        let Builder { grid, gap, material, kernel, settings } = self;
+        let Builder { grid, gaps, material, kernel, settings } = self;
         settings.validate()?;
-        let gap = gap.ok_or(Error::Missing { part: "geometry" })??;
+        if gaps.is_empty() {
+            return Err(Error::Missing { part: "geometry" });
+        }
+        let (bodies, gap) = (gaps.len(), Gap::new(&gaps, &grid)?);
         let material = material.ok_or(Error::Missing { part: "material" })?;
         let history = history(&material, settings.time_rule, grid.len())?;
         let kernel = match kernel {
@@ -74,10 +86,10 @@ impl Builder {
             None => Arc::new(InfluenceKernel::half_space(&grid)?),
         };
         let solver = match settings.solver {
-            Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&grid))),
-            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(PolonskyKeer::new(grid.len())),
+            Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&grid, bodies))),
+            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(PolonskyKeer::new(grid.len(), bodies)),
         };
-        Ok(ViscoelasticContact::new(grid, kernel, settings, gap, history, solver))
+        Ok(ViscoelasticContact::new(grid, bodies, kernel, settings, gap, history, solver))
     }
 }
 

@@ -6,7 +6,7 @@ use crate::error::{Error, Result, finite, positive, within};
 use crate::load::LoadHistory;
 
 /// Two times closer than this fraction of a step are the same time.
-const SAME_TIME: f64 = 1e-9;
+const SAME_TIME: f64 = 1e-6;
 
 /// How long the steps are.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,6 +48,7 @@ impl Stepping {
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug)]
+#[must_use = "a run takes no step until next_step is called"]
 pub struct Follow<'a> {
     contact: &'a mut ViscoelasticContact,
     history: &'a dyn LoadHistory,
@@ -86,13 +87,13 @@ impl<'a> Follow<'a> {
         let now = self.contact.time();
         let load = self.history.at(now);
         if load != self.contact.load() {
-            return self.contact.step_to(now, 0.0, load).map(Some);
+            return self.contact.step_to(now, 0.0, &[load]).map(Some);
         }
         if now >= self.until {
             return Ok(None);
         }
         let time = self.next_time(now, dt)?;
-        let report = self.contact.step_to(time, time - now, self.history.before(time))?;
+        let report = self.contact.step_to(time, time - now, &[self.history.before(time)])?;
         Ok(Some(report))
     }
 
@@ -109,7 +110,11 @@ impl<'a> Follow<'a> {
                 });
             }
         }
-        let corner = self.history.next_breakpoint(now).unwrap_or(f64::INFINITY).min(self.until);
+        let corner = self.history.next_breakpoint(now).unwrap_or(f64::INFINITY);
+        if corner <= now || corner.is_nan() {
+            return Err(Error::InvalidBreakpoint { after: now, breakpoint: corner });
+        }
+        let corner = corner.min(self.until);
         Ok(if corner <= self.raster(dt) + same { corner } else { self.raster(dt) })
     }
 

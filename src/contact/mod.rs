@@ -1,13 +1,15 @@
 //! The stepper: a contact that is advanced in time, step by step or along a load history.
 
+mod access;
 mod builder;
 mod follow;
+mod hull;
 mod report;
 mod settings;
 mod stepper;
 
 pub use builder::Builder;
 pub use follow::{Follow, Stepping};
-pub use report::StepReport;
+pub use report::{BodyState, StepReport};
 pub use settings::{Edge, Settings, Solver, TimeRule};
 pub use stepper::ViscoelasticContact;

@@ -10,6 +10,8 @@ pub struct StepReport {
     pub dt: f64,
     /// Iterations of the solver.
     pub iterations: usize,
+    /// Those of them that the slower, sure fall-back took.
+    pub fallback_iterations: usize,
     /// Convolutions with the influence kernel: padded transforms forth and back.
     pub convolutions: usize,
     /// Applications of the preconditioner, each on an unpadded grid of a quarter of the size.
@@ -18,9 +20,11 @@ pub struct StepReport {
     pub residual: f64,
     /// Cells in contact.
     pub contact_cells: usize,
-    /// Rigid-body approach ω \[m\].
+    /// Rigid-body approach ω of the first body, at the origin \[m\].
     pub approach: f64,
-    /// Normal force \[N\].
+    /// Tilt (α1, α2) of the first body \[rad\].
+    pub tilt: [f64; 2],
+    /// Normal force on all bodies together \[N\].
     pub force: f64,
 }
 
@@ -29,4 +33,20 @@ impl StepReport {
     pub fn convolution_equivalents(&self) -> f64 {
         self.convolutions as f64 + 0.25 * self.preconditioner_applications as f64
     }
+}
+
+/// The state of one rigid body, see [`ViscoelasticContact::body`](crate::ViscoelasticContact::body).
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct BodyState {
+    /// Approach ω at the origin of the grid \[m\]: the body lowers the surface by ω + α1 x1 + α2 x2.
+    pub approach: f64,
+    /// Tilt (α1, α2) \[rad\].
+    pub tilt: [f64; 2],
+    /// Normal force \[N\].
+    pub force: f64,
+    /// Moments of the pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\].
+    pub moment: [f64; 2],
+    /// Cells in contact.
+    pub contact_cells: usize,
 }

@@ -1,28 +1,36 @@
 //! One contact, advanced one step at a time.
 
-use std::fmt;
 use std::sync::Arc;
 
 use crate::Grid;
 use crate::contact::builder::Builder;
 use crate::contact::follow::{Follow, Stepping};
+use crate::contact::hull::Hull;
 use crate::contact::report::StepReport;
 use crate::contact::settings::{Edge, Settings};
-use crate::error::{Error, Result, exact_length, non_negative};
-use crate::geometry::{Gap, Geometry};
+use crate::error::{Error, Result, non_negative};
+use crate::geometry::{Gap, Geometry, evaluate};
 use crate::hereditary::{Change, History};
 use crate::kernel::{InfluenceKernel, Workspace};
-use crate::load::{Load, LoadHistory};
-use crate::solver::{ActiveSet, Counts, PolonskyKeer, Problem, Solution, Stop};
-
-/// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets the rounding
-/// of K p accumulate, step by step linearly. Out of so many steps, the last two compute it afresh: two,
-/// because extrapolation reads two states, and one left stale would feed its error back, multiplied.
-/// This costs a sixteenth of a convolution a step.
-const REFRESH_CYCLE: usize = 32;
+use crate::load::{Load, LoadHistory, Tilt};
+use crate::solver::{ActiveSet, Counts, Freedom, Modes, PolonskyKeer, Problem, Solution, Stop};
 
 /// A guess reaches at most this many times the length of the last step ahead.
 const FARTHEST_GUESS: f64 = 2.0;
+
+/// A guess is extrapolated only if it carries the force to within this factor: what is left after a
+/// cancellation is noise.
+const FARTHEST_FORCE: f64 = 1.5;
+
+/// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets the rounding
+/// of K p accumulate, step by step linearly. After so many steps it is computed afresh, in two steps
+/// running: extrapolation reads two states, and one left stale would feed its error back, multiplied. This
+/// costs a sixteenth of a convolution a step.
+const STEPS_WITHOUT_REFRESH: usize = 30;
+
+/// It is computed afresh, too, when the force has fallen by this factor: the rounding was that of the
+/// larger force.
+const FALL_WITHOUT_REFRESH: f64 = 8.0;
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
 /// on, and how both change with time.
@@ -42,32 +50,77 @@ const FARTHEST_GUESS: f64 = 2.0;
 /// assert!((contact.force() - 1.0).abs() < 1e-12);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
+///
+/// Force and approach may take turns, from step to step:
+///
+/// ```
+/// # use viscocontact::prelude::*;
+/// # let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3)?)
+/// #     .geometry(&Sphere::new(10.0e-3)?)
+/// #     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+/// #     .build()?;
+/// contact.step(0.0, Load::force(1.0))?;
+/// let depth = contact.approach();
+/// contact.step(1.0, Load::approach(depth))?; // hold the approach: the force relaxes
+/// assert!(contact.force() < 0.5);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
 #[derive(Clone)]
 pub struct ViscoelasticContact {
-    grid: Grid,
-    kernel: Arc<InfluenceKernel>,
+    pub(super) grid: Grid,
+    pub(super) kernel: Arc<InfluenceKernel>,
     work: Workspace,
-    settings: Settings,
+    pub(super) settings: Settings,
     solver: ContactSolver,
     history: History,
-    initial_gap: Gap,
+    pub(super) initial_gap: Gap,
+    /// Where loads may act, for each body; made when one is first free to tilt.
+    hulls: Vec<Option<Hull>>,
 
-    time: f64,
-    load: Load,
-    displacement: Vec<f64>,
-    /// p, K p and ω, the latter from the datum of the initial gap.
-    current: Solution,
-    contact_cells: usize,
+    pub(super) time: f64,
+    pub(super) loads: Vec<Load>,
+    pub(super) displacement: Vec<f64>,
+    pub(super) current: Solution,
+    /// (ω, α1, α2) of each body, ω at the origin.
+    pub(super) motions: Vec<[f64; 3]>,
+    pub(super) contact_cells: usize,
 
     /// The state one step earlier, and the length of that step: what a guess extrapolates from.
     previous: Solution,
     last_dt: f64,
-    steps_in_cycle: usize,
+    refresh: Refresh,
 
     /// The step being tried; thrown away if it fails.
     trial: Solution,
     trial_displacement: Vec<f64>,
     gap: Vec<f64>,
+    freedoms: Vec<Freedom>,
+}
+
+/// When K p was last computed afresh.
+#[derive(Debug, Clone, Copy, Default)]
+struct Refresh {
+    /// Steps still to compute it afresh.
+    due: usize,
+    /// Steps since then.
+    stale: usize,
+    /// The greatest Σ p since then.
+    greatest: f64,
+}
+
+impl Refresh {
+    /// After a step with Σ p = `sum`.
+    fn count(&mut self, sum: f64) {
+        if self.due > 0 {
+            *self = Refresh { due: self.due - 1, stale: 0, greatest: sum };
+            return;
+        }
+        self.stale += 1;
+        self.greatest = self.greatest.max(sum);
+        if self.stale >= STEPS_WITHOUT_REFRESH || sum < self.greatest / FALL_WITHOUT_REFRESH {
+            self.due = 2;
+        }
+    }
 }
 
 #[derive(Debug, Clone)]
@@ -84,6 +137,7 @@ impl ViscoelasticContact {
 
     pub(crate) fn new(
         grid: Grid,
+        bodies: usize,
         kernel: Arc<InfluenceKernel>,
         settings: Settings,
         initial_gap: Gap,
@@ -91,20 +145,24 @@ impl ViscoelasticContact {
         solver: ContactSolver,
     ) -> ViscoelasticContact {
         let cells = grid.len();
-        let current = Solution::zero(cells);
+        let at_rest = Solution::zero(cells, bodies);
+        let nothing_free = Freedom { translation: false, tilt: [false; 2], point: [0.0; 2], total: 0.0 };
         ViscoelasticContact {
             work: kernel.workspace(),
+            hulls: vec![None; bodies],
             time: 0.0,
-            load: Load::force(0.0),
+            loads: vec![Load::force(0.0); bodies],
             displacement: vec![0.0; cells],
+            motions: (0..bodies).map(|body| first_touch(&initial_gap, body)).collect(),
             contact_cells: 0,
-            previous: Solution::zero(cells),
+            previous: at_rest.clone(),
             last_dt: 0.0,
-            steps_in_cycle: 0,
-            trial: current.clone(),
-            current,
+            refresh: Refresh::default(),
+            trial: at_rest.clone(),
+            current: at_rest,
             trial_displacement: vec![0.0; cells],
             gap: vec![0.0; cells],
+            freedoms: vec![nothing_free; bodies],
             grid,
             kernel,
             settings,
@@ -118,47 +176,51 @@ impl ViscoelasticContact {
     /// a jump of the load: the bodies respond elastically.
     ///
     /// # Errors
-    /// If `dt` or the load is negative or not finite, the body has no elastic response and `dt` = 0,
-    /// contact reaches the edge of the grid (unless [`Edge::Allow`]), the solver does not converge, or
-    /// a creep closure returns an impossible value. The contact is then exactly as it was before.
+    /// If `dt` or a force is negative, a number not finite, a force acts where it would topple the body, the
+    /// body has no elastic response and `dt` = 0, contact reaches the edge of the grid (unless
+    /// [`Edge::Allow`]), the solver does not converge, a creep closure returns an impossible value, or there
+    /// are several rigid bodies. The contact is then exactly as it was before.
     pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
-        non_negative("time step", dt)?;
-        self.step_to(self.time + dt, dt, load)
+        self.step_each(dt, &[load])
     }
 
-    /// [`ViscoelasticContact::step`] with the end of the step given, so that it is met exactly.
-    pub(crate) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
-        load.validate()?;
+    /// [`ViscoelasticContact::step`] with a load for each rigid body, in the order in which the builder was
+    /// given them.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::step`], or if there is not one load a body.
+    pub fn step_each(&mut self, dt: f64, loads: &[Load]) -> Result<StepReport> {
+        non_negative("time step", dt)?;
+        self.step_to(self.time + dt, dt, loads)
+    }
+
+    /// [`ViscoelasticContact::step_each`] with the end of the step given, so that it is met exactly.
+    pub(crate) fn step_to(&mut self, time: f64, dt: f64, loads: &[Load]) -> Result<StepReport> {
         non_negative("time", time)?;
+        self.free(time, loads)?;
 
         // what the past makes of the end of the step: u = u_old + c K p
         let c = self.history.predict(time, dt, &self.displacement, &mut self.trial_displacement)?;
-        for ((gap, &initial), &u_old) in self.gap.iter_mut().zip(&self.initial_gap.above).zip(&self.trial_displacement)
-        {
-            *gap = initial + u_old;
-        }
+        self.fill_gap(loads);
 
         // the contact problem of the step
         self.guess(dt);
-        let Load::Force { normal } = load;
-        let total = normal / self.grid.cell_area();
-        let problem = Problem { kernel: &self.kernel, compliance: c, gap: &self.gap, total };
-        let Settings { tolerance, max_iterations, .. } = self.settings;
-        let stop = Stop { tolerance, max_iterations };
-        if total == 0.0 {
-            self.trial.release(&problem);
-        } else {
-            match &mut self.solver {
-                ContactSolver::ActiveSet(solver) => solver.solve(&problem, stop, &mut self.trial, &mut self.work),
-                ContactSolver::PolonskyKeer(solver) => solver.solve(&problem, stop, &mut self.trial, &mut self.work),
-            }
+        let owner = self.initial_gap.owner.as_deref();
+        let problem = Problem { kernel: &self.kernel, compliance: c, gap: &self.gap, bodies: &self.freedoms, owner };
+        if !(c > 0.0 && c.is_finite()) {
+            return Err(Error::Overflow { time, what: "the compliance of the step" });
         }
+        let stop = Stop { tolerance: self.settings.tolerance, max_iterations: self.settings.max_iterations };
+        match &mut self.solver {
+            _ if problem.all_released() => self.trial.release(),
+            ContactSolver::ActiveSet(solver) => solver.solve(&problem, stop, &mut self.trial, &mut self.work),
+            ContactSolver::PolonskyKeer(solver) => solver.solve(&problem, stop, &mut self.trial, &mut self.work),
+        }
+        self.trial.follow_surface(&problem);
         self.check(time, dt)?;
 
         // accept: nothing below can fail
-        for (u, &v) in self.trial_displacement.iter_mut().zip(&self.trial.potential) {
-            *u += c * v;
-        }
+        self.displace(c);
         self.history.commit(&Change {
             time,
             dt,
@@ -168,38 +230,126 @@ impl ViscoelasticContact {
         std::mem::swap(&mut self.displacement, &mut self.trial_displacement);
         std::mem::swap(&mut self.previous, &mut self.current);
         std::mem::swap(&mut self.current, &mut self.trial);
+        for (body, motion) in self.motions.iter_mut().enumerate() {
+            let free = Modes::new(&self.grid, self.freedoms[body]).physical(self.current.motions[body]);
+            let [omega, alpha1, alpha2] = prescribed(&loads[body], self.initial_gap.datum);
+            *motion = [self.initial_gap.datum + omega + free[0], alpha1 + free[1], alpha2 + free[2]];
+        }
         self.time = time;
-        self.load = load;
+        self.loads.copy_from_slice(loads);
         self.last_dt = dt;
-        self.steps_in_cycle = (self.steps_in_cycle + 1) % REFRESH_CYCLE;
+        self.refresh.count(self.current.pressure.iter().sum());
         self.contact_cells = self.current.pressure.iter().filter(|&&p| p > 0.0).count();
         Ok(self.report(dt))
     }
 
+    /// Sets what the loads leave free of each body, and refuses those that no pressure can balance.
+    fn free(&mut self, time: f64, loads: &[Load]) -> Result<()> {
+        if loads.len() != self.loads.len() {
+            return Err(Error::WrongNumberOfLoads { loads: loads.len(), bodies: self.loads.len() });
+        }
+        for (body, load) in loads.iter().enumerate() {
+            load.validate()?;
+            let tilt = load.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
+            let point = load.tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
+            let (translation, total) = match load {
+                Load::Force { normal, .. } => (true, normal / self.grid.cell_area()),
+                Load::Approach { .. } => (false, 0.0),
+            };
+            let lost = total == 0.0 && matches!(load, Load::Force { normal, .. } if *normal > 0.0);
+            if lost || !total.is_finite() {
+                return Err(Error::Overflow { time, what: "the force over the area of a cell" });
+            }
+            self.freedoms[body] = Freedom { translation, tilt, point, total };
+            if tilt != [false; 2] && !(translation && total == 0.0) {
+                let gap = &self.initial_gap;
+                let own = |k: usize| gap.owner(k) == body && gap.above[k].is_finite();
+                let hull = self.hulls[body].get_or_insert_with(|| Hull::new(&self.grid, own));
+                if !hull.admits(point, tilt) {
+                    return Err(Error::LoadOutsideHull { time, body, at: point });
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The gap of the step before any pressure and free motion: hi + u_old − what is prescribed of ω + α·x.
+    fn fill_gap(&mut self, loads: &[Load]) {
+        for ((gap, &initial), &u_old) in self.gap.iter_mut().zip(&self.initial_gap.above).zip(&self.trial_displacement)
+        {
+            *gap = initial + u_old;
+        }
+        for (body, load) in loads.iter().enumerate() {
+            let [omega, alpha1, alpha2] = prescribed(load, self.initial_gap.datum);
+            if [omega, alpha1, alpha2] == [0.0; 3] {
+                continue;
+            }
+            let n2 = self.grid.cells()[1];
+            for k in (0..self.gap.len()).filter(|&k| self.initial_gap.owner(k) == body) {
+                let [x1, x2] = self.grid.center(k / n2, k % n2);
+                self.gap[k] -= omega + alpha1 * x1 + alpha2 * x2;
+            }
+        }
+    }
+
     /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike.
     fn guess(&mut self, dt: f64) {
-        let trial = &mut self.trial;
-        trial.counts = Counts::default();
-        let ahead = if self.last_dt > 0.0 { (dt / self.last_dt).min(FARTHEST_GUESS) } else { 0.0 };
+        self.trial.counts = Counts::default();
+        let mut ahead = if self.last_dt > 0.0 { (dt / self.last_dt).min(FARTHEST_GUESS) } else { 0.0 };
+        let (mut now, mut guessed) = (0.0, 0.0);
+        for (&p, &before) in self.current.pressure.iter().zip(&self.previous.pressure) {
+            now += p;
+            guessed += (p + ahead * (p - before)).max(0.0);
+        }
+        // a single force says what the guess must carry; else it should not stray far from the last state
+        let wanted =
+            if self.freedoms.len() == 1 && self.freedoms[0].translation { self.freedoms[0].total } else { now };
+        if !(wanted / FARTHEST_FORCE..=wanted * FARTHEST_FORCE).contains(&guessed) {
+            ahead = 0.0;
+        }
         let extrapolate = |trial: &mut [f64], current: &[f64], previous: &[f64]| {
             for ((guess, &now), &before) in trial.iter_mut().zip(current).zip(previous) {
                 *guess = now + ahead * (now - before);
             }
         };
-        extrapolate(&mut trial.pressure, &self.current.pressure, &self.previous.pressure);
-        if self.steps_in_cycle < REFRESH_CYCLE - 2 {
-            extrapolate(&mut trial.potential, &self.current.potential, &self.previous.potential);
+        extrapolate(&mut self.trial.pressure, &self.current.pressure, &self.previous.pressure);
+        if self.refresh.due == 0 {
+            extrapolate(&mut self.trial.potential, &self.current.potential, &self.previous.potential);
         } else if matches!(self.solver, ContactSolver::ActiveSet(_)) {
-            self.kernel.apply(&trial.pressure, &mut trial.potential, &mut self.work);
-            trial.counts.convolutions += 1;
+            self.kernel.apply(&self.trial.pressure, &mut self.trial.potential, &mut self.work);
+            self.trial.counts.convolutions += 1;
+        }
+    }
+
+    /// u = u_old + c K p; on a body with memory, the surface in contact is then laid on the rigid body. The
+    /// residual of this step would otherwise stay in u, and count many times over when a later step is
+    /// much stiffer than this one, as a jump after a long hold is.
+    fn displace(&mut self, c: f64) {
+        for (u, &v) in self.trial_displacement.iter_mut().zip(&self.trial.potential) {
+            *u += c * v;
+        }
+        if !self.history.keeps_displacement() {
+            return;
+        }
+        for (body, &freedom) in self.freedoms.iter().enumerate() {
+            let (modes, motion) = (Modes::new(&self.grid, freedom), self.trial.motions[body]);
+            for k in 0..self.gap.len() {
+                if self.initial_gap.owner(k) == body && self.gap[k].is_finite() {
+                    // u_old + c v with the gap h less the same: gap = hi + u_old − prescribed
+                    let h = self.gap[k] + c * self.trial.potential[k] - modes.displacement(motion, k);
+                    if self.trial.pressure[k] > 0.0 || h < 0.0 {
+                        self.trial_displacement[k] -= h;
+                    }
+                }
+            }
         }
     }
 
     /// Whether the trial may be accepted.
     fn check(&self, time: f64, dt: f64) -> Result<()> {
-        let Settings { tolerance, max_iterations: _, edge, .. } = self.settings;
-        let Solution { approach, residual, counts, .. } = self.trial;
-        if !approach.is_finite() {
+        let Settings { tolerance, edge, .. } = self.settings;
+        let Solution { residual, counts, ref motions, .. } = self.trial;
+        if !motions.iter().flatten().all(|motion| motion.is_finite()) {
             return Err(Error::Overflow { time, what: "the approach" });
         }
         if residual > tolerance || residual.is_nan() {
@@ -215,16 +365,18 @@ impl ViscoelasticContact {
     }
 
     fn report(&self, dt: f64) -> StepReport {
-        let Counts { iterations, convolutions, preconditioner_applications } = self.current.counts;
+        let Counts { iterations, convolutions, preconditioner_applications, fallback_iterations } = self.current.counts;
         StepReport {
             time: self.time,
             dt,
             iterations,
+            fallback_iterations,
             convolutions,
             preconditioner_applications,
             residual: self.current.residual,
             contact_cells: self.contact_cells,
             approach: self.approach(),
+            tilt: self.tilt(),
             force: self.force(),
         }
     }
@@ -238,104 +390,37 @@ impl ViscoelasticContact {
     /// and touch the new one from the next step on.
     ///
     /// # Errors
-    /// If a gap is NaN or −∞, or none is finite; the contact then keeps the old one.
+    /// If a gap is NaN or −∞, or none is finite, or there are several rigid bodies; the contact then keeps
+    /// the old one.
     pub fn set_geometry(&mut self, geometry: &dyn Geometry) -> Result<()> {
-        let gap = Gap::new(geometry, &self.grid)?;
-        self.current.approach += self.initial_gap.datum - gap.datum; // the same approach, from another datum
-        self.initial_gap = gap;
+        self.set_geometries(&[geometry])
+    }
+
+    /// [`ViscoelasticContact::set_geometry`] with a geometry for each rigid body.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::set_geometry`], or if there is not one geometry a body.
+    pub fn set_geometries(&mut self, geometries: &[&dyn Geometry]) -> Result<()> {
+        if geometries.len() != self.loads.len() {
+            return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.loads.len() });
+        }
+        let gaps: Vec<_> = geometries.iter().map(|geometry| evaluate(*geometry, &self.grid)).collect();
+        self.initial_gap = Gap::new(&gaps, &self.grid)?;
+        self.hulls.fill(None);
         self.last_dt = 0.0; // the last change of the pressure says nothing about the next
         Ok(())
     }
-
-    /// Time \[s\], 0 at first.
-    pub fn time(&self) -> f64 {
-        self.time
-    }
-
-    /// The grid of every field.
-    pub fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
-    /// The settings it was built with.
-    pub fn settings(&self) -> &Settings {
-        &self.settings
-    }
-
-    /// The influence kernel, to share with other contacts.
-    pub fn kernel(&self) -> &Arc<InfluenceKernel> {
-        &self.kernel
-    }
-
-    /// The load of the last step.
-    pub fn load(&self) -> Load {
-        self.load
-    }
-
-    /// Contact pressure \[Pa\], one value a cell, ≥ 0.
-    pub fn pressure(&self) -> &[f64] {
-        &self.current.pressure
-    }
-
-    /// Composite normal surface displacement, positive into the bodies \[m\], one value a cell.
-    pub fn displacement(&self) -> &[f64] {
-        &self.displacement
-    }
-
-    /// Writes the gap between the deformed bodies into `out` \[m\]: zero in contact to within the
-    /// tolerance, +∞ where there is nothing to touch.
-    ///
-    /// # Errors
-    /// If `out` does not hold one value a cell.
-    pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
-        exact_length("gap", out.len(), self.grid.len())?;
-        for ((h, &initial), &u) in out.iter_mut().zip(&self.initial_gap.above).zip(&self.displacement) {
-            *h = initial + u - self.current.approach;
-        }
-        Ok(())
-    }
-
-    /// Rigid-body approach ω \[m\]. Without load, the approach at which the bodies just touch.
-    pub fn approach(&self) -> f64 {
-        self.initial_gap.datum + self.current.approach
-    }
-
-    /// Normal force Σ p ΔA \[N\].
-    pub fn force(&self) -> f64 {
-        self.current.pressure.iter().sum::<f64>() * self.grid.cell_area()
-    }
-
-    /// Moments of the pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\].
-    pub fn moment(&self) -> [f64; 2] {
-        let [_, n2] = self.grid.cells();
-        let mut moment = [0.0; 2];
-        for (i, row) in self.current.pressure.chunks_exact(n2).enumerate() {
-            moment[0] += self.grid.coordinate(0, i) * row.iter().sum::<f64>();
-            moment[1] += row.iter().enumerate().map(|(j, p)| self.grid.coordinate(1, j) * p).sum::<f64>();
-        }
-        moment.map(|sum| sum * self.grid.cell_area())
-    }
-
-    /// Area of the cells in contact \[m²\].
-    pub fn contact_area(&self) -> f64 {
-        self.contact_cells as f64 * self.grid.cell_area()
-    }
-
-    /// Number of cells in contact (p > 0).
-    pub fn contact_cells(&self) -> usize {
-        self.contact_cells
-    }
 }
 
-impl fmt::Debug for ViscoelasticContact {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("ViscoelasticContact")
-            .field("grid", &self.grid)
-            .field("settings", &self.settings)
-            .field("time", &self.time)
-            .field("load", &self.load)
-            .field("approach", &self.approach())
-            .field("contact_cells", &self.contact_cells)
-            .finish_non_exhaustive()
-    }
+/// What a load prescribes of (ω, α1, α2), zero where it leaves them free; ω from the datum of the gap.
+fn prescribed(load: &Load, datum: f64) -> [f64; 3] {
+    let omega = if let Load::Approach { approach, .. } = load { approach - datum } else { 0.0 };
+    let [alpha1, alpha2] = load.tilt().map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
+    [omega, alpha1, alpha2]
+}
+
+/// The motion at which an upright body just touches the undeformed surface.
+fn first_touch(gap: &Gap, body: usize) -> [f64; 3] {
+    let own = gap.above.iter().enumerate().filter(|(k, _)| gap.owner(*k) == body);
+    [gap.datum + own.map(|(_, &h)| h).fold(f64::INFINITY, f64::min), 0.0, 0.0]
 }

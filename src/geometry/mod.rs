@@ -77,31 +77,59 @@ pub trait Geometry: Debug + Send + Sync {
     }
 }
 
-/// The gap field of a geometry above its lowest point, so that heights far larger than the contact is
-/// deep cost no digits.
+/// The gap field of the rigid bodies above their lowest point, so that heights far larger than the contact
+/// is deep cost no digits.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Gap {
     /// The lowest gap \[m\].
     pub(crate) datum: f64,
     /// What the gap of each cell exceeds it by \[m\]; 0 somewhere, +∞ where there is nothing to touch.
     pub(crate) above: Vec<f64>,
+    /// The body that each cell belongs to, the one that is lowest there; `None` for a single body.
+    pub(crate) owner: Option<Vec<u16>>,
+}
+
+/// The gap of a geometry on every cell, unchecked.
+pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Vec<f64> {
+    let mut gap = vec![f64::INFINITY; grid.len()];
+    geometry.fill_gap(grid, &mut gap);
+    gap
 }
 
 impl Gap {
-    /// Evaluates a geometry and checks it: no NaN, no −∞, and something to touch.
-    pub(crate) fn new(geometry: &dyn Geometry, grid: &Grid) -> Result<Gap> {
+    /// Joins the gap fields of the bodies and checks them: no NaN, no −∞, and something to touch.
+    pub(crate) fn new(bodies: &[Vec<f64>], grid: &Grid) -> Result<Gap> {
         let mut above = vec![f64::INFINITY; grid.len()];
-        geometry.fill_gap(grid, &mut above);
-        if let Some(k) = above.iter().position(|h| h.is_nan() || *h == f64::NEG_INFINITY) {
-            let cell = [k / grid.cells()[1], k % grid.cells()[1]];
-            return Err(Error::InvalidGap { cell, position: grid.center(cell[0], cell[1]), value: above[k] });
+        let mut owner = (bodies.len() > 1).then(|| vec![0_u16; grid.len()]);
+        for (body, own) in bodies.iter().enumerate() {
+            if let Some(k) = own.iter().position(|h| h.is_nan() || *h == f64::NEG_INFINITY) {
+                let cell = [k / grid.cells()[1], k % grid.cells()[1]];
+                return Err(Error::InvalidGap { cell, position: grid.center(cell[0], cell[1]), value: own[k] });
+            }
+            for (k, &h) in own.iter().enumerate() {
+                if h < above[k] {
+                    above[k] = h;
+                    if let Some(owner) = &mut owner {
+                        owner[k] = body as u16;
+                    }
+                }
+            }
+        }
+        for body in 0..bodies.len() {
+            let touches =
+                |k: &usize| above[*k].is_finite() && owner.as_ref().is_none_or(|o| usize::from(o[*k]) == body);
+            if (0..grid.len()).find(touches).is_none() {
+                return Err(Error::NothingToTouch { body, cells: grid.len() });
+            }
         }
         let datum = above.iter().copied().fold(f64::INFINITY, f64::min);
-        if datum == f64::INFINITY {
-            return Err(Error::NothingToTouch { cells: grid.len() });
-        }
         above.iter_mut().for_each(|h| *h -= datum);
-        Ok(Gap { datum, above })
+        Ok(Gap { datum, above, owner })
+    }
+
+    /// The body that cell `k` belongs to.
+    pub(crate) fn owner(&self, k: usize) -> usize {
+        self.owner.as_ref().map_or(0, |owner| owner[k].into())
     }
 }
 
@@ -153,13 +181,18 @@ mod tests {
     #[test]
     fn bad_gaps_are_located() {
         let grid = Grid::new([2, 3], [2.0, 3.0]).unwrap();
+        let joined = |bodies: &[&dyn Geometry]| {
+            Gap::new(&bodies.iter().map(|body| evaluate(*body, &grid)).collect::<Vec<_>>(), &grid)
+        };
         let hole = FnGeometry::new(|x1, x2| if x1 > 0.0 && x2 > 0.0 { f64::NAN } else { 0.0 });
-        let Error::InvalidGap { cell, position, value } = Gap::new(&hole, &grid).unwrap_err() else { panic!() };
+        let Error::InvalidGap { cell, position, value } = joined(&[&hole]).unwrap_err() else { panic!() };
         assert_eq!((cell, position), ([1, 2], [0.5, 1.0]));
         assert!(value.is_nan());
         let abyss = FnGeometry::new(|_, _| f64::NEG_INFINITY);
-        assert!(matches!(Gap::new(&abyss, &grid), Err(Error::InvalidGap { cell: [0, 0], .. })));
+        assert!(matches!(joined(&[&abyss]), Err(Error::InvalidGap { cell: [0, 0], .. })));
         let nothing = FnGeometry::new(|_, _| f64::INFINITY);
-        assert_eq!(Gap::new(&nothing, &grid), Err(Error::NothingToTouch { cells: 6 }));
+        assert_eq!(joined(&[&nothing]), Err(Error::NothingToTouch { body: 0, cells: 6 }));
+        let under = FnGeometry::new(|_, _| 1.0);
+        assert_eq!(joined(&[&FnGeometry::new(|_, _| 0.0), &under]), Err(Error::NothingToTouch { body: 1, cells: 6 }));
     }
 }

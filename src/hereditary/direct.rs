@@ -36,7 +36,7 @@ impl Direct {
     pub(crate) fn predict(&mut self, time: f64, dt: f64, u_old: &mut [f64]) -> Result<f64> {
         let (age, what) = match self.weighting {
             Weighting::End => (0.0, "the rectangle rule"),
-            Weighting::Start => (dt, "a step of length zero"),
+            Weighting::Start => (dt, "a step of length zero (ramp the load over a short time instead)"),
         };
         let newest = self.creep(age, self.creep(0.0, 0.0)?)?;
         if newest == 0.0 {
@@ -44,9 +44,11 @@ impl Direct {
         }
         // c acts on the whole of v, so that a past increment adds only what exceeds c
         self.weights.clear();
-        let mut younger = newest;
+        let (mut younger, mut oldest) = (newest, age);
         for (when, _) in self.increments.iter().rev() {
-            younger = self.creep(time - when, younger)?;
+            // ages never fall, but their differences of times may, by rounding
+            oldest = (time - when).max(oldest);
+            younger = self.creep(oldest, younger)?;
             self.weights.push(self.material.contact_factor() * (younger - newest));
         }
         let past = || self.increments.iter().rev().zip(&self.weights);
@@ -75,8 +77,8 @@ impl Direct {
     /// J at an age, checked against J at a lesser age.
     fn creep(&self, age: f64, younger: f64) -> Result<f64> {
         let value = self.material.creep_compliance(age);
-        // equal ages may differ by rounding of the times they were computed from
-        if value.is_finite() && value >= younger * (1.0 - 1e-12) {
+        // a few units in the last place are the closure's own
+        if value.is_finite() && value >= younger * (1.0 - 1e-14) {
             Ok(value)
         } else {
             Err(Error::InvalidCompliance { time: age, value, previous: younger })

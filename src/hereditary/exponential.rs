@@ -31,6 +31,11 @@ impl Exponential {
         Exponential { relaxation, branches: vec![vec![0.0; cells]; branches], factors: vec![(1.0, 0.0); branches] }
     }
 
+    /// Whether there is a past at all: an elastic body has none.
+    pub(crate) fn remembers(&self) -> bool {
+        !self.branches.is_empty() || self.relaxation.viscosity() > 0.0
+    }
+
     pub(crate) fn predict(&mut self, time: f64, dt: f64, displacement: &[f64], u_old: &mut [f64]) -> Result<f64> {
         let mut stiffness = self.relaxation.equilibrium();
         for (factor, &(modulus, tau)) in self.factors.iter_mut().zip(self.relaxation.terms()) {
@@ -41,17 +46,16 @@ impl Exponential {
         }
         if self.relaxation.viscosity() > 0.0 {
             if dt == 0.0 {
-                return Err(Error::NoElasticResponse { time, what: "a step of length zero" });
+                return Err(Error::NoElasticResponse {
+                    time,
+                    what: "a step of length zero (ramp the load over a short time instead)",
+                });
             }
             stiffness += self.relaxation.viscosity() / dt;
         }
         let c = 1.0 / stiffness;
         // u − c E∞ u, written so that an elastic body keeps exactly nothing
-        let kept = if self.branches.is_empty() && self.relaxation.viscosity() == 0.0 {
-            0.0
-        } else {
-            1.0 - c * self.relaxation.equilibrium()
-        };
+        let kept = if self.remembers() { 1.0 - c * self.relaxation.equilibrium() } else { 0.0 };
         for (old, &u) in u_old.iter_mut().zip(displacement) {
             *old = kept * u;
         }

@@ -38,6 +38,14 @@ impl History {
         }
     }
 
+    /// Whether the displacement itself is part of the memory, rather than computed anew from v.
+    pub(crate) fn keeps_displacement(&self) -> bool {
+        match self {
+            History::Exponential(history) => history.remembers(),
+            History::Direct(_) => false,
+        }
+    }
+
     /// Takes the step that was predicted last into the past: `displacement` went from `before` to
     /// `after`, and v = K p from `v_before` to `v_after`.
     pub(crate) fn commit(&mut self, change: &Change<'_>) {

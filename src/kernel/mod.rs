@@ -43,6 +43,7 @@ use love::Love;
 pub struct InfluenceKernel {
     grid: Grid,
     operator: SpectralOperator,
+    self_influence: f64,
 }
 
 /// Buffers of [`InfluenceKernel::convolve`], made by [`InfluenceKernel::workspace`].
@@ -65,7 +66,7 @@ impl InfluenceKernel {
         let love = Love::new(grid.spacing());
         let period = [smooth_length(2 * cells[0] - 1, 1), smooth_length(2 * cells[1] - 1, 2)];
         let operator = SpectralOperator::from_coefficients(cells, period, |i, j| love.coefficient(i, j));
-        Ok(InfluenceKernel { grid: grid.clone(), operator })
+        Ok(InfluenceKernel { grid: grid.clone(), operator, self_influence: love.coefficient(0, 0) })
     }
 
     /// The grid the kernel was made for.
@@ -92,6 +93,11 @@ impl InfluenceKernel {
         }
         self.apply(pressure, displacement, work);
         Ok(())
+    }
+
+    /// The coefficient of a cell on itself \[m\].
+    pub(crate) fn self_influence(&self) -> f64 {
+        self.self_influence
     }
 
     /// [`InfluenceKernel::convolve`] for fields known to fit.

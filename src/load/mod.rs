@@ -25,37 +25,150 @@ pub use step::StepLoad;
 
 use std::fmt::Debug;
 
-use crate::error::{Result, non_negative};
+use crate::error::{Error, Result, finite, non_negative};
 
-/// What holds at the end of a step.
+/// What holds at the end of a step: the force or the approach of the rigid body, and its tilt.
+///
+/// Either the normal force or the approach is given, and for each of the two tilts either the angle, or
+/// the coordinate at which the body is held and about which it turns freely. The constructors name the
+/// usual cases; the variants cover every mixture.
+///
+/// ```
+/// use viscocontact::load::{Load, Tilt};
+///
+/// // 5 N at x1 = 1 mm, free to tilt along x1, but guided along x2
+/// let hinge = Load::Force { normal: 5.0, tilt: [Tilt::Free { at: 1.0e-3 }, Tilt::Fixed(0.0)] };
+/// assert_ne!(hinge, Load::eccentric_force(5.0, [1.0e-3, 0.0]));
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Load {
-    /// A centred force: the bodies approach without tilting until the pressure carries it.
+    /// The normal force is given, the approach follows.
     Force {
         /// Normal force, ≥ 0 \[N\].
         normal: f64,
+        /// Tilt along x1 and along x2.
+        tilt: [Tilt; 2],
+    },
+    /// The approach is given, the force follows.
+    Approach {
+        /// Approach \[m\] of the point that stays when the body tilts: the coordinates `at` of the free tilts,
+        /// the origin for those given.
+        approach: f64,
+        /// Tilt along x1 and along x2.
+        tilt: [Tilt; 2],
     },
 }
 
+/// What is known of the tilt along one axis: the rotation by which the body lowers the surface by α x.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tilt {
+    /// The angle is given \[rad\].
+    Fixed(f64),
+    /// The body turns freely until the pressure acts at this coordinate.
+    Free {
+        /// Coordinate along the axis \[m\].
+        at: f64,
+    },
+}
+
+const UPRIGHT: [Tilt; 2] = [Tilt::Fixed(0.0); 2];
+
 impl Load {
-    /// A normal force \[N\] that cannot tilt the bodies; 0 lets go.
+    /// A normal force \[N\] that cannot tilt the body; 0 lets go.
     pub fn force(normal: f64) -> Load {
-        Load::Force { normal }
+        Load::Force { normal, tilt: UPRIGHT }
+    }
+
+    /// A normal force \[N\] that acts at the point `at` \[m\]: the body tilts freely until the pressure does too.
+    pub fn eccentric_force(normal: f64, at: [f64; 2]) -> Load {
+        Load::Force { normal, tilt: at.map(|at| Tilt::Free { at }) }
+    }
+
+    /// A normal force \[N\] on a body held at given tilts \[rad\].
+    pub fn force_and_tilt(normal: f64, tilt: [f64; 2]) -> Load {
+        Load::Force { normal, tilt: tilt.map(Tilt::Fixed) }
+    }
+
+    /// An approach \[m\] without tilt.
+    pub fn approach(approach: f64) -> Load {
+        Load::Approach { approach, tilt: UPRIGHT }
+    }
+
+    /// An approach of the origin \[m\] and tilts \[rad\].
+    pub fn approach_and_tilt(approach: f64, tilt: [f64; 2]) -> Load {
+        Load::Approach { approach, tilt: tilt.map(Tilt::Fixed) }
+    }
+
+    /// Tilt along x1 and along x2.
+    pub fn tilt(&self) -> [Tilt; 2] {
+        match *self {
+            Load::Force { tilt, .. } | Load::Approach { tilt, .. } => tilt,
+        }
     }
 
     /// Accepts loads that a step can be given.
     pub(crate) fn validate(&self) -> Result<()> {
         match *self {
-            Load::Force { normal } => non_negative("normal force", normal).map(|_| ()),
+            Load::Force { normal, .. } => non_negative("normal force", normal)?,
+            Load::Approach { approach, .. } => finite("approach", approach)?,
+        };
+        for (tilt, [angle, point]) in self
+            .tilt()
+            .into_iter()
+            .zip([["tilt along x1", "load point along x1"], ["tilt along x2", "load point along x2"]])
+        {
+            match tilt {
+                Tilt::Fixed(value) => finite(angle, value)?,
+                Tilt::Free { at } => finite(point, at)?,
+            };
         }
+        Ok(())
+    }
+
+    /// What is given and what is free, in words.
+    fn kind(&self) -> &'static str {
+        let free = self.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
+        match (self, free) {
+            (Load::Force { .. }, [false, false]) => "a force, tilts given",
+            (Load::Force { .. }, [true, false]) => "a force, tilt along x1 free",
+            (Load::Force { .. }, [false, true]) => "a force, tilt along x2 free",
+            (Load::Force { .. }, [true, true]) => "a force, tilts free",
+            (Load::Approach { .. }, [false, false]) => "an approach, tilts given",
+            (Load::Approach { .. }, [true, false]) => "an approach, tilt along x1 free",
+            (Load::Approach { .. }, [false, true]) => "an approach, tilt along x2 free",
+            (Load::Approach { .. }, [true, true]) => "an approach, tilts free",
+        }
+    }
+
+    /// Accepts loads that can be interpolated: of one kind, and each one that a step accepts.
+    pub(crate) fn validate_all(field: &'static str, loads: impl IntoIterator<Item = Load>) -> Result<()> {
+        let mut kind = None;
+        for load in loads {
+            load.validate()?;
+            let first = *kind.get_or_insert(load.kind());
+            if load.kind() != first {
+                return Err(Error::MixedLoads { field, first, second: load.kind() });
+            }
+        }
+        Ok(())
     }
 
     /// The load a fraction `s` of the way from `self` to `to`, which is of the same kind.
     pub(crate) fn towards(&self, to: &Load, s: f64) -> Load {
         let mix = |a: f64, b: f64| if s == 1.0 { b } else { a + s * (b - a) };
+        let mix_tilt = |a: Tilt, b: Tilt| match (a, b) {
+            (Tilt::Fixed(a), Tilt::Fixed(b)) => Tilt::Fixed(mix(a, b)),
+            (Tilt::Free { at: a }, Tilt::Free { at: b }) => Tilt::Free { at: mix(a, b) },
+            _ => b,
+        };
+        let tilt = [0, 1].map(|axis| mix_tilt(self.tilt()[axis], to.tilt()[axis]));
         match (*self, *to) {
-            (Load::Force { normal: a }, Load::Force { normal: b }) => Load::Force { normal: mix(a, b) },
+            (Load::Force { normal: a, .. }, Load::Force { normal: b, .. }) => Load::Force { normal: mix(a, b), tilt },
+            (Load::Approach { approach: a, .. }, Load::Approach { approach: b, .. }) => {
+                Load::Approach { approach: mix(a, b), tilt }
+            }
+            _ => *to,
         }
     }
 }

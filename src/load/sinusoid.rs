@@ -19,8 +19,7 @@ impl Sinusoid {
     /// If the frequency is not finite and positive, a load is one no step accepts, or the loads are of
     /// different kinds.
     pub fn new(low: Load, high: Load, frequency: f64) -> Result<Sinusoid> {
-        low.validate()?;
-        high.validate()?;
+        Load::validate_all("sinusoid", [low, high])?;
         Ok(Sinusoid { low, high, frequency: positive("frequency", frequency)? })
     }
 }

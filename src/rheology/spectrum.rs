@@ -1,6 +1,7 @@
 //! Exponential series of creep and relaxation, and the exact passage from one to the other.
 
-use crate::error::{Error, Result, least_length, non_negative, positive};
+use crate::error::{Result, least_length, positive, within};
+use crate::rheology::Rheology;
 use crate::rheology::interconversion::{Series, reciprocal};
 
 /// A creep compliance as an exponential series,
@@ -46,11 +47,11 @@ impl CreepSpectrum {
     /// \[1/Pa\], retardation time \[s\]) in any order; equal times are merged, zero terms dropped.
     ///
     /// # Errors
-    /// If a compliance or the fluidity is negative or not finite, a time is not finite and positive,
-    /// or everything is zero (a rigid body).
+    /// If a compliance or the fluidity is neither 0 nor in \[1e-100, 1e100\], a time is not in that range, or
+    /// everything is zero (a rigid body).
     pub fn new(glassy: f64, fluidity: f64, terms: &[(f64, f64)]) -> Result<CreepSpectrum> {
-        non_negative("glassy compliance", glassy)?;
-        non_negative("fluidity", fluidity)?;
+        magnitude("glassy compliance", glassy)?;
+        magnitude("fluidity", fluidity)?;
         let terms = sorted_terms(["retarded compliance", "retardation time"], terms)?;
         if glassy == 0.0 && fluidity == 0.0 {
             least_length("creep spectrum", terms.len(), 1)?;
@@ -111,11 +112,11 @@ impl RelaxationSpectrum {
     /// times are merged, zero terms dropped.
     ///
     /// # Errors
-    /// If a modulus or the viscosity is negative or not finite, a time is not finite and positive, or
+    /// If a modulus or the viscosity is neither 0 nor in \[1e-100, 1e100\], a time is not in that range, or
     /// everything is zero (no body).
     pub fn new(equilibrium: f64, viscosity: f64, terms: &[(f64, f64)]) -> Result<RelaxationSpectrum> {
-        non_negative("equilibrium modulus", equilibrium)?;
-        non_negative("immediate viscosity", viscosity)?;
+        magnitude("equilibrium modulus", equilibrium)?;
+        magnitude("immediate viscosity", viscosity)?;
         let terms = sorted_terms(["relaxing modulus", "relaxation time"], terms)?;
         if equilibrium == 0.0 && viscosity == 0.0 {
             least_length("relaxation spectrum", terms.len(), 1)?;
@@ -153,15 +154,21 @@ impl RelaxationSpectrum {
     }
 }
 
+/// Coefficients and times of a series lie in this range, so that their reciprocals and products are numbers.
+const LEAST: f64 = 1e-100;
+const MOST: f64 = 1e100;
+
+/// Accepts coefficients of a series.
+fn magnitude(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, value == 0.0 || (LEAST..=MOST).contains(&value), "0, or in [1e-100, 1e100]")
+}
+
 /// Checks (strength, time) pairs, sorts them by time, merges equal times, drops zero strengths.
 fn sorted_terms([strength_name, time_name]: [&'static str; 2], terms: &[(f64, f64)]) -> Result<Vec<(f64, f64)>> {
     let mut sorted = Vec::with_capacity(terms.len());
     for &(strength, time) in terms {
-        non_negative(strength_name, strength)?;
-        positive(time_name, time)?;
-        if !(1.0 / time).is_finite() {
-            return Err(Error::OutOfRange { field: time_name, value: time, allowed: "at least 1e-308 s" });
-        }
+        magnitude(strength_name, strength)?;
+        within(time_name, time, (LEAST..=MOST).contains(&time), "in [1e-100, 1e100]")?;
         if strength > 0.0 {
             sorted.push((strength, time));
         }
@@ -175,4 +182,14 @@ fn sorted_terms([strength_name, time_name]: [&'static str; 2], terms: &[(f64, f6
         equal
     });
     Ok(sorted)
+}
+
+impl Rheology for CreepSpectrum {
+    fn creep_compliance(&self, t: f64) -> f64 {
+        self.compliance(t)
+    }
+
+    fn creep_spectrum(&self) -> Option<CreepSpectrum> {
+        Some(self.clone())
+    }
 }

@@ -1,11 +1,11 @@
 //! The default solver: an active set of cells in contact, and preconditioned conjugate gradients on it.
 //!
-//! On the set A of cells in contact the problem is linear: r = −(c v + gap − ω) = 0 with ω the mean
-//! that leaves r without one, and Σ p fixed. One iteration is
+//! On the set A of cells in contact the problem is linear: r = −(c v + gap − motion) = 0, with the free
+//! motion of each body fitted by least squares, and force and moments fixed. One iteration is
 //!
 //! z = P M P r,  d = z + β d,  p += a d,  v += a K d
 //!
-//! with M ≈ K⁻¹ ([`Preconditioner`]), P the restriction to A less the mean, β from conjugacy
+//! with M ≈ K⁻¹ ([`Preconditioner`]), P the restriction to A less the free motions, β from conjugacy
 //! z·Kd + β d·Kd = 0 (which stays exact when cells join A) and a the exact minimum along d.
 //!
 //! An iteration costs one convolution, whatever happens to A:
@@ -17,8 +17,9 @@
 //!   Its length is then 1, and the length a of the rest is taken from the last line search; c a hardly
 //!   varies, because M ≈ K⁻¹. The response of the other cells to δ is M δ/m, m the diagonal of M (by
 //!   block inversion −K_AA⁻¹ K_AN = M_AN M_NN⁻¹), and rides on the same application of M.
-//! * Less pressure on A is less force; scaling p and v together restores it. In the same way a guess
-//!   extrapolated from earlier steps brings its own v along.
+//! * Less pressure on A is less force; scaling p and v together restores it. With moments to balance, or
+//!   several bodies, the factor 1 + B y differs from cell to cell, and joins the next direction too.
+//! * A guess extrapolated from earlier steps brings its own v along.
 //!
 //! Measured on a creeping Maxwell sphere (256², 100 steps, convolution equivalents a step, residual
 //! 1e-6 / 1e-4): 8.9 / 5.2 when cells leave and join at once, 7.6 / 4.1 with JOIN, 6.8 / 3.6 with EVICT
@@ -26,27 +27,33 @@
 
 use crate::Grid;
 use crate::kernel::Workspace;
-use crate::solver::cold_start::cold_start;
+use crate::solver::cold_start::{cold_start, press_everywhere};
 use crate::solver::preconditioner::Preconditioner;
-use crate::solver::problem::{Problem, Solution, Stop, relative_residual};
+use crate::solver::problem::{Measure, PENETRATION_SLACK, Patch, Problem, Solution, Stop, relative_residual};
+use crate::solver::projected_gradient::ProjectedGradient;
+use crate::solver::rigid::Motion;
 
 /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
-/// slack that [`relative_residual`] grants to penetration, or a state could neither improve nor pass.
-const JOIN: f64 = 6.0;
+/// slack that the residual grants to penetration, or a state could neither improve nor pass.
+const JOIN: f64 = 0.6 * PENETRATION_SLACK;
 
 /// Cells leave A when rms (c p⁻/m), the gap that their negative pressure is worth, exceeds this
 /// fraction of rms |r|.
 const EVICT: f64 = 0.3;
 
+/// c a before the first line search of a solve; with M ≈ K⁻¹ it is always near this.
+const USUAL_LENGTH: f64 = 0.7;
+
+/// Iterations without a new lowest residual after which the fall-back takes over for a while.
+const PATIENCE: usize = 40;
+
 #[derive(Debug, Clone)]
 pub(crate) struct ActiveSet {
     preconditioner: Preconditioner,
+    fallback: ProjectedGradient,
     /// Whether a cell is in A.
     member: Vec<bool>,
-    /// The cells of A, ascending.
-    cells: Vec<u32>,
-    /// Cells outside A whose pressure the next direction brings to zero.
-    leaving: Vec<u32>,
+    bodies: Vec<ActiveBody>,
     /// r on A.
     residual: Vec<f64>,
     preconditioned: Vec<f64>,
@@ -56,57 +63,64 @@ pub(crate) struct ActiveSet {
     length: f64,
 }
 
-/// Sums over A that tell how good a state is.
-#[derive(Debug, Clone, Copy)]
-struct Measure {
-    /// Σ r².
-    square: f64,
-    /// Σ (c v)².
-    displacement: f64,
-    /// Σ of the squares of negative pressures.
-    negative: f64,
-    cells: usize,
-}
-
-impl Measure {
-    /// rms |r|.
-    fn rms(&self) -> f64 {
-        (self.square / self.cells as f64).sqrt()
-    }
+/// The part of the active set under one body.
+#[derive(Debug, Clone)]
+struct ActiveBody {
+    patch: Patch,
+    /// Cells outside A whose pressure the next direction brings to zero.
+    leaving: Vec<u32>,
+    /// The y of the factor 1 + B y by which the next direction balances the pressure.
+    correction: Option<Motion>,
 }
 
 impl ActiveSet {
-    pub(crate) fn new(grid: &Grid) -> ActiveSet {
+    pub(crate) fn new(grid: &Grid, bodies: usize) -> ActiveSet {
         let field = vec![0.0; grid.len()];
+        let cells = || Vec::with_capacity(grid.len());
+        let body =
+            |_| ActiveBody { patch: Patch { cells: cells(), ..Patch::default() }, leaving: cells(), correction: None };
         ActiveSet {
             preconditioner: Preconditioner::new(grid),
+            fallback: ProjectedGradient::default(),
             member: vec![false; grid.len()],
-            cells: Vec::with_capacity(grid.len()),
-            leaving: Vec::with_capacity(grid.len()),
+            bodies: (0..bodies).map(body).collect(),
             residual: field.clone(),
             preconditioned: field.clone(),
             direction: field.clone(),
             image: field,
-            length: 1.0,
+            length: USUAL_LENGTH,
         }
     }
 
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent. On
-    /// entry `solution.potential` is K p of the guess, whose pressure may be negative on some cells;
-    /// a guess without any positive pressure is replaced by a cold start.
+    /// entry `solution.potential` is K p of the guess, whose pressure may be negative on some cells; a body
+    /// without any positive pressure gets a cold start.
     pub(crate) fn solve(&mut self, problem: &Problem<'_>, stop: Stop, solution: &mut Solution, work: &mut Workspace) {
+        // nothing of an earlier solve, perhaps of a step that failed, may reach this one
+        self.length = USUAL_LENGTH;
+        self.fallback.reset();
         self.start(problem, solution, work);
+        let (mut lowest, mut since) = (f64::INFINITY, 0);
         loop {
             let mut state = self.measure(problem, solution);
             if state.negative > 0.0 && self.should_evict(problem, stop, state) {
-                self.evict(problem, solution);
+                self.evict(problem, solution, work);
                 state = self.measure(problem, solution);
             }
-            let penetration = self.penetration(problem, solution);
-            solution.residual = relative_residual(state.square, penetration, state.displacement, state.cells);
-            let admissible = self.leaving.is_empty() && state.negative == 0.0;
-            if admissible && solution.residual <= stop.tolerance || solution.counts.iterations >= stop.max_iterations {
+            let penetration = problem.penetration(solution, |k| !self.member[k]);
+            solution.residual = relative_residual(&state, penetration);
+            let admissible = !self.pending() && state.negative == 0.0;
+            let solved = admissible && solution.residual <= stop.tolerance;
+            if solved || solution.counts.iterations >= stop.max_iterations || solution.residual.is_nan() {
                 return;
+            }
+            since = if solution.residual < lowest { 0 } else { since + 1 };
+            lowest = lowest.min(solution.residual);
+            if since > PATIENCE {
+                self.fallback.improve(problem, stop, solution, work);
+                self.start(problem, solution, work);
+                since = 0;
+                continue;
             }
             if penetration > JOIN * state.rms() {
                 self.join(problem, solution);
@@ -114,93 +128,115 @@ impl ActiveSet {
             }
 
             solution.counts.iterations += 1;
-            self.find_direction(problem.compliance, solution);
+            self.find_direction(problem, solution);
             problem.kernel.apply(&self.direction, &mut self.image, work);
             solution.counts.convolutions += 1;
-            self.advance(problem.compliance, solution);
+            self.advance(problem, solution);
         }
     }
 
-    /// A = {p > 0}; other cells that carry pressure are to leave; Σ p over A is the total.
+    /// A = {p > 0}; other cells that carry pressure are to leave; the pressure on A is in balance.
     fn start(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) {
         self.direction.fill(0.0);
         self.image.fill(0.0);
-        let possible = |(&p, gap): (&f64, &f64)| p > 0.0 && gap.is_finite();
-        if !solution.pressure.iter().zip(problem.gap).any(possible) {
-            cold_start(problem, solution);
+        for (k, member) in self.member.iter_mut().enumerate() {
+            *member = solution.pressure[k] > 0.0 && problem.possible(k);
+        }
+        self.list_cells(problem);
+        let mut fresh = false;
+        for (body, active) in self.bodies.iter_mut().enumerate() {
+            if active.patch.cells.is_empty() && !problem.released(body) {
+                cold_start(problem, body, &mut active.patch, solution);
+                active.patch.cells.retain(|&k| solution.pressure[k as usize] > 0.0);
+                active.patch.cells.iter().for_each(|&k| self.member[k as usize] = true);
+                active.patch.gram = problem.modes(body).gram(&active.patch.cells);
+                fresh |= !active.patch.cells.is_empty();
+            }
+        }
+        if fresh {
             solution.convolve(problem, work);
         }
-        let cells = solution.pressure.iter().zip(problem.gap);
-        self.member.iter_mut().zip(cells).for_each(|(member, cell)| *member = possible(cell));
-        self.collect_cells();
-        self.leaving.clear();
-        let outside = solution.pressure.iter().zip(&self.member).enumerate();
-        self.leaving.extend(outside.filter(|(_, (p, member))| **p != 0.0 && !**member).map(|(k, _)| k as u32));
-        self.restore_total(problem, solution);
+        self.bodies.iter_mut().for_each(|active| active.leaving.clear());
+        for (k, _) in solution.pressure.iter().enumerate().filter(|(_, p)| **p != 0.0) {
+            if !self.member[k] {
+                self.bodies[problem.owner(k)].leaving.push(k as u32);
+            }
+        }
+        self.balance(problem, solution, work);
+    }
+
+    /// Whether the next direction has pressures to bring to zero or into balance.
+    fn pending(&self) -> bool {
+        self.bodies.iter().any(|active| !active.leaving.is_empty() || active.correction.is_some())
     }
 
     /// Lists the members of A.
-    fn collect_cells(&mut self) {
-        self.cells.clear();
-        self.cells.extend(self.member.iter().enumerate().filter(|(_, member)| **member).map(|(k, _)| k as u32));
-    }
-
-    /// Scales p and v so that the pressure on A carries the force.
-    fn restore_total(&self, problem: &Problem<'_>, solution: &mut Solution) {
-        let sum: f64 = self.cells.iter().map(|&k| solution.pressure[k as usize]).sum();
-        let scale = problem.total / sum;
-        if scale != 1.0 {
-            solution.pressure.iter_mut().for_each(|p| *p *= scale);
-            solution.potential.iter_mut().for_each(|v| *v *= scale);
+    fn list_cells(&mut self, problem: &Problem<'_>) {
+        self.bodies.iter_mut().for_each(|active| active.patch.cells.clear());
+        for (k, _) in self.member.iter().enumerate().filter(|(_, member)| **member) {
+            self.bodies[problem.owner(k)].patch.cells.push(k as u32);
+        }
+        for (body, active) in self.bodies.iter_mut().enumerate() {
+            active.patch.gram = problem.modes(body).gram(&active.patch.cells);
         }
     }
 
-    /// Sets r and ω and takes the sums over A.
+    /// Sees to it that the pressure on A carries the force and moments of each body: at once, scaling p and
+    /// v, where the force of a single body is all there is; else by the next direction.
+    fn balance(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) {
+        let single = self.bodies.len() == 1;
+        for body in 0..self.bodies.len() {
+            let (active, modes) = (&mut self.bodies[body], problem.modes(body));
+            active.correction = None;
+            if problem.released(body) || !(modes.translates() || modes.tilts()) {
+                continue;
+            }
+            if single && !modes.tilts() {
+                let sum: f64 = active.patch.cells.iter().map(|&k| solution.pressure[k as usize]).sum();
+                let scale = problem.bodies[body].total / sum;
+                if scale != 1.0 {
+                    solution.pressure.iter_mut().for_each(|p| *p *= scale);
+                    solution.potential.iter_mut().for_each(|v| *v *= scale);
+                }
+                continue;
+            }
+            let p = |k: usize| solution.pressure[k].max(0.0);
+            match modes.balance(&active.patch.cells, p, p) {
+                Some(y) => {
+                    let negligible = y.iter().all(|y| y.abs() < 1e-14);
+                    active.correction = (!negligible).then_some(y);
+                }
+                None => {
+                    // the load acts outside the hull of what is left of A: begin again under this body
+                    press_everywhere(problem, body, &mut active.patch, solution);
+                    active.patch.cells.retain(|&k| solution.pressure[k as usize] > 0.0);
+                    active.leaving.clear();
+                    for k in (0..self.member.len()).filter(|&k| problem.owner(k) == body) {
+                        self.member[k] = solution.pressure[k] > 0.0;
+                    }
+                    active.patch.gram = modes.gram(&active.patch.cells);
+                    solution.convolve(problem, work);
+                }
+            }
+        }
+    }
+
+    /// Sets r and the free motions and takes the sums over A.
     fn measure(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> Measure {
-        let c = problem.compliance;
-        // the mean is taken of what exceeds the first cell's gap: a plain sum of many nearly equal
-        // numbers would round by more than the tolerance
-        let pivot = self.cells.first().map_or(0.0, |&k| c * solution.potential[k as usize] + problem.gap[k as usize]);
-        let (mut sum, mut displacement, mut negative) = (0.0, 0.0, 0.0);
-        for &k in &self.cells {
-            let k = k as usize;
-            let u = c * solution.potential[k];
-            let h = u + problem.gap[k] - pivot;
-            self.residual[k] = -h;
-            sum += h;
-            displacement += u * u;
-            negative += solution.pressure[k].min(0.0).powi(2);
+        let mut state = Measure::default();
+        for (body, active) in self.bodies.iter().enumerate() {
+            problem.measure(body, &active.patch, solution, &mut self.residual, &mut state);
         }
-        let cells = self.cells.len();
-        let mean = sum / cells as f64;
-        solution.approach = pivot + mean;
-        let mut square = 0.0;
-        for &k in &self.cells {
-            let r = &mut self.residual[k as usize];
-            *r += mean;
-            square += *r * *r;
-        }
-        Measure { square, displacement, negative, cells }
-    }
-
-    /// How deep cell `k` penetrates (negative: its gap).
-    fn depth(problem: &Problem<'_>, solution: &Solution, k: usize) -> f64 {
-        solution.approach - (problem.compliance * solution.potential[k] + problem.gap[k])
-    }
-
-    /// The deepest penetration outside A, 0 if there is none.
-    fn penetration(&self, problem: &Problem<'_>, solution: &Solution) -> f64 {
-        let outside = (0..self.member.len()).filter(|&k| !self.member[k]);
-        outside.map(|k| Self::depth(problem, solution, k)).fold(0.0, f64::max)
+        state
     }
 
     /// Takes every penetrating cell into A, but for those that are about to leave: they would bring a
     /// negative pressure with them, and change the force.
     fn join(&mut self, problem: &Problem<'_>, solution: &Solution) {
         for k in 0..self.member.len() {
-            self.member[k] |= solution.pressure[k] == 0.0 && Self::depth(problem, solution, k) > 0.0;
+            self.member[k] |= solution.pressure[k] == 0.0 && problem.possible(k) && problem.depth(solution, k) > 0.0;
         }
-        self.collect_cells();
+        self.list_cells(problem);
     }
 
     /// Whether negative pressures are the larger part of the error, or all that is left of it.
@@ -211,84 +247,88 @@ impl ActiveSet {
     }
 
     /// Takes cells with negative pressure out of A.
-    fn evict(&mut self, problem: &Problem<'_>, solution: &mut Solution) {
-        for &k in &self.cells {
-            if solution.pressure[k as usize] < 0.0 {
+    fn evict(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) {
+        for active in &mut self.bodies {
+            for &k in active.patch.cells.iter().filter(|&&k| solution.pressure[k as usize] < 0.0) {
                 self.member[k as usize] = false;
-                self.leaving.push(k);
+                active.leaving.push(k);
             }
         }
-        self.collect_cells();
-        self.restore_total(problem, solution);
+        self.list_cells(problem);
+        self.balance(problem, solution, work);
     }
 
-    /// d ← z + β d without mean on A; with cells to bring to zero, d is the whole change of p.
-    fn find_direction(&mut self, c: f64, solution: &mut Solution) {
-        let length = self.length / c;
-        self.preconditioned.fill(0.0);
-        for &k in &self.cells {
-            self.preconditioned[k as usize] = self.residual[k as usize];
+    /// d ← z + β d without free motion on A; with pressures to bring to zero or into balance, d is the
+    /// whole change of p.
+    fn find_direction(&mut self, problem: &Problem<'_>, solution: &mut Solution) {
+        let (length, pending) = (self.length / problem.compliance, self.pending());
+        let z = &mut self.preconditioned;
+        z.fill(0.0);
+        for active in &self.bodies {
+            active.patch.cells.iter().for_each(|&k| z[k as usize] = self.residual[k as usize]);
+            for &k in &active.leaving {
+                z[k as usize] = -solution.pressure[k as usize] / (length * self.preconditioner.diagonal());
+            }
         }
-        for &k in &self.leaving {
-            let delta = -solution.pressure[k as usize];
-            self.preconditioned[k as usize] = delta / (length * self.preconditioner.diagonal());
-        }
-        self.preconditioner.apply(&mut self.preconditioned);
+        self.preconditioner.apply(z);
         solution.counts.preconditioner_applications += 1;
 
-        let z = &mut self.preconditioned;
-        remove_mean(z, &self.cells);
-        let overlap: f64 = self.cells.iter().map(|&k| z[k as usize] * self.image[k as usize]).sum();
+        let mut overlap = 0.0;
+        for (body, Patch { cells, gram }) in self.bodies.iter().map(|active| &active.patch).enumerate() {
+            problem.modes(body).project_out(gram, cells, z);
+            overlap += cells.iter().map(|&k| z[k as usize] * self.image[k as usize]).sum::<f64>();
+        }
         let energy: f64 = self.direction.iter().zip(&self.image).map(|(d, kd)| d * kd).sum();
-        if energy > 0.0 {
-            let beta = -overlap / energy;
-            self.cells.iter().for_each(|&k| z[k as usize] += beta * self.direction[k as usize]);
-            remove_mean(z, &self.cells);
+        let beta = if energy > 0.0 { -overlap / energy } else { 0.0 };
+        for (body, Patch { cells, gram }) in self.bodies.iter().map(|active| &active.patch).enumerate() {
+            if beta != 0.0 {
+                cells.iter().for_each(|&k| z[k as usize] += beta * self.direction[k as usize]);
+                problem.modes(body).project_out(gram, cells, z);
+            }
         }
-        let scale = if self.leaving.is_empty() { 1.0 } else { length };
+
         self.direction.fill(0.0);
-        for &k in &self.cells {
-            self.direction[k as usize] = scale * z[k as usize];
-        }
-        for &k in &self.leaving {
-            self.direction[k as usize] = -solution.pressure[k as usize];
+        let scale = if pending { length } else { 1.0 };
+        for (body, active) in self.bodies.iter().enumerate() {
+            active.patch.cells.iter().for_each(|&k| self.direction[k as usize] = scale * z[k as usize]);
+            active.leaving.iter().for_each(|&k| self.direction[k as usize] = -solution.pressure[k as usize]);
+            if let Some(y) = active.correction {
+                let modes = problem.modes(body);
+                for &k in &active.patch.cells {
+                    let p = solution.pressure[k as usize].max(0.0);
+                    self.direction[k as usize] += modes.balanced(y, k as usize, p, p) - p;
+                }
+            }
         }
     }
 
     /// p += a d, v += a K d.
-    fn advance(&mut self, c: f64, solution: &mut Solution) {
+    fn advance(&mut self, problem: &Problem<'_>, solution: &mut Solution) {
         let mut a = 1.0;
-        if self.leaving.is_empty() {
+        if !self.pending() {
             let (mut slope, mut curvature) = (0.0, 0.0);
-            for &k in &self.cells {
-                let k = k as usize;
+            for k in self.bodies.iter().flat_map(|active| &active.patch.cells).map(|&k| k as usize) {
                 slope += self.residual[k] * self.direction[k];
                 curvature += self.direction[k] * self.image[k];
             }
             // nothing is left to gain along a direction that vanishes, as on a single cell
             if slope > 0.0 && curvature > 0.0 {
                 self.length = slope / curvature;
-                a = self.length / c;
+                a = self.length / problem.compliance;
             } else {
                 a = 0.0;
             }
         }
-        for &k in &self.cells {
-            let k = k as usize;
-            solution.pressure[k] += a * self.direction[k];
+        for active in &mut self.bodies {
+            for k in active.patch.cells.iter().map(|&k| k as usize) {
+                solution.pressure[k] += a * self.direction[k];
+            }
+            active.leaving.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
+            active.leaving.clear();
+            active.correction = None;
         }
-        for &k in &self.leaving {
-            solution.pressure[k as usize] = 0.0;
-        }
-        self.leaving.clear();
         for (v, &kd) in solution.potential.iter_mut().zip(&self.image) {
             *v += a * kd;
         }
     }
-}
-
-/// Subtracts from `field` its mean over `cells`, there.
-fn remove_mean(field: &mut [f64], cells: &[u32]) {
-    let mean = cells.iter().map(|&k| field[k as usize]).sum::<f64>() / cells.len() as f64;
-    cells.iter().for_each(|&k| field[k as usize] -= mean);
 }

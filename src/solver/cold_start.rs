@@ -1,58 +1,101 @@
-//! A first guess of the pressure when there is none to go by.
+//! A first guess of the pressure under a body when there is none to go by.
 
 use std::f64::consts::PI;
 
-use crate::solver::{Problem, Solution};
+use crate::solver::problem::{Patch, Problem, Solution};
 
 /// Bisections for the level, far beyond the accuracy that a guess needs.
 const HALVINGS: usize = 40;
 
-/// Fills `solution.pressure` with p ∝ √(level − gap) where the gap is below a level, summing to the
-/// total of the problem: Hertz's shape for a paraboloid, uniform on a flat face.
+/// Fills the pressure under `body` with p ∝ √(level − gap) where the gap is below a level: Hertz's shape
+/// for a paraboloid, uniform on a flat face. Force and moments are brought into balance; `patch` is
+/// used for the list of cells.
 ///
-/// On a contact of m cells of area A, Hertz's a³ = (3/4) R c W says that the gap rises by
-/// a²/2R = (3√π/8) c W/√(m A) from its lowest point to its edge. This is taken for every geometry; the
-/// level that it balances at is found by bisection.
-pub(crate) fn cold_start(problem: &Problem<'_>, solution: &mut Solution) {
-    let gap = problem.gap;
-    let finite = || gap.iter().copied().filter(|h| h.is_finite());
-    let lowest = finite().fold(f64::INFINITY, f64::min);
-    let highest = finite().fold(f64::NEG_INFINITY, f64::max);
+/// Under a force, the level is where the gap has risen by Hertz's a²/2R = (3√π/8) c W/√(m A) on m cells of
+/// area A, from a³ = (3/4) R c W. At a given approach δ below the first touch it is half of that,
+/// a²/2R = δ/2, and the peak pressure is (2/π) δ/(c a).
+pub(crate) fn cold_start(problem: &Problem<'_>, body: usize, patch: &mut Patch, solution: &mut Solution) {
+    let (gap, freedom) = (problem.gap, problem.bodies[body]);
+    list_possible(problem, body, patch);
+    for &k in &patch.cells {
+        solution.pressure[k as usize] = 0.0;
+    }
+    let heights = || patch.cells.iter().map(|&k| gap[k as usize]);
+    let lowest = heights().fold(f64::INFINITY, f64::min);
+    let highest = heights().fold(f64::NEG_INFINITY, f64::max);
     let area = problem.kernel.grid().cell_area();
-    let rise = |level: f64| {
-        let cells = gap.iter().filter(|&&h| h <= level).count();
-        0.375 * PI.sqrt() * problem.compliance * problem.total * (area / cells as f64).sqrt()
-    };
+    let cells_below = |level: f64| heights().filter(|&h| h <= level).count() as f64;
 
-    // the rise falls with the level: the balance is unique, and above the highest gap if the load
-    // presses the whole face
-    let mut level = highest;
-    if level - lowest < rise(level) {
-        level = lowest + rise(level);
-    } else {
-        let mut low = lowest;
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + level);
-            if middle - lowest < rise(middle) {
-                low = middle;
-            } else {
-                level = middle;
+    let (level, peak) = if freedom.translation {
+        let rise =
+            |level: f64| 0.375 * PI.sqrt() * problem.compliance * freedom.total * (area / cells_below(level)).sqrt();
+        // the rise falls with the level: the balance is unique, and above the highest gap if the load
+        // presses the whole face
+        let mut level = highest;
+        if level - lowest < rise(level) {
+            level = lowest + rise(level);
+        } else {
+            let mut low = lowest;
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + level);
+                if middle - lowest < rise(middle) { low = middle } else { level = middle }
             }
         }
-    }
+        (level, 1.0)
+    } else if lowest < 0.0 {
+        let level = 0.5 * lowest;
+        let radius = (cells_below(level) * area / PI).sqrt();
+        (level, 2.0 / PI * -lowest / (problem.compliance * radius))
+    } else {
+        return; // the body does not reach the surface
+    };
 
+    let depth = level - lowest;
     let mut sum = 0.0;
-    for (p, &h) in solution.pressure.iter_mut().zip(gap) {
-        *p = (level - h).max(0.0).sqrt();
-        sum += *p;
+    for &k in &patch.cells {
+        let k = k as usize;
+        let above = if depth > 0.0 { ((level - gap[k]) / depth).max(0.0).sqrt() } else { 0.0 };
+        // where the rise is below rounding, the lowest cells are pressed evenly
+        solution.pressure[k] = peak * if depth > 0.0 { above } else { f64::from(u8::from(gap[k] <= lowest)) };
+        sum += solution.pressure[k];
     }
-    if sum == 0.0 {
-        // the rise is below rounding: press the lowest cells evenly
-        for (p, &h) in solution.pressure.iter_mut().zip(gap) {
-            *p = if h <= lowest { 1.0 } else { 0.0 };
-            sum += *p;
-        }
+    if freedom.translation {
+        let scale = freedom.total / sum;
+        patch.cells.iter().for_each(|&k| solution.pressure[k as usize] *= scale);
     }
-    let scale = problem.total / sum;
-    solution.pressure.iter_mut().for_each(|p| *p *= scale);
+    if !balance(problem, body, &patch.cells, solution) {
+        press_everywhere(problem, body, patch, solution);
+    }
+}
+
+/// Presses every cell that the body may touch, evenly but for the moments: the guess of last resort, which
+/// exists whenever the load acts inside the hull of these cells.
+pub(crate) fn press_everywhere(problem: &Problem<'_>, body: usize, patch: &mut Patch, solution: &mut Solution) {
+    list_possible(problem, body, patch);
+    let freedom = problem.bodies[body];
+    let mean = if freedom.translation { freedom.total / patch.cells.len() as f64 } else { 0.0 };
+    patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = mean);
+    balance(problem, body, &patch.cells, solution);
+}
+
+/// Brings pressures ≥ 0 on `cells` into balance with the load by a factor 1 + B y, clipped at zero; false
+/// if that cannot be.
+pub(crate) fn balance(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) -> bool {
+    let modes = problem.modes(body);
+    if !modes.tilts() && !modes.translates() {
+        return true;
+    }
+    let p = |k: usize| solution.pressure[k];
+    let Some(y) = modes.balance(cells, p, p) else { return false };
+    for &k in cells {
+        let p = &mut solution.pressure[k as usize];
+        *p = modes.balanced(y, k as usize, *p, *p);
+    }
+    true
+}
+
+fn list_possible(problem: &Problem<'_>, body: usize, patch: &mut Patch) {
+    patch.cells.clear();
+    let own = (0..problem.gap.len()).filter(|&k| problem.owner(k) == body && problem.gap[k].is_finite());
+    patch.cells.extend(own.map(|k| k as u32));
 }

@@ -5,7 +5,10 @@ mod cold_start;
 mod polonsky_keer;
 mod preconditioner;
 mod problem;
+mod projected_gradient;
+mod rigid;
 
 pub(crate) use active_set::ActiveSet;
 pub(crate) use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::{Counts, Problem, Solution, Stop};
+pub(crate) use rigid::{Freedom, Modes};

@@ -1,17 +1,22 @@
 //! What a step asks of a solver, and what it gets back.
 
 use crate::kernel::{InfluenceKernel, Workspace};
+use crate::solver::rigid::{Freedom, Gram, Modes, Motion};
 
-/// Find p ≥ 0 with h = c K p + gap − ω ≥ 0, p h = 0 and Σ p = `total`.
+/// Find p ≥ 0 and the free motions of the bodies with h = c K p + gap − motion ≥ 0, p h = 0, and the balance
+/// of force and moments that each freedom asks for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Problem<'a> {
     pub(crate) kernel: &'a InfluenceKernel,
     /// The elastic-like compliance c of the step \[1/Pa\].
     pub(crate) compliance: f64,
-    /// Initial gap and history, hi + u_old \[m\]; +∞ where there is nothing to touch.
+    /// Initial gap, history and prescribed motion, hi + u_old − (ω + α·x) \[m\]; +∞ where there is nothing
+    /// to touch.
     pub(crate) gap: &'a [f64],
-    /// The force divided by the area of a cell \[Pa\].
-    pub(crate) total: f64,
+    /// What is free of the motion of each rigid body.
+    pub(crate) bodies: &'a [Freedom],
+    /// The body that each cell belongs to; `None` where there is one.
+    pub(crate) owner: Option<&'a [u16]>,
 }
 
 /// When to stop.
@@ -28,10 +33,10 @@ pub(crate) struct Solution {
     pub(crate) pressure: Vec<f64>,
     /// v = K p \[Pa·m\], kept in step with `pressure`.
     pub(crate) potential: Vec<f64>,
-    /// ω \[m\].
-    pub(crate) approach: f64,
+    /// The free part of the motion of each body.
+    pub(crate) motions: Vec<Motion>,
     pub(crate) counts: Counts,
-    /// The residual on return, see [`Residual`].
+    /// The residual on return, see `relative_residual`.
     pub(crate) residual: f64,
 }
 
@@ -41,39 +46,146 @@ pub(crate) struct Counts {
     pub(crate) iterations: usize,
     pub(crate) convolutions: usize,
     pub(crate) preconditioner_applications: usize,
+    /// Iterations of the fall-back.
+    pub(crate) fallback_iterations: usize,
+}
+
+/// The cells of one body that are in contact, and the moments of its free modes over them.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Patch {
+    pub(crate) cells: Vec<u32>,
+    pub(crate) gram: Gram,
+}
+
+/// Sums over the cells in contact that tell how good a state is.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Measure {
+    /// Σ h².
+    pub(crate) square: f64,
+    /// Σ (c v)².
+    pub(crate) displacement: f64,
+    /// Σ of the squares of negative pressures.
+    pub(crate) negative: f64,
+    /// The greatest |gap|, prior to any pressure.
+    pub(crate) height: f64,
+    pub(crate) cells: usize,
 }
 
 /// Penetration may exceed the root mean square of the residual by this factor, being a maximum.
-const PENETRATION_SLACK: f64 = 10.0;
+pub(crate) const PENETRATION_SLACK: f64 = 10.0;
 
 /// How far a state is from solving its [`Problem`], relative to rms (c v) in contact: the larger of
-/// rms |h| in contact and a tenth of the deepest penetration outside.
-pub(crate) fn relative_residual(square_sum: f64, penetration: f64, displacement_square_sum: f64, cells: usize) -> f64 {
-    let scale = (displacement_square_sum / cells as f64).sqrt();
-    if scale == 0.0 {
-        return if square_sum == 0.0 && penetration <= 0.0 { 0.0 } else { f64::INFINITY };
+/// rms |h| in contact and a tenth of the deepest penetration outside. What the gap itself is rounded by does
+/// not count.
+pub(crate) fn relative_residual(state: &Measure, penetration: f64) -> f64 {
+    let error = state.rms().max(penetration / PENETRATION_SLACK) - 4.0 * f64::EPSILON * state.height;
+    if error <= 0.0 { 0.0 } else { error / (state.displacement / state.cells.max(1) as f64).sqrt() }
+}
+
+impl Measure {
+    /// rms |h| in contact.
+    pub(crate) fn rms(&self) -> f64 {
+        (self.square / self.cells.max(1) as f64).sqrt()
     }
-    let gap = (square_sum / cells as f64).sqrt();
-    gap.max(penetration / PENETRATION_SLACK) / scale
+}
+
+impl<'a> Problem<'a> {
+    pub(crate) fn modes(&self, body: usize) -> Modes<'a> {
+        Modes::new(self.kernel.grid(), self.bodies[body])
+    }
+
+    /// The body that cell `k` belongs to.
+    pub(crate) fn owner(&self, k: usize) -> usize {
+        self.owner.map_or(0, |owner| owner[k].into())
+    }
+
+    /// Whether `body` is pressed by no force: it carries no pressure, and follows the surface.
+    pub(crate) fn released(&self, body: usize) -> bool {
+        self.bodies[body].translation && self.bodies[body].total == 0.0
+    }
+
+    /// Whether no force presses any body.
+    pub(crate) fn all_released(&self) -> bool {
+        (0..self.bodies.len()).all(|body| self.released(body))
+    }
+
+    /// Whether cell `k` may carry pressure.
+    pub(crate) fn possible(&self, k: usize) -> bool {
+        self.gap[k].is_finite() && !self.released(self.owner(k))
+    }
+
+    /// Sets the free motion of `body` to the best fit on its patch, `residual` to −h there, and adds to
+    /// `sums`.
+    pub(crate) fn measure(
+        &self,
+        body: usize,
+        patch: &Patch,
+        solution: &mut Solution,
+        residual: &mut [f64],
+        sums: &mut Measure,
+    ) {
+        let (c, modes) = (self.compliance, self.modes(body));
+        let raw = |k: u32| c * solution.potential[k as usize] + self.gap[k as usize];
+        // the fit is taken of what exceeds the first cell's gap: a plain sum of many nearly equal numbers
+        // would round by more than the tolerance
+        let pivot = if modes.translates() { patch.cells.first().map_or(0.0, |&k| raw(k)) } else { 0.0 };
+        for &k in &patch.cells {
+            residual[k as usize] = pivot - raw(k);
+            sums.displacement += (c * solution.potential[k as usize]).powi(2);
+            sums.height = sums.height.max(self.gap[k as usize].abs());
+            sums.negative += solution.pressure[k as usize].min(0.0).powi(2);
+        }
+        let fit = modes.project_out(&patch.gram, &patch.cells, residual);
+        solution.motions[body] = [pivot - fit[0], -fit[1], -fit[2]];
+        sums.square += patch.cells.iter().map(|&k| residual[k as usize].powi(2)).sum::<f64>();
+        sums.cells += patch.cells.len();
+    }
+
+    /// How deep cell `k` penetrates (negative: its gap).
+    pub(crate) fn depth(&self, solution: &Solution, k: usize) -> f64 {
+        let body = self.owner(k);
+        self.modes(body).displacement(solution.motions[body], k)
+            - (self.compliance * solution.potential[k] + self.gap[k])
+    }
+
+    /// The deepest penetration on cells that may touch and for which `outside` holds, 0 if there is none.
+    pub(crate) fn penetration(&self, solution: &Solution, outside: impl Fn(usize) -> bool) -> f64 {
+        // one body without tilt, the common scene, needs no look-up
+        if self.owner.is_none() && !self.modes(0).tilts() {
+            let motion = solution.motions[0][0];
+            let depth = |k: usize| motion - (self.compliance * solution.potential[k] + self.gap[k]);
+            return (0..self.gap.len()).filter(|&k| outside(k)).map(depth).fold(0.0, f64::max);
+        }
+        let cells = (0..self.gap.len()).filter(|&k| outside(k) && self.possible(k));
+        cells.map(|k| self.depth(solution, k)).fold(0.0, f64::max)
+    }
 }
 
 impl Solution {
-    pub(crate) fn zero(cells: usize) -> Solution {
+    pub(crate) fn zero(cells: usize, bodies: usize) -> Solution {
         Solution {
             pressure: vec![0.0; cells],
             potential: vec![0.0; cells],
-            approach: 0.0,
+            motions: vec![[0.0; 3]; bodies],
             counts: Counts::default(),
             residual: 0.0,
         }
     }
 
-    /// The answer to a vanishing force: no pressure, the bodies just touching.
-    pub(crate) fn release(&mut self, problem: &Problem<'_>) {
+    /// No pressure at all.
+    pub(crate) fn release(&mut self) {
         self.pressure.fill(0.0);
         self.potential.fill(0.0);
-        self.approach = problem.gap.iter().copied().fold(f64::INFINITY, f64::min);
         self.residual = 0.0;
+    }
+
+    /// Lets every released body follow the surface: just touching, and without any tilt of its own.
+    pub(crate) fn follow_surface(&mut self, problem: &Problem<'_>) {
+        for body in (0..problem.bodies.len()).filter(|&body| problem.released(body)) {
+            let own = (0..problem.gap.len()).filter(|&k| problem.owner(k) == body);
+            let heights = own.map(|k| problem.compliance * self.potential[k] + problem.gap[k]);
+            self.motions[body] = [heights.fold(f64::INFINITY, f64::min), 0.0, 0.0];
+        }
     }
 
     /// v ← K p, counted.

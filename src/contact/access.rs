@@ -1,0 +1,137 @@
+//! What a contact shows of its state.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::Grid;
+use crate::contact::report::BodyState;
+use crate::contact::settings::Settings;
+use crate::contact::stepper::ViscoelasticContact;
+use crate::error::{Result, exact_length};
+use crate::kernel::InfluenceKernel;
+use crate::load::Load;
+
+impl ViscoelasticContact {
+    /// Time \[s\], 0 at first.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// The grid of every field.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// The settings it was built with.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// The influence kernel, to share with other contacts.
+    pub fn kernel(&self) -> &Arc<InfluenceKernel> {
+        &self.kernel
+    }
+
+    /// The load of the last step, on the first body.
+    pub fn load(&self) -> Load {
+        self.loads[0]
+    }
+
+    /// Contact pressure \[Pa\], one value a cell, ≥ 0.
+    pub fn pressure(&self) -> &[f64] {
+        &self.current.pressure
+    }
+
+    /// Composite normal surface displacement, positive into the bodies \[m\], one value a cell.
+    pub fn displacement(&self) -> &[f64] {
+        &self.displacement
+    }
+
+    /// Writes the gap between the deformed bodies into `out` \[m\]: zero in contact to within the
+    /// tolerance, +∞ where there is nothing to touch.
+    ///
+    /// # Errors
+    /// If `out` does not hold one value a cell.
+    pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
+        exact_length("gap", out.len(), self.grid.len())?;
+        let n2 = self.grid.cells()[1];
+        for (k, h) in out.iter_mut().enumerate() {
+            let [omega, alpha1, alpha2] = self.motions[self.initial_gap.owner(k)];
+            let [x1, x2] = self.grid.center(k / n2, k % n2);
+            let lowered = (omega - self.initial_gap.datum) + alpha1 * x1 + alpha2 * x2;
+            *h = self.initial_gap.above[k] + self.displacement[k] - lowered;
+        }
+        Ok(())
+    }
+
+    /// Rigid-body approach ω of the (first) body, at the origin of the grid \[m\]. Without load, the approach
+    /// at which it just touches.
+    pub fn approach(&self) -> f64 {
+        self.motions[0][0]
+    }
+
+    /// Tilt (α1, α2) of the (first) body \[rad\]: it lowers the surface by ω + α1 x1 + α2 x2.
+    pub fn tilt(&self) -> [f64; 2] {
+        [self.motions[0][1], self.motions[0][2]]
+    }
+
+    /// Normal force Σ p ΔA on all bodies together \[N\].
+    pub fn force(&self) -> f64 {
+        self.current.pressure.iter().sum::<f64>() * self.grid.cell_area()
+    }
+
+    /// Moments of the whole pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\].
+    pub fn moment(&self) -> [f64; 2] {
+        self.sums(|_| true).1
+    }
+
+    /// Area of the cells in contact \[m²\].
+    pub fn contact_area(&self) -> f64 {
+        self.contact_cells as f64 * self.grid.cell_area()
+    }
+
+    /// Number of cells in contact (p > 0).
+    pub fn contact_cells(&self) -> usize {
+        self.contact_cells
+    }
+
+    /// Number of rigid bodies.
+    pub fn bodies(&self) -> usize {
+        self.loads.len()
+    }
+
+    /// The state of one rigid body, in the order in which the builder was given them; `None` if there are
+    /// not as many.
+    pub fn body(&self, body: usize) -> Option<BodyState> {
+        let [approach, alpha1, alpha2] = *self.motions.get(body)?;
+        let (force, moment, contact_cells) = self.sums(|k| self.initial_gap.owner(k) == body);
+        Some(BodyState { approach, tilt: [alpha1, alpha2], force, moment, contact_cells })
+    }
+
+    /// Force, moments and number of cells in contact over the cells for which `counts` holds.
+    fn sums(&self, counts: impl Fn(usize) -> bool) -> (f64, [f64; 2], usize) {
+        let (n2, area) = (self.grid.cells()[1], self.grid.cell_area());
+        let (mut force, mut moment, mut cells) = (0.0, [0.0; 2], 0);
+        for (k, &p) in self.current.pressure.iter().enumerate().filter(|(k, p)| **p > 0.0 && counts(*k)) {
+            let [x1, x2] = self.grid.center(k / n2, k % n2);
+            force += p;
+            moment[0] += p * x1;
+            moment[1] += p * x2;
+            cells += 1;
+        }
+        (force * area, moment.map(|sum| sum * area), cells)
+    }
+}
+
+impl fmt::Debug for ViscoelasticContact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ViscoelasticContact")
+            .field("grid", &self.grid)
+            .field("settings", &self.settings)
+            .field("time", &self.time)
+            .field("loads", &self.loads)
+            .field("motions", &self.motions)
+            .field("contact_cells", &self.contact_cells)
+            .finish_non_exhaustive()
+    }
+}
