@@ -77,7 +77,9 @@ impl ViscoelasticContact {
 
     /// Normal force Σ p ΔA on all bodies together \[N\].
     pub fn force(&self) -> f64 {
-        self.current.pressure.iter().sum::<f64>() * self.grid.cell_area()
+        // row by row, so that rounding does not grow with the number of cells
+        let rows = self.current.pressure.chunks_exact(self.grid.cells()[1]);
+        rows.map(|row| row.iter().sum::<f64>()).sum::<f64>() * self.grid.cell_area()
     }
 
     /// Moments of the whole pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\].
@@ -112,12 +114,16 @@ impl ViscoelasticContact {
     fn sums(&self, counts: impl Fn(usize) -> bool) -> (f64, [f64; 2], usize) {
         let (n2, area) = (self.grid.cells()[1], self.grid.cell_area());
         let (mut force, mut moment, mut cells) = (0.0, [0.0; 2], 0);
-        for (k, &p) in self.current.pressure.iter().enumerate().filter(|(k, p)| **p > 0.0 && counts(*k)) {
-            let [x1, x2] = self.grid.center(k / n2, k % n2);
-            force += p;
-            moment[0] += p * x1;
-            moment[1] += p * x2;
-            cells += 1;
+        for (i, row) in self.current.pressure.chunks_exact(n2).enumerate() {
+            let (mut row_force, mut row_moment) = (0.0, 0.0);
+            for (j, &p) in row.iter().enumerate().filter(|(j, p)| **p > 0.0 && counts(i * n2 + j)) {
+                row_force += p;
+                row_moment += p * self.grid.coordinate(1, j);
+                cells += 1;
+            }
+            force += row_force;
+            moment[0] += row_force * self.grid.coordinate(0, i);
+            moment[1] += row_moment;
         }
         (force * area, moment.map(|sum| sum * area), cells)
     }

@@ -27,7 +27,7 @@
 
 use crate::Grid;
 use crate::kernel::Workspace;
-use crate::solver::cold_start::{cold_start, press_everywhere};
+use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::preconditioner::Preconditioner;
 use crate::solver::problem::{Measure, PENETRATION_SLACK, Patch, Problem, Solution, Stop, relative_residual};
 use crate::solver::projected_gradient::ProjectedGradient;
@@ -111,7 +111,11 @@ impl ActiveSet {
             solution.residual = relative_residual(&state, penetration);
             let admissible = !self.pending() && state.negative == 0.0;
             let solved = admissible && solution.residual <= stop.tolerance;
-            if solved || solution.counts.iterations >= stop.max_iterations || solution.residual.is_nan() {
+            if solved {
+                return self.close(problem, solution);
+            }
+            if std::env::var("DBG").is_ok() { eprintln!("  it {} res {:.3e} rms {:.3e} pen {:.3e} neg {:.3e} pending {} cells {} len {:.3}", solution.counts.iterations, solution.residual, (state.square/state.displacement).sqrt(), penetration/(state.displacement/state.cells as f64).sqrt(), state.negative, self.pending(), state.cells, self.length); }
+            if solution.counts.iterations >= stop.max_iterations || solution.residual.is_nan() {
                 return;
             }
             since = if solution.residual < lowest { 0 } else { since + 1 };
@@ -146,7 +150,18 @@ impl ActiveSet {
         let mut fresh = false;
         for (body, active) in self.bodies.iter_mut().enumerate() {
             if active.patch.cells.is_empty() && !problem.released(body) {
-                cold_start(problem, body, &mut active.patch, solution);
+                // K⁻¹ of a uniform displacement, but for its scale, is the pressure under a flat punch
+                let sharpen = |cells: &[u32], solution: &mut Solution| {
+                    let shape = &mut self.preconditioned;
+                    shape.fill(0.0);
+                    cells.iter().for_each(|&k| shape[k as usize] = solution.pressure[k as usize]);
+                    self.preconditioner.apply(shape);
+                    solution.counts.preconditioner_applications += 1;
+                    let sum = |field: &[f64]| cells.iter().map(|&k| field[k as usize].max(0.0)).sum::<f64>();
+                    let scale = sum(&solution.pressure) / sum(shape);
+                    cells.iter().for_each(|&k| solution.pressure[k as usize] = scale * shape[k as usize].max(0.0));
+                };
+                cold_start(problem, body, &mut active.patch, solution, sharpen);
                 active.patch.cells.retain(|&k| solution.pressure[k as usize] > 0.0);
                 active.patch.cells.iter().for_each(|&k| self.member[k as usize] = true);
                 active.patch.gram = problem.modes(body).gram(&active.patch.cells);
@@ -218,6 +233,13 @@ impl ActiveSet {
                     solution.convolve(problem, work);
                 }
             }
+        }
+    }
+
+    /// Takes from a converged pressure what rounding has left of force and moments: too little to show in v.
+    fn close(&self, problem: &Problem<'_>, solution: &mut Solution) {
+        for (body, active) in self.bodies.iter().enumerate().filter(|(body, _)| !problem.released(*body)) {
+            balance(problem, body, &active.patch.cells, solution);
         }
     }
 

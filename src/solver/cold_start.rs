@@ -7,20 +7,43 @@ use crate::solver::problem::{Patch, Problem, Solution};
 /// Bisections for the level, far beyond the accuracy that a guess needs.
 const HALVINGS: usize = 40;
 
-/// Fills the pressure under `body` with p ∝ √(level − gap) where the gap is below a level: Hertz's shape
-/// for a paraboloid, uniform on a flat face. Force and moments are brought into balance; `patch` is
-/// used for the list of cells.
+/// Fills the pressure under `body` with a guess whose force and moments are in balance; `patch` lists the
+/// cells that it may touch.
+///
+/// `sharpen` may improve the pressures where the whole face is pressed, as under a punch, whose pressure
+/// rises to its rim. What it makes is taken if no part of the face has to open for the balance.
+pub(crate) fn cold_start(
+    problem: &Problem<'_>,
+    body: usize,
+    patch: &mut Patch,
+    solution: &mut Solution,
+    sharpen: impl FnOnce(&[u32], &mut Solution),
+) {
+    list_possible(problem, body, patch);
+    let pressed = |solution: &Solution| patch.cells.iter().all(|&k| solution.pressure[k as usize] > 0.0);
+    fill_hertz(problem, body, &patch.cells, solution);
+    if pressed(solution) {
+        sharpen(&patch.cells, solution);
+        if balance(problem, body, &patch.cells, solution) && pressed(solution) {
+            return;
+        }
+        fill_hertz(problem, body, &patch.cells, solution);
+    }
+    if !balance(problem, body, &patch.cells, solution) {
+        press_everywhere(problem, body, patch, solution);
+    }
+}
+
+/// Fills the pressure on `cells` with p ∝ √(level − gap) where the gap is below a level: Hertz's shape for a
+/// paraboloid, uniform on a flat face.
 ///
 /// Under a force, the level is where the gap has risen by Hertz's a²/2R = (3√π/8) c W/√(m A) on m cells of
 /// area A, from a³ = (3/4) R c W. At a given approach δ below the first touch it is half of that,
 /// a²/2R = δ/2, and the peak pressure is (2/π) δ/(c a).
-pub(crate) fn cold_start(problem: &Problem<'_>, body: usize, patch: &mut Patch, solution: &mut Solution) {
+fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) {
     let (gap, freedom) = (problem.gap, problem.bodies[body]);
-    list_possible(problem, body, patch);
-    for &k in &patch.cells {
-        solution.pressure[k as usize] = 0.0;
-    }
-    let heights = || patch.cells.iter().map(|&k| gap[k as usize]);
+    cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
+    let heights = || cells.iter().map(|&k| gap[k as usize]);
     let lowest = heights().fold(f64::INFINITY, f64::min);
     let highest = heights().fold(f64::NEG_INFINITY, f64::max);
     let area = problem.kernel.grid().cell_area();
@@ -52,7 +75,7 @@ pub(crate) fn cold_start(problem: &Problem<'_>, body: usize, patch: &mut Patch, 
 
     let depth = level - lowest;
     let mut sum = 0.0;
-    for &k in &patch.cells {
+    for &k in cells {
         let k = k as usize;
         let above = if depth > 0.0 { ((level - gap[k]) / depth).max(0.0).sqrt() } else { 0.0 };
         // where the rise is below rounding, the lowest cells are pressed evenly
@@ -61,10 +84,7 @@ pub(crate) fn cold_start(problem: &Problem<'_>, body: usize, patch: &mut Patch, 
     }
     if freedom.translation {
         let scale = freedom.total / sum;
-        patch.cells.iter().for_each(|&k| solution.pressure[k as usize] *= scale);
-    }
-    if !balance(problem, body, &patch.cells, solution) {
-        press_everywhere(problem, body, patch, solution);
+        cells.iter().for_each(|&k| solution.pressure[k as usize] *= scale);
     }
 }
 

@@ -65,7 +65,7 @@ impl PolonskyKeer {
                 continue;
             }
             if patch.cells.is_empty() || !balance(problem, body, &patch.cells, solution) {
-                cold_start(problem, body, patch, solution);
+                cold_start(problem, body, patch, solution, |_, _| ());
             }
         }
     }

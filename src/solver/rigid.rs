@@ -25,6 +25,9 @@ const DEPENDENT: f64 = 1e-11;
 /// Newton iterations that [`Modes::balance`] may take; it needs one where nothing is clipped.
 const BALANCE_ITERATIONS: usize = 60;
 
+/// Cells summed together before they join the total.
+const BLOCK: usize = 256;
+
 /// The free motions of a body as functions on the grid.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Modes<'a> {
@@ -128,15 +131,19 @@ impl<'a> Modes<'a> {
         let wanted = self.wanted();
         let evaluate = |y: Motion| {
             let (mut gram, mut sums, mut value) = (Gram::default(), wanted.map(|b| -b), -dot(wanted, y));
-            for &k in cells {
-                let k = k as usize;
-                let (modes, w) = (self.at(k), weight(k));
-                let p = base(k) + w * dot(modes, y);
-                if p > 0.0 && w > 0.0 {
-                    gram.add(modes, w);
-                    (0..3).for_each(|m| sums[m] += modes[m] * p);
-                    value += 0.5 * p * p / w;
+            // in blocks, so that rounding does not grow with the number of cells
+            for block in cells.chunks(BLOCK) {
+                let mut part = [0.0; 3];
+                for k in block.iter().map(|&k| k as usize) {
+                    let (modes, w) = (self.at(k), weight(k));
+                    let p = base(k) + w * dot(modes, y);
+                    if p > 0.0 && w > 0.0 {
+                        gram.add(modes, w);
+                        (0..3).for_each(|m| part[m] += modes[m] * p);
+                        value += 0.5 * p * p / w;
+                    }
                 }
+                (0..3).for_each(|m| sums[m] += part[m]);
             }
             (gram, sums, value)
         };
