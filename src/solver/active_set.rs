@@ -59,6 +59,8 @@ pub(crate) struct ActiveSet {
     preconditioned: Vec<f64>,
     direction: Vec<f64>,
     image: Vec<f64>,
+    /// What corrections of the balance are shaped like; made at the first load that tilts.
+    shape: Vec<f64>,
     /// c a of the last line search.
     length: f64,
 }
@@ -69,8 +71,17 @@ struct ActiveBody {
     patch: Patch,
     /// Cells outside A whose pressure the next direction brings to zero.
     leaving: Vec<u32>,
-    /// The y of the factor 1 + B y by which the next direction balances the pressure.
+    /// The y of the change shape · B y by which the next direction balances the pressure.
     correction: Option<Motion>,
+}
+
+/// What a correction of the balance is shaped like.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Shape {
+    /// The pressure itself: right for a load that changes as a whole.
+    Pressure,
+    /// The pressure under a flat punch with the face A, M 1: little of its displacement is not rigid.
+    Punch,
 }
 
 impl ActiveSet {
@@ -88,6 +99,7 @@ impl ActiveSet {
             preconditioned: field.clone(),
             direction: field.clone(),
             image: field,
+            shape: Vec::new(),
             length: USUAL_LENGTH,
         }
     }
@@ -177,7 +189,7 @@ impl ActiveSet {
                 self.bodies[problem.owner(k)].leaving.push(k as u32);
             }
         }
-        self.balance(problem, solution, work);
+        self.balance(problem, Shape::Pressure, solution, work);
     }
 
     /// Whether the next direction has pressures to bring to zero or into balance.
@@ -196,10 +208,27 @@ impl ActiveSet {
         }
     }
 
+    /// Makes the shape of corrections on A.
+    fn fill_shape(&mut self, shape: Shape, solution: &mut Solution) {
+        self.shape.resize(self.member.len(), 0.0);
+        match shape {
+            Shape::Pressure => self.shape.copy_from_slice(&solution.pressure),
+            Shape::Punch => {
+                self.shape.iter_mut().zip(&self.member).for_each(|(shape, &member)| *shape = f64::from(u8::from(member)));
+                self.preconditioner.apply(&mut self.shape);
+                solution.counts.preconditioner_applications += 1;
+            }
+        }
+        self.shape.iter_mut().for_each(|shape| *shape = shape.max(0.0));
+    }
+
     /// Sees to it that the pressure on A carries the force and moments of each body: at once, scaling p and
     /// v, where the force of a single body is all there is; else by the next direction.
-    fn balance(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) {
+    fn balance(&mut self, problem: &Problem<'_>, shape: Shape, solution: &mut Solution, work: &mut Workspace) {
         let single = self.bodies.len() == 1;
+        if !single || problem.modes(0).tilts() {
+            self.fill_shape(shape, solution);
+        }
         for body in 0..self.bodies.len() {
             let (active, modes) = (&mut self.bodies[body], problem.modes(body));
             active.correction = None;
@@ -216,7 +245,7 @@ impl ActiveSet {
                 continue;
             }
             let p = |k: usize| solution.pressure[k].max(0.0);
-            match modes.balance(&active.patch.cells, p, p) {
+            match modes.balance(&active.patch.cells, p, |k| self.shape[k]) {
                 Some(y) => {
                     let negligible = y.iter().all(|y| y.abs() < 1e-14);
                     active.correction = (!negligible).then_some(y);
@@ -277,7 +306,7 @@ impl ActiveSet {
             }
         }
         self.list_cells(problem);
-        self.balance(problem, solution, work);
+        self.balance(problem, Shape::Punch, solution, work);
     }
 
     /// d ← z + β d without free motion on A; with pressures to bring to zero or into balance, d is the
@@ -316,9 +345,9 @@ impl ActiveSet {
             active.leaving.iter().for_each(|&k| self.direction[k as usize] = -solution.pressure[k as usize]);
             if let Some(y) = active.correction {
                 let modes = problem.modes(body);
-                for &k in &active.patch.cells {
-                    let p = solution.pressure[k as usize].max(0.0);
-                    self.direction[k as usize] += modes.balanced(y, k as usize, p, p) - p;
+                for k in active.patch.cells.iter().map(|&k| k as usize) {
+                    let p = solution.pressure[k].max(0.0);
+                    self.direction[k] += modes.balanced(y, k, p, self.shape[k]) - p;
                 }
             }
         }
