@@ -25,8 +25,8 @@ const FARTHEST_FORCE: f64 = 1.5;
 /// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets the rounding
 /// of K p accumulate, step by step linearly. After so many steps it is computed afresh, in two steps
 /// running: extrapolation reads two states, and one left stale would feed its error back, multiplied. This
-/// costs a sixteenth of a convolution a step.
-const STEPS_WITHOUT_REFRESH: usize = 30;
+/// costs a thirty-second of a convolution a step.
+const STEPS_WITHOUT_REFRESH: usize = 62;
 
 /// It is computed afresh, too, when the force has fallen by this factor: the rounding was that of the
 /// larger force.

@@ -35,11 +35,11 @@ use crate::solver::rigid::Motion;
 
 /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
 /// slack that the residual grants to penetration, or a state could neither improve nor pass.
-const JOIN: f64 = 0.6 * PENETRATION_SLACK;
+const JOIN: f64 = 0.4 * PENETRATION_SLACK;
 
 /// Cells leave A when rms (c p⁻/m), the gap that their negative pressure is worth, exceeds this
 /// fraction of rms |r|.
-const EVICT: f64 = 0.3;
+const EVICT: f64 = 0.4;
 
 /// c a before the first line search of a solve; with M ≈ K⁻¹ it is always near this.
 const USUAL_LENGTH: f64 = 0.7;
@@ -111,6 +111,7 @@ impl ActiveSet {
         // nothing of an earlier solve, perhaps of a step that failed, may reach this one
         self.length = USUAL_LENGTH;
         self.fallback.reset();
+        solution.reset_motions();
         self.start(problem, solution, work);
         let (mut lowest, mut since) = (f64::INFINITY, 0);
         loop {
@@ -126,7 +127,6 @@ impl ActiveSet {
             if solved {
                 return self.close(problem, solution);
             }
-            if std::env::var("DBG").is_ok() { eprintln!("  it {} res {:.3e} rms {:.3e} pen {:.3e} neg {:.3e} pending {} cells {} len {:.3}", solution.counts.iterations, solution.residual, (state.square/state.displacement).sqrt(), penetration/(state.displacement/state.cells as f64).sqrt(), state.negative, self.pending(), state.cells, self.length); }
             if solution.counts.iterations >= stop.max_iterations || solution.residual.is_nan() {
                 return;
             }
@@ -219,7 +219,10 @@ impl ActiveSet {
                 solution.counts.preconditioner_applications += 1;
             }
         }
-        self.shape.iter_mut().for_each(|shape| *shape = shape.max(0.0));
+        // cells that join A before the correction is made bring nothing to it
+        for (shape, &member) in self.shape.iter_mut().zip(&self.member) {
+            *shape = if member { shape.max(0.0) } else { 0.0 };
+        }
     }
 
     /// Sees to it that the pressure on A carries the force and moments of each body: at once, scaling p and
@@ -247,8 +250,7 @@ impl ActiveSet {
             let p = |k: usize| solution.pressure[k].max(0.0);
             match modes.balance(&active.patch.cells, p, |k| self.shape[k]) {
                 Some(y) => {
-                    let negligible = y.iter().all(|y| y.abs() < 1e-14);
-                    active.correction = (!negligible).then_some(y);
+                    active.correction = (y != [0.0; 3]).then_some(y);
                 }
                 None => {
                     // the load acts outside the hull of what is left of A: begin again under this body

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::solver::problem::{Patch, Problem, Solution};
+use crate::solver::rest::rest;
 
 /// Bisections for the level, far beyond the accuracy that a guess needs.
 const HALVINGS: usize = 40;
@@ -41,9 +42,12 @@ pub(crate) fn cold_start(
 /// area A, from a³ = (3/4) R c W. At a given approach δ below the first touch it is half of that,
 /// a²/2R = δ/2, and the peak pressure is (2/π) δ/(c a).
 fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) {
-    let (gap, freedom) = (problem.gap, problem.bodies[body]);
+    let (freedom, modes) = (problem.bodies[body], problem.modes(body));
     cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
-    let heights = || cells.iter().map(|&k| gap[k as usize]);
+    // a body that tilts under a force first comes to rest where the load puts it
+    let motion = if modes.tilts() && modes.translates() { rest(&modes, cells, problem.gap) } else { [0.0; 3] };
+    let gap = |k: u32| problem.gap[k as usize] - modes.displacement(motion, k as usize);
+    let heights = || cells.iter().map(|&k| gap(k));
     let lowest = heights().fold(f64::INFINITY, f64::min);
     let highest = heights().fold(f64::NEG_INFINITY, f64::max);
     let area = problem.kernel.grid().cell_area();
@@ -76,11 +80,11 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut 
     let depth = level - lowest;
     let mut sum = 0.0;
     for &k in cells {
-        let k = k as usize;
-        let above = if depth > 0.0 { ((level - gap[k]) / depth).max(0.0).sqrt() } else { 0.0 };
+        let above = if depth > 0.0 { ((level - gap(k)) / depth).max(0.0).sqrt() } else { 0.0 };
         // where the rise is below rounding, the lowest cells are pressed evenly
-        solution.pressure[k] = peak * if depth > 0.0 { above } else { f64::from(u8::from(gap[k] <= lowest)) };
-        sum += solution.pressure[k];
+        let share = if depth > 0.0 { above } else { f64::from(u8::from(gap(k) <= lowest)) };
+        solution.pressure[k as usize] = peak * share;
+        sum += peak * share;
     }
     if freedom.translation {
         let scale = freedom.total / sum;

@@ -6,6 +6,7 @@ mod polonsky_keer;
 mod preconditioner;
 mod problem;
 mod projected_gradient;
+mod rest;
 mod rigid;
 
 pub(crate) use active_set::ActiveSet;

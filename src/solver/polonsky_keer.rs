@@ -24,6 +24,7 @@ impl PolonskyKeer {
 
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent.
     pub(crate) fn solve(&mut self, problem: &Problem<'_>, stop: Stop, solution: &mut Solution, work: &mut Workspace) {
+        solution.reset_motions();
         self.make_feasible(problem, solution);
         self.direction.fill(0.0);
         let (mut square_old, mut conjugate) = (1.0, false);
@@ -117,8 +118,19 @@ impl PolonskyKeer {
         }
         self.list_cells(problem, solution);
         for (body, patch) in self.patches.iter_mut().enumerate() {
-            if !problem.released(body) && !balance(problem, body, &patch.cells, solution) {
+            let modes = problem.modes(body);
+            if problem.released(body) || balance(problem, body, &patch.cells, solution) {
+                continue;
+            }
+            if modes.translates() {
                 press_everywhere(problem, body, patch, solution);
+            } else {
+                // held at its pivot, and touching on one side of it only: let go, and turn away
+                patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
+                for &k in &patch.cells {
+                    self.image[k as usize] = problem.gap[k as usize];
+                }
+                solution.motions[body] = modes.fit(&patch.gram, &patch.cells, &self.image);
             }
         }
         entered

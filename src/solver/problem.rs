@@ -124,6 +124,9 @@ impl<'a> Problem<'a> {
         residual: &mut [f64],
         sums: &mut Measure,
     ) {
+        if patch.cells.is_empty() {
+            return; // nothing says how it moves: as before
+        }
         let (c, modes) = (self.compliance, self.modes(body));
         let raw = |k: u32| c * solution.potential[k as usize] + self.gap[k as usize];
         // the fit is taken of what exceeds the first cell's gap: a plain sum of many nearly equal numbers
@@ -186,6 +189,11 @@ impl Solution {
             let heights = own.map(|k| problem.compliance * self.potential[k] + problem.gap[k]);
             self.motions[body] = [heights.fold(f64::INFINITY, f64::min), 0.0, 0.0];
         }
+    }
+
+    /// Forgets how the bodies moved: nothing of an earlier solve may reach this one.
+    pub(crate) fn reset_motions(&mut self) {
+        self.motions.fill([0.0; 3]);
     }
 
     /// v ← K p, counted.

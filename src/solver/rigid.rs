@@ -25,6 +25,9 @@ const DEPENDENT: f64 = 1e-11;
 /// Newton iterations that [`Modes::balance`] may take; it needs one where nothing is clipped.
 const BALANCE_ITERATIONS: usize = 60;
 
+/// Imbalance, relative to the load, that rounding may leave.
+const BALANCED: f64 = 4.0 * f64::EPSILON;
+
 /// Cells summed together before they join the total.
 const BLOCK: usize = 256;
 
@@ -33,8 +36,8 @@ const BLOCK: usize = 256;
 pub(crate) struct Modes<'a> {
     grid: &'a Grid,
     freedom: Freedom,
-    /// Length in which tilts are measured.
-    scale: f64,
+    /// Lengths in which tilts are measured, half the grid's.
+    scale: [f64; 2],
 }
 
 /// Σ w B Bᵀ over some cells.
@@ -45,8 +48,7 @@ pub(crate) struct Gram {
 
 impl<'a> Modes<'a> {
     pub(crate) fn new(grid: &'a Grid, freedom: Freedom) -> Modes<'a> {
-        let [l1, l2] = grid.lengths();
-        Modes { grid, freedom, scale: 0.5 * l1.max(l2) }
+        Modes { grid, freedom, scale: grid.lengths().map(|length| 0.5 * length) }
     }
 
     pub(crate) fn tilts(&self) -> bool {
@@ -58,13 +60,23 @@ impl<'a> Modes<'a> {
     }
 
     /// The values of the free modes on cell `k`, zero for those that are not free.
-    fn at(&self, k: usize) -> [f64; 3] {
+    pub(crate) fn at(&self, k: usize) -> [f64; 3] {
         let Freedom { translation, tilt, point, .. } = self.freedom;
         let n2 = self.grid.cells()[1];
         let mode = |axis: usize, index: usize| {
-            if tilt[axis] { (self.grid.coordinate(axis, index) - point[axis]) / self.scale } else { 0.0 }
+            if tilt[axis] { (self.grid.coordinate(axis, index) - point[axis]) / self.scale[axis] } else { 0.0 }
         };
         [if translation { 1.0 } else { 0.0 }, mode(0, k / n2), mode(1, k % n2)]
+    }
+
+    /// Which of ω, α1 and α2 are free.
+    pub(crate) fn free(&self) -> [bool; 3] {
+        [self.freedom.translation, self.freedom.tilt[0], self.freedom.tilt[1]]
+    }
+
+    /// Force and moments of a unit load.
+    pub(crate) fn load(&self) -> [f64; 3] {
+        [if self.freedom.translation { 1.0 } else { 0.0 }, 0.0, 0.0]
     }
 
     /// The displacement of cell `k` in a motion.
@@ -74,7 +86,7 @@ impl<'a> Modes<'a> {
 
     /// (ω, α1, α2) of a motion, ω at the origin of the grid.
     pub(crate) fn physical(&self, motion: Motion) -> [f64; 3] {
-        let tilt = [motion[1] / self.scale, motion[2] / self.scale];
+        let tilt = [motion[1] / self.scale[0], motion[2] / self.scale[1]];
         [motion[0] - tilt[0] * self.freedom.point[0] - tilt[1] * self.freedom.point[1], tilt[0], tilt[1]]
     }
 
@@ -137,10 +149,11 @@ impl<'a> Modes<'a> {
                 for k in block.iter().map(|&k| k as usize) {
                     let (modes, w) = (self.at(k), weight(k));
                     let p = base(k) + w * dot(modes, y);
-                    if p > 0.0 && w > 0.0 {
+                    if p > 0.0 {
                         gram.add(modes, w);
                         (0..3).for_each(|m| part[m] += modes[m] * p);
-                        value += 0.5 * p * p / w;
+                        // without weight it does not depend on y
+                        value += if w > 0.0 { 0.5 * p * p / w } else { p * dot(modes, y) };
                     }
                 }
                 (0..3).for_each(|m| sums[m] += part[m]);
@@ -155,7 +168,7 @@ impl<'a> Modes<'a> {
         let mut y = [0.0; 3];
         let (mut gram, mut sums, mut value) = evaluate(y);
         for _ in 0..BALANCE_ITERATIONS {
-            if sums.iter().all(|sum| sum.abs() <= 1e-15 * size) {
+            if sums.iter().all(|sum| sum.abs() <= BALANCED * size) {
                 return Some(y);
             }
             let step = gram.solve(sums);
