@@ -139,7 +139,7 @@ impl ActiveSet {
                 continue;
             }
             if penetration > JOIN * state.rms() {
-                self.join(problem, solution);
+                self.join(problem, state, penetration, solution);
                 self.measure(problem, solution);
             }
 
@@ -283,11 +283,15 @@ impl ActiveSet {
         state
     }
 
-    /// Takes every penetrating cell into A, but for those that are about to leave: they would bring a
-    /// negative pressure with them, and change the force.
-    fn join(&mut self, problem: &Problem<'_>, solution: &Solution) {
+    /// Takes penetrating cells into A, but for those that are about to leave: they would bring a negative
+    /// pressure with them, and change the force. A body that sinks in deeper than the surface yields is not
+    /// yet where it belongs: then the deepest cells stop it first.
+    fn join(&mut self, problem: &Problem<'_>, state: Measure, penetration: f64, solution: &Solution) {
+        let yielding = (state.displacement / state.cells.max(1) as f64).sqrt();
+        let least = if penetration > yielding { 0.5 * penetration } else { 0.0 };
         for k in 0..self.member.len() {
-            self.member[k] |= solution.pressure[k] == 0.0 && problem.possible(k) && problem.depth(solution, k) > 0.0;
+            self.member[k] |=
+                solution.pressure[k] == 0.0 && problem.possible(k) && problem.depth(solution, k) > least;
         }
         self.list_cells(problem);
     }
