@@ -199,7 +199,8 @@ fn assert_contact_conditions(contact: &ViscoelasticContact, load: Load, toleranc
             Tilt::Free { at } => {
                 let lever = contact.grid().lengths()[axis];
                 let moment = contact.moment()[axis] - at * contact.force();
-                assert!(moment.abs() <= 1e-12 * lever * contact.force(), "moment {moment:e} along {axis}");
+                // a body that has turned away may keep pressures of 1e-38 where others are of order one
+                assert!(moment.abs() <= 1e-12 * lever * contact.force() + 1e-30, "moment {moment:e} along {axis}");
             }
         }
     }
@@ -211,6 +212,11 @@ proptest! {
     #[test]
     fn both_solvers_satisfy_the_conditions_and_agree(scene in scenes()) {
         let Some(ours) = scene.solve(Solver::ActiveSet) else { return Ok(()) };
+        assert_contact_conditions(&ours, scene.load(), TOLERANCE);
+        // a body held at a pivot may turn away from the surface altogether: how far is not determined
+        if scene.control == Control::ApproachOnPivot {
+            return Ok(());
+        }
         let reference = scene.solve(Solver::PolonskyKeer).unwrap();
         for contact in [&ours, &reference] {
             assert_contact_conditions(contact, scene.load(), TOLERANCE);

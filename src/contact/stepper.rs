@@ -295,6 +295,11 @@ impl ViscoelasticContact {
     /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike.
     fn guess(&mut self, dt: f64) {
         self.trial.counts = Counts::default();
+        for (body, motion) in self.trial.motions.iter_mut().enumerate() {
+            let [omega, alpha1, alpha2] = self.motions[body];
+            let modes = Modes::new(&self.grid, self.freedoms[body]);
+            *motion = modes.motion([omega - self.initial_gap.datum, alpha1, alpha2]);
+        }
         let mut ahead = if self.last_dt > 0.0 { (dt / self.last_dt).min(FARTHEST_GUESS) } else { 0.0 };
         let (mut now, mut guessed) = (0.0, 0.0);
         for (&p, &before) in self.current.pressure.iter().zip(&self.previous.pressure) {

@@ -111,7 +111,6 @@ impl ActiveSet {
         // nothing of an earlier solve, perhaps of a step that failed, may reach this one
         self.length = USUAL_LENGTH;
         self.fallback.reset();
-        solution.reset_motions();
         self.start(problem, solution, work);
         let (mut lowest, mut since) = (f64::INFINITY, 0);
         loop {
@@ -214,7 +213,10 @@ impl ActiveSet {
         match shape {
             Shape::Pressure => self.shape.copy_from_slice(&solution.pressure),
             Shape::Punch => {
-                self.shape.iter_mut().zip(&self.member).for_each(|(shape, &member)| *shape = f64::from(u8::from(member)));
+                self.shape
+                    .iter_mut()
+                    .zip(&self.member)
+                    .for_each(|(shape, &member)| *shape = f64::from(u8::from(member)));
                 self.preconditioner.apply(&mut self.shape);
                 solution.counts.preconditioner_applications += 1;
             }
@@ -290,8 +292,7 @@ impl ActiveSet {
         let yielding = (state.displacement / state.cells.max(1) as f64).sqrt();
         let least = if penetration > yielding { 0.5 * penetration } else { 0.0 };
         for k in 0..self.member.len() {
-            self.member[k] |=
-                solution.pressure[k] == 0.0 && problem.possible(k) && problem.depth(solution, k) > least;
+            self.member[k] |= solution.pressure[k] == 0.0 && problem.possible(k) && problem.depth(solution, k) > least;
         }
         self.list_cells(problem);
     }

@@ -46,6 +46,9 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut 
     cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
     // a body that tilts under a force first comes to rest where the load puts it
     let motion = if modes.tilts() && modes.translates() { rest(&modes, cells, problem.gap) } else { [0.0; 3] };
+    if modes.tilts() {
+        solution.motions[body] = motion;
+    }
     let gap = |k: u32| problem.gap[k as usize] - modes.displacement(motion, k as usize);
     let heights = || cells.iter().map(|&k| gap(k));
     let lowest = heights().fold(f64::INFINITY, f64::min);

@@ -24,7 +24,6 @@ impl PolonskyKeer {
 
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent.
     pub(crate) fn solve(&mut self, problem: &Problem<'_>, stop: Stop, solution: &mut Solution, work: &mut Workspace) {
-        solution.reset_motions();
         self.make_feasible(problem, solution);
         self.direction.fill(0.0);
         let (mut square_old, mut conjugate) = (1.0, false);

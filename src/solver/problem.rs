@@ -33,7 +33,7 @@ pub(crate) struct Solution {
     pub(crate) pressure: Vec<f64>,
     /// v = K p \[Pa·m\], kept in step with `pressure`.
     pub(crate) potential: Vec<f64>,
-    /// The free part of the motion of each body.
+    /// The free part of the motion of each body; on entry that of the last step.
     pub(crate) motions: Vec<Motion>,
     pub(crate) counts: Counts,
     /// The residual on return, see `relative_residual`.
@@ -127,19 +127,18 @@ impl<'a> Problem<'a> {
         if patch.cells.is_empty() {
             return; // nothing says how it moves: as before
         }
-        let (c, modes) = (self.compliance, self.modes(body));
-        let raw = |k: u32| c * solution.potential[k as usize] + self.gap[k as usize];
-        // the fit is taken of what exceeds the first cell's gap: a plain sum of many nearly equal numbers
-        // would round by more than the tolerance
-        let pivot = if modes.translates() { patch.cells.first().map_or(0.0, |&k| raw(k)) } else { 0.0 };
-        for &k in &patch.cells {
-            residual[k as usize] = pivot - raw(k);
-            sums.displacement += (c * solution.potential[k as usize]).powi(2);
-            sums.height = sums.height.max(self.gap[k as usize].abs());
-            sums.negative += solution.pressure[k as usize].min(0.0).powi(2);
+        // The fit is that of a change of the last motion: what the cells at hand do not determine stays as it
+        // was, and the sums are of small numbers, so that they do not round by more than the tolerance.
+        let (c, modes, last) = (self.compliance, self.modes(body), solution.motions[body]);
+        for k in patch.cells.iter().map(|&k| k as usize) {
+            let u = c * solution.potential[k];
+            residual[k] = modes.displacement(last, k) - (u + self.gap[k]);
+            sums.displacement += u * u;
+            sums.height = sums.height.max(self.gap[k].abs());
+            sums.negative += solution.pressure[k].min(0.0).powi(2);
         }
-        let fit = modes.project_out(&patch.gram, &patch.cells, residual);
-        solution.motions[body] = [pivot - fit[0], -fit[1], -fit[2]];
+        let change = modes.project_out(&patch.gram, &patch.cells, residual);
+        solution.motions[body] = [0, 1, 2].map(|m| last[m] - change[m]);
         sums.square += patch.cells.iter().map(|&k| residual[k as usize].powi(2)).sum::<f64>();
         sums.cells += patch.cells.len();
     }
@@ -189,11 +188,6 @@ impl Solution {
             let heights = own.map(|k| problem.compliance * self.potential[k] + problem.gap[k]);
             self.motions[body] = [heights.fold(f64::INFINITY, f64::min), 0.0, 0.0];
         }
-    }
-
-    /// Forgets how the bodies moved: nothing of an earlier solve may reach this one.
-    pub(crate) fn reset_motions(&mut self) {
-        self.motions.fill([0.0; 3]);
     }
 
     /// v ← K p, counted.

@@ -125,3 +125,44 @@ impl ProjectedGradient {
         true
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Grid;
+    use crate::kernel::InfluenceKernel;
+    use crate::solver::{ActiveSet, Freedom};
+
+    /// The fall-back alone finds what the active set finds, from a bad guess, with force and moments.
+    #[test]
+    fn it_converges_on_its_own() {
+        let grid = Grid::square(12, 1.2).unwrap();
+        let kernel = InfluenceKernel::half_space(&grid).unwrap();
+        let gap: Vec<f64> = (0..grid.len())
+            .map(|k| {
+                let [x, y] = grid.center(k / 12, k % 12);
+                if x.hypot(y) < 0.55 { 0.2 * (x * x + 2.0 * y * y) + 0.01 * (9.0 * x).sin() } else { f64::INFINITY }
+            })
+            .collect();
+        let freedom = Freedom { translation: true, tilt: [true; 2], point: [0.1, -0.05], total: 5.0 };
+        let problem = Problem { kernel: &kernel, compliance: 0.5, gap: &gap, bodies: &[freedom], owner: None };
+        let stop = Stop { tolerance: 1e-10, max_iterations: 100_000 };
+        let mut work = kernel.workspace();
+
+        let mut exact = Solution::zero(grid.len(), 1);
+        ActiveSet::new(&grid, 1).solve(&problem, stop, &mut exact, &mut work);
+        assert!(exact.residual <= 1e-10 && exact.counts.fallback_iterations == 0);
+
+        let mut slow = Solution::zero(grid.len(), 1);
+        slow.pressure.iter_mut().zip(&gap).for_each(|(p, h)| *p = if h.is_finite() { 1.0 } else { 0.0 });
+        let mut fallback = ProjectedGradient::default();
+        for _ in 0..8 {
+            fallback.improve(&problem, stop, &mut slow, &mut work);
+        }
+        assert!(slow.counts.fallback_iterations > 20);
+        let peak = exact.pressure.iter().copied().fold(0.0, f64::max);
+        for (a, b) in slow.pressure.iter().zip(&exact.pressure) {
+            assert!((a - b).abs() < 1e-6 * peak, "{a} {b} after {}", slow.counts.fallback_iterations);
+        }
+    }
+}

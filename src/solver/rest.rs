@@ -31,7 +31,8 @@ pub(crate) fn rest(modes: &Modes<'_>, cells: &[u32], gap: &[f64]) -> Motion {
         let Some(entering) = entering.filter(|&k| cost(k) < -1e-12 * range) else { break };
         let column = modes.at(entering as usize);
         // how the basis makes way for the new column: the first weight to reach zero leaves
-        let (Some(weights), Some(change)) = (solve_primal(&rows, &basis, modes.load()), solve_primal(&rows, &basis, column))
+        let (Some(weights), Some(change)) =
+            (solve_primal(&rows, &basis, modes.load()), solve_primal(&rows, &basis, column))
         else {
             break;
         };
@@ -77,12 +78,11 @@ fn solve(mut matrix: Vec<Vec<f64>>, mut right: Vec<f64>) -> Option<Vec<f64>> {
         }
         matrix.swap(column, pivot);
         right.swap(column, pivot);
-        for row in column + 1..n {
-            let factor = matrix[row][column] / matrix[column][column];
-            for m in column..n {
-                matrix[row][m] -= factor * matrix[column][m];
-            }
-            right[row] -= factor * right[column];
+        let (above, below) = matrix.split_at_mut(column + 1);
+        for (row, b) in below.iter_mut().zip(column + 1..n) {
+            let factor = row[column] / above[column][column];
+            row.iter_mut().zip(&above[column]).for_each(|(entry, pivot)| *entry -= factor * pivot);
+            right[b] -= factor * right[column];
         }
     }
     for column in (0..n).rev() {

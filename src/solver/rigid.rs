@@ -90,6 +90,14 @@ impl<'a> Modes<'a> {
         [motion[0] - tilt[0] * self.freedom.point[0] - tilt[1] * self.freedom.point[1], tilt[0], tilt[1]]
     }
 
+    /// The motion with given (ω, α1, α2), as far as they are free: the inverse of [`Modes::physical`].
+    pub(crate) fn motion(&self, [omega, alpha1, alpha2]: [f64; 3]) -> Motion {
+        let Freedom { translation, tilt, point, .. } = self.freedom;
+        let alpha = [if tilt[0] { alpha1 } else { 0.0 }, if tilt[1] { alpha2 } else { 0.0 }];
+        let held = omega + alpha[0] * point[0] + alpha[1] * point[1];
+        [if translation { held } else { 0.0 }, alpha[0] * self.scale[0], alpha[1] * self.scale[1]]
+    }
+
     /// The balance that the free modes ask for.
     fn wanted(&self) -> [f64; 3] {
         [if self.freedom.translation { self.freedom.total } else { 0.0 }, 0.0, 0.0]
