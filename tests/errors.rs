@@ -33,14 +33,15 @@ fn state(contact: &ViscoelasticContact) -> (f64, f64, f64, usize, Vec<f64>, Vec<
     )
 }
 
-/// A failing step must not change the contact, nor the steps that follow.
+/// A failing step must not change the contact, nor the steps that follow, successful or not: up, and down so
+/// that cells leave.
 fn assert_untouched(contact: &mut ViscoelasticContact, dt: f64, load: Load) -> Error {
     let (before, mut twin) = (state(contact), contact.clone());
     let error = contact.step(dt, load).unwrap_err();
     assert_eq!(state(contact), before);
-    let small = Load::force(0.11);
-    if let (Ok(a), Ok(b)) = (contact.step(0.01, small), twin.step(0.01, small)) {
-        assert_eq!(a, b);
+    for force in [0.11, 0.05, 0.02] {
+        let small = Load::force(force);
+        assert_eq!(contact.step(0.01, small), twin.step(0.01, small));
         assert_eq!(state(contact), state(&twin));
     }
     error
@@ -203,4 +204,85 @@ fn everything_travels_between_threads() {
     assert_send_sync::<Box<dyn Geometry>>();
     assert_send_sync::<Box<dyn LoadHistory>>();
     assert_send_sync::<Error>();
+}
+
+/// What a failed solve leaves in the solver must not reach the next one.
+#[test]
+fn a_failure_in_the_solver_leaves_no_trace() {
+    for edge in [Edge::Refuse, Edge::Allow] {
+        let mut contact = contact_with(maxwell(), Settings { edge, ..Settings::default() });
+        contact.step(0.0, Load::force(0.5)).unwrap();
+        contact.step(0.1, Load::force(0.4)).unwrap();
+        let mut twin = contact.clone();
+        for force in [50.0, 1e200, 1e305, 5e-324] {
+            let failed = contact.clone().step(0.1, Load::force(force));
+            if failed.is_err() {
+                contact.step(0.1, Load::force(force)).unwrap_err();
+            }
+        }
+        for force in [0.3, 0.2, 0.35] {
+            assert_eq!(contact.step(0.1, Load::force(force)), twin.step(0.1, Load::force(force)));
+            assert_eq!(state(&contact), state(&twin));
+        }
+    }
+}
+
+#[test]
+fn forces_beyond_numbers_are_refused() {
+    let grid = Grid::square(8, 4.0e3).unwrap();
+    let mut contact = ViscoelasticContact::builder(grid).geometry(&sphere()).material(maxwell()).build().unwrap();
+    assert!(matches!(contact.step(0.0, Load::force(5e-324)), Err(Error::Overflow { .. })));
+    let mut contact = contact_with(maxwell(), Settings::default());
+    assert!(matches!(contact.step(0.0, Load::force(1e308)), Err(Error::Overflow { .. })));
+}
+
+/// A history that names a corner in the past would stop the run, or turn it back.
+#[test]
+fn corners_in_the_past_are_refused() {
+    #[derive(Debug)]
+    struct Stuck;
+    impl LoadHistory for Stuck {
+        fn at(&self, _: f64) -> Load {
+            Load::force(0.1)
+        }
+        fn next_breakpoint(&self, _: f64) -> Option<f64> {
+            Some(0.25)
+        }
+    }
+    let mut contact = contact_with(maxwell(), Settings::default());
+    let mut run = contact.follow(&Stuck, Stepping::fixed(0.2), 1.0);
+    let error = loop {
+        if let Err(error) = run.next_step() {
+            break error;
+        }
+    };
+    assert_eq!(error, Error::InvalidBreakpoint { after: 0.25, breakpoint: 0.25 });
+}
+
+#[test]
+fn the_foundation_is_untouched_by_failures_too() {
+    use viscocontact::analytic::{AxisymmetricContact, Profile};
+    let profile = Profile::sphere(10.0e-3).unwrap();
+    let mut foundation = AxisymmetricContact::new(&profile, &maxwell(), 500, 2.0e-3).unwrap();
+    foundation.press(0.0, 0.5).unwrap();
+    let see = |f: &AxisymmetricContact| (f.time(), f.approach(), f.force(), f.contact_radius(), f.pressure(1e-4));
+    let before = see(&foundation);
+    assert!(matches!(foundation.press(1.0, 1e6), Err(Error::BeyondReach { .. })));
+    assert!(matches!(foundation.indent(1.0, 1.0), Err(Error::BeyondReach { .. })));
+    assert_eq!(see(&foundation), before);
+    let nothing = AxisymmetricContact::new(&Profile::new(|_| f64::INFINITY), &maxwell(), 10, 1.0).unwrap_err();
+    assert!(matches!(nothing, Error::NothingToTouch { .. }));
+    let mut narrow = AxisymmetricContact::new(&Profile::punch(1e-4).unwrap(), &maxwell(), 30, 3e-4).unwrap();
+    narrow.press(0.0, 1.0).unwrap();
+    assert!((narrow.force() - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn shapes_bodies_and_histories_chosen_at_run_time() {
+    let shape: Box<dyn Geometry> = Box::new(sphere());
+    let body: Box<dyn Rheology> = Box::new(Maxwell::new(1.0e6, 1.0e6).unwrap());
+    let history: Arc<dyn LoadHistory> = Arc::new(StepLoad::new(Load::force(0.1)).unwrap());
+    let mut contact =
+        ViscoelasticContact::builder(grid()).geometry(&shape).material(Material::incompressible(body)).build().unwrap();
+    assert!(contact.follow(&history, Stepping::fixed(0.1), 0.1).next_step().unwrap().is_some());
 }

@@ -122,6 +122,10 @@ fn bad_parameters_are_refused_by_name() {
         assert_eq!(field(GeneralizedMaxwell::new(bad, &[(1.0, 1.0)]).unwrap_err()), "equilibrium modulus");
         assert_eq!(field(RelaxationSpectrum::new(1.0, bad, &[]).unwrap_err()), "immediate viscosity");
     }
+    // reciprocals and products stay numbers
+    assert_eq!(field(Maxwell::new(1e-150, 1e170).unwrap_err()), "glassy compliance");
+    assert_eq!(field(GeneralizedMaxwell::new(1e-310, &[(1.0, 1.0)]).unwrap_err()), "equilibrium modulus");
+    assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(1.0, 1e-200)]).unwrap_err()), "retardation time");
     assert_eq!(field(CreepSpectrum::new(0.0, 0.0, &[(0.0, 1.0)]).unwrap_err()), "creep spectrum");
     assert_eq!(field(GeneralizedMaxwell::new(1.0, &[]).unwrap_err()), "Maxwell elements");
     assert_eq!(field(GeneralizedMaxwell::new(0.0, &[(0.0, 1.0)]).unwrap_err()), "relaxation spectrum");

@@ -175,3 +175,71 @@ fn nothing_drifts_in_five_thousand_steps() {
         }
     }
 }
+
+/// Loads that fall by halves: the guess by extrapolation cancels, and what is left is noise. K p stays K p.
+#[test]
+fn falling_by_halves_leaves_no_noise() {
+    let shapes: [&dyn Geometry; 2] = [&Sphere::new(10.0e-3).unwrap(), &FlatPunch::circular(1.0e-3).unwrap()];
+    for shape in shapes {
+        for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
+            let mut contact = ViscoelasticContact::builder(Grid::square(32, 3.0e-3).unwrap())
+                .geometry(shape)
+                .material(Material::incompressible(Elastic::new(1.0e6).unwrap()))
+                .settings(Settings { solver, ..Settings::default() })
+                .build()
+                .unwrap();
+            let mut work = contact.kernel().workspace();
+            let mut fresh = vec![0.0; contact.grid().len()];
+            let mut step = |force: f64| {
+                contact.step(1.0, Load::force(force)).unwrap();
+                contact.kernel().clone().convolve(contact.pressure(), &mut fresh, &mut work).unwrap();
+                let scale = fresh.iter().copied().fold(0.0, f64::max);
+                for (u, v) in contact.displacement().iter().zip(&fresh) {
+                    assert!((4.0e6 * u - v).abs() < 1e-11 * scale, "{solver:?} at {force}");
+                }
+            };
+            (0..40).for_each(|k| step(0.4 * 0.5_f64.powi(k)));
+            (0..12).for_each(|k| step(0.4 * 0.65_f64.powi(k)));
+            [0.4, 0.2, 1e-3, 1e-6, 0.3, 0.3].into_iter().for_each(&mut step);
+        }
+    }
+}
+
+/// After a long, soft hold a stiff body is jumped at by nothing: the residual of the hold, relative to a
+/// displacement a thousand times larger than the jump's, must not come out as pressure.
+#[test]
+fn a_stiff_step_after_a_soft_one_keeps_the_pressure() {
+    for ratio in [1e3, 1e5] {
+        let body = Zener::new(1.0e6 * ratio, 1.0e6, 1.0e6).unwrap();
+        let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3).unwrap())
+            .geometry(&Sphere::new(10.0e-3).unwrap())
+            .material(Material::incompressible(body))
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(1.0)).unwrap();
+        contact.step(10.0, Load::force(1.0)).unwrap();
+        let held = contact.pressure().to_vec();
+        let peak = held.iter().copied().fold(0.0, f64::max);
+        contact.step(0.0, Load::force(1.0)).unwrap();
+        let change = contact.pressure().iter().zip(&held).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / peak;
+        println!("G/G_K = {ratio:e}: {change:.1e}");
+        assert!(change < 1e-4, "G/G_K = {ratio:e}: {change:e}");
+    }
+}
+
+/// Late times: the ages of the direct sum are differences of large numbers.
+#[test]
+fn direct_sums_work_at_late_times() {
+    let body = Material::incompressible(Maxwell::new(1.0e6, 1.0e4).unwrap());
+    let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3).unwrap())
+        .geometry(&Sphere::new(10.0e-3).unwrap())
+        .material(body)
+        .settings(Settings { time_rule: TimeRule::Backward, ..Settings::default() })
+        .build()
+        .unwrap();
+    contact.step(1.0e3, Load::force(1.0e-6)).unwrap();
+    contact.step(0.0, Load::force(2.0e-6)).unwrap();
+    for k in 1..40 {
+        contact.step(1.0e-3 * (0.37 * k as f64).fract(), Load::force(2.0e-6)).unwrap();
+    }
+}

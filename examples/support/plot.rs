@@ -77,7 +77,7 @@ impl Chart {
             self.draw(&mut chart, &|v| format!("{v}"), &|v| format!("{v:.0e}"))?;
         } else {
             let mut chart = builder.build_cartesian_2d(x0..x1, y0..y1)?;
-            let label = |v: &f64| format!("{}", (v * 1e6).round() / 1e6);
+            let label = |v: &f64| format!("{}", (v * 1e6).round() / 1e6 + 0.0); // no minus before a zero
             self.draw(&mut chart, &label, &label)?;
         }
         root.present()?;
@@ -154,4 +154,73 @@ fn register() {
         let known = register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT);
         assert!(known.is_ok(), "the font that is compiled in is a font");
     });
+}
+
+/// A field on a grid as colours.
+pub struct Map {
+    pub title: String,
+    /// What the colour bar shows.
+    pub unit: &'static str,
+    pub cells: [usize; 2],
+    /// Sides of the grid, in the unit of the axes.
+    pub lengths: [f64; 2],
+    /// End of the colour scale.
+    pub most: f64,
+    pub values: Vec<f64>,
+}
+
+impl Map {
+    /// Writes the map to a PNG file.
+    pub fn save(&self, path: &Path) -> Result<(), Box<dyn Error>> {
+        register();
+        let root = BitMapBackend::new(path, (1000, 880)).into_drawing_area();
+        root.fill(&WHITE)?;
+        let (left, right) = root.split_horizontally(860);
+        let [h1, h2] = self.lengths.map(|length| 0.5 * length);
+        let mut chart = ChartBuilder::on(&left)
+            .caption(format!("{}: {}", self.title, self.unit), (FONT, 28))
+            .margin(20)
+            .x_label_area_size(60)
+            .y_label_area_size(70)
+            .build_cartesian_2d(-h1..h1, -h2..h2)?;
+        let mesh_style = (FONT, 22);
+        chart
+            .configure_mesh()
+            .disable_mesh()
+            .x_desc("x1 / R")
+            .y_desc("x2 / R")
+            .label_style(mesh_style)
+            .axis_desc_style((FONT, 26))
+            .draw()?;
+        let [n1, n2] = self.cells;
+        let [d1, d2] = [self.lengths[0] / n1 as f64, self.lengths[1] / n2 as f64];
+        chart.draw_series(self.values.iter().enumerate().filter(|(_, v)| **v > 0.0).map(|(k, &v)| {
+            let (x, y) = (-h1 + (k / n2) as f64 * d1, -h2 + (k % n2) as f64 * d2);
+            Rectangle::new([(x, y), (x + d1, y + d2)], color(v / self.most).filled())
+        }))?;
+        let mut bar = ChartBuilder::on(&right)
+            .margin(20)
+            .margin_top(70)
+            .x_label_area_size(60)
+            .y_label_area_size(50)
+            .build_cartesian_2d(0.0..1.0, 0.0..self.most)?;
+        bar.configure_mesh().disable_mesh().x_labels(0).y_labels(5).label_style(mesh_style).draw()?;
+        bar.draw_series((0..100).map(|k| {
+            let low = f64::from(k) / 100.0;
+            Rectangle::new([(0.0, low * self.most), (1.0, (low + 0.01) * self.most)], color(low).filled())
+        }))?;
+        root.present()?;
+        Ok(())
+    }
+}
+
+/// Light to dark, even in brightness and legible without colour vision: straight lines through points of the
+/// viridis scale, reversed.
+fn color(value: f64) -> RGBColor {
+    const POINTS: [[f64; 3]; 5] =
+        [[253.0, 231.0, 37.0], [94.0, 201.0, 98.0], [33.0, 145.0, 140.0], [59.0, 82.0, 139.0], [68.0, 1.0, 84.0]];
+    let position = value.clamp(0.0, 1.0) * 4.0;
+    let k = (position as usize).min(3);
+    let mix = |m: usize| (POINTS[k][m] + (position - k as f64) * (POINTS[k + 1][m] - POINTS[k][m])).round() as u8;
+    RGBColor(mix(0), mix(1), mix(2))
 }

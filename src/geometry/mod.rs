@@ -77,6 +77,22 @@ pub trait Geometry: Debug + Send + Sync {
     }
 }
 
+/// What is owned, shared or chosen at run time behind a pointer serves like the thing itself.
+macro_rules! forward_geometry {
+    ($($pointer:ty),*) => {$(
+        impl<T: Geometry + ?Sized> Geometry for $pointer {
+            fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
+                (**self).initial_gap(x1, x2)
+            }
+
+            fn fill_gap(&self, grid: &Grid, gap: &mut [f64]) {
+                (**self).fill_gap(grid, gap);
+            }
+        }
+    )*};
+}
+forward_geometry!(Box<T>, std::sync::Arc<T>);
+
 /// The gap field of the rigid bodies above their lowest point, so that heights far larger than the contact
 /// is deep cost no digits.
 #[derive(Debug, Clone, PartialEq)]

@@ -24,7 +24,9 @@ impl<F: Fn(f64) -> Load + Send + Sync> FnHistory<F> {
         FnHistory { load, breakpoints: Vec::new() }
     }
 
-    /// The same history with corners at `times` \[s\], in any order: steps end exactly on them.
+    /// The same history with corners at `times` \[s\], in any order: steps end exactly on them. A closure has
+    /// one value a time, so that it cannot jump: a jump becomes a ramp over the step before. Implement
+    /// [`LoadHistory::before`], or use [`PiecewiseLinear`](crate::load::PiecewiseLinear), where it matters.
     ///
     /// # Errors
     /// If a time is not finite.

@@ -207,3 +207,23 @@ pub trait LoadHistory: Debug + Send + Sync {
         None
     }
 }
+
+/// What is owned, shared or chosen at run time behind a pointer serves like the thing itself.
+macro_rules! forward_load {
+    ($($pointer:ty),*) => {$(
+        impl<T: LoadHistory + ?Sized> LoadHistory for $pointer {
+            fn at(&self, t: f64) -> Load {
+                (**self).at(t)
+            }
+
+            fn before(&self, t: f64) -> Load {
+                (**self).before(t)
+            }
+
+            fn next_breakpoint(&self, after: f64) -> Option<f64> {
+                (**self).next_breakpoint(after)
+            }
+        }
+    )*};
+}
+forward_load!(Box<T>, std::sync::Arc<T>);

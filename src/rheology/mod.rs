@@ -70,6 +70,22 @@ pub trait Rheology: Debug + Send + Sync {
     }
 }
 
+/// What is owned, shared or chosen at run time behind a pointer serves like the thing itself.
+macro_rules! forward_rheology {
+    ($($pointer:ty),*) => {$(
+        impl<T: Rheology + ?Sized> Rheology for $pointer {
+            fn creep_compliance(&self, t: f64) -> f64 {
+                (**self).creep_compliance(t)
+            }
+
+            fn creep_spectrum(&self) -> Option<CreepSpectrum> {
+                (**self).creep_spectrum()
+            }
+        }
+    )*};
+}
+forward_rheology!(Box<T>, std::sync::Arc<T>);
+
 /// [`Rheology`] for a model that holds its exact series in a field `spectrum`.
 macro_rules! exponential_rheology {
     ($model:ty) => {
