@@ -14,16 +14,15 @@
 //!   stands out of the residual ([`JOIN`]).
 //! * Cells whose pressure turned negative leave when their error does ([`EVICT`]). The *next* direction
 //!   brings them to p = 0: it contains δ = −p on them, so that the convolution it needs anyway repairs v.
-//!   Its length is then 1, and the length a of the rest is taken from the last line search; c a hardly
-//!   varies, because M ≈ K⁻¹. The response of the other cells to δ is M δ/m, m the diagonal of M (by
+//!   Its length is then 1, and the rest of it is z with the usual length ([`LENGTH`]). The response of the other cells to δ is M δ/m, m the diagonal of M (by
 //!   block inversion −K_AA⁻¹ K_AN = M_AN M_NN⁻¹), and rides on the same application of M.
 //! * Less pressure on A is less force; scaling p and v together restores it. With moments to balance, or
 //!   several bodies, the factor 1 + B y differs from cell to cell, and joins the next direction too.
 //! * A guess extrapolated from earlier steps brings its own v along.
 //!
 //! Measured on a creeping Maxwell sphere (256², 100 steps, convolution equivalents a step, residual
-//! 1e-6 / 1e-4): 8.9 / 5.2 when cells leave and join at once, 7.6 / 4.1 with JOIN, 6.8 / 3.6 with EVICT
-//! too, 5.9 / 3.1 with the response to δ.
+//! 1e-6 / 1e-4): 8.9 / 5.2 when cells leave and join at once, 7.6 / 4.1 with [`JOIN`], 6.8 / 3.6 with
+//! [`EVICT`] too, 5.9 / 3.1 with the response to δ, 5.3 / 2.9 without conjugacy in corrections.
 
 use crate::Grid;
 use crate::kernel::Workspace;
@@ -41,8 +40,9 @@ const JOIN: f64 = 0.4 * PENETRATION_SLACK;
 /// fraction of rms |r|.
 const EVICT: f64 = 0.4;
 
-/// c a before the first line search of a solve; with M ≈ K⁻¹ it is always near this.
-const USUAL_LENGTH: f64 = 0.7;
+/// c a of a direction that corrects the pressure, taken for the line search it cannot have. Searches along
+/// plain z = P M P r, with M ≈ K⁻¹, end between 0.4 and 0.8; measured best of 0.4 … 0.8.
+const LENGTH: f64 = 0.5;
 
 /// Iterations without a new lowest residual after which the fall-back takes over for a while.
 const PATIENCE: usize = 40;
@@ -61,8 +61,6 @@ pub(crate) struct ActiveSet {
     image: Vec<f64>,
     /// What corrections of the balance are shaped like; made at the first load that tilts.
     shape: Vec<f64>,
-    /// c a of the last line search.
-    length: f64,
 }
 
 /// The part of the active set under one body.
@@ -100,7 +98,6 @@ impl ActiveSet {
             direction: field.clone(),
             image: field,
             shape: Vec::new(),
-            length: USUAL_LENGTH,
         }
     }
 
@@ -109,7 +106,6 @@ impl ActiveSet {
     /// without any positive pressure gets a cold start.
     pub(crate) fn solve(&mut self, problem: &Problem<'_>, stop: Stop, solution: &mut Solution, work: &mut Workspace) {
         // nothing of an earlier solve, perhaps of a step that failed, may reach this one
-        self.length = USUAL_LENGTH;
         self.fallback.reset();
         self.start(problem, solution, work);
         let (mut lowest, mut since) = (f64::INFINITY, 0);
@@ -319,7 +315,7 @@ impl ActiveSet {
     /// d ← z + β d without free motion on A; with pressures to bring to zero or into balance, d is the
     /// whole change of p.
     fn find_direction(&mut self, problem: &Problem<'_>, solution: &mut Solution) {
-        let (length, pending) = (self.length / problem.compliance, self.pending());
+        let (length, pending) = (LENGTH / problem.compliance, self.pending());
         let z = &mut self.preconditioned;
         z.fill(0.0);
         for active in &self.bodies {
@@ -337,7 +333,8 @@ impl ActiveSet {
             overlap += cells.iter().map(|&k| z[k as usize] * self.image[k as usize]).sum::<f64>();
         }
         let energy: f64 = self.direction.iter().zip(&self.image).map(|(d, kd)| d * kd).sum();
-        let beta = if energy > 0.0 { -overlap / energy } else { 0.0 };
+        // a correction is no conjugate direction, and would only spread the error of its length
+        let beta = if energy > 0.0 && !pending { -overlap / energy } else { 0.0 };
         for (body, Patch { cells, gram }) in self.bodies.iter().map(|active| &active.patch).enumerate() {
             if beta != 0.0 {
                 cells.iter().for_each(|&k| z[k as usize] += beta * self.direction[k as usize]);
@@ -370,12 +367,7 @@ impl ActiveSet {
                 curvature += self.direction[k] * self.image[k];
             }
             // nothing is left to gain along a direction that vanishes, as on a single cell
-            if slope > 0.0 && curvature > 0.0 {
-                self.length = slope / curvature;
-                a = self.length / problem.compliance;
-            } else {
-                a = 0.0;
-            }
+            a = if slope > 0.0 && curvature > 0.0 { slope / (problem.compliance * curvature) } else { 0.0 };
         }
         for active in &mut self.bodies {
             for k in active.patch.cells.iter().map(|&k| k as usize) {
