@@ -5,10 +5,12 @@
 //! # The problem
 //!
 //! The gap between the deformed bodies is the gap before they deform, plus the displacement $u$ of the
-//! surface, less the approach $\omega$ of the indenter. Where they touch there is pressure and no gap,
-//! elsewhere a gap and no pressure, and the pressure carries the force $W$:
+//! surface, less the approach $\omega$ and tilt $\alpha$ of the indenter. Where they touch there is pressure and
+//! no gap, elsewhere a gap and no pressure, and the pressure carries the force $W$ and its moments, as far as
+//! the tilt is free:
 //!
-//! $$ h = h_i + u - \omega, \qquad p \ge 0, \quad h \ge 0, \quad p\,h = 0, \qquad W = \iint p \,dx $$
+//! $$ h = h_i + u - \omega - \alpha \cdot x, \qquad p \ge 0, \quad h \ge 0, \quad p\,h = 0, \qquad
+//!    W = \iint p \,dx, \quad W e = \iint p\,x \,dx $$
 //!
 //! The displacement remembers every earlier pressure through the contact creep compliance $C(t)$:
 //!
@@ -58,7 +60,8 @@
 //! # What costs what
 //!
 //! A convolution of N cells is one forward and one inverse real transform of the zero-padded grid,
-//! O(N log N). A step of the default solver takes 4 to 6 of them on the scenes of the README. Its
+//! O(N log N). A step of the default solver takes 3 to 5 of them on the scenes of the README at 256² cells, and
+//! a scene without tilt does no work for it. Its
 //! history costs no transform: one field a relaxation time, however many steps came before. A rheology
 //! without an exponential series ([`rheology::FnRheology`]) is summed over its whole past instead: one
 //! field a step to keep, and to add at every later step. Memory: about 175 bytes a cell, and 8 for each

@@ -20,7 +20,7 @@ fn assert_figures(scene: &StepLoadedSphere) -> f64 {
 #[test]
 fn maxwell_256_cells_100_steps() {
     let work = assert_figures(&StepLoadedSphere::maxwell());
-    assert!(work < 8.0, "{work} convolution equivalents a step");
+    assert!(work < 6.0, "{work} convolution equivalents a step");
 }
 
 #[test]

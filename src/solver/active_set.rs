@@ -14,8 +14,9 @@
 //!   stands out of the residual ([`JOIN`]).
 //! * Cells whose pressure turned negative leave when their error does ([`EVICT`]). The *next* direction
 //!   brings them to p = 0: it contains δ = −p on them, so that the convolution it needs anyway repairs v.
-//!   Its length is then 1, and the rest of it is z with the usual length ([`LENGTH`]). The response of the other cells to δ is M δ/m, m the diagonal of M (by
-//!   block inversion −K_AA⁻¹ K_AN = M_AN M_NN⁻¹), and rides on the same application of M.
+//!   Its length is then 1, and the rest of it is z with the usual length ([`LENGTH`]). The response of the
+//!   other cells to δ is M δ/m, m the diagonal of M (by block inversion −K_AA⁻¹ K_AN = M_AN M_NN⁻¹), and
+//!   rides on the same application of M.
 //! * Less pressure on A is less force; scaling p and v together restores it. With moments to balance, or
 //!   several bodies, the factor 1 + B y differs from cell to cell, and joins the next direction too.
 //! * A guess extrapolated from earlier steps brings its own v along.
