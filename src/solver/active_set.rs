@@ -23,7 +23,8 @@
 //!
 //! Measured on a creeping Maxwell sphere (256², 100 steps, convolution equivalents a step, residual
 //! 1e-6 / 1e-4): 8.9 / 5.2 when cells leave and join at once, 7.6 / 4.1 with [`JOIN`], 6.8 / 3.6 with
-//! [`EVICT`] too, 5.9 / 3.1 with the response to δ, 5.3 / 2.9 without conjugacy in corrections.
+//! [`EVICT`] too, 5.9 / 3.1 with the response to δ, 5.3 / 2.9 without conjugacy in corrections, 5.1 / 2.5
+//! when only the [`DEEP`] ones join.
 
 use crate::Grid;
 use crate::kernel::Workspace;
@@ -36,6 +37,10 @@ use crate::solver::rigid::Motion;
 /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
 /// slack that the residual grants to penetration, or a state could neither improve nor pass.
 const JOIN: f64 = 0.4 * PENETRATION_SLACK;
+
+/// Of the penetrating cells, those join that are deeper than this fraction of the deepest: the shallowest,
+/// on the rim of a growing contact, would mostly leave again.
+const DEEP: f64 = 0.2;
 
 /// Cells leave A when rms (c p⁻/m), the gap that their negative pressure is worth, exceeds this
 /// fraction of rms |r|.
@@ -282,12 +287,12 @@ impl ActiveSet {
         state
     }
 
-    /// Takes penetrating cells into A, but for those that are about to leave: they would bring a negative
-    /// pressure with them, and change the force. A body that sinks in deeper than the surface yields is not
-    /// yet where it belongs: then the deepest cells stop it first.
+    /// Takes the deeper ones of the penetrating cells into A, but for those that are about to leave: they would
+    /// bring a negative pressure with them, and change the force. A body that sinks in deeper than the surface
+    /// yields is not yet where it belongs: then the deepest cells stop it first.
     fn join(&mut self, problem: &Problem<'_>, state: Measure, penetration: f64, solution: &Solution) {
         let yielding = (state.displacement / state.cells.max(1) as f64).sqrt();
-        let least = if penetration > yielding { 0.5 * penetration } else { 0.0 };
+        let least = penetration * if penetration > yielding { 0.5 } else { DEEP };
         for k in 0..self.member.len() {
             self.member[k] |= solution.pressure[k] == 0.0 && problem.possible(k) && problem.depth(solution, k) > least;
         }
