@@ -122,10 +122,7 @@ impl Args {
 }
 
 fn main() {
-    if let Err(error) = run(&Args::parse()) {
-        eprintln!("error: {error}");
-        std::process::exit(1);
-    }
+    support::finish(run(&Args::parse()));
 }
 
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {

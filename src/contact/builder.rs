@@ -75,6 +75,9 @@ impl Builder {
         if gaps.is_empty() {
             return Err(Error::Missing { part: "geometry" });
         }
+        if gaps.len() > usize::from(u16::MAX) {
+            return Err(Error::CountOutOfRange { field: "rigid bodies", value: gaps.len(), allowed: "65535 at most" });
+        }
         let (bodies, gap) = (gaps.len(), Gap::new(&gaps, &grid)?);
         let material = material.ok_or(Error::Missing { part: "material" })?;
         let history = history(&material, settings.time_rule, grid.len())?;

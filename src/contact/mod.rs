@@ -3,6 +3,7 @@
 mod access;
 mod builder;
 mod follow;
+mod guess;
 mod hull;
 mod report;
 mod settings;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::Grid;
 use crate::contact::builder::Builder;
 use crate::contact::follow::{Follow, Stepping};
+use crate::contact::guess::Refresh;
 use crate::contact::hull::Hull;
 use crate::contact::report::StepReport;
 use crate::contact::settings::{Edge, Settings};
@@ -14,23 +15,6 @@ use crate::hereditary::{Change, History};
 use crate::kernel::{InfluenceKernel, Workspace};
 use crate::load::{Load, LoadHistory, Tilt};
 use crate::solver::{ActiveSet, Counts, Freedom, Modes, PolonskyKeer, Problem, Solution, Stop};
-
-/// A guess reaches at most this many times the length of the last step ahead.
-const FARTHEST_GUESS: f64 = 2.0;
-
-/// A guess is extrapolated only if it carries the force to within this factor: what is left after a
-/// cancellation is noise.
-const FARTHEST_FORCE: f64 = 1.5;
-
-/// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets the rounding
-/// of K p accumulate, step by step linearly. After so many steps it is computed afresh, in two steps
-/// running: extrapolation reads two states, and one left stale would feed its error back, multiplied. This
-/// costs a thirty-second of a convolution a step.
-const STEPS_WITHOUT_REFRESH: usize = 62;
-
-/// It is computed afresh, too, when the force has fallen by this factor: the rounding was that of the
-/// larger force.
-const FALL_WITHOUT_REFRESH: f64 = 8.0;
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
 /// on, and how both change with time.
@@ -69,9 +53,9 @@ const FALL_WITHOUT_REFRESH: f64 = 8.0;
 pub struct ViscoelasticContact {
     pub(super) grid: Grid,
     pub(super) kernel: Arc<InfluenceKernel>,
-    work: Workspace,
+    pub(super) work: Workspace,
     pub(super) settings: Settings,
-    solver: ContactSolver,
+    pub(super) solver: ContactSolver,
     history: History,
     pub(super) initial_gap: Gap,
     /// Where loads may act, for each body; made when one is first free to tilt.
@@ -86,41 +70,15 @@ pub struct ViscoelasticContact {
     pub(super) contact_cells: usize,
 
     /// The state one step earlier, and the length of that step: what a guess extrapolates from.
-    previous: Solution,
-    last_dt: f64,
-    refresh: Refresh,
+    pub(super) previous: Solution,
+    pub(super) last_dt: f64,
+    pub(super) refresh: Refresh,
 
     /// The step being tried; thrown away if it fails.
-    trial: Solution,
+    pub(super) trial: Solution,
     trial_displacement: Vec<f64>,
     gap: Vec<f64>,
-    freedoms: Vec<Freedom>,
-}
-
-/// When K p was last computed afresh.
-#[derive(Debug, Clone, Copy, Default)]
-struct Refresh {
-    /// Steps still to compute it afresh.
-    due: usize,
-    /// Steps since then.
-    stale: usize,
-    /// The greatest Σ p since then.
-    greatest: f64,
-}
-
-impl Refresh {
-    /// After a step with Σ p = `sum`.
-    fn count(&mut self, sum: f64) {
-        if self.due > 0 {
-            *self = Refresh { due: self.due - 1, stale: 0, greatest: sum };
-            return;
-        }
-        self.stale += 1;
-        self.greatest = self.greatest.max(sum);
-        if self.stale >= STEPS_WITHOUT_REFRESH || sum < self.greatest / FALL_WITHOUT_REFRESH {
-            self.due = 2;
-        }
-    }
+    pub(super) freedoms: Vec<Freedom>,
 }
 
 #[derive(Debug, Clone)]
@@ -289,40 +247,6 @@ impl ViscoelasticContact {
                 let [x1, x2] = self.grid.center(k / n2, k % n2);
                 self.gap[k] -= omega + alpha1 * x1 + alpha2 * x2;
             }
-        }
-    }
-
-    /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike.
-    fn guess(&mut self, dt: f64) {
-        self.trial.counts = Counts::default();
-        for (body, motion) in self.trial.motions.iter_mut().enumerate() {
-            let [omega, alpha1, alpha2] = self.motions[body];
-            let modes = Modes::new(&self.grid, self.freedoms[body]);
-            *motion = modes.motion([omega - self.initial_gap.datum, alpha1, alpha2]);
-        }
-        let mut ahead = if self.last_dt > 0.0 { (dt / self.last_dt).min(FARTHEST_GUESS) } else { 0.0 };
-        let (mut now, mut guessed) = (0.0, 0.0);
-        for (&p, &before) in self.current.pressure.iter().zip(&self.previous.pressure) {
-            now += p;
-            guessed += (p + ahead * (p - before)).max(0.0);
-        }
-        // a single force says what the guess must carry; else it should not stray far from the last state
-        let wanted =
-            if self.freedoms.len() == 1 && self.freedoms[0].translation { self.freedoms[0].total } else { now };
-        if !(wanted / FARTHEST_FORCE..=wanted * FARTHEST_FORCE).contains(&guessed) {
-            ahead = 0.0;
-        }
-        let extrapolate = |trial: &mut [f64], current: &[f64], previous: &[f64]| {
-            for ((guess, &now), &before) in trial.iter_mut().zip(current).zip(previous) {
-                *guess = now + ahead * (now - before);
-            }
-        };
-        extrapolate(&mut self.trial.pressure, &self.current.pressure, &self.previous.pressure);
-        if self.refresh.due == 0 {
-            extrapolate(&mut self.trial.potential, &self.current.potential, &self.previous.potential);
-        } else if matches!(self.solver, ContactSolver::ActiveSet(_)) {
-            self.kernel.apply(&self.trial.pressure, &mut self.trial.potential, &mut self.work);
-            self.trial.counts.convolutions += 1;
         }
     }
 
