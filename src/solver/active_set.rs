@@ -163,6 +163,8 @@ impl ActiveSet {
         let mut fresh = false;
         for (body, active) in self.bodies.iter_mut().enumerate() {
             if active.patch.cells.is_empty() && !problem.released(body) {
+                // a guess without positive pressure may hold negative ones, of which v speaks
+                fresh |= solution.pressure.iter().any(|&p| p != 0.0);
                 // K⁻¹ of a uniform displacement, but for its scale, is the pressure under a flat punch
                 let sharpen = |cells: &[u32], solution: &mut Solution| {
                     let shape = &mut self.preconditioned;
