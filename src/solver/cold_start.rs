@@ -45,7 +45,7 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut 
     let (freedom, modes) = (problem.bodies[body], problem.modes(body));
     cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
     // a body that tilts under a force first comes to rest where the load puts it
-    let motion = if modes.tilts() && modes.translates() { rest(&modes, cells, problem.gap) } else { [0.0; 3] };
+    let motion = if modes.tilts() && modes.translates() { rest(&modes, cells, problem.gap).0 } else { [0.0; 3] };
     if modes.tilts() {
         solution.motions[body] = motion;
     }
@@ -102,7 +102,13 @@ pub(crate) fn press_everywhere(problem: &Problem<'_>, body: usize, patch: &mut P
     let freedom = problem.bodies[body];
     let mean = if freedom.translation { freedom.total / patch.cells.len() as f64 } else { 0.0 };
     patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = mean);
-    balance(problem, body, &patch.cells, solution);
+    if !balance(problem, body, &patch.cells, solution) && freedom.translation {
+        // a load so near the rim that next to no cell can carry it: then the very cells that it rests on
+        patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
+        for (k, share) in rest(&problem.modes(body), &patch.cells, problem.gap).1 {
+            solution.pressure[k as usize] = share * freedom.total;
+        }
+    }
 }
 
 /// Brings pressures ≥ 0 on `cells` into balance with the load by a factor 1 + B y, clipped at zero; false

@@ -36,7 +36,7 @@ impl PolonskyKeer {
             }
             let penetration = problem.penetration(solution, |k| solution.pressure[k] == 0.0);
             solution.residual = relative_residual(&state, penetration);
-            let solved = solution.residual <= stop.tolerance;
+            let solved = solution.residual <= stop.tolerance && self.carries_the_forces(problem, solution);
             if solved || solution.counts.iterations >= stop.max_iterations || solution.residual.is_nan() {
                 return;
             }
@@ -79,6 +79,19 @@ impl PolonskyKeer {
         for (body, patch) in self.patches.iter_mut().enumerate() {
             patch.gram = problem.modes(body).gram(&patch.cells);
         }
+    }
+
+    /// Whether every force is carried: a balance that could not be found leaves it open.
+    fn carries_the_forces(&self, problem: &Problem<'_>, solution: &mut Solution) -> bool {
+        let carried = (0..problem.bodies.len()).all(|body| {
+            let freedom = problem.bodies[body];
+            let sum: f64 = self.patches[body].cells.iter().map(|&k| solution.pressure[k as usize]).sum();
+            !freedom.translation || (sum - freedom.total).abs() <= 1e-9 * freedom.total
+        });
+        if !carried {
+            solution.residual = f64::INFINITY;
+        }
+        carried
     }
 
     /// Step length from the image of the direction, less its free motion in contact.

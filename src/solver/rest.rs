@@ -12,7 +12,9 @@ const PIVOTS: usize = 200;
 ///
 /// whose dual is the motion. Solved by the revised simplex method on bases of three columns at most, begun
 /// from artificial columns that cost more than any cell.
-pub(crate) fn rest(modes: &Modes<'_>, cells: &[u32], gap: &[f64]) -> Motion {
+///
+/// Returned with the cells it rests on and the share of the load that each of them carries.
+pub(crate) fn rest(modes: &Modes<'_>, cells: &[u32], gap: &[f64]) -> (Motion, Vec<(u32, f64)>) {
     let rows: Vec<usize> = modes.free().into_iter().enumerate().filter(|(_, free)| *free).map(|(m, _)| m).collect();
     let heights = || cells.iter().map(|&k| gap[k as usize]);
     let lowest = heights().fold(f64::INFINITY, f64::min);
@@ -22,6 +24,7 @@ pub(crate) fn rest(modes: &Modes<'_>, cells: &[u32], gap: &[f64]) -> Motion {
 
     // columns of the basis and their cost, heights taken from the lowest point
     let mut basis: Vec<([f64; 3], f64)> = rows.iter().map(|&m| (unit(m), artificial)).collect();
+    let mut supports: Vec<Option<u32>> = vec![None; rows.len()];
     let mut dual = [0.0; 3];
     for _ in 0..PIVOTS {
         let Some(next) = solve_dual(&rows, &basis) else { break };
@@ -40,11 +43,14 @@ pub(crate) fn rest(modes: &Modes<'_>, cells: &[u32], gap: &[f64]) -> Motion {
         let leaving = (0..rows.len()).filter(|&m| change[m] > 1e-12).min_by(|&a, &b| ratio(a).total_cmp(&ratio(b)));
         let Some(leaving) = leaving else { break };
         basis[leaving] = (column, gap[entering as usize] - lowest);
+        supports[leaving] = Some(entering);
     }
     if modes.free()[0] {
         dual[0] += lowest;
     }
-    dual
+    let shares = solve_primal(&rows, &basis, modes.load()).unwrap_or_default();
+    let carried = supports.iter().zip(shares).filter_map(|(cell, share)| Some(((*cell)?, share.max(0.0))));
+    (dual, carried.collect())
 }
 
 fn unit(m: usize) -> [f64; 3] {
