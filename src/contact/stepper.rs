@@ -159,15 +159,15 @@ impl ViscoelasticContact {
 
         // what the past makes of the end of the step: u = u_old + c K p
         let c = self.history.predict(time, dt, &self.displacement, &mut self.trial_displacement)?;
+        if !(c > 0.0 && c.is_finite()) {
+            return Err(Error::Overflow { time, what: "the compliance of the step" });
+        }
         self.fill_gap(loads);
 
         // the contact problem of the step
         self.guess(dt);
         let owner = self.initial_gap.owner.as_deref();
         let problem = Problem { kernel: &self.kernel, compliance: c, gap: &self.gap, bodies: &self.freedoms, owner };
-        if !(c > 0.0 && c.is_finite()) {
-            return Err(Error::Overflow { time, what: "the compliance of the step" });
-        }
         let stop = Stop { tolerance: self.settings.tolerance, max_iterations: self.settings.max_iterations };
         match &mut self.solver {
             _ if problem.all_released() => self.trial.release(),

@@ -180,9 +180,7 @@ impl ActiveSet {
                     cells.iter().for_each(|&k| solution.pressure[k as usize] = scale * shape[k as usize].max(0.0));
                 };
                 cold_start(problem, body, &mut active.patch, solution, sharpen);
-                active.patch.cells.retain(|&k| solution.pressure[k as usize] > 0.0);
-                active.patch.cells.iter().for_each(|&k| self.member[k as usize] = true);
-                active.patch.gram = problem.modes(body).gram(&active.patch.cells);
+                adopt_pressed(problem, body, active, &mut self.member, solution);
                 fresh |= !active.patch.cells.is_empty();
             }
         }
@@ -263,13 +261,10 @@ impl ActiveSet {
                 }
                 None => {
                     // the load acts outside the hull of what is left of A: begin again under this body
+                    active.patch.cells.iter().for_each(|&k| self.member[k as usize] = false);
+                    active.leaving.drain(..).for_each(|k| solution.pressure[k as usize] = 0.0);
                     press_everywhere(problem, body, &mut active.patch, solution);
-                    active.patch.cells.retain(|&k| solution.pressure[k as usize] > 0.0);
-                    active.leaving.clear();
-                    for k in (0..self.member.len()).filter(|&k| problem.owner(k) == body) {
-                        self.member[k] = solution.pressure[k] > 0.0;
-                    }
-                    active.patch.gram = modes.gram(&active.patch.cells);
+                    adopt_pressed(problem, body, active, &mut self.member, solution);
                     solution.convolve(problem, work);
                 }
             }
@@ -305,8 +300,7 @@ impl ActiveSet {
     /// bring a negative pressure with them, and change the force. A body that sinks in deeper than the surface
     /// yields is not yet where it belongs: then the deepest cells stop it first.
     fn join(&mut self, problem: &Problem<'_>, state: Measure, penetration: f64, solution: &Solution) {
-        let yielding = (state.displacement / state.cells.max(1) as f64).sqrt();
-        let least = penetration * if penetration > yielding { 0.5 } else { DEEP };
+        let least = penetration * if penetration > state.yielding() { 0.5 } else { DEEP };
         for k in 0..self.member.len() {
             self.member[k] |= solution.pressure[k] == 0.0 && problem.possible(k) && problem.depth(solution, k) > least;
         }
@@ -401,4 +395,17 @@ impl ActiveSet {
             *v += a * kd;
         }
     }
+}
+
+/// Makes the cells of a body that a new guess presses, of those its patch lists, its part of A.
+fn adopt_pressed(
+    problem: &Problem<'_>,
+    body: usize,
+    active: &mut ActiveBody,
+    member: &mut [bool],
+    solution: &Solution,
+) {
+    active.patch.cells.retain(|&k| solution.pressure[k as usize] > 0.0);
+    active.patch.cells.iter().for_each(|&k| member[k as usize] = true);
+    active.patch.gram = problem.modes(body).gram(&active.patch.cells);
 }

@@ -79,13 +79,18 @@ pub(crate) const PENETRATION_SLACK: f64 = 10.0;
 /// not count.
 pub(crate) fn relative_residual(state: &Measure, penetration: f64) -> f64 {
     let error = state.rms().max(penetration / PENETRATION_SLACK) - 4.0 * f64::EPSILON * state.height;
-    if error <= 0.0 { 0.0 } else { error / (state.displacement / state.cells.max(1) as f64).sqrt() }
+    if error <= 0.0 { 0.0 } else { error / state.yielding() }
 }
 
 impl Measure {
     /// rms |h| in contact.
     pub(crate) fn rms(&self) -> f64 {
         (self.square / self.cells.max(1) as f64).sqrt()
+    }
+
+    /// rms (c v) in contact: how far the surface yields.
+    pub(crate) fn yielding(&self) -> f64 {
+        (self.displacement / self.cells.max(1) as f64).sqrt()
     }
 }
 

@@ -100,7 +100,7 @@ impl<'a> Modes<'a> {
 
     /// The balance that the free modes ask for.
     fn wanted(&self) -> [f64; 3] {
-        [if self.freedom.translation { self.freedom.total } else { 0.0 }, 0.0, 0.0]
+        self.load().map(|share| share * self.freedom.total)
     }
 
     /// B Bᵀ over `cells`; only what [`Modes::fit`] needs.
@@ -230,7 +230,7 @@ impl Gram {
         }
         let mut b = [0, 1, 2].map(|m| right[m] * scale[m]);
         // symmetric elimination; `order` holds the pivots taken
-        let (mut order, mut left) = ([0; 3], vec3_true());
+        let (mut order, mut left) = ([0; 3], [true; 3]);
         let mut rank = 0;
         while rank < 3 {
             let pivot = (0..3).filter(|&m| left[m]).max_by(|&m, &n| a[m][m].total_cmp(&a[n][n]));
@@ -254,10 +254,6 @@ impl Gram {
         }
         [0, 1, 2].map(|m| x[m] * scale[m])
     }
-}
-
-const fn vec3_true() -> [bool; 3] {
-    [true; 3]
 }
 
 fn norm(a: [f64; 3]) -> f64 {
