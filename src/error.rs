@@ -182,22 +182,56 @@ pub enum Error {
         what: &'static str,
     },
 
-    /// The exponential time rule needs an exponential series of the creep compliance and the
-    /// rheology offers none ([`Rheology::creep_spectrum`](crate::rheology::Rheology::creep_spectrum)
-    /// is `None`). Choose [`TimeRule::Backward`](crate::contact::TimeRule::Backward), or
-    /// [`TimeRule::Automatic`](crate::contact::TimeRule::Automatic).
+    /// Something needs an exponential series of the creep compliance and the rheology has no exact one
+    /// ([`Rheology::creep_spectrum`](crate::rheology::Rheology::creep_spectrum) is `None`). Fit one, with
+    /// [`Rheology::series`](crate::rheology::Rheology::series) or
+    /// [`Material::fitted`](crate::rheology::Material::fitted).
     #[error(
-        "the exponential time rule needs the exponential series of {rheology}, which has none: use TimeRule::Backward or TimeRule::Automatic"
+        "{what} needs an exponential series, and {rheology} has no exact one: fit one over the times of the scene with Rheology::series or Material::fitted"
     )]
     NoExponentialSeries {
+        /// What needs it.
+        what: &'static str,
         /// The rheology, as its `Debug` prints it.
         rheology: String,
     },
 
-    /// A user's creep compliance returned a value no body can have: negative, not finite, or less
-    /// than before.
+    /// A step would look further into the past of the material than it is known: beyond the data of a table, or
+    /// beyond the times that a series was fitted over. Give
+    /// [`Builder::times`](crate::contact::Builder::times) a longer range, or let the table be extrapolated.
     #[error(
-        "creep compliance J({time} s) = {value} 1/Pa is not allowed: it must be finite, ≥ 0 and non-decreasing (J was {previous} before)"
+        "at t = {time} s the bodies remember {age} s, but the material is known for {known_until} s only: fit its series over longer times (Builder::times), or let its table be extrapolated"
+    )]
+    BeyondMaterial {
+        /// End of the step \[s\].
+        time: f64,
+        /// Time since the bodies were undisturbed \[s\].
+        age: f64,
+        /// [`Rheology::known_until`](crate::rheology::Rheology::known_until) \[s\].
+        known_until: f64,
+    },
+
+    /// The past of a direct sum has filled the memory that [`Settings::history_limit`](crate::contact::Settings)
+    /// allows. Raise it, or use [`TimeRule::Automatic`](crate::contact::TimeRule::Automatic), whose memory does not
+    /// grow.
+    #[error(
+        "at t = {time} s the direct sum over {steps} past steps would take {bytes} bytes, more than Settings::history_limit = {limit}: raise it, or use TimeRule::Automatic, whose memory does not grow"
+    )]
+    HistoryFull {
+        /// End of the step \[s\].
+        time: f64,
+        /// Steps in the past.
+        steps: usize,
+        /// Bytes the past would take with this step.
+        bytes: usize,
+        /// Bytes allowed.
+        limit: usize,
+    },
+
+    /// A user's creep compliance returned a value no body can have: negative, not finite, or less
+    /// than before; or 0 after t = 0, where a series is fitted.
+    #[error(
+        "creep compliance J({time} s) = {value} 1/Pa is not allowed: it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {previous} before)"
     )]
     InvalidCompliance {
         /// Time at which it was evaluated \[s\].
@@ -206,6 +240,47 @@ pub enum Error {
         value: f64,
         /// Its value at an earlier time \[1/Pa\].
         previous: f64,
+    },
+
+    /// No exponential series with positive coefficients stands for a material function to within the tolerance:
+    /// ask for less, or let the contact sum its whole past
+    /// ([`TimeRule::Backward`](crate::contact::TimeRule::Backward)).
+    #[error(
+        "no exponential series was found to within {tolerance:e}: the best errs by {misfit:e} at {at:e} s; raise the tolerance (Settings::series_tolerance), or use TimeRule::Backward, which needs no series"
+    )]
+    PoorFit {
+        /// Greatest relative misfit of the best series found.
+        misfit: f64,
+        /// Where it is \[s\].
+        at: f64,
+        /// The misfit asked for.
+        tolerance: f64,
+    },
+
+    /// A table of measured data is not one that a body could have given.
+    #[error(transparent)]
+    Table(#[from] crate::rheology::TableError),
+
+    /// Isotherms of a master curve measure different things.
+    #[error("the {first} isotherms cannot be joined to {second} isotherms")]
+    MixedIsotherms {
+        /// What the first measures, or what is asked for.
+        first: &'static str,
+        /// What the other measures.
+        second: &'static str,
+    },
+
+    /// Two isotherms have no values in common, so that no shift brings them together: measure at a temperature in
+    /// between, or shift by a law ([`MasterCurve::with_law`](crate::rheology::MasterCurve::with_law)).
+    #[error(
+        "the isotherms at {} K and {} K do not overlap in their values: at the best shift they are {:.0} % apart; measure at a temperature in between, or use MasterCurve::with_law",
+        .temperatures[0], .temperatures[1], 100.0 * .apart
+    )]
+    NoOverlap {
+        /// The temperatures \[K\].
+        temperatures: [f64; 2],
+        /// Root mean square of the logarithmic distance at the best shift.
+        apart: f64,
     },
 
     /// Contact reaches the edge of the grid, beyond which the bodies go on: the pressure there

@@ -109,8 +109,9 @@ pub mod prelude {
     pub use crate::geometry::{Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, Shifted, Sphere};
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::rheology::{
-        Burgers, Elastic, FnRheology, GeneralizedKelvin, GeneralizedMaxwell, KelvinVoigt, Material, Maxwell, Rheology,
-        Zener,
+        Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
+        KelvinVoigt, Kww, LogCreep, Material, Maxwell, PowerLaw, Rheology, SlowCreep, TabulatedCreep, TabulatedDynamic,
+        TabulatedRelaxation, Zener,
     };
     pub use crate::{Error, Grid, InfluenceKernel, Result};
 }

@@ -80,7 +80,7 @@ fn build_says_what_a_material_cannot_do() {
     assert!(matches!(build(voigt(), TimeRule::Rectangle), Err(Error::NoElasticResponse { .. })));
     assert_eq!(build(voigt(), TimeRule::Backward), Ok(()));
     let closure = || Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt())));
-    let Err(Error::NoExponentialSeries { rheology }) = build(closure(), TimeRule::Exponential) else { panic!() };
+    let Err(Error::NoExponentialSeries { rheology, .. }) = build(closure(), TimeRule::Exponential) else { panic!() };
     assert!(rheology.contains("FnRheology"));
     assert_eq!(build(closure(), TimeRule::Automatic), Ok(()));
     let negative = Material::incompressible(FnRheology::new(|t| t - 1.0));

@@ -1,5 +1,8 @@
 //! Creep, relaxation, and the passage between them.
 
+mod common;
+
+use common::spectra;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::Error;
@@ -132,18 +135,6 @@ fn bad_parameters_are_refused_by_name() {
     for nu in [-1.0, 0.51, f64::NAN] {
         let error = Material::constant_poisson(Elastic::new(1.0).unwrap(), nu).unwrap_err();
         assert_eq!(field(error), "Poisson's ratio");
-    }
-}
-
-prop_compose! {
-    /// Solids and fluids, with and without elastic response, up to 12 terms over 20 decades.
-    fn spectra()(
-        glassy in prop_oneof![Just(0.0), 1e-3..1e3_f64],
-        fluidity in prop_oneof![Just(0.0), 1e-9..1e9_f64],
-        terms in prop::collection::vec((-4.0..4.0_f64, -10.0..10.0_f64), 1..12),
-    ) -> CreepSpectrum {
-        let terms: Vec<_> = terms.iter().map(|&(c, lambda)| (10f64.powf(c), 10f64.powf(lambda))).collect();
-        CreepSpectrum::new(glassy, fluidity, &terms).unwrap()
     }
 }
 

@@ -84,6 +84,7 @@ pub struct AxisymmetricContact {
     /// Width of an element; the k-th is centred on (k + ½) width.
     width: f64,
     profile: Vec<f64>,
+    known_until: f64,
     time: f64,
     approach: f64,
     displacement: Vec<f64>,
@@ -106,7 +107,7 @@ impl AxisymmetricContact {
             return Err(Error::CountOutOfRange { field: "elements", value: 0, allowed: "1 or more" });
         }
         positive("reach of the foundation", reach)?;
-        let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series())?;
+        let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("the one-dimensional foundation"))?;
         let width = reach / elements as f64;
         let depths: Vec<f64> = (0..elements).map(|k| (profile.depth)((k as f64 + 0.5) * width)).collect();
         for &depth in &depths {
@@ -122,6 +123,7 @@ impl AxisymmetricContact {
             history: Exponential::new(&creep, elements),
             width,
             profile: depths,
+            known_until: material.known_until(),
             time: 0.0,
             approach,
             displacement: vec![0.0; elements],
@@ -169,6 +171,10 @@ impl AxisymmetricContact {
 
     fn predict(&mut self, dt: f64) -> Result<f64> {
         non_negative("time step", dt)?;
+        let (time, known_until) = (self.time + dt, self.known_until);
+        if time > known_until * (1.0 + 1e-9) {
+            return Err(Error::BeyondMaterial { time, age: time, known_until });
+        }
         let c = self.history.predict(self.time + dt, dt, &self.displacement, &mut self.trial_displacement)?;
         for ((touch, &g), &u_old) in self.trial_touch.iter_mut().zip(&self.profile).zip(&self.trial_displacement) {
             *touch = g + u_old;

@@ -65,7 +65,8 @@ impl GrowingSphere {
     /// response, or the load is an approach.
     pub fn new(radius: f64, material: &Material, load: impl LoadHistory + 'static) -> Result<GrowingSphere> {
         positive("sphere radius", radius)?;
-        let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series())?;
+        let creep =
+            material.contact_spectrum()?.ok_or_else(|| material.no_series("the solution for a growing contact"))?;
         if creep.glassy() == 0.0 {
             return Err(Error::NoElasticResponse { time: 0.0, what: "the solution for a growing contact" });
         }

@@ -10,6 +10,7 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Result, exact_length};
 use crate::kernel::InfluenceKernel;
 use crate::load::Load;
+use crate::rheology::Material;
 
 impl ViscoelasticContact {
     /// Time \[s\], 0 at first.
@@ -25,6 +26,13 @@ impl ViscoelasticContact {
     /// The settings it was built with.
     pub fn settings(&self) -> &Settings {
         &self.settings
+    }
+
+    /// What the bodies are made of. Where a rheology has no exact exponential series, the one that was fitted in
+    /// its place, by the builder or by the first step that took time: [`Material::fit_reports`] tells how
+    /// well.
+    pub fn material(&self) -> &Material {
+        &self.material
     }
 
     /// The influence kernel, to share with other contacts.

@@ -1,5 +1,6 @@
 //! Puts the parts of a contact together.
 
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::Grid;
@@ -7,7 +8,7 @@ use crate::contact::settings::{Settings, Solver, TimeRule};
 use crate::contact::stepper::{ContactSolver, ViscoelasticContact};
 use crate::error::{Error, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
-use crate::hereditary::{Direct, Exponential, History, Weighting};
+use crate::hereditary::{Direct, Exponential, History, Unfitted, Weighting};
 use crate::kernel::InfluenceKernel;
 use crate::rheology::Material;
 use crate::solver::{ActiveSet, PolonskyKeer};
@@ -20,13 +21,23 @@ pub struct Builder {
     /// The gap field of each rigid body.
     gaps: Vec<Vec<f64>>,
     material: Option<Material>,
+    counter_body: Option<Material>,
+    times: Option<RangeInclusive<f64>>,
     kernel: Option<Arc<InfluenceKernel>>,
     settings: Settings,
 }
 
 impl Builder {
     pub(crate) fn new(grid: Grid) -> Builder {
-        Builder { grid, gaps: Vec::new(), material: None, kernel: None, settings: Settings::default() }
+        Builder {
+            grid,
+            gaps: Vec::new(),
+            material: None,
+            counter_body: None,
+            times: None,
+            kernel: None,
+            settings: Settings::default(),
+        }
     }
 
     /// The shape of the rigid body: the gap before the bodies deform. Required; evaluated here, errors are
@@ -44,9 +55,46 @@ impl Builder {
         self
     }
 
-    /// The material of the creeping body; the other one is rigid. Required.
+    /// The material of the creeping body. Required. The other body is rigid, unless
+    /// [`Builder::counter_body`] says what it is made of.
     pub fn material(mut self, material: Material) -> Builder {
         self.material = Some(material);
+        self
+    }
+
+    /// The material of the other body, the one with the shape: elastic or creeping too. Both surfaces then give
+    /// way, u is the sum of their displacements, and C(t) that of their compliances.
+    pub fn counter_body(mut self, material: Material) -> Builder {
+        self.counter_body = Some(material);
+        self
+    }
+
+    /// The times \[s\] over which the material is wanted, from the shortest that matters to the end of the
+    /// scene, both after the load first acts. Only rheologies without an exact exponential series
+    /// ([`PowerLaw`](crate::rheology::PowerLaw), closures) look at it: their series is fitted over these times to
+    /// within [`Settings::series_tolerance`], and a step that ends later fails with
+    /// [`Error::BeyondMaterial`].
+    ///
+    /// Without it, the first step that takes time decides, here of length Δ: from Δ/100 to 10⁶ Δ, or to the end of the run if
+    /// [`ViscoelasticContact::follow`] knows a later one. A body without elastic response can then not start with a
+    /// jump of the load; with it, what it has crept by the shortest time counts as immediate.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(PowerLaw::new(1.0e-6, 1.0, 0.3)?))
+    ///     .times(1.0e-2..=1.0e2)
+    ///     .build()?;
+    /// contact.step(0.0, Load::force(0.5))?;
+    /// contact.step(1.0, Load::force(0.5))?;
+    /// let fit = contact.material().fit_reports().next().unwrap();
+    /// assert!(fit.max_misfit() <= 1.0e-4);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    pub fn times(mut self, times: RangeInclusive<f64>) -> Builder {
+        self.times = Some(times);
         self
     }
 
@@ -67,10 +115,10 @@ impl Builder {
     ///
     /// # Errors
     /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a setting is out of
-    /// range, the kernel was made for another grid, the exponential rule was chosen for a rheology
-    /// without a series, or the rectangle rule for one without elastic response.
+    /// range, the kernel was made for another grid, no series of the material over [`Builder::times`] is
+    /// within the tolerance, or the rectangle rule was chosen for a rheology without elastic response.
     pub fn build(self) -> Result<ViscoelasticContact> {
-        let Builder { grid, gaps, material, kernel, settings } = self;
+        let Builder { grid, gaps, material, counter_body, times, kernel, settings } = self;
         settings.validate()?;
         if gaps.is_empty() {
             return Err(Error::Missing { part: "geometry" });
@@ -79,8 +127,11 @@ impl Builder {
             return Err(Error::CountOutOfRange { field: "rigid bodies", value: gaps.len(), allowed: "65535 at most" });
         }
         let (bodies, gap) = (gaps.len(), Gap::new(&gaps, &grid)?);
-        let material = material.ok_or(Error::Missing { part: "material" })?;
-        let history = history(&material, settings.time_rule, grid.len())?;
+        let mut material = material.ok_or(Error::Missing { part: "material" })?;
+        if let Some(other) = counter_body {
+            material = material.against(other);
+        }
+        let history = history(&mut material, times, &settings, grid.len())?;
         let kernel = match kernel {
             Some(kernel) if *kernel.grid() != grid => {
                 return Err(Error::KernelMismatch { kernel: kernel.grid().clone(), contact: grid });
@@ -92,26 +143,32 @@ impl Builder {
             Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&grid, bodies))),
             Solver::PolonskyKeer => ContactSolver::PolonskyKeer(PolonskyKeer::new(grid.len(), bodies)),
         };
-        Ok(ViscoelasticContact::new(grid, bodies, kernel, settings, gap, history, solver))
+        Ok(ViscoelasticContact::new(grid, bodies, kernel, settings, gap, material, history, solver))
     }
 }
 
-/// The home of the past that a time rule needs.
-fn history(material: &Material, rule: TimeRule, cells: usize) -> Result<History> {
-    let glassy = material.creep_compliance(0.0);
-    if !(glassy.is_finite() && glassy >= 0.0) {
-        return Err(Error::InvalidCompliance { time: 0.0, value: glassy, previous: 0.0 });
-    }
-    let direct = |weighting| Ok(History::Direct(Direct::new(material.clone(), weighting)));
-    match (rule, material.contact_spectrum()?) {
-        (TimeRule::Automatic | TimeRule::Exponential, Some(creep)) => {
-            Ok(History::Exponential(Exponential::new(&creep, cells)))
+/// The home of the past that a time rule needs; `material` is fitted if there is a need and its times are known.
+fn history(
+    material: &mut Material,
+    times: Option<RangeInclusive<f64>>,
+    settings: &Settings,
+    cells: usize,
+) -> Result<History> {
+    let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
+    let direct = |weighting| Ok(History::Direct(Direct::new(material.clone(), weighting, settings.history_limit)));
+    match settings.time_rule {
+        TimeRule::Rectangle if glassy == 0.0 => {
+            return Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" });
         }
-        (TimeRule::Exponential, None) => Err(material.no_series()),
-        (TimeRule::Rectangle, _) if glassy == 0.0 => {
-            Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" })
-        }
-        (TimeRule::Rectangle, _) => direct(Weighting::End),
-        (TimeRule::Backward, _) | (TimeRule::Automatic, None) => direct(Weighting::Start),
+        TimeRule::Rectangle => return direct(Weighting::End),
+        TimeRule::Backward => return direct(Weighting::Start),
+        TimeRule::Automatic | TimeRule::Exponential => {}
     }
+    if let Some(times) = times {
+        *material = material.fitted(times, settings.series_tolerance)?;
+    }
+    Ok(match material.contact_spectrum()? {
+        Some(creep) => History::Exponential(Exponential::new(&creep, cells)),
+        None => History::Unfitted(Box::new(Unfitted::new(material.clone(), settings.series_tolerance, cells))),
+    })
 }

@@ -25,6 +25,12 @@ pub struct Settings {
     pub time_rule: TimeRule,
     /// What happens when contact reaches the edge of the grid (default: [`Edge::Refuse`]).
     pub edge: Edge,
+    /// Relative error of the creep compliance allowed to an exponential series that is fitted to a rheology
+    /// without an exact one (default: 1e-4; range \[1e-8, 0.1\]).
+    pub series_tolerance: f64,
+    /// Memory that a direct sum may fill with its past, one field of 8 bytes a cell for each step; a step
+    /// beyond it fails \[bytes\] (default: 2 GiB).
+    pub history_limit: usize,
 }
 
 /// The solver of the contact problem of a step.
@@ -44,18 +50,19 @@ pub enum Solver {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum TimeRule {
-    /// [`TimeRule::Exponential`] for a rheology that has an exponential series, else
-    /// [`TimeRule::Backward`].
+    /// The rule that suits the rheology: [`TimeRule::Exponential`].
     #[default]
     Automatic,
     /// Exponential integration of the relaxation form: second order, stable for steps of any length,
-    /// one field for each relaxation time.
+    /// one field for each relaxation time. A rheology without an exact exponential series gets a fitted one: see
+    /// [`Builder::times`](crate::contact::Builder::times).
     Exponential,
     /// The rule of the source paper, a direct sum over all past steps: first order, oscillates when
     /// a step is longer than the relaxation time of a Maxwell body and diverges beyond twice that; needs
     /// an elastic response.
     Rectangle,
-    /// A direct sum over all past steps that is first order and stable for steps of any length.
+    /// A direct sum over all past steps with the rheology's own J(t), no series: first order, stable for steps
+    /// of any length, one field for each past step ([`Settings::history_limit`]).
     Backward,
 }
 
@@ -79,6 +86,8 @@ impl Default for Settings {
             solver: Solver::default(),
             time_rule: TimeRule::default(),
             edge: Edge::default(),
+            series_tolerance: 1e-4,
+            history_limit: 2 << 30,
         }
     }
 }
@@ -93,6 +102,8 @@ impl Settings {
     pub(crate) fn validate(&self) -> Result<()> {
         let tolerance = self.tolerance;
         within("Settings::tolerance", tolerance, (1e-13..=0.1).contains(&tolerance), "in [1e-13, 0.1]")?;
+        let series = self.series_tolerance;
+        within("Settings::series_tolerance", series, (1e-8..=0.1).contains(&series), "in [1e-8, 0.1]")?;
         if self.max_iterations == 0 {
             return Err(Error::CountOutOfRange { field: "Settings::max_iterations", value: 0, allowed: "1 or more" });
         }

@@ -14,6 +14,7 @@ use crate::geometry::{Gap, Geometry, evaluate};
 use crate::hereditary::{Change, History};
 use crate::kernel::{InfluenceKernel, Workspace};
 use crate::load::{Load, LoadHistory, Tilt};
+use crate::rheology::Material;
 use crate::solver::{ActiveSet, Counts, Freedom, Modes, PolonskyKeer, Problem, Solution, Stop};
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
@@ -56,7 +57,10 @@ pub struct ViscoelasticContact {
     pub(super) work: Workspace,
     pub(super) settings: Settings,
     pub(super) solver: ContactSolver,
+    pub(super) material: Material,
     history: History,
+    /// The bodies were undisturbed until then.
+    undisturbed_until: f64,
     pub(super) initial_gap: Gap,
     /// Where loads may act, for each body; made when one is first free to tilt.
     hulls: Vec<Option<Hull>>,
@@ -99,6 +103,7 @@ impl ViscoelasticContact {
         kernel: Arc<InfluenceKernel>,
         settings: Settings,
         initial_gap: Gap,
+        material: Material,
         history: History,
         solver: ContactSolver,
     ) -> ViscoelasticContact {
@@ -125,7 +130,9 @@ impl ViscoelasticContact {
             kernel,
             settings,
             solver,
+            material,
             history,
+            undisturbed_until: 0.0,
             initial_gap,
         }
     }
@@ -156,6 +163,7 @@ impl ViscoelasticContact {
     pub(crate) fn step_to(&mut self, time: f64, dt: f64, loads: &[Load]) -> Result<StepReport> {
         non_negative("time", time)?;
         self.free(time, loads)?;
+        self.remember(time)?;
 
         // what the past makes of the end of the step: u = u_old + c K p
         let c = self.history.predict(time, dt, &self.displacement, &mut self.trial_displacement)?;
@@ -179,7 +187,7 @@ impl ViscoelasticContact {
 
         // accept: nothing below can fail
         self.displace(c);
-        self.history.commit(&Change {
+        let fitted = self.history.commit(&Change {
             time,
             dt,
             displacement: [&self.displacement, &self.trial_displacement],
@@ -193,12 +201,25 @@ impl ViscoelasticContact {
             let [omega, alpha1, alpha2] = prescribed(&loads[body], self.initial_gap.datum);
             *motion = [self.initial_gap.datum + omega + free[0], alpha1 + free[1], alpha2 + free[2]];
         }
-        self.time = time;
+        let before = std::mem::replace(&mut self.time, time);
         self.loads.copy_from_slice(loads);
         self.last_dt = dt;
         self.refresh.count(self.current.pressure.iter().sum());
         self.contact_cells = self.current.pressure.iter().filter(|&&p| p > 0.0).count();
+        if let Some(material) = fitted {
+            self.material = material;
+        }
+        if self.contact_cells == 0 && self.undisturbed_until == before {
+            self.undisturbed_until = time;
+        }
         Ok(self.report(dt))
+    }
+
+    /// Refuses a step whose past is longer than the material is known.
+    fn remember(&self, time: f64) -> Result<()> {
+        let (age, known_until) = (time - self.undisturbed_until, self.material.known_until());
+        // the end of a run may miss the end of a table by rounding
+        if age <= known_until * (1.0 + 1e-9) { Ok(()) } else { Err(Error::BeyondMaterial { time, age, known_until }) }
     }
 
     /// Sets what the loads leave free of each body, and refuses those that no pressure can balance.
@@ -312,6 +333,7 @@ impl ViscoelasticContact {
 
     /// Follows a load history to the time `until` \[s\], step by step as `stepping` says.
     pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Follow<'a> {
+        self.history.expect(until - self.undisturbed_until);
         Follow::new(self, history, stepping, until)
     }
 

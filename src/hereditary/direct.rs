@@ -26,30 +26,37 @@ pub(crate) struct Direct {
     increments: Vec<(f64, Vec<f64>)>,
     /// What each increment contributes to u_old of the step predicted last, per unit of v.
     weights: Vec<f64>,
+    /// Bytes that the increments may take.
+    limit: usize,
 }
 
 impl Direct {
-    pub(crate) fn new(material: Material, weighting: Weighting) -> Direct {
-        Direct { material, weighting, increments: Vec::new(), weights: Vec::new() }
+    pub(crate) fn new(material: Material, weighting: Weighting, limit: usize) -> Direct {
+        Direct { material, weighting, increments: Vec::new(), weights: Vec::new(), limit }
     }
 
     pub(crate) fn predict(&mut self, time: f64, dt: f64, u_old: &mut [f64]) -> Result<f64> {
+        let bytes = (self.increments.len() + 1).saturating_mul(std::mem::size_of_val(u_old));
+        if bytes > self.limit {
+            return Err(Error::HistoryFull { time, steps: self.increments.len(), bytes, limit: self.limit });
+        }
         let (age, what) = match self.weighting {
             Weighting::End => (0.0, "the rectangle rule"),
             Weighting::Start => (dt, "a step of length zero (ramp the load over a short time instead)"),
         };
-        let newest = self.creep(age, self.creep(0.0, 0.0)?)?;
+        let newest = self.material.checked_compliance(age, (0.0, self.material.contact_compliance(0.0)))?;
         if newest == 0.0 {
             return Err(Error::NoElasticResponse { time, what });
         }
         // c acts on the whole of v, so that a past increment adds only what exceeds c
         self.weights.clear();
-        let (mut younger, mut oldest) = (newest, age);
+        let (mut oldest, mut younger) = (age, newest);
         for (when, _) in self.increments.iter().rev() {
             // ages never fall, but their differences of times may, by rounding
-            oldest = (time - when).max(oldest);
-            younger = self.creep(oldest, younger)?;
-            self.weights.push(self.material.contact_factor() * (younger - newest));
+            let older = (time - when).max(oldest);
+            younger = self.material.checked_compliance(older, (oldest, younger))?;
+            oldest = older;
+            self.weights.push(younger - newest);
         }
         let past = || self.increments.iter().rev().zip(&self.weights);
         for (block, old) in u_old.chunks_mut(BLOCK).enumerate() {
@@ -61,7 +68,7 @@ impl Direct {
                 }
             }
         }
-        Ok(self.material.contact_factor() * newest)
+        Ok(newest)
     }
 
     pub(crate) fn commit(&mut self, change: &Change<'_>) {
@@ -72,16 +79,5 @@ impl Direct {
         };
         let increment = after.iter().zip(before).map(|(new, old)| new - old).collect();
         self.increments.push((when, increment));
-    }
-
-    /// J at an age, checked against J at a lesser age.
-    fn creep(&self, age: f64, younger: f64) -> Result<f64> {
-        let value = self.material.creep_compliance(age);
-        // a few units in the last place are the closure's own
-        if value.is_finite() && value >= younger * (1.0 - 1e-14) {
-            Ok(value)
-        } else {
-            Err(Error::InvalidCompliance { time: age, value, previous: younger })
-        }
     }
 }

@@ -31,6 +31,15 @@ impl Exponential {
         Exponential { relaxation, branches: vec![vec![0.0; cells]; branches], factors: vec![(1.0, 0.0); branches] }
     }
 
+    /// A past of jumps alone, at one time, that left the surface displaced: every branch has its share.
+    pub(crate) fn jump_from_rest(&mut self, displacement: &[f64]) {
+        for (branch, &(modulus, _)) in self.branches.iter_mut().zip(self.relaxation.terms()) {
+            for (q, &u) in branch.iter_mut().zip(displacement) {
+                *q = modulus * u;
+            }
+        }
+    }
+
     /// Whether there is a past at all: an elastic body has none.
     pub(crate) fn remembers(&self) -> bool {
         !self.branches.is_empty() || self.relaxation.viscosity() > 0.0

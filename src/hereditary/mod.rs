@@ -12,20 +12,26 @@
 //!   steps of any length.
 //! * [`Direct`]: every past increment of v = K p, summed anew at each step with weights from C(t);
 //!   needs no exponential series, and serves the paper's rectangle rule and the backward rule.
+//!
+//! A rheology without an exact series starts as [`Unfitted`], unless the scene says over which times it is wanted.
 
 mod direct;
 mod exponential;
+mod unfitted;
 
 pub(crate) use direct::{Direct, Weighting};
 pub(crate) use exponential::Exponential;
+pub(crate) use unfitted::Unfitted;
 
 use crate::error::Result;
+use crate::rheology::Material;
 
 /// The past of one contact.
 #[derive(Debug, Clone)]
 pub(crate) enum History {
     Exponential(Exponential),
     Direct(Direct),
+    Unfitted(Box<Unfitted>),
 }
 
 impl History {
@@ -35,6 +41,7 @@ impl History {
         match self {
             History::Exponential(history) => history.predict(time, dt, displacement, u_old),
             History::Direct(history) => history.predict(time, dt, u_old),
+            History::Unfitted(history) => history.predict(time, dt, displacement, u_old),
         }
     }
 
@@ -43,15 +50,29 @@ impl History {
         match self {
             History::Exponential(history) => history.remembers(),
             History::Direct(_) => false,
+            History::Unfitted(_) => true,
         }
     }
 
     /// Takes the step that was predicted last into the past: `displacement` went from `before` to
-    /// `after`, and v = K p from `v_before` to `v_after`.
-    pub(crate) fn commit(&mut self, change: &Change<'_>) {
+    /// `after`, and v = K p from `v_before` to `v_after`. Returns the material whose series was fitted for it.
+    pub(crate) fn commit(&mut self, change: &Change<'_>) -> Option<Material> {
         match self {
             History::Exponential(history) => history.commit(change),
             History::Direct(history) => history.commit(change),
+            History::Unfitted(history) => {
+                let fitted = history.commit(change)?;
+                *self = History::Exponential(fitted.history);
+                return Some(fitted.material);
+            }
+        }
+        None
+    }
+
+    /// Says that the run lasts at least so long after its start \[s\].
+    pub(crate) fn expect(&mut self, duration: f64) {
+        if let History::Unfitted(history) = self {
+            history.expected = history.expected.max(duration);
         }
     }
 }

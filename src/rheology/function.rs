@@ -4,15 +4,24 @@ use crate::rheology::Rheology;
 
 /// A rheology given by a closure J(t): shear creep compliance \[1/Pa\] at t ≥ 0 \[s\].
 ///
-/// It has no exponential series, so a contact sums its whole past at every step: the work of a run
-/// grows with the square of the number of steps and the memory with the number of steps (one field
-/// of 8 bytes a cell for each).
+/// It works in either of two ways:
+///
+/// * as an exponential series, the default: fitted over the times of the scene
+///   ([`Builder::times`](crate::contact::Builder::times)) to within
+///   [`Settings::series_tolerance`](crate::contact::Settings), the error reported by
+///   [`ViscoelasticContact::material`](crate::ViscoelasticContact::material). Second order in time; memory and work a step do not grow.
+/// * exactly, as a sum over the whole past: [`TimeRule::Backward`](crate::contact::TimeRule::Backward). First order in
+///   time; one field of 8 bytes a cell for each past step, up to
+///   [`Settings::history_limit`](crate::contact::Settings), all of them read at every step.
 ///
 /// ```
 /// use viscocontact::rheology::{FnRheology, Rheology};
 ///
 /// let power_law = FnRheology::new(|t| 1.0e-9 + 1.0e-9 * t.powf(0.3));
 /// assert_eq!(power_law.creep_compliance(1.0), 2.0e-9);
+/// let series = power_law.series(1.0e-2..=1.0e4, 1.0e-4)?;
+/// assert!(series.report().max_misfit() < 1.0e-4);
+/// # Ok::<(), viscocontact::Error>(())
 /// ```
 pub struct FnRheology<F> {
     compliance: F,

@@ -1,7 +1,8 @@
+use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use crate::error::{Error, Result, within};
-use crate::rheology::{CreepSpectrum, Rheology};
+use crate::error::{Error, Result, positive, within};
+use crate::rheology::{CreepSpectrum, FitReport, ROUNDING, RelaxationSpectrum, Rheology};
 
 /// A rheology and how it treats volume: together they give the contact creep compliance C(t), the
 /// surface's answer to pressure, with C = 1/E* = (1 − ν)/2G for an elastic body.
@@ -10,6 +11,8 @@ use crate::rheology::{CreepSpectrum, Rheology};
 /// |---|---|
 /// | [`Material::incompressible`] | J(t)/4 |
 /// | [`Material::constant_poisson`] | (1 − ν) J(t)/2 |
+/// | [`Material::elastic_bulk`] | J(t)/4 + (3/4) K(t), K the creep compliance to the relaxation modulus 3B + G(t) |
+/// | [`Material::against`], two bodies | the sum of both |
 ///
 /// ```
 /// use viscocontact::rheology::{Elastic, Material};
@@ -21,15 +24,30 @@ use crate::rheology::{CreepSpectrum, Rheology};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Material {
+    /// One body, or the two of a contact.
+    bodies: Vec<Body>,
+}
+
+#[derive(Debug, Clone)]
+struct Body {
     rheology: Arc<dyn Rheology>,
-    /// C(t)/J(t).
-    factor: f64,
+    volume: Volume,
+    /// How well a fitted series stands for the rheology; `None` as long as nothing was fitted.
+    fit: Option<FitReport>,
+}
+
+#[derive(Debug, Clone)]
+enum Volume {
+    /// C(t)/J(t), the same at all times.
+    Proportional(f64),
+    /// The exact series of C(t) for an elastic bulk.
+    Elastic(CreepSpectrum),
 }
 
 impl Material {
     /// A body that keeps its volume (ν = ½): C = J/4.
     pub fn incompressible(rheology: impl Rheology + 'static) -> Material {
-        Material { rheology: Arc::new(rheology), factor: 0.25 }
+        Material::with_volume(rheology, Volume::Proportional(0.25))
     }
 
     /// A body whose Poisson's ratio `nu` does not change with time: C = (1 − ν) J/2.
@@ -38,34 +56,150 @@ impl Material {
     /// If `nu` is outside (−1, ½].
     pub fn constant_poisson(rheology: impl Rheology + 'static, nu: f64) -> Result<Material> {
         let nu = within("Poisson's ratio", nu, nu > -1.0 && nu <= 0.5, "in (-1, 0.5]")?;
-        Ok(Material { rheology: Arc::new(rheology), factor: 0.5 * (1.0 - nu) })
+        Ok(Material::with_volume(rheology, Volume::Proportional(0.5 * (1.0 - nu))))
+    }
+
+    /// A body that creeps in shear and is elastic in bulk, with `bulk_modulus` B \[Pa\], as most polymers nearly
+    /// are: its Poisson's ratio rises while it creeps. From (1 − ν)/2G = 1/(4G) + 3/(4 (3B + G)), which holds
+    /// for operators as for numbers, C is exactly J/4 + (3/4) K, K being the creep compliance of a body with
+    /// relaxation modulus 3B + G(t). It takes one more field for each relaxation time.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{Material, Zener};
+    ///
+    /// let glassy = 1.0e9;
+    /// let polymer = Material::elastic_bulk(Zener::new(glassy, 1.0e6, 1.0e6)?, 3.0e9)?;
+    /// let nu = (3.0 * 3.0e9 - 2.0 * glassy) / (2.0 * (3.0 * 3.0e9 + glassy)); // at t = 0
+    /// assert!((polymer.contact_compliance(0.0) * 2.0 * glassy / (1.0 - nu) - 1.0).abs() < 1e-14);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the bulk modulus is not finite and positive, or the rheology has no exponential series: fit one with
+    /// [`Rheology::series`].
+    pub fn elastic_bulk(rheology: impl Rheology + 'static, bulk_modulus: f64) -> Result<Material> {
+        positive("bulk modulus", bulk_modulus)?;
+        let creep = rheology.creep_spectrum().ok_or_else(|| no_series("an elastic bulk", &rheology))?;
+        let shear = creep.relaxation();
+        let equilibrium = shear.equilibrium() + 3.0 * bulk_modulus;
+        let stiffened = RelaxationSpectrum::new(equilibrium, shear.viscosity(), shear.terms())?.creep();
+        let contact = creep.scaled(0.25)?.plus(&stiffened.scaled(0.75)?)?;
+        Ok(Material::with_volume(rheology, Volume::Elastic(contact)))
+    }
+
+    fn with_volume(rheology: impl Rheology + 'static, volume: Volume) -> Material {
+        Material { bodies: vec![Body { rheology: Arc::new(rheology), volume, fit: None }] }
+    }
+
+    /// This body pressed against `other`, as one: both give way, C = C₁ + C₂.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{Elastic, Material, Maxwell};
+    ///
+    /// let pad = Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?);
+    /// let steel = Material::constant_poisson(Elastic::new(80.0e9)?, 0.3)?;
+    /// let sum = pad.contact_compliance(2.0) + steel.contact_compliance(2.0);
+    /// assert_eq!(pad.against(steel).contact_compliance(2.0), sum);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    #[must_use]
+    pub fn against(mut self, other: Material) -> Material {
+        self.bodies.extend(other.bodies);
+        self
     }
 
     /// The contact creep compliance C(t) \[1/Pa\] at t ≥ 0 \[s\].
     pub fn contact_compliance(&self, t: f64) -> f64 {
-        self.factor * self.rheology.creep_compliance(t)
+        self.bodies.iter().map(|body| body.contact_compliance(t)).sum()
     }
 
-    /// The shear creep compliance J(t) of its rheology \[1/Pa\] at t ≥ 0 \[s\].
-    pub fn creep_compliance(&self, t: f64) -> f64 {
-        self.rheology.creep_compliance(t)
+    /// The age \[s\] up to which the rheologies are known, +∞ for formulas.
+    pub fn known_until(&self) -> f64 {
+        self.bodies.iter().map(|body| body.rheology.known_until()).fold(f64::INFINITY, f64::min)
     }
 
-    /// C(t)/J(t).
-    pub(crate) fn contact_factor(&self) -> f64 {
-        self.factor
-    }
-
-    /// The exact exponential series of C(t), if the rheology has one.
+    /// The exact exponential series of C(t), if every rheology has one.
     ///
     /// # Errors
     /// If the scaled series leaves the range of `f64`.
     pub fn contact_spectrum(&self) -> Result<Option<CreepSpectrum>> {
-        self.rheology.creep_spectrum().map(|spectrum| spectrum.scaled(self.factor)).transpose()
+        let mut sum: Option<CreepSpectrum> = None;
+        for body in &self.bodies {
+            let Some(spectrum) = body.contact_spectrum()? else { return Ok(None) };
+            sum = Some(match sum {
+                Some(others) => others.plus(&spectrum)?,
+                None => spectrum,
+            });
+        }
+        Ok(sum)
     }
 
-    /// The error for a time rule that needs a series the rheology does not have.
-    pub(crate) fn no_series(&self) -> Error {
-        Error::NoExponentialSeries { rheology: format!("{:?}", self.rheology) }
+    /// The same material with an exponential series, over `times` \[s\] and to within the relative error
+    /// `tolerance`, in the place of every rheology that has no exact one: [`Rheology::series`].
+    ///
+    /// # Errors
+    /// As [`Rheology::series`].
+    pub fn fitted(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<Material> {
+        let fit = |body: &Body| {
+            if body.rheology.creep_spectrum().is_some() {
+                return Ok(body.clone());
+            }
+            let series = body.rheology.series(times.clone(), tolerance)?;
+            let fit = Some(series.report().clone());
+            Ok(Body { rheology: Arc::new(series), volume: body.volume.clone(), fit })
+        };
+        Ok(Material { bodies: self.bodies.iter().map(fit).collect::<Result<_>>()? })
+    }
+
+    /// How well the series that [`Material::fitted`] found stand for their rheologies; nothing for those that
+    /// had an exact one.
+    pub fn fit_reports(&self) -> impl Iterator<Item = &FitReport> {
+        self.bodies.iter().filter_map(|body| body.fit.as_ref())
+    }
+
+    /// C at `age`, which must not be less than `younger` = C at `earlier`, an age no greater.
+    pub(crate) fn checked_compliance(&self, age: f64, (earlier, younger): (f64, f64)) -> Result<f64> {
+        let value = self.contact_compliance(age);
+        if value.is_finite() && value >= younger * (1.0 - ROUNDING) {
+            return Ok(value);
+        }
+        // tell which J is to blame
+        let creep = |body: &Body| (body.rheology.creep_compliance(age), body.rheology.creep_compliance(earlier));
+        let (value, previous) = self
+            .bodies
+            .iter()
+            .map(creep)
+            .find(|&(now, before)| !(now.is_finite() && now >= before * (1.0 - ROUNDING)))
+            .unwrap_or((value, younger));
+        Err(Error::InvalidCompliance { time: age, value, previous })
+    }
+
+    /// The error for what needs a series that a rheology does not have.
+    pub(crate) fn no_series(&self, what: &'static str) -> Error {
+        let lacking = self.bodies.iter().find(|body| body.rheology.creep_spectrum().is_none());
+        no_series(what, &lacking.map(|body| &body.rheology))
+    }
+}
+
+fn no_series(what: &'static str, rheology: &dyn std::fmt::Debug) -> Error {
+    Error::NoExponentialSeries { what, rheology: format!("{rheology:?}") }
+}
+
+impl Body {
+    fn contact_compliance(&self, t: f64) -> f64 {
+        match &self.volume {
+            Volume::Proportional(factor) => factor * self.rheology.creep_compliance(t),
+            Volume::Elastic(contact) if t <= self.rheology.known_until() => contact.compliance(t),
+            Volume::Elastic(_) => f64::NAN,
+        }
+    }
+
+    fn contact_spectrum(&self) -> Result<Option<CreepSpectrum>> {
+        match &self.volume {
+            Volume::Proportional(factor) => {
+                self.rheology.creep_spectrum().map(|spectrum| spectrum.scaled(*factor)).transpose()
+            }
+            Volume::Elastic(contact) => Ok(Some(contact.clone())),
+        }
     }
 }

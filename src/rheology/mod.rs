@@ -15,29 +15,58 @@
 //! compliance C(t) that the surface responds with.
 
 mod burgers;
+mod dynamic;
 mod elastic;
+mod fit;
+mod fractional_maxwell;
+mod fractional_zener;
 mod function;
 mod generalized_kelvin;
 mod generalized_maxwell;
 mod interconversion;
 mod kelvin_voigt;
+mod kww;
+pub mod laws;
+mod log_creep;
 mod material;
 mod maxwell;
+mod mittag_leffler;
+mod power_law;
+mod series;
+mod slow_creep;
 mod spectrum;
+mod table;
+mod time_temperature;
 mod zener;
 
 pub use burgers::Burgers;
 pub use elastic::Elastic;
+pub use fit::{FitReport, FitSample, Quantity};
+pub use fractional_maxwell::FractionalMaxwell;
+pub use fractional_zener::FractionalZener;
 pub use function::FnRheology;
 pub use generalized_kelvin::GeneralizedKelvin;
 pub use generalized_maxwell::GeneralizedMaxwell;
 pub use kelvin_voigt::KelvinVoigt;
+pub use kww::Kww;
+pub use log_creep::LogCreep;
 pub use material::Material;
 pub use maxwell::Maxwell;
+pub use power_law::PowerLaw;
+pub use series::CreepSeries;
+pub use slow_creep::SlowCreep;
 pub use spectrum::{CreepSpectrum, RelaxationSpectrum};
+#[cfg(feature = "csv")]
+pub use table::Units;
+pub use table::{Isotherm, MasterCurve, Place, TableError, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
+pub(crate) use time_temperature::GAS_CONSTANT;
+pub use time_temperature::{AtTemperature, TimeTemperature};
 pub use zener::Zener;
 
 use std::fmt::Debug;
+use std::ops::RangeInclusive;
+
+use crate::error::Result;
 
 /// The shear creep of a linear viscoelastic body.
 ///
@@ -63,12 +92,31 @@ pub trait Rheology: Debug + Send + Sync {
     /// J(t) \[1/Pa\] at t ≥ 0 \[s\].
     fn creep_compliance(&self, t: f64) -> f64;
 
-    /// The exact exponential series of J, if there is one. With it a step costs the same however
-    /// many went before; without it the whole past is summed.
+    /// The exact exponential series of J, if there is one.
     fn creep_spectrum(&self) -> Option<CreepSpectrum> {
         None
     }
+
+    /// The age \[s\] up to which J is known, +∞ for a formula. A contact refuses to look further.
+    fn known_until(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// The exact exponential series of J, or else one fitted over `times` \[s\]: the fewest terms found whose
+    /// relative error is at most `tolerance`. With a series a step of a contact costs the same however many
+    /// went before.
+    ///
+    /// # Errors
+    /// If the times are not positive, finite and in order, the tolerance is outside \[1e-8, 0.1\], J is not a creep
+    /// compliance there, or no series reaches the tolerance ([`Error::PoorFit`](crate::Error::PoorFit)): J is
+    /// then not one of a passive body with a positive spectrum.
+    fn series(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<CreepSeries> {
+        CreepSeries::new(self, times, tolerance)
+    }
 }
+
+/// Compliances that fall by less, relatively, do so by rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// What is owned, shared or chosen at run time behind a pointer serves like the thing itself.
 macro_rules! forward_rheology {
@@ -80,6 +128,14 @@ macro_rules! forward_rheology {
 
             fn creep_spectrum(&self) -> Option<CreepSpectrum> {
                 (**self).creep_spectrum()
+            }
+
+            fn known_until(&self) -> f64 {
+                (**self).known_until()
+            }
+
+            fn series(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<CreepSeries> {
+                (**self).series(times, tolerance)
             }
         }
     )*};

@@ -96,6 +96,25 @@ impl CreepSpectrum {
         CreepSpectrum::new(factor * self.glassy, factor * self.fluidity, &terms)
     }
 
+    /// The same body, everything taking `factor` times as long.
+    ///
+    /// # Errors
+    /// If the factor is not finite and positive, or a time or the fluidity leaves \[1e-100, 1e100\].
+    pub fn slowed(&self, factor: f64) -> Result<CreepSpectrum> {
+        positive("factor of time", factor)?;
+        let terms: Vec<_> = self.terms.iter().map(|&(c, lambda)| (c, factor * lambda)).collect();
+        CreepSpectrum::new(self.glassy, self.fluidity / factor, &terms)
+    }
+
+    /// The compliance of this body and `other` in series, or of two bodies of a contact: the sum.
+    ///
+    /// # Errors
+    /// If a coefficient leaves \[1e-100, 1e100\].
+    pub fn plus(&self, other: &CreepSpectrum) -> Result<CreepSpectrum> {
+        let terms = [self.terms.as_slice(), &other.terms].concat();
+        CreepSpectrum::new(self.glassy + other.glassy, self.fluidity + other.fluidity, &terms)
+    }
+
     /// The relaxation modulus of the same body, exactly: s Ĵ(s) · s Ĝ(s) = 1.
     pub fn relaxation(&self) -> RelaxationSpectrum {
         // s Ĵ(s) = J_g + φ/s + Σ J_k x_k/(x_k + s), poles at the rates x_k = 1/λ_k

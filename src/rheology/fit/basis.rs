@@ -1,0 +1,103 @@
+//! Material functions that are linear in the strengths of an exponential series.
+
+/// What a sample measures, as a function of its abscissa x: a time or an angular frequency.
+///
+/// Each is constant · a + slope · b(x) + Σ c_k φ(x, λ_k), with the coefficients of a creep series (glassy
+/// compliance, fluidity, retarded compliances) or of a relaxation series (equilibrium modulus,
+/// immediate viscosity, relaxing moduli).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Quantity {
+    /// Creep compliance J(t) \[1/Pa\] over the time \[s\].
+    Creep,
+    /// Relaxation modulus G(t) \[Pa\] over the time \[s\].
+    Relaxation,
+    /// Storage modulus G′(ω) \[Pa\] over the angular frequency \[rad/s\].
+    Storage,
+    /// Loss modulus G″(ω) \[Pa\] over the angular frequency \[rad/s\].
+    Loss,
+}
+
+impl Quantity {
+    /// What the constant contributes at `x`, per unit.
+    pub(crate) fn constant(self) -> f64 {
+        if self == Quantity::Loss { 0.0 } else { 1.0 }
+    }
+
+    /// What the slope contributes at `x`, per unit.
+    pub(crate) fn slope(self, x: f64) -> f64 {
+        match self {
+            Quantity::Creep | Quantity::Loss => x,
+            Quantity::Relaxation | Quantity::Storage => 0.0,
+        }
+    }
+
+    /// φ(x, λ) and ∂φ/∂ln λ.
+    pub(crate) fn term(self, x: f64, lambda: f64) -> (f64, f64) {
+        match self {
+            Quantity::Creep => {
+                let z = x / lambda;
+                (-(-z).exp_m1(), -z * (-z).exp())
+            }
+            Quantity::Relaxation => {
+                let z = x / lambda;
+                ((-z).exp(), z * (-z).exp())
+            }
+            // with y = ωτ; its square is written so that neither end overflows
+            Quantity::Storage => {
+                let (stored, lost) = debye(x * lambda);
+                (stored, 2.0 * lost * lost)
+            }
+            Quantity::Loss => {
+                let (stored, lost) = debye(x * lambda);
+                (lost, lost * (1.0 - 2.0 * stored))
+            }
+        }
+    }
+}
+
+/// y²/(1 + y²) and y/(1 + y²).
+fn debye(y: f64) -> (f64, f64) {
+    let lost = 1.0 / (y + 1.0 / y);
+    (y * lost, lost)
+}
+
+/// One measured or computed value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Sample {
+    pub(crate) quantity: Quantity,
+    pub(crate) x: f64,
+    pub(crate) value: f64,
+}
+
+/// An exponential series under construction.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Series {
+    pub(crate) constant: f64,
+    pub(crate) slope: f64,
+    /// (strength, time), times ascending.
+    pub(crate) terms: Vec<(f64, f64)>,
+}
+
+impl Series {
+    pub(crate) fn value(&self, quantity: Quantity, x: f64) -> f64 {
+        let terms: f64 = self.terms.iter().map(|&(c, lambda)| c * quantity.term(x, lambda).0).sum();
+        // a slope of zero counts nothing even where its function is infinite
+        let slope = if self.slope > 0.0 { self.slope * quantity.slope(x) } else { 0.0 };
+        self.constant * quantity.constant() + slope + terms
+    }
+
+    /// fitted/value − 1.
+    pub(crate) fn misfit(&self, sample: &Sample) -> f64 {
+        self.value(sample.quantity, sample.x) / sample.value - 1.0
+    }
+
+    pub(crate) fn worst(&self, samples: &[Sample]) -> f64 {
+        samples.iter().map(|sample| self.misfit(sample).abs()).fold(0.0, f64::max)
+    }
+
+    /// Σ misfit².
+    pub(crate) fn squares(&self, samples: &[Sample]) -> f64 {
+        samples.iter().map(|sample| self.misfit(sample).powi(2)).sum()
+    }
+}

@@ -1,0 +1,225 @@
+//! Exponential series with positive coefficients through samples of a material function.
+//!
+//! Three stages. Non-negative least squares of the relative misfit on log-spaced times finds where there is
+//! strength at all; sums of exponentials being what they are, neighbouring times share what belongs to
+//! one in between. Neighbours are then merged, the pair that matters least first, and after every merger
+//! strengths and times are polished together, as long as the misfit allows it. What is left is sparse: a
+//! step of the contact pays for each term.
+
+mod basis;
+mod nnls;
+mod polish;
+mod report;
+
+pub use basis::Quantity;
+pub(crate) use basis::{Sample, Series};
+pub(crate) use polish::Free;
+pub use report::{FitReport, FitSample};
+
+use faer::{Col, Mat};
+use polish::polish;
+
+/// What a fit must reach.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Goal {
+    /// The fewest terms with a misfit below this everywhere: for functions, whose every digit counts.
+    Within(f64),
+    /// The fewest terms that the data warrant, by the Bayesian information criterion; misfits below this
+    /// warrant none. For measurements, which are noisy.
+    Warranted(f64),
+}
+
+/// Which series to look for.
+#[derive(Debug, Clone)]
+pub(crate) struct Search {
+    /// The constant, if it is known.
+    pub(crate) constant: Option<f64>,
+    /// Whether there may be a slope (flow, an immediate dashpot).
+    pub(crate) slope: bool,
+    /// Shortest and longest time of a term.
+    pub(crate) times: [f64; 2],
+    pub(crate) goal: Goal,
+}
+
+/// Mergers tried, cheapest first, before a series counts as the sparsest.
+const TRIES: usize = 3;
+/// Iterations of the polish between mergers, and at the end.
+const BRIEF: usize = 12;
+const LONG: usize = 60;
+
+impl Search {
+    /// The best series found, whether or not it reaches the goal.
+    pub(crate) fn run(&self, samples: &[Sample]) -> Series {
+        let densities: &[f64] = match self.goal {
+            // the trapezoidal rule in ln λ errs by about e^(−π²/h): two or three terms a decade suffice for 1e-4
+            Goal::Within(_) => &[2.0, 3.0, 5.0, 8.0],
+            Goal::Warranted(_) => &[6.0],
+        };
+        let mut best: Option<Series> = None;
+        for &density in densities {
+            let start = self.on_grid(samples, density);
+            let series = polish(&start, samples, self.free(), LONG, &|series| self.reached(series, samples));
+            let better = best.as_ref().is_none_or(|best| series.worst(samples) < best.worst(samples));
+            if better {
+                best = Some(series);
+            }
+            if best.as_ref().is_some_and(|best| self.reached(best, samples)) {
+                break;
+            }
+        }
+        let found = best.unwrap_or(Series { constant: self.constant.unwrap_or(0.0), slope: 0.0, terms: Vec::new() });
+        self.thinned(found, samples)
+    }
+
+    fn free(&self) -> Free {
+        Free { constant: self.constant.is_none(), slope: self.slope }
+    }
+
+    fn reached(&self, series: &Series, samples: &[Sample]) -> bool {
+        match self.goal {
+            Goal::Within(most) => series.worst(samples) <= most,
+            Goal::Warranted(floor) => series.worst(samples) <= 0.1 * floor,
+        }
+    }
+
+    /// Non-negative least squares with `density` times a decade.
+    fn on_grid(&self, samples: &[Sample], density: f64) -> Series {
+        let [first, last] = self.times.map(f64::log10);
+        let count = ((last - first) * density).ceil() as usize + 1;
+        let time = |k: usize| 10f64.powf(first + (last - first) * k as f64 / (count - 1).max(1) as f64);
+        let ends = usize::from(self.constant.is_none()) + usize::from(self.slope);
+        let matrix = Mat::from_fn(samples.len(), ends + count, |i, j| {
+            let Sample { quantity, x, value } = samples[i];
+            let function = match j {
+                0 if self.constant.is_none() => quantity.constant(),
+                _ if j < ends => quantity.slope(x),
+                _ => quantity.term(x, time(j - ends)).0,
+            };
+            function / value
+        });
+        let known = self.constant.unwrap_or(0.0);
+        let right = Col::from_fn(samples.len(), |i| 1.0 - known * samples[i].quantity.constant() / samples[i].value);
+        let strengths = nnls::non_negative_least_squares(&matrix, &right);
+        let (at_ends, of_terms) = strengths.split_at(ends);
+        Series {
+            constant: self.constant.unwrap_or_else(|| at_ends[0]),
+            slope: if self.slope { at_ends[ends - 1] } else { 0.0 },
+            terms: of_terms.iter().enumerate().filter(|(_, c)| **c > 0.0).map(|(k, &c)| (c, time(k))).collect(),
+        }
+    }
+
+    /// Merges terms while the goal allows it.
+    fn thinned(&self, start: Series, samples: &[Sample]) -> Series {
+        let mut best = start;
+        'fewer: loop {
+            let mut mergers = self.mergers(&best, samples);
+            mergers.sort_by(|a, b| a.0.total_cmp(&b.0));
+            for (_, merged) in mergers.into_iter().take(TRIES) {
+                let trial =
+                    polish(&merged, samples, self.free(), BRIEF, &|series| self.prefers(series, &best, samples));
+                if self.prefers(&trial, &best, samples) {
+                    best = trial;
+                    continue 'fewer;
+                }
+            }
+            break;
+        }
+        // what was enough for a merger may not be all there is
+        let never = |_: &Series| false;
+        let polished = polish(&best, samples, self.free(), LONG, &never);
+        if polished.worst(samples) <= best.worst(samples) || matches!(self.goal, Goal::Warranted(_)) {
+            polished
+        } else {
+            best
+        }
+    }
+
+    /// Whether the sparser `trial` is to be preferred.
+    fn prefers(&self, trial: &Series, current: &Series, samples: &[Sample]) -> bool {
+        match self.goal {
+            Goal::Within(most) => trial.worst(samples) <= most.max(0.0),
+            Goal::Warranted(floor) => {
+                let criterion = |series: &Series| {
+                    let count = samples.len() as f64;
+                    let parameters = 2 * series.terms.len()
+                        + usize::from(series.constant > 0.0 && self.constant.is_none())
+                        + usize::from(series.slope > 0.0);
+                    count * (series.squares(samples) / count + floor * floor).ln() + parameters as f64 * count.ln()
+                };
+                criterion(trial) <= criterion(current)
+            }
+        }
+    }
+
+    /// Every series with one term less, and what the merger costs to first order.
+    fn mergers(&self, series: &Series, samples: &[Sample]) -> Vec<(f64, Series)> {
+        let mut mergers = Vec::new();
+        let cost = |merged: &Series| {
+            samples.iter().map(|sample| (merged.misfit(sample) - series.misfit(sample)).powi(2)).sum::<f64>()
+        };
+        let mut offer = |merged: Series| mergers.push((cost(&merged), merged));
+        for k in 1..series.terms.len() {
+            let mut merged = series.clone();
+            let (strength, lambda) = merged.terms.remove(k);
+            let (other, shorter) = merged.terms[k - 1];
+            let share = strength / (strength + other);
+            merged.terms[k - 1] = (strength + other, shorter * (lambda / shorter).powf(share));
+            offer(merged);
+        }
+        // at the ends, terms that are over before the first sample or have hardly begun at the last; what a
+        // constant or a slope stands for depends on the function
+        let (Some(&first), Some(&last)) = (series.terms.first(), series.terms.last()) else { return mergers };
+        let creep = samples[0].quantity == Quantity::Creep;
+        if self.constant.is_none() {
+            let mut merged = series.clone();
+            let (strength, _) = if creep { merged.terms.remove(0) } else { last };
+            if !creep {
+                merged.terms.pop();
+            }
+            merged.constant += strength;
+            offer(merged);
+        }
+        if self.slope {
+            let mut merged = series.clone();
+            merged.slope += if creep { last.0 / last.1 } else { first.0 * first.1 };
+            if creep {
+                merged.terms.pop();
+            } else {
+                merged.terms.remove(0);
+            }
+            offer(merged);
+        }
+        for k in [0, series.terms.len() - 1] {
+            let mut merged = series.clone();
+            merged.terms.remove(k);
+            offer(merged);
+        }
+        mergers
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::rheology::{FnRheology, PowerLaw, Rheology};
+
+    #[test]
+    fn probe() {
+        for decades in [3, 6, 10, 20] {
+            for alpha in [0.1, 0.3, 0.5, 0.7, 0.9] {
+                let clock = std::time::Instant::now();
+                let last = 10f64.powi(decades - 3);
+                for tol in [1e-2, 1e-4, 1e-6] {
+                    let series = PowerLaw::new(1e-6, 1.0, alpha).unwrap().series(1e-3..=last, tol);
+                    match series {
+                        Ok(s) => {
+                            println!("{decades} {alpha} {tol:e}: {} {:.3} s", s.report(), clock.elapsed().as_secs_f64())
+                        }
+                        Err(e) => println!("{decades} {alpha} {tol:e}: {e} {:.3}", clock.elapsed().as_secs_f64()),
+                    }
+                }
+            }
+        }
+        let zener = FnRheology::new(|t: f64| 1.0 - 0.5 * (-t / 2.0).exp());
+        println!("{:?}", zener.series(1e-3..=1e3, 1e-4).map(|s| (s.spectrum().clone(), s.report().max_misfit())));
+    }
+}

@@ -1,0 +1,204 @@
+//! What every [`Rheology`] must obey: one function for each law, for the tests of those who write one.
+//!
+//! Each takes the rheology and the times at which to look, and says where a law is broken, and by what. [`all`]
+//! asks for every one.
+//!
+//! ```
+//! use viscocontact::rheology::{Rheology, laws};
+//!
+//! #[derive(Debug)]
+//! struct Tired; // forgets its load after a second
+//!
+//! impl Rheology for Tired {
+//!     fn creep_compliance(&self, t: f64) -> f64 {
+//!         if t < 1.0 { 1.0e-6 * (1.0 + t) } else { 1.0e-6 }
+//!     }
+//! }
+//! let violation = laws::all(&Tired, &laws::log_times(1.0e-3, 1.0e3)).unwrap_err();
+//! assert_eq!(violation.law, "creep never decreases");
+//! println!("{violation}");
+//! ```
+
+use crate::quadrature::GaussLegendre;
+use crate::rheology::{CreepSpectrum, ROUNDING, Rheology};
+
+/// A law that does not hold.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{law}: at t = {t:e} s found {found:e}, expected {expected:e}")]
+#[non_exhaustive]
+pub struct Violation {
+    /// Which law.
+    pub law: &'static str,
+    /// Where \[s\].
+    pub t: f64,
+    /// What was found.
+    pub found: f64,
+    /// What the law asks for; where it is an inequality, its bound.
+    pub expected: f64,
+}
+
+/// The law holds, or where it does not.
+pub type Verdict = Result<(), Violation>;
+
+/// Agreement of formulas that are the same but for rounding.
+const SAME: f64 = 1e-10;
+
+/// Eight times a decade from `first` to `last` \[s\], the times most laws are worth looking at.
+pub fn log_times(first: f64, last: f64) -> Vec<f64> {
+    let count = ((last / first).log10() * 8.0).ceil().max(1.0) as usize;
+    (0..=count).map(|k| first * (last / first).powf(k as f64 / count as f64)).collect()
+}
+
+/// Every law, at ascending `times` > 0 \[s\].
+///
+/// # Errors
+/// The first law that is broken.
+pub fn all(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
+    non_negative(rheology, times)?;
+    non_decreasing(rheology, times)?;
+    concave(rheology, times)?;
+    starts_at_its_glassy_compliance(rheology, times)?;
+    spectrum_reproduces_creep(rheology, times)?;
+    if let Some(spectrum) = rheology.creep_spectrum() {
+        limits(&spectrum)?;
+        time_scaling(&spectrum, times)?;
+        creep_convolved_with_relaxation_is_time(&spectrum, times)?;
+    }
+    Ok(())
+}
+
+fn verdict(law: &'static str, t: f64, found: f64, expected: f64, holds: bool) -> Verdict {
+    if holds { Ok(()) } else { Err(Violation { law, t, found, expected }) }
+}
+
+/// J ≥ 0, and finite.
+///
+/// # Errors
+/// Where it is not.
+pub fn non_negative(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
+    for t in std::iter::once(0.0).chain(times.iter().copied()) {
+        let found = rheology.creep_compliance(t);
+        verdict("creep is finite and not negative", t, found, 0.0, found.is_finite() && found >= 0.0)?;
+    }
+    Ok(())
+}
+
+/// J never decreases, at ascending `times`.
+///
+/// # Errors
+/// Where it does.
+pub fn non_decreasing(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
+    let mut previous = rheology.creep_compliance(0.0);
+    for &t in times {
+        let found = rheology.creep_compliance(t);
+        verdict("creep never decreases", t, found, previous, found >= previous * (1.0 - ROUNDING))?;
+        previous = found;
+    }
+    Ok(())
+}
+
+/// The creep rate never increases (J is concave), as for every body of springs and dashpots, at ascending
+/// `times`.
+///
+/// # Errors
+/// Where it does.
+pub fn concave(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
+    let (mut before, mut value) = (0.0, rheology.creep_compliance(0.0));
+    let mut slowest = (f64::INFINITY, 0.0);
+    for &t in times {
+        let next = rheology.creep_compliance(t);
+        let (rate, uncertain) = ((next - value) / (t - before), 1e-11 * next / (t - before));
+        verdict("the creep rate never increases", t, rate, slowest.0, rate <= slowest.0 + slowest.1 + uncertain)?;
+        if rate < slowest.0 {
+            slowest = (rate, uncertain);
+        }
+        (before, value) = (t, next);
+    }
+    Ok(())
+}
+
+/// J tends to J(0) as t → 0: looked at below the first of `times`, the rise must shrink with t.
+///
+/// # Errors
+/// If it does not.
+pub fn starts_at_its_glassy_compliance(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
+    let (glassy, first) = (rheology.creep_compliance(0.0), times.first().copied().unwrap_or(1.0));
+    let rise = |t: f64| rheology.creep_compliance(t) - glassy;
+    let (here, far) = (rise(first), first * 1e-60);
+    let found = rise(far);
+    verdict("creep starts at J(0)", far, found, 0.5 * here, found <= 0.5 * here + SAME * glassy)
+}
+
+/// The exact series, if there is one, is J.
+///
+/// # Errors
+/// Where they differ by more than 1e-10.
+pub fn spectrum_reproduces_creep(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
+    let Some(spectrum) = rheology.creep_spectrum() else { return Ok(()) };
+    for t in std::iter::once(0.0).chain(times.iter().copied()).filter(|t| *t <= rheology.known_until()) {
+        let (found, expected) = (spectrum.compliance(t), rheology.creep_compliance(t));
+        verdict("the series is the creep compliance", t, found, expected, (found - expected).abs() <= SAME * expected)?;
+    }
+    Ok(())
+}
+
+/// Creep and relaxation are reciprocal at both ends of time: J(0) G(0) = 1 with an elastic response, J(∞) G(∞) = 1
+/// for a solid, φ·(viscosity of the whole) = 1 for a fluid.
+///
+/// # Errors
+/// If they are not.
+pub fn limits(spectrum: &CreepSpectrum) -> Verdict {
+    let relaxation = spectrum.relaxation();
+    let check = |t: f64, found: f64| verdict("J G = 1 in the limits", t, found, 1.0, (found - 1.0).abs() <= SAME);
+    if spectrum.glassy() > 0.0 {
+        check(0.0, spectrum.glassy() * relaxation.modulus(0.0))?;
+    }
+    let relaxed = spectrum.glassy() + spectrum.terms().iter().map(|&(c, _)| c).sum::<f64>();
+    if spectrum.fluidity() == 0.0 {
+        check(f64::INFINITY, relaxed * relaxation.equilibrium())
+    } else {
+        let flow = relaxation.viscosity() + relaxation.terms().iter().map(|&(g, tau)| g * tau).sum::<f64>();
+        check(f64::INFINITY, spectrum.fluidity() * flow)
+    }
+}
+
+/// A body that takes twice as long has J(t/2).
+///
+/// # Errors
+/// Where it has not.
+pub fn time_scaling(spectrum: &CreepSpectrum, times: &[f64]) -> Verdict {
+    let Ok(slow) = spectrum.slowed(2.0) else { return Ok(()) };
+    for &t in times {
+        let (found, expected) = (slow.compliance(2.0 * t), spectrum.compliance(t));
+        verdict("time scales", t, found, expected, (found - expected).abs() <= SAME * expected)?;
+    }
+    Ok(())
+}
+
+/// ∫ J(t − s) G(s) ds = t over 0 ≤ s ≤ t: what creep and relaxation are to each other, by quadrature of the
+/// two series.
+///
+/// # Errors
+/// Where they are not.
+pub fn creep_convolved_with_relaxation_is_time(spectrum: &CreepSpectrum, times: &[f64]) -> Verdict {
+    let relaxation = spectrum.relaxation();
+    let rule = GaussLegendre::new(20);
+    let fastest = |terms: &[(f64, f64)]| terms.first().map_or(f64::INFINITY, |&(_, time)| time);
+    for &t in times {
+        // both functions vary over every scale of time near their own zero: panels that double away from it
+        let graded = |shortest: f64, integrand: &dyn Fn(f64) -> f64| {
+            let (mut sum, mut to) = (0.0, 0.5 * t);
+            while to > 1e-3 * shortest && to > 1e-40 * t {
+                sum += rule.integrate(0.5 * to, to, integrand);
+                to *= 0.5;
+            }
+            sum + rule.integrate(0.0, to, integrand)
+        };
+        let near_relaxation =
+            graded(fastest(relaxation.terms()), &|s| spectrum.compliance(t - s) * relaxation.modulus(s));
+        let near_creep = graded(fastest(spectrum.terms()), &|s| spectrum.compliance(s) * relaxation.modulus(t - s));
+        let found = near_relaxation + near_creep + relaxation.viscosity() * spectrum.compliance(t);
+        verdict("J convolved with G is t", t, found, t, (found / t - 1.0).abs() <= SAME)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,133 @@
+use std::ops::RangeInclusive;
+
+use crate::error::{Error, Result, positive, within};
+use crate::rheology::fit::{FitReport, Goal, Quantity, Sample, Search};
+use crate::rheology::{CreepSpectrum, ROUNDING, Rheology};
+
+/// The exponential series that stands for a creep compliance over a range of times, and its error.
+///
+/// Made by [`Rheology::series`]. It is a [`Rheology`] itself: exact at t = 0 where the body has an elastic
+/// response, within the tolerance over the range, known no further than its end. A body without elastic response gets
+/// one: what it has crept by the shortest time counts as immediate.
+///
+/// ```
+/// use viscocontact::rheology::{FnRheology, Rheology};
+///
+/// let gel = FnRheology::new(|t| 1.0e-4 * (1.0 + 0.2 * t.sqrt()));
+/// let series = gel.series(1.0e-3..=1.0e4, 1.0e-4)?;
+/// assert!(series.report().max_misfit() <= 1.0e-4);
+/// assert!((series.creep_compliance(50.0) / gel.creep_compliance(50.0) - 1.0).abs() < 1.0e-4);
+/// assert_eq!(series.known_until(), 1.0e4);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct CreepSeries {
+    spectrum: CreepSpectrum,
+    report: FitReport,
+    known_until: f64,
+}
+
+/// Samples a decade that a series is fitted to, and at which it is checked.
+const FITTED: f64 = 16.0;
+const CHECKED: f64 = 67.0;
+/// Part of the tolerance that the fit may use, so that the check, which looks more closely, passes.
+const FITTED_SHARE: f64 = 0.9;
+/// How far terms reach beyond the range, as a factor.
+const BEYOND: f64 = 10.0;
+
+impl CreepSeries {
+    /// The exact series of `rheology`, or one fitted over `times`: the fewest terms whose relative error is at
+    /// most `tolerance`.
+    pub(crate) fn new<R: Rheology + ?Sized>(
+        rheology: &R,
+        times: RangeInclusive<f64>,
+        tolerance: f64,
+    ) -> Result<CreepSeries> {
+        let (first, last) = (*times.start(), *times.end());
+        positive("shortest time of a series", first)?;
+        within("longest time of a series", last, last >= first, "finite and no less than the shortest")?;
+        within("shortest time of a series", first, first >= 1e-90, "1e-90 or more")?;
+        within("longest time of a series", last, last <= 1e90, "1e90 at most")?;
+        within("tolerance of a series", tolerance, (1e-8..=0.1).contains(&tolerance), "in [1e-8, 0.1]")?;
+        if let Some(spectrum) = rheology.creep_spectrum() {
+            let report = FitReport::exact(spectrum.terms().len());
+            return Ok(CreepSeries { spectrum, report, known_until: rheology.known_until() });
+        }
+
+        let glassy = checked(rheology, 0.0, 0.0)?;
+        let samples = sampled(rheology, [first, last], FITTED, glassy)?;
+        let search = Search {
+            constant: (glassy > 0.0).then_some(glassy),
+            slope: true,
+            times: [first / BEYOND, last * BEYOND],
+            goal: Goal::Within(FITTED_SHARE * tolerance),
+        };
+        let series = search.run(&samples);
+        let report = FitReport::new(&series, &sampled(rheology, [first, last], CHECKED, glassy)?);
+        match report.worst() {
+            Some(worst) if worst.misfit().abs() > tolerance => {
+                Err(Error::PoorFit { misfit: worst.misfit().abs(), at: worst.x, tolerance })
+            }
+            _ => {
+                let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
+                Ok(CreepSeries { spectrum, report, known_until: last.min(rheology.known_until()) })
+            }
+        }
+    }
+
+    /// The series.
+    pub fn spectrum(&self) -> &CreepSpectrum {
+        &self.spectrum
+    }
+
+    /// How well it stands for the function, at some 70 times a decade.
+    pub fn report(&self) -> &FitReport {
+        &self.report
+    }
+}
+
+impl Rheology for CreepSeries {
+    fn creep_compliance(&self, t: f64) -> f64 {
+        self.spectrum.compliance(t)
+    }
+
+    fn creep_spectrum(&self) -> Option<CreepSpectrum> {
+        Some(self.spectrum.clone())
+    }
+
+    fn known_until(&self) -> f64 {
+        self.known_until
+    }
+}
+
+/// J at log-spaced times, both ends included.
+fn sampled<R: Rheology + ?Sized>(
+    rheology: &R,
+    [first, last]: [f64; 2],
+    a_decade: f64,
+    glassy: f64,
+) -> Result<Vec<Sample>> {
+    let count = ((last / first).log10() * a_decade).ceil() as usize;
+    let mut previous = glassy;
+    let mut samples = Vec::with_capacity(count + 1);
+    for k in 0..=count {
+        let x = match k {
+            0 => first,
+            _ if k == count => last,
+            _ => first * (last / first).powf(k as f64 / count as f64),
+        };
+        previous = checked(rheology, x, previous)?;
+        samples.push(Sample { quantity: Quantity::Creep, x, value: previous });
+    }
+    Ok(samples)
+}
+
+/// J(t), no less than at an earlier time, and above 0 after t = 0.
+fn checked<R: Rheology + ?Sized>(rheology: &R, time: f64, previous: f64) -> Result<f64> {
+    let value = rheology.creep_compliance(time);
+    if value.is_finite() && value >= previous * (1.0 - ROUNDING) && (value > 0.0 || time == 0.0 && value == 0.0) {
+        Ok(value)
+    } else {
+        Err(Error::InvalidCompliance { time, value, previous })
+    }
+}

@@ -1,0 +1,120 @@
+//! Checks what was measured before anything is fitted to it.
+
+use crate::error::Result;
+use crate::rheology::fit::{Quantity, Sample};
+use crate::rheology::table::{Place, TableError};
+
+/// One row of a table: where it stands, the abscissa, and one value for each column.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Row {
+    pub(crate) place: Place,
+    pub(crate) x: f64,
+    pub(crate) values: Vec<f64>,
+}
+
+/// What a table holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Layout {
+    pub(crate) table: &'static str,
+    pub(crate) abscissa: &'static str,
+    /// Name and meaning of each column.
+    pub(crate) columns: &'static [(&'static str, Quantity)],
+    /// Whether an abscissa of zero makes sense.
+    pub(crate) zero: bool,
+}
+
+pub(crate) const CREEP: Layout =
+    Layout { table: "creep", abscissa: "time", columns: &[("creep compliance", Quantity::Creep)], zero: true };
+
+pub(crate) const RELAXATION: Layout = Layout {
+    table: "relaxation",
+    abscissa: "time",
+    columns: &[("relaxation modulus", Quantity::Relaxation)],
+    zero: true,
+};
+
+pub(crate) const DYNAMIC: Layout = Layout {
+    table: "dynamic",
+    abscissa: "angular frequency",
+    columns: &[("storage modulus", Quantity::Storage), ("loss modulus", Quantity::Loss)],
+    zero: false,
+};
+
+/// A change the wrong way counts as noise up to so many standard deviations of the scatter, ...
+const DEVIATIONS: f64 = 6.0;
+/// ... but never beyond this relative change: a scatter so large would hide any creep.
+const MOST_NOISE: f64 = 0.2;
+/// Clean data may change the wrong way by the rounding of their printed digits.
+const LEAST_NOISE: f64 = 1e-9;
+/// A fit of constant, slope and one term needs as many values.
+const LEAST_ROWS: usize = 4;
+
+/// The samples of a table, in ascending order, and the greatest change the wrong way among them.
+pub(crate) fn validated(layout: Layout, mut rows: Vec<Row>) -> Result<(Vec<Sample>, f64)> {
+    let Layout { table, abscissa, columns, zero } = layout;
+    if rows.is_empty() {
+        return Err(TableError::Empty { table }.into());
+    }
+    for Row { place, x, values } in &rows {
+        let (place, x) = (*place, *x);
+        if !x.is_finite() {
+            return Err(TableError::NotFinite { table, place, column: abscissa, value: x }.into());
+        }
+        if x < 0.0 || x == 0.0 && !zero || x > 0.0 && !(1e-90..=1e90).contains(&x) {
+            let allowed = if zero { "0, or in [1e-90, 1e90]" } else { "in [1e-90, 1e90]" };
+            return Err(TableError::Abscissa { table, place, column: abscissa, value: x, allowed }.into());
+        }
+        for (&value, &(column, _)) in values.iter().zip(columns) {
+            if !value.is_finite() {
+                return Err(TableError::NotFinite { table, place, column, value }.into());
+            }
+            if value <= 0.0 {
+                return Err(TableError::NotPositive { table, place, column, value }.into());
+            }
+        }
+    }
+    rows.sort_by(|a, b| a.x.total_cmp(&b.x));
+    if let Some(pair) = rows.windows(2).find(|pair| pair[0].x == pair[1].x) {
+        let (earlier, place, value) = (pair[0].place, pair[1].place, pair[0].x);
+        return Err(TableError::Duplicate { table, place, earlier, column: abscissa, value }.into());
+    }
+    if rows.len() < LEAST_ROWS {
+        return Err(TableError::TooFew { table, rows: rows.len(), least: LEAST_ROWS }.into());
+    }
+    let mut deepest: f64 = 0.0;
+    for (index, &(column, quantity)) in columns.iter().enumerate() {
+        let values: Vec<f64> = rows.iter().map(|row| row.values[index]).collect();
+        let rising = match quantity {
+            Quantity::Creep | Quantity::Storage => values,
+            Quantity::Relaxation => values.iter().map(|value| 1.0 / value).collect(),
+            Quantity::Loss => continue,
+        };
+        let noise = (DEVIATIONS * scatter(&rising)).clamp(LEAST_NOISE, MOST_NOISE);
+        let mut highest = 0;
+        for k in 1..rows.len() {
+            let change = 1.0 - rising[k] / rising[highest];
+            if change > noise {
+                let (place, value, previous) = (rows[k].place, rows[k].values[index], rows[highest].values[index]);
+                return Err(TableError::WrongWay { table, place, column, value, previous, change, noise }.into());
+            }
+            deepest = deepest.max(change);
+            if rising[k] > rising[highest] {
+                highest = k;
+            }
+        }
+    }
+    let sample =
+        |index: usize, quantity| rows.iter().map(move |row| Sample { quantity, x: row.x, value: row.values[index] });
+    let samples = columns.iter().enumerate().flat_map(|(index, &(_, quantity))| sample(index, quantity));
+    Ok((samples.collect(), deepest))
+}
+
+/// Relative standard deviation of the scatter about a smooth curve, from the median of second differences, which
+/// a few outliers or a kink do not move.
+fn scatter(values: &[f64]) -> f64 {
+    let mut second: Vec<f64> =
+        values.windows(3).map(|w| ((w[0] - 2.0 * w[1] + w[2]) / w[1]).abs() / 6f64.sqrt()).collect();
+    second.sort_by(f64::total_cmp);
+    // the median of |N(0, σ)| is 0.6745 σ
+    second.get(second.len() / 2).map_or(0.0, |median| median / 0.6745)
+}

@@ -1,0 +1,167 @@
+use std::fmt;
+
+/// Where in a table: the entry of a slice, or the line of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Place {
+    /// Index into the slices given.
+    Entry(usize),
+    /// Line of the file, from 1.
+    Line(u64),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::Entry(index) => write!(f, "entry {index}"),
+            Place::Line(line) => write!(f, "line {line}"),
+        }
+    }
+}
+
+/// What is wrong with a table of measured data.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TableError {
+    /// There is no data at all.
+    #[error("the {table} table is empty")]
+    Empty {
+        /// Which table.
+        table: &'static str,
+    },
+
+    /// Too few values to fit a series to.
+    #[error("the {table} table holds {rows} values, but a fit needs {least} at least")]
+    TooFew {
+        /// Which table.
+        table: &'static str,
+        /// Values given.
+        rows: usize,
+        /// Values needed.
+        least: usize,
+    },
+
+    /// A value is NaN or infinite.
+    #[error("{table} table, {place}: {column} = {value} is not a number")]
+    NotFinite {
+        /// Which table.
+        table: &'static str,
+        /// Where.
+        place: Place,
+        /// Which column.
+        column: &'static str,
+        /// The value.
+        value: f64,
+    },
+
+    /// A time is negative, or a frequency or a time that must be positive is not.
+    #[error("{table} table, {place}: {column} = {value} must be {allowed}")]
+    Abscissa {
+        /// Which table.
+        table: &'static str,
+        /// Where.
+        place: Place,
+        /// Which column.
+        column: &'static str,
+        /// The value.
+        value: f64,
+        /// The range it must lie in.
+        allowed: &'static str,
+    },
+
+    /// A compliance or modulus is not positive. A first row of zeros, from before the load, does not belong to
+    /// the creep: remove it.
+    #[error("{table} table, {place}: {column} = {value} must be > 0 (leave out what was recorded before the load)")]
+    NotPositive {
+        /// Which table.
+        table: &'static str,
+        /// Where.
+        place: Place,
+        /// Which column.
+        column: &'static str,
+        /// The value.
+        value: f64,
+    },
+
+    /// Two values are given for the same time or frequency: average them, or keep one.
+    #[error("{table} table: {place} and {earlier} give two values for {column} = {value}")]
+    Duplicate {
+        /// Which table.
+        table: &'static str,
+        /// Where.
+        place: Place,
+        /// Where it was given first.
+        earlier: Place,
+        /// Which column.
+        column: &'static str,
+        /// The time or frequency.
+        value: f64,
+    },
+
+    /// A compliance decreases, a relaxation modulus increases, or a storage modulus decreases with frequency,
+    /// by more than the noise of the data explains: no passive body does.
+    #[error(
+        "{table} table, {place}: {column} = {value} after {previous} is a change the wrong way by {:.2} %, more than noise ({:.2} %) explains",
+        100.0 * .change, 100.0 * .noise
+    )]
+    WrongWay {
+        /// Which table.
+        table: &'static str,
+        /// Where.
+        place: Place,
+        /// Which column.
+        column: &'static str,
+        /// The value.
+        value: f64,
+        /// The value it contradicts.
+        previous: f64,
+        /// Relative change.
+        change: f64,
+        /// Relative change that would have been tolerated.
+        noise: f64,
+    },
+
+    /// A file could not be read.
+    #[error("{file}: {reason}")]
+    Unreadable {
+        /// Its name.
+        file: String,
+        /// What the system or the reader says.
+        reason: String,
+    },
+
+    /// A line of a file has another number of columns than needed.
+    #[error("line {line}: {found} columns, but {expected} are needed ({columns})")]
+    Columns {
+        /// The line.
+        line: u64,
+        /// Columns found.
+        found: usize,
+        /// Columns needed.
+        expected: usize,
+        /// Their names.
+        columns: String,
+    },
+
+    /// A heading names no column, or two, of those needed.
+    #[error("line {line}: no single column is headed as {column} (headings: {found})")]
+    Heading {
+        /// The line of the headings.
+        line: u64,
+        /// What is looked for.
+        column: &'static str,
+        /// The headings there are.
+        found: String,
+    },
+
+    /// An entry of a file is not a number.
+    #[error("line {line}, column {column}: {text:?} is not a number")]
+    NotNumeric {
+        /// The line.
+        line: u64,
+        /// Number of the column, from 1.
+        column: usize,
+        /// What is there.
+        text: String,
+    },
+}

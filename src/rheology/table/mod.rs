@@ -1,0 +1,223 @@
+//! Measured data as rheologies.
+
+#[cfg(feature = "csv")]
+mod csv;
+mod data;
+mod error;
+mod master_curve;
+
+#[cfg(feature = "csv")]
+pub use self::csv::Units;
+pub use error::{Place, TableError};
+pub use master_curve::{Isotherm, MasterCurve};
+
+use crate::error::{Result, exact_length};
+use crate::rheology::fit::{FitReport, Goal, Sample, Search, Series};
+use crate::rheology::{CreepSpectrum, RelaxationSpectrum, Rheology};
+use data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
+
+/// Misfits below this warrant no further term: measurements are not that good.
+const FLOOR: f64 = 1e-5;
+/// How far terms reach beyond the data, as a factor.
+const BEYOND: f64 = 3.0;
+
+/// What the three kinds of table have in common.
+macro_rules! tabulated {
+    ($table:ident) => {
+        impl $table {
+            /// The series that was fitted.
+            pub fn spectrum(&self) -> &CreepSpectrum {
+                &self.spectrum
+            }
+
+            /// How well it stands for the data.
+            pub fn report(&self) -> &FitReport {
+                &self.report
+            }
+
+            /// The same body, its series trusted beyond the last time of the data. The choice is yours to
+            /// make: what comes later was not measured.
+            #[must_use]
+            pub fn extrapolated(self) -> $table {
+                $table { known_until: f64::INFINITY, ..self }
+            }
+        }
+
+        impl Rheology for $table {
+            fn creep_compliance(&self, t: f64) -> f64 {
+                if t <= self.known_until { self.spectrum.compliance(t) } else { f64::NAN }
+            }
+
+            fn creep_spectrum(&self) -> Option<CreepSpectrum> {
+                Some(self.spectrum.clone())
+            }
+
+            fn known_until(&self) -> f64 {
+                self.known_until
+            }
+        }
+    };
+}
+
+/// A body known by its measured creep compliance: pairs of time \[s\] and J \[1/Pa\].
+///
+/// The data are fitted by a series with positive coefficients, in the least squares of the relative
+/// misfit, with no more terms than they warrant: a smooth curve through noise. [`TabulatedCreep::report`] tells how
+/// well, and holds what is needed to plot data and fit.
+///
+/// Outside the data: what happens before the first time counts as elastic (the compliance stays between J_g of the
+/// fit and its value there). After the last time J is NaN, and a step of a contact fails with
+/// [`Error::BeyondMaterial`](crate::Error::BeyondMaterial), unless you choose [`TabulatedCreep::extrapolated`].
+///
+/// ```
+/// use viscocontact::rheology::{Rheology, TabulatedCreep};
+///
+/// let times = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0];
+/// let compliances = [1.05e-6, 1.14e-6, 1.39e-6, 1.78e-6, 1.99e-6, 2.00e-6, 2.00e-6];
+/// let body = TabulatedCreep::new(&times, &compliances)?;
+/// println!("{}", body.report());
+/// assert!(body.report().max_misfit() < 5e-3);
+/// assert!((body.creep_compliance(5.0) / 1.92e-6 - 1.0).abs() < 1e-2);
+/// assert!(body.creep_compliance(200.0).is_nan()); // never measured
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct TabulatedCreep {
+    spectrum: CreepSpectrum,
+    report: FitReport,
+    known_until: f64,
+}
+
+impl TabulatedCreep {
+    /// Fits `compliances` \[1/Pa\] at `times` ≥ 0 \[s\], in any order.
+    ///
+    /// # Errors
+    /// If the slices differ in length, there are fewer than four values, one is not finite and positive, a time is
+    /// negative or given twice, or J decreases by more than the scatter of the data explains:
+    /// [`Error::Table`](crate::Error::Table).
+    pub fn new(times: &[f64], compliances: &[f64]) -> Result<TabulatedCreep> {
+        TabulatedCreep::from_rows(rows(times, "creep compliances", &[compliances])?)
+    }
+
+    pub(crate) fn from_rows(rows: Vec<Row>) -> Result<TabulatedCreep> {
+        let (series, report) = fitted(CREEP, rows, true)?;
+        let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
+        let known_until = report.range().map_or(0.0, |[_, last]| last);
+        Ok(TabulatedCreep { spectrum, report, known_until })
+    }
+}
+
+tabulated!(TabulatedCreep);
+
+/// A body known by its measured relaxation modulus: pairs of time \[s\] and G \[Pa\].
+///
+/// Fitted as [`TabulatedCreep`] is, then converted to creep exactly. Known as long as the data last; what relaxes
+/// before the first time is not seen.
+///
+/// ```
+/// use viscocontact::rheology::{Rheology, TabulatedRelaxation};
+///
+/// let times = [0.01, 0.1, 0.3, 1.0, 3.0, 10.0];
+/// let moduli = times.map(|t: f64| 1.0e6 + 2.0e6 * (-t).exp());
+/// let body = TabulatedRelaxation::new(&times, &moduli)?;
+/// assert!((body.creep_compliance(0.0) * 3.0e6 - 1.0).abs() < 1e-4);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct TabulatedRelaxation {
+    spectrum: CreepSpectrum,
+    report: FitReport,
+    known_until: f64,
+}
+
+impl TabulatedRelaxation {
+    /// Fits `moduli` \[Pa\] at `times` ≥ 0 \[s\], in any order.
+    ///
+    /// # Errors
+    /// As [`TabulatedCreep::new`]; G may not increase.
+    pub fn new(times: &[f64], moduli: &[f64]) -> Result<TabulatedRelaxation> {
+        TabulatedRelaxation::from_rows(rows(times, "relaxation moduli", &[moduli])?)
+    }
+
+    pub(crate) fn from_rows(rows: Vec<Row>) -> Result<TabulatedRelaxation> {
+        let (series, report) = fitted(RELAXATION, rows, false)?;
+        let spectrum = RelaxationSpectrum::new(series.constant, 0.0, &series.terms)?.creep();
+        let known_until = report.range().map_or(0.0, |[_, last]| last);
+        Ok(TabulatedRelaxation { spectrum, report, known_until })
+    }
+}
+
+tabulated!(TabulatedRelaxation);
+
+/// A body known by its measured dynamic moduli (DMA, rheometer): angular frequency \[rad/s\], storage and loss
+/// modulus G′, G″ \[Pa\].
+///
+/// Both moduli are fitted together, each in its relative misfit, then converted to creep exactly. Known up to the
+/// time 1/ω of the lowest frequency; what is faster than the highest counts as elastic.
+///
+/// ```
+/// use viscocontact::rheology::{GeneralizedMaxwell, Rheology, TabulatedDynamic};
+///
+/// let truth = GeneralizedMaxwell::new(1.0e6, &[(4.0e6, 1.0)])?;
+/// let spectrum = truth.creep_spectrum().unwrap().relaxation();
+/// let omega: Vec<f64> = (-8..=8).map(|k| 10f64.powf(0.25 * f64::from(k))).collect();
+/// let storage: Vec<f64> = omega.iter().map(|&omega| spectrum.storage_modulus(omega)).collect();
+/// let loss: Vec<f64> = omega.iter().map(|&omega| spectrum.loss_modulus(omega)).collect();
+/// let body = TabulatedDynamic::new(&omega, &storage, &loss)?;
+/// assert!((body.creep_compliance(2.0) / truth.creep_compliance(2.0) - 1.0).abs() < 1e-4);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct TabulatedDynamic {
+    spectrum: CreepSpectrum,
+    report: FitReport,
+    known_until: f64,
+}
+
+impl TabulatedDynamic {
+    /// Fits `storage` and `loss` moduli \[Pa\] at the angular frequencies `omega` > 0 \[rad/s\], in any order.
+    ///
+    /// # Errors
+    /// As [`TabulatedCreep::new`]; frequencies and both moduli must be positive, and G′ may not decrease with the
+    /// frequency.
+    pub fn new(omega: &[f64], storage: &[f64], loss: &[f64]) -> Result<TabulatedDynamic> {
+        TabulatedDynamic::from_rows(rows(omega, "storage and loss moduli", &[storage, loss])?)
+    }
+
+    pub(crate) fn from_rows(rows: Vec<Row>) -> Result<TabulatedDynamic> {
+        let (series, report) = fitted(DYNAMIC, rows, false)?;
+        let spectrum = RelaxationSpectrum::new(series.constant, 0.0, &series.terms)?.creep();
+        let known_until = report.range().map_or(0.0, |[lowest, _]| 1.0 / lowest);
+        Ok(TabulatedDynamic { spectrum, report, known_until })
+    }
+}
+
+tabulated!(TabulatedDynamic);
+
+/// Rows of slices of equal length.
+fn rows(x: &[f64], field: &'static str, columns: &[&[f64]]) -> Result<Vec<Row>> {
+    for column in columns {
+        exact_length(field, column.len(), x.len())?;
+    }
+    let row = |(k, &x): (usize, &f64)| Row {
+        place: Place::Entry(k),
+        x,
+        values: columns.iter().map(|column| column[k]).collect(),
+    };
+    Ok(x.iter().enumerate().map(row).collect())
+}
+
+/// The series that the data warrant.
+fn fitted(layout: Layout, rows: Vec<Row>, slope: bool) -> Result<(Series, FitReport)> {
+    let (samples, deepest) = validated(layout, rows)?;
+    let times = |sample: &Sample| match layout.zero {
+        true => sample.x,
+        false => 1.0 / sample.x,
+    };
+    let positive = || samples.iter().map(times).filter(|t| *t > 0.0);
+    let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
+    let search = Search { constant: None, slope, times: [first / BEYOND, last * BEYOND], goal: Goal::Warranted(FLOOR) };
+    let series = search.run(&samples);
+    let report = FitReport::new(&series, &samples).with_deepest_change(deepest);
+    Ok((series, report))
+}

@@ -1,0 +1,138 @@
+use crate::error::{Error, Result, finite, positive};
+use crate::rheology::{CreepSpectrum, Rheology};
+
+/// The gas constant \[J/(mol K)\] (exact since 2019).
+pub(crate) const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
+
+/// How the rate of creep depends on temperature: at T everything takes a_T times as long as at the reference
+/// temperature (thermorheologically simple bodies).
+///
+/// ```
+/// use viscocontact::rheology::{Maxwell, Rheology, TimeTemperature};
+///
+/// // the constants often quoted for polymers above their glass transition (Williams, Landel & Ferry 1955)
+/// let wlf = TimeTemperature::wlf(17.44, 51.6, 373.15)?;
+/// assert_eq!(wlf.shift_factor(373.15)?, 1.0);
+/// assert!((wlf.shift_factor(393.15)?.log10() + 17.44 * 20.0 / 71.6).abs() < 1e-12);
+///
+/// // a body measured at 373.15 K, at 20 K more
+/// let warm = wlf.at(Maxwell::new(1.0e6, 1.0e9)?, 393.15)?;
+/// assert!(warm.creep_compliance(1.0) > 5.0 * warm.creep_compliance(0.0));
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeTemperature {
+    law: Law,
+    reference: f64,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Law {
+    Wlf { c1: f64, c2: f64 },
+    Arrhenius { energy: f64 },
+}
+
+impl TimeTemperature {
+    /// Williams, Landel and Ferry: log₁₀ a_T = −C₁ (T − T_ref)/(C₂ + T − T_ref), C₂ and temperatures in K.
+    ///
+    /// # Errors
+    /// If a constant or the reference temperature is not finite and positive.
+    pub fn wlf(c1: f64, c2: f64, reference: f64) -> Result<TimeTemperature> {
+        positive("WLF constant C1", c1)?;
+        positive("WLF constant C2", c2)?;
+        positive("reference temperature", reference)?;
+        Ok(TimeTemperature { law: Law::Wlf { c1, c2 }, reference })
+    }
+
+    /// Arrhenius: ln a_T = (E/R)(1/T − 1/T_ref), activation `energy` E in J/mol, temperatures in K.
+    ///
+    /// # Errors
+    /// If the energy or the reference temperature is not finite and positive.
+    pub fn arrhenius(energy: f64, reference: f64) -> Result<TimeTemperature> {
+        positive("activation energy", energy)?;
+        positive("reference temperature", reference)?;
+        Ok(TimeTemperature { law: Law::Arrhenius { energy }, reference })
+    }
+
+    /// The temperature at which a_T = 1 \[K\].
+    pub fn reference(&self) -> f64 {
+        self.reference
+    }
+
+    /// C₁ and C₂ \[K\] of a WLF law.
+    pub fn wlf_constants(&self) -> Option<[f64; 2]> {
+        if let Law::Wlf { c1, c2 } = self.law { Some([c1, c2]) } else { None }
+    }
+
+    /// E \[J/mol\] of an Arrhenius law.
+    pub fn activation_energy(&self) -> Option<f64> {
+        if let Law::Arrhenius { energy } = self.law { Some(energy) } else { None }
+    }
+
+    /// a_T at `temperature` \[K\].
+    ///
+    /// # Errors
+    /// If the temperature is not finite and positive, not above T_ref − C₂ where the WLF law ends, or a_T leaves
+    /// \[1e-60, 1e60\].
+    pub fn shift_factor(&self, temperature: f64) -> Result<f64> {
+        positive("temperature", temperature)?;
+        let difference = temperature - self.reference;
+        let factor = match self.law {
+            Law::Wlf { c2, .. } if c2 + difference <= 0.0 => {
+                let allowed = "above T_ref - C2, where the WLF law ends";
+                return Err(Error::OutOfRange { field: "temperature", value: temperature, allowed });
+            }
+            Law::Wlf { c1, c2 } => 10f64.powf(-c1 * difference / (c2 + difference)),
+            Law::Arrhenius { energy } => (energy / GAS_CONSTANT * (1.0 / temperature - 1.0 / self.reference)).exp(),
+        };
+        finite("shift factor", factor)?;
+        if (1e-60..=1e60).contains(&factor) {
+            Ok(factor)
+        } else {
+            Err(Error::OutOfRange { field: "shift factor", value: factor, allowed: "in [1e-60, 1e60]" })
+        }
+    }
+
+    /// A `rheology` known at the reference temperature, at another `temperature` \[K\]: J(t/a_T).
+    ///
+    /// # Errors
+    /// As [`TimeTemperature::shift_factor`].
+    pub fn at<R: Rheology>(&self, rheology: R, temperature: f64) -> Result<AtTemperature<R>> {
+        Ok(AtTemperature { rheology, factor: self.shift_factor(temperature)?, temperature })
+    }
+}
+
+/// A rheology at another temperature than it was measured at; made by [`TimeTemperature::at`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct AtTemperature<R> {
+    rheology: R,
+    factor: f64,
+    temperature: f64,
+}
+
+impl<R: Rheology> AtTemperature<R> {
+    /// Temperature \[K\].
+    pub fn temperature(&self) -> f64 {
+        self.temperature
+    }
+
+    /// How many times as long everything takes, a_T.
+    pub fn shift_factor(&self) -> f64 {
+        self.factor
+    }
+}
+
+impl<R: Rheology> Rheology for AtTemperature<R> {
+    fn creep_compliance(&self, t: f64) -> f64 {
+        self.rheology.creep_compliance(t / self.factor)
+    }
+
+    /// `None` too where a time leaves the range of a [`CreepSpectrum`].
+    fn creep_spectrum(&self) -> Option<CreepSpectrum> {
+        self.rheology.creep_spectrum()?.slowed(self.factor).ok()
+    }
+
+    fn known_until(&self) -> f64 {
+        self.rheology.known_until() * self.factor
+    }
+}
