@@ -80,9 +80,24 @@ fn build_says_what_a_material_cannot_do() {
     assert!(matches!(build(voigt(), TimeRule::Rectangle), Err(Error::NoElasticResponse { .. })));
     assert_eq!(build(voigt(), TimeRule::Backward), Ok(()));
     let closure = || Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt())));
-    let Err(Error::NoExponentialSeries { rheology, .. }) = build(closure(), TimeRule::Exponential) else { panic!() };
-    assert!(rheology.contains("FnRheology"));
+    assert_eq!(build(closure(), TimeRule::Exponential), Ok(()));
     assert_eq!(build(closure(), TimeRule::Automatic), Ok(()));
+    let error = viscocontact::analytic::GrowingSphere::step(10.0e-3, &closure(), 1.0).unwrap_err();
+    let Error::NoExponentialSeries { rheology, what: "the solution for a growing contact" } = error else { panic!() };
+    assert!(rheology.contains("FnRheology"));
+    let timed = |times| {
+        ViscoelasticContact::builder(grid()).geometry(&sphere()).material(closure()).times(times).build().map(drop)
+    };
+    assert_eq!(timed(1e-3..=1e3), Ok(()));
+    for times in [0.0..=1.0, -1.0..=1.0, f64::NAN..=1.0, 1.0..=f64::INFINITY, 1e-200..=1.0, 2.0..=1.0] {
+        assert!(matches!(timed(times.clone()), Err(Error::OutOfRange { .. })), "{times:?}");
+    }
+    for series_tolerance in [0.0, 1e-9, 0.2, f64::NAN] {
+        let settings = Settings { series_tolerance, ..Settings::default() };
+        let builder = ViscoelasticContact::builder(grid()).geometry(&sphere()).material(closure());
+        let error = builder.settings(settings).build().map(drop).unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { field: "Settings::series_tolerance", .. }), "{error}");
+    }
     let negative = Material::incompressible(FnRheology::new(|t| t - 1.0));
     assert!(matches!(build(negative, TimeRule::Automatic), Err(Error::InvalidCompliance { .. })));
 }

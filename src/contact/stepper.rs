@@ -163,7 +163,6 @@ impl ViscoelasticContact {
     pub(crate) fn step_to(&mut self, time: f64, dt: f64, loads: &[Load]) -> Result<StepReport> {
         non_negative("time", time)?;
         self.free(time, loads)?;
-        self.remember(time)?;
 
         // what the past makes of the end of the step: u = u_old + c K p
         let c = self.history.predict(time, dt, &self.displacement, &mut self.trial_displacement)?;
@@ -183,6 +182,7 @@ impl ViscoelasticContact {
             ContactSolver::PolonskyKeer(solver) => solver.solve(&problem, stop, &mut self.trial, &mut self.work),
         }
         self.trial.follow_surface(&problem);
+        self.remember(time)?;
         self.check(time, dt)?;
 
         // accept: nothing below can fail
@@ -201,16 +201,16 @@ impl ViscoelasticContact {
             let [omega, alpha1, alpha2] = prescribed(&loads[body], self.initial_gap.datum);
             *motion = [self.initial_gap.datum + omega + free[0], alpha1 + free[1], alpha2 + free[2]];
         }
-        let before = std::mem::replace(&mut self.time, time);
+        if self.is_undisturbed() && self.current.pressure.iter().all(|&p| p == 0.0) {
+            self.undisturbed_until = time;
+        }
+        self.time = time;
         self.loads.copy_from_slice(loads);
         self.last_dt = dt;
         self.refresh.count(self.current.pressure.iter().sum());
         self.contact_cells = self.current.pressure.iter().filter(|&&p| p > 0.0).count();
         if let Some(material) = fitted {
             self.material = material;
-        }
-        if self.contact_cells == 0 && self.undisturbed_until == before {
-            self.undisturbed_until = time;
         }
         Ok(self.report(dt))
     }
@@ -219,7 +219,17 @@ impl ViscoelasticContact {
     fn remember(&self, time: f64) -> Result<()> {
         let (age, known_until) = (time - self.undisturbed_until, self.material.known_until());
         // the end of a run may miss the end of a table by rounding
-        if age <= known_until * (1.0 + 1e-9) { Ok(()) } else { Err(Error::BeyondMaterial { time, age, known_until }) }
+        let known = age <= known_until * (1.0 + 1e-9);
+        // what was never touched has nothing to remember
+        if known || self.is_undisturbed() && self.trial.pressure.iter().all(|&p| p == 0.0) {
+            Ok(())
+        } else {
+            Err(Error::BeyondMaterial { time, age, known_until })
+        }
+    }
+
+    fn is_undisturbed(&self) -> bool {
+        self.undisturbed_until == self.time && self.contact_cells == 0
     }
 
     /// Sets what the loads leave free of each body, and refuses those that no pressure can balance.

@@ -24,8 +24,8 @@ use polish::polish;
 pub(crate) enum Goal {
     /// The fewest terms with a misfit below this everywhere: for functions, whose every digit counts.
     Within(f64),
-    /// The fewest terms that the data warrant, by the Bayesian information criterion; misfits below this
-    /// warrant none. For measurements, which are noisy.
+    /// The fewest terms that the data warrant, by the extended Bayesian information criterion (Chen & Chen,
+    /// Biometrika 95, 2008); misfits below this warrant none. For measurements, which are noisy.
     Warranted(f64),
 }
 
@@ -41,8 +41,11 @@ pub(crate) struct Search {
     pub(crate) goal: Goal,
 }
 
-/// Mergers tried, cheapest first, before a series counts as the sparsest.
+/// Mergers tried, cheapest first, before a series counts as the sparsest that is within a tolerance. Noise makes a
+/// bad guide to the cheapest: against data all are tried.
 const TRIES: usize = 3;
+/// Times a decade that are tried on data.
+const DATA_DENSITY: f64 = 6.0;
 /// Iterations of the polish between mergers, and at the end.
 const BRIEF: usize = 12;
 const LONG: usize = 60;
@@ -53,7 +56,7 @@ impl Search {
         let densities: &[f64] = match self.goal {
             // the trapezoidal rule in ln λ errs by about e^(−π²/h): two or three terms a decade suffice for 1e-4
             Goal::Within(_) => &[2.0, 3.0, 5.0, 8.0],
-            Goal::Warranted(_) => &[6.0],
+            Goal::Warranted(_) => &[DATA_DENSITY],
         };
         let mut best: Option<Series> = None;
         for &density in densities {
@@ -85,7 +88,7 @@ impl Search {
     /// Non-negative least squares with `density` times a decade.
     fn on_grid(&self, samples: &[Sample], density: f64) -> Series {
         let [first, last] = self.times.map(f64::log10);
-        let count = ((last - first) * density).ceil() as usize + 1;
+        let count = self.grid(density);
         let time = |k: usize| 10f64.powf(first + (last - first) * k as f64 / (count - 1).max(1) as f64);
         let ends = usize::from(self.constant.is_none()) + usize::from(self.slope);
         let matrix = Mat::from_fn(samples.len(), ends + count, |i, j| {
@@ -110,11 +113,12 @@ impl Search {
 
     /// Merges terms while the goal allows it.
     fn thinned(&self, start: Series, samples: &[Sample]) -> Series {
+        let tries = if let Goal::Within(_) = self.goal { TRIES } else { usize::MAX };
         let mut best = start;
         'fewer: loop {
             let mut mergers = self.mergers(&best, samples);
             mergers.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (_, merged) in mergers.into_iter().take(TRIES) {
+            for (_, merged) in mergers.into_iter().take(tries) {
                 let trial =
                     polish(&merged, samples, self.free(), BRIEF, &|series| self.prefers(series, &best, samples));
                 if self.prefers(&trial, &best, samples) {
@@ -141,14 +145,22 @@ impl Search {
             Goal::Warranted(floor) => {
                 let criterion = |series: &Series| {
                     let count = samples.len() as f64;
-                    let parameters = 2 * series.terms.len()
-                        + usize::from(series.constant > 0.0 && self.constant.is_none())
-                        + usize::from(series.slope > 0.0);
-                    count * (series.squares(samples) / count + floor * floor).ln() + parameters as f64 * count.ln()
+                    let ends =
+                        usize::from(series.constant > 0.0 && self.constant.is_none()) + usize::from(series.slope > 0.0);
+                    // a term is a strength, a time, and the choice of that time among all there were
+                    let price = ends as f64 * count.ln()
+                        + series.terms.len() as f64 * 2.0 * (count.ln() + (self.grid(DATA_DENSITY) as f64).ln());
+                    count * (series.squares(samples) / count + floor * floor).ln() + price
                 };
                 criterion(trial) <= criterion(current)
             }
         }
+    }
+
+    /// Number of times on a grid of `density` times a decade.
+    fn grid(&self, density: f64) -> usize {
+        let [first, last] = self.times.map(f64::log10);
+        ((last - first) * density).ceil() as usize + 1
     }
 
     /// Every series with one term less, and what the merger costs to first order.

@@ -39,7 +39,7 @@ pub struct FitReport {
     samples: Vec<FitSample>,
     terms: usize,
     exact: bool,
-    deepest_change: f64,
+    wrong_way: f64,
 }
 
 impl FitReport {
@@ -55,18 +55,18 @@ impl FitReport {
             samples: samples.iter().map(fitted).collect(),
             terms: series.terms.len(),
             exact: false,
-            deepest_change: 0.0,
+            wrong_way: 0.0,
         }
     }
 
     /// Of a series that is the function itself.
     pub(crate) fn exact(terms: usize) -> FitReport {
-        FitReport { samples: Vec::new(), terms, exact: true, deepest_change: 0.0 }
+        FitReport { samples: Vec::new(), terms, exact: true, wrong_way: 0.0 }
     }
 
-    /// The same, of data that change the wrong way by so much.
-    pub(crate) fn with_deepest_change(self, deepest_change: f64) -> FitReport {
-        FitReport { deepest_change, ..self }
+    /// The same, of data that turn back by so much.
+    pub(crate) fn with_wrong_way(self, wrong_way: f64) -> FitReport {
+        FitReport { wrong_way, ..self }
     }
 
     /// Whether the series is the function itself and nothing was fitted.
@@ -103,10 +103,10 @@ impl FitReport {
         (least < f64::INFINITY).then(|| [least, positive().fold(0.0, f64::max)])
     }
 
-    /// The greatest relative change the wrong way that was taken for noise: a compliance below an earlier one, a
-    /// relaxation modulus above. 0 for monotone data.
-    pub fn deepest_change(&self) -> f64 {
-        self.deepest_change
+    /// How far the data stray, relatively, from the nearest curve that does not turn back, which was taken for
+    /// noise. 0 for monotone data.
+    pub fn wrong_way(&self) -> f64 {
+        self.wrong_way
     }
 
     /// Relaxation or retardation times that were kept.
@@ -134,8 +134,8 @@ impl fmt::Display for FitReport {
             self.max_misfit(),
             worst.x
         )?;
-        if self.deepest_change > 0.0 {
-            write!(f, "; the data change the wrong way by {:.1e} at most, taken for noise", self.deepest_change)?;
+        if self.wrong_way > 0.0 {
+            write!(f, "; the data turn back by {:.1e} at most, taken for noise", self.wrong_way)?;
         }
         Ok(())
     }

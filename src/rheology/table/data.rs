@@ -40,16 +40,19 @@ pub(crate) const DYNAMIC: Layout = Layout {
     zero: false,
 };
 
-/// A change the wrong way counts as noise up to so many standard deviations of the scatter, ...
+/// Data may stray from a monotone curve by so many standard deviations of their scatter, ...
 const DEVIATIONS: f64 = 6.0;
-/// ... but never beyond this relative change: a scatter so large would hide any creep.
-const MOST_NOISE: f64 = 0.2;
-/// Clean data may change the wrong way by the rounding of their printed digits.
+/// ... but not beyond this, relatively; ...
+const MOST_NOISE: f64 = 0.5;
+/// ... in short tables, whose scatter is hard to tell from their course, not even beyond this.
+const MOST_NOISE_OF_FEW: f64 = 0.1;
+const FEW: usize = 12;
+/// Clean data may stray by the rounding of their printed digits.
 const LEAST_NOISE: f64 = 1e-9;
 /// A fit of constant, slope and one term needs as many values.
 const LEAST_ROWS: usize = 4;
 
-/// The samples of a table, in ascending order, and the greatest change the wrong way among them.
+/// The samples of a table, in ascending order, and how far at most they stray from a monotone curve.
 pub(crate) fn validated(layout: Layout, mut rows: Vec<Row>) -> Result<(Vec<Sample>, f64)> {
     let Layout { table, abscissa, columns, zero } = layout;
     if rows.is_empty() {
@@ -89,24 +92,36 @@ pub(crate) fn validated(layout: Layout, mut rows: Vec<Row>) -> Result<(Vec<Sampl
             Quantity::Relaxation => values.iter().map(|value| 1.0 / value).collect(),
             Quantity::Loss => continue,
         };
-        let noise = (DEVIATIONS * scatter(&rising)).clamp(LEAST_NOISE, MOST_NOISE);
-        let mut highest = 0;
-        for k in 1..rows.len() {
-            let change = 1.0 - rising[k] / rising[highest];
-            if change > noise {
-                let (place, value, previous) = (rows[k].place, rows[k].values[index], rows[highest].values[index]);
-                return Err(TableError::WrongWay { table, place, column, value, previous, change, noise }.into());
-            }
-            deepest = deepest.max(change);
-            if rising[k] > rising[highest] {
-                highest = k;
-            }
+        let most = if rows.len() < FEW { MOST_NOISE_OF_FEW } else { MOST_NOISE };
+        let noise = (DEVIATIONS * scatter(&rising)).clamp(LEAST_NOISE, most);
+        let strays = rising.iter().zip(never_falling(&rising)).map(|(value, curve)| (value / curve - 1.0).abs());
+        let Some((worst, change)) = strays.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
+        if change > noise {
+            let (place, value) = (rows[worst].place, rows[worst].values[index]);
+            return Err(TableError::WrongWay { table, place, column, value, change, noise }.into());
         }
+        deepest = deepest.max(change);
     }
     let sample =
         |index: usize, quantity| rows.iter().map(move |row| Sample { quantity, x: row.x, value: row.values[index] });
     let samples = columns.iter().enumerate().flat_map(|(index, &(_, quantity))| sample(index, quantity));
     Ok((samples.collect(), deepest))
+}
+
+/// The curve nearest to the values that never falls: neighbours that fall are pooled into their mean, until none do.
+fn never_falling(values: &[f64]) -> Vec<f64> {
+    let mut pools: Vec<(f64, usize)> = Vec::with_capacity(values.len());
+    for &value in values {
+        pools.push((value, 1));
+        while let [.., (before, n), (last, m)] = pools[..] {
+            if before <= last {
+                break;
+            }
+            pools.truncate(pools.len() - 2);
+            pools.push(((before * n as f64 + last * m as f64) / (n + m) as f64, n + m));
+        }
+    }
+    pools.into_iter().flat_map(|(mean, count)| std::iter::repeat_n(mean, count)).collect()
 }
 
 /// Relative standard deviation of the scatter about a smooth curve, from the median of second differences, which

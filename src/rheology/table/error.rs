@@ -99,25 +99,24 @@ pub enum TableError {
     },
 
     /// A compliance decreases, a relaxation modulus increases, or a storage modulus decreases with frequency,
-    /// by more than the noise of the data explains: no passive body does.
+    /// by more than the scatter of the data explains: no passive body does. Remove the outlier, or what was recorded
+    /// after the specimen failed or slipped.
     #[error(
-        "{table} table, {place}: {column} = {value} after {previous} is a change the wrong way by {:.2} %, more than noise ({:.2} %) explains",
+        "{table} table, {place}: {column} = {value} strays by {:.2} % from any curve that does not turn back; the scatter of the data explains {:.2} %",
         100.0 * .change, 100.0 * .noise
     )]
     WrongWay {
         /// Which table.
         table: &'static str,
-        /// Where.
+        /// Where it is worst.
         place: Place,
         /// Which column.
         column: &'static str,
         /// The value.
         value: f64,
-        /// The value it contradicts.
-        previous: f64,
-        /// Relative change.
+        /// Relative distance from the nearest monotone curve.
         change: f64,
-        /// Relative change that would have been tolerated.
+        /// Relative distance that would have been tolerated.
         noise: f64,
     },
 

@@ -218,6 +218,6 @@ fn fitted(layout: Layout, rows: Vec<Row>, slope: bool) -> Result<(Series, FitRep
     let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
     let search = Search { constant: None, slope, times: [first / BEYOND, last * BEYOND], goal: Goal::Warranted(FLOOR) };
     let series = search.run(&samples);
-    let report = FitReport::new(&series, &samples).with_deepest_change(deepest);
+    let report = FitReport::new(&series, &samples).with_wrong_way(deepest);
     Ok((series, report))
 }
