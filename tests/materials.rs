@@ -269,3 +269,37 @@ fn an_elastic_bulk_loads_and_unloads_as_the_foundation_does() {
         }
     }
 }
+
+/// What many relaxation times cost: a body with thirty against one with a single one that creeps the same, so that the
+/// contact problems are the same. Shortest of several interleaved runs.
+#[test]
+fn thirty_relaxation_times_cost_little_more_than_one() {
+    let scene = |count: usize| {
+        let share = 1.0e-6 / count as f64;
+        let terms: Vec<_> = (0..count).map(|k| (share, 1.0 + 1e-4 * k as f64)).collect();
+        let body = GeneralizedKelvin::new(1.0e-6, 0.0, &terms).unwrap();
+        assert_eq!(body.creep_spectrum().unwrap().relaxation().terms().len(), count);
+        let mut contact = builder(256, 0.5e-6).material(Material::incompressible(body)).build().unwrap();
+        contact.step(0.0, Load::force(FORCE)).unwrap();
+        contact
+    };
+    let mut run = [1, 30].map(|count| (scene(count), f64::INFINITY, 0.0));
+    for _ in 0..12 {
+        for (contact, least, convolutions) in &mut run {
+            let clock = std::time::Instant::now();
+            for _ in 0..4 {
+                *convolutions += contact.step(0.02, Load::force(FORCE)).unwrap().convolution_equivalents();
+            }
+            *least = least.min(clock.elapsed().as_secs_f64());
+        }
+    }
+    let [(_, one, work), (_, thirty, same)] = run;
+    println!(
+        "30 relaxation times / 1: {:.2}; convolutions {:.2} and {:.2} a step",
+        thirty / one,
+        work / 48.0,
+        same / 48.0
+    );
+    assert!((work / same - 1.0).abs() < 0.05, "the contact problems are the same");
+    assert!(thirty < 1.3 * one, "{}", thirty / one);
+}

@@ -3,7 +3,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::error::{Error, Result, finite, non_negative, positive};
-use crate::hereditary::{Change, Exponential};
+use crate::hereditary::Exponential;
 use crate::rheology::Material;
 
 /// The profile g(x) of a one-dimensional foundation that stands for an axisymmetric indenter f(r):
@@ -193,12 +193,7 @@ impl AxisymmetricContact {
             *q = (approach - touch).max(0.0) / c;
             *u += c * *q;
         }
-        self.history.commit(&Change {
-            time: self.time + dt,
-            dt,
-            displacement: [&self.displacement, &self.trial_displacement],
-            potential: [&[], &[]],
-        });
+        self.history.commit();
         std::mem::swap(&mut self.displacement, &mut self.trial_displacement);
         std::mem::swap(&mut self.touch, &mut self.trial_touch);
         self.time += dt;

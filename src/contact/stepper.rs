@@ -80,6 +80,7 @@ pub struct ViscoelasticContact {
 
     /// The step being tried; thrown away if it fails.
     pub(super) trial: Solution,
+    /// Between steps the displacement before the last one, which the history has yet to take in.
     trial_displacement: Vec<f64>,
     gap: Vec<f64>,
     pub(super) freedoms: Vec<Freedom>,
@@ -187,12 +188,8 @@ impl ViscoelasticContact {
 
         // accept: nothing below can fail
         self.displace(c);
-        let fitted = self.history.commit(&Change {
-            time,
-            dt,
-            displacement: [&self.displacement, &self.trial_displacement],
-            potential: [&self.current.potential, &self.trial.potential],
-        });
+        let fitted =
+            self.history.commit(&Change { time, dt, potential: [&self.current.potential, &self.trial.potential] });
         std::mem::swap(&mut self.displacement, &mut self.trial_displacement);
         std::mem::swap(&mut self.previous, &mut self.current);
         std::mem::swap(&mut self.current, &mut self.trial);

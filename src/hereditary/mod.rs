@@ -35,8 +35,9 @@ pub(crate) enum History {
 }
 
 impl History {
-    /// Writes u_old of a step of length `dt` that ends at `time` into `u_old`, given the displacement at
-    /// its start, and returns c.
+    /// Writes u_old of a step of length `dt` that ends at `time` over `u_old`, given the displacement at its
+    /// start, and returns c. After a commit, `u_old` must still hold the displacement at the start of the step
+    /// committed.
     pub(crate) fn predict(&mut self, time: f64, dt: f64, displacement: &[f64], u_old: &mut [f64]) -> Result<f64> {
         match self {
             History::Exponential(history) => history.predict(time, dt, displacement, u_old),
@@ -54,14 +55,13 @@ impl History {
         }
     }
 
-    /// Takes the step that was predicted last into the past: `displacement` went from `before` to
-    /// `after`, and v = K p from `v_before` to `v_after`. Returns the material whose series was fitted for it.
+    /// Takes the step that was predicted last into the past. Returns the material whose series was fitted for it.
     pub(crate) fn commit(&mut self, change: &Change<'_>) -> Option<Material> {
         match self {
-            History::Exponential(history) => history.commit(change),
+            History::Exponential(history) => history.commit(),
             History::Direct(history) => history.commit(change),
             History::Unfitted(history) => {
-                let fitted = history.commit(change)?;
+                let fitted = history.commit()?;
                 *self = History::Exponential(fitted.history);
                 return Some(fitted.material);
             }
@@ -77,11 +77,10 @@ impl History {
     }
 }
 
-/// The fields at both ends of a step.
+/// A step, and v = K p at both of its ends.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Change<'a> {
     pub(crate) time: f64,
     pub(crate) dt: f64,
-    pub(crate) displacement: [&'a [f64]; 2],
     pub(crate) potential: [&'a [f64]; 2],
 }

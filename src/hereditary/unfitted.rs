@@ -1,7 +1,7 @@
 //! A past that waits for its exponential series.
 
 use crate::error::{Error, Result};
-use crate::hereditary::{Change, Exponential};
+use crate::hereditary::Exponential;
 use crate::rheology::Material;
 
 /// Unless the scene says over which times its material is wanted, the first step that takes time does: from a
@@ -65,9 +65,9 @@ impl Unfitted {
     }
 
     /// Takes the step that was predicted last into the past, and hands over what was fitted for it.
-    pub(crate) fn commit(&mut self, change: &Change<'_>) -> Option<Fitted> {
+    pub(crate) fn commit(&mut self) -> Option<Fitted> {
         let mut fitted = self.fitted.take()?;
-        fitted.history.commit(change);
+        fitted.history.commit();
         Some(fitted)
     }
 }
