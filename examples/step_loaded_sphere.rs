@@ -15,7 +15,7 @@ use std::time::Instant;
 use clap::{Parser, ValueEnum};
 use common::{Errors, StepLoadedSphere, errors};
 use indicatif::{ProgressBar, ProgressStyle};
-use support::plot::{COLORS, Chart, SeriesLabelPosition, Style};
+use support::plot::{COLORS, Chart, Scale, SeriesLabelPosition, Style};
 use viscocontact::analytic::{GrowingSphere, Hertz};
 use viscocontact::prelude::*;
 
@@ -137,7 +137,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let title = format!("Error in time at t = 2τ, {}² cells", args.cells / 2);
     let y = "central pressure: |computed / exact − 1|";
     let mut convergence = Chart::new(&title, "steps", y, SeriesLabelPosition::LowerLeft);
-    convergence.logarithmic = true;
+    convergence.scale = Scale::LogLog;
     for (index, scene) in args.scenes()?.iter().enumerate() {
         let colors = [COLORS[2 * index], COLORS[2 * index + 1]];
         let run = follow(scene, args)?;

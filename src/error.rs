@@ -257,6 +257,15 @@ pub enum Error {
         tolerance: f64,
     },
 
+    /// No published material has this name.
+    #[error("there is no published material named {name:?}; there are: {known}")]
+    UnknownMaterial {
+        /// The name asked for.
+        name: String,
+        /// The names there are.
+        known: String,
+    },
+
     /// A table of measured data is not one that a body could have given.
     #[error(transparent)]
     Table(#[from] crate::rheology::TableError),

@@ -24,6 +24,14 @@ pub const COLORS: [RGBColor; 7] = [
 const FONT: &str = "viscocontact";
 const SIZE: (u32, u32) = (1200, 800);
 
+/// Which axes are logarithmic.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Scale {
+    Linear,
+    LogX,
+    LogLog,
+}
+
 /// How a series is drawn.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Style {
@@ -43,8 +51,7 @@ pub struct Chart {
     pub title: String,
     pub x: String,
     pub y: String,
-    /// Logarithmic axes, both or none.
-    pub logarithmic: bool,
+    pub scale: Scale,
     /// Where the legend leaves the curves free.
     pub legend: SeriesLabelPosition,
     pub series: Vec<Series>,
@@ -52,7 +59,7 @@ pub struct Chart {
 
 impl Chart {
     pub fn new(title: &str, x: &str, y: &str, legend: SeriesLabelPosition) -> Chart {
-        Chart { title: title.into(), x: x.into(), y: y.into(), logarithmic: false, legend, series: Vec::new() }
+        Chart { title: title.into(), x: x.into(), y: y.into(), scale: Scale::Linear, legend, series: Vec::new() }
     }
 
     pub fn add(&mut self, label: impl Into<String>, color: RGBColor, style: Style, points: Vec<(f64, f64)>) {
@@ -71,24 +78,28 @@ impl Chart {
             .margin_right(40)
             .x_label_area_size(65)
             .y_label_area_size(95);
-        let ([x0, x1], [y0, y1]) = (self.range(|point| point.0), self.range(|point| point.1));
-        if self.logarithmic {
-            let mut chart = builder.build_cartesian_2d((x0..x1).log_scale(), (y0..y1).log_scale())?;
-            self.draw(&mut chart, &|v| format!("{v}"), &|v| format!("{v:.0e}"))?;
-        } else {
-            let mut chart = builder.build_cartesian_2d(x0..x1, y0..y1)?;
-            let label = |v: &f64| format!("{}", (v * 1e6).round() / 1e6 + 0.0); // no minus before a zero
-            self.draw(&mut chart, &label, &label)?;
+        let log_x = self.scale != Scale::Linear;
+        let [x0, x1] = self.range(log_x, |point| point.0);
+        let [y0, y1] = self.range(self.scale == Scale::LogLog, |point| point.1);
+        let plain = |v: &f64| format!("{}", (v * 1e6).round() / 1e6 + 0.0); // no minus before a zero
+        let power = |v: &f64| if (0.01..1e4).contains(v) { format!("{v}") } else { format!("{v:.0e}") };
+        match self.scale {
+            Scale::Linear => self.draw(&mut builder.build_cartesian_2d(x0..x1, y0..y1)?, &plain, &plain)?,
+            Scale::LogX => self.draw(&mut builder.build_cartesian_2d((x0..x1).log_scale(), y0..y1)?, &power, &plain)?,
+            Scale::LogLog => {
+                let mut chart = builder.build_cartesian_2d((x0..x1).log_scale(), (y0..y1).log_scale())?;
+                self.draw(&mut chart, &power, &power)?;
+            }
         }
         root.present()?;
         Ok(())
     }
 
     /// The extent of a coordinate over all series, with some room.
-    fn range(&self, of: impl Fn(&(f64, f64)) -> f64) -> [f64; 2] {
+    fn range(&self, logarithmic: bool, of: impl Fn(&(f64, f64)) -> f64) -> [f64; 2] {
         let values = || self.series.iter().flat_map(|series| &series.points).map(&of).filter(|v| v.is_finite());
         let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
-        if self.logarithmic {
+        if logarithmic {
             [low / 1.5, high * 1.5]
         } else {
             let room = 0.04 * (high - low).max(f64::MIN_POSITIVE);

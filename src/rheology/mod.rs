@@ -27,6 +27,7 @@ mod interconversion;
 mod kelvin_voigt;
 mod kww;
 pub mod laws;
+pub mod library;
 mod log_creep;
 mod material;
 mod maxwell;

@@ -24,8 +24,12 @@ use polish::polish;
 pub(crate) enum Goal {
     /// The fewest terms with a misfit below this everywhere: for functions, whose every digit counts.
     Within(f64),
-    /// The fewest terms that the data warrant, by the extended Bayesian information criterion (Chen & Chen,
-    /// Biometrika 95, 2008); misfits below this warrant none. For measurements, which are noisy.
+    /// The terms that the data warrant, by the information criterion of Akaike (1974), which asks for the best
+    /// prediction; misfits below this warrant none. For measurements, which are noisy.
+    ///
+    /// Criteria that ask for the true number of terms (Bayesian ones) find three or six times as surely, but of a
+    /// continuous spectrum they leave ripples: with 2 % noise, J of a fractional Zener body errs by 0.95 % instead of
+    /// 0.68 % rms, and of three retardation times by 0.38 % instead of 0.40 %.
     Warranted(f64),
 }
 
@@ -145,12 +149,10 @@ impl Search {
             Goal::Warranted(floor) => {
                 let criterion = |series: &Series| {
                     let count = samples.len() as f64;
-                    let ends =
-                        usize::from(series.constant > 0.0 && self.constant.is_none()) + usize::from(series.slope > 0.0);
-                    // a term is a strength, a time, and the choice of that time among all there were
-                    let price = ends as f64 * count.ln()
-                        + series.terms.len() as f64 * 2.0 * (count.ln() + (self.grid(DATA_DENSITY) as f64).ln());
-                    count * (series.squares(samples) / count + floor * floor).ln() + price
+                    let parameters = usize::from(series.constant > 0.0 && self.constant.is_none())
+                        + usize::from(series.slope > 0.0)
+                        + 2 * series.terms.len();
+                    count * (series.squares(samples) / count + floor * floor).ln() + 2.0 * parameters as f64
                 };
                 criterion(trial) <= criterion(current)
             }

@@ -1,0 +1,157 @@
+//! From a measured creep test to a contact: a CSV table with 2 % noise is fitted, and a sphere is pressed onto the
+//! material that it gives. The table was made from a known material, so that the error of the whole way can be
+//! told.
+//!
+//! `cargo run --release --example measured_creep`
+
+mod support;
+
+use std::error::Error;
+use std::fs;
+use std::path::PathBuf;
+
+use clap::Parser;
+use indicatif::ProgressBar;
+use support::plot::{COLORS, Chart, Scale, SeriesLabelPosition, Style};
+use viscocontact::prelude::*;
+use viscocontact::rheology::Units;
+
+/// A sphere on a material known by a table of its creep.
+#[derive(Parser)]
+struct Args {
+    /// Table of time [s] and creep compliance [1/Pa].
+    #[arg(long, default_value = "examples/data/creep.csv")]
+    table: PathBuf,
+    /// Make the table anew, from the known material with this seed of the noise.
+    #[arg(long)]
+    seed: Option<u64>,
+    /// Force [N].
+    #[arg(long, default_value_t = 1.0)]
+    load: f64,
+    /// Radius of the sphere [m].
+    #[arg(long, default_value_t = 10.0e-3)]
+    radius: f64,
+    /// Cells along each side of the grid.
+    #[arg(long, default_value_t = 256)]
+    cells: usize,
+    /// Steps a decade of time.
+    #[arg(long, default_value_t = 20)]
+    steps: u32,
+    /// Folder for tables and pictures.
+    #[arg(long, default_value = "out/measured_creep")]
+    output: PathBuf,
+}
+
+fn main() {
+    support::finish(run(&Args::parse()));
+}
+
+/// What the table was made from: glassy 1 GPa, relaxed 1 MPa.
+fn truth() -> Result<FractionalZener> {
+    FractionalZener::new(1.0e9, 1.0e6, 10.0, 0.45)
+}
+
+fn run(args: &Args) -> Result<(), Box<dyn Error>> {
+    fs::create_dir_all(&args.output)?;
+    if let Some(seed) = args.seed {
+        measure(args, seed)?;
+    }
+    // the material as its user gets it
+    let body = TabulatedCreep::from_csv(&args.table, Units::SI)?;
+    println!("{}", body.report());
+    for (compliance, time) in body.spectrum().terms() {
+        println!("  retardation time {time:9.2e} s, compliance {compliance:9.2e} 1/Pa");
+    }
+    plot_fit(args, &body)?;
+
+    // the contact: from the first time of the data to the last
+    let truth = truth()?;
+    let [first, last] = body.report().range().ok_or("the table is empty")?;
+    let exact = |t: f64| (3.0 / 16.0 * args.radius * args.load * truth.creep_compliance(t)).cbrt();
+    let widest = (3.0 / 16.0 * args.radius * args.load * body.creep_compliance(last)).cbrt();
+    let mut contact = ViscoelasticContact::builder(Grid::square(args.cells, 2.3 * widest)?)
+        .geometry(&Sphere::new(args.radius)?)
+        .material(Material::incompressible(body))
+        .build()?;
+    contact.step(0.0, Load::force(args.load))?;
+    let count = ((last / first).log10() * f64::from(args.steps)).round() as u32;
+    let mut table = csv::Writer::from_path(args.output.join("history.csv"))?;
+    table.write_record(["time_s", "approach_m", "contact_radius_m", "exact_contact_radius_m", "convolutions"])?;
+    let (mut computed, mut curve, mut worst, mut squares) = (Vec::new(), Vec::new(), 0.0_f64, 0.0);
+    let progress = ProgressBar::new(u64::from(count));
+    for k in 0..=count {
+        let time = if k == count { last } else { first * (last / first).powf(f64::from(k) / f64::from(count)) };
+        let report = contact.step(time - contact.time(), Load::force(args.load))?;
+        // the approach gives the radius to a fraction of a cell: ω = a²/R
+        let radius = (report.approach * args.radius).sqrt();
+        table.serialize((time, report.approach, radius, exact(time), report.convolution_equivalents()))?;
+        let error = radius / exact(time) - 1.0;
+        worst = worst.max(error.abs());
+        squares += error * error;
+        computed.push((time, radius * 1e3));
+        curve.push((time, exact(time) * 1e3));
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    table.flush()?;
+    let rms = (squares / f64::from(count + 1)).sqrt();
+    println!("contact radius against the exact material: {:.2} % rms, {:.2} % at most", 100.0 * rms, 100.0 * worst);
+
+    let title = "Contact radius under a step load";
+    let mut chart = Chart::new(title, "time [s]", "contact radius [mm]", SeriesLabelPosition::UpperLeft);
+    chart.scale = Scale::LogX;
+    chart.add("the material behind the data, exactly", COLORS[0], Style::Line, curve);
+    chart.add("computed from the table", COLORS[1], Style::Dots, computed.into_iter().step_by(4).collect());
+    chart.save(&args.output.join("contact_radius.png"))?;
+    println!("tables and pictures are in {}", args.output.display());
+    Ok(())
+}
+
+/// Writes the table: ten decades of time, twelve values a decade, 2 % noise.
+fn measure(args: &Args, seed: u64) -> Result<(), Box<dyn Error>> {
+    let truth = truth()?;
+    let mut text = String::from(
+        "# Creep of a fractional Zener body (G = 1 GPa, G_K = 1 MPa, 10 s, order 0.45) with 2 % noise,\n\
+         # made by: cargo run --release --example measured_creep -- --seed 1\n\
+         time [s],creep compliance [1/Pa]\n",
+    );
+    // Box and Muller on a linear congruential generator
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    let mut uniform = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
+    };
+    for k in 0..=120 {
+        let time = 10f64.powf(-6.0 + f64::from(k) / 12.0);
+        let noise = (-2.0 * uniform().ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos();
+        text += &format!("{time:.6e},{:.4e}\n", truth.creep_compliance(time) * (1.0 + 0.02 * noise));
+    }
+    fs::write(&args.table, text)?;
+    println!("{} is new", args.table.display());
+    Ok(())
+}
+
+fn plot_fit(args: &Args, body: &TabulatedCreep) -> Result<(), Box<dyn Error>> {
+    let truth = truth()?;
+    let samples = body.report().samples();
+    let mut chart = Chart::new("Creep compliance", "time [s]", "J [1/Pa]", SeriesLabelPosition::UpperLeft);
+    chart.scale = Scale::LogLog;
+    chart.add("data, 2 % noise", COLORS[5], Style::Dots, samples.iter().map(|s| (s.x, s.given)).collect());
+    let fit = format!("fit, {} retardation times", body.report().terms());
+    chart.add(fit, COLORS[1], Style::Line, samples.iter().map(|s| (s.x, s.fitted)).collect());
+    chart.save(&args.output.join("creep.png"))?;
+
+    let mut chart = Chart::new("Relative misfit", "time [s]", "misfit [%]", SeriesLabelPosition::UpperRight);
+    chart.scale = Scale::LogX;
+    let percent = |of: f64, to: f64| 100.0 * (of / to - 1.0);
+    chart.add(
+        "data / fit",
+        COLORS[5],
+        Style::Dots,
+        samples.iter().map(|s| (s.x, percent(s.given, s.fitted))).collect(),
+    );
+    let error = samples.iter().map(|s| (s.x, percent(truth.creep_compliance(s.x), s.fitted))).collect();
+    chart.add("the material behind the data / fit", COLORS[0], Style::Line, error);
+    chart.save(&args.output.join("misfit.png"))?;
+    Ok(())
+}

@@ -1,0 +1,322 @@
+//! Published materials, by name.
+//!
+//! Prony series as they were printed, each with its reference and where the digits were read. Temperatures,
+//! compounds and ageing make other specimens differ: take them for what real bodies look like, and measure your own.
+//!
+//! ```
+//! use viscocontact::rheology::library;
+//!
+//! for material in library::all() {
+//!     println!("{}: {}", material.name(), material.reference());
+//! }
+//! let pmma = library::find("PMMA")?;
+//! let body = pmma.material(0.35)?; // Poisson's ratio is not published with it
+//! assert!((body.contact_compliance(0.0) * 2.23947e9 / (1.0 - 0.35 * 0.35) - 1.0).abs() < 1e-12);
+//! # Ok::<(), viscocontact::Error>(())
+//! ```
+
+use crate::error::{Error, Result};
+use crate::rheology::{GeneralizedMaxwell, Material, TimeTemperature};
+
+/// What a published series is a series of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Measured {
+    /// The shear relaxation modulus G(t).
+    Shear,
+    /// The relaxation modulus E(t) of a rod in tension, G(t) = E(t)/(2 (1 + ν)).
+    Tension,
+}
+
+/// A published material: a relaxation modulus as a Prony series.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Published {
+    name: &'static str,
+    description: &'static str,
+    measured: Measured,
+    /// Modulus that the strengths of the terms are fractions of \[Pa\].
+    scale: f64,
+    equilibrium: f64,
+    terms: &'static [(f64, f64)],
+    temperature: Option<f64>,
+    poisson: Option<f64>,
+    wlf: Option<[f64; 2]>,
+    reference: &'static str,
+    remark: &'static str,
+}
+
+impl Published {
+    /// Its name here.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// What it is.
+    pub fn description(&self) -> &'static str {
+        self.description
+    }
+
+    /// Whether the series is one of shear or of tension.
+    pub fn measured(&self) -> Measured {
+        self.measured
+    }
+
+    /// Modulus after an infinite time, as published \[Pa\].
+    pub fn equilibrium(&self) -> f64 {
+        self.equilibrium * self.scale
+    }
+
+    /// (Modulus \[Pa\], relaxation time \[s\]) of each term, as published.
+    pub fn terms(&self) -> Vec<(f64, f64)> {
+        self.terms.iter().map(|&(strength, time)| (strength * self.scale, time)).collect()
+    }
+
+    /// Temperature at which it holds \[K\], if it is published.
+    pub fn temperature(&self) -> Option<f64> {
+        self.temperature
+    }
+
+    /// Poisson's ratio, if it is published.
+    pub fn poisson(&self) -> Option<f64> {
+        self.poisson
+    }
+
+    /// How it shifts with temperature, if that is published.
+    pub fn time_temperature(&self) -> Option<TimeTemperature> {
+        let ([c1, c2], reference) = self.wlf.zip(self.temperature)?;
+        TimeTemperature::wlf(c1, c2, reference).ok()
+    }
+
+    /// Where it was published.
+    pub fn reference(&self) -> &'static str {
+        self.reference
+    }
+
+    /// Where the digits were read, and what to keep in mind.
+    pub fn remark(&self) -> &'static str {
+        self.remark
+    }
+
+    /// Its behaviour in shear, with Poisson's ratio `nu` constant in time where the series is one of tension.
+    ///
+    /// # Errors
+    /// If `nu` is outside (−1, ½].
+    pub fn rheology(&self, nu: f64) -> Result<GeneralizedMaxwell> {
+        crate::error::within("Poisson's ratio", nu, nu > -1.0 && nu <= 0.5, "in (-1, 0.5]")?;
+        let to_shear = if self.measured == Measured::Tension { 0.5 / (1.0 + nu) } else { 1.0 };
+        let terms: Vec<_> = self.terms().into_iter().map(|(modulus, time)| (to_shear * modulus, time)).collect();
+        GeneralizedMaxwell::new(to_shear * self.equilibrium(), &terms)
+    }
+
+    /// The material with a constant Poisson's ratio `nu`: C = (1 − ν) J/2, which is (1 − ν²) times the creep in
+    /// tension.
+    ///
+    /// # Errors
+    /// If `nu` is outside (−1, ½].
+    pub fn material(&self, nu: f64) -> Result<Material> {
+        Material::constant_poisson(self.rheology(nu)?, nu)
+    }
+}
+
+/// All published materials.
+pub fn all() -> &'static [Published] {
+    &MATERIALS
+}
+
+/// The material of this name, in capitals or not.
+///
+/// # Errors
+/// If there is none; the error lists those there are.
+pub fn find(name: &str) -> Result<&'static Published> {
+    MATERIALS.iter().find(|material| material.name.eq_ignore_ascii_case(name)).ok_or_else(|| Error::UnknownMaterial {
+        name: name.to_owned(),
+        known: MATERIALS.map(|material| material.name).join(", "),
+    })
+}
+
+static MATERIALS: [Published; 5] = [PMMA, EPOXY, ADHESIVE, POLYISOBUTYLENE, POLYSTYRENE_RINGS];
+
+const PMMA: Published = Published {
+    name: "PMMA",
+    description: "polymethyl methacrylate",
+    measured: Measured::Tension,
+    scale: 1.0e6,
+    equilibrium: 2.24,
+    terms: &[
+        (1.94e2, 2.0e-2),
+        (2.83e2, 2.0e-1),
+        (5.54e2, 2.0e0),
+        (6.02e2, 2.0e1),
+        (3.88e2, 2.0e2),
+        (1.56e2, 2.0e3),
+        (4.1e1, 2.0e4),
+        (1.38e1, 2.0e5),
+        (3.68e0, 2.0e6),
+        (7.9e-1, 2.0e7),
+        (9.6e-1, 2.0e8),
+    ],
+    temperature: None,
+    poisson: None,
+    wlf: None,
+    reference: "R. A. Schapery, GALCIT SM 61-23A, California Institute of Technology, 1962; S. W. Park, R. A. Schapery, \
+                Int. J. Solids Struct. 36 (1999) 1653, doi:10.1016/S0020-7683(98)00055-9",
+    remark: "digits as in the data of S. Shanbhag, J. Rheol. 67 (2023) 965 (github.com/shane5ul/psi, tests/g2.dat); \
+             neither temperature nor Poisson's ratio is given there",
+};
+
+const EPOXY: Published = Published {
+    name: "epoxy",
+    description: "commercial epoxy, cured",
+    measured: Measured::Shear,
+    // the printed weights are fractions of the drop from 891 MPa to 4.9 MPa
+    scale: 886.1e6,
+    equilibrium: 4.9 / 886.1,
+    terms: &[
+        (2.15e-2, 1.0e-7),
+        (2.15e-2, 3.1623e-7),
+        (2.15e-2, 1.0e-6),
+        (2.15e-2, 3.1623e-6),
+        (2.67e-2, 1.0e-5),
+        (2.67e-2, 3.1623e-5),
+        (3.75e-2, 1.0e-4),
+        (4.05e-2, 3.1623e-4),
+        (6.3e-2, 1.0e-3),
+        (6.3e-2, 3.1623e-3),
+        (1.054e-1, 1.0e-2),
+        (1.16e-1, 3.1623e-2),
+        (1.16e-1, 1.0e-1),
+        (1.653e-1, 3.1623e-1),
+        (5.61e-2, 1.0e0),
+        (5.61e-2, 3.1623e0),
+        (1.99e-2, 1.0e1),
+        (1.19e-2, 3.1623e1),
+        (5.5e-3, 1.0e2),
+        (2.8e-3, 3.1623e2),
+        (8.0e-4, 1.0e3),
+        (2.0e-4, 3.1623e3),
+        (3.0e-4, 1.0e4),
+        (3.0e-4, 1.0e5),
+    ],
+    temperature: None,
+    poisson: None,
+    wlf: None,
+    reference: "S. L. Simon, G. B. McKenna, O. Sindt, J. Appl. Polym. Sci. 76 (2000) 495",
+    remark: "digits as in github.com/ealopez/TappingMode_Simulations (Data_Prony_Materials/Epoxy_Data); the weights add up \
+             to 1, the last time leaves out half a decade, the temperature is not given there",
+};
+
+const ADHESIVE: Published = Published {
+    name: "adhesive",
+    description: "electrically conductive adhesive E1 of photovoltaic modules, unexposed",
+    measured: Measured::Shear,
+    // E(0) = 9115.8 MPa and nu = 0.35 as published: G(0) = E/(2 (1 + nu))
+    scale: 9115.80e6 / 2.7,
+    equilibrium: 1.7463879e-2,
+    terms: &[
+        (4.117658e-2, 1.0e-10),
+        (1.553623e-2, 1.0e-9),
+        (1.842653e-2, 1.0e-8),
+        (1.777279e-2, 1.0e-7),
+        (1.66776e-2, 1.0e-6),
+        (1.41939e-2, 1.0e-5),
+        (1.394684e-2, 1.0e-4),
+        (1.669666e-2, 1.0e-3),
+        (1.403274e-2, 1.0e-2),
+        (2.121446e-2, 1.0e-1),
+        (2.113702e-2, 1.0e0),
+        (2.585145e-2, 1.0e1),
+        (3.07685e-2, 1.0e2),
+        (3.03654e-2, 1.0e3),
+        (3.333614e-2, 1.0e4),
+        (3.694363e-2, 1.0e5),
+        (4.254108e-2, 1.0e6),
+        (4.613635e-2, 1.0e7),
+        (5.217609e-2, 1.0e8),
+        (5.58741e-2, 1.0e9),
+        (6.258372e-2, 1.0e10),
+        (6.662379e-2, 1.0e11),
+        (7.106892e-2, 1.0e12),
+        (6.725932e-2, 1.0e13),
+        (5.814158e-2, 1.0e14),
+        (4.188188e-2, 1.0e15),
+        (2.436555e-2, 1.0e16),
+        (1.059265e-2, 1.0e17),
+        (4.097021e-3, 1.0e18),
+        (1.11176e-2, 1.0e19),
+    ],
+    temperature: Some(268.0),
+    poisson: Some(0.35),
+    wlf: Some([199.73, 933.5]),
+    reference: "M. Springer, N. Bosco, Prog. Photovolt. 28 (2020) 659, doi:10.1002/pip.3257",
+    remark: "digits as in the material card of the author's package pyvisco 2.1.3 (tests/data/E1_WLF.USER_MPL), which refers to \
+             \"Springer, 2020\"; the longest times are extrapolated by shifting",
+};
+
+const POLYISOBUTYLENE: Published = Published {
+    name: "polyisobutylene",
+    description: "polyisobutylene at 25 degrees Celsius, 1e-11 s to 1e6 s",
+    measured: Measured::Tension,
+    scale: 1.0,
+    equilibrium: 0.0,
+    terms: &[
+        (1.86e6, 3.22e-12),
+        (5.62e7, 1.36e-11),
+        (1.29e8, 5.65e-11),
+        (3.21e8, 2.34e-10),
+        (4.13e8, 1.17e-9),
+        (8.23e8, 4.85e-9),
+        (6.31e8, 2.25e-8),
+        (3.61e8, 9.65e-8),
+        (1.53e8, 3.83e-7),
+        (4.52e7, 1.67e-6),
+        (2.23e7, 7.2e-6),
+        (6.1e6, 2.89e-5),
+        (2.61e6, 1.48e-4),
+        (1.11e6, 5.87e-4),
+        (2.82e5, 2.36e-3),
+        (1.29e5, 9.36e-3),
+        (6.35e4, 4.03e-2),
+        (7.21e3, 1.8e-1),
+        (1.34e4, 8.16e-1),
+        (9.28e4, 3.29e0),
+        (4.57e4, 1.3e1),
+        (1.31e5, 5.85e1),
+        (8.11e4, 2.97e2),
+        (1.39e5, 1.05e3),
+        (1.07e5, 5.28e3),
+        (1.28e5, 2.64e4),
+        (6.26e4, 8.8e4),
+        (3.09e4, 4.12e5),
+    ],
+    temperature: Some(298.15),
+    poisson: None,
+    wlf: None,
+    reference: "E. Catsiff, A. V. Tobolsky (1955), fitted by H. F. Brinson, L. C. Brinson, Polymer Engineering Science and \
+                Viscoelasticity, Springer, figures 7.18 and 7.19",
+    remark: "digitised from the figure in github.com/ealopez/TappingMode_Simulations, rounded to three digits here, two \
+             terms of 0.1 Pa left out; reproduces the data within a factor of 0.81 to 1.12",
+};
+
+const POLYSTYRENE_RINGS: Published = Published {
+    name: "polystyrene rings",
+    description: "melt of polystyrene rings of 198 kg/mol, a fluid",
+    measured: Measured::Shear,
+    scale: 1.0,
+    equilibrium: 0.0,
+    terms: &[
+        (3.814512e5, 6.92318e-6),
+        (5.154208e5, 2.943798e-5),
+        (2.180057e5, 2.080151e-4),
+        (7.856716e4, 1.486046e-3),
+        (3.546649e4, 8.315544e-3),
+        (1.822482e4, 5.212831e-2),
+        (1.133953e4, 2.093194e-1),
+        (5.671307e3, 1.109871e0),
+    ],
+    temperature: None,
+    poisson: None,
+    wlf: None,
+    reference: "M. Kapnistos et al., Nat. Mater. 7 (2008) 997; spectrum: S. Shanbhag, Macromol. Theory Simul. (2019) 1900005",
+    remark: "digits as in the data of S. Shanbhag, J. Rheol. 67 (2023) 965 (github.com/shane5ul/psi, tests/g3.dat); the temperature is \
+             not given there",
+};
