@@ -4,6 +4,8 @@
 //!
 //! `cargo run --release --example measured_creep`
 
+#[path = "../tests/common/noise.rs"]
+mod noise;
 mod support;
 
 use std::error::Error;
@@ -12,6 +14,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use indicatif::ProgressBar;
+use noise::noise;
 use support::plot::{COLORS, Chart, Scale, SeriesLabelPosition, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::Units;
@@ -115,16 +118,10 @@ fn measure(args: &Args, seed: u64) -> Result<(), Box<dyn Error>> {
          # made by: cargo run --release --example measured_creep -- --seed 1\n\
          time [s],creep compliance [1/Pa]\n",
     );
-    // Box and Muller on a linear congruential generator
-    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
-    let mut uniform = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-    };
+    let mut noise = noise(seed);
     for k in 0..=120 {
         let time = 10f64.powf(-6.0 + f64::from(k) / 12.0);
-        let noise = (-2.0 * uniform().ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos();
-        text += &format!("{time:.6e},{:.4e}\n", truth.creep_compliance(time) * (1.0 + 0.02 * noise));
+        text += &format!("{time:.6e},{:.4e}\n", truth.creep_compliance(time) * (1.0 + 0.02 * noise()));
     }
     fs::write(&args.table, text)?;
     println!("{} is new", args.table.display());

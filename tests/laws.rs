@@ -6,7 +6,7 @@ use common::spectra;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::prelude::*;
-use viscocontact::rheology::{CreepSpectrum, TimeTemperature, laws};
+use viscocontact::rheology::{CreepSpectrum, TimeTemperature, laws, library};
 
 fn models() -> Vec<(&'static str, Box<dyn Rheology>)> {
     let warm = TimeTemperature::wlf(17.44, 51.6, 373.15).unwrap();
@@ -60,6 +60,32 @@ fn every_series_obeys_every_law() {
             panic!("series of {name}: {violation}");
         }
     }
+}
+
+#[test]
+fn published_materials_are_as_printed() {
+    let times = laws::log_times(1e-12, 1e12);
+    for material in library::all() {
+        let name = material.name();
+        let body = material.rheology(0.4).unwrap();
+        if let Err(violation) = laws::all(&body, &times) {
+            panic!("{name}: {violation}");
+        }
+        assert!(!material.reference().is_empty() && !material.remark().is_empty());
+        assert_eq!(library::find(&name.to_uppercase()).unwrap().name(), name);
+    }
+    // glassy moduli, added up by hand: tension of PMMA 2239.47 MPa, shear of the epoxy 891 MPa, E(0) of the adhesive
+    let glassy = |name: &str| {
+        let material = library::find(name).unwrap();
+        material.equilibrium() + material.terms().iter().map(|(modulus, _)| modulus).sum::<f64>()
+    };
+    assert!((glassy("PMMA") / 2239.47e6 - 1.0).abs() < 1e-12);
+    assert!((glassy("epoxy") / 891.0e6 - 1.0).abs() < 1e-12);
+    assert!((glassy("adhesive") / (9115.8e6 / 2.7) - 1.0).abs() < 1e-9);
+    assert!((glassy("polystyrene rings") / 1.264147007e6 - 1.0).abs() < 1e-12);
+    assert!((glassy("polyisobutylene") / 2.969e9 - 1.0).abs() < 2e-3);
+    let error = library::find("cheese").unwrap_err();
+    assert!(error.to_string().contains("PMMA, epoxy"), "{error}");
 }
 
 /// The laws are no formality: each catches its own offender.

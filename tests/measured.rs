@@ -1,18 +1,12 @@
 //! Tables of measured data: fits, noise, what is refused, and files.
 
+#[path = "common/noise.rs"]
+mod noise;
+
+use noise::noise;
 use viscocontact::Error;
 use viscocontact::prelude::*;
-use viscocontact::rheology::{CreepSpectrum, Isotherm, MasterCurve, Place, Quantity, TableError, TimeTemperature};
-
-/// Repeatable noise of standard deviation one, by Box and Muller on a linear congruential generator.
-fn noise(seed: u64) -> impl FnMut() -> f64 {
-    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
-    let mut uniform = move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((state >> 11) as f64 + 0.5) / (1u64 << 53) as f64
-    };
-    move || (-2.0 * uniform().ln()).sqrt() * (2.0 * std::f64::consts::PI * uniform()).cos()
-}
+use viscocontact::rheology::{CreepSpectrum, Isotherm, MasterCurve, Place, TableError, TimeTemperature};
 
 fn log_spaced(first: f64, last: f64, a_decade: usize) -> Vec<f64> {
     let count = ((last / first).log10() * a_decade as f64).round() as usize;
@@ -299,7 +293,7 @@ fn temperatures_shift_time() {
 #[cfg(feature = "csv")]
 mod csv {
     use super::*;
-    use viscocontact::rheology::Units;
+    use viscocontact::rheology::{Quantity, Units};
 
     fn read(text: &str) -> Result<TabulatedCreep> {
         TabulatedCreep::from_csv_reader(text.as_bytes(), Units::SI)

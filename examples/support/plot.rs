@@ -82,7 +82,7 @@ impl Chart {
         let [x0, x1] = self.range(log_x, |point| point.0);
         let [y0, y1] = self.range(self.scale == Scale::LogLog, |point| point.1);
         let plain = |v: &f64| format!("{}", (v * 1e6).round() / 1e6 + 0.0); // no minus before a zero
-        let power = |v: &f64| if (0.01..1e4).contains(v) { format!("{v}") } else { format!("{v:.0e}") };
+        let power = |v: &f64| if (0.01..1e4).contains(v) { plain(v) } else { format!("{v:.0e}") };
         match self.scale {
             Scale::Linear => self.draw(&mut builder.build_cartesian_2d(x0..x1, y0..y1)?, &plain, &plain)?,
             Scale::LogX => self.draw(&mut builder.build_cartesian_2d((x0..x1).log_scale(), y0..y1)?, &power, &plain)?,

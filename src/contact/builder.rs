@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::contact::settings::{Settings, Solver, TimeRule};
-use crate::contact::stepper::{ContactSolver, ViscoelasticContact};
+use crate::contact::stepper::{ContactSolver, Parts, ViscoelasticContact};
 use crate::error::{Error, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
 use crate::hereditary::{Direct, Exponential, History, Unfitted, Weighting};
@@ -126,7 +126,7 @@ impl Builder {
         if gaps.len() > usize::from(u16::MAX) {
             return Err(Error::CountOutOfRange { field: "rigid bodies", value: gaps.len(), allowed: "65535 at most" });
         }
-        let (bodies, gap) = (gaps.len(), Gap::new(&gaps, &grid)?);
+        let (bodies, initial_gap) = (gaps.len(), Gap::new(&gaps, &grid)?);
         let mut material = material.ok_or(Error::Missing { part: "material" })?;
         if let Some(other) = counter_body {
             material = material.against(other);
@@ -143,7 +143,7 @@ impl Builder {
             Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&grid, bodies))),
             Solver::PolonskyKeer => ContactSolver::PolonskyKeer(PolonskyKeer::new(grid.len(), bodies)),
         };
-        Ok(ViscoelasticContact::new(grid, bodies, kernel, settings, gap, material, history, solver))
+        Ok(ViscoelasticContact::new(Parts { grid, bodies, kernel, settings, initial_gap, material, history, solver }))
     }
 }
 

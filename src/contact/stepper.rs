@@ -92,22 +92,27 @@ pub(crate) enum ContactSolver {
     PolonskyKeer(PolonskyKeer),
 }
 
+/// What a builder puts together.
+pub(crate) struct Parts {
+    pub(crate) grid: Grid,
+    /// Number of rigid bodies.
+    pub(crate) bodies: usize,
+    pub(crate) kernel: Arc<InfluenceKernel>,
+    pub(crate) settings: Settings,
+    pub(crate) initial_gap: Gap,
+    pub(crate) material: Material,
+    pub(crate) history: History,
+    pub(crate) solver: ContactSolver,
+}
+
 impl ViscoelasticContact {
     /// Starts to put a contact together on `grid`.
     pub fn builder(grid: Grid) -> Builder {
         Builder::new(grid)
     }
 
-    pub(crate) fn new(
-        grid: Grid,
-        bodies: usize,
-        kernel: Arc<InfluenceKernel>,
-        settings: Settings,
-        initial_gap: Gap,
-        material: Material,
-        history: History,
-        solver: ContactSolver,
-    ) -> ViscoelasticContact {
+    pub(crate) fn new(parts: Parts) -> ViscoelasticContact {
+        let Parts { grid, bodies, kernel, settings, initial_gap, material, history, solver } = parts;
         let cells = grid.len();
         let at_rest = Solution::zero(cells, bodies);
         let nothing_free = Freedom { translation: false, tilt: [false; 2], point: [0.0; 2], total: 0.0 };

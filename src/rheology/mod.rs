@@ -9,10 +9,34 @@
 //! | [`Burgers`] | 1/G + t/η + (1 − e^(−t/λ))/G_K |
 //! | [`GeneralizedKelvin`] | J_g + φ t + Σ J_k (1 − e^(−t/λ_k)) |
 //! | [`GeneralizedMaxwell`] | of the relaxation modulus G_∞ + Σ G_k e^(−t/τ_k) |
+//! | [`PowerLaw`] | J₁ (t/t₁)^α |
+//! | [`FractionalMaxwell`] | 1/G + t^α/(V Γ(1 + α)); Findley's J₀ + m tⁿ |
+//! | [`FractionalZener`] | 1/G + [1 − E_α(−(t/λ)^α)]/G_K |
+//! | [`Kww`] | J_g + ΔJ [1 − e^(−(t/λ)^β)] |
+//! | [`LogCreep`] | J_g + c ln(1 + t/λ) |
+//! | [`SlowCreep`] | J_g + c ln(1 + (t/λ)ⁿ) |
 //! | [`FnRheology`] | any closure |
+//! | [`TabulatedCreep`], [`TabulatedRelaxation`], [`TabulatedDynamic`] | fitted to measurements |
+//! | [`AtTemperature`] | of another model, at another temperature |
 //!
 //! A [`Rheology`] describes shear; a [`Material`] adds what the volume does and yields the contact
-//! compliance C(t) that the surface responds with.
+//! compliance C(t) that the surface responds with. Published materials are in [`library`], the laws that every
+//! rheology obeys in [`laws`].
+//!
+//! # Exponential series
+//!
+//! A contact remembers through an exponential series: one field for each relaxation time, however many steps came
+//! before. The models above the power law, the tables and what is made of them have an exact one
+//! ([`Rheology::creep_spectrum`]). For the others [`Rheology::series`] finds the fewest terms that stay within a
+//! tolerance over a range of times, and tells how well it did; contacts do so on their own
+//! ([`Builder::times`](crate::contact::Builder::times)). Measured with a tolerance of 1e-4:
+//!
+//! | J(t) | terms a decade |
+//! |---|---|
+//! | t^0.1 … t^0.9 over ten decades | 1.9 … 2.2 |
+//! | fractional Zener, α = 0.5 | 1.8 |
+//! | stretched exponential, β = 0.33 | 1.9 |
+//! | logarithmic | 1.3 |
 
 mod burgers;
 mod dynamic;
