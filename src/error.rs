@@ -334,6 +334,29 @@ pub enum Error {
         tolerance: f64,
     },
 
+    /// A [`Plan`](crate::plan::Plan) found no domain that the contact fills: it is never touched, or never ends.
+    #[error(
+        "no domain was found that holds the contact (the last one tried was {length:e} m wide): check geometry and load"
+    )]
+    NoDomain {
+        /// Side of the last domain tried \[m\].
+        length: f64,
+    },
+
+    /// The error in time asks for a step too short to change the time: the load changes faster than time itself is
+    /// resolved, or the tolerance is too small.
+    #[error(
+        "at t = {time} s a step of {dt:e} s would be needed to keep the error in time below {tolerance:e}, too short to change the time"
+    )]
+    StepTooShort {
+        /// Time of the contact \[s\].
+        time: f64,
+        /// Length of the step \[s\].
+        dt: f64,
+        /// Error in time asked for.
+        tolerance: f64,
+    },
+
     /// Numbers left the range of `f64` inside a step: the scales of the scene (lengths, moduli,
     /// loads, times) are too far apart to be represented.
     #[error("at t = {time} s: {what} is not finite; the scales of the scene are too far apart for f64")]

@@ -90,6 +90,7 @@ mod grid;
 mod hereditary;
 mod kernel;
 pub mod load;
+pub mod plan;
 mod quadrature;
 pub mod rheology;
 mod solver;
@@ -114,6 +115,7 @@ pub mod prelude {
     };
     pub use crate::geometry::{Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, Shifted, Sphere};
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
+    pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
         KelvinVoigt, Kww, LogCreep, Material, Maxwell, PowerLaw, Rheology, SlowCreep, TabulatedCreep, TabulatedDynamic,

@@ -72,6 +72,30 @@ impl ViscoelasticContact {
         Ok(())
     }
 
+    /// Length of the last step and the displacement before it.
+    pub(super) fn displacement_before(&self) -> (f64, &[f64]) {
+        (if self.before_is_kept { self.interval } else { 0.0 }, &self.trial_displacement)
+    }
+
+    /// Time since the bodies were undisturbed \[s\].
+    pub(super) fn age(&self) -> f64 {
+        self.time - self.undisturbed_until
+    }
+
+    pub(super) fn last_step_was_a_jump(&self) -> bool {
+        self.interval == 0.0
+    }
+
+    /// Pressure and displacement at the end of a step that was tried.
+    pub(super) fn trial(&self) -> (&[f64], &[f64]) {
+        (&self.trial.pressure, &self.trial_displacement)
+    }
+
+    /// Convolutions and preconditioner applications of the step that was tried.
+    pub(super) fn work_of_trial(&self) -> [usize; 2] {
+        [self.trial.counts.convolutions, self.trial.counts.preconditioner_applications]
+    }
+
     /// Rigid-body approach ω of the (first) body, at the origin of the grid \[m\]. Without load, the approach
     /// at which it just touches.
     pub fn approach(&self) -> f64 {
@@ -95,14 +119,20 @@ impl ViscoelasticContact {
         self.sums(|_| true).1
     }
 
-    /// Area of the cells in contact \[m²\].
-    pub fn contact_area(&self) -> f64 {
-        self.contact_cells as f64 * self.grid.cell_area()
-    }
-
     /// Number of cells in contact (p > 0).
     pub fn contact_cells(&self) -> usize {
         self.contact_cells
+    }
+
+    /// How far the cells in contact reach from the origin along x1 and x2, outer sides included \[m\].
+    pub(crate) fn reach_of_contact(&self) -> [f64; 2] {
+        let n2 = self.grid.cells()[1];
+        let half = self.grid.spacing().map(|side| 0.5 * side);
+        let touched = self.current.pressure.iter().enumerate().filter(|(_, p)| **p > 0.0);
+        touched.fold([0.0; 2], |reach: [f64; 2], (k, _)| {
+            let center = self.grid.center(k / n2, k % n2);
+            [0, 1].map(|axis| reach[axis].max(center[axis].abs() + half[axis]))
+        })
     }
 
     /// Number of rigid bodies.

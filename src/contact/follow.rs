@@ -1,5 +1,6 @@
 //! Drives a contact along a load history.
 
+use crate::contact::adaptive::Controller;
 use crate::contact::report::StepReport;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result, finite, positive, within};
@@ -17,12 +18,25 @@ pub enum Stepping {
         /// Length of a step \[s\].
         dt: f64,
     },
+    /// Steps as long as the error in time allows; short after jumps and corners of the load, long when little happens.
+    Adaptive {
+        /// Error in time of a step, relative to the displacement.
+        tolerance: f64,
+    },
 }
 
 impl Stepping {
     /// Equal steps of `dt` \[s\], which must be finite and positive.
     pub fn fixed(dt: f64) -> Stepping {
         Stepping::Fixed { dt }
+    }
+
+    /// Steps whose error in time, relative to the displacement, is estimated to be at most `tolerance`, in
+    /// \[1e-9, 0.1\]. The solver is not asked for more than suits:
+    /// [`Settings::tolerance`](crate::contact::Settings::tolerance) or a fiftieth of `tolerance`, whichever is
+    /// greater.
+    pub fn adaptive(tolerance: f64) -> Stepping {
+        Stepping::Adaptive { tolerance }
     }
 }
 
@@ -47,6 +61,26 @@ impl Stepping {
 /// assert_eq!(steps, 8);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
+///
+/// With [`Stepping::adaptive`] the steps follow what happens, here over nine decades of time; the state in between
+/// is there for the asking, [`ViscoelasticContact::within_step`]:
+///
+/// ```
+/// # use viscocontact::prelude::*;
+/// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &[(1.0e-6, 1.0e-3), (1.0e-6, 1.0e3)])?))
+///     .build()?;
+/// let load = StepLoad::new(Load::force(0.5))?;
+/// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 1.0e5);
+/// let mut steps = 0;
+/// while let Some(report) = run.next_step()? {
+///     assert!(report.time_error <= 1.0e-3);
+///     steps += 1;
+/// }
+/// assert!(steps < 60);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
 #[derive(Debug)]
 #[must_use = "a run takes no step until next_step is called"]
 pub struct Follow<'a> {
@@ -57,7 +91,13 @@ pub struct Follow<'a> {
     start: f64,
     /// Steps of the fixed raster already behind.
     behind: u64,
+    controller: Option<Controller>,
+    /// Times to end steps on, ascending.
+    landings: Vec<f64>,
 }
+
+/// A step that the solver cannot do is tried again so many times, shorter.
+const SOLVER_RETRIES: u32 = 5;
 
 impl<'a> Follow<'a> {
     pub(crate) fn new(
@@ -66,7 +106,25 @@ impl<'a> Follow<'a> {
         stepping: Stepping,
         until: f64,
     ) -> Follow<'a> {
-        Follow { start: contact.time(), contact, history, stepping, until, behind: 0 }
+        let controller = match stepping {
+            Stepping::Fixed { .. } => None,
+            Stepping::Adaptive { tolerance } => Some(Controller::new(tolerance)),
+        };
+        let start = contact.time();
+        Follow { start, contact, history, stepping, until, behind: 0, controller, landings: Vec::new() }
+    }
+
+    /// Lets steps end exactly on these `times` \[s\] too, in any order; those before the contact's time do not
+    /// matter.
+    ///
+    /// # Errors
+    /// If a time is not finite.
+    pub fn landing_on(mut self, times: &[f64]) -> Result<Follow<'a>> {
+        for &time in times {
+            self.landings.push(finite("time to land on", time)?);
+        }
+        self.landings.sort_by(f64::total_cmp);
+        Ok(self)
     }
 
     /// Takes the next step and reports it; `None` when the end is reached.
@@ -76,29 +134,105 @@ impl<'a> Follow<'a> {
     ///
     /// # Errors
     /// If the end is not finite or lies before the contact's time, the fixed step is not finite and
-    /// positive or too short to change the time, or a step fails; the contact is then as it was after
-    /// the last good step, and the call may be repeated.
+    /// positive or too short to change the time, the tolerance is out of range or asks for steps too short to change
+    /// the time, or a step fails; the contact is then as it was after the last good step, and the call may be
+    /// repeated.
     pub fn next_step(&mut self) -> Result<Option<StepReport>> {
-        let Stepping::Fixed { dt } = self.stepping;
-        positive("fixed step", dt)?;
+        match self.stepping {
+            Stepping::Fixed { dt } => positive("fixed step", dt)?,
+            Stepping::Adaptive { tolerance } => {
+                let inside = (1e-9..=0.1).contains(&tolerance);
+                within("tolerance of the adaptive steps", tolerance, inside, "in [1e-9, 0.1]")?
+            }
+        };
         finite("end of the run", self.until)?;
         within("end of the run", self.until, self.until >= self.start, "at or after the time of the contact")?;
 
         let now = self.contact.time();
         let load = self.history.at(now);
         if load != self.contact.load() {
-            return self.contact.step_to(now, 0.0, &[load]).map(Some);
+            if let Some(controller) = &mut self.controller {
+                controller.restart();
+            }
+            let tolerance = self.solver_tolerance();
+            let attempt = self.contact.attempt(now, 0.0, &[load], tolerance)?;
+            return Ok(Some(self.contact.accept(attempt, &[load])));
         }
         if now >= self.until {
             return Ok(None);
         }
-        let time = self.next_time(now, dt)?;
+        let corner = self.history.next_breakpoint(now).unwrap_or(f64::INFINITY);
+        if corner <= now || corner.is_nan() {
+            return Err(Error::InvalidBreakpoint { after: now, breakpoint: corner });
+        }
+        if let Some(mut controller) = self.controller.take() {
+            let report = self.adaptive_step(&mut controller, corner);
+            self.controller = Some(controller);
+            return report.map(Some);
+        }
+        let Stepping::Fixed { dt } = self.stepping else { return Ok(None) };
+        let time = self.next_time(now, dt, corner)?;
         let report = self.contact.step_to(time, time - now, &[self.history.before(time)])?;
         Ok(Some(report))
     }
 
+    /// One step as long as its error allows.
+    fn adaptive_step(&mut self, controller: &mut Controller, corner: f64) -> Result<StepReport> {
+        let now = self.contact.time();
+        controller.remember(self.contact);
+        let stop = corner.min(self.until).min(self.landing(now));
+        let tolerance = controller.solver_tolerance(self.contact.settings().tolerance);
+        let (mut wasted, mut failures) = ([0; 2], 0);
+        loop {
+            let wanted = controller.length(self.contact, self.history, self.until - now);
+            let (time, dt) = towards(now, stop, wanted);
+            if time <= now {
+                return Err(Error::StepTooShort { time: now, dt, tolerance: controller.tolerance });
+            }
+            let load = self.history.before(time);
+            let straying = controller.watch(self.history, self.contact, time);
+            if straying > controller.tolerance {
+                controller.judge(dt, straying);
+                continue;
+            }
+            let attempt = match self.contact.attempt(time, dt, &[load], tolerance) {
+                Err(Error::NotConverged { .. }) if failures < SOLVER_RETRIES => {
+                    failures += 1;
+                    controller.shorten(dt);
+                    continue;
+                }
+                other => other?,
+            };
+            let error = controller.estimate(self.contact, dt).max(straying);
+            if controller.judge(dt, error) {
+                if time == corner {
+                    controller.restart();
+                } else {
+                    controller.resume(wanted, dt);
+                }
+                let mut report = self.contact.accept(attempt, &[load]);
+                report.time_error = error;
+                report.convolutions += wasted[0];
+                report.preconditioner_applications += wasted[1];
+                return Ok(report);
+            }
+            let work = self.contact.work_of_trial();
+            wasted = [wasted[0] + work[0], wasted[1] + work[1]];
+        }
+    }
+
+    fn solver_tolerance(&self) -> f64 {
+        let wanted = self.contact.settings().tolerance;
+        self.controller.as_ref().map_or(wanted, |controller| controller.solver_tolerance(wanted))
+    }
+
+    /// The first time after `now` to land on.
+    fn landing(&self, now: f64) -> f64 {
+        self.landings.get(self.landings.partition_point(|&time| time <= now)).copied().unwrap_or(f64::INFINITY)
+    }
+
     /// The end of the next step: the raster, unless a corner or the end of the run comes first.
-    fn next_time(&mut self, now: f64, dt: f64) -> Result<f64> {
+    fn next_time(&mut self, now: f64, dt: f64, corner: f64) -> Result<f64> {
         let same = SAME_TIME * dt;
         while self.raster(dt) <= now + same {
             self.behind += 1;
@@ -110,12 +244,8 @@ impl<'a> Follow<'a> {
                 });
             }
         }
-        let corner = self.history.next_breakpoint(now).unwrap_or(f64::INFINITY);
-        if corner <= now || corner.is_nan() {
-            return Err(Error::InvalidBreakpoint { after: now, breakpoint: corner });
-        }
-        let corner = corner.min(self.until);
-        Ok(if corner <= self.raster(dt) + same { corner } else { self.raster(dt) })
+        let stop = corner.min(self.until).min(self.landing(now));
+        Ok(if stop <= self.raster(dt) + same { stop } else { self.raster(dt) })
     }
 
     /// The end of the step of the fixed raster that is under way.
@@ -123,8 +253,25 @@ impl<'a> Follow<'a> {
         self.start + (self.behind + 1) as f64 * dt
     }
 
+    /// Steps that were tried and found too long, with [`Stepping::adaptive`].
+    pub fn rejected_steps(&self) -> u64 {
+        self.controller.as_ref().map_or(0, |controller| controller.rejected)
+    }
+
     /// The contact as the last step left it.
     pub fn contact(&self) -> &ViscoelasticContact {
         self.contact
+    }
+}
+
+/// The end and the length of a step of about `wanted` towards `stop`: onto it if it is near, halfway if the rest
+/// would be a sliver.
+fn towards(now: f64, stop: f64, wanted: f64) -> (f64, f64) {
+    let left = stop - now;
+    if wanted >= 0.99 * left {
+        (stop, left)
+    } else {
+        let dt = if wanted > 0.5 * left { 0.5 * left } else { wanted };
+        (now + dt, dt)
     }
 }

@@ -1,16 +1,23 @@
 //! The stepper: a contact that is advanced in time, step by step or along a load history.
 
 mod access;
+mod adaptive;
+mod area;
+mod between;
 mod builder;
+mod change;
 mod follow;
 mod guess;
 mod hull;
 mod report;
 mod settings;
+mod spatial;
 mod stepper;
 
+pub use between::Between;
 pub use builder::Builder;
 pub use follow::{Follow, Stepping};
 pub use report::{BodyState, StepReport};
 pub use settings::{Edge, Settings, Solver, TimeRule};
+pub use spatial::SpatialError;
 pub use stepper::ViscoelasticContact;

@@ -18,6 +18,9 @@ pub struct StepReport {
     pub preconditioner_applications: usize,
     /// Residual reached, in the measure of [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub residual: f64,
+    /// Estimated error in time of the step, relative to the displacement; 0 for fixed steps, which nothing is estimated
+    /// for, and for the first step after a jump or a corner of the load.
+    pub time_error: f64,
     /// Cells in contact.
     pub contact_cells: usize,
     /// Rigid-body approach ω of the first body, at the origin \[m\].

@@ -4,16 +4,15 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::contact::builder::Builder;
-use crate::contact::follow::{Follow, Stepping};
 use crate::contact::guess::Refresh;
 use crate::contact::hull::Hull;
 use crate::contact::report::StepReport;
 use crate::contact::settings::{Edge, Settings};
 use crate::error::{Error, Result, non_negative};
-use crate::geometry::{Gap, Geometry, evaluate};
+use crate::geometry::Gap;
 use crate::hereditary::{Change, History};
 use crate::kernel::{InfluenceKernel, Workspace};
-use crate::load::{Load, LoadHistory, Tilt};
+use crate::load::{Load, Tilt};
 use crate::rheology::Material;
 use crate::solver::{ActiveSet, Counts, Freedom, Modes, PolonskyKeer, Problem, Solution, Stop};
 
@@ -58,12 +57,12 @@ pub struct ViscoelasticContact {
     pub(super) settings: Settings,
     pub(super) solver: ContactSolver,
     pub(super) material: Material,
-    history: History,
+    pub(super) history: History,
     /// The bodies were undisturbed until then.
-    undisturbed_until: f64,
+    pub(super) undisturbed_until: f64,
     pub(super) initial_gap: Gap,
     /// Where loads may act, for each body; made when one is first free to tilt.
-    hulls: Vec<Option<Hull>>,
+    pub(super) hulls: Vec<Option<Hull>>,
 
     pub(super) time: f64,
     pub(super) loads: Vec<Load>,
@@ -72,6 +71,11 @@ pub struct ViscoelasticContact {
     /// (ω, α1, α2) of each body, ω at the origin.
     pub(super) motions: Vec<[f64; 3]>,
     pub(super) contact_cells: usize,
+    /// (ω, α1, α2) before the last step, and its length.
+    pub(super) previous_motions: Vec<[f64; 3]>,
+    pub(super) interval: f64,
+    /// Whether `trial_displacement` holds the displacement before the last step.
+    pub(super) before_is_kept: bool,
 
     /// The state one step earlier, and the length of that step: what a guess extrapolates from.
     pub(super) previous: Solution,
@@ -81,7 +85,7 @@ pub struct ViscoelasticContact {
     /// The step being tried; thrown away if it fails.
     pub(super) trial: Solution,
     /// Between steps the displacement before the last one, which the history has yet to take in.
-    trial_displacement: Vec<f64>,
+    pub(super) trial_displacement: Vec<f64>,
     gap: Vec<f64>,
     pub(super) freedoms: Vec<Freedom>,
 }
@@ -90,6 +94,14 @@ pub struct ViscoelasticContact {
 pub(crate) enum ContactSolver {
     ActiveSet(Box<ActiveSet>),
     PolonskyKeer(PolonskyKeer),
+}
+
+/// A step that was computed and waits to be accepted.
+#[derive(Debug, Clone, Copy)]
+#[must_use]
+pub(super) struct Attempt {
+    time: f64,
+    dt: f64,
 }
 
 /// What a builder puts together.
@@ -122,6 +134,9 @@ impl ViscoelasticContact {
             time: 0.0,
             loads: vec![Load::force(0.0); bodies],
             displacement: vec![0.0; cells],
+            previous_motions: vec![[0.0; 3]; bodies],
+            interval: 0.0,
+            before_is_kept: true,
             motions: (0..bodies).map(|body| first_touch(&initial_gap, body)).collect(),
             contact_cells: 0,
             previous: at_rest.clone(),
@@ -167,8 +182,15 @@ impl ViscoelasticContact {
 
     /// [`ViscoelasticContact::step_each`] with the end of the step given, so that it is met exactly.
     pub(crate) fn step_to(&mut self, time: f64, dt: f64, loads: &[Load]) -> Result<StepReport> {
+        let attempt = self.attempt(time, dt, loads, self.settings.tolerance)?;
+        Ok(self.accept(attempt, loads))
+    }
+
+    /// Computes a step, as the trial; the state stays as it is.
+    pub(super) fn attempt(&mut self, time: f64, dt: f64, loads: &[Load], tolerance: f64) -> Result<Attempt> {
         non_negative("time", time)?;
         self.free(time, loads)?;
+        self.before_is_kept = false;
 
         // what the past makes of the end of the step: u = u_old + c K p
         let c = self.history.predict(time, dt, &self.displacement, &mut self.trial_displacement)?;
@@ -181,7 +203,7 @@ impl ViscoelasticContact {
         self.guess(dt);
         let owner = self.initial_gap.owner.as_deref();
         let problem = Problem { kernel: &self.kernel, compliance: c, gap: &self.gap, bodies: &self.freedoms, owner };
-        let stop = Stop { tolerance: self.settings.tolerance, max_iterations: self.settings.max_iterations };
+        let stop = Stop { tolerance, max_iterations: self.settings.max_iterations };
         match &mut self.solver {
             _ if problem.all_released() => self.trial.release(),
             ContactSolver::ActiveSet(solver) => solver.solve(&problem, stop, &mut self.trial, &mut self.work),
@@ -189,15 +211,19 @@ impl ViscoelasticContact {
         }
         self.trial.follow_surface(&problem);
         self.remember(time)?;
-        self.check(time, dt)?;
-
-        // accept: nothing below can fail
+        self.check(time, dt, tolerance)?;
         self.displace(c);
+        Ok(Attempt { time, dt })
+    }
+
+    /// Makes the trial the state: nothing here can fail.
+    pub(super) fn accept(&mut self, Attempt { time, dt }: Attempt, loads: &[Load]) -> StepReport {
         let fitted =
             self.history.commit(&Change { time, dt, potential: [&self.current.potential, &self.trial.potential] });
         std::mem::swap(&mut self.displacement, &mut self.trial_displacement);
         std::mem::swap(&mut self.previous, &mut self.current);
         std::mem::swap(&mut self.current, &mut self.trial);
+        std::mem::swap(&mut self.previous_motions, &mut self.motions);
         for (body, motion) in self.motions.iter_mut().enumerate() {
             let free = Modes::new(&self.grid, self.freedoms[body]).physical(self.current.motions[body]);
             let [omega, alpha1, alpha2] = prescribed(&loads[body], self.initial_gap.datum);
@@ -209,12 +235,14 @@ impl ViscoelasticContact {
         self.time = time;
         self.loads.copy_from_slice(loads);
         self.last_dt = dt;
+        self.interval = dt;
+        self.before_is_kept = true;
         self.refresh.count(self.current.pressure.iter().sum());
         self.contact_cells = self.current.pressure.iter().filter(|&&p| p > 0.0).count();
         if let Some(material) = fitted {
             self.material = material;
         }
-        Ok(self.report(dt))
+        self.report(dt)
     }
 
     /// Refuses a step whose past is longer than the material is known.
@@ -308,8 +336,7 @@ impl ViscoelasticContact {
     }
 
     /// Whether the trial may be accepted.
-    fn check(&self, time: f64, dt: f64) -> Result<()> {
-        let Settings { tolerance, edge, .. } = self.settings;
+    fn check(&self, time: f64, dt: f64, tolerance: f64) -> Result<()> {
         let Solution { residual, counts, ref motions, .. } = self.trial;
         if !motions.iter().flatten().all(|motion| motion.is_finite()) {
             return Err(Error::Overflow { time, what: "the approach" });
@@ -317,7 +344,7 @@ impl ViscoelasticContact {
         if residual > tolerance || residual.is_nan() {
             return Err(Error::NotConverged { time, dt, iterations: counts.iterations, residual, tolerance });
         }
-        if edge == Edge::Refuse {
+        if self.settings.edge == Edge::Refuse {
             let cells = self.grid.positive_on_edge(&self.trial.pressure);
             if cells > 0 {
                 return Err(Error::ContactAtEdge { time, cells });
@@ -336,42 +363,12 @@ impl ViscoelasticContact {
             convolutions,
             preconditioner_applications,
             residual: self.current.residual,
+            time_error: 0.0,
             contact_cells: self.contact_cells,
             approach: self.approach(),
             tilt: self.tilt(),
             force: self.force(),
         }
-    }
-
-    /// Follows a load history to the time `until` \[s\], step by step as `stepping` says.
-    pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Follow<'a> {
-        self.history.expect(until - self.undisturbed_until);
-        Follow::new(self, history, stepping, until)
-    }
-
-    /// Replaces the indenter, moved or changed, between two steps; the bodies keep their deformation,
-    /// and touch the new one from the next step on.
-    ///
-    /// # Errors
-    /// If a gap is NaN or −∞, or none is finite, or there are several rigid bodies; the contact then keeps
-    /// the old one.
-    pub fn set_geometry(&mut self, geometry: &dyn Geometry) -> Result<()> {
-        self.set_geometries(&[geometry])
-    }
-
-    /// [`ViscoelasticContact::set_geometry`] with a geometry for each rigid body.
-    ///
-    /// # Errors
-    /// As [`ViscoelasticContact::set_geometry`], or if there is not one geometry a body.
-    pub fn set_geometries(&mut self, geometries: &[&dyn Geometry]) -> Result<()> {
-        if geometries.len() != self.loads.len() {
-            return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.loads.len() });
-        }
-        let gaps: Vec<_> = geometries.iter().map(|geometry| evaluate(*geometry, &self.grid)).collect();
-        self.initial_gap = Gap::new(&gaps, &self.grid)?;
-        self.hulls.fill(None);
-        self.last_dt = 0.0; // the last change of the pressure says nothing about the next
-        Ok(())
     }
 }
 

@@ -154,6 +154,37 @@ impl Load {
         Ok(())
     }
 
+    /// The force or the approach, in absolute value.
+    pub(crate) fn strength(&self) -> f64 {
+        match *self {
+            Load::Force { normal, .. } => normal,
+            Load::Approach { approach, .. } => approach.abs(),
+        }
+    }
+
+    /// How far `between` is from the load a fraction `s` of the way from `self` to `to`: force or approach relative
+    /// to `scale`, tilts and points relative to their own greatest.
+    pub(crate) fn straying(&self, to: &Load, s: f64, between: &Load, scale: f64) -> f64 {
+        let straight = self.towards(to, s);
+        let relative = |far: f64, scale: f64| if far == 0.0 { 0.0 } else { far / scale };
+        let main = match (straight, *between) {
+            (Load::Force { normal: a, .. }, Load::Force { normal: b, .. })
+            | (Load::Approach { approach: a, .. }, Load::Approach { approach: b, .. }) => {
+                relative((a - b).abs(), scale)
+            }
+            _ => f64::INFINITY,
+        };
+        let value = |tilt: Tilt| match tilt {
+            Tilt::Fixed(angle) => angle,
+            Tilt::Free { at } => at,
+        };
+        let tilts = [0, 1].map(|axis| {
+            let [start, end, here, line] = [self, to, between, &straight].map(|load| value(load.tilt()[axis]));
+            relative((here - line).abs(), start.abs().max(end.abs()).max(here.abs()))
+        });
+        main.max(tilts[0]).max(tilts[1])
+    }
+
     /// The load a fraction `s` of the way from `self` to `to`, which is of the same kind.
     pub(crate) fn towards(&self, to: &Load, s: f64) -> Load {
         let mix = |a: f64, b: f64| if s == 1.0 { b } else { a + s * (b - a) };

@@ -1,0 +1,103 @@
+//! The state inside the last step.
+
+use crate::contact::stepper::ViscoelasticContact;
+use crate::error::{Result, exact_length, within};
+
+/// The state at a time inside the last step, made by [`ViscoelasticContact::within_step`]: linear in time between its
+/// ends, as the rule takes the displacement to be, and second order like it. So the times at which a user looks need not
+/// be those at which a step ends.
+///
+/// ```
+/// use viscocontact::prelude::*;
+///
+/// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .build()?;
+/// contact.step(0.0, Load::force(0.5))?;
+/// let start = contact.approach();
+/// contact.step(0.2, Load::force(0.5))?;
+/// let middle = contact.within_step(0.1)?;
+/// assert!((middle.approach() - 0.5 * (start + contact.approach())).abs() < 1e-15);
+/// assert!((middle.force() - 0.5).abs() < 1e-12);
+/// assert!(contact.within_step(0.3).is_err()); // not there yet
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy)]
+pub struct Between<'a> {
+    contact: &'a ViscoelasticContact,
+    /// 0 at the start of the step, 1 at its end.
+    share: f64,
+    time: f64,
+}
+
+impl ViscoelasticContact {
+    /// The state at a time within the last step, its ends included.
+    ///
+    /// # Errors
+    /// If the time does not lie within the last step, or a step has failed since: the state before it is then no longer
+    /// kept.
+    pub fn within_step(&self, time: f64) -> Result<Between<'_>> {
+        let start = if self.before_is_kept { self.time - self.interval } else { self.time };
+        // by rounding the start may come out a little off
+        let inside = time >= start - 1e-12 * self.interval && time <= self.time;
+        within("time within the last step", time, inside, "between its start and its end")?;
+        let share = if time == self.time { 1.0 } else { ((time - start) / self.interval).clamp(0.0, 1.0) };
+        Ok(Between { contact: self, share, time })
+    }
+}
+
+impl Between<'_> {
+    /// The time \[s\].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Approach ω of the first body \[m\].
+    pub fn approach(&self) -> f64 {
+        self.motion(0)
+    }
+
+    /// Tilt (α1, α2) of the first body \[rad\].
+    pub fn tilt(&self) -> [f64; 2] {
+        [self.motion(1), self.motion(2)]
+    }
+
+    fn motion(&self, component: usize) -> f64 {
+        self.mix(self.contact.previous_motions[0][component], self.contact.motions[0][component])
+    }
+
+    /// Normal force on all bodies together \[N\].
+    pub fn force(&self) -> f64 {
+        let sum = |pressure: &[f64]| pressure.iter().sum::<f64>() * self.contact.grid.cell_area();
+        self.mix(sum(&self.contact.previous.pressure), sum(&self.contact.current.pressure))
+    }
+
+    /// Writes the contact pressure \[Pa\] into `out`.
+    ///
+    /// # Errors
+    /// If `out` does not hold one value a cell.
+    pub fn pressure_into(&self, out: &mut [f64]) -> Result<()> {
+        self.mix_into(out, "pressure", &self.contact.previous.pressure, &self.contact.current.pressure)
+    }
+
+    /// Writes the displacement \[m\] into `out`.
+    ///
+    /// # Errors
+    /// If `out` does not hold one value a cell.
+    pub fn displacement_into(&self, out: &mut [f64]) -> Result<()> {
+        self.mix_into(out, "displacement", &self.contact.trial_displacement, &self.contact.displacement)
+    }
+
+    fn mix(&self, before: f64, after: f64) -> f64 {
+        if self.share == 1.0 { after } else { before + self.share * (after - before) }
+    }
+
+    fn mix_into(&self, out: &mut [f64], field: &'static str, before: &[f64], after: &[f64]) -> Result<()> {
+        exact_length(field, out.len(), after.len())?;
+        for ((out, &before), &after) in out.iter_mut().zip(before).zip(after) {
+            *out = self.mix(before, after);
+        }
+        Ok(())
+    }
+}

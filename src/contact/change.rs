@@ -1,0 +1,40 @@
+//! Between steps: runs along histories, other geometries, and the state within the last step.
+
+use crate::contact::follow::{Follow, Stepping};
+use crate::contact::stepper::ViscoelasticContact;
+use crate::error::{Error, Result};
+use crate::geometry::{Gap, Geometry, evaluate};
+use crate::load::LoadHistory;
+
+impl ViscoelasticContact {
+    /// Follows a load history to the time `until` \[s\], step by step as `stepping` says.
+    pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Follow<'a> {
+        self.history.expect(until - self.undisturbed_until);
+        Follow::new(self, history, stepping, until)
+    }
+
+    /// Replaces the indenter, moved or changed, between two steps; the bodies keep their deformation,
+    /// and touch the new one from the next step on.
+    ///
+    /// # Errors
+    /// If a gap is NaN or −∞, or none is finite, or there are several rigid bodies; the contact then keeps
+    /// the old one.
+    pub fn set_geometry(&mut self, geometry: &dyn Geometry) -> Result<()> {
+        self.set_geometries(&[geometry])
+    }
+
+    /// [`ViscoelasticContact::set_geometry`] with a geometry for each rigid body.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::set_geometry`], or if there is not one geometry a body.
+    pub fn set_geometries(&mut self, geometries: &[&dyn Geometry]) -> Result<()> {
+        if geometries.len() != self.loads.len() {
+            return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.loads.len() });
+        }
+        let gaps: Vec<_> = geometries.iter().map(|geometry| evaluate(*geometry, &self.grid)).collect();
+        self.initial_gap = Gap::new(&gaps, &self.grid)?;
+        self.hulls.fill(None);
+        self.last_dt = 0.0; // the last change of the pressure says nothing about the next
+        Ok(())
+    }
+}

@@ -1,0 +1,287 @@
+//! Mesh, domain and steps from the accuracy that is wanted.
+
+mod accuracy;
+
+pub use accuracy::Accuracy;
+
+use crate::Grid;
+use crate::contact::{Builder, SpatialError, Stepping, ViscoelasticContact};
+use crate::error::{Error, Result, positive};
+use crate::geometry::Geometry;
+use crate::load::{Load, LoadHistory};
+use crate::rheology::Material;
+
+/// A scene planned for an accuracy: how far the contact will reach, the cells and steps that it takes, and what that costs.
+///
+/// Cheap runs on a coarse mesh find the domain, the steps and the error of the mesh; the latter is extrapolated, with
+/// second order where the contact is smooth and first order at singular edges, to the cells that bring it to the target. The
+/// plan hands back a builder: look at it, change it, build it.
+///
+/// ```
+/// use viscocontact::plan::{Accuracy, Plan};
+/// use viscocontact::prelude::*;
+///
+/// let sphere = Sphere::new(10.0e-3)?;
+/// let body = Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?);
+/// let load = StepLoad::new(Load::force(1.0))?;
+/// let plan = Plan::new(&sphere, &body, &load, 2.0, Accuracy::Standard)?;
+/// println!("{plan}");
+///
+/// let mut contact = plan.builder().build()?;
+/// let mut run = contact.follow(&load, plan.stepping(), 2.0);
+/// while run.next_step()?.is_some() {}
+/// let exact = viscocontact::analytic::GrowingSphere::step(10.0e-3, &body, 1.0)?;
+/// assert!((contact.approach() / exact.approach(2.0) - 1.0).abs() < 1e-3);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Plan {
+    accuracy: Accuracy,
+    builder: Builder,
+    grid: Grid,
+    /// Half sides of the rectangle that holds the contact at all times.
+    reach: [f64; 2],
+    steps: usize,
+    convolutions: f64,
+    error: SpatialError,
+    bytes: usize,
+}
+
+/// Cells along a side of the coarse runs.
+const COARSE: usize = 24;
+/// The domain is this times the rectangle of the contact.
+const MARGIN: f64 = 1.12;
+/// Domains tried before giving up: each at most ten times as large or as small as the last.
+const TRIES: usize = 60;
+/// A domain is kept if the contact spans so much of it.
+const FILLED: [f64; 2] = [0.45, 0.92];
+/// Steps after which a search for the domain is cut short: the extent of the contact is known long before.
+const LEAST_CELLS: usize = 16;
+const MOST_CELLS: usize = 1 << 13;
+
+impl Plan {
+    /// Plans a run of one body from rest to the time `until` \[s\].
+    ///
+    /// # Errors
+    /// If the time is not finite and positive, a part is invalid, no domain holds the contact, the coarse runs fail, or the
+    /// target needs more than 8192 cells along a side.
+    pub fn new(
+        geometry: &dyn Geometry,
+        material: &Material,
+        history: &dyn LoadHistory,
+        until: f64,
+        accuracy: Accuracy,
+    ) -> Result<Plan> {
+        positive("end of the run", until)?;
+        let coarse = Coarse { geometry, material, history, until, accuracy };
+        let (reach, found) = coarse.domain()?;
+        let lengths = reach.map(|half| 2.0 * MARGIN * half);
+
+        // error(n) = second (COARSE/n)² + first COARSE/n
+        let (first, target) = (found.error.singular, accuracy.space());
+        let second = found.error.approach.max(found.error.peak_pressure) - first;
+        let shrink = (first + (first * first + 4.0 * second * target).sqrt()) / (2.0 * target);
+        let wanted = (COARSE as f64 * shrink).ceil();
+        if wanted > MOST_CELLS as f64 {
+            let (field, allowed) = ("cells along a side for this accuracy", "8192 at most: ask for less accuracy");
+            return Err(Error::CountOutOfRange { field, value: wanted.min(1e18) as usize, allowed });
+        }
+        let cells = smooth_size((wanted as usize).max(LEAST_CELLS));
+        let ratio = COARSE as f64 / cells as f64;
+        let grid = Grid::new([cells; 2], lengths)?;
+        let error = SpatialError {
+            approach: (found.error.approach - first) * ratio * ratio + first * ratio,
+            peak_pressure: (found.error.peak_pressure - first) * ratio * ratio + first * ratio,
+            area: found.error.area * ratio.powf(1.2),
+            singular: first * ratio,
+        };
+        let terms = found.terms.max(1);
+        let bytes = grid.len() * (BYTES_A_CELL + 8 * (terms - 1));
+        let builder = coarse.builder(grid.clone());
+        Ok(Plan { accuracy, builder, grid, reach, steps: found.steps, convolutions: found.convolutions, error, bytes })
+    }
+
+    /// A builder with grid, geometry, material and settings; what the plan chose can be replaced.
+    pub fn builder(&self) -> Builder {
+        self.builder.clone()
+    }
+
+    /// The grid chosen.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Steps to take, for [`ViscoelasticContact::follow`].
+    pub fn stepping(&self) -> Stepping {
+        self.accuracy.stepping()
+    }
+
+    /// The accuracy planned for.
+    pub fn accuracy(&self) -> Accuracy {
+        self.accuracy
+    }
+
+    /// How far the contact will reach from the middle of the grid, along x1 and x2 \[m\].
+    pub fn reach(&self) -> [f64; 2] {
+        self.reach
+    }
+
+    /// Steps that the run will take, about.
+    pub fn steps(&self) -> usize {
+        self.steps
+    }
+
+    /// Convolution equivalents that the whole run will take, about; each O(N log N) in the number of cells.
+    pub fn convolutions(&self) -> f64 {
+        self.convolutions
+    }
+
+    /// Memory that the contact will take \[bytes\], about.
+    pub fn bytes(&self) -> usize {
+        self.bytes
+    }
+
+    /// Errors of the mesh to expect.
+    pub fn spatial_error(&self) -> SpatialError {
+        self.error
+    }
+}
+
+/// Memory of a contact with one relaxation time, and of the slope that adaptive steps keep.
+const BYTES_A_CELL: usize = 174 + 8;
+
+impl std::fmt::Display for Plan {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let ([n1, n2], [l1, l2]) = (self.grid.cells(), self.grid.lengths());
+        write!(
+            f,
+            "for {:.0e}: {n1} × {n2} cells on {l1:.3e} m × {l2:.3e} m, about {} steps, {:.0} convolutions, {:.1} MB; errors of the \
+             mesh: approach {:.1e}, peak pressure {:.1e}, area {:.1e}",
+            self.accuracy.target(),
+            self.steps,
+            self.convolutions,
+            self.bytes as f64 * 1e-6,
+            self.error.approach,
+            self.error.peak_pressure,
+            self.error.area
+        )
+    }
+}
+
+/// The scene on a coarse mesh.
+struct Coarse<'a> {
+    geometry: &'a dyn Geometry,
+    material: &'a Material,
+    history: &'a dyn LoadHistory,
+    until: f64,
+    accuracy: Accuracy,
+}
+
+/// What a coarse run found.
+struct Found {
+    /// Half sides of the rectangle about the origin that held the contact.
+    reach: [f64; 2],
+    steps: usize,
+    convolutions: f64,
+    /// Greatest errors of the mesh while the force is not small.
+    error: SpatialError,
+    terms: usize,
+}
+
+impl Coarse<'_> {
+    fn builder(&self, grid: Grid) -> Builder {
+        let builder = ViscoelasticContact::builder(grid).geometry(self.geometry).material(self.material.clone());
+        builder.settings(self.accuracy.settings())
+    }
+
+    /// Runs on domains until the contact fills one well, and tells how far it reached.
+    fn domain(&self) -> Result<([f64; 2], Found)> {
+        let mut lengths = [self.first_length()?; 2];
+        for _ in 0..TRIES {
+            match self.run(lengths) {
+                Err(Error::ContactAtEdge { .. }) => lengths = lengths.map(|length| 1.7 * length),
+                Err(Error::NothingToTouch { .. }) => lengths = lengths.map(|length| 0.3 * length),
+                Err(error) => return Err(error),
+                Ok(found) => {
+                    let filled = [0, 1].map(|axis| 2.0 * found.reach[axis] / lengths[axis]);
+                    if filled.iter().all(|part| (FILLED[0]..=FILLED[1]).contains(part)) {
+                        return Ok((found.reach, found));
+                    }
+                    let least = 2.0 / COARSE as f64;
+                    lengths = [0, 1].map(|axis| lengths[axis] * (filled[axis].max(least) * 1.3).clamp(0.1, 1.7));
+                }
+            }
+        }
+        Err(Error::NoDomain { length: lengths[0].max(lengths[1]) })
+    }
+
+    fn run(&self, lengths: [f64; 2]) -> Result<Found> {
+        let grid = Grid::new([COARSE; 2], lengths)?;
+        let mut contact = self.builder(grid).build()?;
+        let mut found =
+            Found { reach: [0.0; 2], steps: 0, convolutions: 0.0, error: SpatialError::default(), terms: 0 };
+        let (mut strongest, mut errors) = (0.0_f64, Vec::new());
+        let mut run = contact.follow(self.history, self.accuracy.stepping(), self.until);
+        while let Some(report) = run.next_step()? {
+            found.steps += 1;
+            found.convolutions += report.convolution_equivalents();
+            strongest = strongest.max(report.force);
+            errors.push((report.force, run.contact().spatial_error()));
+            let touched = run.contact().reach_of_contact();
+            found.reach = [0, 1].map(|axis| found.reach[axis].max(touched[axis]));
+        }
+        // small forces have small contacts, whose errors are small beside what the run is about
+        for (force, error) in errors.into_iter().filter(|(force, _)| *force > 0.3 * strongest) {
+            let _ = force;
+            found.error = SpatialError {
+                approach: found.error.approach.max(error.approach),
+                peak_pressure: found.error.peak_pressure.max(error.peak_pressure),
+                area: found.error.area.max(error.area),
+                singular: found.error.singular.max(error.singular),
+            };
+        }
+        found.terms = contact.material().contact_spectrum()?.map_or(1, |spectrum| spectrum.terms().len());
+        Ok(found)
+    }
+
+    /// A length of the domain to start from: a contact of half width L/4 gives way by the rise of the gap there under
+    /// a force of about E* L times that rise.
+    fn first_length(&self) -> Result<f64> {
+        let (mut force, mut approach) = (0.0_f64, 0.0_f64);
+        for k in 0..=64 {
+            match self.history.at(self.until * f64::from(k) / 64.0) {
+                Load::Force { normal, .. } => force = force.max(normal),
+                Load::Approach { approach: depth, .. } => approach = approach.max(depth),
+            }
+        }
+        let mut compliance = self.material.contact_compliance(self.until.min(self.material.known_until()));
+        if !compliance.is_finite() {
+            compliance = self.material.contact_compliance(0.0);
+        }
+        let lowest = self.geometry.initial_gap(0.0, 0.0);
+        let rise = |length: f64| {
+            let around = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+            let gaps = around.map(|[x1, x2]| self.geometry.initial_gap(0.25 * length * x1, 0.25 * length * x2));
+            gaps.into_iter().fold(f64::INFINITY, f64::min) - lowest
+        };
+        let depth = |length: f64| {
+            let rise = rise(length);
+            rise >= approach.max(force * compliance / length) || rise.is_nan() || rise == f64::INFINITY
+        };
+        let lengths = (-48..=36).map(|k| 10f64.powf(0.25 * f64::from(k)));
+        lengths.into_iter().find(|&length| depth(length)).ok_or(Error::NoDomain { length: 1e9 })
+    }
+}
+
+/// The next number of cells whose double has no prime factor above 5, which transforms like.
+fn smooth_size(least: usize) -> usize {
+    let smooth = |mut n: usize| {
+        for factor in [2, 3, 5] {
+            while n % factor == 0 {
+                n /= factor;
+            }
+        }
+        n == 1
+    };
+    (least..).find(|&n| n % 2 == 0 && smooth(n)).unwrap_or(least)
+}
