@@ -9,13 +9,13 @@
 /// use viscocontact::{Error, rheology::Maxwell};
 ///
 /// let error = Maxwell::new(-1.0e6, 1.0e6).unwrap_err();
-/// assert_eq!(error.to_string(), "shear modulus = -1000000 is not allowed: it must be finite and > 0");
+/// assert_eq!(error.to_string(), "shear modulus = -1000000.0 is not allowed: it must be finite and > 0");
 /// ```
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A number lies outside the range its meaning allows, or is not finite.
-    #[error("{field} = {value} is not allowed: it must be {allowed}")]
+    #[error("{field} = {value:?} is not allowed: it must be {allowed}")]
     OutOfRange {
         /// What the number stands for.
         field: &'static str,
@@ -211,6 +211,20 @@ pub enum Error {
         known_until: f64,
     },
 
+    /// A step is shorter than the times that the series of the material was fitted over, which the first step chose by its
+    /// own length. Say from the start which times matter: [`Builder::times`](crate::contact::Builder::times).
+    #[error(
+        "at t = {time} s: a step of {dt:e} s is shorter than the material's series resolves, {known_from:e} s, as the first step chose it: say with Builder::times which times matter"
+    )]
+    BelowMaterial {
+        /// End of the step \[s\].
+        time: f64,
+        /// Length of the step \[s\].
+        dt: f64,
+        /// Shortest time that the series was fitted to \[s\].
+        known_from: f64,
+    },
+
     /// The past of a direct sum has filled the memory that [`Settings::history_limit`](crate::contact::Settings)
     /// allows. Raise it, or use [`TimeRule::Automatic`](crate::contact::TimeRule::Automatic), whose memory does not
     /// grow.
@@ -231,7 +245,7 @@ pub enum Error {
     /// A user's creep compliance returned a value no body can have: negative, not finite, or less
     /// than before; or 0 after t = 0, where a series is fitted.
     #[error(
-        "creep compliance J({time} s) = {value} 1/Pa is not allowed: it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {previous} before)"
+        "creep compliance J({time:?} s) = {value:?} 1/Pa is not allowed: it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {previous:?} before)"
     )]
     InvalidCompliance {
         /// Time at which it was evaluated \[s\].
@@ -277,6 +291,14 @@ pub enum Error {
         first: &'static str,
         /// What the other measures.
         second: &'static str,
+    },
+
+    /// An isotherm is flat: nothing tells by how much it is shifted. Use a law
+    /// ([`MasterCurve::with_law`](crate::rheology::MasterCurve::with_law)).
+    #[error("of the isotherms at {} K and {} K one does not change with time: nothing tells by how much it is shifted; use MasterCurve::with_law", .temperatures[0], .temperatures[1])]
+    NothingToShift {
+        /// The temperatures \[K\].
+        temperatures: [f64; 2],
     },
 
     /// Two isotherms have no values in common, so that no shift brings them together: measure at a temperature in

@@ -147,7 +147,7 @@ fn a_power_law_sphere_grows_by_its_law() {
             }
         }
         let fit = contact.material().fit_reports().next().unwrap();
-        println!("t^{exponent}: a³ {worst:.1e}, from counted cells {worst_counted:.1e}; {fit}");
+        println!("t^{exponent}: a³ {worst:.1e}, from the area {worst_counted:.1e}; {fit}");
         assert!(worst < 5e-3, "t^{exponent}: {worst:e}");
     }
 }
@@ -205,6 +205,35 @@ fn the_first_step_may_choose_the_times() {
     let arched = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t * t)));
     let error = builder(64, 1e-6).material(arched).times(1e-2..=1e2).build().unwrap_err();
     assert!(matches!(error, Error::PoorFit { tolerance, misfit, .. } if tolerance == 1e-4 && misfit > 1e-2), "{error}");
+}
+
+/// Waiting without load decides nothing, and steps shorter than what the first one chose are refused.
+#[test]
+fn waiting_chooses_no_times() {
+    let power = || Material::incompressible(PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap());
+    let grid = || builder(32, 0.05e-6);
+    let mut waited = grid().material(power()).build().unwrap();
+    waited.step(1.0, Load::force(0.0)).unwrap();
+    waited.step(1e-5, Load::force(0.01)).unwrap();
+    let mut told = grid().material(power()).times(1e-8..=1e4).build().unwrap();
+    told.step(1e-5, Load::force(0.01)).unwrap();
+    assert!((waited.approach() / told.approach() - 1.0).abs() < 2e-2, "{} {}", waited.approach(), told.approach());
+    let error = waited.step(1e-8, Load::force(0.01)).unwrap_err();
+    assert!(matches!(error, Error::BelowMaterial { .. }), "{error}");
+    // a run with an impossible end leaves no mark
+    let mut contact = grid().material(power()).build().unwrap();
+    let load = StepLoad::new(Load::force(0.01)).unwrap();
+    assert!(contact.follow(&load, Stepping::fixed(1.0), f64::INFINITY).next_step().is_err());
+    contact.step(1e-3, Load::force(0.01)).unwrap();
+    // tables and direct sums
+    let table = TabulatedCreep::new(&[0.1, 1.0, 10.0, 100.0], &[1.0e-6, 1.2e-6, 1.5e-6, 1.6e-6]).unwrap();
+    let settings = Settings { time_rule: TimeRule::Backward, ..Settings::default() };
+    let mut contact = grid().material(Material::incompressible(table)).settings(settings).build().unwrap();
+    (0..20).for_each(|_| drop(contact.step(10.0, Load::force(0.0)).unwrap()));
+    contact.step(0.0, Load::force(1e-3)).unwrap();
+    contact.step(90.0, Load::force(1e-3)).unwrap();
+    let error = contact.step(20.0, Load::force(1e-3)).unwrap_err();
+    assert!(matches!(error, Error::BeyondMaterial { known_until: 100.0, .. }), "{error}");
 }
 
 /// The same rheology by its series and by the direct sum: the difference is that of the direct sum's first

@@ -344,6 +344,22 @@ mod csv {
         assert!(matches!(bad, TableError::NotPositive { place: Place::Line(3), .. }), "{bad}");
         let bad = error("time,J\n1,1e-9\n2,NaN\n3,1.2e-9\n");
         assert!(matches!(bad, TableError::NotFinite { place: Place::Line(3), .. }), "{bad}");
+        // columns that are something else, decimal commas, frequencies in Hz
+        let bad = error("time,creep strain [%]\n1,2\n");
+        assert!(matches!(bad, TableError::Heading { column: "creep compliance", .. }), "{bad}");
+        let bad = error("time,J\n1,5,1,1\n2,5,2,2\n");
+        assert!(matches!(bad, TableError::Columns { line: 2, found: 4, expected: 2, .. }), "{bad}");
+        let dynamic = |text: &str| match TabulatedDynamic::from_csv_reader(text.as_bytes(), Units::SI).unwrap_err() {
+            Error::Table(error) => error,
+            other => panic!("{other}"),
+        };
+        let bad = dynamic("frequency,storage modulus,loss factor\n1,1e6,0.1\n");
+        assert!(matches!(bad, TableError::Heading { column: "loss modulus", .. }), "{bad}");
+        let bad = dynamic("f [Hz],G',G''\n1,1e6,1e5\n");
+        assert!(matches!(bad, TableError::Hertz { line: 1, .. }), "{bad}");
+        // remarks in any encoding
+        let latin: &[u8] = b"# 23 \xb0C\n1,1\n2,1.1\n3,1.2\n4,1.3\n";
+        assert!(TabulatedCreep::from_csv_reader(latin, Units::SI).is_ok());
         for empty in ["", "\n\n", "# nothing\n", "time,J\n"] {
             assert_eq!(error(empty), TableError::Empty { table: "creep" }, "{empty:?}");
         }
@@ -355,4 +371,45 @@ mod csv {
         let Err(Error::Table(binary)) = TabulatedCreep::from_csv_reader(binary, Units::SI) else { panic!() };
         assert!(matches!(binary, TableError::Unreadable { .. }), "{binary}");
     }
+}
+
+/// What tables may not be, what they may, and how long a fit takes: the findings of those who tried.
+#[test]
+fn tables_as_they_come() {
+    // printed with three digits, on a plateau
+    let zener = Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap();
+    let times = log_spaced(1e-3, 1e3, 27);
+    for seed in 0..50 {
+        let mut noise = noise(seed);
+        let printed = |&t: &f64| format!("{:.2e}", zener.creep_compliance(t) * (1.0 + 3e-4 * noise())).parse().unwrap();
+        let values: Vec<f64> = times.iter().map(printed).collect();
+        TabulatedCreep::new(&times, &values).unwrap_or_else(|error| panic!("{seed}: {error}"));
+    }
+    // not those of a linear body
+    let rows = [1.0, 2.0, 3.0, 4.0];
+    for values in [vec![1.0, 10.0, 100.0, 1000.0], vec![1.0, 1.0, 1.0e6, 1.0e6]] {
+        let error = TabulatedCreep::new(&rows, &values).unwrap_err();
+        assert!(matches!(error, Error::Table(TableError::Inconsistent { rms, .. }) if rms > 0.1), "{error}");
+    }
+    let tertiary: Vec<f64> = times.iter().map(|t| 1.0 + 0.1 * t.powf(0.3) + (t / 100.0).powi(4)).collect();
+    let error = TabulatedCreep::new(&times, &tertiary).unwrap_err();
+    assert!(matches!(error, Error::Table(TableError::Inconsistent { .. })), "{error}");
+    // a few noisy rows are not met exactly
+    for seed in 0..50 {
+        let mut noise = noise(seed);
+        let rows = log_spaced(0.1, 10.0, 3);
+        let values: Vec<f64> = rows.iter().map(|&t| zener.creep_compliance(t) * (1.0 + 0.01 * noise())).collect();
+        if let Ok(body) = TabulatedCreep::new(&rows, &values) {
+            assert!(2 * body.report().terms() < rows.len(), "{seed}: {}", body.report());
+        }
+    }
+    // large tables are gathered before they are fitted
+    let clock = std::time::Instant::now();
+    let times = log_spaced(1e-6, 1e6, 2000);
+    let body = FractionalZener::new(1.0e9, 1.0e6, 1.0, 0.4).unwrap();
+    let values: Vec<f64> = times.iter().map(|&t| body.creep_compliance(t)).collect();
+    let fitted = TabulatedCreep::new(&times, &values).unwrap();
+    println!("{} in {:.2} s", fitted.report(), clock.elapsed().as_secs_f64());
+    assert!(fitted.report().max_misfit() < 1e-3 && fitted.report().samples().len() == times.len());
+    assert_eq!(Material::incompressible(fitted).fit_reports().count(), 1);
 }

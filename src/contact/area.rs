@@ -8,6 +8,9 @@ use crate::contact::stepper::ViscoelasticContact;
 const LAST_TWO: f64 = 0.6;
 const THREE_BEFORE: f64 = 0.4;
 
+/// The contact ends less than a cell beyond the centre of the last; an estimate farther out than this is none.
+const TOO_FAR: f64 = 1.3;
+
 impl ViscoelasticContact {
     /// Area of contact \[m²\].
     ///
@@ -77,7 +80,12 @@ impl ViscoelasticContact {
             p * p
         };
         let [last, second, third, fourth] = [back(0), back(1), back(2), back(3)];
-        let linear = if second > last { (last / (second - last)).min(1.0) } else { TO_THE_RIM };
+        let linear = if second > last { last / (second - last) } else { f64::INFINITY };
+        if linear > TOO_FAR {
+            // no root at the edge: a flat pressure that ends within a cell, as under a fast growing contact
+            return TO_THE_RIM;
+        }
+        let linear = linear.min(1.0);
         if !(third > second && fourth > third) {
             return linear;
         }

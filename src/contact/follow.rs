@@ -148,6 +148,8 @@ impl<'a> Follow<'a> {
         finite("end of the run", self.until)?;
         within("end of the run", self.until, self.until >= self.start, "at or after the time of the contact")?;
 
+        self.contact.history.expect(self.until - self.contact.undisturbed_until);
+
         let now = self.contact.time();
         let load = self.history.at(now);
         if load != self.contact.load() {
@@ -272,6 +274,6 @@ fn towards(now: f64, stop: f64, wanted: f64) -> (f64, f64) {
         (stop, left)
     } else {
         let dt = if wanted > 0.5 * left { 0.5 * left } else { wanted };
-        (now + dt, dt)
+        (now + dt, now + dt - now) // the step that is really taken
     }
 }

@@ -60,6 +60,8 @@ pub struct ViscoelasticContact {
     pub(super) history: History,
     /// The bodies were undisturbed until then.
     pub(super) undisturbed_until: f64,
+    /// Steps may not be shorter: the first step chose the times that the material's series was fitted over.
+    pub(super) shortest: f64,
     pub(super) initial_gap: Gap,
     /// Where loads may act, for each body; made when one is first free to tilt.
     pub(super) hulls: Vec<Option<Hull>>,
@@ -154,6 +156,7 @@ impl ViscoelasticContact {
             material,
             history,
             undisturbed_until: 0.0,
+            shortest: 0.0,
             initial_gap,
         }
     }
@@ -164,7 +167,8 @@ impl ViscoelasticContact {
     /// # Errors
     /// If `dt` or a force is negative, a number not finite, a force acts where it would topple the body, the
     /// body has no elastic response and `dt` = 0, contact reaches the edge of the grid (unless
-    /// [`Edge::Allow`]), the solver does not converge, a creep closure returns an impossible value, or there
+    /// [`Edge::Allow`]), the solver does not converge, a creep closure returns an impossible value or cannot be fitted,
+    /// the material is not known for so long or so short a time, a direct sum has filled its memory, or there
     /// are several rigid bodies. The contact is then exactly as it was before.
     pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
         self.step_each(dt, &[load])
@@ -177,6 +181,9 @@ impl ViscoelasticContact {
     /// As [`ViscoelasticContact::step`], or if there is not one load a body.
     pub fn step_each(&mut self, dt: f64, loads: &[Load]) -> Result<StepReport> {
         non_negative("time step", dt)?;
+        if dt > 0.0 && dt < self.shortest {
+            return Err(Error::BelowMaterial { time: self.time + dt, dt, known_from: self.shortest });
+        }
         self.step_to(self.time + dt, dt, loads)
     }
 
@@ -190,6 +197,9 @@ impl ViscoelasticContact {
     pub(super) fn attempt(&mut self, time: f64, dt: f64, loads: &[Load], tolerance: f64) -> Result<Attempt> {
         non_negative("time", time)?;
         self.free(time, loads)?;
+        if !self.is_undisturbed() {
+            self.remember(time)?;
+        }
         self.before_is_kept = false;
 
         // what the past makes of the end of the step: u = u_old + c K p
@@ -210,7 +220,10 @@ impl ViscoelasticContact {
             ContactSolver::PolonskyKeer(solver) => solver.solve(&problem, stop, &mut self.trial, &mut self.work),
         }
         self.trial.follow_surface(&problem);
-        self.remember(time)?;
+        // what was never touched has nothing to remember
+        if self.trial.pressure.iter().any(|&p| p > 0.0) {
+            self.remember(time)?;
+        }
         self.check(time, dt, tolerance)?;
         self.displace(c);
         Ok(Attempt { time, dt })
@@ -218,8 +231,9 @@ impl ViscoelasticContact {
 
     /// Makes the trial the state: nothing here can fail.
     pub(super) fn accept(&mut self, Attempt { time, dt }: Attempt, loads: &[Load]) -> StepReport {
-        let fitted =
-            self.history.commit(&Change { time, dt, potential: [&self.current.potential, &self.trial.potential] });
+        let touched = !self.is_undisturbed() || self.trial.pressure.iter().any(|&p| p > 0.0);
+        let change = Change { time, dt, potential: [&self.current.potential, &self.trial.potential] };
+        let fitted = self.history.commit(&change, touched);
         std::mem::swap(&mut self.displacement, &mut self.trial_displacement);
         std::mem::swap(&mut self.previous, &mut self.current);
         std::mem::swap(&mut self.current, &mut self.trial);
@@ -229,7 +243,7 @@ impl ViscoelasticContact {
             let [omega, alpha1, alpha2] = prescribed(&loads[body], self.initial_gap.datum);
             *motion = [self.initial_gap.datum + omega + free[0], alpha1 + free[1], alpha2 + free[2]];
         }
-        if self.is_undisturbed() && self.current.pressure.iter().all(|&p| p == 0.0) {
+        if !touched {
             self.undisturbed_until = time;
         }
         self.time = time;
@@ -239,8 +253,8 @@ impl ViscoelasticContact {
         self.before_is_kept = true;
         self.refresh.count(self.current.pressure.iter().sum());
         self.contact_cells = self.current.pressure.iter().filter(|&&p| p > 0.0).count();
-        if let Some(material) = fitted {
-            self.material = material;
+        if let Some((material, shortest)) = fitted {
+            (self.material, self.shortest) = (material, shortest);
         }
         self.report(dt)
     }
@@ -249,13 +263,7 @@ impl ViscoelasticContact {
     fn remember(&self, time: f64) -> Result<()> {
         let (age, known_until) = (time - self.undisturbed_until, self.material.known_until());
         // the end of a run may miss the end of a table by rounding
-        let known = age <= known_until * (1.0 + 1e-9);
-        // what was never touched has nothing to remember
-        if known || self.is_undisturbed() && self.trial.pressure.iter().all(|&p| p == 0.0) {
-            Ok(())
-        } else {
-            Err(Error::BeyondMaterial { time, age, known_until })
-        }
+        if age <= known_until * (1.0 + 1e-9) { Ok(()) } else { Err(Error::BeyondMaterial { time, age, known_until }) }
     }
 
     fn is_undisturbed(&self) -> bool {

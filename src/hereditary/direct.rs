@@ -44,6 +44,8 @@ impl Direct {
             Weighting::End => (0.0, "the rectangle rule"),
             Weighting::Start => (dt, "a step of length zero (ramp the load over a short time instead)"),
         };
+        // while nothing has happened, a step may be longer than the material is known
+        let age = if self.increments.is_empty() { age.min(self.material.known_until()) } else { age };
         let newest = self.material.checked_compliance(age, (0.0, self.material.contact_compliance(0.0)))?;
         if newest == 0.0 {
             return Err(Error::NoElasticResponse { time, what });

@@ -55,15 +55,17 @@ impl History {
         }
     }
 
-    /// Takes the step that was predicted last into the past. Returns the material whose series was fitted for it.
-    pub(crate) fn commit(&mut self, change: &Change<'_>) -> Option<Material> {
+    /// Takes the step that was predicted last into the past; `touched` tells whether anything has ever been displaced.
+    /// Returns the material whose series was fitted for it, and the shortest time of the fit.
+    pub(crate) fn commit(&mut self, change: &Change<'_>, touched: bool) -> Option<(Material, f64)> {
         match self {
             History::Exponential(history) => history.commit(),
-            History::Direct(history) => history.commit(change),
+            History::Direct(history) if touched => history.commit(change),
+            History::Direct(_) => {}
             History::Unfitted(history) => {
-                let fitted = history.commit()?;
+                let fitted = history.commit(touched)?;
                 *self = History::Exponential(fitted.history);
-                return Some(fitted.material);
+                return Some((fitted.material, fitted.times[0]));
             }
         }
         None

@@ -10,6 +10,9 @@ const WITHIN_STEP: f64 = 1e-2;
 /// ... to a million times its length, or to the end of the run where that is known and later.
 const STEPS_AHEAD: f64 = 1e6;
 
+/// No scene lasts longer \[s\].
+const LATEST: f64 = 1e80;
+
 /// The history of a body whose rheology has no exact series, before the first step that takes time: there
 /// may have been jumps, which it answered elastically. The first such step fits the series.
 #[derive(Debug, Clone)]
@@ -28,7 +31,7 @@ pub(crate) struct Fitted {
     pub(crate) material: Material,
     pub(crate) history: Exponential,
     /// The times it was fitted over.
-    times: [f64; 2],
+    pub(crate) times: [f64; 2],
 }
 
 impl Unfitted {
@@ -49,7 +52,8 @@ impl Unfitted {
             u_old.fill(0.0);
             return Ok(c);
         }
-        let times = [WITHIN_STEP * dt, (STEPS_AHEAD * dt).max(self.expected).min(self.material.known_until())];
+        let last = (STEPS_AHEAD * dt).max(self.expected).min(self.material.known_until());
+        let times = [WITHIN_STEP * dt, last.clamp(dt, LATEST.max(dt))];
         // a step tried again need not fit again
         if self.fitted.as_ref().is_none_or(|fitted| fitted.times != times) {
             let material = self.material.fitted(times[0]..=times[1], self.tolerance)?;
@@ -64,8 +68,12 @@ impl Unfitted {
         }
     }
 
-    /// Takes the step that was predicted last into the past, and hands over what was fitted for it.
-    pub(crate) fn commit(&mut self) -> Option<Fitted> {
+    /// Takes the step that was predicted last into the past, and hands over what was fitted for it; nothing for a step
+    /// that left the bodies undisturbed, so that waiting decides nothing.
+    pub(crate) fn commit(&mut self, touched: bool) -> Option<Fitted> {
+        if !touched {
+            return None;
+        }
         let mut fitted = self.fitted.take()?;
         fitted.history.commit();
         Some(fitted)

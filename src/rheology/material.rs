@@ -2,7 +2,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::error::{Error, Result, positive, within};
-use crate::rheology::{CreepSpectrum, FitReport, ROUNDING, RelaxationSpectrum, Rheology};
+use crate::rheology::{CreepSpectrum, FitReport, ROUNDING, RelaxationSpectrum, Rheology, is_known};
 
 /// A rheology and how it treats volume: together they give the contact creep compliance C(t), the
 /// surface's answer to pressure, with C = 1/E* = (1 − ν)/2G for an elastic body.
@@ -32,8 +32,6 @@ pub struct Material {
 struct Body {
     rheology: Arc<dyn Rheology>,
     volume: Volume,
-    /// How well a fitted series stands for the rheology; `None` as long as nothing was fitted.
-    fit: Option<FitReport>,
 }
 
 #[derive(Debug, Clone)]
@@ -88,7 +86,7 @@ impl Material {
     }
 
     fn with_volume(rheology: impl Rheology + 'static, volume: Volume) -> Material {
-        Material { bodies: vec![Body { rheology: Arc::new(rheology), volume, fit: None }] }
+        Material { bodies: vec![Body { rheology: Arc::new(rheology), volume }] }
     }
 
     /// This body pressed against `other`, as one: both give way, C = C₁ + C₂.
@@ -145,16 +143,15 @@ impl Material {
                 return Ok(body.clone());
             }
             let series = body.rheology.series(times.clone(), tolerance)?;
-            let fit = Some(series.report().clone());
-            Ok(Body { rheology: Arc::new(series), volume: body.volume.clone(), fit })
+            Ok(Body { rheology: Arc::new(series), volume: body.volume.clone() })
         };
         Ok(Material { bodies: self.bodies.iter().map(fit).collect::<Result<_>>()? })
     }
 
-    /// How well the series that [`Material::fitted`] found stand for their rheologies; nothing for those that
-    /// had an exact one.
+    /// How well fitted series stand for tables, or for the rheologies that [`Material::fitted`] replaced; nothing for
+    /// those that have an exact one.
     pub fn fit_reports(&self) -> impl Iterator<Item = &FitReport> {
-        self.bodies.iter().filter_map(|body| body.fit.as_ref())
+        self.bodies.iter().filter_map(|body| body.rheology.fit_report())
     }
 
     /// C at `age`, which must not be less than `younger` = C at `earlier`, an age no greater.
@@ -189,7 +186,7 @@ impl Body {
     fn contact_compliance(&self, t: f64) -> f64 {
         match &self.volume {
             Volume::Proportional(factor) => factor * self.rheology.creep_compliance(t),
-            Volume::Elastic(contact) if t <= self.rheology.known_until() => contact.compliance(t),
+            Volume::Elastic(contact) if is_known(t, self.rheology.known_until()) => contact.compliance(t),
             Volume::Elastic(_) => f64::NAN,
         }
     }

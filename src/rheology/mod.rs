@@ -36,7 +36,7 @@
 //! | t^0.1 … t^0.9 over ten decades | 1.9 … 2.2 |
 //! | fractional Zener, α = 0.5 | 1.8 |
 //! | stretched exponential, β = 0.33 | 1.9 |
-//! | logarithmic | 1.3 |
+//! | logarithmic | 1.3 … 2.7 |
 
 mod burgers;
 mod dynamic;
@@ -127,14 +127,19 @@ pub trait Rheology: Debug + Send + Sync {
         f64::INFINITY
     }
 
+    /// How well the series stands for what it was fitted to, if it was: a table, or another function.
+    fn fit_report(&self) -> Option<&FitReport> {
+        None
+    }
+
     /// The exact exponential series of J, or else one fitted over `times` \[s\]: the fewest terms found whose
     /// relative error is at most `tolerance`. With a series a step of a contact costs the same however many
     /// went before.
     ///
     /// # Errors
     /// If the times are not positive, finite and in order, the tolerance is outside \[1e-8, 0.1\], J is not a creep
-    /// compliance there, or no series reaches the tolerance ([`Error::PoorFit`](crate::Error::PoorFit)): J is
-    /// then not one of a passive body with a positive spectrum.
+    /// compliance there, or no series found reaches the tolerance ([`Error::PoorFit`](crate::Error::PoorFit)): J is
+    /// then not that of a body of springs and dashpots, or the tolerance is too small (below 1e-6).
     fn series(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<CreepSeries> {
         CreepSeries::new(self, times, tolerance)
     }
@@ -142,6 +147,11 @@ pub trait Rheology: Debug + Send + Sync {
 
 /// Compliances that fall by less, relatively, do so by rounding.
 const ROUNDING: f64 = 1e-12;
+
+/// Whether a rheology known until some time is known at `t`, which may miss the end by rounding.
+fn is_known(t: f64, until: f64) -> bool {
+    t <= until * (1.0 + 1e-9)
+}
 
 /// What is owned, shared or chosen at run time behind a pointer serves like the thing itself.
 macro_rules! forward_rheology {
@@ -157,6 +167,10 @@ macro_rules! forward_rheology {
 
             fn known_until(&self) -> f64 {
                 (**self).known_until()
+            }
+
+            fn fit_report(&self) -> Option<&FitReport> {
+                (**self).fit_report()
             }
 
             fn series(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<CreepSeries> {

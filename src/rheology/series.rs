@@ -2,7 +2,7 @@ use std::ops::RangeInclusive;
 
 use crate::error::{Error, Result, positive, within};
 use crate::rheology::fit::{FitReport, Goal, Quantity, Sample, Search};
-use crate::rheology::{CreepSpectrum, ROUNDING, Rheology};
+use crate::rheology::{CreepSpectrum, ROUNDING, Rheology, is_known};
 
 /// The exponential series that stands for a creep compliance over a range of times, and its error.
 ///
@@ -88,7 +88,7 @@ impl CreepSeries {
 
 impl Rheology for CreepSeries {
     fn creep_compliance(&self, t: f64) -> f64 {
-        self.spectrum.compliance(t)
+        if is_known(t, self.known_until) { self.spectrum.compliance(t) } else { f64::NAN }
     }
 
     fn creep_spectrum(&self) -> Option<CreepSpectrum> {
@@ -97,6 +97,10 @@ impl Rheology for CreepSeries {
 
     fn known_until(&self) -> f64 {
         self.known_until
+    }
+
+    fn fit_report(&self) -> Option<&FitReport> {
+        (!self.report.is_exact()).then_some(&self.report)
     }
 }
 
@@ -117,7 +121,7 @@ fn sampled<R: Rheology + ?Sized>(
             _ => first * (last / first).powf(k as f64 / count as f64),
         };
         previous = checked(rheology, x, previous)?;
-        samples.push(Sample { quantity: Quantity::Creep, x, value: previous });
+        samples.push(Sample { quantity: Quantity::Creep, x, value: previous, weight: 1.0 });
     }
     Ok(samples)
 }

@@ -1,5 +1,5 @@
 use crate::error::{Error, Result, finite, positive};
-use crate::rheology::{CreepSpectrum, Rheology};
+use crate::rheology::{CreepSpectrum, FitReport, Rheology};
 
 /// The gas constant \[J/(mol K)\] (exact since 2019).
 pub(crate) const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
@@ -134,5 +134,10 @@ impl<R: Rheology> Rheology for AtTemperature<R> {
 
     fn known_until(&self) -> f64 {
         self.rheology.known_until() * self.factor
+    }
+
+    /// That of the rheology at its own temperature.
+    fn fit_report(&self) -> Option<&FitReport> {
+        self.rheology.fit_report()
     }
 }

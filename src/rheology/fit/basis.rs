@@ -68,6 +68,15 @@ pub(crate) struct Sample {
     pub(crate) quantity: Quantity,
     pub(crate) x: f64,
     pub(crate) value: f64,
+    /// How many measurements it is the mean of.
+    pub(crate) weight: f64,
+}
+
+impl Sample {
+    /// Which of the equal parts of the logarithmic axis it lies in.
+    pub(crate) fn bin(&self, a_decade: f64) -> f64 {
+        (self.x.log10() * a_decade).floor()
+    }
 }
 
 /// An exponential series under construction.
@@ -96,8 +105,8 @@ impl Series {
         samples.iter().map(|sample| self.misfit(sample).abs()).fold(0.0, f64::max)
     }
 
-    /// Σ misfit².
+    /// Σ misfit², each counted as often as it was measured.
     pub(crate) fn squares(&self, samples: &[Sample]) -> f64 {
-        samples.iter().map(|sample| self.misfit(sample).powi(2)).sum()
+        samples.iter().map(|sample| sample.weight * self.misfit(sample).powi(2)).sum()
     }
 }

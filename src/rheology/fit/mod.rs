@@ -45,9 +45,13 @@ pub(crate) struct Search {
     pub(crate) goal: Goal,
 }
 
-/// Mergers tried, cheapest first, before a series counts as the sparsest that is within a tolerance. Noise makes a
-/// bad guide to the cheapest: against data all are tried.
+/// Mergers tried, cheapest first, before a series counts as the sparsest. Noise makes a bad guide to the cheapest.
 const TRIES: usize = 3;
+const TRIES_ON_DATA: usize = 6;
+/// For fewer values the correction of the criterion would leave a constant.
+const LEAST_CORRECTED: f64 = 8.0;
+/// Tables of fewer values take the best merger instead of the first that will do.
+const FEW: usize = 16;
 /// Times a decade that are tried on data.
 const DATA_DENSITY: f64 = 6.0;
 /// Iterations of the polish between mergers, and at the end.
@@ -96,16 +100,19 @@ impl Search {
         let time = |k: usize| 10f64.powf(first + (last - first) * k as f64 / (count - 1).max(1) as f64);
         let ends = usize::from(self.constant.is_none()) + usize::from(self.slope);
         let matrix = Mat::from_fn(samples.len(), ends + count, |i, j| {
-            let Sample { quantity, x, value } = samples[i];
+            let Sample { quantity, x, value, weight } = samples[i];
             let function = match j {
                 0 if self.constant.is_none() => quantity.constant(),
                 _ if j < ends => quantity.slope(x),
                 _ => quantity.term(x, time(j - ends)).0,
             };
-            function / value
+            function * weight.sqrt() / value
         });
         let known = self.constant.unwrap_or(0.0);
-        let right = Col::from_fn(samples.len(), |i| 1.0 - known * samples[i].quantity.constant() / samples[i].value);
+        let right = Col::from_fn(samples.len(), |i| {
+            let Sample { quantity, value, weight, .. } = samples[i];
+            weight.sqrt() * (1.0 - known * quantity.constant() / value)
+        });
         let strengths = nnls::non_negative_least_squares(&matrix, &right);
         let (at_ends, of_terms) = strengths.split_at(ends);
         Series {
@@ -117,20 +124,26 @@ impl Search {
 
     /// Merges terms while the goal allows it.
     fn thinned(&self, start: Series, samples: &[Sample]) -> Series {
-        let tries = if let Goal::Within(_) = self.goal { TRIES } else { usize::MAX };
+        let tries = if let Goal::Within(_) = self.goal { TRIES } else { TRIES_ON_DATA };
         let mut best = start;
-        'fewer: loop {
+        loop {
             let mut mergers = self.mergers(&best, samples);
             mergers.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (_, merged) in mergers.into_iter().take(tries) {
-                let trial =
-                    polish(&merged, samples, self.free(), BRIEF, &|series| self.prefers(series, &best, samples));
-                if self.prefers(&trial, &best, samples) {
-                    best = trial;
-                    continue 'fewer;
-                }
+            let tried = mergers.iter().take(tries).map(|(_, merged)| {
+                let done = |series: &Series| samples.len() >= FEW && self.prefers(series, &best, samples);
+                polish(merged, samples, self.free(), BRIEF, &done)
+            });
+            let mut preferred = tried.filter(|trial| self.prefers(trial, &best, samples));
+            // of few values every series misses much: there the best merger matters, elsewhere the first will do
+            let next = if samples.len() < FEW {
+                preferred.min_by(|a, b| self.criterion(a, samples).total_cmp(&self.criterion(b, samples)))
+            } else {
+                preferred.next()
+            };
+            match next {
+                Some(next) => best = next,
+                None => break,
             }
-            break;
         }
         // what was enough for a merger may not be all there is
         let never = |_: &Series| false;
@@ -145,18 +158,29 @@ impl Search {
     /// Whether the sparser `trial` is to be preferred.
     fn prefers(&self, trial: &Series, current: &Series, samples: &[Sample]) -> bool {
         match self.goal {
-            Goal::Within(most) => trial.worst(samples) <= most.max(0.0),
-            Goal::Warranted(floor) => {
-                let criterion = |series: &Series| {
-                    let count = samples.len() as f64;
-                    let parameters = usize::from(series.constant > 0.0 && self.constant.is_none())
-                        + usize::from(series.slope > 0.0)
-                        + 2 * series.terms.len();
-                    count * (series.squares(samples) / count + floor * floor).ln() + 2.0 * parameters as f64
-                };
-                criterion(trial) <= criterion(current)
-            }
+            Goal::Within(most) => trial.worst(samples) <= most,
+            Goal::Warranted(_) => self.criterion(trial, samples) <= self.criterion(current, samples),
         }
+    }
+
+    /// Akaike's criterion, corrected for small samples (Hurvich & Tsai 1989): the less the better. Never as many
+    /// parameters as values.
+    fn criterion(&self, series: &Series, samples: &[Sample]) -> f64 {
+        let floor = match self.goal {
+            Goal::Within(most) => most,
+            Goal::Warranted(floor) => floor,
+        };
+        let count: f64 = samples.iter().map(|sample| sample.weight).sum();
+        let ends = usize::from(series.constant > 0.0 && self.constant.is_none()) + usize::from(series.slope > 0.0);
+        let (parameters, values) = ((ends + 2 * series.terms.len()) as f64, samples.len() as f64);
+        let price = if parameters >= values {
+            f64::INFINITY
+        } else if values < LEAST_CORRECTED {
+            2.0 * parameters
+        } else {
+            2.0 * parameters * values / (values - parameters - 1.0).max(1.0)
+        };
+        count * (series.squares(samples) / count + floor * floor).ln() + price
     }
 
     /// Number of times on a grid of `density` times a decade.
@@ -209,31 +233,5 @@ impl Search {
             offer(merged);
         }
         mergers
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::rheology::{FnRheology, PowerLaw, Rheology};
-
-    #[test]
-    fn probe() {
-        for decades in [3, 6, 10, 20] {
-            for alpha in [0.1, 0.3, 0.5, 0.7, 0.9] {
-                let clock = std::time::Instant::now();
-                let last = 10f64.powi(decades - 3);
-                for tol in [1e-2, 1e-4, 1e-6] {
-                    let series = PowerLaw::new(1e-6, 1.0, alpha).unwrap().series(1e-3..=last, tol);
-                    match series {
-                        Ok(s) => {
-                            println!("{decades} {alpha} {tol:e}: {} {:.3} s", s.report(), clock.elapsed().as_secs_f64())
-                        }
-                        Err(e) => println!("{decades} {alpha} {tol:e}: {e} {:.3}", clock.elapsed().as_secs_f64()),
-                    }
-                }
-            }
-        }
-        let zener = FnRheology::new(|t: f64| 1.0 - 0.5 * (-t / 2.0).exp());
-        println!("{:?}", zener.series(1e-3..=1e3, 1e-4).map(|s| (s.spectrum().clone(), s.report().max_misfit())));
     }
 }

@@ -60,8 +60,9 @@ fn linearise(series: &Series, samples: &[Sample], free: Free) -> (Mat<f64>, Col<
     let mut jacobian = Mat::zeros(samples.len(), ends + 2 * series.terms.len());
     let mut misfits = Col::zeros(samples.len());
     for (i, sample) in samples.iter().enumerate() {
-        let (quantity, weight) = (sample.quantity, 1.0 / sample.value);
-        misfits[i] = series.misfit(sample);
+        let (quantity, root) = (sample.quantity, sample.weight.sqrt());
+        let weight = root / sample.value;
+        misfits[i] = root * series.misfit(sample);
         let mut column = 0;
         for (is_free, strength, function) in [
             (free.constant, series.constant, quantity.constant()),

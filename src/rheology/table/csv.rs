@@ -94,6 +94,9 @@ const RELAXATION_WORDS: &[&str] = &["g", "e", "relaxation", "modulus"];
 const STORAGE_WORDS: &[&str] = &["g'", "g′", "e'", "e′", "storage", "gp"];
 const LOSS_WORDS: &[&str] = &["g''", "g″", "g\"", "e''", "e″", "e\"", "loss", "gpp"];
 
+/// What a heading of something else says.
+const OTHERS: &[&str] = &["factor", "tan", "strain", "stress", "phase", "%"];
+
 fn words(column: &str) -> &'static [&'static str] {
     match column {
         "creep compliance" => CREEP_WORDS,
@@ -108,35 +111,51 @@ fn read(mut reader: impl Read, layout: Layout, units: Units) -> Result<Vec<Row>>
     positive("Units::abscissa", units.abscissa)?;
     positive("Units::value", units.value)?;
     let unreadable = |reason: String| TableError::Unreadable { file: format!("{} table", layout.table), reason };
-    let mut text = String::new();
-    reader.read_to_string(&mut text).map_err(|error| unreadable(error.to_string()))?;
+    let mut bytes = Vec::new();
+    reader.read_to_end(&mut bytes).map_err(|error| unreadable(error.to_string()))?;
+    if bytes.contains(&0) {
+        return Err(unreadable("it is not a text file".into()).into());
+    }
+    // remarks may be in any encoding, numbers are not
+    let text = String::from_utf8_lossy(&bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text); // some spreadsheets mark UTF-8 so
+    let mark = delimiter(text);
     let mut lines = ReaderBuilder::new()
         .has_headers(false)
         .flexible(true)
         .comment(Some(b'#'))
         .trim(Trim::All)
-        .delimiter(delimiter(text))
+        .delimiter(mark)
         .from_reader(text.as_bytes());
 
     let names: Vec<&'static str> =
         std::iter::once(layout.abscissa).chain(layout.columns.iter().map(|&(name, _)| name)).collect();
     let mut order: Vec<usize> = (0..names.len()).collect();
-    let (mut rows, mut first, mut record) = (Vec::new(), true, ByteRecord::new());
+    let (mut rows, mut width, mut record) = (Vec::new(), None, ByteRecord::new());
     while lines.read_byte_record(&mut record).map_err(|error| unreadable(error.to_string()))? {
         let line = record.position().map_or(0, ::csv::Position::line);
         let record = StringRecord::from_byte_record_lossy(std::mem::take(&mut record));
         // blanks in a row separate nothing
-        let fields: Vec<&str> = record.iter().filter(|field| !field.is_empty() || delimiter(text) != b' ').collect();
-        if fields.iter().all(|field| field.is_empty()) {
+        let mut fields: Vec<&str> = record.iter().filter(|field| !field.is_empty() || mark != b' ').collect();
+        while fields.last().is_some_and(|field| field.is_empty()) {
+            fields.pop(); // a separator at the end of a line
+        }
+        if fields.is_empty() || fields[0].starts_with('#') {
             continue;
         }
-        if fields.len() < names.len() {
-            let columns = names.join(", ");
-            return Err(TableError::Columns { line, found: fields.len(), expected: names.len(), columns }.into());
+        let headings = width.is_none() && fields.iter().all(|field| field.parse::<f64>().is_err());
+        // a table is as wide as its headings, and without any it holds nothing but what is needed
+        let expected = *width.get_or_insert(if headings { fields.len() } else { names.len() });
+        if fields.len() != expected || expected < names.len() {
+            let (expected, columns) = (expected.max(names.len()), names.join(", "));
+            return Err(TableError::Columns { line, found: fields.len(), expected, columns }.into());
         }
-        if std::mem::take(&mut first) && fields.iter().all(|field| field.parse::<f64>().is_err()) {
+        if headings {
             order = columns(line, &fields, &names)?;
+            let heading = fields[order[0]];
+            if heading.to_lowercase().contains("hz") && units.abscissa == 1.0 {
+                return Err(TableError::Hertz { line, heading: heading.to_owned() }.into());
+            }
             continue;
         }
         let number = |column: usize| -> Result<f64> {
@@ -164,6 +183,9 @@ fn columns(line: u64, headings: &[&str], names: &[&'static str]) -> Result<Vec<u
         .iter()
         .map(|heading| {
             let heading = heading.to_lowercase();
+            if OTHERS.iter().any(|other| heading.contains(other)) {
+                return None;
+            }
             let word = heading.split(|c: char| " [(_/,;|*".contains(c)).next().unwrap_or_default();
             names.iter().copied().find(|name| words(name).contains(&word))
         })

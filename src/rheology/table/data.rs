@@ -47,7 +47,7 @@ const MOST_NOISE: f64 = 0.5;
 /// ... in short tables, whose scatter is hard to tell from their course, not even beyond this.
 const MOST_NOISE_OF_FEW: f64 = 0.1;
 const FEW: usize = 12;
-/// Clean data may stray by the rounding of their printed digits.
+/// Clean data may stray by the rounding of their digits; those printed with few digits, by one in the last.
 const LEAST_NOISE: f64 = 1e-9;
 /// A fit of constant, slope and one term needs as many values.
 const LEAST_ROWS: usize = 4;
@@ -93,7 +93,7 @@ pub(crate) fn validated(layout: Layout, mut rows: Vec<Row>) -> Result<(Vec<Sampl
             Quantity::Loss => continue,
         };
         let most = if rows.len() < FEW { MOST_NOISE_OF_FEW } else { MOST_NOISE };
-        let noise = (DEVIATIONS * scatter(&rising)).clamp(LEAST_NOISE, most);
+        let noise = (DEVIATIONS * scatter(&rising)).max(1.5 * quantum(&rising)).clamp(LEAST_NOISE, most);
         let strays = rising.iter().zip(never_falling(&rising)).map(|(value, curve)| (value / curve - 1.0).abs());
         let Some((worst, change)) = strays.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
         if change > noise {
@@ -102,8 +102,9 @@ pub(crate) fn validated(layout: Layout, mut rows: Vec<Row>) -> Result<(Vec<Sampl
         }
         deepest = deepest.max(change);
     }
-    let sample =
-        |index: usize, quantity| rows.iter().map(move |row| Sample { quantity, x: row.x, value: row.values[index] });
+    let sample = |index: usize, quantity| {
+        rows.iter().map(move |row| Sample { quantity, x: row.x, value: row.values[index], weight: 1.0 })
+    };
     let samples = columns.iter().enumerate().flat_map(|(index, &(_, quantity))| sample(index, quantity));
     Ok((samples.collect(), deepest))
 }
@@ -122,6 +123,13 @@ fn never_falling(values: &[f64]) -> Vec<f64> {
         }
     }
     pools.into_iter().flat_map(|(mean, count)| std::iter::repeat_n(mean, count)).collect()
+}
+
+/// The least relative step between neighbours that differ: where values are printed with few digits, one in the last.
+fn quantum(values: &[f64]) -> f64 {
+    let steps = values.windows(2).map(|w| (w[1] / w[0] - 1.0).abs()).filter(|step| *step > 0.0);
+    let least = steps.fold(f64::INFINITY, f64::min);
+    if least.is_finite() { least } else { 0.0 }
 }
 
 /// Relative standard deviation of the scatter about a smooth curve, from the median of second differences, which

@@ -42,7 +42,7 @@ pub enum TableError {
     },
 
     /// A value is NaN or infinite.
-    #[error("{table} table, {place}: {column} = {value} is not a number")]
+    #[error("{table} table, {place}: {column} = {value:?} is not a number")]
     NotFinite {
         /// Which table.
         table: &'static str,
@@ -55,7 +55,7 @@ pub enum TableError {
     },
 
     /// A time is negative, or a frequency or a time that must be positive is not.
-    #[error("{table} table, {place}: {column} = {value} must be {allowed}")]
+    #[error("{table} table, {place}: {column} = {value:?} must be {allowed}")]
     Abscissa {
         /// Which table.
         table: &'static str,
@@ -71,7 +71,7 @@ pub enum TableError {
 
     /// A compliance or modulus is not positive. A first row of zeros, from before the load, does not belong to
     /// the creep: remove it.
-    #[error("{table} table, {place}: {column} = {value} must be > 0 (leave out what was recorded before the load)")]
+    #[error("{table} table, {place}: {column} = {value:?} must be > 0")]
     NotPositive {
         /// Which table.
         table: &'static str,
@@ -102,7 +102,7 @@ pub enum TableError {
     /// by more than the scatter of the data explains: no passive body does. Remove the outlier, or what was recorded
     /// after the specimen failed or slipped.
     #[error(
-        "{table} table, {place}: {column} = {value} strays by {:.2} % from any curve that does not turn back; the scatter of the data explains {:.2} %",
+        "{table} table, {place}: {column} = {value:?} strays by {:.2} % from any curve that does not turn back; the scatter of the data explains {:.2} %",
         100.0 * .change, 100.0 * .noise
     )]
     WrongWay {
@@ -118,6 +118,29 @@ pub enum TableError {
         change: f64,
         /// Relative distance that would have been tolerated.
         noise: f64,
+    },
+
+    /// No series with positive coefficients comes near the data: they are not those of a body of springs and dashpots
+    /// (tertiary creep, a step, moduli that contradict each other, wrong units), or too few for how steep they are.
+    #[error("the {table} table is not that of a linear body: the best series misses it by {:.0} % in the root mean square, and by {:.0} % at x = {x:e}", 100.0 * .rms, 100.0 * .worst)]
+    Inconsistent {
+        /// Which table.
+        table: &'static str,
+        /// Relative misfit, root mean square.
+        rms: f64,
+        /// Greatest relative misfit.
+        worst: f64,
+        /// Where it is \[s or rad/s\].
+        x: f64,
+    },
+
+    /// A heading says Hz, but the units given make it rad/s: give 2π as [`Units::abscissa`](crate::rheology::Units).
+    #[error("line {line}: the column {heading:?} is in Hz, but Units::abscissa is 1: give 2π")]
+    Hertz {
+        /// The line of the headings.
+        line: u64,
+        /// The heading.
+        heading: String,
     },
 
     /// A file could not be read.

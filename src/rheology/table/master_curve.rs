@@ -1,4 +1,4 @@
-use crate::error::{Error, Result, exact_length, least_length, within};
+use crate::error::{Error, Result, least_length, within};
 use crate::rheology::table::data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
 use crate::rheology::table::{Place, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
 use crate::rheology::{Quantity, TimeTemperature};
@@ -48,13 +48,7 @@ impl Isotherm {
 
     fn new(temperature: f64, layout: Layout, x: &[f64], columns: &[&[f64]]) -> Result<Isotherm> {
         within("temperature", temperature, temperature > 0.0, "finite and > 0 (kelvin)")?;
-        for column in columns {
-            exact_length("values of an isotherm", column.len(), x.len())?;
-        }
-        let mut rows: Vec<Row> = Vec::with_capacity(x.len());
-        for (k, &x) in x.iter().enumerate() {
-            rows.push(Row { place: Place::Entry(k), x, values: columns.iter().map(|column| column[k]).collect() });
-        }
+        let mut rows = super::rows(x, "values of an isotherm", columns)?;
         validated(layout, rows.clone())?;
         rows.retain(|row| row.x > 0.0); // a time of zero stays zero at every temperature
         rows.sort_by(|a, b| a.x.total_cmp(&b.x));
@@ -230,8 +224,8 @@ impl MasterCurve {
     fn rows(&self) -> Vec<Row> {
         let mut rows: Vec<Row> = self.reduced().map(|(_, row)| row).collect();
         rows.sort_by(|a, b| a.x.total_cmp(&b.x));
-        for k in 1..rows.len() {
-            if rows[k].x <= rows[k - 1].x {
+        for k in 0..rows.len() {
+            if k > 0 && rows[k].x <= rows[k - 1].x {
                 rows[k].x = rows[k - 1].x.next_up();
             }
             rows[k].place = Place::Entry(k);
@@ -333,6 +327,13 @@ fn shift_between(colder: &Isotherm, warmer: &Isotherm) -> Result<f64> {
         if distance(x) <= distance(y) { b = y } else { a = x }
     }
     let shift = 0.5 * (a + b);
+    let span = |isotherm: &Isotherm| {
+        let logs = || isotherm.rows.iter().map(|row| row.values[0].ln());
+        logs().fold(f64::NEG_INFINITY, f64::max) - logs().fold(f64::INFINITY, f64::min)
+    };
+    if span(colder).min(span(warmer)) < 1e-6 {
+        return Err(Error::NothingToShift { temperatures: [colder.temperature, warmer.temperature] });
+    }
     // overlapping by the least that was asked for means that the values of the two hardly meet
     let apart = distance(shift).sqrt();
     let at_end = (shift - low).min(high - shift) < step;

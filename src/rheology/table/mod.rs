@@ -13,11 +13,17 @@ pub use master_curve::{Isotherm, MasterCurve};
 
 use crate::error::{Result, exact_length};
 use crate::rheology::fit::{FitReport, Goal, Sample, Search, Series};
-use crate::rheology::{CreepSpectrum, RelaxationSpectrum, Rheology};
+use crate::rheology::{CreepSpectrum, RelaxationSpectrum, Rheology, is_known};
 use data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
 
 /// Misfits below this warrant no further term: measurements are not that good.
-const FLOOR: f64 = 1e-5;
+const FLOOR: f64 = 3e-5;
+/// A worse misfit, in the root mean square, is no fit.
+const MOST_MISFIT: f64 = 0.1;
+/// Of denser tables so many means a decade are fitted, ...
+const GATHERED: f64 = 24.0;
+/// ... fewer if they span more decades than this.
+const DECADES: f64 = 30.0;
 /// How far terms reach beyond the data, as a factor.
 const BEYOND: f64 = 3.0;
 
@@ -45,7 +51,7 @@ macro_rules! tabulated {
 
         impl Rheology for $table {
             fn creep_compliance(&self, t: f64) -> f64 {
-                if t <= self.known_until { self.spectrum.compliance(t) } else { f64::NAN }
+                if is_known(t, self.known_until) { self.spectrum.compliance(t) } else { f64::NAN }
             }
 
             fn creep_spectrum(&self) -> Option<CreepSpectrum> {
@@ -54,6 +60,10 @@ macro_rules! tabulated {
 
             fn known_until(&self) -> f64 {
                 self.known_until
+            }
+
+            fn fit_report(&self) -> Option<&FitReport> {
+                Some(&self.report)
             }
         }
     };
@@ -217,7 +227,33 @@ fn fitted(layout: Layout, rows: Vec<Row>, slope: bool) -> Result<(Series, FitRep
     let positive = || samples.iter().map(times).filter(|t| *t > 0.0);
     let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
     let search = Search { constant: None, slope, times: [first / BEYOND, last * BEYOND], goal: Goal::Warranted(FLOOR) };
-    let series = search.run(&samples);
+    let series = search.run(&gathered(&samples, (last / first).log10()));
     let report = FitReport::new(&series, &samples).with_wrong_way(deepest);
-    Ok((series, report))
+    match report.worst() {
+        Some(worst) if report.rms_misfit() > MOST_MISFIT => {
+            let (table, rms) = (layout.table, report.rms_misfit());
+            Err(TableError::Inconsistent { table, rms, worst: worst.misfit().abs(), x: worst.x }.into())
+        }
+        _ => Ok((series, report)),
+    }
+}
+
+/// The samples with neighbours gathered into their geometric means where there are more than a fit can use.
+fn gathered(samples: &[Sample], decades: f64) -> Vec<Sample> {
+    let a_decade = GATHERED * (DECADES / decades).min(1.0);
+    let mut gathered: Vec<Sample> = Vec::new();
+    for &sample in samples {
+        match gathered.last_mut() {
+            Some(mean)
+                if mean.quantity == sample.quantity && mean.bin(a_decade) == sample.bin(a_decade) && mean.x > 0.0 =>
+            {
+                let share = sample.weight / (mean.weight + sample.weight);
+                mean.x *= (sample.x / mean.x).powf(share);
+                mean.value *= (sample.value / mean.value).powf(share);
+                mean.weight += sample.weight;
+            }
+            _ => gathered.push(sample),
+        }
+    }
+    gathered
 }
