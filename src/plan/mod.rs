@@ -79,7 +79,7 @@ impl Plan {
 
         // error(n) = second (COARSE/n)² + first COARSE/n
         let (first, target) = (found.error.singular, accuracy.space());
-        let second = found.error.approach.max(found.error.peak_pressure) - first;
+        let second = (found.error.approach.max(found.error.peak_pressure) - first).max(0.0);
         let shrink = (first + (first * first + 4.0 * second * target).sqrt()) / (2.0 * target);
         let wanted = (COARSE as f64 * shrink).ceil();
         if wanted > MOST_CELLS as f64 {
@@ -220,24 +220,28 @@ impl Coarse<'_> {
         let mut contact = self.builder(grid).build()?;
         let mut found =
             Found { reach: [0.0; 2], steps: 0, convolutions: 0.0, error: SpatialError::default(), terms: 0 };
-        let (mut strongest, mut errors) = (0.0_f64, Vec::new());
+        let (mut deepest, mut highest, mut states) = (0.0_f64, 0.0_f64, Vec::new());
         let mut run = contact.follow(self.history, self.accuracy.stepping(), self.until);
         while let Some(report) = run.next_step()? {
             found.steps += 1;
             found.convolutions += report.convolution_equivalents();
-            strongest = strongest.max(report.force);
-            errors.push((report.force, run.contact().spatial_error()));
+            let peak = run.contact().pressure().iter().copied().fold(0.0, f64::max);
+            (deepest, highest) = (deepest.max(report.approach), highest.max(peak));
+            states.push((report.approach, peak, run.contact().spatial_error()));
             let touched = run.contact().reach_of_contact();
             found.reach = [0, 1].map(|axis| found.reach[axis].max(touched[axis]));
         }
-        // small forces have small contacts, whose errors are small beside what the run is about
-        for (force, error) in errors.into_iter().filter(|(force, _)| *force > 0.3 * strongest) {
-            let _ = force;
+        // errors relative to the greatest values of the run: a small contact may be coarse if it is not what matters
+        for (approach, peak, error) in states {
+            let (approach, peak) = ((approach / deepest).clamp(0.0, 1.0), peak / highest);
+            if approach.is_nan() || peak.is_nan() {
+                continue;
+            }
             found.error = SpatialError {
-                approach: found.error.approach.max(error.approach),
-                peak_pressure: found.error.peak_pressure.max(error.peak_pressure),
-                area: found.error.area.max(error.area),
-                singular: found.error.singular.max(error.singular),
+                approach: found.error.approach.max(approach * error.approach),
+                peak_pressure: found.error.peak_pressure.max(peak * error.peak_pressure),
+                area: found.error.area.max(approach * error.area),
+                singular: found.error.singular.max(approach * error.singular),
             };
         }
         found.terms = contact.material().contact_spectrum()?.map_or(1, |spectrum| spectrum.terms().len());
@@ -277,11 +281,11 @@ impl Coarse<'_> {
 fn smooth_size(least: usize) -> usize {
     let smooth = |mut n: usize| {
         for factor in [2, 3, 5] {
-            while n % factor == 0 {
+            while n.is_multiple_of(factor) {
                 n /= factor;
             }
         }
         n == 1
     };
-    (least..).find(|&n| n % 2 == 0 && smooth(n)).unwrap_or(least)
+    (least..).find(|&n| n.is_multiple_of(2) && smooth(n)).unwrap_or(least)
 }
