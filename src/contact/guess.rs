@@ -20,8 +20,12 @@ const STEPS_WITHOUT_REFRESH: usize = 62;
 /// larger force.
 const FALL_WITHOUT_REFRESH: f64 = 8.0;
 
+/// And when steps that grow have multiplied the rounding by this: a guess that reaches a times the last step ahead
+/// takes the difference of the errors of the last two states a times along.
+const GROWTH_WITHOUT_REFRESH: f64 = 1e3;
+
 /// When K p was last computed afresh.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Refresh {
     /// Steps still to compute it afresh.
     due: usize,
@@ -29,18 +33,32 @@ pub(super) struct Refresh {
     stale: usize,
     /// The greatest Σ p since then.
     greatest: f64,
+    /// How much larger the rounding has grown since then.
+    growth: f64,
+    /// How far ahead the guess under way reaches.
+    ahead: f64,
+}
+
+impl Default for Refresh {
+    fn default() -> Refresh {
+        Refresh { due: 0, stale: 0, greatest: 0.0, growth: 1.0, ahead: 0.0 }
+    }
 }
 
 impl Refresh {
     /// After a step with Σ p = `sum`.
     pub(super) fn count(&mut self, sum: f64) {
         if self.due > 0 {
-            *self = Refresh { due: self.due - 1, stale: 0, greatest: sum };
+            *self = Refresh { due: self.due - 1, greatest: sum, ..Refresh::default() };
             return;
         }
         self.stale += 1;
         self.greatest = self.greatest.max(sum);
-        if self.stale >= STEPS_WITHOUT_REFRESH || sum < self.greatest / FALL_WITHOUT_REFRESH {
+        self.growth *= self.ahead.max(1.0);
+        if self.growth > GROWTH_WITHOUT_REFRESH
+            || self.stale >= STEPS_WITHOUT_REFRESH
+            || sum < self.greatest / FALL_WITHOUT_REFRESH
+        {
             self.due = 2;
         }
     }
@@ -67,6 +85,7 @@ impl ViscoelasticContact {
         if !(wanted / FARTHEST_FORCE..=wanted * FARTHEST_FORCE).contains(&guessed) {
             ahead = 0.0;
         }
+        self.refresh.ahead = ahead;
         let extrapolate = |trial: &mut [f64], current: &[f64], previous: &[f64]| {
             for ((guess, &now), &before) in trial.iter_mut().zip(current).zip(previous) {
                 *guess = now + ahead * (now - before);

@@ -53,8 +53,8 @@ pub enum TimeRule {
     /// The rule that suits the rheology: [`TimeRule::Exponential`].
     #[default]
     Automatic,
-    /// Exponential integration of the relaxation form: second order, stable for steps of any length,
-    /// one field for each relaxation time. A rheology without an exact exponential series gets a fitted one: see
+    /// Exponential integration of the relaxation form: second order (first for a body without elastic response, as
+    /// Kelvin–Voigt), stable for steps of any length, one field for each relaxation time. A rheology without an exact exponential series gets a fitted one: see
     /// [`Builder::times`](crate::contact::Builder::times).
     Exponential,
     /// The rule of the source paper, a direct sum over all past steps: first order, oscillates when

@@ -349,7 +349,10 @@ impl ViscoelasticContact {
         if !motions.iter().flatten().all(|motion| motion.is_finite()) {
             return Err(Error::Overflow { time, what: "the approach" });
         }
-        if residual > tolerance || residual.is_nan() {
+        if !residual.is_finite() {
+            return Err(Error::Overflow { time, what: "the residual of the contact problem" });
+        }
+        if residual > tolerance {
             return Err(Error::NotConverged { time, dt, iterations: counts.iterations, residual, tolerance });
         }
         if self.settings.edge == Edge::Refuse {

@@ -1,0 +1,294 @@
+//! Steps, times, moduli, lengths and loads at the ends of their ranges.
+
+use viscocontact::Error;
+use viscocontact::prelude::*;
+
+const RADIUS: f64 = 10.0e-3;
+
+fn builder(cells: usize, width: f64, material: Material) -> viscocontact::contact::Builder {
+    ViscoelasticContact::builder(Grid::square(cells, width).unwrap())
+        .geometry(&Sphere::new(RADIUS).unwrap())
+        .material(material)
+}
+
+fn zener() -> Material {
+    Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap())
+}
+
+/// Exact approach of a held force: a³ = ¾ R W C(t), ω = a²/R.
+fn held(material: &Material, force: f64, t: f64) -> f64 {
+    (0.75 * RADIUS * force * material.contact_compliance(t)).powf(2.0 / 3.0) / RADIUS
+}
+
+/// Eight steps of Δ after a jump, Δ/τ from 1e-12 to 1e12, every rule: the table of docs/accuracy.md.
+#[test]
+fn every_length_of_step() {
+    println!("| Δ/τ | exponential | backward | rectangle (paper) |\n|---|---|---|---|");
+    for exponent in (-12..=12).step_by(3) {
+        let dt = 10f64.powi(exponent);
+        let mut row = format!("| 1e{exponent} |");
+        for time_rule in [TimeRule::Exponential, TimeRule::Backward, TimeRule::Rectangle] {
+            let maxwell = Material::incompressible(Zener::new(1.0e6, 2.0e5, 2.0e5).unwrap());
+            let settings = Settings { time_rule, tolerance: 1e-9, edge: Edge::Allow, ..Settings::default() };
+            let width = 2.4 * (0.75 * RADIUS * 6.0 * 0.25e-6_f64).cbrt();
+            let mut contact = builder(32, width, maxwell.clone()).settings(settings).build().unwrap();
+            contact.step(0.0, Load::force(1.0)).unwrap();
+            let mut worst = 0.0_f64;
+            for _ in 0..8 {
+                match contact.step(dt, Load::force(1.0)) {
+                    Ok(report) => worst = worst.max((report.approach / held(&maxwell, 1.0, report.time) - 1.0).abs()),
+                    Err(_) => worst = f64::INFINITY,
+                }
+            }
+            row += &if worst.is_finite() { format!(" {worst:.0e} |") } else { " fails |".to_owned() };
+            match time_rule {
+                // short and long steps see nothing or everything; in between the rule's own error
+                TimeRule::Exponential => assert!(worst < if exponent == 0 { 0.1 } else { 3e-3 }, "{row}"),
+                TimeRule::Backward => assert!(worst < if exponent == 0 { 0.4 } else { 3e-3 }, "{row}"),
+                _ => {}
+            }
+        }
+        println!("{row}");
+    }
+}
+
+/// After a huge step nothing rings: the pressure stays where it is, and of one sign.
+#[test]
+fn huge_steps_do_not_ring() {
+    for material in [zener(), Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap())] {
+        for dt in [3.0, 30.0, 1e3] {
+            let width = 2.6 * (0.75 * RADIUS * 0.01 * material.contact_compliance(12.0 * dt)).cbrt();
+            let mut contact = builder(32, width, material.clone()).build().unwrap();
+            contact.step(0.0, Load::force(0.01)).unwrap();
+            let mut centers = Vec::new();
+            for _ in 0..10 {
+                contact.step(dt, Load::force(0.01)).unwrap();
+                centers.push(contact.pressure()[16 * 32 + 16]);
+            }
+            // creep only spreads the force
+            for pair in centers.windows(2) {
+                assert!(pair[1] < pair[0] * (1.0 + 1e-4), "Δ = {dt}: {centers:?}");
+            }
+        }
+    }
+}
+
+/// Second order for a smooth load on any rheology with an elastic response, once steps resolve its fastest relaxation (a
+/// power law resolved from 0.3 s on); first order without.
+#[test]
+fn the_default_rule_is_of_second_order() {
+    let power = FractionalMaxwell::findley(0.5e-6, 0.5e-6, 0.4).unwrap().series(0.3..=10.0, 1e-2).unwrap();
+    let bodies: Vec<(&str, Material)> = vec![
+        ("Maxwell", Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap())),
+        ("Zener", zener()),
+        ("Kelvin–Voigt", Material::incompressible(KelvinVoigt::new(1.0e6, 0.3e6).unwrap())),
+        ("Burgers", Material::incompressible(Burgers::new(1.0e6, 3.0e6, 1.0e6, 0.5e6).unwrap())),
+        ("power law", Material::incompressible(power)),
+        ("elastic bulk", Material::elastic_bulk(Zener::new(2.0e6, 1.0e6, 1.0e6).unwrap(), 3.0e6).unwrap()),
+    ];
+    // on a punch nothing but the rule is there to see: no cell comes or goes
+    let punch = FlatPunch::circular(0.8e-3).unwrap();
+    let force = |t: f64| (0.5 * std::f64::consts::PI * t).sin().powi(2);
+    for (name, material) in bodies {
+        let approach = |steps: u32| {
+            let settings = Settings { tolerance: 1e-12, ..Settings::default() };
+            let mut contact =
+                builder(24, 2.2e-3, material.clone()).geometry(&punch).settings(settings).build().unwrap();
+            for k in 1..=steps {
+                let t = 0.8 * f64::from(k) / f64::from(steps);
+                contact.step(0.8 / f64::from(steps), Load::force(force(t))).unwrap();
+            }
+            contact.approach()
+        };
+        let fine = approach(4096);
+        let errors = [16, 32, 64].map(|steps| (approach(steps) / fine - 1.0).abs());
+        let order = (errors[0] / errors[2]).log2() / 2.0;
+        println!("{name}: errors {errors:?}, order {order:.2}");
+        // an immediate dashpot answers with the slope of u at the end of a step, which a straight line knows to first order
+        let immediate = material.contact_compliance(0.0) == 0.0;
+        assert!(if immediate { order > 0.95 } else { order >= 1.95 }, "{name}: {errors:?}");
+    }
+}
+
+/// Thirty decades of relaxation times in one body.
+#[test]
+fn thirty_decades_in_one_body() {
+    let terms: Vec<_> = (-15..=15).map(|k| (0.2e-6, 10f64.powi(k))).collect();
+    let material = Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &terms).unwrap());
+    let width = 2.4 * (0.75 * RADIUS * material.contact_compliance(1e17)).cbrt();
+    let load = StepLoad::new(Load::force(1.0)).unwrap();
+    let mut contact = builder(48, width, material.clone()).build().unwrap();
+    let mut run = contact.follow(&load, Stepping::adaptive(1e-3), 1e17);
+    let (mut steps, mut worst) = (0, 0.0_f64);
+    while let Some(report) = run.next_step().unwrap() {
+        steps += 1;
+        if report.contact_cells > 150 {
+            worst = worst.max((report.approach / held(&material, 1.0, report.time) - 1.0).abs());
+        }
+    }
+    println!("{steps} steps from 1e-17 s to 1e17 s: {worst:.1e}");
+    assert!(worst < 3e-3 && steps < 500, "{worst:e} {steps}");
+}
+
+/// The same dimensionless scene in any units: bit by bit for powers of two, else to rounding.
+#[test]
+fn units_do_not_matter() {
+    let run = |length: f64, modulus: f64, time: f64, tolerance: f64| {
+        let body = Zener::new(1.0e6 * modulus, 0.5e6 * modulus, 0.5e6 * modulus * time).unwrap();
+        let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3 * length).unwrap())
+            .geometry(&Sphere::new(RADIUS * length).unwrap())
+            .material(Material::incompressible(body))
+            .settings(Settings { tolerance, ..Settings::default() })
+            .build()
+            .unwrap();
+        let force = |share: f64| Load::force(share * modulus * length * length);
+        for (dt, share) in [(0.0, 0.3), (0.1, 0.5), (0.3, 0.6), (1.0, 0.2), (0.2, 0.0), (0.1, 0.4)] {
+            contact.step(dt * time, force(share)).unwrap();
+        }
+        let pressure: Vec<f64> = contact.pressure().iter().map(|p| p / modulus).collect();
+        (pressure, contact.approach() / length)
+    };
+    let (pressure, approach) = run(1.0, 1.0, 1.0, 1e-6);
+    for (length, modulus, time) in [(-33, 0, 0), (0, -40, 0), (0, 30, 0), (27, 30, 40), (-30, -40, -40)] {
+        let two = |exponent: i32| 2f64.powi(exponent);
+        let (scaled, deep) = run(two(length), two(modulus), two(time), 1e-6);
+        assert!(scaled == pressure && deep == approach, "2^{length} m, 2^{modulus} Pa, 2^{time} s");
+    }
+    // other factors round otherwise, and iterations take other ways to the same answer
+    let (pressure, approach) = run(1.0, 1.0, 1.0, 1e-13);
+    let peak = pressure.iter().copied().fold(0.0, f64::max);
+    for (length, modulus, time) in
+        [(1e-8, 1.0, 1.0), (1e8, 1.0, 1.0), (1.0, 1e-12, 1.0), (1.0, 1e9, 1.0), (1e-8, 1e3, 1e-9), (1e8, 1e-12, 1e9)]
+    {
+        let (scaled, deep) = run(length, modulus, time, 1e-13);
+        assert!((deep / approach - 1.0).abs() < 1e-12, "{length:e} {modulus:e} {time:e}: {:e}", deep / approach - 1.0);
+        let far = scaled.iter().zip(&pressure).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / peak;
+        assert!(far < 1e-10, "{length:e} {modulus:e} {time:e}: pressure {far:e}");
+    }
+}
+
+#[test]
+fn every_poissons_ratio_and_shape_of_cell() {
+    for nu in [0.0, 0.5, -0.9] {
+        let material = Material::constant_poisson(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap(), nu).unwrap();
+        let width = 2.5 * (0.75 * RADIUS * material.contact_compliance(1e3)).cbrt();
+        let mut contact = builder(48, width, material.clone()).build().unwrap();
+        contact.step(0.0, Load::force(1.0)).unwrap();
+        contact.step(100.0, Load::force(1.0)).unwrap();
+        let relative = contact.approach() / held(&material, 1.0, 100.0) - 1.0;
+        assert!(relative.abs() < 2e-3, "ν = {nu}: {relative:e}");
+    }
+    // cells a thousand times as long as wide, under a body of the same proportions
+    let ellipsoid = Ellipsoid::new(1.0e-3, 1.0e3).unwrap();
+    let hertz = viscocontact::analytic::HertzEllipse::new([1.0e-3, 1.0e3], 4.0e6, 1.0).unwrap();
+    let [a, b] = hertz.semi_axes();
+    let mut contact = ViscoelasticContact::builder(Grid::new([48, 48], [2.4 * a, 2.4 * b]).unwrap())
+        .geometry(&ellipsoid)
+        .material(Material::incompressible(Elastic::new(1.0e6).unwrap()))
+        .build()
+        .unwrap();
+    let [d1, d2] = contact.grid().spacing();
+    contact.step(0.0, Load::force(1.0)).unwrap();
+    let relative = contact.approach() / hertz.approach() - 1.0;
+    println!("cells 1 : {:.0}: approach {relative:.1e}", d2 / d1);
+    assert!(d2 / d1 > 1000.0 && relative.abs() < 5e-3, "{relative:e}");
+}
+
+/// Steps that grow by half carry the rounding of K p along, larger each time: it must be computed afresh in time.
+#[test]
+fn growing_steps_do_not_lose_k_p() {
+    for growth in [1.2, 1.5, 2.0, 2.9] {
+        let terms: Vec<_> = (-12..=12).map(|k| (0.2e-6, 10f64.powi(k))).collect();
+        let material = Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &terms).unwrap());
+        let width = 2.4 * (0.75 * RADIUS * material.contact_compliance(1e15)).cbrt();
+        let mut contact = builder(24, width, material.clone()).build().unwrap();
+        let mut work = contact.kernel().workspace();
+        let mut fresh = vec![0.0; contact.grid().len()];
+        contact.step(0.0, Load::force(1.0)).unwrap();
+        let mut dt = 1e-14;
+        while contact.time() < 1e13 {
+            contact.step(dt, Load::force(1.0)).unwrap();
+            dt *= growth;
+            // after a jump by nothing c is the glassy compliance, and the rest of u was there before
+            let before = contact.displacement().to_vec();
+            let mut again = contact.clone();
+            again.step(0.0, Load::force(1.0)).unwrap();
+            let kernel = contact.kernel().clone();
+            kernel.convolve(contact.pressure(), &mut fresh, &mut work).unwrap();
+            let scale = before.iter().copied().fold(0.0, f64::max);
+            let moved = again.displacement().iter().zip(&before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(moved < 1e-5 * scale, "growth {growth}, t = {:e}: {:e}", contact.time(), moved / scale);
+            let exact = held(&material, 1.0, contact.time());
+            let error = contact.approach() / exact - 1.0;
+            assert!(growth > 2.0 || contact.contact_cells() < 100 || error.abs() < 1e-2, "growth {growth}: {error:e}");
+        }
+    }
+}
+
+/// K p is carried from step to step; a million steps later it is still K p.
+#[test]
+fn a_million_steps_do_not_drift() {
+    let material = Material::incompressible(Maxwell::new(1.0e9, 1.0e12).unwrap());
+    let mut contact = builder(8, 4.0e-4, material).build().unwrap();
+    let mut work = contact.kernel().workspace();
+    let mut fresh = vec![0.0; contact.grid().len()];
+    let mut worst = 0.0_f64;
+    for step in 0..1_000_000_u32 {
+        contact.step(1e-4, Load::force(0.6 + 0.3 * (0.01 * f64::from(step)).sin())).unwrap();
+        if step % 50_000 == 49_999 {
+            let kernel = contact.kernel().clone();
+            kernel.convolve(contact.pressure(), &mut fresh, &mut work).unwrap();
+            // a jump by nothing shows u = u_old + c K p of the very state
+            let before = contact.displacement().to_vec();
+            contact.step(0.0, contact.load()).unwrap();
+            let scale = before.iter().copied().fold(0.0, f64::max);
+            let moved = contact.displacement().iter().zip(&before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            worst = worst.max(moved / scale);
+        }
+    }
+    println!("a jump by nothing moves the surface by {worst:.1e}");
+    assert!(worst < 1e-6, "{worst:e}"); // the tolerance of the solver
+}
+
+#[test]
+fn a_load_removed_and_restored_a_thousand_times() {
+    let mut contact = builder(32, 4.0e-3, zener()).build().unwrap();
+    for _ in 0..1000 {
+        contact.step(1e-3, Load::force(0.5)).unwrap();
+        contact.step(1e-3, Load::force(0.0)).unwrap();
+        assert_eq!(contact.contact_cells(), 0);
+    }
+    // half the time loaded, until everything is in equilibrium: the mean displacement is half the relaxed one
+    contact.step(0.0, Load::force(0.5)).unwrap();
+    assert!((contact.force() / 0.5 - 1.0).abs() < 1e-12 && contact.contact_cells() > 50);
+    contact.step(0.0, Load::force(0.0)).unwrap();
+    let left = contact.displacement().iter().copied().fold(0.0, f64::max);
+    // a step of many relaxation times leaves τ/Δ, the next one that of it
+    let mut forgotten = left;
+    for _ in 0..3 {
+        contact.step(1e3, Load::force(0.0)).unwrap();
+        let now = contact.displacement().iter().map(|u| u.abs()).fold(0.0, f64::max);
+        assert!(now < 1e-3 * forgotten, "{forgotten:e} {now:e}");
+        forgotten = now;
+    }
+}
+
+/// From next to no load, on one cell, to all of them.
+#[test]
+fn from_one_cell_to_all() {
+    let settings = Settings { edge: Edge::Allow, ..Settings::default() };
+    let mut contact = builder(16, 1.0e-3, zener()).settings(settings).build().unwrap();
+    let mut cells = Vec::new();
+    for exponent in -200..=2 {
+        contact.step(1e-3, Load::force(10f64.powi(exponent))).unwrap();
+        assert!((contact.force() / 10f64.powi(exponent) - 1.0).abs() < 1e-12);
+        cells.push(contact.contact_cells());
+    }
+    assert!(
+        cells[0] <= 4 && cells.windows(2).all(|pair| pair[1] >= pair[0]) && cells[cells.len() - 1] == 256,
+        "{cells:?}"
+    );
+    // and what cannot be represented is said
+    let error = contact.step(0.0, Load::force(1e-323)).and_then(|_| contact.step(0.0, Load::force(1e308))).unwrap_err();
+    assert!(matches!(error, Error::Overflow { .. }), "{error}");
+}
