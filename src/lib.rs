@@ -39,7 +39,8 @@
 //! ```
 //!
 //! A caller who wants to drive every step uses [`ViscoelasticContact::step`]; one who has a load history
-//! uses [`ViscoelasticContact::follow`]. Shapes, bodies and histories of your own implement
+//! uses [`ViscoelasticContact::follow`], with fixed steps or steps chosen by their error; one who knows how accurate the answer
+//! must be lets a [`plan::Plan`] choose domain, mesh and steps. Shapes, bodies and histories of your own implement
 //! [`geometry::Geometry`], [`rheology::Rheology`] and [`load::LoadHistory`]. [`analytic`] has reference
 //! solutions.
 //!

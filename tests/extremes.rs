@@ -100,8 +100,8 @@ fn the_default_rule_is_of_second_order() {
             }
             contact.approach()
         };
-        let fine = approach(4096);
-        let errors = [16, 32, 64].map(|steps| (approach(steps) / fine - 1.0).abs());
+        let fine = approach(8192);
+        let errors = [64, 128, 256].map(|steps| (approach(steps) / fine - 1.0).abs());
         let order = (errors[0] / errors[2]).log2() / 2.0;
         println!("{name}: errors {errors:?}, order {order:.2}");
         // an immediate dashpot answers with the slope of u at the end of a step, which a straight line knows to first order

@@ -2,6 +2,7 @@
 
 use crate::contact::adaptive::Controller;
 use crate::contact::report::StepReport;
+use crate::contact::spatial::SpatialError;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result, finite, positive, within};
 use crate::load::LoadHistory;
@@ -79,6 +80,8 @@ impl Stepping {
 ///     steps += 1;
 /// }
 /// assert!(steps < 60);
+/// let budget = run.error_budget();
+/// println!("time {:.0e}, mesh {:.0e}, solver {:.0e}", budget.time, budget.space.approach, budget.solver);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug)]
@@ -94,6 +97,20 @@ pub struct Follow<'a> {
     controller: Option<Controller>,
     /// Times to end steps on, ascending.
     landings: Vec<f64>,
+    /// Greatest estimated error in time of a step, and greatest residual.
+    worst: [f64; 2],
+}
+
+/// Where the error of a run comes from, made by [`Follow::error_budget`]. All relative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct ErrorBudget {
+    /// Greatest error in time estimated for a step, of the displacement; 0 for fixed steps, which nothing is estimated for.
+    pub time: f64,
+    /// Errors due to the mesh, of the present state.
+    pub space: SpatialError,
+    /// Greatest residual of the contact problems, of the displacement.
+    pub solver: f64,
 }
 
 /// A step that the solver cannot do is tried again so many times, shorter.
@@ -111,7 +128,17 @@ impl<'a> Follow<'a> {
             Stepping::Adaptive { tolerance } => Some(Controller::new(tolerance)),
         };
         let start = contact.time();
-        Follow { start, contact, history, stepping, until, behind: 0, controller, landings: Vec::new() }
+        Follow {
+            start,
+            contact,
+            history,
+            stepping,
+            until,
+            behind: 0,
+            controller,
+            landings: Vec::new(),
+            worst: [0.0; 2],
+        }
     }
 
     /// Lets steps end exactly on these `times` \[s\] too, in any order; those before the contact's time do not
@@ -158,7 +185,8 @@ impl<'a> Follow<'a> {
             }
             let tolerance = self.solver_tolerance();
             let attempt = self.contact.attempt(now, 0.0, &[load], tolerance)?;
-            return Ok(Some(self.contact.accept(attempt, &[load])));
+            let report = self.contact.accept(attempt, &[load]);
+            return Ok(Some(self.note(report)));
         }
         if now >= self.until {
             return Ok(None);
@@ -170,12 +198,12 @@ impl<'a> Follow<'a> {
         if let Some(mut controller) = self.controller.take() {
             let report = self.adaptive_step(&mut controller, corner);
             self.controller = Some(controller);
-            return report.map(Some);
+            return report.map(|report| Some(self.note(report)));
         }
         let Stepping::Fixed { dt } = self.stepping else { return Ok(None) };
         let time = self.next_time(now, dt, corner)?;
         let report = self.contact.step_to(time, time - now, &[self.history.before(time)])?;
-        Ok(Some(report))
+        Ok(Some(self.note(report)))
     }
 
     /// One step as long as its error allows.
@@ -253,6 +281,16 @@ impl<'a> Follow<'a> {
     /// The end of the step of the fixed raster that is under way.
     fn raster(&self, dt: f64) -> f64 {
         self.start + (self.behind + 1) as f64 * dt
+    }
+
+    /// What the answer errs by, so far, as far as it can be told.
+    pub fn error_budget(&self) -> ErrorBudget {
+        ErrorBudget { time: self.worst[0], space: self.contact.spatial_error(), solver: self.worst[1] }
+    }
+
+    fn note(&mut self, report: StepReport) -> StepReport {
+        self.worst = [self.worst[0].max(report.time_error), self.worst[1].max(report.residual)];
+        report
     }
 
     /// Steps that were tried and found too long, with [`Stepping::adaptive`].

@@ -16,7 +16,7 @@ mod stepper;
 
 pub use between::Between;
 pub use builder::Builder;
-pub use follow::{Follow, Stepping};
+pub use follow::{ErrorBudget, Follow, Stepping};
 pub use report::{BodyState, StepReport};
 pub use settings::{Edge, Settings, Solver, TimeRule};
 pub use spatial::SpatialError;

@@ -1,0 +1,354 @@
+//! Speed against accuracy, measured: five scenes with a reference, every time rule, both solvers, several meshes and step
+//! counts. Writes a table (CSV), a picture for each scene and a page of advice (accuracy.md).
+//!
+//! `cargo run --release --example trade` (about five minutes), or with `-- --quick` (seconds)
+
+mod support;
+
+use std::error::Error;
+use std::fs;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::Parser;
+use indicatif::ProgressBar;
+use support::plot::{COLORS, Chart, Scale, SeriesLabelPosition, Style};
+use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};
+use viscocontact::contact::Builder;
+use viscocontact::prelude::*;
+
+/// Measures what accuracy costs.
+#[derive(Parser)]
+struct Args {
+    /// Small meshes and few steps.
+    #[arg(long)]
+    quick: bool,
+    /// Folder for tables and pictures.
+    #[arg(long, default_value = "out/trade")]
+    output: PathBuf,
+}
+
+fn main() {
+    support::finish(run(&Args::parse()));
+}
+
+const RADIUS: f64 = 10.0e-3;
+const PUNCH: f64 = 1.0e-3;
+
+struct Scene {
+    name: &'static str,
+    material: Material,
+    history: Box<dyn LoadHistory>,
+    until: f64,
+    /// Steps spaced evenly in the logarithm of time, from this time on.
+    logarithmic_from: Option<f64>,
+    punch: bool,
+    /// Exact approach at a time.
+    exact: Box<dyn Fn(f64) -> f64>,
+    /// Exact pressure under the middle, where it is known: at a distance from the axis and a time.
+    pressure: Option<GrowingSphere>,
+}
+
+/// How a scene is run.
+#[derive(Clone, Copy, PartialEq)]
+struct Method {
+    name: &'static str,
+    rule: TimeRule,
+    solver: Solver,
+    adaptive: bool,
+}
+
+const METHODS: [Method; 6] = [
+    Method {
+        name: "paper: rectangle, Polonsky–Keer",
+        rule: TimeRule::Rectangle,
+        solver: Solver::PolonskyKeer,
+        adaptive: false,
+    },
+    Method { name: "rectangle, active set", rule: TimeRule::Rectangle, solver: Solver::ActiveSet, adaptive: false },
+    Method { name: "backward, active set", rule: TimeRule::Backward, solver: Solver::ActiveSet, adaptive: false },
+    Method {
+        name: "exponential, Polonsky–Keer",
+        rule: TimeRule::Exponential,
+        solver: Solver::PolonskyKeer,
+        adaptive: false,
+    },
+    Method { name: "exponential, active set", rule: TimeRule::Exponential, solver: Solver::ActiveSet, adaptive: false },
+    Method { name: "adaptive, active set", rule: TimeRule::Exponential, solver: Solver::ActiveSet, adaptive: true },
+];
+
+#[derive(Clone)]
+struct Row {
+    scene: &'static str,
+    method: Method,
+    cells: usize,
+    /// Steps, or the tolerance of adaptive ones.
+    asked: f64,
+    steps: usize,
+    error: f64,
+    equivalents: f64,
+    seconds: f64,
+    bytes: usize,
+}
+
+fn scenes() -> Result<Vec<Scene>> {
+    let held = |material: &Material| {
+        let material = material.clone();
+        move |t: f64| (0.75 * RADIUS * material.contact_compliance(t)).powf(2.0 / 3.0) / RADIUS
+    };
+    let step = || StepLoad::new(Load::force(1.0));
+    let maxwell = Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?);
+    let zener = Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6)?);
+    let four = [(0.5e-6, 0.05), (0.5e-6, 0.3), (0.5e-6, 2.0), (0.5e-6, 10.0)];
+    let four = Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &four)?);
+    let power = Material::incompressible(FractionalMaxwell::findley(1.0e-6, 1.0e-6, 0.3)?);
+    let corners = [(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (2.5, 0.0), (3.5, 1.0)];
+    let triangle = PiecewiseLinear::new(&corners.map(|(time, force)| (time, Load::force(force))))?;
+    let sine = Sinusoid::new(Load::force(0.2), Load::force(1.0), 1.0)?;
+    let punch = |t: f64| 0.5 / PUNCH * 0.25e-6 * (1.0 + t);
+    let plain =
+        |name, material: &Material, until, history: Box<dyn LoadHistory>, exact: Box<dyn Fn(f64) -> f64>| Scene {
+            name,
+            material: material.clone(),
+            history,
+            until,
+            logarithmic_from: None,
+            punch: false,
+            exact,
+            pressure: None,
+        };
+    let eccentric = StepLoad::new(Load::eccentric_force(1.0, [PUNCH / 4.0, 0.0]))?;
+    Ok(vec![
+        Scene {
+            pressure: Some(GrowingSphere::step(RADIUS, &maxwell, 1.0)?),
+            ..plain("Maxwell, held", &maxwell, 2.0, Box::new(step()?), Box::new(held(&maxwell)))
+        },
+        plain("Zener, load-unload-load", &zener, 3.5, Box::new(triangle.clone()), foundation(&zener, &triangle, 3.5)?),
+        plain("four times, sine", &four, 3.0, Box::new(sine), foundation(&four, &sine, 3.0)?),
+        Scene {
+            logarithmic_from: Some(1e-6),
+            ..plain("power law, eight decades", &power, 1e4, Box::new(step()?), Box::new(held(&power)))
+        },
+        Scene { punch: true, ..plain("eccentric punch", &maxwell, 2.0, Box::new(eccentric), Box::new(punch)) },
+    ])
+}
+
+/// The approach by the method of dimensionality reduction, tabulated.
+fn foundation(material: &Material, history: &dyn LoadHistory, until: f64) -> Result<Box<dyn Fn(f64) -> f64>> {
+    let reach = 1.2 * (0.75 * RADIUS * material.contact_compliance(until)).cbrt();
+    let mut contact = AxisymmetricContact::new(&Profile::sphere(RADIUS)?, material, 4000, reach)?;
+    let count = 7000;
+    let mut table = Vec::with_capacity(count + 1);
+    for k in 0..=count {
+        let t = until * k as f64 / count as f64;
+        if let Load::Force { normal, .. } = history.at(t) {
+            contact.press(t - contact.time(), normal)?;
+        }
+        table.push(contact.approach());
+    }
+    Ok(Box::new(move |t| {
+        let place = (t / until * count as f64).clamp(0.0, count as f64);
+        let k = (place as usize).min(count - 1);
+        table[k] + (place - k as f64) * (table[k + 1] - table[k])
+    }))
+}
+
+impl Scene {
+    fn builder(&self, cells: usize) -> Result<Builder> {
+        let widest = (0.75 * RADIUS * self.material.contact_compliance(self.until)).cbrt();
+        let grid = Grid::square(cells, if self.punch { 2.2 * PUNCH } else { 2.3 * widest })?;
+        let builder = ViscoelasticContact::builder(grid).material(self.material.clone());
+        let builder = builder.times(self.logarithmic_from.unwrap_or(1e-6)..=self.until * 1.01);
+        Ok(if self.punch {
+            builder.geometry(&FlatPunch::circular(PUNCH)?)
+        } else {
+            builder.geometry(&Sphere::new(RADIUS)?)
+        })
+    }
+
+    /// One run; `asked` is the number of steps, or the tolerance of adaptive ones. `None` if it fails, as unstable rules do.
+    fn measure(&self, method: Method, cells: usize, asked: f64) -> Result<Option<Row>> {
+        let settings = Settings {
+            time_rule: method.rule,
+            solver: method.solver,
+            edge: Edge::Allow,
+            history_limit: 8 << 28,
+            ..Settings::default()
+        };
+        let mut contact = self.builder(cells)?.settings(settings).build()?;
+        let clock = Instant::now();
+        let (mut states, mut pressures, mut equivalents) = (Vec::new(), Vec::new(), 0.0);
+        let landings: Vec<f64> = match self.logarithmic_from {
+            Some(first) if !method.adaptive => {
+                let decades = (self.until / first).log10();
+                (0..=asked as usize).map(|k| first * 10f64.powf(decades * k as f64 / asked)).collect()
+            }
+            _ => Vec::new(),
+        };
+        let stepping = match (method.adaptive, self.logarithmic_from) {
+            (true, _) => Stepping::adaptive(asked),
+            (false, None) => Stepping::fixed(self.until / asked),
+            (false, Some(_)) => Stepping::fixed(2.0 * self.until),
+        };
+        let mut run = contact.follow(&*self.history, stepping, self.until).landing_on(&landings)?;
+        loop {
+            match run.next_step() {
+                Ok(Some(report)) => {
+                    states.push((report.time, report.approach));
+                    equivalents += report.convolution_equivalents();
+                    if let Some(exact) = &self.pressure {
+                        let [x1, x2] = run.contact().grid().center(cells / 2, cells / 2);
+                        let center = run.contact().pressure()[cells / 2 * cells + cells / 2];
+                        pressures.push((center, exact.pressure(x1.hypot(x2), report.time)));
+                    }
+                }
+                Ok(None) => break,
+                Err(_) => return Ok(None),
+            }
+        }
+        let seconds = clock.elapsed().as_secs_f64();
+        let greatest = states.iter().map(|&(t, _)| (self.exact)(t)).fold(0.0, f64::max);
+        let late = self.logarithmic_from.map_or(0.0, |first| 100.0 * first);
+        let errors =
+            states.iter().filter(|state| state.0 >= late).map(|&(t, approach)| (approach - (self.exact)(t)).abs());
+        let highest = pressures.iter().map(|&(_, exact)| exact).fold(f64::MIN_POSITIVE, f64::max);
+        let central = pressures.iter().map(|&(p, exact)| (p - exact).abs() / highest).fold(0.0, f64::max);
+        let error = (errors.fold(0.0, f64::max) / greatest).max(central);
+        let steps = states.len();
+        let fields = match method.rule {
+            TimeRule::Exponential => {
+                contact.material().contact_spectrum()?.map_or(1, |spectrum| spectrum.terms().len())
+            }
+            _ => steps,
+        };
+        // bytes a cell as the crate page gives them, and a field for each relaxation time or past step
+        let bytes = cells * cells * (166 + 8 * fields + if method.adaptive { 8 } else { 0 });
+        Ok(Some(Row { scene: self.name, method, cells, asked, steps, error, equivalents, seconds, bytes }))
+    }
+}
+
+fn run(args: &Args) -> Result<(), Box<dyn Error>> {
+    fs::create_dir_all(&args.output)?;
+    let meshes: &[usize] = if args.quick { &[24] } else { &[64, 128] };
+    let counts: &[f64] = if args.quick { &[10.0, 20.0] } else { &[12.0, 25.0, 50.0, 100.0, 200.0, 400.0, 800.0] };
+    let tolerances: &[f64] = if args.quick { &[1e-2, 1e-3] } else { &[3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4] };
+    let scenes = scenes()?;
+    let mut rows: Vec<Row> = Vec::new();
+    let mut failures: Vec<(&str, Method, usize, f64)> = Vec::new();
+    let progress = ProgressBar::new((scenes.len() * meshes.len() * METHODS.len()) as u64);
+    for scene in &scenes {
+        for &cells in meshes {
+            for method in METHODS {
+                for &asked in if method.adaptive { tolerances } else { counts } {
+                    // the direct sum of many steps is only worth its time on the coarser mesh
+                    let direct = matches!(method.rule, TimeRule::Rectangle | TimeRule::Backward);
+                    let slow = method.solver == Solver::PolonskyKeer || direct;
+                    if slow && asked > 400.0 && (cells > 64 && scene.name != "Maxwell, held" || scene.punch) {
+                        continue;
+                    }
+                    match scene.measure(method, cells, asked)? {
+                        Some(row) => rows.push(row),
+                        None => failures.push((scene.name, method, cells, asked)),
+                    }
+                }
+                progress.inc(1);
+            }
+        }
+    }
+    progress.finish_and_clear();
+
+    let mut table = csv::Writer::from_path(args.output.join("trade.csv"))?;
+    table.write_record([
+        "scene",
+        "method",
+        "cells_a_side",
+        "steps_or_tolerance",
+        "steps",
+        "error",
+        "convolution_equivalents",
+        "time_over_paper_100_steps",
+        "bytes",
+    ])?;
+    for row in &rows {
+        let reference = if args.quick { 20.0 } else { 100.0 };
+        let paper = rows.iter().find(|other| {
+            other.scene == row.scene
+                && other.cells == row.cells
+                && other.method == METHODS[0]
+                && other.asked == reference
+        });
+        let relative = paper.map_or(f64::NAN, |paper| row.seconds / paper.seconds);
+        table.serialize((
+            row.scene,
+            row.method.name,
+            row.cells,
+            row.asked,
+            row.steps,
+            row.error,
+            row.equivalents,
+            relative,
+            row.bytes,
+        ))?;
+    }
+    table.flush()?;
+    for scene in &scenes {
+        plot(args, scene.name, meshes[meshes.len() - 1], &rows)?;
+    }
+    let page = page(&scenes, meshes, &rows, &failures);
+    fs::write(args.output.join("accuracy.md"), &page)?;
+    println!("{page}");
+    println!("table, pictures and page are in {}", args.output.display());
+    Ok(())
+}
+
+fn plot(args: &Args, scene: &str, cells: usize, rows: &[Row]) -> Result<(), Box<dyn Error>> {
+    let title = format!("{scene}, {cells}² cells");
+    let mut chart = Chart::new(&title, "convolution equivalents", "relative error", SeriesLabelPosition::UpperRight);
+    chart.scale = Scale::LogLog;
+    for (k, method) in METHODS.into_iter().enumerate() {
+        let of = |row: &&Row| row.scene == scene && row.cells == cells && row.method == method;
+        let points: Vec<_> = rows.iter().filter(of).map(|row| (row.equivalents, row.error.max(1e-8))).collect();
+        if !points.is_empty() {
+            chart.add(method.name, COLORS[k], Style::LineAndDots, points);
+        }
+    }
+    let name: String = scene.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    chart.save(&args.output.join(format!("{name}.png")))
+}
+
+/// For every scene and method the least work that reaches an error.
+fn page(scenes: &[Scene], meshes: &[usize], rows: &[Row], failures: &[(&str, Method, usize, f64)]) -> String {
+    let mut page = String::from(
+        "## Work to reach an error\n\nLeast convolution equivalents over all step counts or tolerances of the sweep for which the error of \
+         the approach (greatest over the run, relative to its greatest value; mesh included; for the held sphere on a Maxwell body of the central \
+         pressure too) is below 1e-2, 1e-3 and 1e-4; in brackets \
+         the steps. A dash: not reached in the sweep.\n",
+    );
+    for scene in scenes {
+        for &cells in meshes {
+            page += &format!(
+                "\n### {}, {cells}² cells\n\n| method | 1e-2 | 1e-3 | 1e-4 | memory at 1e-2 |\n|---|---|---|---|---|\n",
+                scene.name
+            );
+            for method in METHODS {
+                let best = |target: f64| {
+                    let fits = rows.iter().filter(|row| {
+                        row.scene == scene.name && row.cells == cells && row.method == method && row.error <= target
+                    });
+                    fits.min_by(|a, b| a.equivalents.total_cmp(&b.equivalents))
+                };
+                let cell =
+                    |target| best(target).map_or("–".into(), |row| format!("{:.0} ({})", row.equivalents, row.steps));
+                let memory = best(1e-2).map_or("–".into(), |row| format!("{:.1} MB", row.bytes as f64 * 1e-6));
+                page += &format!("| {} | {} | {} | {} | {memory} |\n", method.name, cell(1e-2), cell(1e-3), cell(1e-4));
+            }
+        }
+    }
+    if !failures.is_empty() {
+        page += "\nRuns that failed (a rule that is unstable for such steps):\n\n";
+        for (scene, method, cells, asked) in failures {
+            page += &format!("* {scene}, {}, {cells}², {asked} steps\n", method.name);
+        }
+    }
+    page
+}
