@@ -194,60 +194,49 @@ fn every_poissons_ratio_and_shape_of_cell() {
     assert!(d2 / d1 > 1000.0 && relative.abs() < 5e-3, "{relative:e}");
 }
 
-/// Steps that grow by half carry the rounding of K p along, larger each time: it must be computed afresh in time.
+/// K p is carried from guess to guess: on an elastic body u = C K p shows whether it is still K p.
+fn drift(contact: &ViscoelasticContact, fresh: &mut [f64]) -> f64 {
+    let kernel = contact.kernel();
+    kernel.convolve(contact.pressure(), fresh, &mut kernel.workspace()).unwrap();
+    let scale = fresh.iter().copied().fold(0.0, f64::max);
+    let c = contact.material().contact_compliance(0.0);
+    contact.displacement().iter().zip(fresh.iter()).map(|(u, v)| (u / c - v).abs()).fold(0.0, f64::max) / scale
+}
+
+fn elastic(cells: usize) -> ViscoelasticContact {
+    builder(cells, 4.0e-3, Material::incompressible(Elastic::new(1.0e6).unwrap())).build().unwrap()
+}
+
+/// Steps that grow carry the rounding of K p along, larger each time: it must be computed afresh in time.
 #[test]
 fn growing_steps_do_not_lose_k_p() {
-    for growth in [1.2, 1.5, 2.0, 2.9] {
-        let terms: Vec<_> = (-12..=12).map(|k| (0.2e-6, 10f64.powi(k))).collect();
-        let material = Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &terms).unwrap());
-        let width = 2.4 * (0.75 * RADIUS * material.contact_compliance(1e15)).cbrt();
-        let mut contact = builder(24, width, material.clone()).build().unwrap();
-        let mut work = contact.kernel().workspace();
+    for growth in [1.0, 1.2, 1.5, 2.0, 2.9] {
+        let mut contact = elastic(24);
         let mut fresh = vec![0.0; contact.grid().len()];
-        contact.step(0.0, Load::force(1.0)).unwrap();
-        let mut dt = 1e-14;
-        while contact.time() < 1e13 {
-            contact.step(dt, Load::force(1.0)).unwrap();
+        let (mut dt, mut worst) = (1e-60, 0.0_f64);
+        for step in 0..250_u32 {
+            contact.step(dt, Load::force(0.6 + 0.3 * (0.01 * f64::from(step)).sin())).unwrap();
             dt *= growth;
-            // after a jump by nothing c is the glassy compliance, and the rest of u was there before
-            let before = contact.displacement().to_vec();
-            let mut again = contact.clone();
-            again.step(0.0, Load::force(1.0)).unwrap();
-            let kernel = contact.kernel().clone();
-            kernel.convolve(contact.pressure(), &mut fresh, &mut work).unwrap();
-            let scale = before.iter().copied().fold(0.0, f64::max);
-            let moved = again.displacement().iter().zip(&before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            assert!(moved < 1e-5 * scale, "growth {growth}, t = {:e}: {:e}", contact.time(), moved / scale);
-            let exact = held(&material, 1.0, contact.time());
-            let error = contact.approach() / exact - 1.0;
-            assert!(growth > 2.0 || contact.contact_cells() < 100 || error.abs() < 1e-2, "growth {growth}: {error:e}");
+            worst = worst.max(drift(&contact, &mut fresh));
         }
+        println!("growth {growth}: {worst:.1e}");
+        assert!(worst < 1e-10, "growth {growth}: {worst:e}");
     }
 }
 
-/// K p is carried from step to step; a million steps later it is still K p.
 #[test]
 fn a_million_steps_do_not_drift() {
-    let material = Material::incompressible(Maxwell::new(1.0e9, 1.0e12).unwrap());
-    let mut contact = builder(8, 4.0e-4, material).build().unwrap();
-    let mut work = contact.kernel().workspace();
+    let mut contact = elastic(8);
     let mut fresh = vec![0.0; contact.grid().len()];
     let mut worst = 0.0_f64;
     for step in 0..1_000_000_u32 {
         contact.step(1e-4, Load::force(0.6 + 0.3 * (0.01 * f64::from(step)).sin())).unwrap();
-        if step % 50_000 == 49_999 {
-            let kernel = contact.kernel().clone();
-            kernel.convolve(contact.pressure(), &mut fresh, &mut work).unwrap();
-            // a jump by nothing shows u = u_old + c K p of the very state
-            let before = contact.displacement().to_vec();
-            contact.step(0.0, contact.load()).unwrap();
-            let scale = before.iter().copied().fold(0.0, f64::max);
-            let moved = contact.displacement().iter().zip(&before).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            worst = worst.max(moved / scale);
+        if step % 997 == 0 {
+            worst = worst.max(drift(&contact, &mut fresh));
         }
     }
-    println!("a jump by nothing moves the surface by {worst:.1e}");
-    assert!(worst < 1e-6, "{worst:e}"); // the tolerance of the solver
+    println!("K p after a million steps: {worst:.1e}");
+    assert!(worst < 1e-10, "{worst:e}");
 }
 
 #[test]
