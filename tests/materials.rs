@@ -229,7 +229,9 @@ fn waiting_chooses_no_times() {
     let table = TabulatedCreep::new(&[0.1, 1.0, 10.0, 100.0], &[1.0e-6, 1.2e-6, 1.5e-6, 1.6e-6]).unwrap();
     let settings = Settings { time_rule: TimeRule::Backward, ..Settings::default() };
     let mut contact = grid().material(Material::incompressible(table)).settings(settings).build().unwrap();
-    (0..20).for_each(|_| drop(contact.step(10.0, Load::force(0.0)).unwrap()));
+    for _ in 0..20 {
+        contact.step(10.0, Load::force(0.0)).unwrap();
+    }
     contact.step(0.0, Load::force(1e-3)).unwrap();
     contact.step(90.0, Load::force(1e-3)).unwrap();
     let error = contact.step(20.0, Load::force(1e-3)).unwrap_err();
