@@ -36,7 +36,11 @@ fn every_length_of_step() {
             let mut worst = 0.0_f64;
             for _ in 0..8 {
                 match contact.step(dt, Load::force(1.0)) {
-                    Ok(report) => worst = worst.max((report.approach / held(&maxwell, 1.0, report.time) - 1.0).abs()),
+                    Ok(report) => {
+                        worst = worst.max((report.approach / held(&maxwell, 1.0, report.time) - 1.0).abs());
+                        // what a step would ring at is said
+                        assert_eq!(report.rings, time_rule == TimeRule::Rectangle && exponent >= 0);
+                    }
                     Err(_) => worst = f64::INFINITY,
                 }
             }

@@ -7,7 +7,7 @@ use crate::contact::builder::Builder;
 use crate::contact::guess::Refresh;
 use crate::contact::hull::Hull;
 use crate::contact::report::StepReport;
-use crate::contact::settings::{Edge, Settings};
+use crate::contact::settings::{Edge, Settings, TimeRule};
 use crate::error::{Error, Result, non_negative};
 use crate::geometry::Gap;
 use crate::hereditary::{Change, History};
@@ -375,6 +375,8 @@ impl ViscoelasticContact {
             preconditioner_applications,
             residual: self.current.residual,
             time_error: 0.0,
+            rings: self.settings.time_rule == TimeRule::Rectangle
+                && self.material.contact_compliance(dt) > 2.0 * self.material.contact_compliance(0.0),
             contact_cells: self.contact_cells,
             approach: self.approach(),
             tilt: self.tilt(),

@@ -2,7 +2,7 @@ use std::ops::RangeInclusive;
 
 use crate::error::{Error, Result, positive, within};
 use crate::rheology::fit::{FitReport, Goal, Quantity, Sample, Search};
-use crate::rheology::{CreepSpectrum, ROUNDING, Rheology, is_known};
+use crate::rheology::{CreepSpectrum, ROUNDING, Rheology};
 
 /// The exponential series that stands for a creep compliance over a range of times, and its error.
 ///
@@ -86,23 +86,31 @@ impl CreepSeries {
     }
 }
 
-impl Rheology for CreepSeries {
-    fn creep_compliance(&self, t: f64) -> f64 {
-        if is_known(t, self.known_until) { self.spectrum.compliance(t) } else { f64::NAN }
-    }
+/// [`Rheology`] for what holds a `spectrum`, its `report`, and the time it is `known_until`.
+macro_rules! known_series {
+    ($series:ty) => {
+        impl $crate::rheology::Rheology for $series {
+            fn creep_compliance(&self, t: f64) -> f64 {
+                if $crate::rheology::is_known(t, self.known_until) { self.spectrum.compliance(t) } else { f64::NAN }
+            }
 
-    fn creep_spectrum(&self) -> Option<CreepSpectrum> {
-        Some(self.spectrum.clone())
-    }
+            fn creep_spectrum(&self) -> Option<$crate::rheology::CreepSpectrum> {
+                Some(self.spectrum.clone())
+            }
 
-    fn known_until(&self) -> f64 {
-        self.known_until
-    }
+            fn known_until(&self) -> f64 {
+                self.known_until
+            }
 
-    fn fit_report(&self) -> Option<&FitReport> {
-        (!self.report.is_exact()).then_some(&self.report)
-    }
+            fn fit_report(&self) -> Option<&$crate::rheology::FitReport> {
+                (!self.report.is_exact()).then_some(&self.report)
+            }
+        }
+    };
 }
+pub(super) use known_series;
+
+known_series!(CreepSeries);
 
 /// J at log-spaced times, both ends included.
 fn sampled<R: Rheology + ?Sized>(

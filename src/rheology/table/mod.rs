@@ -13,7 +13,8 @@ pub use master_curve::{Isotherm, MasterCurve};
 
 use crate::error::{Result, exact_length};
 use crate::rheology::fit::{FitReport, Goal, Sample, Search, Series};
-use crate::rheology::{CreepSpectrum, RelaxationSpectrum, Rheology, is_known};
+use crate::rheology::series::known_series;
+use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 use data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
 
 /// Misfits below this warrant no further term: measurements are not that good.
@@ -49,23 +50,7 @@ macro_rules! tabulated {
             }
         }
 
-        impl Rheology for $table {
-            fn creep_compliance(&self, t: f64) -> f64 {
-                if is_known(t, self.known_until) { self.spectrum.compliance(t) } else { f64::NAN }
-            }
-
-            fn creep_spectrum(&self) -> Option<CreepSpectrum> {
-                Some(self.spectrum.clone())
-            }
-
-            fn known_until(&self) -> f64 {
-                self.known_until
-            }
-
-            fn fit_report(&self) -> Option<&FitReport> {
-                Some(&self.report)
-            }
-        }
+        known_series!($table);
     };
 }
 
