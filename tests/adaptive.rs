@@ -197,6 +197,22 @@ fn tolerances_and_impossible_loads_are_refused() {
         }
     };
     assert!(matches!(error, Error::StepTooShort { .. }), "{error}");
+
+    // nor shorter than a series resolves that the first step chose: an end, not a step tried for ever
+    let body = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
+    let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3).unwrap())
+        .geometry(&Sphere::new(RADIUS).unwrap())
+        .material(body)
+        .build()
+        .unwrap();
+    let mut follow = contact.follow(&noise, Stepping::adaptive(1e-3), 1.0);
+    let error = loop {
+        match follow.next_step() {
+            Ok(step) => assert!(step.is_some()),
+            Err(error) => break error,
+        }
+    };
+    assert!(matches!(error, Error::BelowMaterial { .. }), "{error}");
 }
 
 /// Area by p² extrapolated to the edge, against Hertz, wherever the contact lies on the mesh.

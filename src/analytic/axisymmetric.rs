@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::error::{Error, Result, finite, non_negative, positive};
 use crate::hereditary::Exponential;
-use crate::rheology::Material;
+use crate::rheology::{Material, is_known};
 
 /// The profile g(x) of a one-dimensional foundation that stands for an axisymmetric indenter f(r):
 /// g(x) = |x| ∫ f′(r)/√(x² − r²) dr over 0 < r < |x|.
@@ -172,7 +172,7 @@ impl AxisymmetricContact {
     fn predict(&mut self, dt: f64) -> Result<f64> {
         non_negative("time step", dt)?;
         let (time, known_until) = (self.time + dt, self.known_until);
-        if time > known_until * (1.0 + 1e-9) {
+        if !is_known(time, known_until) {
             return Err(Error::BeyondMaterial { time, age: time, known_until });
         }
         let c = self.history.predict(self.time + dt, dt, &self.displacement, &mut self.trial_displacement)?;

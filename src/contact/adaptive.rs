@@ -47,7 +47,10 @@ const TRIED: i32 = 4;
 const DECADES: i32 = 40;
 /// A body that creeps without an elastic response has no shortest time: its first step is this part of the time left.
 const FIRST_PART: f64 = 1e-6;
+/// Part of the estimate that a run really errs by, before and at most after the amplification by C(age)/C(Δ): see
+/// docs/accuracy.md.
 const SHARE: f64 = 0.25;
+const MOST_AMPLIFIED: f64 = 5.0;
 /// Loads below this part of the greatest so far are measured against it.
 const SMALL_LOAD: f64 = 0.05;
 
@@ -86,7 +89,7 @@ impl Controller {
 
     /// The tolerance of the solver that suits.
     pub(super) fn solver_tolerance(&self, wanted: f64) -> f64 {
-        wanted.max((SOLVER_SHARE * self.tolerance).min(0.1))
+        wanted.max(SOLVER_SHARE * self.tolerance)
     }
 
     /// The length to try next, at most `left`.
@@ -157,21 +160,16 @@ impl Controller {
         }
         let (pressure, displacement) = contact.trial();
         let bend = 2.0 / (dt + self.rate_dt) * 0.125 * dt * dt * self.amplification(contact, dt);
-        let weighted = |weight: &dyn Fn(usize) -> f64| {
-            let (mut error, mut size) = (0.0, 0.0);
-            for (k, ((&new, &old), &rate)) in
-                displacement.iter().zip(contact.displacement()).zip(&self.rate).enumerate()
-            {
-                let weight = weight(k);
-                if weight > 0.0 {
-                    error += weight * ((new - old) / dt - rate).abs();
-                    size += weight * new.abs();
-                }
-            }
-            if size > 0.0 { bend * error / size } else { 0.0 }
-        };
         // bodies apart: the surface recovers everywhere alike
-        if pressure.iter().all(|&p| p == 0.0) { weighted(&|_| 1.0) } else { weighted(&|k| pressure[k]) }
+        let apart = pressure.iter().all(|&p| p == 0.0);
+        let (mut error, mut size) = (0.0, 0.0);
+        let fields = pressure.iter().zip(displacement).zip(contact.displacement()).zip(&self.rate);
+        for (((&p, &new), &old), &rate) in fields {
+            let weight = if apart { 1.0 } else { p };
+            error += weight * ((new - old) / dt - rate).abs();
+            size += weight * new.abs();
+        }
+        if size > 0.0 { bend * error / size } else { 0.0 }
     }
 
     /// What an error of u in one step comes to in the end: the next steps answer it with the stiffness of a step, the
@@ -179,7 +177,7 @@ impl Controller {
     fn amplification(&self, contact: &ViscoelasticContact, dt: f64) -> f64 {
         let compliance = |t: f64| contact.material().contact_compliance(t);
         let (old, young) = (compliance(contact.age() + dt), compliance(dt));
-        SHARE * if old > young { (old / young).min(5.0) } else { 1.0 }
+        SHARE * if old > young { (old / young).min(MOST_AMPLIFIED) } else { 1.0 }
     }
 
     /// Takes note of a step of length `dt` with the given error; says whether it may stand.

@@ -223,12 +223,15 @@ impl<'a> Follow<'a> {
             let straying = controller.watch(self.history, self.contact, time);
             if straying > controller.tolerance {
                 controller.judge(dt, straying);
+                self.may_shorten(time, dt)?;
                 continue;
             }
             let attempt = match self.contact.attempt(time, dt, &[load], tolerance) {
                 Err(Error::NotConverged { .. }) if failures < SOLVER_RETRIES => {
                     failures += 1;
                     controller.shorten(dt);
+                    wasted = self.wasted(wasted);
+                    self.may_shorten(time, dt)?;
                     continue;
                 }
                 other => other?,
@@ -246,9 +249,23 @@ impl<'a> Follow<'a> {
                 report.preconditioner_applications += wasted[1];
                 return Ok(report);
             }
-            let work = self.contact.work_of_trial();
-            wasted = [wasted[0] + work[0], wasted[1] + work[1]];
+            wasted = self.wasted(wasted);
+            self.may_shorten(time, dt)?;
         }
+    }
+
+    /// The work of steps tried in vain, with that of the last one.
+    fn wasted(&self, before: [usize; 2]) -> [usize; 2] {
+        let work = self.contact.work_of_trial();
+        [before[0] + work[0], before[1] + work[1]]
+    }
+
+    /// Whether a step that was found too long may be tried again, shorter: not below what the material resolves, or it
+    /// would be tried for ever.
+    fn may_shorten(&self, time: f64, dt: f64) -> Result<()> {
+        let known_from = self.contact.shortest;
+        // what is left of a length after it was added to a time is a little off
+        if dt > 1.01 * known_from { Ok(()) } else { Err(Error::BelowMaterial { time, dt, known_from }) }
     }
 
     fn solver_tolerance(&self) -> f64 {

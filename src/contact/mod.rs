@@ -19,5 +19,6 @@ pub use builder::Builder;
 pub use follow::{ErrorBudget, Follow, Stepping};
 pub use report::{BodyState, StepReport};
 pub use settings::{Edge, Settings, Solver, TimeRule};
+pub(crate) use spatial::AREA_ORDER;
 pub use spatial::SpatialError;
 pub use stepper::ViscoelasticContact;

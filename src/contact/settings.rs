@@ -54,8 +54,8 @@ pub enum TimeRule {
     #[default]
     Automatic,
     /// Exponential integration of the relaxation form: second order (first for a body without elastic response, as
-    /// Kelvin–Voigt), stable for steps of any length, one field for each relaxation time. A rheology without an exact exponential series gets a fitted one: see
-    /// [`Builder::times`](crate::contact::Builder::times).
+    /// Kelvin–Voigt), stable for steps of any length, one field for each relaxation time. A rheology without an exact
+    /// exponential series gets a fitted one: see [`Builder::times`](crate::contact::Builder::times).
     Exponential,
     /// The rule of the source paper, a direct sum over all past steps: first order, oscillates when
     /// a step is longer than the relaxation time of a Maxwell body and diverges beyond twice that; needs

@@ -30,7 +30,7 @@ const PEAK: f64 = 0.12;
 const SINGULAR: f64 = 1.4;
 /// Error of the area, 0.13 (rim cells/2 cells)^1.2 on spheres.
 const AREA: f64 = 0.13;
-const AREA_ORDER: f64 = 1.2;
+pub(crate) const AREA_ORDER: f64 = 1.2;
 
 impl ViscoelasticContact {
     /// Estimates what the mesh costs in accuracy, from the cells on the rim of the contact: from how many they are among

@@ -13,7 +13,7 @@ use crate::geometry::Gap;
 use crate::hereditary::{Change, History};
 use crate::kernel::{InfluenceKernel, Workspace};
 use crate::load::{Load, Tilt};
-use crate::rheology::Material;
+use crate::rheology::{Material, is_known};
 use crate::solver::{ActiveSet, Counts, Freedom, Modes, PolonskyKeer, Problem, Solution, Stop};
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
@@ -197,6 +197,7 @@ impl ViscoelasticContact {
     pub(super) fn attempt(&mut self, time: f64, dt: f64, loads: &[Load], tolerance: f64) -> Result<Attempt> {
         non_negative("time", time)?;
         self.free(time, loads)?;
+        // what was never touched has nothing to remember
         if !self.is_undisturbed() {
             self.remember(time)?;
         }
@@ -220,8 +221,7 @@ impl ViscoelasticContact {
             ContactSolver::PolonskyKeer(solver) => solver.solve(&problem, stop, &mut self.trial, &mut self.work),
         }
         self.trial.follow_surface(&problem);
-        // what was never touched has nothing to remember
-        if self.trial.pressure.iter().any(|&p| p > 0.0) {
+        if self.is_undisturbed() && self.trial.pressure.iter().any(|&p| p > 0.0) {
             self.remember(time)?;
         }
         self.check(time, dt, tolerance)?;
@@ -262,8 +262,7 @@ impl ViscoelasticContact {
     /// Refuses a step whose past is longer than the material is known.
     fn remember(&self, time: f64) -> Result<()> {
         let (age, known_until) = (time - self.undisturbed_until, self.material.known_until());
-        // the end of a run may miss the end of a table by rounding
-        if age <= known_until * (1.0 + 1e-9) { Ok(()) } else { Err(Error::BeyondMaterial { time, age, known_until }) }
+        if is_known(age, known_until) { Ok(()) } else { Err(Error::BeyondMaterial { time, age, known_until }) }
     }
 
     fn is_undisturbed(&self) -> bool {

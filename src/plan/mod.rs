@@ -5,7 +5,7 @@ mod accuracy;
 pub use accuracy::Accuracy;
 
 use crate::Grid;
-use crate::contact::{Builder, SpatialError, Stepping, ViscoelasticContact};
+use crate::contact::{AREA_ORDER, Builder, SpatialError, Stepping, ViscoelasticContact};
 use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory};
@@ -55,7 +55,7 @@ const MARGIN: f64 = 1.12;
 const TRIES: usize = 60;
 /// A domain is kept if the contact spans so much of it.
 const FILLED: [f64; 2] = [0.45, 0.92];
-/// Steps after which a search for the domain is cut short: the extent of the contact is known long before.
+/// Cells along a side of a plan: any fewer are no mesh, more are beyond a workstation.
 const LEAST_CELLS: usize = 16;
 const MOST_CELLS: usize = 1 << 13;
 
@@ -89,10 +89,11 @@ impl Plan {
         let cells = smooth_size((wanted as usize).max(LEAST_CELLS));
         let ratio = COARSE as f64 / cells as f64;
         let grid = Grid::new([cells; 2], lengths)?;
+        let finer = |error: f64| (error - first) * ratio * ratio + first * ratio;
         let error = SpatialError {
-            approach: (found.error.approach - first) * ratio * ratio + first * ratio,
-            peak_pressure: (found.error.peak_pressure - first) * ratio * ratio + first * ratio,
-            area: found.error.area * ratio.powf(1.2),
+            approach: finer(found.error.approach),
+            peak_pressure: finer(found.error.peak_pressure),
+            area: found.error.area * ratio.powf(AREA_ORDER),
             singular: first * ratio,
         };
         let terms = found.terms.max(1);

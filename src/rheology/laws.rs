@@ -20,7 +20,7 @@
 //! ```
 
 use crate::quadrature::GaussLegendre;
-use crate::rheology::{CreepSpectrum, ROUNDING, Rheology};
+use crate::rheology::{CreepSpectrum, Rheology, may_follow};
 
 /// A law that does not hold.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -91,7 +91,7 @@ pub fn non_decreasing(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     let mut previous = rheology.creep_compliance(0.0);
     for &t in times {
         let found = rheology.creep_compliance(t);
-        verdict("creep never decreases", t, found, previous, found >= previous * (1.0 - ROUNDING))?;
+        verdict("creep never decreases", t, found, previous, may_follow(found, previous))?;
         previous = found;
     }
     Ok(())

@@ -2,7 +2,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::error::{Error, Result, positive, within};
-use crate::rheology::{CreepSpectrum, FitReport, ROUNDING, RelaxationSpectrum, Rheology, is_known};
+use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, is_known, may_follow};
 
 /// A rheology and how it treats volume: together they give the contact creep compliance C(t), the
 /// surface's answer to pressure, with C = 1/E* = (1 − ν)/2G for an elastic body.
@@ -157,17 +157,13 @@ impl Material {
     /// C at `age`, which must not be less than `younger` = C at `earlier`, an age no greater.
     pub(crate) fn checked_compliance(&self, age: f64, (earlier, younger): (f64, f64)) -> Result<f64> {
         let value = self.contact_compliance(age);
-        if value.is_finite() && value >= younger * (1.0 - ROUNDING) {
+        if may_follow(value, younger) {
             return Ok(value);
         }
         // tell which J is to blame
         let creep = |body: &Body| (body.rheology.creep_compliance(age), body.rheology.creep_compliance(earlier));
-        let (value, previous) = self
-            .bodies
-            .iter()
-            .map(creep)
-            .find(|&(now, before)| !(now.is_finite() && now >= before * (1.0 - ROUNDING)))
-            .unwrap_or((value, younger));
+        let (value, previous) =
+            self.bodies.iter().map(creep).find(|&(now, before)| !may_follow(now, before)).unwrap_or((value, younger));
         Err(Error::InvalidCompliance { time: age, value, previous })
     }
 

@@ -149,8 +149,13 @@ pub trait Rheology: Debug + Send + Sync {
 const ROUNDING: f64 = 1e-12;
 
 /// Whether a rheology known until some time is known at `t`, which may miss the end by rounding.
-fn is_known(t: f64, until: f64) -> bool {
+pub(crate) fn is_known(t: f64, until: f64) -> bool {
     t <= until * (1.0 + 1e-9)
+}
+
+/// Whether a compliance may follow an earlier one: it is finite and has not fallen, but for rounding.
+fn may_follow(value: f64, earlier: f64) -> bool {
+    value.is_finite() && value >= earlier * (1.0 - ROUNDING)
 }
 
 /// What is owned, shared or chosen at run time behind a pointer serves like the thing itself.

@@ -2,7 +2,7 @@ use std::ops::RangeInclusive;
 
 use crate::error::{Error, Result, positive, within};
 use crate::rheology::fit::{FitReport, Goal, Quantity, Sample, Search};
-use crate::rheology::{CreepSpectrum, ROUNDING, Rheology};
+use crate::rheology::{CreepSpectrum, Rheology, may_follow};
 
 /// The exponential series that stands for a creep compliance over a range of times, and its error.
 ///
@@ -137,7 +137,7 @@ fn sampled<R: Rheology + ?Sized>(
 /// J(t), no less than at an earlier time, and above 0 after t = 0.
 fn checked<R: Rheology + ?Sized>(rheology: &R, time: f64, previous: f64) -> Result<f64> {
     let value = rheology.creep_compliance(time);
-    if value.is_finite() && value >= previous * (1.0 - ROUNDING) && (value > 0.0 || time == 0.0 && value == 0.0) {
+    if may_follow(value, previous) && (value > 0.0 || time == 0.0 && value == 0.0) {
         Ok(value)
     } else {
         Err(Error::InvalidCompliance { time, value, previous })

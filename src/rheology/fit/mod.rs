@@ -206,31 +206,28 @@ impl Search {
         }
         // at the ends, terms that are over before the first sample or have hardly begun at the last; what a
         // constant or a slope stands for depends on the function
-        let (Some(&first), Some(&last)) = (series.terms.first(), series.terms.last()) else { return mergers };
+        if series.terms.is_empty() {
+            return mergers;
+        }
+        let without = |k: usize| {
+            let mut merged = series.clone();
+            let term = merged.terms.remove(k);
+            (merged, term)
+        };
+        let (swift, slow) = (0, series.terms.len() - 1);
         let creep = samples[0].quantity == Quantity::Creep;
         if self.constant.is_none() {
-            let mut merged = series.clone();
-            let (strength, _) = if creep { merged.terms.remove(0) } else { last };
-            if !creep {
-                merged.terms.pop();
-            }
+            let (mut merged, (strength, _)) = without(if creep { swift } else { slow });
             merged.constant += strength;
             offer(merged);
         }
         if self.slope {
-            let mut merged = series.clone();
-            merged.slope += if creep { last.0 / last.1 } else { first.0 * first.1 };
-            if creep {
-                merged.terms.pop();
-            } else {
-                merged.terms.remove(0);
-            }
+            let (mut merged, (strength, time)) = without(if creep { slow } else { swift });
+            merged.slope += if creep { strength / time } else { strength * time };
             offer(merged);
         }
-        for k in [0, series.terms.len() - 1] {
-            let mut merged = series.clone();
-            merged.terms.remove(k);
-            offer(merged);
+        for k in [swift, slow] {
+            offer(without(k).0);
         }
         mergers
     }

@@ -87,7 +87,7 @@ from_csv!(
     "let text = \"omega,G',G''\\n0.1,1.0e6,2e5\\n1,1.5e6,4e5\\n10,2.2e6,4e5\\n100,2.5e6,1e5\\n\";"
 );
 
-/// Words that head a column, lower case; the longest match decides.
+/// First words of headings, lower case.
 const ABSCISSA: &[&str] = &["time", "t", "omega", "ω", "angular", "frequency", "freq", "f", "w"];
 const CREEP_WORDS: &[&str] = &["j", "creep", "compliance"];
 const RELAXATION_WORDS: &[&str] = &["g", "e", "relaxation", "modulus"];
@@ -159,16 +159,8 @@ fn read(mut reader: impl Read, layout: Layout, units: Units) -> Result<Vec<Row>>
             continue;
         }
         let number = |column: usize| -> Result<f64> {
-            let parsed = fields.get(column).map(|field| field.parse::<f64>());
-            match parsed {
-                Some(Ok(value)) => Ok(value),
-                _ => Err(TableError::NotNumeric {
-                    line,
-                    column: column + 1,
-                    text: fields.get(column).copied().unwrap_or_default().to_owned(),
-                }
-                .into()),
-            }
+            let text = fields[column];
+            text.parse().map_err(|_| TableError::NotNumeric { line, column: column + 1, text: text.to_owned() }.into())
         };
         let x = number(order[0])? * units.abscissa;
         let values = order[1..].iter().map(|&column| Ok(number(column)? * units.value)).collect::<Result<_>>()?;
