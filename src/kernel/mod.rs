@@ -9,10 +9,13 @@
 //! all behaviour of the material is in C. Normalisation: `convolve` returns K p in Pa·m, no factor
 //! of the transform is left to the caller.
 
+mod lanes;
+mod lines;
 mod love;
+mod spectrum;
 mod transform;
 
-pub(crate) use transform::{SpectralOperator, TransformWorkspace, smooth_length};
+pub(crate) use transform::{Layout, SpectralOperator, TransformWorkspace};
 
 use crate::Grid;
 use crate::error::{Result, exact_length};
@@ -42,14 +45,14 @@ use love::Love;
 #[derive(Debug, Clone)]
 pub struct InfluenceKernel {
     grid: Grid,
-    operator: SpectralOperator,
+    operator: SpectralOperator<f64>,
     self_influence: f64,
 }
 
 /// Buffers of [`InfluenceKernel::convolve`], made by [`InfluenceKernel::workspace`].
 #[derive(Debug, Clone)]
 pub struct Workspace {
-    transform: TransformWorkspace,
+    transform: TransformWorkspace<f64>,
 }
 
 impl InfluenceKernel {
@@ -64,8 +67,8 @@ impl InfluenceKernel {
     pub fn half_space(grid: &Grid) -> Result<InfluenceKernel> {
         let cells = grid.cells();
         let love = Love::new(grid.spacing());
-        let period = [smooth_length(2 * cells[0] - 1, 1), smooth_length(2 * cells[1] - 1, 2)];
-        let operator = SpectralOperator::from_coefficients(cells, period, |i, j| love.coefficient(i, j));
+        let layout = Layout { cells, padded: true, folded: [false; 2] };
+        let operator = SpectralOperator::from_coefficients(layout, |i, j| love.coefficient(i, j));
         Ok(InfluenceKernel { grid: grid.clone(), operator, self_influence: love.coefficient(0, 0) })
     }
 
@@ -102,6 +105,6 @@ impl InfluenceKernel {
 
     /// [`InfluenceKernel::convolve`] for fields known to fit.
     pub(crate) fn apply(&self, pressure: &[f64], displacement: &mut [f64], work: &mut Workspace) {
-        self.operator.apply(pressure, displacement, &mut work.transform);
+        self.operator.apply(pressure, displacement, 1.0, &mut work.transform);
     }
 }

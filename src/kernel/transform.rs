@@ -1,233 +1,485 @@
-//! A pruned, blocked two-dimensional real transform with a real even spectrum in its middle.
+//! A two-dimensional linear operator with a real even spectrum: transform, multiply, transform back.
 //!
-//! Both the influence kernel (zero-padded, so that the convolution is linear) and the
-//! preconditioner (periodic) are such an operator: transform, multiply by a real even function of
-//! the wave numbers, transform back. Rows of the padded grid that are known to be zero are never
-//! transformed, rows of the result that are dropped are never computed, and columns are gathered
-//! into blocks that stay in cache.
+//! Both the influence kernel (zero-padded, so that the convolution is linear) and the preconditioner
+//! (periodic) are one. Nothing is spent on what is known to be zero, mirrored or dropped:
+//!
+//! * Rows that are zero are not transformed, rows of the result that are dropped not computed.
+//! * Two real rows are the parts of one complex row.
+//! * An axis about which all fields are even is folded: half of the cells, cosine transforms.
+//! * Between rows and columns the coefficients lie in tiles of 8 × 8, so that both passes read and write whole
+//!   pieces of memory; a column is transformed, multiplied and transformed back while it is in cache.
+//! * Rows and columns are independent of each other: threads share them, and the answer is the same bit by bit.
 
 use std::fmt;
-use std::sync::Arc;
 
-use num_complex::Complex64;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
-use rustfft::{Fft, FftPlanner};
+use num_complex::Complex;
 
-/// Columns transformed together: 8 complex numbers fill two cache lines of every row.
-const BLOCK: usize = 8;
+use super::lanes::{Task, for_each_share, lanes};
+use super::lines::{Line, Scalar, separate, unite};
+use super::spectrum::Spectrum;
 
-/// The plans of a transform of `cells` values, zero-padded to `period`.
-#[derive(Clone)]
-struct Plans {
-    rows_forward: Arc<dyn RealToComplex<f64>>,
-    rows_inverse: Arc<dyn ComplexToReal<f64>>,
-    columns_forward: Arc<dyn Fft<f64>>,
-    columns_inverse: Arc<dyn Fft<f64>>,
+/// Sides of a tile: 8 complex numbers fill two cache lines.
+const TILE: usize = 8;
+const AREA: usize = TILE * TILE;
+
+/// What an operator is laid out for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Layout {
+    /// Cells along each axis; of a folded axis half of them.
+    pub(crate) cells: [usize; 2],
+    /// Whether the axes are padded, so that the convolution is linear, or periodic.
+    pub(crate) padded: bool,
+    /// Axes about whose beginning all fields are even.
+    pub(crate) folded: [bool; 2],
+}
+
+impl Layout {
+    /// The length of the transforms along an axis.
+    fn line(&self, axis: usize) -> usize {
+        let cells = self.cells[axis];
+        smooth_length(if self.padded { if self.folded[axis] { 2 * cells } else { 2 * cells - 1 } } else { cells }, 1)
+    }
+
+    /// The period of the fields \[cells\].
+    pub(crate) fn period(&self, axis: usize) -> usize {
+        self.line(axis) * if self.folded[axis] { 2 } else { 1 }
+    }
 }
 
 /// A linear operator on fields, diagonal in wave-number space with a real even spectrum.
 #[derive(Clone)]
-pub(crate) struct SpectralOperator {
-    cells: [usize; 2],
-    period: [usize; 2],
-    plans: Plans,
-    /// For each column of wave number k2 = 0 … period/2 the values at k1 = 0 … period/2, divided by
-    /// the size of the period: the unnormalised transforms need no other factor.
-    spectrum: Vec<f64>,
+pub(crate) struct SpectralOperator<T: Scalar> {
+    layout: Layout,
+    rows: Line<T>,
+    columns: Line<T>,
+    /// For each coefficient of a row, its column's independent values, divided by what the transforms multiply by.
+    spectrum: Vec<T>,
 }
 
 /// Buffers that a [`SpectralOperator`] works in; made once, used by every application.
 #[derive(Clone)]
-pub(crate) struct TransformWorkspace {
-    row: Vec<f64>,
-    /// Half spectra of the rows that are not zero: cells[0] rows of period[1]/2 + 1.
-    rows: Vec<Complex64>,
-    block: Vec<Complex64>,
-    scratch: Vec<Complex64>,
+pub(crate) struct TransformWorkspace<T: Scalar> {
+    layout: Layout,
+    /// Coefficients of the rows, in tiles: those of 8 rows side by side. A folded row holds the (real) coefficients of two.
+    tiles: Vec<Complex<T>>,
+    /// The same after the columns, those of 8 columns below each other; empty for a single thread, which works in place.
+    result: Vec<Complex<T>>,
+    lanes: Vec<Lane<T>>,
 }
 
-impl SpectralOperator {
-    /// Circular convolution on `period` with the even kernel whose coefficient at distance (i, j) is
-    /// `coefficient(i, j)` for i < cells\[0\], j < cells\[1\], and zero elsewhere.
-    pub(crate) fn from_coefficients(
-        cells: [usize; 2],
-        period: [usize; 2],
-        coefficient: impl Fn(usize, usize) -> f64,
-    ) -> SpectralOperator {
-        let plans = Plans::new(period);
-        let (half, quarter) = (period[1] / 2 + 1, period[0] / 2 + 1);
-        let mut row = vec![0.0; period[1]];
-        let mut row_spectrum = vec![Complex64::default(); half];
-        // real parts of the row spectra, column after column
-        let mut columns = vec![0.0; half * cells[0]];
-        for i in 0..cells[0] {
-            row.fill(0.0);
-            for j in 0..cells[1] {
-                let value = coefficient(i, j);
-                row[j] = value;
-                row[(period[1] - j) % period[1]] = value;
-            }
-            let done = plans.rows_forward.process(&mut row, &mut row_spectrum);
-            debug_assert!(done.is_ok());
-            for (k, value) in row_spectrum.iter().enumerate() {
-                columns[k * cells[0] + i] = value.re;
-            }
-        }
-        let scale = 1.0 / (period[0] * period[1]) as f64;
-        let mut column = vec![Complex64::default(); period[0]];
-        let mut spectrum = Vec::with_capacity(half * quarter);
-        for values in columns.chunks_exact(cells[0]) {
-            column.fill(Complex64::default());
-            for (i, &value) in values.iter().enumerate() {
-                column[i] = value.into();
-                column[(period[0] - i) % period[0]] = value.into();
-            }
-            plans.columns_forward.process(&mut column);
-            spectrum.extend(column[..quarter].iter().map(|value| scale * value.re));
-        }
-        SpectralOperator { cells, period, plans, spectrum }
+/// What one thread needs of its own.
+#[derive(Clone)]
+struct Lane<T> {
+    line: Buffer<T>,
+    parts: [Buffer<T>; 2],
+    block: Buffer<T>,
+    scratch: Buffer<T>,
+}
+
+/// Numbers that begin on a cache line: a transform in buffers that do not takes up to twice as long.
+#[derive(Clone)]
+struct Buffer<T> {
+    values: Vec<Complex<T>>,
+    length: usize,
+}
+
+/// Bytes of a cache line.
+const CACHE_LINE: usize = 64;
+
+impl<T: Scalar> Buffer<T> {
+    fn zeros(length: usize) -> Buffer<T> {
+        let slack = CACHE_LINE / size_of::<Complex<T>>();
+        Buffer { values: vec![Complex::default(); length + slack], length }
     }
 
-    /// Multiplication of the Fourier coefficients on `period` by `symbol(k1, k2)`, for wave numbers
+    #[inline(always)]
+    fn get(&mut self) -> &mut [Complex<T>] {
+        let before = self.values.as_ptr().align_offset(CACHE_LINE).min(self.values.len() - self.length);
+        &mut self.values[before..before + self.length]
+    }
+}
+
+impl<T: Scalar> SpectralOperator<T> {
+    /// Convolution with the even kernel whose coefficient at distance (i, j) is `coefficient(i, j)`; asked for
+    /// distances below the number of cells (twice that along a folded axis), taken as zero beyond.
+    pub(crate) fn from_coefficients(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> SpectralOperator<T> {
+        let spectrum = Spectrum::of(layout, coefficient);
+        SpectralOperator::from_symbol(layout, |k1, k2| spectrum.at(k1, k2))
+    }
+
+    /// Multiplication of the Fourier coefficients on [`Layout::period`] by `symbol(k1, k2)`, for wave numbers
     /// 0 … period/2 along each axis.
-    pub(crate) fn from_symbol(
-        cells: [usize; 2],
-        period: [usize; 2],
-        symbol: impl Fn(usize, usize) -> f64,
-    ) -> SpectralOperator {
-        let scale = 1.0 / (period[0] * period[1]) as f64;
-        let spectrum = (0..=period[1] / 2)
-            .flat_map(|k2| (0..=period[0] / 2).map(move |k1| (k1, k2)))
-            .map(|(k1, k2)| scale * symbol(k1, k2))
-            .collect();
-        SpectralOperator { cells, period, plans: Plans::new(period), spectrum }
+    pub(crate) fn from_symbol(layout: Layout, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator<T> {
+        let [columns, rows] = [0, 1].map(|axis| Line::new(layout.line(axis), layout.folded[axis]));
+        let scale = 1.0 / (rows.norm() * columns.norm());
+        let waves = (0..rows.independent()).flat_map(|k2| (0..columns.independent()).map(move |k1| (k1, k2)));
+        let spectrum = waves.map(|(k1, k2)| T::new(scale * symbol(k1, k2))).collect();
+        SpectralOperator { layout, rows, columns, spectrum }
     }
 
-    /// Buffers for [`SpectralOperator::apply`].
-    pub(crate) fn workspace(&self) -> TransformWorkspace {
-        let half = self.period[1] / 2 + 1;
-        let scratch = [
-            self.plans.rows_forward.get_scratch_len(),
-            self.plans.rows_inverse.get_scratch_len(),
-            self.plans.columns_forward.get_inplace_scratch_len(),
-            self.plans.columns_inverse.get_inplace_scratch_len(),
-        ];
-        TransformWorkspace {
-            row: vec![0.0; self.period[1]],
-            rows: vec![Complex64::default(); self.cells[0] * half],
-            block: vec![Complex64::default(); BLOCK.min(half) * self.period[0]],
-            scratch: vec![Complex64::default(); scratch.into_iter().max().unwrap_or(0)],
-        }
+    /// Buffers for [`SpectralOperator::apply`], for as many threads as the size is worth.
+    pub(crate) fn workspace(&self) -> TransformWorkspace<T> {
+        self.workspace_for(lanes(self.layout.cells[0] * self.layout.cells[1]))
+    }
+
+    /// Buffers for so many threads.
+    pub(crate) fn workspace_for(&self, lanes: usize) -> TransformWorkspace<T> {
+        let zeros = |count| vec![Complex::default(); count];
+        let part = || Buffer::zeros(self.width());
+        let lane = Lane {
+            line: Buffer::zeros(self.rows.len()),
+            parts: [part(), part()],
+            block: Buffer::zeros(TILE * self.stride()),
+            scratch: Buffer::zeros(self.rows.scratch().max(self.columns.scratch())),
+        };
+        let tiles = self.across() * self.down() * AREA;
+        let result = zeros(if lanes > 1 { tiles } else { 0 });
+        TransformWorkspace { layout: self.layout, tiles: zeros(tiles), result, lanes: vec![lane; lanes.max(1)] }
     }
 
     /// Whether `work` was made for an operator of this size.
-    pub(crate) fn fits(&self, work: &TransformWorkspace) -> bool {
-        let half = self.period[1] / 2 + 1;
-        work.row.len() == self.period[1]
-            && work.rows.len() == self.cells[0] * half
-            && work.block.len() == BLOCK.min(half) * self.period[0]
+    pub(crate) fn fits(&self, work: &TransformWorkspace<T>) -> bool {
+        work.layout == self.layout
     }
 
-    /// Writes the operator applied to `input` into `output`; both hold one value a cell.
-    pub(crate) fn apply(&self, input: &[f64], output: &mut [f64], work: &mut TransformWorkspace) {
-        self.rows_forward(input, work);
+    /// Coefficients of a row, up to the end of a tile.
+    fn width(&self) -> usize {
+        self.rows.independent().next_multiple_of(TILE)
+    }
+
+    /// Tiles side by side.
+    fn across(&self) -> usize {
+        self.width() / TILE
+    }
+
+    /// Tiles below each other.
+    fn down(&self) -> usize {
+        self.layout.cells[0].div_ceil(self.rows_in_a_tile())
+    }
+
+    /// From one column of a block to the next: whole cache lines, but no power of two, so that they do not get into each
+    /// other's way in the cache.
+    fn stride(&self) -> usize {
+        self.columns.len().next_multiple_of(TILE) + TILE
+    }
+
+    fn rows_in_a_tile(&self) -> usize {
+        if self.rows.is_folded() { 2 * TILE } else { TILE }
+    }
+
+    /// Writes the operator applied to `scale` × `input` into `output`, divided by `scale` again; both hold one value a
+    /// cell.
+    pub(crate) fn apply(&self, input: &[f64], output: &mut [f64], scale: f64, work: &mut TransformWorkspace<T>) {
+        self.rows_forward(input, scale, work);
         self.columns(work);
-        self.rows_inverse(output, work);
+        self.rows_inverse(output, 1.0 / scale, work);
     }
 
     /// [`SpectralOperator::apply`] with one field for input and output.
-    pub(crate) fn apply_in_place(&self, field: &mut [f64], work: &mut TransformWorkspace) {
-        self.rows_forward(field, work);
+    pub(crate) fn apply_in_place(&self, field: &mut [f64], scale: f64, work: &mut TransformWorkspace<T>) {
+        self.rows_forward(field, scale, work);
         self.columns(work);
-        self.rows_inverse(field, work);
+        self.rows_inverse(field, 1.0 / scale, work);
     }
 
-    fn rows_forward(&self, input: &[f64], work: &mut TransformWorkspace) {
-        let half = self.period[1] / 2 + 1;
-        for (values, spectrum) in input.chunks_exact(self.cells[1]).zip(work.rows.chunks_exact_mut(half)) {
-            work.row[..values.len()].copy_from_slice(values);
-            work.row[values.len()..].fill(0.0);
-            let plan = &self.plans.rows_forward;
-            let done = plan.process_with_scratch(&mut work.row, spectrum, &mut work.scratch);
-            debug_assert!(done.is_ok());
+    fn rows_forward(&self, input: &[f64], scale: f64, work: &mut TransformWorkspace<T>) {
+        let share = self.down().div_ceil(work.lanes.len());
+        let task = RowsForward { operator: self, input, scale, share };
+        for_each_share(&task, &mut work.lanes, &mut work.tiles, share * self.across() * AREA);
+    }
+
+    fn columns(&self, work: &mut TransformWorkspace<T>) {
+        if let [lane] = &mut work.lanes[..] {
+            let task = ColumnsInPlace { operator: self };
+            return for_each_share(&task, std::slice::from_mut(lane), &mut work.tiles, usize::MAX);
         }
+        let share = self.across().div_ceil(work.lanes.len());
+        let task = Columns { operator: self, tiles: &work.tiles, share };
+        for_each_share(&task, &mut work.lanes, &mut work.result, share * self.down() * AREA);
     }
 
-    fn columns(&self, work: &mut TransformWorkspace) {
-        let (half, quarter) = (self.period[1] / 2 + 1, self.period[0] / 2 + 1);
-        let [n1, p1] = [self.cells[0], self.period[0]];
-        for first in (0..half).step_by(BLOCK) {
-            let width = BLOCK.min(half - first);
-            let block = &mut work.block[..width * p1];
-            for (i, row) in work.rows.chunks_exact(half).enumerate() {
-                for (k, value) in row[first..first + width].iter().enumerate() {
-                    block[k * p1 + i] = *value;
+    fn rows_inverse(&self, output: &mut [f64], scale: f64, work: &mut TransformWorkspace<T>) {
+        let share = self.down().div_ceil(work.lanes.len());
+        let in_place = work.lanes.len() == 1;
+        let tiles = if in_place { &work.tiles } else { &work.result };
+        let task = RowsInverse { operator: self, tiles, in_place, scale, share };
+        for_each_share(&task, &mut work.lanes, output, share * self.rows_in_a_tile() * self.layout.cells[1]);
+    }
+
+    /// Copies the columns of a panel of tiles, which begin at `from`, one below the other into `block`. Columns of folded
+    /// rows are real: two are the parts of a complex one.
+    #[inline(always)]
+    fn gather(&self, tiles: &[Complex<T>], from: impl Fn(usize) -> usize, block: &mut [Complex<T>]) {
+        let (cells, line, stride) = (self.layout.cells[0], &self.columns, self.stride());
+        for tile in 0..self.down() {
+            let rows = tiles[from(tile)..][..AREA].chunks_exact(TILE).enumerate();
+            if self.rows.is_folded() {
+                for (i, row) in rows {
+                    let n = 2 * (tile * TILE + i);
+                    for (column, pair) in block.chunks_exact_mut(stride).zip(row.chunks_exact(2)) {
+                        if n < cells {
+                            column[line.place(n)] = Complex::new(pair[0].re, pair[1].re);
+                        }
+                        if n + 1 < cells {
+                            column[line.place(n + 1)] = Complex::new(pair[0].im, pair[1].im);
+                        }
+                    }
+                }
+            } else {
+                for (i, row) in rows.take_while(|(i, _)| tile * TILE + i < cells) {
+                    let place = line.place(tile * TILE + i);
+                    for (c, value) in row.iter().enumerate() {
+                        block[c * stride + place] = *value;
+                    }
                 }
             }
-            for column in block.chunks_exact_mut(p1) {
-                column[n1..].fill(Complex64::default());
-            }
-            self.plans.columns_forward.process_with_scratch(block, &mut work.scratch);
-            let spectra = self.spectrum[first * quarter..].chunks_exact(quarter);
-            for (column, spectrum) in block.chunks_exact_mut(p1).zip(spectra) {
-                let (rising, falling) = column.split_at_mut(quarter);
-                rising.iter_mut().zip(spectrum).for_each(|(value, s)| *value *= s);
-                // wave numbers above period/2 mirror those below; period/2 itself is its own image
-                falling.iter_mut().rev().zip(&spectrum[1..]).for_each(|(value, s)| *value *= s);
-            }
-            self.plans.columns_inverse.process_with_scratch(block, &mut work.scratch);
-            for (i, row) in work.rows.chunks_exact_mut(half).enumerate() {
-                for (k, value) in row[first..first + width].iter_mut().enumerate() {
-                    *value = block[k * p1 + i];
+        }
+    }
+
+    /// The reverse of [`SpectralOperator::gather`].
+    #[inline(always)]
+    fn scatter(&self, block: &[Complex<T>], tiles: &mut [Complex<T>], to: impl Fn(usize) -> usize) {
+        let (cells, line, stride) = (self.layout.cells[0], &self.columns, self.stride());
+        for tile in 0..self.down() {
+            let rows = tiles[to(tile)..][..AREA].chunks_exact_mut(TILE).enumerate();
+            if self.rows.is_folded() {
+                for (i, row) in rows {
+                    let n = 2 * (tile * TILE + i);
+                    for (column, pair) in block.chunks_exact(stride).zip(row.chunks_exact_mut(2)) {
+                        if n < cells {
+                            let z = column[line.place(n)];
+                            (pair[0].re, pair[1].re) = (z.re, z.im);
+                        }
+                        if n + 1 < cells {
+                            let z = column[line.place(n + 1)];
+                            (pair[0].im, pair[1].im) = (z.re, z.im);
+                        }
+                    }
+                }
+            } else {
+                for (i, row) in rows.take_while(|(i, _)| tile * TILE + i < cells) {
+                    let place = line.place(tile * TILE + i);
+                    for (c, value) in row.iter_mut().enumerate() {
+                        *value = block[c * stride + place];
+                    }
                 }
             }
         }
     }
 
-    fn rows_inverse(&self, output: &mut [f64], work: &mut TransformWorkspace) {
-        let half = self.period[1] / 2 + 1;
-        for (values, spectrum) in output.chunks_exact_mut(self.cells[1]).zip(work.rows.chunks_exact_mut(half)) {
-            // the spectrum of a real row: these are real but for rounding
-            spectrum[0].im = 0.0;
-            if self.period[1].is_multiple_of(2) {
-                spectrum[half - 1].im = 0.0;
+    /// Transforms the columns of a panel, multiplies them by the spectrum, and transforms them back.
+    #[inline(always)]
+    fn convolve(&self, panel: usize, lane: &mut Lane<T>) {
+        let (line, values) = (&self.columns, self.columns.independent());
+        let columns = if self.rows.is_folded() { TILE / 2 } else { TILE };
+        let spectra = self.spectrum[panel * TILE * values..].chunks(values * TILE / columns);
+        let scratch = lane.scratch.get();
+        for (column, spectrum) in lane.block.get().chunks_exact_mut(self.stride()).take(columns).zip(spectra) {
+            let column = &mut column[..line.len()];
+            line.pad(column, self.layout.cells[0]);
+            line.bare_forward(column, scratch);
+            match (self.rows.is_folded(), line.is_folded()) {
+                (false, true) => line.multiply_folded(column, spectrum),
+                (false, false) => {
+                    // wave numbers above P/2 mirror those below
+                    let (rising, falling) = column.split_at_mut(values);
+                    for (z, s) in rising.iter_mut().zip(spectrum) {
+                        *z = *z * *s;
+                    }
+                    for (z, s) in falling.iter_mut().rev().zip(&spectrum[1..]) {
+                        *z = *z * *s;
+                    }
+                }
+                (true, folded) => {
+                    let (first, second) = spectrum.split_at(values);
+                    let second = if second.is_empty() { first } else { second };
+                    if folded {
+                        line.multiply_folded_apart(column, first, second);
+                    } else {
+                        multiply_apart(column, first, second);
+                    }
+                }
             }
-            let plan = &self.plans.rows_inverse;
-            let done = plan.process_with_scratch(spectrum, &mut work.row, &mut work.scratch);
-            debug_assert!(done.is_ok());
-            values.copy_from_slice(&work.row[..values.len()]);
+            line.bare_inverse(column, scratch);
         }
     }
 }
 
-impl Plans {
-    fn new(period: [usize; 2]) -> Plans {
-        let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
-        Plans {
-            rows_forward: real.plan_fft_forward(period[1]),
-            rows_inverse: real.plan_fft_inverse(period[1]),
-            columns_forward: complex.plan_fft_forward(period[0]),
-            columns_inverse: complex.plan_fft_inverse(period[0]),
+/// Transforms rows of `input` into tiles.
+struct RowsForward<'a, T: Scalar> {
+    operator: &'a SpectralOperator<T>,
+    input: &'a [f64],
+    scale: f64,
+    share: usize,
+}
+
+impl<T: Scalar> Task for RowsForward<'_, T> {
+    type Lane = Lane<T>;
+    type Item = Complex<T>;
+
+    #[inline(always)]
+    fn run(&self, k: usize, lane: &mut Lane<T>, tiles: &mut [Complex<T>]) {
+        let (cells, line, scale) = (self.operator.layout.cells[1], &self.operator.rows, self.scale);
+        let (run, high) = (self.operator.across() * AREA, self.operator.rows_in_a_tile());
+        let (buffer, scratch) = (lane.line.get(), lane.scratch.get());
+        let [a, b] = lane.parts.each_mut().map(Buffer::get);
+        for (block, tiles) in tiles.chunks_exact_mut(run).enumerate() {
+            let first = (k * self.share + block) * high * cells;
+            let rows = &self.input[first..self.input.len().min(first + high * cells)];
+            for (i, pair) in rows.chunks(2 * cells).enumerate() {
+                let (first, second) = pair.split_at(cells);
+                line.pad(buffer, cells);
+                if second.is_empty() {
+                    line.fill(buffer, first.iter().map(|&a| Complex::from(T::new(scale * a))));
+                } else {
+                    let both = first.iter().zip(second);
+                    line.fill(buffer, both.map(|(&a, &b)| Complex::new(T::new(scale * a), T::new(scale * b))));
+                }
+                line.forward(buffer, scratch);
+                let mut keep = |i: usize, coefficients: &[Complex<T>]| {
+                    for (tile, piece) in tiles.chunks_exact_mut(AREA).zip(coefficients.chunks(TILE)) {
+                        tile[i * TILE..][..piece.len()].copy_from_slice(piece);
+                    }
+                };
+                if line.is_folded() {
+                    if second.is_empty() {
+                        buffer.iter_mut().for_each(|z| z.im = T::default());
+                    }
+                    keep(i, buffer);
+                } else {
+                    separate(buffer, &mut a[..line.independent()], &mut b[..line.independent()]);
+                    keep(2 * i, a);
+                    if !second.is_empty() {
+                        keep(2 * i + 1, b);
+                    }
+                }
+            }
         }
     }
 }
 
-impl fmt::Debug for SpectralOperator {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("SpectralOperator").field("cells", &self.cells).field("period", &self.period).finish()
+/// Convolves the columns of tiles that lie row by row.
+struct ColumnsInPlace<'a, T: Scalar> {
+    operator: &'a SpectralOperator<T>,
+}
+
+impl<T: Scalar> Task for ColumnsInPlace<'_, T> {
+    type Lane = Lane<T>;
+    type Item = Complex<T>;
+
+    #[inline(always)]
+    fn run(&self, _: usize, lane: &mut Lane<T>, tiles: &mut [Complex<T>]) {
+        let across = self.operator.across();
+        for panel in 0..across {
+            let at = |tile: usize| (tile * across + panel) * AREA;
+            self.operator.gather(tiles, at, lane.block.get());
+            self.operator.convolve(panel, lane);
+            self.operator.scatter(lane.block.get(), tiles, at);
+        }
     }
 }
 
-impl fmt::Debug for TransformWorkspace {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("TransformWorkspace").field("row", &self.row.len()).field("rows", &self.rows.len()).finish()
+/// Convolves the columns of `tiles`; those of the result lie column by column.
+struct Columns<'a, T: Scalar> {
+    operator: &'a SpectralOperator<T>,
+    tiles: &'a [Complex<T>],
+    share: usize,
+}
+
+impl<T: Scalar> Task for Columns<'_, T> {
+    type Lane = Lane<T>;
+    type Item = Complex<T>;
+
+    #[inline(always)]
+    fn run(&self, k: usize, lane: &mut Lane<T>, result: &mut [Complex<T>]) {
+        let (across, down) = (self.operator.across(), self.operator.down());
+        for (panel, result) in result.chunks_exact_mut(down * AREA).enumerate() {
+            let panel = k * self.share + panel;
+            self.operator.gather(self.tiles, |tile| (tile * across + panel) * AREA, lane.block.get());
+            self.operator.convolve(panel, lane);
+            self.operator.scatter(lane.block.get(), result, |tile| tile * AREA);
+        }
     }
 }
 
-impl TransformWorkspace {
-    /// Numbers held by the padded part of the buffers: tells workspaces of different sizes apart.
+/// Transforms tiles back into rows of the output.
+struct RowsInverse<'a, T: Scalar> {
+    operator: &'a SpectralOperator<T>,
+    tiles: &'a [Complex<T>],
+    in_place: bool,
+    scale: f64,
+    share: usize,
+}
+
+impl<T: Scalar> Task for RowsInverse<'_, T> {
+    type Lane = Lane<T>;
+    type Item = f64;
+
+    #[inline(always)]
+    fn run(&self, k: usize, lane: &mut Lane<T>, output: &mut [f64]) {
+        let (cells, line, scale) = (self.operator.layout.cells[1], &self.operator.rows, self.scale);
+        let (across, down, high) = (self.operator.across(), self.operator.down(), self.operator.rows_in_a_tile());
+        let (buffer, scratch) = (lane.line.get(), lane.scratch.get());
+        let [a, b] = lane.parts.each_mut().map(Buffer::get);
+        for (block, rows) in output.chunks_mut(high * cells).enumerate() {
+            let tile = k * self.share + block;
+            let at = |panel: usize| if self.in_place { tile * across + panel } else { panel * down + tile };
+            for (i, pair) in rows.chunks_mut(2 * cells).enumerate() {
+                let fetch = |i: usize, coefficients: &mut [Complex<T>]| {
+                    for (panel, piece) in coefficients.chunks_mut(TILE).enumerate() {
+                        piece.copy_from_slice(&self.tiles[at(panel) * AREA + i * TILE..][..piece.len()]);
+                    }
+                };
+                let (first, second) = pair.split_at_mut(cells);
+                if line.is_folded() {
+                    fetch(i, buffer);
+                } else {
+                    fetch(2 * i, a);
+                    fetch(2 * i + 1, b);
+                    unite(&a[..line.independent()], &b[..line.independent()], buffer);
+                }
+                line.inverse(buffer, scratch);
+                line.read(buffer, first, |z| scale * z.re.get());
+                line.read(buffer, second, |z| scale * z.im.get());
+            }
+        }
+    }
+}
+
+/// Multiplies the transforms of two real columns, together those of the complex `column`, by a real even spectrum each.
+#[inline(always)]
+fn multiply_apart<T: Scalar>(column: &mut [Complex<T>], first: &[T], second: &[T]) {
+    let half = T::new(0.5);
+    let multiply = |z: Complex<T>, mirror: Complex<T>, k: usize| {
+        z * ((first[k] + second[k]) * half) + mirror.conj() * ((first[k] - second[k]) * half)
+    };
+    let length = column.len();
+    column[0] = multiply(column[0], column[0], 0);
+    for k in 1..=length / 2 {
+        let (z, mirror) = (column[k], column[length - k]);
+        column[k] = multiply(z, mirror, k);
+        if k != length - k {
+            column[length - k] = multiply(mirror, z, k);
+        }
+    }
+}
+
+impl<T: Scalar> fmt::Debug for SpectralOperator<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("SpectralOperator").field("layout", &self.layout).finish_non_exhaustive()
+    }
+}
+
+impl<T: Scalar> fmt::Debug for TransformWorkspace<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("TransformWorkspace").field("layout", &self.layout).finish_non_exhaustive()
+    }
+}
+
+impl<T: Scalar> TransformWorkspace<T> {
+    /// Numbers held by the buffers between the passes: tells workspaces of different sizes apart.
     pub(crate) fn len(&self) -> usize {
-        self.row.len() + self.rows.len() + self.block.len()
+        2 * self.tiles.len()
     }
 }
 
@@ -255,51 +507,111 @@ mod tests {
         assert_eq!([1, 511, 513, 11, 13, 121].map(|n| smooth_length(n, 2)), [2, 512, 540, 12, 14, 126]);
     }
 
-    /// The operator against its definition as a sum, for every parity of cells and periods.
-    #[test]
-    fn circular_convolution_matches_the_sum() {
-        for (cells, period) in [
-            ([1, 1], [1, 2]),
-            ([4, 3], [7, 6]),
-            ([3, 5], [5, 10]),
-            ([6, 6], [12, 12]),
-            ([5, 9], [9, 17]),
-            ([2, 40], [4, 80]),
-        ] {
-            let coefficient = |i: usize, j: usize| 1.0 / (1.0 + (i * i + 2 * j * j) as f64);
-            let operator = SpectralOperator::from_coefficients(cells, period, coefficient);
-            let input: Vec<f64> = (0..cells[0] * cells[1]).map(|k| ((k * k + 3) as f64).sin()).collect();
-            let mut output = vec![f64::NAN; input.len()];
-            operator.apply(&input, &mut output, &mut operator.workspace());
-            for i in 0..cells[0] {
-                for j in 0..cells[1] {
-                    let mut sum = 0.0;
-                    for k in 0..cells[0] {
-                        for l in 0..cells[1] {
-                            sum += coefficient(i.abs_diff(k), j.abs_diff(l)) * input[k * cells[1] + l];
+    const FOLDS: [[bool; 2]; 4] = [[false, false], [false, true], [true, false], [true, true]];
+    const SIZES: [[usize; 2]; 7] = [[1, 1], [4, 3], [3, 5], [6, 6], [5, 9], [2, 40], [33, 14]];
+
+    fn signal(cells: [usize; 2]) -> Vec<f64> {
+        (0..cells[0] * cells[1]).map(|k| ((k * k + 3) as f64).sin()).collect()
+    }
+
+    /// Σ over all cells, and the images of those of folded axes, of `coefficient` at their distance.
+    fn sum(
+        Layout { cells, folded, .. }: Layout,
+        input: &[f64],
+        [i, j]: [usize; 2],
+        coefficient: impl Fn(usize, usize) -> f64,
+    ) -> f64 {
+        let mut sum = 0.0;
+        for k in 0..cells[0] {
+            for l in 0..cells[1] {
+                let across = |axis: usize, a: usize, b: usize| {
+                    [a.abs_diff(b), if folded[axis] { a + b + 1 } else { usize::MAX }]
+                };
+                for d1 in across(0, i, k) {
+                    for d2 in across(1, j, l) {
+                        if d1 < usize::MAX && d2 < usize::MAX {
+                            sum += coefficient(d1, d2) * input[k * cells[1] + l];
                         }
                     }
-                    let value = output[i * cells[1] + j];
-                    assert!((value - sum).abs() < 1e-13, "{cells:?} {period:?}: {value} {sum}");
                 }
             }
+        }
+        sum
+    }
+
+    /// The operator against its definition as a sum: sizes even, odd and not smooth, axes whole and folded, one
+    /// thread and three.
+    #[test]
+    fn convolution_matches_the_sum() {
+        for folded in FOLDS {
+            for cells in SIZES {
+                let layout = Layout { cells, padded: true, folded };
+                let coefficient = |i: usize, j: usize| 1.0 / (1.0 + (i * i + 2 * j * j) as f64);
+                let operator = SpectralOperator::<f64>::from_coefficients(layout, coefficient);
+                let input = signal(cells);
+                let mut output = vec![f64::NAN; input.len()];
+                operator.apply(&input, &mut output, 1.0, &mut operator.workspace_for(1));
+                for (k, value) in output.iter().enumerate() {
+                    let exact = sum(layout, &input, [k / cells[1], k % cells[1]], coefficient);
+                    assert!((value - exact).abs() < 1e-12, "{cells:?} {folded:?} {k}: {value} {exact}");
+                }
+                let mut threaded = vec![f64::NAN; input.len()];
+                operator.apply(&input, &mut threaded, 1.0, &mut operator.workspace_for(3));
+                assert_eq!(output, threaded, "{cells:?} {folded:?}");
+            }
+        }
+    }
+
+    /// Times of a convolution, and of the same code without pruning: the padded grid as a periodic one.
+    #[test]
+    #[ignore = "a measurement"]
+    fn what_pruning_is_worth() {
+        use std::time::Instant;
+        let kernel = |i: usize, j: usize| 1.0 / (1.0 + (i * i + j * j) as f64).sqrt();
+        for n in [64, 128, 256, 512, 1024] {
+            let time = |layout: Layout, input: &mut [f64]| {
+                let operator = SpectralOperator::<f64>::from_coefficients(layout, kernel);
+                let mut work = operator.workspace_for(1);
+                let best = |seconds: f64, _| {
+                    let start = Instant::now();
+                    operator.apply_in_place(input, 1.0, &mut work);
+                    seconds.min(start.elapsed().as_secs_f64())
+                };
+                1e3 * (0..(1 << 22) / (n * n) + 5).fold(f64::INFINITY, best)
+            };
+            let field = |cells: usize| vec![1e-3; cells];
+            let [whole, half] = [[false; 2], [true; 2]];
+            let padded = |cells, folded| Layout { cells, padded: true, folded };
+            let pruned = time(padded([n, n], whole), &mut field(n * n));
+            let rows = time(padded([n, n / 2], [false, true]), &mut field(n * n / 2));
+            let columns = time(padded([n / 2, n], [true, false]), &mut field(n * n / 2));
+            let folded = time(padded([n / 2, n / 2], half), &mut field(n * n / 4));
+            let unpruned = time(Layout { cells: [2 * n, 2 * n], padded: false, folded: whole }, &mut field(4 * n * n));
+            println!(
+                "{n}: {pruned:.4} ms, unpruned {unpruned:.4}: {:.2}; folded {rows:.4} {columns:.4} {folded:.4}",
+                unpruned / pruned
+            );
         }
     }
 
     #[test]
     fn a_symbol_multiplies_its_wave() {
-        let (cells, k) = ([12, 10], [2, 3]);
-        let operator = SpectralOperator::from_symbol(cells, cells, |k1, k2| (1 + k1 + 10 * k2) as f64);
-        let wave: Vec<f64> = (0..120)
-            .map(|n| {
-                let phase = (n / 10 * k[0]) as f64 / 12.0 + (n % 10 * k[1]) as f64 / 10.0;
-                (std::f64::consts::TAU * phase).cos()
-            })
-            .collect();
-        let mut output = vec![0.0; 120];
-        operator.apply(&wave, &mut output, &mut operator.workspace());
-        for (value, wave) in output.iter().zip(&wave) {
-            assert!((value - 33.0 * wave).abs() < 1e-12);
+        for folded in FOLDS {
+            let layout = Layout { cells: [12, 10], padded: false, folded };
+            let period = [layout.period(0), layout.period(1)];
+            for k in [[0, 0], [2, 3], [0, 5], [6, 0], [5, 4]] {
+                let operator = SpectralOperator::<f64>::from_symbol(layout, |k1, k2| (1 + k1 + 10 * k2) as f64);
+                let wave = |axis: usize, n: usize| {
+                    let shift = if folded[axis] { 0.5 } else { 0.0 };
+                    (std::f64::consts::TAU * k[axis] as f64 * (n as f64 + shift) / period[axis] as f64).cos()
+                };
+                let waves: Vec<f64> = (0..120).map(|n| wave(0, n / 10) * wave(1, n % 10)).collect();
+                let mut output = waves.clone();
+                operator.apply_in_place(&mut output, 3.0, &mut operator.workspace());
+                for (value, wave) in output.iter().zip(&waves) {
+                    assert!((value - (1 + k[0] + 10 * k[1]) as f64 * wave).abs() < 1e-11, "{folded:?} {k:?}");
+                }
+            }
         }
     }
 }

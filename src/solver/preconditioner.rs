@@ -4,27 +4,28 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::kernel::{SpectralOperator, TransformWorkspace, smooth_length};
+use crate::kernel::{Layout, SpectralOperator, TransformWorkspace};
 
 /// M ≈ K⁻¹: on an infinite plane K multiplies the wave q by 2/|q| (Westergaard 1939), so M multiplies
 /// by |q|/2 on a periodic grid without padding, a quarter of the size of a convolution.
 #[derive(Debug, Clone)]
 pub(crate) struct Preconditioner {
-    operator: Arc<SpectralOperator>,
-    work: TransformWorkspace,
+    operator: Arc<SpectralOperator<f64>>,
+    work: TransformWorkspace<f64>,
     diagonal: f64,
 }
 
 impl Preconditioner {
     pub(crate) fn new(grid: &Grid) -> Preconditioner {
         let (cells, spacing) = (grid.cells(), grid.spacing());
-        let period = [smooth_length(cells[0], 1), smooth_length(cells[1], 2)];
+        let layout = Layout { cells, padded: false, folded: [false; 2] };
+        let period = [layout.period(0), layout.period(1)];
         let wave_number = |axis: usize, k: usize| TAU * k as f64 / (period[axis] as f64 * spacing[axis]);
         // a uniform pressure on a square of side L sinks it by 0.95 L p on average (Love): the mean is
         // treated as a wave of that compliance
         let [l1, l2] = grid.lengths();
         let mean = 1.05 / (l1 * l2).sqrt();
-        let operator = SpectralOperator::from_symbol(cells, period, |k1, k2| match (k1, k2) {
+        let operator = SpectralOperator::from_symbol(layout, |k1, k2| match (k1, k2) {
             (0, 0) => mean,
             _ => 0.5 * wave_number(0, k1).hypot(wave_number(1, k2)),
         });
@@ -39,7 +40,7 @@ impl Preconditioner {
 
     /// field ← M field.
     pub(crate) fn apply(&mut self, field: &mut [f64]) {
-        self.operator.apply_in_place(field, &mut self.work);
+        self.operator.apply_in_place(field, 1.0, &mut self.work);
     }
 
     /// The diagonal m of M, the same for every cell.

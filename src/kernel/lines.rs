@@ -1,0 +1,331 @@
+//! Transforms of lines of cells, two real lines at a time as the parts of complex ones.
+//!
+//! | axis | coefficients of x_n | transformed by |
+//! |---|---|---|
+//! | whole | Σ x_n e^(−2πi kn/P), 0 ≤ k < P | a complex transform of length P |
+//! | folded | Σ x_n cos(π k(2n+1)/2L), 0 ≤ k < L | a complex transform of length L (Makhoul, IEEE Trans. ASSP 28, 1980) |
+//!
+//! Half of a line that is even about its beginning is all there is of a folded one; its coefficients are those of the
+//! whole line, of period 2L. Lines shorter than their transform continue with zeros.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use num_complex::Complex;
+use rustfft::{Fft, FftNum, FftPlanner};
+
+/// The two precisions of a transform.
+pub(crate) trait Scalar: FftNum + Default {
+    fn new(value: f64) -> Self;
+    fn get(self) -> f64;
+}
+
+impl Scalar for f64 {
+    fn new(value: f64) -> f64 {
+        value
+    }
+    fn get(self) -> f64 {
+        self
+    }
+}
+
+impl Scalar for f32 {
+    fn new(value: f64) -> f32 {
+        value as f32
+    }
+    fn get(self) -> f64 {
+        self.into()
+    }
+}
+
+/// The transform along one axis.
+#[derive(Clone)]
+pub(crate) struct Line<T: Scalar> {
+    length: usize,
+    forward: Arc<dyn Fft<T>>,
+    inverse: Arc<dyn Fft<T>>,
+    /// Of a folded axis e^(−iπk/2L) for 0 ≤ k ≤ L/2; else empty.
+    twist: Vec<Complex<T>>,
+}
+
+impl<T: Scalar> Line<T> {
+    pub(crate) fn new(length: usize, folded: bool) -> Line<T> {
+        let mut planner = FftPlanner::new();
+        let root = |k: usize| Complex::from_polar(1.0, -PI * k as f64 / (2 * length) as f64);
+        let roots = (0..=if folded { length / 2 } else { 0 }).map(root);
+        let twist = roots.map(|z| Complex::new(T::new(z.re), T::new(z.im))).collect::<Vec<_>>();
+        Line {
+            length,
+            forward: planner.plan_fft_forward(length),
+            inverse: planner.plan_fft_inverse(length),
+            twist: if folded { twist } else { Vec::new() },
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.length
+    }
+
+    pub(crate) fn is_folded(&self) -> bool {
+        !self.twist.is_empty()
+    }
+
+    /// Length of the scratch that the transforms need.
+    pub(crate) fn scratch(&self) -> usize {
+        self.forward.get_inplace_scratch_len().max(self.inverse.get_inplace_scratch_len())
+    }
+
+    /// How many coefficients of a real line are independent: the others mirror them.
+    pub(crate) fn independent(&self) -> usize {
+        if self.is_folded() { self.len() } else { self.len() / 2 + 1 }
+    }
+
+    /// Where the n-th value of a line belongs in the buffer of the transform: of a folded one even values come first,
+    /// odd values from the end back.
+    #[inline(always)]
+    pub(crate) fn place(&self, n: usize) -> usize {
+        if !self.is_folded() {
+            n
+        } else if n.is_multiple_of(2) {
+            n / 2
+        } else {
+            self.len() - 1 - n / 2
+        }
+    }
+
+    /// Puts zeros where no one of the first `cells` values belongs.
+    #[inline(always)]
+    pub(crate) fn pad(&self, buffer: &mut [Complex<T>], cells: usize) {
+        let end = if self.is_folded() { self.len() - cells / 2 } else { self.len() };
+        let start = if self.is_folded() { cells.div_ceil(2) } else { cells };
+        buffer[start..end].fill(Complex::default());
+    }
+
+    /// Puts the values of a line where they belong.
+    #[inline(always)]
+    pub(crate) fn fill(&self, buffer: &mut [Complex<T>], values: impl Iterator<Item = Complex<T>>) {
+        if !self.is_folded() {
+            for (z, value) in buffer.iter_mut().zip(values) {
+                *z = value;
+            }
+            return;
+        }
+        let mut values = values;
+        let (mut front, mut back) = (0, buffer.len());
+        while let Some(value) = values.next() {
+            buffer[front] = value;
+            front += 1;
+            let Some(value) = values.next() else { return };
+            back -= 1;
+            buffer[back] = value;
+        }
+    }
+
+    /// Takes the values of a line from where they are.
+    #[inline(always)]
+    pub(crate) fn read(&self, buffer: &[Complex<T>], out: &mut [f64], part: impl Fn(Complex<T>) -> f64) {
+        if !self.is_folded() {
+            for (out, &z) in out.iter_mut().zip(buffer) {
+                *out = part(z);
+            }
+            return;
+        }
+        let values = buffer.iter().zip(buffer.iter().rev());
+        for (out, (&front, &back)) in out.chunks_mut(2).zip(values) {
+            out[0] = part(front);
+            if let Some(out) = out.get_mut(1) {
+                *out = part(back);
+            }
+        }
+    }
+
+    /// Transforms the values placed in `buffer` to coefficients.
+    #[inline(always)]
+    pub(crate) fn forward(&self, buffer: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+        self.forward.process_with_scratch(buffer, scratch);
+        if !self.is_folded() {
+            return;
+        }
+        // with a = w_k V_k and b = conj(w_k) V_(L−k): X_k = (a + b)/2, X_(L−k) = i (a − b)/2, the halves left out
+        buffer[0] = buffer[0] + buffer[0];
+        for ((v, mirror), w) in pairs(buffer).zip(&self.twist[1..]) {
+            let (a, b) = (*v * *w, *mirror * w.conj());
+            let difference = a - b;
+            (*v, *mirror) = (a + b, Complex::new(T::default() - difference.im, difference.re));
+        }
+        if self.len().is_multiple_of(2) {
+            let middle = &mut buffer[self.len() / 2];
+            let w = self.twist[self.len() / 2];
+            *middle = *middle * (w.re + w.re);
+        }
+    }
+
+    /// Transforms coefficients to values, multiplied by [`Line::norm`].
+    #[inline(always)]
+    pub(crate) fn inverse(&self, buffer: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+        if self.is_folded() {
+            for ((x, mirror), w) in pairs(buffer).zip(&self.twist[1..]) {
+                let turned = Complex::new(T::default() - mirror.im, mirror.re);
+                let (a, b) = (*x - turned, *x + turned);
+                (*x, *mirror) = (a * w.conj(), b * *w);
+            }
+            if self.len().is_multiple_of(2) {
+                let middle = &mut buffer[self.len() / 2];
+                let w = self.twist[self.len() / 2];
+                *middle = *middle * (w.re + w.re);
+            }
+        }
+        self.inverse.process_with_scratch(buffer, scratch);
+    }
+
+    /// Between transforms forth and back of a folded complex line with [`Line::bare_forward`] and [`Line::bare_inverse`]:
+    /// multiplies the coefficients by the real `spectrum`, all in one pass.
+    #[inline(always)]
+    pub(crate) fn multiply_folded(&self, buffer: &mut [Complex<T>], spectrum: &[T]) {
+        // with X = a + b, a = w V_k, b = conj(w) V_(L−k), and the like for L − k, back again:
+        // V_k ← (S + S') V_k + (S − S') conj(w)² V_(L−k)
+        let last = buffer.len();
+        buffer[0] = buffer[0] * (spectrum[0] + spectrum[0]);
+        let spectra = spectrum[1..].iter().zip(spectrum.iter().rev());
+        for (((v, mirror), (s, other)), w) in pairs(buffer).zip(spectra).zip(&self.twist[1..]) {
+            let (sum, square) = (*s + *other, *w * *w * (*s - *other));
+            (*v, *mirror) = (*v * sum + *mirror * square.conj(), *mirror * sum + *v * square);
+        }
+        if last.is_multiple_of(2) {
+            let s = spectrum[last / 2];
+            buffer[last / 2] = buffer[last / 2] * (s + s);
+        }
+    }
+
+    /// The same of a line whose real and imaginary parts are lines of their own, with a spectrum each.
+    #[inline(always)]
+    pub(crate) fn multiply_folded_apart(&self, buffer: &mut [Complex<T>], first: &[T], second: &[T]) {
+        let last = buffer.len();
+        let (start, middle) = (buffer[0] + buffer[0], buffer[last / 2] + buffer[last / 2]);
+        buffer[0] = Complex::new(start.re * first[0], start.im * second[0]);
+        let spectra = first[1..].iter().zip(&second[1..]).zip(first.iter().rev().zip(second.iter().rev()));
+        for (((v, mirror), (s, other)), w) in pairs(buffer).zip(spectra).zip(&self.twist[1..]) {
+            let (a, b) = (*v * *w, *mirror * w.conj());
+            let (sum, difference) = (a + b, a - b);
+            let x = Complex::new(sum.re * *s.0, sum.im * *s.1);
+            // i times the coefficient at L − k, which is i (a − b)
+            let turned = Complex::new(T::default() - difference.re * *other.1, T::default() - difference.im * *other.0);
+            (*v, *mirror) = ((x - turned) * w.conj(), (x + turned) * *w);
+        }
+        if last.is_multiple_of(2) {
+            buffer[last / 2] = Complex::new(middle.re * first[last / 2], middle.im * second[last / 2]);
+        }
+    }
+
+    /// The complex transform alone.
+    #[inline(always)]
+    pub(crate) fn bare_forward(&self, buffer: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+        self.forward.process_with_scratch(buffer, scratch);
+    }
+
+    /// The complex transform back alone.
+    #[inline(always)]
+    pub(crate) fn bare_inverse(&self, buffer: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+        self.inverse.process_with_scratch(buffer, scratch);
+    }
+
+    /// What transforming forth and back multiplies a line by.
+    pub(crate) fn norm(&self) -> f64 {
+        self.len() as f64 * if self.is_folded() { 2.0 } else { 1.0 }
+    }
+}
+
+/// The values at k and at length − k, for 0 < k < length/2.
+#[inline(always)]
+fn pairs<T>(buffer: &mut [T]) -> impl Iterator<Item = (&mut T, &mut T)> {
+    let length = buffer.len();
+    let (rising, falling) = buffer[1..].split_at_mut((length - 1) / 2);
+    rising.iter_mut().zip(falling.iter_mut().rev())
+}
+
+/// Splits the transform of a complex line into those of its real and imaginary part, for 0 ≤ k ≤ P/2.
+#[inline(always)]
+pub(crate) fn separate<T: Scalar>(both: &[Complex<T>], first: &mut [Complex<T>], second: &mut [Complex<T>]) {
+    let zero = T::default();
+    let (value, half) = (both[0], T::new(0.5));
+    (first[0], second[0]) = (Complex::new(value.re, zero), Complex::new(value.im, zero));
+    let parts = first[1..].iter_mut().zip(&mut second[1..]);
+    for ((a, b), (z, mirror)) in parts.zip(both[1..].iter().zip(both[1..].iter().rev())) {
+        let (sum, difference) = (*z + mirror.conj(), *z - mirror.conj());
+        (*a, *b) = (sum * half, Complex::new(difference.im, zero - difference.re) * half);
+    }
+}
+
+/// The reverse of [`separate`].
+#[inline(always)]
+pub(crate) fn unite<T: Scalar>(first: &[Complex<T>], second: &[Complex<T>], both: &mut [Complex<T>]) {
+    both[0] = Complex::new(first[0].re, second[0].re);
+    let (rising, falling) = both[1..].split_at_mut(first.len() - 1);
+    let parts = first[1..].iter().zip(&second[1..]);
+    for ((z, a), b) in rising.iter_mut().zip(&first[1..]).zip(&second[1..]) {
+        *z = Complex::new(a.re - b.im, a.im + b.re);
+    }
+    for (z, (a, b)) in falling.iter_mut().rev().zip(parts) {
+        *z = Complex::new(a.re + b.im, b.re - a.im);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use num_complex::Complex64;
+
+    fn signal(cells: usize) -> Vec<Complex64> {
+        (0..cells).map(|n| Complex::new(((n * n + 3) as f64).sin(), ((5 * n * n + 1) as f64).cos())).collect()
+    }
+
+    /// Every coefficient against its definition, and the way back.
+    #[test]
+    fn lines_match_their_sums() {
+        for folded in [false, true] {
+            for (cells, length) in [(1, 1), (1, 2), (3, 4), (3, 5), (5, 6), (6, 6), (7, 10), (15, 15), (40, 42)] {
+                let (line, x) = (Line::<f64>::new(length, folded), signal(cells));
+                let mut buffer = vec![Complex::new(f64::NAN, f64::NAN); length];
+                let mut scratch = vec![Complex::default(); line.scratch()];
+                line.pad(&mut buffer, cells);
+                x.iter().enumerate().for_each(|(n, &x)| buffer[line.place(n)] = x);
+                line.forward(&mut buffer, &mut scratch);
+                for (k, value) in buffer.iter().enumerate() {
+                    let wave = |n: usize| match folded {
+                        true => Complex::from(2.0 * (PI * (k * (2 * n + 1)) as f64 / (2 * length) as f64).cos()),
+                        false => Complex::from_polar(1.0, -2.0 * PI * (k * n) as f64 / length as f64),
+                    };
+                    let exact: Complex64 = x.iter().enumerate().map(|(n, x)| x * wave(n)).sum();
+                    assert!((value - exact).norm() < 1e-12, "{cells} {length} {folded} {k}: {value} {exact}");
+                }
+                line.inverse(&mut buffer, &mut scratch);
+                for (n, x) in x.iter().enumerate() {
+                    let back = buffer[line.place(n)];
+                    assert!((back - line.norm() * x).norm() < 1e-12, "{cells} {length} {folded} {n}: {back} {x}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn two_real_lines_are_one_complex_one() {
+        for length in [1, 2, 5, 8] {
+            let line = Line::<f64>::new(length, false);
+            let mut scratch = vec![Complex::default(); line.scratch()];
+            let mut both = signal(length);
+            let mut parts =
+                [0, 1].map(|part| both.iter().map(|z| Complex::from([z.re, z.im][part])).collect::<Vec<_>>());
+            line.forward(&mut both, &mut scratch);
+            parts.iter_mut().for_each(|part| line.forward(part, &mut scratch));
+            let mut found = [vec![Complex::default(); length / 2 + 1], vec![Complex::default(); length / 2 + 1]];
+            let [first, second] = &mut found;
+            separate(&both, first, second);
+            for (found, exact) in found.iter().zip(&parts) {
+                assert!(found.iter().zip(exact).all(|(a, b)| (a - b).norm() < 1e-13), "{length}");
+            }
+            let mut united = vec![Complex::default(); length];
+            unite(&found[0], &found[1], &mut united);
+            assert!(united.iter().zip(&both).all(|(a, b)| (a - b).norm() < 1e-13), "{length}");
+        }
+    }
+}
