@@ -4,6 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::Grid;
+use crate::contact::region::Region;
 use crate::contact::report::BodyState;
 use crate::contact::settings::Settings;
 use crate::contact::stepper::ViscoelasticContact;
@@ -47,12 +48,24 @@ impl ViscoelasticContact {
 
     /// Contact pressure \[Pa\], one value a cell, ≥ 0.
     pub fn pressure(&self) -> &[f64] {
-        &self.current.pressure
+        if self.region.is_whole() { &self.current.pressure } else { &self.shown }
     }
 
     /// Composite normal surface displacement, positive into the bodies \[m\], one value a cell.
+    ///
+    /// With [`Settings::window`] the first call after a step costs a convolution on the whole grid, and memory for its
+    /// result.
     pub fn displacement(&self) -> &[f64] {
-        &self.displacement
+        if self.region.is_whole() {
+            return &self.displacement;
+        }
+        let source = self.beyond.as_ref().map(|beyond| &beyond.strength[..]);
+        self.whole_displacement.get_or_init(|| self.on_the_whole_grid(&self.displacement, source))
+    }
+
+    /// The part of the grid that is computed, and the displacement there.
+    pub(super) fn computed(&self) -> (&Region, &[f64]) {
+        (&self.region, &self.displacement)
     }
 
     /// Writes the gap between the deformed bodies into `out` \[m\]: zero in contact to within the
@@ -62,12 +75,12 @@ impl ViscoelasticContact {
     /// If `out` does not hold one value a cell.
     pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
         exact_length("gap", out.len(), self.grid.len())?;
-        let n2 = self.grid.cells()[1];
+        let (n2, displacement) = (self.grid.cells()[1], self.displacement());
         for (k, h) in out.iter_mut().enumerate() {
             let [omega, alpha1, alpha2] = self.motions[self.initial_gap.owner(k)];
             let [x1, x2] = self.grid.center(k / n2, k % n2);
             let lowered = (omega - self.initial_gap.datum) + alpha1 * x1 + alpha2 * x2;
-            *h = self.initial_gap.above[k] + self.displacement[k] - lowered;
+            *h = self.initial_gap.above[k] + displacement[k] - lowered;
         }
         Ok(())
     }
@@ -110,8 +123,8 @@ impl ViscoelasticContact {
     /// Normal force Σ p ΔA on all bodies together \[N\].
     pub fn force(&self) -> f64 {
         // row by row, so that rounding does not grow with the number of cells
-        let rows = self.current.pressure.chunks_exact(self.grid.cells()[1]);
-        rows.map(|row| row.iter().sum::<f64>()).sum::<f64>() * self.grid.cell_area()
+        let rows = self.current.pressure.chunks_exact(self.region.cells()[1]);
+        rows.map(|row| row.iter().sum::<f64>()).sum::<f64>() * self.grid.cell_area() * self.region.images() as f64
     }
 
     /// Moments of the whole pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\].
@@ -128,7 +141,7 @@ impl ViscoelasticContact {
     pub(crate) fn reach_of_contact(&self) -> [f64; 2] {
         let n2 = self.grid.cells()[1];
         let half = self.grid.spacing().map(|side| 0.5 * side);
-        let touched = self.current.pressure.iter().enumerate().filter(|(_, p)| **p > 0.0);
+        let touched = self.pressure().iter().enumerate().filter(|(_, p)| **p > 0.0);
         touched.fold([0.0; 2], |reach: [f64; 2], (k, _)| {
             let center = self.grid.center(k / n2, k % n2);
             [0, 1].map(|axis| reach[axis].max(center[axis].abs() + half[axis]))
@@ -152,7 +165,7 @@ impl ViscoelasticContact {
     fn sums(&self, counts: impl Fn(usize) -> bool) -> (f64, [f64; 2], usize) {
         let (n2, area) = (self.grid.cells()[1], self.grid.cell_area());
         let (mut force, mut moment, mut cells) = (0.0, [0.0; 2], 0);
-        for (i, row) in self.current.pressure.chunks_exact(n2).enumerate() {
+        for (i, row) in self.pressure().chunks_exact(n2).enumerate() {
             let (mut row_force, mut row_moment) = (0.0, 0.0);
             for (j, &p) in row.iter().enumerate().filter(|(j, p)| **p > 0.0 && counts(i * n2 + j)) {
                 row_force += p;

@@ -1,5 +1,6 @@
 //! The length of steps chosen by an estimate of their error.
 
+use crate::contact::region::Region;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::load::LoadHistory;
 
@@ -19,6 +20,8 @@ pub(super) struct Controller {
     last: f64,
     /// ∂u/∂t in the last step and its length, 0 if there is none to compare with.
     rate: Vec<f64>,
+    /// Where that was computed.
+    region: Option<Region>,
     rate_dt: f64,
     /// The time for which that was kept.
     kept_at: f64,
@@ -50,7 +53,7 @@ const FIRST_PART: f64 = 1e-6;
 /// Part of the estimate that a run really errs by, before and at most after the amplification by C(age)/C(Δ): see
 /// docs/accuracy.md.
 const SHARE: f64 = 0.25;
-const MOST_AMPLIFIED: f64 = 5.0;
+const MOST_AMPLIFIED: f64 = 5.5;
 /// Loads below this part of the greatest so far are measured against it.
 const SMALL_LOAD: f64 = 0.05;
 
@@ -61,6 +64,7 @@ impl Controller {
             next: None,
             last: 1.0,
             rate: Vec::new(),
+            region: None,
             rate_dt: 0.0,
             kept_at: f64::NAN,
             cornered: true,
@@ -146,24 +150,34 @@ impl Controller {
         let (dt, before) = contact.displacement_before();
         self.rate_dt = if std::mem::take(&mut self.cornered) { 0.0 } else { dt };
         if self.rate_dt > 0.0 {
+            let (region, displacement) = contact.computed();
+            if self.region.as_ref() != Some(region) {
+                self.region = Some(region.clone());
+            }
             self.rate.resize(before.len(), 0.0);
-            for ((rate, &new), &old) in self.rate.iter_mut().zip(contact.displacement()).zip(before) {
+            for ((rate, &new), &old) in self.rate.iter_mut().zip(displacement).zip(before) {
                 *rate = (new - old) / dt;
             }
         }
     }
 
     /// The error of the step being tried, 0 where there is no last step to compare it with.
-    pub(super) fn estimate(&self, contact: &ViscoelasticContact, dt: f64) -> f64 {
+    pub(super) fn estimate(&mut self, contact: &ViscoelasticContact, dt: f64) -> f64 {
         if self.rate_dt == 0.0 || dt == 0.0 {
             return 0.0;
+        }
+        let (region, before) = contact.computed();
+        if let Some(old) = self.region.as_ref().filter(|old| *old != region) {
+            // the region grew with this step; on its rim, which carries no force yet, any rate will do
+            self.rate = old.carry(&self.rate, region, |_| 0.0);
+            self.region = Some(region.clone());
         }
         let (pressure, displacement) = contact.trial();
         let bend = 2.0 / (dt + self.rate_dt) * 0.125 * dt * dt * self.amplification(contact, dt);
         // bodies apart: the surface recovers everywhere alike
         let apart = pressure.iter().all(|&p| p == 0.0);
         let (mut error, mut size) = (0.0, 0.0);
-        let fields = pressure.iter().zip(displacement).zip(contact.displacement()).zip(&self.rate);
+        let fields = pressure.iter().zip(displacement).zip(before).zip(&self.rate);
         for (((&p, &new), &old), &rate) in fields {
             let weight = if apart { 1.0 } else { p };
             error += weight * ((new - old) / dt - rate).abs();

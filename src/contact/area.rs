@@ -99,7 +99,7 @@ impl ViscoelasticContact {
     }
 
     fn pressure_at(&self, cell: [isize; 2]) -> f64 {
-        self.index(cell).map_or(0.0, |k| self.current.pressure[k])
+        self.index(cell).map_or(0.0, |k| self.pressure()[k])
     }
 
     /// Whether there is something to touch in a cell; nothing beyond the grid.

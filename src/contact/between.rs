@@ -69,7 +69,8 @@ impl Between<'_> {
 
     /// Normal force on all bodies together \[N\].
     pub fn force(&self) -> f64 {
-        let sum = |pressure: &[f64]| pressure.iter().sum::<f64>() * self.contact.grid.cell_area();
+        let area = self.contact.grid.cell_area() * self.contact.region.images() as f64;
+        let sum = |pressure: &[f64]| pressure.iter().sum::<f64>() * area;
         self.mix(sum(&self.contact.previous.pressure), sum(&self.contact.current.pressure))
     }
 
@@ -78,7 +79,12 @@ impl Between<'_> {
     /// # Errors
     /// If `out` does not hold one value a cell.
     pub fn pressure_into(&self, out: &mut [f64]) -> Result<()> {
-        self.mix_into(out, "pressure", &self.contact.previous.pressure, &self.contact.current.pressure)
+        let contact = self.contact;
+        if contact.region.is_whole() {
+            return self.mix_into(out, "pressure", &contact.previous.pressure, &contact.current.pressure);
+        }
+        let before = contact.on_the_whole_grid(&contact.previous.pressure, None);
+        self.mix_into(out, "pressure", &before, contact.pressure())
     }
 
     /// Writes the displacement \[m\] into `out`.
@@ -86,7 +92,13 @@ impl Between<'_> {
     /// # Errors
     /// If `out` does not hold one value a cell.
     pub fn displacement_into(&self, out: &mut [f64]) -> Result<()> {
-        self.mix_into(out, "displacement", &self.contact.trial_displacement, &self.contact.displacement)
+        let contact = self.contact;
+        if contact.region.is_whole() {
+            return self.mix_into(out, "displacement", &contact.trial_displacement, &contact.displacement);
+        }
+        let source = contact.beyond.as_ref().map(|beyond| &beyond.trial[..]);
+        let before = contact.on_the_whole_grid(&contact.trial_displacement, source);
+        self.mix_into(out, "displacement", &before, contact.displacement())
     }
 
     fn mix(&self, before: f64, after: f64) -> f64 {

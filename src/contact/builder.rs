@@ -4,14 +4,13 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::contact::settings::{Settings, Solver, TimeRule};
-use crate::contact::stepper::{ContactSolver, Parts, ViscoelasticContact};
+use crate::contact::settings::{Settings, TimeRule};
+use crate::contact::stepper::{Parts, ViscoelasticContact};
 use crate::error::{Error, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
 use crate::hereditary::{Direct, Exponential, History, Unfitted, Weighting};
 use crate::kernel::InfluenceKernel;
 use crate::rheology::Material;
-use crate::solver::{ActiveSet, PolonskyKeer};
 
 /// Collects what a [`ViscoelasticContact`] is made of; see [`ViscoelasticContact::builder`].
 #[derive(Debug, Clone)]
@@ -131,7 +130,7 @@ impl Builder {
         if let Some(other) = counter_body {
             material = material.against(other);
         }
-        let history = history(&mut material, times, &settings, grid.len())?;
+        let history = history(&mut material, times, &settings)?;
         let kernel = match kernel {
             Some(kernel) if *kernel.grid() != grid => {
                 return Err(Error::KernelMismatch { kernel: kernel.grid().clone(), contact: grid });
@@ -139,21 +138,12 @@ impl Builder {
             Some(kernel) => kernel,
             None => Arc::new(InfluenceKernel::half_space(&grid)?),
         };
-        let solver = match settings.solver {
-            Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&grid, bodies))),
-            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(PolonskyKeer::new(grid.len(), bodies)),
-        };
-        Ok(ViscoelasticContact::new(Parts { grid, bodies, kernel, settings, initial_gap, material, history, solver }))
+        Ok(ViscoelasticContact::new(Parts { grid, bodies, kernel, settings, initial_gap, material, history }))
     }
 }
 
-/// The home of the past that a time rule needs; `material` is fitted if there is a need and its times are known.
-fn history(
-    material: &mut Material,
-    times: Option<RangeInclusive<f64>>,
-    settings: &Settings,
-    cells: usize,
-) -> Result<History> {
+/// The home of the past that a time rule needs, on no cells yet; `material` is fitted if there is a need and its times are known.
+fn history(material: &mut Material, times: Option<RangeInclusive<f64>>, settings: &Settings) -> Result<History> {
     let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
     let direct = |weighting| Ok(History::Direct(Direct::new(material.clone(), weighting, settings.history_limit)));
     match settings.time_rule {
@@ -168,7 +158,7 @@ fn history(
         *material = material.fitted(times, settings.series_tolerance)?;
     }
     Ok(match material.contact_spectrum()? {
-        Some(creep) => History::Exponential(Exponential::new(&creep, cells)),
-        None => History::Unfitted(Box::new(Unfitted::new(material.clone(), settings.series_tolerance, cells))),
+        Some(creep) => History::Exponential(Exponential::new(&creep, 0)),
+        None => History::Unfitted(Box::new(Unfitted::new(material.clone(), settings.series_tolerance))),
     })
 }

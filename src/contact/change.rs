@@ -1,6 +1,7 @@
 //! Between steps: runs along histories, other geometries, and the state within the last step.
 
 use crate::contact::follow::{Follow, Stepping};
+use crate::contact::reside::symmetry;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
@@ -32,6 +33,14 @@ impl ViscoelasticContact {
         }
         let gaps: Vec<_> = geometries.iter().map(|geometry| evaluate(*geometry, &self.grid)).collect();
         self.initial_gap = Gap::new(&gaps, &self.grid)?;
+        self.gap_here = self.region.cut_gap(&self.initial_gap);
+        self.survey();
+        let folded = self.region.folded();
+        let even = symmetry(&self.initial_gap, self.grid.cells());
+        let still = [0, 1].map(|axis| folded[axis] && even[axis]);
+        if still != folded {
+            self.unfold(still);
+        }
         self.hulls.fill(None);
         self.last_dt = 0.0; // the last change of the pressure says nothing about the next
         Ok(())

@@ -70,7 +70,7 @@ impl ViscoelasticContact {
         self.trial.counts = Counts::default();
         for (body, motion) in self.trial.motions.iter_mut().enumerate() {
             let [omega, alpha1, alpha2] = self.motions[body];
-            let modes = Modes::new(&self.grid, self.freedoms[body]);
+            let modes = Modes::new(self.region.grid(), self.freedoms[body]);
             *motion = modes.motion([omega - self.initial_gap.datum, alpha1, alpha2]);
         }
         let mut ahead = if self.last_dt > 0.0 { (dt / self.last_dt).min(FARTHEST_GUESS) } else { 0.0 };
@@ -95,7 +95,7 @@ impl ViscoelasticContact {
         if self.refresh.due == 0 {
             extrapolate(&mut self.trial.potential, &self.current.potential, &self.previous.potential);
         } else if matches!(self.solver, ContactSolver::ActiveSet(_)) {
-            self.kernel.apply(&self.trial.pressure, &mut self.trial.potential, &mut self.work);
+            self.kernel_here.apply(&self.trial.pressure, &mut self.trial.potential, &mut self.work);
             self.trial.counts.convolutions += 1;
         }
     }

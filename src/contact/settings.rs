@@ -28,9 +28,16 @@ pub struct Settings {
     /// Relative error of the creep compliance allowed to an exponential series that is fitted to a rheology
     /// without an exact one (default: 1e-4; range \[1e-8, 0.1\]).
     pub series_tolerance: f64,
-    /// Memory that a direct sum may fill with its past, one field of 8 bytes a cell for each step; a step
+    /// Memory that a direct sum may fill with its past, one field of 8 bytes a computed cell for each step; a step
     /// beyond it fails \[bytes\] (default: 2 GiB).
     pub history_limit: usize,
+    /// Whether half or a quarter of the cells is computed where gap and load are even in x1, x2, or both, bit by bit, and the
+    /// number of cells along that axis is even (default: true). The answer is the same but for rounding.
+    pub symmetry: bool,
+    /// Whether only the rectangle that the bodies can touch in is computed, and the rest of the grid when it is asked for
+    /// (default: true). The rectangle grows with the contact; a step in which it does takes memory. Contacts that are
+    /// advanced by direct sums are computed whole.
+    pub window: bool,
 }
 
 /// The solver of the contact problem of a step.
@@ -88,6 +95,8 @@ impl Default for Settings {
             edge: Edge::default(),
             series_tolerance: 1e-4,
             history_limit: 2 << 30,
+            symmetry: true,
+            window: true,
         }
     }
 }
@@ -96,7 +105,13 @@ impl Settings {
     /// The algorithm of the source paper whole: Polonsky–Keer, the rectangle rule, direct sums. The
     /// baseline of every comparison.
     pub fn paper() -> Settings {
-        Settings { solver: Solver::PolonskyKeer, time_rule: TimeRule::Rectangle, ..Settings::default() }
+        Settings {
+            solver: Solver::PolonskyKeer,
+            time_rule: TimeRule::Rectangle,
+            symmetry: false,
+            window: false,
+            ..Settings::default()
+        }
     }
 
     pub(crate) fn validate(&self) -> Result<()> {

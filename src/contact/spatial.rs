@@ -54,7 +54,7 @@ impl ViscoelasticContact {
     /// ```
     pub fn spatial_error(&self) -> SpatialError {
         let [n1, n2] = self.grid.cells();
-        let pressure = &self.current.pressure;
+        let pressure = self.pressure();
         let (mut rim_cells, mut rim, mut total) = (0_usize, 0.0, 0.0);
         for (k, &p) in pressure.iter().enumerate().filter(|(_, p)| **p > 0.0) {
             total += p;

@@ -1,17 +1,19 @@
 //! One contact, advanced one step at a time.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
 use crate::contact::builder::Builder;
 use crate::contact::guess::Refresh;
 use crate::contact::hull::Hull;
+use crate::contact::region::Region;
 use crate::contact::report::StepReport;
-use crate::contact::settings::{Edge, Settings, TimeRule};
+use crate::contact::reside::{Beyond, symmetry, upright};
+use crate::contact::settings::{Edge, Settings, Solver, TimeRule};
 use crate::error::{Error, Result, non_negative};
 use crate::geometry::Gap;
 use crate::hereditary::{Change, History};
-use crate::kernel::{InfluenceKernel, Workspace};
+use crate::kernel::{InfluenceKernel, LocalKernel, Workspace};
 use crate::load::{Load, Tilt};
 use crate::rheology::{Material, is_known};
 use crate::solver::{ActiveSet, Counts, Freedom, Modes, PolonskyKeer, Problem, Solution, Stop};
@@ -53,7 +55,16 @@ use crate::solver::{ActiveSet, Counts, Freedom, Modes, PolonskyKeer, Problem, So
 pub struct ViscoelasticContact {
     pub(super) grid: Grid,
     pub(super) kernel: Arc<InfluenceKernel>,
+    /// The part of the grid that is computed: every field below lives there, unless it says otherwise.
+    pub(super) region: Region,
+    pub(super) kernel_here: LocalKernel,
     pub(super) work: Workspace,
+    /// What lies beyond; nothing if the region and its mirror images are the whole grid.
+    pub(super) beyond: Option<Beyond>,
+    /// Whether the region was chosen for a contact.
+    pub(super) placed: bool,
+    /// What it was before the step being tried moved it to another region.
+    pub(super) before_move: Option<Box<ViscoelasticContact>>,
     pub(super) settings: Settings,
     pub(super) solver: ContactSolver,
     pub(super) material: Material,
@@ -62,7 +73,10 @@ pub struct ViscoelasticContact {
     pub(super) undisturbed_until: f64,
     /// Steps may not be shorter: the first step chose the times that the material's series was fitted over.
     pub(super) shortest: f64,
+    /// On the whole grid.
     pub(super) initial_gap: Gap,
+    /// The part of it that is computed, if that is not all.
+    pub(super) gap_here: Option<Gap>,
     /// Where loads may act, for each body; made when one is first free to tilt.
     pub(super) hulls: Vec<Option<Hull>>,
 
@@ -72,7 +86,12 @@ pub struct ViscoelasticContact {
     pub(super) current: Solution,
     /// (ω, α1, α2) of each body, ω at the origin.
     pub(super) motions: Vec<[f64; 3]>,
+    /// Cells in contact of the whole grid.
     pub(super) contact_cells: usize,
+    /// Pressure on the whole grid, if not all of it is computed.
+    pub(super) shown: Vec<f64>,
+    /// Displacement on the whole grid, once it was asked for.
+    pub(super) whole_displacement: OnceLock<Vec<f64>>,
     /// (ω, α1, α2) before the last step, and its length.
     pub(super) previous_motions: Vec<[f64; 3]>,
     pub(super) interval: f64,
@@ -88,7 +107,7 @@ pub struct ViscoelasticContact {
     pub(super) trial: Solution,
     /// Between steps the displacement before the last one, which the history has yet to take in.
     pub(super) trial_displacement: Vec<f64>,
-    gap: Vec<f64>,
+    pub(super) gap: Vec<f64>,
     pub(super) freedoms: Vec<Freedom>,
 }
 
@@ -116,7 +135,17 @@ pub(crate) struct Parts {
     pub(crate) initial_gap: Gap,
     pub(crate) material: Material,
     pub(crate) history: History,
-    pub(crate) solver: ContactSolver,
+}
+
+impl ContactSolver {
+    pub(super) fn new(solver: Solver, region: &Region, bodies: usize) -> ContactSolver {
+        match solver {
+            Solver::ActiveSet => {
+                ContactSolver::ActiveSet(Box::new(ActiveSet::new(region.grid(), region.folded(), bodies)))
+            }
+            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(PolonskyKeer::new(region.len(), bodies)),
+        }
+    }
 }
 
 impl ViscoelasticContact {
@@ -126,12 +155,33 @@ impl ViscoelasticContact {
     }
 
     pub(crate) fn new(parts: Parts) -> ViscoelasticContact {
-        let Parts { grid, bodies, kernel, settings, initial_gap, material, history, solver } = parts;
-        let cells = grid.len();
+        let Parts { grid, bodies, kernel, settings, initial_gap, material, mut history } = parts;
+        let folded = if settings.symmetry { symmetry(&initial_gap, grid.cells()) } else { [false; 2] };
+        // without load, each body is above the cell that it would touch first
+        let region = match &history {
+            History::Exponential(_) if settings.window => Region::first_touched(&grid, folded, &initial_gap, bodies),
+            _ => Region::whole(&grid, folded),
+        };
+        let cells = region.len();
+        history.undisturbed_on(cells);
+        let kernel_here = kernel.on(region.grid(), folded);
+        let beyond = match &history {
+            History::Exponential(history) if !region.covers() => Some(Beyond::new(history, cells)),
+            _ => None,
+        };
         let at_rest = Solution::zero(cells, bodies);
         let nothing_free = Freedom { translation: false, tilt: [false; 2], point: [0.0; 2], total: 0.0 };
-        ViscoelasticContact {
-            work: kernel.workspace(),
+        let mut contact = ViscoelasticContact {
+            work: kernel_here.workspace(),
+            kernel_here,
+            solver: ContactSolver::new(settings.solver, &region, bodies),
+            gap_here: region.cut_gap(&initial_gap),
+            region,
+            beyond,
+            placed: false,
+            before_move: None,
+            shown: Vec::new(),
+            whole_displacement: OnceLock::new(),
             hulls: vec![None; bodies],
             time: 0.0,
             loads: vec![Load::force(0.0); bodies],
@@ -152,13 +202,15 @@ impl ViscoelasticContact {
             grid,
             kernel,
             settings,
-            solver,
             material,
             history,
             undisturbed_until: 0.0,
             shortest: 0.0,
             initial_gap,
-        }
+        };
+        contact.survey();
+        contact.show();
+        contact
     }
 
     /// Advances by `dt` \[s\] to a state that carries `load`, taking u to be linear in between. `dt` = 0 is
@@ -196,7 +248,33 @@ impl ViscoelasticContact {
     /// Computes a step, as the trial; the state stays as it is.
     pub(super) fn attempt(&mut self, time: f64, dt: f64, loads: &[Load], tolerance: f64) -> Result<Attempt> {
         non_negative("time", time)?;
-        self.free(time, loads)?;
+        self.move_back();
+        let attempt = self.attempt_where_it_fits(time, dt, loads, tolerance);
+        if attempt.is_err() {
+            self.move_back();
+        }
+        attempt
+    }
+
+    /// Computes a step on the region at hand, or on the first larger one that turns out to hold all of the contact.
+    fn attempt_where_it_fits(&mut self, time: f64, dt: f64, loads: &[Load], tolerance: f64) -> Result<Attempt> {
+        self.admit(time, loads)?;
+        self.make_room(dt, loads);
+        loop {
+            self.free(loads);
+            let c = self.try_step(time, dt, loads, tolerance)?;
+            let Some(region) = self.outgrown(loads) else {
+                self.check(time, dt, tolerance)?;
+                self.displace(c);
+                return Ok(Attempt { time, dt });
+            };
+            self.keep_for_failure();
+            self.reside(region);
+        }
+    }
+
+    /// Computes a step on the region at hand; returns its compliance.
+    fn try_step(&mut self, time: f64, dt: f64, loads: &[Load], tolerance: f64) -> Result<f64> {
         // what was never touched has nothing to remember
         if !self.is_undisturbed() {
             self.remember(time)?;
@@ -212,8 +290,9 @@ impl ViscoelasticContact {
 
         // the contact problem of the step
         self.guess(dt);
-        let owner = self.initial_gap.owner.as_deref();
-        let problem = Problem { kernel: &self.kernel, compliance: c, gap: &self.gap, bodies: &self.freedoms, owner };
+        let owner = self.gap_here.as_ref().unwrap_or(&self.initial_gap).owner.as_deref();
+        let problem =
+            Problem { kernel: &self.kernel_here, compliance: c, gap: &self.gap, bodies: &self.freedoms, owner };
         let stop = Stop { tolerance, max_iterations: self.settings.max_iterations };
         match &mut self.solver {
             _ if problem.all_released() => self.trial.release(),
@@ -224,14 +303,16 @@ impl ViscoelasticContact {
         if self.is_undisturbed() && self.trial.pressure.iter().any(|&p| p > 0.0) {
             self.remember(time)?;
         }
-        self.check(time, dt, tolerance)?;
-        self.displace(c);
-        Ok(Attempt { time, dt })
+        if let Some(beyond) = &mut self.beyond {
+            beyond.advance(time, dt, c, &self.trial.pressure);
+        }
+        Ok(c)
     }
 
     /// Makes the trial the state: nothing here can fail.
     pub(super) fn accept(&mut self, Attempt { time, dt }: Attempt, loads: &[Load]) -> StepReport {
         let touched = !self.is_undisturbed() || self.trial.pressure.iter().any(|&p| p > 0.0);
+        self.before_move = None;
         let change = Change { time, dt, potential: [&self.current.potential, &self.trial.potential] };
         let fitted = self.history.commit(&change, touched);
         std::mem::swap(&mut self.displacement, &mut self.trial_displacement);
@@ -239,9 +320,12 @@ impl ViscoelasticContact {
         std::mem::swap(&mut self.current, &mut self.trial);
         std::mem::swap(&mut self.previous_motions, &mut self.motions);
         for (body, motion) in self.motions.iter_mut().enumerate() {
-            let free = Modes::new(&self.grid, self.freedoms[body]).physical(self.current.motions[body]);
-            let [omega, alpha1, alpha2] = prescribed(&loads[body], self.initial_gap.datum);
+            let free = Modes::new(self.region.grid(), self.freedoms[body]).physical(self.current.motions[body]);
+            let [omega, alpha1, alpha2] = lowered(&loads[body], self.initial_gap.datum);
             *motion = [self.initial_gap.datum + omega + free[0], alpha1 + free[1], alpha2 + free[2]];
+        }
+        if let Some(beyond) = &mut self.beyond {
+            beyond.commit();
         }
         if !touched {
             self.undisturbed_until = time;
@@ -252,7 +336,8 @@ impl ViscoelasticContact {
         self.interval = dt;
         self.before_is_kept = true;
         self.refresh.count(self.current.pressure.iter().sum());
-        self.contact_cells = self.current.pressure.iter().filter(|&&p| p > 0.0).count();
+        self.contact_cells = self.region.images() * self.current.pressure.iter().filter(|&&p| p > 0.0).count();
+        self.show();
         if let Some((material, shortest)) = fitted {
             (self.material, self.shortest) = (material, shortest);
         }
@@ -265,28 +350,22 @@ impl ViscoelasticContact {
         if is_known(age, known_until) { Ok(()) } else { Err(Error::BeyondMaterial { time, age, known_until }) }
     }
 
-    fn is_undisturbed(&self) -> bool {
+    pub(super) fn is_undisturbed(&self) -> bool {
         self.undisturbed_until == self.time && self.contact_cells == 0
     }
 
-    /// Sets what the loads leave free of each body, and refuses those that no pressure can balance.
-    fn free(&mut self, time: f64, loads: &[Load]) -> Result<()> {
+    /// Refuses loads that no pressure can balance.
+    fn admit(&mut self, time: f64, loads: &[Load]) -> Result<()> {
         if loads.len() != self.loads.len() {
             return Err(Error::WrongNumberOfLoads { loads: loads.len(), bodies: self.loads.len() });
         }
         for (body, load) in loads.iter().enumerate() {
             load.validate()?;
-            let tilt = load.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
-            let point = load.tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
-            let (translation, total) = match load {
-                Load::Force { normal, .. } => (true, normal / self.grid.cell_area()),
-                Load::Approach { .. } => (false, 0.0),
-            };
+            let Freedom { translation, tilt, point, total } = freedom(load, &self.grid);
             let lost = total == 0.0 && matches!(load, Load::Force { normal, .. } if *normal > 0.0);
             if lost || !total.is_finite() {
                 return Err(Error::Overflow { time, what: "the force over the area of a cell" });
             }
-            self.freedoms[body] = Freedom { translation, tilt, point, total };
             if tilt != [false; 2] && !(translation && total == 0.0) {
                 let gap = &self.initial_gap;
                 let own = |k: usize| gap.owner(k) == body && gap.above[k].is_finite();
@@ -299,20 +378,28 @@ impl ViscoelasticContact {
         Ok(())
     }
 
+    /// Sets what the loads leave free of each body.
+    fn free(&mut self, loads: &[Load]) {
+        for (own, load) in self.freedoms.iter_mut().zip(loads) {
+            *own = upright(freedom(load, &self.grid), self.region.folded());
+            own.total /= self.region.images() as f64;
+        }
+    }
+
     /// The gap of the step before any pressure and free motion: hi + u_old − what is prescribed of ω + α·x.
     fn fill_gap(&mut self, loads: &[Load]) {
-        for ((gap, &initial), &u_old) in self.gap.iter_mut().zip(&self.initial_gap.above).zip(&self.trial_displacement)
-        {
+        let initial_gap = self.gap_here.as_ref().unwrap_or(&self.initial_gap);
+        for ((gap, &initial), &u_old) in self.gap.iter_mut().zip(&initial_gap.above).zip(&self.trial_displacement) {
             *gap = initial + u_old;
         }
         for (body, load) in loads.iter().enumerate() {
-            let [omega, alpha1, alpha2] = prescribed(load, self.initial_gap.datum);
+            let [omega, alpha1, alpha2] = lowered(load, self.initial_gap.datum);
             if [omega, alpha1, alpha2] == [0.0; 3] {
                 continue;
             }
-            let n2 = self.grid.cells()[1];
-            for k in (0..self.gap.len()).filter(|&k| self.initial_gap.owner(k) == body) {
-                let [x1, x2] = self.grid.center(k / n2, k % n2);
+            let n2 = self.region.cells()[1];
+            for k in (0..self.gap.len()).filter(|&k| initial_gap.owner(k) == body) {
+                let [x1, x2] = self.region.grid().center(k / n2, k % n2);
                 self.gap[k] -= omega + alpha1 * x1 + alpha2 * x2;
             }
         }
@@ -329,9 +416,10 @@ impl ViscoelasticContact {
             return;
         }
         for (body, &freedom) in self.freedoms.iter().enumerate() {
-            let (modes, motion) = (Modes::new(&self.grid, freedom), self.trial.motions[body]);
+            let (modes, motion) = (Modes::new(self.region.grid(), freedom), self.trial.motions[body]);
+            let owner = self.gap_here.as_ref().unwrap_or(&self.initial_gap);
             for k in 0..self.gap.len() {
-                if self.initial_gap.owner(k) == body && self.gap[k].is_finite() {
+                if owner.owner(k) == body && self.gap[k].is_finite() {
                     // u_old + c v with the gap h less the same: gap = hi + u_old − prescribed
                     let h = self.gap[k] + c * self.trial.potential[k] - modes.displacement(motion, k);
                     if self.trial.pressure[k] > 0.0 || h < 0.0 {
@@ -355,7 +443,7 @@ impl ViscoelasticContact {
             return Err(Error::NotConverged { time, dt, iterations: counts.iterations, residual, tolerance });
         }
         if self.settings.edge == Edge::Refuse {
-            let cells = self.grid.positive_on_edge(&self.trial.pressure);
+            let cells = self.region.positive_on_edge(&self.trial.pressure);
             if cells > 0 {
                 return Err(Error::ContactAtEdge { time, cells });
             }
@@ -385,10 +473,21 @@ impl ViscoelasticContact {
 }
 
 /// What a load prescribes of (ω, α1, α2), zero where it leaves them free; ω from the datum of the gap.
-fn prescribed(load: &Load, datum: f64) -> [f64; 3] {
+pub(super) fn lowered(load: &Load, datum: f64) -> [f64; 3] {
     let omega = if let Load::Approach { approach, .. } = load { approach - datum } else { 0.0 };
     let [alpha1, alpha2] = load.tilt().map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
     [omega, alpha1, alpha2]
+}
+
+/// What a load leaves free of a body.
+fn freedom(load: &Load, grid: &Grid) -> Freedom {
+    let tilt = load.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
+    let point = load.tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
+    let (translation, total) = match load {
+        Load::Force { normal, .. } => (true, normal / grid.cell_area()),
+        Load::Approach { .. } => (false, 0.0),
+    };
+    Freedom { translation, tilt, point, total }
 }
 
 /// The motion at which an upright body just touches the undeformed surface.

@@ -73,6 +73,11 @@ impl Direct {
         Ok(newest)
     }
 
+    /// The same past on other cells, where each increment is what `carry` makes of it.
+    pub(crate) fn carry(&mut self, carry: impl Fn(&[f64]) -> Vec<f64>) {
+        self.increments.iter_mut().for_each(|(_, increment)| *increment = carry(increment));
+    }
+
     pub(crate) fn commit(&mut self, change: &Change<'_>) {
         let [before, after] = change.potential;
         let when = match self.weighting {

@@ -62,6 +62,55 @@ impl Exponential {
         }
     }
 
+    /// Lets the fields follow the step committed last, whose ends are `before` and `displacement`.
+    pub(crate) fn settle(&mut self, before: &[f64], displacement: &[f64]) {
+        if !std::mem::take(&mut self.waiting) {
+            return;
+        }
+        let branches = self.factors.len();
+        for (block, fields) in self.fields.chunks_mut((BLOCK * branches).max(1)).enumerate() {
+            let cells = block * BLOCK..(block * BLOCK + fields.len() / branches);
+            let (old, new) = (&before[cells.clone()], &displacement[cells]);
+            for (q, &(decay, gain)) in fields.chunks_mut(new.len()).zip(&self.committed) {
+                for ((q, &new), &old) in q.iter_mut().zip(new).zip(old) {
+                    *q = decay * *q + gain * (new - old);
+                }
+            }
+        }
+    }
+
+    /// Number of relaxation times.
+    pub(crate) fn branches(&self) -> usize {
+        self.factors.len()
+    }
+
+    /// The field q_i, on `cells` cells.
+    pub(crate) fn branch(&self, i: usize, cells: usize) -> Vec<f64> {
+        let branches = self.branches();
+        (0..cells.div_ceil(BLOCK))
+            .flat_map(|block| {
+                let width = BLOCK.min(cells - block * BLOCK);
+                let start = block * BLOCK * branches + i * width;
+                &self.fields[start..start + width]
+            })
+            .copied()
+            .collect()
+    }
+
+    /// The same past on other cells: what each field, settled, becomes there is up to `carry`.
+    pub(crate) fn carry(&mut self, from: usize, to: usize, mut carry: impl FnMut(usize, Vec<f64>) -> Vec<f64>) {
+        let branches = self.branches();
+        let mut fields = vec![0.0; to * branches];
+        for i in 0..branches {
+            let branch = carry(i, self.branch(i, from));
+            for (block, values) in branch.chunks(BLOCK).enumerate() {
+                let start = block * BLOCK * branches + i * values.len();
+                fields[start..start + values.len()].copy_from_slice(values);
+            }
+        }
+        self.fields = fields;
+    }
+
     /// Whether there is a past at all: an elastic body has none.
     pub(crate) fn remembers(&self) -> bool {
         !self.factors.is_empty() || self.relaxation.viscosity() > 0.0

@@ -71,6 +71,22 @@ impl History {
         None
     }
 
+    /// An undisturbed past on so many cells.
+    pub(crate) fn undisturbed_on(&mut self, cells: usize) {
+        match self {
+            History::Exponential(history) => history.carry(0, cells, |_, _| vec![0.0; cells]),
+            History::Direct(_) => {}
+            History::Unfitted(history) => history.carry(cells),
+        }
+    }
+
+    /// Lets everything follow the step committed last, whose ends are `before` and `displacement`.
+    pub(crate) fn settle(&mut self, before: &[f64], displacement: &[f64]) {
+        if let History::Exponential(history) = self {
+            history.settle(before, displacement);
+        }
+    }
+
     /// Says that the run lasts at least so long after its start \[s\].
     pub(crate) fn expect(&mut self, duration: f64) {
         if let History::Unfitted(history) = self {

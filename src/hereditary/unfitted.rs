@@ -35,8 +35,8 @@ pub(crate) struct Fitted {
 }
 
 impl Unfitted {
-    pub(crate) fn new(material: Material, tolerance: f64, cells: usize) -> Unfitted {
-        Unfitted { material, tolerance, cells, expected: 0.0, fitted: None }
+    pub(crate) fn new(material: Material, tolerance: f64) -> Unfitted {
+        Unfitted { material, tolerance, cells: 0, expected: 0.0, fitted: None }
     }
 
     pub(crate) fn predict(&mut self, time: f64, dt: f64, displacement: &[f64], u_old: &mut [f64]) -> Result<f64> {
@@ -66,6 +66,11 @@ impl Unfitted {
             Some(fitted) => fitted.history.predict(time, dt, displacement, u_old),
             None => Err(self.material.no_series("a step")),
         }
+    }
+
+    /// The same past, which was jumps alone, on so many other cells.
+    pub(crate) fn carry(&mut self, cells: usize) {
+        (self.cells, self.fitted) = (cells, None);
     }
 
     /// Takes the step that was predicted last into the past, and hands over what was fitted for it; nothing for a step

@@ -22,6 +22,7 @@ use std::f64::consts::PI;
 use crate::quadrature::GaussLegendre;
 
 /// Love coefficients of one cell shape \[m\].
+#[derive(Debug, Clone)]
 pub(crate) struct Love {
     /// Whether x1 is the longer side of the cell.
     long_first: bool,

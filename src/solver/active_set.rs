@@ -92,13 +92,13 @@ enum Shape {
 }
 
 impl ActiveSet {
-    pub(crate) fn new(grid: &Grid, bodies: usize) -> ActiveSet {
+    pub(crate) fn new(grid: &Grid, folded: [bool; 2], bodies: usize) -> ActiveSet {
         let field = vec![0.0; grid.len()];
         let cells = || Vec::with_capacity(grid.len());
         let body =
             |_| ActiveBody { patch: Patch { cells: cells(), ..Patch::default() }, leaving: cells(), correction: None };
         ActiveSet {
-            preconditioner: Preconditioner::new(grid),
+            preconditioner: Preconditioner::new(grid, folded),
             fallback: ProjectedGradient::default(),
             member: vec![false; grid.len()],
             bodies: (0..bodies).map(body).collect(),

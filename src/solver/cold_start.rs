@@ -53,12 +53,13 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut 
     let heights = || cells.iter().map(|&k| gap(k));
     let lowest = heights().fold(f64::INFINITY, f64::min);
     let highest = heights().fold(f64::NEG_INFINITY, f64::max);
-    let area = problem.kernel.grid().cell_area();
+    let (area, images) = (problem.kernel.grid().cell_area(), problem.kernel.images());
     let cells_below = |level: f64| heights().filter(|&h| h <= level).count() as f64;
 
     let (level, peak) = if freedom.translation {
-        let rise =
-            |level: f64| 0.375 * PI.sqrt() * problem.compliance * freedom.total * (area / cells_below(level)).sqrt();
+        let rise = |level: f64| {
+            0.375 * PI.sqrt() * problem.compliance * freedom.total * (images * area / cells_below(level)).sqrt()
+        };
         // the rise falls with the level: the balance is unique, and above the highest gap if the load
         // presses the whole face
         let mut level = highest;
@@ -74,7 +75,7 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut 
         (level, 1.0)
     } else if lowest < 0.0 {
         let level = 0.5 * lowest;
-        let radius = (cells_below(level) * area / PI).sqrt();
+        let radius = (images * cells_below(level) * area / PI).sqrt();
         (level, 2.0 / PI * -lowest / (problem.compliance * radius))
     } else {
         return; // the body does not reach the surface

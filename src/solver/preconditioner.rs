@@ -16,15 +16,16 @@ pub(crate) struct Preconditioner {
 }
 
 impl Preconditioner {
-    pub(crate) fn new(grid: &Grid) -> Preconditioner {
+    pub(crate) fn new(grid: &Grid, folded: [bool; 2]) -> Preconditioner {
         let (cells, spacing) = (grid.cells(), grid.spacing());
-        let layout = Layout { cells, padded: false, folded: [false; 2] };
+        let layout = Layout { cells, padded: false, folded };
         let period = [layout.period(0), layout.period(1)];
         let wave_number = |axis: usize, k: usize| TAU * k as f64 / (period[axis] as f64 * spacing[axis]);
         // a uniform pressure on a square of side L sinks it by 0.95 L p on average (Love): the mean is
         // treated as a wave of that compliance
         let [l1, l2] = grid.lengths();
-        let mean = 1.05 / (l1 * l2).sqrt();
+        let images: f64 = folded.iter().map(|&folded| if folded { 2.0 } else { 1.0 }).product();
+        let mean = 1.05 / (images * l1 * l2).sqrt();
         let operator = SpectralOperator::from_symbol(layout, |k1, k2| match (k1, k2) {
             (0, 0) => mean,
             _ => 0.5 * wave_number(0, k1).hypot(wave_number(1, k2)),
@@ -32,9 +33,11 @@ impl Preconditioner {
         let mut preconditioner =
             Preconditioner { work: operator.workspace(), operator: Arc::new(operator), diagonal: 0.0 };
         let mut impulse = vec![0.0; grid.len()];
-        impulse[0] = 1.0;
+        // in the middle, as far as can be from mirror images
+        let middle = cells[0] / 2 * cells[1] + cells[1] / 2;
+        impulse[middle] = 1.0;
         preconditioner.apply(&mut impulse);
-        preconditioner.diagonal = impulse[0];
+        preconditioner.diagonal = impulse[middle];
         preconditioner
     }
 

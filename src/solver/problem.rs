@@ -1,13 +1,13 @@
 //! What a step asks of a solver, and what it gets back.
 
-use crate::kernel::{InfluenceKernel, Workspace};
+use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::rigid::{Freedom, Gram, Modes, Motion};
 
 /// Find p ≥ 0 and the free motions of the bodies with h = c K p + gap − motion ≥ 0, p h = 0, and the balance
 /// of force and moments that each freedom asks for.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Problem<'a> {
-    pub(crate) kernel: &'a InfluenceKernel,
+    pub(crate) kernel: &'a LocalKernel,
     /// The elastic-like compliance c of the step \[1/Pa\].
     pub(crate) compliance: f64,
     /// Initial gap, history and prescribed motion, hi + u_old − (ω + α·x) \[m\]; +∞ where there is nothing

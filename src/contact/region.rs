@@ -1,0 +1,263 @@
+//! The part of the grid that a contact is computed on.
+
+use crate::Grid;
+use crate::geometry::Gap;
+
+/// A rectangle of cells, by symmetry perhaps the half or the quarter of one: what happens elsewhere is its mirror image, or
+/// out of reach.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Region {
+    whole: Grid,
+    /// Its cells, with the coordinates of the whole.
+    grid: Grid,
+    /// Its first cell.
+    first: [usize; 2],
+    /// Axes along which every field is even about the middle: only the upper half is computed.
+    folded: [bool; 2],
+}
+
+impl Region {
+    fn new(whole: &Grid, folded: [bool; 2], first: [usize; 2], cells: [usize; 2]) -> Region {
+        Region { whole: whole.clone(), grid: whole.part(first, cells), first, folded }
+    }
+
+    /// All of `grid`, but for mirror images along folded axes, which have an even number of cells.
+    pub(crate) fn whole(grid: &Grid, folded: [bool; 2]) -> Region {
+        let all = grid.cells();
+        let first = [0, 1].map(|axis| if folded[axis] { all[axis] / 2 } else { 0 });
+        Region::new(grid, folded, first, [0, 1].map(|axis| all[axis] - first[axis]))
+    }
+
+    /// A region of suitable size that holds the cells `low` … `high` of the whole grid, and the part `margin` of their
+    /// number more.
+    pub(crate) fn around(grid: &Grid, folded: [bool; 2], low: [usize; 2], high: [usize; 2], margin: f64) -> Region {
+        let (mut first, mut cells) = ([0; 2], [0; 2]);
+        for axis in 0..2 {
+            let (n, middle) = (grid.cells()[axis], grid.cells()[axis] / 2);
+            let (low, high) = (low[axis], high[axis]);
+            let extent = if folded[axis] {
+                (high + 1).saturating_sub(middle).max(middle.saturating_sub(low))
+            } else {
+                high + 1 - low
+            };
+            let wanted = suitable((extent as f64 * (1.0 + margin)).ceil() as usize + 1);
+            if folded[axis] {
+                (first[axis], cells[axis]) = (middle, wanted.min(n - middle));
+            } else {
+                cells[axis] = wanted.min(n);
+                first[axis] = (low + extent / 2).saturating_sub(cells[axis] / 2).min(n - cells[axis]);
+            }
+        }
+        Region::new(grid, folded, first, cells)
+    }
+
+    /// A small one that holds the lowest cell of each body.
+    pub(crate) fn first_touched(grid: &Grid, folded: [bool; 2], gap: &Gap, bodies: usize) -> Region {
+        let (low, high) = Region::lowest_cells(grid, gap, bodies);
+        Region::around(grid, folded, low, high, 0.0)
+    }
+
+    /// The least rectangle that holds the lowest cell of each body.
+    pub(crate) fn lowest_cells(grid: &Grid, gap: &Gap, bodies: usize) -> ([usize; 2], [usize; 2]) {
+        let n2 = grid.cells()[1];
+        let (mut low, mut high) = (grid.cells(), [0; 2]);
+        for body in 0..bodies {
+            let own = (0..gap.above.len()).filter(|&k| gap.owner(k) == body);
+            // of mirror images the last is the one that is computed
+            if let Some(k) = own.rev().min_by(|&a, &b| gap.above[a].total_cmp(&gap.above[b])) {
+                let cell = [k / n2, k % n2];
+                (low, high) = ([0, 1].map(|a| low[a].min(cell[a])), [0, 1].map(|a| high[a].max(cell[a])));
+            }
+        }
+        (low, high)
+    }
+
+    pub(crate) fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    pub(crate) fn cells(&self) -> [usize; 2] {
+        self.grid.cells()
+    }
+
+    pub(crate) fn folded(&self) -> [bool; 2] {
+        self.folded
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.grid.len()
+    }
+
+    /// How many cells of the whole grid each of its cells stands for.
+    pub(crate) fn images(&self) -> usize {
+        self.folded.iter().map(|&folded| if folded { 2 } else { 1 }).product()
+    }
+
+    /// Whether it is the whole grid itself.
+    pub(crate) fn is_whole(&self) -> bool {
+        self.grid == self.whole
+    }
+
+    /// Whether it and its images are the whole grid.
+    pub(crate) fn covers(&self) -> bool {
+        self.images() * self.len() == self.whole.len()
+    }
+
+    /// The first and the last of its cells, as cells of the whole grid.
+    pub(crate) fn extent(&self) -> ([usize; 2], [usize; 2]) {
+        (self.first, [0, 1].map(|axis| self.first[axis] + self.cells()[axis] - 1))
+    }
+
+    /// Its cell that is, or is the image of, a cell of the whole grid.
+    pub(crate) fn find(&self, cell: [usize; 2]) -> Option<usize> {
+        let mut own = [0; 2];
+        for axis in 0..2 {
+            let (n, index) = (self.whole.cells()[axis], cell[axis]);
+            let index = if self.folded[axis] && index < n / 2 { n - 1 - index } else { index };
+            own[axis] = index.checked_sub(self.first[axis]).filter(|&own| own < self.cells()[axis])?;
+        }
+        Some(own[0] * self.cells()[1] + own[1])
+    }
+
+    /// The cell of the whole grid that its cell `k` is.
+    pub(crate) fn cell(&self, k: usize) -> [usize; 2] {
+        let n2 = self.cells()[1];
+        [self.first[0] + k / n2, self.first[1] + k % n2]
+    }
+
+    /// Takes its share out of a field on the whole grid.
+    pub(crate) fn cut<V: Copy>(&self, whole: &[V]) -> Vec<V> {
+        let n2 = self.whole.cells()[1];
+        (0..self.len()).map(|k| self.cell(k)).map(|[i, j]| whole[i * n2 + j]).collect()
+    }
+
+    /// Its share of a gap; nothing if that is all of it.
+    pub(crate) fn cut_gap(&self, gap: &Gap) -> Option<Gap> {
+        (!self.is_whole()).then(|| Gap {
+            datum: gap.datum,
+            above: self.cut(&gap.above),
+            owner: gap.owner.as_ref().map(|owner| self.cut(owner)),
+        })
+    }
+
+    /// Writes a field of its own over the cells, and the images of cells, that it belongs to.
+    pub(crate) fn spread(&self, own: &[f64], whole: &mut [f64]) {
+        let ([n1, n2], [_, m2]) = (self.whole.cells(), self.cells());
+        for (i, row) in own.chunks_exact(m2).enumerate() {
+            let i = self.first[0] + i;
+            let images = [Some(i), self.folded[0].then_some(n1 - 1 - i)];
+            for i in images.into_iter().flatten() {
+                let line = &mut whole[i * n2..(i + 1) * n2];
+                line[self.first[1]..self.first[1] + m2].copy_from_slice(row);
+                if self.folded[1] {
+                    let start = n2 - self.first[1] - m2;
+                    line[start..start + m2].iter_mut().rev().zip(row).for_each(|(out, &value)| *out = value);
+                }
+            }
+        }
+    }
+
+    /// A field on another region of the same grid from one of its own; `elsewhere` says what it is on cells that are
+    /// none of its own, nor images of them.
+    pub(crate) fn carry<V: Copy>(&self, own: &[V], other: &Region, elsewhere: impl Fn(usize) -> V) -> Vec<V> {
+        (0..other.len()).map(|k| self.find(other.cell(k)).map_or_else(|| elsewhere(k), |own_k| own[own_k])).collect()
+    }
+
+    /// Number of cells on the edge of the whole grid whose value in `own` is positive.
+    pub(crate) fn positive_on_edge(&self, own: &[f64]) -> usize {
+        let [m1, m2] = self.cells();
+        let ends = |axis: usize, count: usize| {
+            let outermost = [self.first[axis] == 0, self.first[axis] + count == self.whole.cells()[axis]];
+            [outermost[0].then_some(0), outermost[1].then_some(count - 1).filter(|&last| last > 0 || !outermost[0])]
+        };
+        let (rows, columns) = (ends(0, m1), ends(1, m2));
+        let positive = |row: &[f64]| row.iter().filter(|&&value| value > 0.0).count();
+        let across: usize = rows.into_iter().flatten().map(|i| positive(&own[i * m2..(i + 1) * m2])).sum();
+        let inner = (0..m1).filter(|i| !rows.contains(&Some(*i)));
+        let down = inner.map(|i| columns.into_iter().flatten().filter(|j| own[i * m2 + j] > 0.0).count());
+        self.images() * (across + down.sum::<usize>())
+    }
+}
+
+/// The next of the sizes 4, 5, 6, 7, 8, 10, 12, 14, 16, 20 …: transforms of them are fast, and a contact that grows need not
+/// change them often.
+fn suitable(cells: usize) -> usize {
+    let step = 1 << cells.max(4).ilog2().saturating_sub(2);
+    cells.max(4).next_multiple_of(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(cells: [usize; 2]) -> Grid {
+        Grid::new(cells, cells.map(|n| n as f64)).unwrap()
+    }
+
+    #[test]
+    fn edge_cells_are_counted_once() {
+        for (cells, expected) in
+            [([3, 3], 8), ([1, 4], 4), ([4, 1], 4), ([1, 1], 1), ([2, 5], 10), ([4, 6], 16), ([2, 2], 4)]
+        {
+            for folded in [[false, false], [true, false], [false, true], [true, true]] {
+                if (0..2).any(|axis| folded[axis] && cells[axis] % 2 == 1) {
+                    continue;
+                }
+                let region = Region::whole(&grid(cells), folded);
+                assert_eq!(region.positive_on_edge(&vec![1.0; region.len()]), expected, "{cells:?} {folded:?}");
+            }
+        }
+        let inside = Region::around(&grid([64, 64]), [false; 2], [20, 30], [25, 35], 0.1);
+        assert_eq!(inside.positive_on_edge(&vec![1.0; inside.len()]), 0);
+        let aside = Region::around(&grid([64, 64]), [false; 2], [0, 30], [5, 35], 0.1);
+        assert_eq!(aside.positive_on_edge(&vec![1.0; aside.len()]), aside.cells()[1]);
+    }
+
+    /// What is cut out and spread again is the same, on every cell and its images.
+    #[test]
+    fn regions_know_their_cells() {
+        let whole = grid([20, 30]);
+        for folded in [[false, false], [true, false], [false, true], [true, true]] {
+            for region in [
+                Region::whole(&whole, folded),
+                Region::around(&whole, folded, [8, 12], [11, 16], 0.2),
+                Region::around(&whole, folded, [0, 29], [19, 29], 0.2),
+            ] {
+                let even = |cell: [usize; 2]| {
+                    let [x, y] = [0, 1].map(|axis| whole.coordinate(axis, cell[axis]));
+                    [x, y]
+                        .iter()
+                        .zip(folded)
+                        .fold(0.0, |sum, (x, folded)| 10.0 * sum + if folded { x.abs() } else { *x })
+                };
+                let field: Vec<f64> = (0..600).map(|k| even([k / 30, k % 30])).collect();
+                let own = region.cut(&field);
+                for (k, &value) in own.iter().enumerate() {
+                    assert_eq!(
+                        region.grid().center(k / region.cells()[1], k % region.cells()[1]),
+                        whole.center(region.cell(k)[0], region.cell(k)[1])
+                    );
+                    assert_eq!((region.find(region.cell(k)), value), (Some(k), even(region.cell(k))));
+                }
+                let mut spread = vec![f64::NAN; 600];
+                region.spread(&own, &mut spread);
+                for k in 0..600 {
+                    let cell = [k / 30, k % 30];
+                    assert!(if region.find(cell).is_some() { spread[k] == field[k] } else { spread[k].is_nan() });
+                }
+                assert_eq!(region.covers(), spread.iter().all(|x| !x.is_nan()));
+                let carried = region.carry(&own, &Region::whole(&whole, [false; 2]), |_| f64::NAN);
+                assert!(carried.iter().zip(&spread).all(|(a, b)| a == b || (a.is_nan() && b.is_nan())));
+            }
+        }
+    }
+
+    #[test]
+    fn sizes_grow_by_a_quarter_at_most() {
+        let sizes: Vec<usize> = (1..200).map(suitable).collect();
+        assert!(
+            sizes.iter().zip(1..).all(|(&size, wanted)| size >= wanted && (wanted < 4 || 4 * size <= 5 * wanted + 3))
+        );
+        assert_eq!(suitable(129), 160);
+    }
+}
