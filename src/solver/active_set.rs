@@ -29,6 +29,7 @@
 use crate::Grid;
 use crate::kernel::Workspace;
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
+use crate::solver::passes::{self, Fields, Runs, Survey};
 use crate::solver::preconditioner::Preconditioner;
 use crate::solver::problem::{Measure, PENETRATION_SLACK, Patch, Problem, Solution, Stop, relative_residual};
 use crate::solver::projected_gradient::ProjectedGradient;
@@ -53,6 +54,9 @@ const LENGTH: f64 = 0.5;
 /// Change of the force by which a converged pressure may be closed.
 const CLOSED: f64 = 1e-9;
 
+/// Σ (r − mean)² is not taken from Σ r² where less than this part of it is left.
+const CANCELLED: f64 = 1e-6;
+
 /// Iterations without a new lowest residual after which the fall-back takes over for a while.
 const PATIENCE: usize = 40;
 
@@ -62,12 +66,18 @@ pub(crate) struct ActiveSet {
     fallback: ProjectedGradient,
     /// Whether a cell is in A.
     member: Vec<bool>,
+    /// The pieces of rows that A consists of.
+    runs: Runs,
     bodies: Vec<ActiveBody>,
     /// r on A.
     residual: Vec<f64>,
+    /// What is still to be taken from it: its mean, by which the motion was corrected.
+    mean: f64,
     preconditioned: Vec<f64>,
     direction: Vec<f64>,
+    /// K d, and d·Kd.
     image: Vec<f64>,
+    energy: f64,
     /// What corrections of the balance are shaped like; made at the first load that tilts.
     shape: Vec<f64>,
 }
@@ -101,6 +111,9 @@ impl ActiveSet {
             preconditioner: Preconditioner::new(grid, folded),
             fallback: ProjectedGradient::default(),
             member: vec![false; grid.len()],
+            runs: Runs::with_capacity(grid.len()),
+            energy: 0.0,
+            mean: 0.0,
             bodies: (0..bodies).map(body).collect(),
             residual: field.clone(),
             preconditioned: field.clone(),
@@ -117,14 +130,13 @@ impl ActiveSet {
         // nothing of an earlier solve, perhaps of a step that failed, may reach this one
         self.fallback.reset();
         self.start(problem, solution, work);
-        let (mut lowest, mut since) = (f64::INFINITY, 0);
+        let (mut lowest, mut since, mut step) = (f64::INFINITY, 0, 0.0);
         loop {
-            let mut state = self.measure(problem, solution);
+            let (mut state, mut penetration) = self.advance(problem, solution, step);
             if state.negative > 0.0 && self.should_evict(problem, stop, state) {
                 self.evict(problem, solution, work);
-                state = self.measure(problem, solution);
+                (state, penetration) = self.advance(problem, solution, 0.0);
             }
-            let penetration = problem.penetration(solution, |k| !self.member[k]);
             solution.residual = relative_residual(&state, penetration);
             let admissible = !self.pending() && state.negative == 0.0;
             let solved = admissible && solution.residual <= stop.tolerance;
@@ -139,19 +151,19 @@ impl ActiveSet {
             if since > PATIENCE {
                 self.fallback.improve(problem, stop, solution, work);
                 self.start(problem, solution, work);
-                since = 0;
+                (since, step) = (0, 0.0);
                 continue;
             }
             if penetration > JOIN * state.rms() {
                 self.join(problem, state, penetration, solution);
-                self.measure(problem, solution);
+                self.advance(problem, solution, 0.0);
             }
 
             solution.counts.iterations += 1;
             self.find_direction(problem, solution);
             problem.kernel.apply(&self.direction, &mut self.image, work);
             solution.counts.convolutions += 1;
-            self.advance(problem, solution);
+            step = self.step_length(problem, solution);
         }
     }
 
@@ -159,6 +171,7 @@ impl ActiveSet {
     fn start(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) {
         self.direction.fill(0.0);
         self.image.fill(0.0);
+        self.energy = 0.0;
         for (k, member) in self.member.iter_mut().enumerate() {
             *member = solution.pressure[k] > 0.0 && problem.possible(k);
         }
@@ -185,6 +198,7 @@ impl ActiveSet {
             }
         }
         if fresh {
+            self.runs.find(&self.member);
             solution.convolve(problem, work);
         }
         self.bodies.iter_mut().for_each(|active| active.leaving.clear());
@@ -203,8 +217,9 @@ impl ActiveSet {
 
     /// Lists the members of A.
     fn list_cells(&mut self, problem: &Problem<'_>) {
+        self.runs.find(&self.member);
         self.bodies.iter_mut().for_each(|active| active.patch.cells.clear());
-        for (k, _) in self.member.iter().enumerate().filter(|(_, member)| **member) {
+        for k in self.runs.ranges().flatten() {
             self.bodies[problem.owner(k)].patch.cells.push(k as u32);
         }
         for (body, active) in self.bodies.iter_mut().enumerate() {
@@ -265,6 +280,7 @@ impl ActiveSet {
                     active.leaving.drain(..).for_each(|k| solution.pressure[k as usize] = 0.0);
                     press_everywhere(problem, body, &mut active.patch, solution);
                     adopt_pressed(problem, body, active, &mut self.member, solution);
+                    self.runs.find(&self.member);
                     solution.convolve(problem, work);
                 }
             }
@@ -287,13 +303,60 @@ impl ActiveSet {
         }
     }
 
-    /// Sets r and the free motions and takes the sums over A.
-    fn measure(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> Measure {
+    /// Whether there is one body that does not tilt: then everything is done in a few [`passes`].
+    fn is_upright(&self, problem: &Problem<'_>) -> bool {
+        self.bodies.len() == 1 && !problem.modes(0).tilts()
+    }
+
+    /// p += a d, v += a K d; sets r and the free motions, and takes the sums over A and the deepest penetration outside.
+    fn advance(&mut self, problem: &Problem<'_>, solution: &mut Solution, a: f64) -> (Measure, f64) {
+        if self.is_upright(problem) {
+            return self.advance_upright(problem, solution, a);
+        }
+        if a != 0.0 {
+            for k in self.bodies.iter().flat_map(|active| &active.patch.cells).map(|&k| k as usize) {
+                solution.pressure[k] += a * self.direction[k];
+            }
+            for (v, &kd) in solution.potential.iter_mut().zip(&self.image) {
+                *v += a * kd;
+            }
+        }
         let mut state = Measure::default();
         for (body, active) in self.bodies.iter().enumerate() {
             problem.measure(body, &active.patch, solution, &mut self.residual, &mut state);
         }
-        state
+        (state, problem.penetration(solution, |k| !self.member[k]))
+    }
+
+    fn advance_upright(&mut self, problem: &Problem<'_>, solution: &mut Solution, a: f64) -> (Measure, f64) {
+        let motion = solution.motions[0][0];
+        let found = passes::survey(
+            &self.runs,
+            a,
+            problem.compliance,
+            motion,
+            Fields {
+                gap: problem.gap,
+                direction: &self.direction,
+                image: &self.image,
+                pressure: &mut solution.pressure,
+                potential: &mut solution.potential,
+                residual: &mut self.residual,
+            },
+        );
+        let cells = self.bodies[0].patch.cells.len();
+        let count = cells.max(1) as f64;
+        self.mean = if problem.modes(0).translates() { found.residual / count } else { 0.0 };
+        solution.motions[0][0] = motion - self.mean;
+        let mut square = found.square - count * self.mean * self.mean;
+        // where the motion was far off, the difference is mostly rounding
+        if square < CANCELLED * found.square {
+            square = passes::center(&self.runs, self.mean, &mut self.residual, &mut self.preconditioned);
+            self.mean = 0.0;
+        }
+        let Survey { displacement, negative, height, .. } = found;
+        let state = Measure { square, displacement, negative, height, cells };
+        (state, (found.depth + solution.motions[0][0]).max(0.0))
     }
 
     /// Takes the deeper ones of the penetrating cells into A, but for those that are about to leave: they would
@@ -301,8 +364,15 @@ impl ActiveSet {
     /// yields is not yet where it belongs: then the deepest cells stop it first.
     fn join(&mut self, problem: &Problem<'_>, state: Measure, penetration: f64, solution: &Solution) {
         let least = penetration * if penetration > state.yielding() { 0.5 } else { DEEP };
+        let upright = self.is_upright(problem);
+        let (c, motion) = (problem.compliance, solution.motions[0][0]);
         for k in 0..self.member.len() {
-            self.member[k] |= solution.pressure[k] == 0.0 && problem.possible(k) && problem.depth(solution, k) > least;
+            self.member[k] |= solution.pressure[k] == 0.0
+                && if upright {
+                    motion - (c * solution.potential[k] + problem.gap[k]) > least
+                } else {
+                    problem.possible(k) && problem.depth(solution, k) > least
+                };
         }
         self.list_cells(problem);
     }
@@ -330,6 +400,9 @@ impl ActiveSet {
     /// whole change of p.
     fn find_direction(&mut self, problem: &Problem<'_>, solution: &mut Solution) {
         let (length, pending) = (LENGTH / problem.compliance, self.pending());
+        if self.is_upright(problem) {
+            return self.find_direction_upright(problem, solution, length, pending);
+        }
         let z = &mut self.preconditioned;
         z.fill(0.0);
         for active in &self.bodies {
@@ -346,9 +419,7 @@ impl ActiveSet {
             problem.modes(body).project_out(gram, cells, z);
             overlap += cells.iter().map(|&k| z[k as usize] * self.image[k as usize]).sum::<f64>();
         }
-        let energy: f64 = self.direction.iter().zip(&self.image).map(|(d, kd)| d * kd).sum();
-        // a correction is no conjugate direction, and would only spread the error of its length
-        let beta = if energy > 0.0 && !pending { -overlap / energy } else { 0.0 };
+        let beta = Self::conjugate(self.energy, overlap, pending);
         for (body, Patch { cells, gram }) in self.bodies.iter().map(|active| &active.patch).enumerate() {
             if beta != 0.0 {
                 cells.iter().for_each(|&k| z[k as usize] += beta * self.direction[k as usize]);
@@ -371,29 +442,57 @@ impl ActiveSet {
         }
     }
 
-    /// p += a d, v += a K d.
-    fn advance(&mut self, problem: &Problem<'_>, solution: &mut Solution) {
-        let mut a = 1.0;
+    fn find_direction_upright(&mut self, problem: &Problem<'_>, solution: &mut Solution, length: f64, pending: bool) {
+        let active = &self.bodies[0];
+        passes::center(&self.runs, self.mean, &mut self.residual, &mut self.preconditioned);
+        self.mean = 0.0;
+        for &k in &active.leaving {
+            let response = -solution.pressure[k as usize] / (length * self.preconditioner.diagonal());
+            self.preconditioned[k as usize] = response;
+        }
+        self.preconditioner.apply(&mut self.preconditioned);
+        solution.counts.preconditioner_applications += 1;
+
+        let [z, z_kd, kd, d] = passes::overlaps(&self.runs, &self.preconditioned, &self.image, &self.direction);
+        let share = if problem.modes(0).translates() { 1.0 / active.patch.cells.len().max(1) as f64 } else { 0.0 };
+        let beta = Self::conjugate(self.energy, z_kd - share * z * kd, pending);
+        let scale = if pending { length } else { 1.0 };
+        let shift = -share * (z + beta * d);
+        passes::redirect(&self.runs, [scale, beta, shift], &self.preconditioned, &mut self.direction);
+        for &k in &active.leaving {
+            self.direction[k as usize] = -solution.pressure[k as usize];
+        }
+    }
+
+    /// β from z·Kd. A correction is no conjugate direction, and would only spread the error of its length.
+    fn conjugate(energy: f64, overlap: f64, pending: bool) -> f64 {
+        if energy > 0.0 && !pending { -overlap / energy } else { 0.0 }
+    }
+
+    /// The length a of the step along d, 1 for a correction. Brings cells that leave to p = 0.
+    fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> f64 {
+        let [slope, curvature] = if self.is_upright(problem) {
+            passes::slope_and_curvature(&self.runs, &self.residual, &self.direction, &self.image)
+        } else {
+            let cells = self.bodies.iter().flat_map(|active| &active.patch.cells).map(|&k| k as usize);
+            cells.fold([0.0; 2], |[slope, curvature], k| {
+                let d = self.direction[k];
+                [slope + self.residual[k] * d, curvature + d * self.image[k]]
+            })
+        };
+        let leaving = self.bodies.iter().flat_map(|active| &active.leaving).map(|&k| k as usize);
+        self.energy = curvature + leaving.map(|k| self.direction[k] * self.image[k]).sum::<f64>();
         if !self.pending() {
-            let (mut slope, mut curvature) = (0.0, 0.0);
-            for k in self.bodies.iter().flat_map(|active| &active.patch.cells).map(|&k| k as usize) {
-                slope += self.residual[k] * self.direction[k];
-                curvature += self.direction[k] * self.image[k];
-            }
             // nothing is left to gain along a direction that vanishes, as on a single cell
-            a = if slope > 0.0 && curvature > 0.0 { slope / (problem.compliance * curvature) } else { 0.0 };
+            let downhill = slope > 0.0 && curvature > 0.0;
+            return if downhill { slope / (problem.compliance * curvature) } else { 0.0 };
         }
         for active in &mut self.bodies {
-            for k in active.patch.cells.iter().map(|&k| k as usize) {
-                solution.pressure[k] += a * self.direction[k];
-            }
             active.leaving.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
             active.leaving.clear();
             active.correction = None;
         }
-        for (v, &kd) in solution.potential.iter_mut().zip(&self.image) {
-            *v += a * kd;
-        }
+        1.0
     }
 }
 

@@ -8,6 +8,9 @@ use crate::solver::rest::rest;
 /// Bisections for the level, far beyond the accuracy that a guess needs.
 const HALVINGS: usize = 40;
 
+/// Cells summed together before they join the total, so that rounding does not grow with their number.
+const BLOCK: usize = 256;
+
 /// Fills the pressure under `body` with a guess whose force and moments are in balance; `patch` lists the
 /// cells that it may touch.
 ///
@@ -120,6 +123,15 @@ pub(crate) fn balance(problem: &Problem<'_>, body: usize, cells: &[u32], solutio
         return true;
     }
     let p = |k: usize| solution.pressure[k];
+    if !modes.tilts() && cells.iter().all(|&k| p(k as usize) >= 0.0) {
+        let sum: f64 = cells.chunks(BLOCK).map(|block| block.iter().map(|&k| p(k as usize)).sum::<f64>()).sum();
+        let scale = problem.bodies[body].total / sum;
+        if !scale.is_finite() {
+            return false;
+        }
+        cells.iter().for_each(|&k| solution.pressure[k as usize] *= scale);
+        return true;
+    }
     let Some(y) = modes.balance(cells, p, p) else { return false };
     for &k in cells {
         let p = &mut solution.pressure[k as usize];

@@ -2,6 +2,7 @@
 
 mod active_set;
 mod cold_start;
+mod passes;
 mod polonsky_keer;
 mod preconditioner;
 mod problem;
