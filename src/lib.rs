@@ -95,6 +95,7 @@ pub mod plan;
 mod quadrature;
 pub mod rheology;
 mod solver;
+mod sum;
 
 pub use contact::ViscoelasticContact;
 pub use error::{Error, Result};

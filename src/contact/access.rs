@@ -12,6 +12,7 @@ use crate::error::{Result, exact_length};
 use crate::kernel::InfluenceKernel;
 use crate::load::Load;
 use crate::rheology::Material;
+use crate::sum::sum;
 
 impl ViscoelasticContact {
     /// Time \[s\], 0 at first.
@@ -124,7 +125,7 @@ impl ViscoelasticContact {
     pub fn force(&self) -> f64 {
         // row by row, so that rounding does not grow with the number of cells
         let rows = self.current.pressure.chunks_exact(self.region.cells()[1]);
-        rows.map(|row| row.iter().sum::<f64>()).sum::<f64>() * self.grid.cell_area() * self.region.images() as f64
+        rows.map(sum).sum::<f64>() * self.grid.cell_area() * self.region.images() as f64
     }
 
     /// Moments of the whole pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\].

@@ -2,6 +2,7 @@
 
 use crate::contact::stepper::{ContactSolver, ViscoelasticContact};
 use crate::solver::{Counts, Modes};
+use crate::sum::{sum, sum_of_pairs};
 
 /// A guess reaches at most this many times the length of the last step ahead.
 const FARTHEST_GUESS: f64 = 2.0;
@@ -74,14 +75,15 @@ impl ViscoelasticContact {
             *motion = modes.motion([omega - self.initial_gap.datum, alpha1, alpha2]);
         }
         let mut ahead = if self.last_dt > 0.0 { (dt / self.last_dt).min(FARTHEST_GUESS) } else { 0.0 };
-        let (mut now, mut guessed) = (0.0, 0.0);
-        for (&p, &before) in self.current.pressure.iter().zip(&self.previous.pressure) {
-            now += p;
-            guessed += (p + ahead * (p - before)).max(0.0);
-        }
+        let positive = |p: f64| if p > 0.0 { p } else { 0.0 };
+        let guess = |p: f64, before: f64| positive(p + ahead * (p - before));
+        let guessed = sum_of_pairs(&self.current.pressure, &self.previous.pressure, guess);
         // a single force says what the guess must carry; else it should not stray far from the last state
-        let wanted =
-            if self.freedoms.len() == 1 && self.freedoms[0].translation { self.freedoms[0].total } else { now };
+        let wanted = if self.freedoms.len() == 1 && self.freedoms[0].translation {
+            self.freedoms[0].total
+        } else {
+            sum(&self.current.pressure)
+        };
         if !(wanted / FARTHEST_FORCE..=wanted * FARTHEST_FORCE).contains(&guessed) {
             ahead = 0.0;
         }

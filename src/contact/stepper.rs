@@ -17,6 +17,7 @@ use crate::kernel::{InfluenceKernel, LocalKernel, Workspace};
 use crate::load::{Load, Tilt};
 use crate::rheology::{Material, is_known};
 use crate::solver::{ActiveSet, Counts, Freedom, Modes, PolonskyKeer, Problem, Solution, Stop};
+use crate::sum::sum;
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
 /// on, and how both change with time.
@@ -335,7 +336,7 @@ impl ViscoelasticContact {
         self.last_dt = dt;
         self.interval = dt;
         self.before_is_kept = true;
-        self.refresh.count(self.current.pressure.iter().sum());
+        self.refresh.count(sum(&self.current.pressure));
         self.contact_cells = self.region.images() * self.current.pressure.iter().filter(|&&p| p > 0.0).count();
         self.show();
         if let Some((material, shortest)) = fitted {
@@ -394,6 +395,10 @@ impl ViscoelasticContact {
         }
         for (body, load) in loads.iter().enumerate() {
             let [omega, alpha1, alpha2] = lowered(load, self.initial_gap.datum);
+            if loads.len() == 1 && [alpha1, alpha2] == [0.0; 2] && omega != 0.0 {
+                self.gap.iter_mut().for_each(|gap| *gap -= omega);
+                continue;
+            }
             if [omega, alpha1, alpha2] == [0.0; 3] {
                 continue;
             }
@@ -409,10 +414,21 @@ impl ViscoelasticContact {
     /// residual of this step would otherwise stay in u, and count many times over when a later step is
     /// much stiffer than this one, as a jump after a long hold is.
     fn displace(&mut self, c: f64) {
+        let keeps = self.history.keeps_displacement();
+        if let (true, &[Freedom { tilt: [false, false], .. }]) = (keeps, &self.freedoms[..]) {
+            let motion = self.trial.motions[0][0];
+            let state = self.trial.pressure.iter().zip(&self.trial.potential).zip(&self.gap);
+            for (u, ((&p, &v), &gap)) in self.trial_displacement.iter_mut().zip(state) {
+                let cv = c * v;
+                let h = gap + cv - motion;
+                *u = (*u + cv) - if (p > 0.0) | (h < 0.0) { h } else { 0.0 };
+            }
+            return;
+        }
         for (u, &v) in self.trial_displacement.iter_mut().zip(&self.trial.potential) {
             *u += c * v;
         }
-        if !self.history.keeps_displacement() {
+        if !keeps {
             return;
         }
         for (body, &freedom) in self.freedoms.iter().enumerate() {

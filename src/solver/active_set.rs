@@ -68,6 +68,8 @@ pub(crate) struct ActiveSet {
     member: Vec<bool>,
     /// The pieces of rows that A consists of.
     runs: Runs,
+    /// The greatest |gap| there.
+    height: f64,
     bodies: Vec<ActiveBody>,
     /// r on A.
     residual: Vec<f64>,
@@ -112,6 +114,7 @@ impl ActiveSet {
             fallback: ProjectedGradient::default(),
             member: vec![false; grid.len()],
             runs: Runs::with_capacity(grid.len()),
+            height: 0.0,
             energy: 0.0,
             mean: 0.0,
             bodies: (0..bodies).map(body).collect(),
@@ -172,8 +175,9 @@ impl ActiveSet {
         self.direction.fill(0.0);
         self.image.fill(0.0);
         self.energy = 0.0;
-        for (k, member) in self.member.iter_mut().enumerate() {
-            *member = solution.pressure[k] > 0.0 && problem.possible(k);
+        let upright = self.is_upright(problem);
+        for (k, (member, &p)) in self.member.iter_mut().zip(&solution.pressure).enumerate() {
+            *member = (p > 0.0) & if upright { problem.gap[k].is_finite() } else { problem.possible(k) };
         }
         self.list_cells(problem);
         let mut fresh = false;
@@ -198,12 +202,12 @@ impl ActiveSet {
             }
         }
         if fresh {
-            self.runs.find(&self.member);
+            self.find_runs(problem);
             solution.convolve(problem, work);
         }
         self.bodies.iter_mut().for_each(|active| active.leaving.clear());
-        for (k, _) in solution.pressure.iter().enumerate().filter(|(_, p)| **p != 0.0) {
-            if !self.member[k] {
+        for (k, (&p, &member)) in solution.pressure.iter().zip(&self.member).enumerate() {
+            if (p != 0.0) & !member {
                 self.bodies[problem.owner(k)].leaving.push(k as u32);
             }
         }
@@ -215,9 +219,15 @@ impl ActiveSet {
         self.bodies.iter().any(|active| !active.leaving.is_empty() || active.correction.is_some())
     }
 
+    /// Finds the runs of members of A.
+    fn find_runs(&mut self, problem: &Problem<'_>) {
+        self.runs.find(&self.member);
+        self.height = passes::greatest(&self.runs, problem.gap);
+    }
+
     /// Lists the members of A.
     fn list_cells(&mut self, problem: &Problem<'_>) {
-        self.runs.find(&self.member);
+        self.find_runs(problem);
         self.bodies.iter_mut().for_each(|active| active.patch.cells.clear());
         for k in self.runs.ranges().flatten() {
             self.bodies[problem.owner(k)].patch.cells.push(k as u32);
@@ -261,8 +271,7 @@ impl ActiveSet {
                 continue;
             }
             if single && !modes.tilts() {
-                let sum: f64 = active.patch.cells.iter().map(|&k| solution.pressure[k as usize]).sum();
-                let scale = problem.bodies[body].total / sum;
+                let scale = problem.bodies[body].total / self.runs.sum(&solution.pressure);
                 if scale != 1.0 {
                     solution.pressure.iter_mut().for_each(|p| *p *= scale);
                     solution.potential.iter_mut().for_each(|v| *v *= scale);
@@ -280,7 +289,7 @@ impl ActiveSet {
                     active.leaving.drain(..).for_each(|k| solution.pressure[k as usize] = 0.0);
                     press_everywhere(problem, body, &mut active.patch, solution);
                     adopt_pressed(problem, body, active, &mut self.member, solution);
-                    self.runs.find(&self.member);
+                    self.find_runs(problem);
                     solution.convolve(problem, work);
                 }
             }
@@ -290,6 +299,20 @@ impl ActiveSet {
     /// Takes from a converged pressure what rounding has left of force and moments: too little to show in v.
     /// More than rounding is no solution.
     fn close(&self, problem: &Problem<'_>, solution: &mut Solution) {
+        if self.is_upright(problem) {
+            // scaled, not by more than rounding
+            if problem.modes(0).translates() {
+                let scale = problem.bodies[0].total / self.runs.sum(&solution.pressure);
+                for run in self.runs.ranges() {
+                    solution.pressure[run].iter_mut().for_each(|p| *p *= scale);
+                }
+                let closed = (scale - 1.0).abs() <= CLOSED;
+                if !closed {
+                    solution.residual = f64::INFINITY;
+                }
+            }
+            return;
+        }
         for (body, active) in self.bodies.iter().enumerate().filter(|(body, _)| !problem.released(*body)) {
             let sum =
                 |solution: &Solution| active.patch.cells.iter().map(|&k| solution.pressure[k as usize]).sum::<f64>();
@@ -354,8 +377,8 @@ impl ActiveSet {
             square = passes::center(&self.runs, self.mean, &mut self.residual, &mut self.preconditioned);
             self.mean = 0.0;
         }
-        let Survey { displacement, negative, height, .. } = found;
-        let state = Measure { square, displacement, negative, height, cells };
+        let Survey { displacement, negative, .. } = found;
+        let state = Measure { square, displacement, negative, height: self.height, cells };
         (state, (found.depth + solution.motions[0][0]).max(0.0))
     }
 

@@ -1,37 +1,17 @@
 //! The passes of the active set over its fields, for a single body that does not tilt: the common scene.
 //!
-//! Cells in contact come in runs, pieces of rows; each pass reads and writes whole pieces of memory, does all
-//! there is to do with what it has read, and sums in eight lanes, so that additions need not wait for each other.
+//! Cells in contact come in runs, pieces of rows; each pass reads and writes whole pieces of memory, and does all
+//! there is to do with what it has read.
 
-/// Lanes of the sums.
+use std::ops::Range;
+
+use crate::sum::{sum, sum_of_pairs};
+
+/// Lanes of the greatest values.
 const LANES: usize = 8;
 
 /// Cells looked at together in search of runs.
 const BLOCK: usize = 32;
-
-/// Does `$body` for each entry of slices of equal length; `$lane` counts 0 … 7 round.
-macro_rules! each {
-    ($lane:ident; read $($input:ident),*; write $($output:ident),*; $body:block) => {{
-        $(let $input = $input.as_chunks::<LANES>();)*
-        $(let $output = $output.as_chunks_mut::<LANES>();)*
-        let chunks = 0 $(.max($input.0.len()))* $(.max($output.0.len()))*;
-        for chunk in 0..chunks {
-            $(let $input = &$input.0[chunk];)*
-            $(let $output = &mut $output.0[chunk];)*
-            for $lane in 0..LANES {
-                $(let $input = $input[$lane];)*
-                $(let $output = &mut $output[$lane];)*
-                $body
-            }
-        }
-        let rest = 0 $(.max($input.1.len()))* $(.max($output.1.len()))*;
-        for $lane in 0..rest {
-            $(let $input = $input.1[$lane];)*
-            $(let $output = &mut $output.1[$lane];)*
-            $body
-        }
-    }};
-}
 
 /// Cells in contact, as first and last-but-one of pieces of rows.
 #[derive(Debug, Clone, Default)]
@@ -67,7 +47,12 @@ impl Runs {
         self.0.extend(start.map(|first| [first, member.len() as u32]));
     }
 
-    pub(crate) fn ranges(&self) -> impl Iterator<Item = std::ops::Range<usize>> {
+    /// Σ values over the runs.
+    pub(crate) fn sum(&self, values: &[f64]) -> f64 {
+        self.ranges().map(|run| sum(&values[run])).sum()
+    }
+
+    pub(crate) fn ranges(&self) -> impl Iterator<Item = Range<usize>> {
         self.0.iter().map(|[start, end]| *start as usize..*end as usize)
     }
 }
@@ -80,8 +65,6 @@ pub(crate) struct Survey {
     pub(crate) square: f64,
     pub(crate) displacement: f64,
     pub(crate) negative: f64,
-    /// The greatest |gap| of them.
-    pub(crate) height: f64,
     /// The greatest −(c v + gap) of all others.
     pub(crate) depth: f64,
 }
@@ -99,78 +82,90 @@ pub(crate) struct Fields<'a> {
 /// p += a d, v += a K d, and r = motion − (c v + gap) on the cells in contact, with all sums that follow from them.
 pub(crate) fn survey(runs: &Runs, a: f64, c: f64, motion: f64, fields: Fields<'_>) -> Survey {
     let Fields { gap, direction, image, pressure, potential, residual } = fields;
-    let (mut sum, mut square, mut displacement, mut negative) =
-        ([0.0; LANES], [0.0; LANES], [0.0; LANES], [0.0; LANES]);
-    let (mut height, mut depth) = ([0.0; LANES], [f64::NEG_INFINITY; LANES]);
+    let (mut found, mut depth) = (Survey::default(), [f64::NEG_INFINITY; LANES]);
     let mut outside = 0;
     for run in runs.ranges().chain(std::iter::once(gap.len()..gap.len())) {
-        let apart = outside..run.start;
+        for apart in pieces(outside..run.start) {
+            let (v, h) = (&mut potential[apart.clone()], &gap[apart.clone()]);
+            add(v, a, &image[apart]);
+            reduce([&*v, h], &mut depth, |depth, [v, h]| {
+                let below = -(c * v + h);
+                if below > depth { below } else { depth }
+            });
+        }
         outside = run.end;
-        let (v, kd, h) = (&mut potential[apart.clone()], &image[apart.clone()], &gap[apart]);
-        each!(lane; read kd, h; write v; {
-            *v += a * kd;
-            let below = -(c * *v + h);
-            if below > depth[lane] {
-                depth[lane] = below;
+        for piece in pieces(run) {
+            let (v, h) = (&mut potential[piece.clone()], &gap[piece.clone()]);
+            let (p, r) = (&mut pressure[piece.clone()], &mut residual[piece.clone()]);
+            add(v, a, &image[piece.clone()]);
+            add(p, a, &direction[piece]);
+            for ((r, &v), &h) in r.iter_mut().zip(&*v).zip(h) {
+                *r = motion - (c * v + h);
             }
-        });
-        let (v, kd, h) = (&mut potential[run.clone()], &image[run.clone()], &gap[run.clone()]);
-        let (p, d, r) = (&mut pressure[run.clone()], &direction[run.clone()], &mut residual[run]);
-        each!(lane; read kd, h, d; write v, p, r; {
-            *v += a * kd;
-            *p += a * d;
-            let u = c * *v;
-            let below = motion - (u + h);
-            *r = below;
-            sum[lane] += below;
-            square[lane] += below * below;
-            displacement[lane] += u * u;
-            let under = if *p < 0.0 { *p } else { 0.0 };
-            negative[lane] += under * under;
-            let high = h.abs();
-            if high > height[lane] {
-                height[lane] = high;
-            }
-        });
+            found.residual += sum(r);
+            found.square += sum_of_pairs(r, r, |r, _| r * r);
+            found.displacement += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
+            found.negative += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
+        }
     }
-    Survey {
-        residual: total(sum),
-        square: total(square),
-        displacement: total(displacement),
-        negative: total(negative),
-        height: height.into_iter().fold(0.0, f64::max),
-        depth: depth.into_iter().fold(f64::NEG_INFINITY, f64::max),
+    Survey { depth: depth.into_iter().fold(f64::NEG_INFINITY, f64::max), ..found }
+}
+
+/// Cells worked on together: what was read stays in the fastest cache.
+const PIECE: usize = 256;
+
+fn pieces(run: Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    run.clone().step_by(PIECE).map(move |start| start..(start + PIECE).min(run.end))
+}
+
+/// x += a y.
+fn add(x: &mut [f64], a: f64, y: &[f64]) {
+    for (x, &y) in x.iter_mut().zip(y) {
+        *x += a * y;
     }
 }
 
-/// z = r − mean in contact, where z is zero elsewhere; returns Σ z².
+/// Joins every pair of values to one of the lanes.
+fn reduce([x, y]: [&[f64]; 2], lanes: &mut [f64; LANES], join: impl Fn(f64, [f64; 2]) -> f64) {
+    let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<LANES>(), y.as_chunks::<LANES>());
+    for (x, y) in x.iter().zip(y) {
+        for lane in 0..LANES {
+            lanes[lane] = join(lanes[lane], [x[lane], y[lane]]);
+        }
+    }
+    for (lane, (&x, &y)) in lanes.iter_mut().zip(x_rest.iter().zip(y_rest)) {
+        *lane = join(*lane, [x, y]);
+    }
+}
+
+/// r ← r − mean, and z = r in contact, zero elsewhere; returns Σ r².
 pub(crate) fn center(runs: &Runs, mean: f64, residual: &mut [f64], z: &mut [f64]) -> f64 {
-    z.fill(0.0);
-    let mut square = [0.0; LANES];
+    let (mut square, mut outside) = (0.0, 0);
     for run in runs.ranges() {
+        z[outside..run.start].fill(0.0);
+        outside = run.end;
         let (r, z) = (&mut residual[run.clone()], &mut z[run]);
-        each!(lane; read; write r, z; {
+        for (r, z) in r.iter_mut().zip(&mut *z) {
             *r -= mean;
             *z = *r;
-            square[lane] += *r * *r;
-        });
+        }
+        square += sum_of_pairs(z, z, |z, _| z * z);
     }
-    total(square)
+    z[outside..].fill(0.0);
+    square
 }
 
 /// Σ z, Σ z·Kd, Σ Kd and Σ d in contact.
 pub(crate) fn overlaps(runs: &Runs, z: &[f64], image: &[f64], direction: &[f64]) -> [f64; 4] {
-    let mut sums = [[0.0; LANES]; 4];
+    let mut sums = [0.0; 4];
     for run in runs.ranges() {
         let (z, kd, d) = (&z[run.clone()], &image[run.clone()], &direction[run]);
-        each!(lane; read z, kd, d; write; {
-            sums[0][lane] += z;
-            sums[1][lane] += z * kd;
-            sums[2][lane] += kd;
-            sums[3][lane] += d;
-        });
+        sums[0] += sum(z);
+        sums[1] += sum_of_pairs(z, kd, |z, kd| z * kd);
+        sums[2] += sum(kd);
+        sums[3] += sum(d);
     }
-    sums.map(total)
+    sums
 }
 
 /// d ← scale (z + β d + shift) in contact, 0 elsewhere.
@@ -179,29 +174,36 @@ pub(crate) fn redirect(runs: &Runs, [scale, beta, shift]: [f64; 3], z: &[f64], d
     for run in runs.ranges() {
         direction[outside..run.start].fill(0.0);
         outside = run.end;
-        let (z, d) = (&z[run.clone()], &mut direction[run]);
-        each!(_lane; read z; write d; {
+        for (d, &z) in direction[run.clone()].iter_mut().zip(&z[run]) {
             *d = scale * (z + beta * *d + shift);
-        });
+        }
     }
     direction[outside..].fill(0.0);
 }
 
 /// Σ r·d and Σ d·Kd in contact.
 pub(crate) fn slope_and_curvature(runs: &Runs, residual: &[f64], direction: &[f64], image: &[f64]) -> [f64; 2] {
-    let mut sums = [[0.0; LANES]; 2];
+    let mut sums = [0.0; 2];
     for run in runs.ranges() {
         let (r, d, kd) = (&residual[run.clone()], &direction[run.clone()], &image[run]);
-        each!(lane; read r, d, kd; write; {
-            sums[0][lane] += r * d;
-            sums[1][lane] += d * kd;
-        });
+        sums[0] += sum_of_pairs(r, d, |r, d| r * d);
+        sums[1] += sum_of_pairs(d, kd, |d, kd| d * kd);
     }
-    sums.map(total)
+    sums
 }
 
-fn total(lanes: [f64; LANES]) -> f64 {
-    lanes.into_iter().sum()
+/// The greatest |values| in contact.
+pub(crate) fn greatest(runs: &Runs, values: &[f64]) -> f64 {
+    let mut lanes = [0.0; LANES];
+    for run in runs.ranges() {
+        let values = &values[run];
+        reduce(
+            [values, values],
+            &mut lanes,
+            |greatest, [value, _]| if value.abs() > greatest { value.abs() } else { greatest },
+        );
+    }
+    lanes.into_iter().fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -255,11 +257,11 @@ mod tests {
         near(found.square, sums[1]);
         near(found.displacement, sums[2]);
         near(found.negative, sums[3]);
-        assert_eq!((found.height, found.depth), (highest, deepest));
+        assert_eq!((greatest(&runs, &gap), found.depth), (highest, deepest));
 
         let mut z = field(2.0);
         let square = center(&runs, 0.1, &mut r, &mut z);
-        near(square, z.iter().map(|z| z * z).sum());
+        near(square, z.iter().map(|z| z * z).sum::<f64>());
         assert!((0..n).all(|k| z[k] == if member[k] { r[k] } else { 0.0 }));
         let inside = |f: &dyn Fn(usize) -> f64| (0..n).filter(|&k| member[k]).map(f).sum::<f64>();
         let z = field(2.2);

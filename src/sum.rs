@@ -1,0 +1,41 @@
+//! Sums in lanes: additions need not wait for each other, and rounding grows less with the number of values.
+
+const LANES: usize = 8;
+
+/// Σ values.
+pub(crate) fn sum(values: &[f64]) -> f64 {
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    let mut lanes = [0.0; LANES];
+    for chunk in chunks {
+        for (lane, value) in lanes.iter_mut().zip(chunk) {
+            *lane += value;
+        }
+    }
+    lanes.into_iter().sum::<f64>() + rest.iter().sum::<f64>()
+}
+
+/// Σ f(a, b) over the values of two fields.
+pub(crate) fn sum_of_pairs(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
+    let mut lanes = [0.0; LANES];
+    for (a, b) in a.iter().zip(b) {
+        for lane in 0..LANES {
+            lanes[lane] += f(a[lane], b[lane]);
+        }
+    }
+    lanes.into_iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(&a, &b)| f(a, b)).sum::<f64>()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_take_every_value() {
+        for n in [0, 1, 7, 8, 29] {
+            let a: Vec<f64> = (0..n).map(f64::from).collect();
+            assert_eq!(sum(&a), a.iter().sum());
+            assert_eq!(sum_of_pairs(&a, &a, |a, b| 2.0 * a * b), a.iter().map(|a| 2.0 * a * a).sum());
+        }
+    }
+}
