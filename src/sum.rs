@@ -14,6 +14,18 @@ pub(crate) fn sum(values: &[f64]) -> f64 {
     lanes.into_iter().sum::<f64>() + rest.iter().sum::<f64>()
 }
 
+/// The greatest |value|.
+pub(crate) fn greatest(values: &[f64]) -> f64 {
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    let mut lanes = [0.0; LANES];
+    for chunk in chunks {
+        for (lane, value) in lanes.iter_mut().zip(chunk) {
+            *lane = if value.abs() > *lane { value.abs() } else { *lane };
+        }
+    }
+    lanes.iter().chain(rest).fold(0.0, |greatest, value| value.abs().max(greatest))
+}
+
 /// Σ f(a, b) over the values of two fields.
 pub(crate) fn sum_of_pairs(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
     let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
@@ -35,6 +47,7 @@ mod tests {
         for n in [0, 1, 7, 8, 29] {
             let a: Vec<f64> = (0..n).map(f64::from).collect();
             assert_eq!(sum(&a), a.iter().sum());
+            assert_eq!(greatest(&a.iter().map(|a| -a).collect::<Vec<_>>()), a.iter().copied().fold(0.0, f64::max));
             assert_eq!(sum_of_pairs(&a, &a, |a, b| 2.0 * a * b), a.iter().map(|a| 2.0 * a * a).sum());
         }
     }

@@ -20,7 +20,7 @@ pub use between::Between;
 pub use builder::Builder;
 pub use follow::{ErrorBudget, Follow, Stepping};
 pub use report::{BodyState, StepReport};
-pub use settings::{Edge, Settings, Solver, TimeRule};
+pub use settings::{Edge, Precision, Settings, Solver, TimeRule};
 pub(crate) use spatial::AREA_ORDER;
 pub use spatial::SpatialError;
 pub use stepper::ViscoelasticContact;

@@ -226,10 +226,10 @@ impl ViscoelasticContact {
         self.history.settle(&self.trial_displacement, &self.displacement);
         self.before_is_kept = false;
         let (cells, bodies) = (self.region.len(), self.loads.len());
-        self.kernel_here = self.kernel.on(self.region.grid(), self.region.folded());
+        self.kernel_here = self.kernel.on(self.region.grid(), self.region.folded(), self.settings.is_mixed());
         self.work = self.kernel_here.workspace();
         self.gap_here = self.region.cut_gap(&self.initial_gap);
-        self.solver = ContactSolver::new(self.settings.solver, &self.region, bodies);
+        self.solver = ContactSolver::new(self.settings.solver, &self.kernel_here, bodies);
 
         // a field of its own on all cells of the new region: known on the old one, elsewhere K of a source
         let region = self.region.clone();
@@ -298,7 +298,7 @@ impl ViscoelasticContact {
         let mut whole = vec![0.0; self.grid.len()];
         if let Some(source) = source {
             let all = Region::whole(&self.grid, self.region.folded());
-            let kernel = self.kernel.on(all.grid(), all.folded());
+            let kernel = self.kernel.on(all.grid(), all.folded(), false);
             let mut far = vec![0.0; all.len()];
             kernel.apply(&self.region.carry(source, &all, |_| 0.0), &mut far, &mut kernel.workspace());
             all.spread(&far, &mut whole);

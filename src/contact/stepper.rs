@@ -139,12 +139,10 @@ pub(crate) struct Parts {
 }
 
 impl ContactSolver {
-    pub(super) fn new(solver: Solver, region: &Region, bodies: usize) -> ContactSolver {
+    pub(super) fn new(solver: Solver, kernel: &LocalKernel, bodies: usize) -> ContactSolver {
         match solver {
-            Solver::ActiveSet => {
-                ContactSolver::ActiveSet(Box::new(ActiveSet::new(region.grid(), region.folded(), bodies)))
-            }
-            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(PolonskyKeer::new(region.len(), bodies)),
+            Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(kernel, bodies))),
+            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(PolonskyKeer::new(kernel.grid().len(), bodies)),
         }
     }
 }
@@ -165,7 +163,7 @@ impl ViscoelasticContact {
         };
         let cells = region.len();
         history.undisturbed_on(cells);
-        let kernel_here = kernel.on(region.grid(), folded);
+        let kernel_here = kernel.on(region.grid(), folded, settings.is_mixed());
         let beyond = match &history {
             History::Exponential(history) if !region.covers() => Some(Beyond::new(history, cells)),
             _ => None,
@@ -174,8 +172,8 @@ impl ViscoelasticContact {
         let nothing_free = Freedom { translation: false, tilt: [false; 2], point: [0.0; 2], total: 0.0 };
         let mut contact = ViscoelasticContact {
             work: kernel_here.workspace(),
+            solver: ContactSolver::new(settings.solver, &kernel_here, bodies),
             kernel_here,
-            solver: ContactSolver::new(settings.solver, &region, bodies),
             gap_here: region.cut_gap(&initial_gap),
             region,
             beyond,

@@ -21,6 +21,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
 use crate::error::{Result, exact_length};
+use lines::Scalar;
 use love::Love;
 
 /// The discrete influence operator K of a grid: immutable, shared by `Arc` between contacts and threads.
@@ -50,12 +51,15 @@ pub struct InfluenceKernel {
     love: Love,
     /// On the whole grid, for each choice of folded axes.
     operators: [OnceLock<Arc<SpectralOperator<f64>>>; 4],
+    /// The same in single precision.
+    singles: [OnceLock<Arc<SpectralOperator<f32>>>; 4],
 }
 
 /// Buffers of [`InfluenceKernel::convolve`], made by [`InfluenceKernel::workspace`].
 #[derive(Debug, Clone)]
 pub struct Workspace {
     transform: TransformWorkspace<f64>,
+    single: Option<TransformWorkspace<f32>>,
 }
 
 /// The influence operator on a part of a grid, and on its mirror images along folded axes.
@@ -63,6 +67,8 @@ pub struct Workspace {
 pub(crate) struct LocalKernel {
     grid: Grid,
     operator: Arc<SpectralOperator<f64>>,
+    /// K over the influence of a cell on itself, in single precision, where that is wanted.
+    single: Option<Arc<SpectralOperator<f32>>>,
     folded: [bool; 2],
     self_influence: f64,
 }
@@ -77,7 +83,12 @@ impl InfluenceKernel {
     /// # Errors
     /// None today; the signature leaves room for grids too large to pad.
     pub fn half_space(grid: &Grid) -> Result<InfluenceKernel> {
-        Ok(InfluenceKernel { grid: grid.clone(), love: Love::new(grid.spacing()), operators: Default::default() })
+        Ok(InfluenceKernel {
+            grid: grid.clone(),
+            love: Love::new(grid.spacing()),
+            operators: Default::default(),
+            singles: Default::default(),
+        })
     }
 
     /// The grid the kernel was made for.
@@ -87,7 +98,7 @@ impl InfluenceKernel {
 
     /// Buffers for [`InfluenceKernel::convolve`]: one for each thread that convolves.
     pub fn workspace(&self) -> Workspace {
-        Workspace { transform: self.operator([false; 2]).workspace() }
+        Workspace { transform: self.operator([false; 2]).workspace(), single: None }
     }
 
     /// Writes K p into `displacement` \[Pa·m\]: the surface displacement \[m\] under `pressure` \[Pa\] of
@@ -103,37 +114,52 @@ impl InfluenceKernel {
             let (len, expected) = (work.transform.len(), self.workspace().transform.len());
             return Err(crate::Error::WrongLength { field: "workspace", len, expected, exact: true });
         }
-        operator.apply(pressure, displacement, 1.0, &mut work.transform);
+        operator.apply(pressure, displacement, [1.0; 2], &mut work.transform);
         Ok(())
     }
 
-    /// The operator on the whole grid, half or a quarter of it where axes are folded.
+    /// The operator on the whole grid.
     fn operator(&self, folded: [bool; 2]) -> &Arc<SpectralOperator<f64>> {
-        let [n1, n2] = self.grid.cells();
-        let cells = [if folded[0] { n1 / 2 } else { n1 }, if folded[1] { n2 / 2 } else { n2 }];
-        let kept = &self.operators[2 * usize::from(folded[0]) + usize::from(folded[1])];
-        kept.get_or_init(|| Arc::new(self.make(Layout { cells, padded: true, folded })))
+        let layout = self.layout(folded);
+        self.operators[index(folded)].get_or_init(|| Arc::new(self.make(layout, 1.0)))
     }
 
-    fn make(&self, layout: Layout) -> SpectralOperator<f64> {
-        SpectralOperator::from_coefficients(layout, |i, j| self.love.coefficient(i, j))
+    /// The whole grid, half or a quarter of it where axes are folded.
+    fn layout(&self, folded: [bool; 2]) -> Layout {
+        let cells = [0, 1].map(|axis| self.grid.cells()[axis] / if folded[axis] { 2 } else { 1 });
+        Layout { cells, padded: true, folded }
     }
 
-    /// The kernel on a part of the grid and its mirror images along folded axes.
-    pub(crate) fn on(&self, part: &Grid, folded: [bool; 2]) -> LocalKernel {
-        let images = folded.iter().filter(|folded| **folded).count();
-        let operator = if part.len() << images == self.grid.len() {
-            Arc::clone(self.operator(folded))
+    fn make<T: Scalar>(&self, layout: Layout, unit: f64) -> SpectralOperator<T> {
+        SpectralOperator::from_coefficients(layout, |i, j| self.love.coefficient(i, j) / unit)
+    }
+
+    /// The kernel on a part of the grid and its mirror images along folded axes; `single` if it is wanted in single
+    /// precision, too.
+    pub(crate) fn on(&self, part: &Grid, folded: [bool; 2], single: bool) -> LocalKernel {
+        let (layout, unit) = (Layout { cells: part.cells(), padded: true, folded }, self.love.coefficient(0, 0));
+        let (operator, single) = if layout == self.layout(folded) {
+            let kept = &self.singles[index(folded)];
+            let single = single.then(|| Arc::clone(kept.get_or_init(|| Arc::new(self.make(layout, unit)))));
+            (Arc::clone(self.operator(folded)), single)
         } else {
-            Arc::new(self.make(Layout { cells: part.cells(), padded: true, folded }))
+            (Arc::new(self.make(layout, 1.0)), single.then(|| Arc::new(self.make(layout, unit))))
         };
-        LocalKernel { grid: part.clone(), operator, folded, self_influence: self.love.coefficient(0, 0) }
+        LocalKernel { grid: part.clone(), operator, single, folded, self_influence: unit }
     }
+}
+
+fn index(folded: [bool; 2]) -> usize {
+    2 * usize::from(folded[0]) + usize::from(folded[1])
 }
 
 impl LocalKernel {
     pub(crate) fn grid(&self) -> &Grid {
         &self.grid
+    }
+
+    pub(crate) fn folded(&self) -> [bool; 2] {
+        self.folded
     }
 
     /// How many cells each cell stands for.
@@ -142,7 +168,8 @@ impl LocalKernel {
     }
 
     pub(crate) fn workspace(&self) -> Workspace {
-        Workspace { transform: self.operator.workspace() }
+        let single = self.single.as_ref().map(|single| single.workspace());
+        Workspace { transform: self.operator.workspace(), single }
     }
 
     /// The coefficient of a cell on itself \[m\].
@@ -152,6 +179,21 @@ impl LocalKernel {
 
     /// [`InfluenceKernel::convolve`] for fields known to fit.
     pub(crate) fn apply(&self, pressure: &[f64], displacement: &mut [f64], work: &mut Workspace) {
-        self.operator.apply(pressure, displacement, 1.0, &mut work.transform);
+        self.operator.apply(pressure, displacement, [1.0; 2], &mut work.transform);
+    }
+
+    /// [`LocalKernel::apply`], as precisely as a correction of the pressure of the given size needs it.
+    pub(crate) fn apply_to_correction(&self, pressure: &[f64], size: f64, image: &mut [f64], work: &mut Workspace) {
+        match (&self.single, &mut work.single) {
+            (Some(single), Some(work)) if (1.0 / size).is_normal() => {
+                single.apply(pressure, image, [1.0 / size, size * self.self_influence], work);
+            }
+            _ => self.apply(pressure, image, work),
+        }
+    }
+
+    /// Whether corrections are convolved in single precision.
+    pub(crate) fn is_mixed(&self) -> bool {
+        self.single.is_some()
     }
 }

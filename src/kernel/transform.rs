@@ -169,19 +169,29 @@ impl<T: Scalar> SpectralOperator<T> {
         if self.rows.is_folded() { 2 * TILE } else { TILE }
     }
 
-    /// Writes the operator applied to `scale` × `input` into `output`, divided by `scale` again; both hold one value a
-    /// cell.
-    pub(crate) fn apply(&self, input: &[f64], output: &mut [f64], scale: f64, work: &mut TransformWorkspace<T>) {
-        self.rows_forward(input, scale, work);
+    /// Writes `after` × the operator applied to `before` × `input` into `output`; both hold one value a cell.
+    pub(crate) fn apply(
+        &self,
+        input: &[f64],
+        output: &mut [f64],
+        [before, after]: [f64; 2],
+        work: &mut TransformWorkspace<T>,
+    ) {
+        self.rows_forward(input, before, work);
         self.columns(work);
-        self.rows_inverse(output, 1.0 / scale, work);
+        self.rows_inverse(output, after, work);
     }
 
     /// [`SpectralOperator::apply`] with one field for input and output.
-    pub(crate) fn apply_in_place(&self, field: &mut [f64], scale: f64, work: &mut TransformWorkspace<T>) {
-        self.rows_forward(field, scale, work);
+    pub(crate) fn apply_in_place(
+        &self,
+        field: &mut [f64],
+        [before, after]: [f64; 2],
+        work: &mut TransformWorkspace<T>,
+    ) {
+        self.rows_forward(field, before, work);
         self.columns(work);
-        self.rows_inverse(field, 1.0 / scale, work);
+        self.rows_inverse(field, after, work);
     }
 
     fn rows_forward(&self, input: &[f64], scale: f64, work: &mut TransformWorkspace<T>) {
@@ -558,7 +568,7 @@ mod tests {
                 // many times: nothing that is left in the workspace may grow
                 let mut work = operator.workspace_for(1);
                 for _ in 0..500 {
-                    operator.apply(&input, &mut output, 1.0, &mut work);
+                    operator.apply(&input, &mut output, [4.0, 0.25], &mut work);
                 }
                 for (k, value) in output.iter().enumerate() {
                     let exact = sum(layout, &input, [k / cells[1], k % cells[1]], coefficient);
@@ -566,7 +576,7 @@ mod tests {
                 }
                 let (mut threaded, mut work) = (vec![f64::NAN; input.len()], operator.workspace_for(3));
                 for _ in 0..500 {
-                    operator.apply(&input, &mut threaded, 1.0, &mut work);
+                    operator.apply(&input, &mut threaded, [4.0, 0.25], &mut work);
                 }
                 assert_eq!(output, threaded, "{cells:?} {folded:?}");
             }
@@ -585,7 +595,7 @@ mod tests {
                 let mut work = operator.workspace_for(1);
                 let best = |seconds: f64, _| {
                     let start = Instant::now();
-                    operator.apply_in_place(input, 1.0, &mut work);
+                    operator.apply_in_place(input, [1.0; 2], &mut work);
                     seconds.min(start.elapsed().as_secs_f64())
                 };
                 1e3 * (0..(1 << 22) / (n * n) + 5).fold(f64::INFINITY, best)
@@ -618,7 +628,7 @@ mod tests {
                 };
                 let waves: Vec<f64> = (0..120).map(|n| wave(0, n / 10) * wave(1, n % 10)).collect();
                 let mut output = waves.clone();
-                operator.apply_in_place(&mut output, 3.0, &mut operator.workspace());
+                operator.apply_in_place(&mut output, [4.0, 0.25], &mut operator.workspace());
                 for (value, wave) in output.iter().zip(&waves) {
                     assert!((value - (1 + k[0] + 10 * k[1]) as f64 * wave).abs() < 1e-11, "{folded:?} {k:?}");
                 }

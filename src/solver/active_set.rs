@@ -26,14 +26,14 @@
 //! [`EVICT`] too, 5.9 / 3.1 with the response to δ, 5.3 / 2.9 without conjugacy in corrections, 5.1 / 2.5
 //! when only the [`DEEP`] ones join.
 
-use crate::Grid;
-use crate::kernel::Workspace;
+use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::passes::{self, Fields, Runs, Survey};
 use crate::solver::preconditioner::Preconditioner;
 use crate::solver::problem::{Measure, PENETRATION_SLACK, Patch, Problem, Solution, Stop, relative_residual};
 use crate::solver::projected_gradient::ProjectedGradient;
 use crate::solver::rigid::Motion;
+use crate::sum::greatest;
 
 /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
 /// slack that the residual grants to penetration, or a state could neither improve nor pass.
@@ -73,6 +73,8 @@ pub(crate) struct ActiveSet {
     bodies: Vec<ActiveBody>,
     /// r on A.
     residual: Vec<f64>,
+    /// Its root mean square.
+    size: f64,
     /// What is still to be taken from it: its mean, by which the motion was corrected.
     mean: f64,
     preconditioned: Vec<f64>,
@@ -104,18 +106,20 @@ enum Shape {
 }
 
 impl ActiveSet {
-    pub(crate) fn new(grid: &Grid, folded: [bool; 2], bodies: usize) -> ActiveSet {
+    pub(crate) fn new(kernel: &LocalKernel, bodies: usize) -> ActiveSet {
+        let grid = kernel.grid();
         let field = vec![0.0; grid.len()];
         let cells = || Vec::with_capacity(grid.len());
         let body =
             |_| ActiveBody { patch: Patch { cells: cells(), ..Patch::default() }, leaving: cells(), correction: None };
         ActiveSet {
-            preconditioner: Preconditioner::new(grid, folded),
+            preconditioner: Preconditioner::new(grid, kernel.folded(), kernel.is_mixed()),
             fallback: ProjectedGradient::default(),
             member: vec![false; grid.len()],
             runs: Runs::with_capacity(grid.len()),
             height: 0.0,
             energy: 0.0,
+            size: 1.0,
             mean: 0.0,
             bodies: (0..bodies).map(body).collect(),
             residual: field.clone(),
@@ -136,6 +140,7 @@ impl ActiveSet {
         let (mut lowest, mut since, mut step) = (f64::INFINITY, 0, 0.0);
         loop {
             let (mut state, mut penetration) = self.advance(problem, solution, step);
+            self.size = state.rms();
             if state.negative > 0.0 && self.should_evict(problem, stop, state) {
                 self.evict(problem, solution, work);
                 (state, penetration) = self.advance(problem, solution, 0.0);
@@ -164,7 +169,8 @@ impl ActiveSet {
 
             solution.counts.iterations += 1;
             self.find_direction(problem, solution);
-            problem.kernel.apply(&self.direction, &mut self.image, work);
+            let size = if problem.kernel.is_mixed() { greatest(&self.direction) } else { 1.0 };
+            problem.kernel.apply_to_correction(&self.direction, size, &mut self.image, work);
             solution.counts.convolutions += 1;
             step = self.step_length(problem, solution);
         }
@@ -190,7 +196,8 @@ impl ActiveSet {
                     let shape = &mut self.preconditioned;
                     shape.fill(0.0);
                     cells.iter().for_each(|&k| shape[k as usize] = solution.pressure[k as usize]);
-                    self.preconditioner.apply(shape);
+                    let size = cells.iter().map(|&k| shape[k as usize]).fold(0.0, f64::max);
+                    self.preconditioner.apply(shape, size);
                     solution.counts.preconditioner_applications += 1;
                     let sum = |field: &[f64]| cells.iter().map(|&k| field[k as usize].max(0.0)).sum::<f64>();
                     let scale = sum(&solution.pressure) / sum(shape);
@@ -247,7 +254,7 @@ impl ActiveSet {
                     .iter_mut()
                     .zip(&self.member)
                     .for_each(|(shape, &member)| *shape = f64::from(u8::from(member)));
-                self.preconditioner.apply(&mut self.shape);
+                self.preconditioner.apply(&mut self.shape, 1.0);
                 solution.counts.preconditioner_applications += 1;
             }
         }
@@ -434,7 +441,7 @@ impl ActiveSet {
                 z[k as usize] = -solution.pressure[k as usize] / (length * self.preconditioner.diagonal());
             }
         }
-        self.preconditioner.apply(z);
+        self.preconditioner.apply(z, self.size);
         solution.counts.preconditioner_applications += 1;
 
         let mut overlap = 0.0;
@@ -473,7 +480,7 @@ impl ActiveSet {
             let response = -solution.pressure[k as usize] / (length * self.preconditioner.diagonal());
             self.preconditioned[k as usize] = response;
         }
-        self.preconditioner.apply(&mut self.preconditioned);
+        self.preconditioner.apply(&mut self.preconditioned, self.size);
         solution.counts.preconditioner_applications += 1;
 
         let [z, z_kd, kd, d] = passes::overlaps(&self.runs, &self.preconditioned, &self.image, &self.direction);

@@ -192,18 +192,9 @@ pub(crate) fn slope_and_curvature(runs: &Runs, residual: &[f64], direction: &[f6
     sums
 }
 
-/// The greatest |values| in contact.
+/// The greatest |value| in contact.
 pub(crate) fn greatest(runs: &Runs, values: &[f64]) -> f64 {
-    let mut lanes = [0.0; LANES];
-    for run in runs.ranges() {
-        let values = &values[run];
-        reduce(
-            [values, values],
-            &mut lanes,
-            |greatest, [value, _]| if value.abs() > greatest { value.abs() } else { greatest },
-        );
-    }
-    lanes.into_iter().fold(0.0, f64::max)
+    runs.ranges().map(|run| crate::sum::greatest(&values[run])).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn it_converges_on_its_own() {
         let grid = Grid::square(12, 1.2).unwrap();
-        let kernel = InfluenceKernel::half_space(&grid).unwrap().on(&grid, [false; 2]);
+        let kernel = InfluenceKernel::half_space(&grid).unwrap().on(&grid, [false; 2], false);
         let gap: Vec<f64> = (0..grid.len())
             .map(|k| {
                 let [x, y] = grid.center(k / 12, k % 12);
@@ -150,7 +150,7 @@ mod tests {
         let mut work = kernel.workspace();
 
         let mut exact = Solution::zero(grid.len(), 1);
-        ActiveSet::new(&grid, [false; 2], 1).solve(&problem, stop, &mut exact, &mut work);
+        ActiveSet::new(&kernel, 1).solve(&problem, stop, &mut exact, &mut work);
         assert!(exact.residual <= 1e-10 && exact.counts.fallback_iterations == 0);
 
         let mut slow = Solution::zero(grid.len(), 1);
