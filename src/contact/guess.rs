@@ -84,10 +84,15 @@ impl ViscoelasticContact {
         } else {
             sum(&self.current.pressure)
         };
-        if !(wanted / FARTHEST_FORCE..=wanted * FARTHEST_FORCE).contains(&guessed) {
+        let near = |sum: f64| (wanted / FARTHEST_FORCE..=wanted * FARTHEST_FORCE).contains(&sum);
+        if !near(guessed) {
             ahead = 0.0;
         }
         self.refresh.ahead = ahead;
+        if ahead == 0.0 && wanted > 0.0 && !near(sum(&self.current.pressure)) {
+            // another load altogether: the last contact is no guide, the solver starts afresh
+            return self.trial.release();
+        }
         let extrapolate = |trial: &mut [f64], current: &[f64], previous: &[f64]| {
             for ((guess, &now), &before) in trial.iter_mut().zip(current).zip(previous) {
                 *guess = now + ahead * (now - before);
