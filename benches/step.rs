@@ -1,33 +1,32 @@
-//! Times of the parts and of the whole: convolution, cold solve, warm step, scene.
+//! Times of the parts and of the whole: cold solve, warm step, scene.
 
 #[path = "../tests/common/mod.rs"]
 mod common;
-
-use std::hint::black_box;
 
 use common::StepLoadedSphere;
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
 use viscocontact::prelude::*;
 
-fn convolution(c: &mut Criterion) {
-    let mut group = c.benchmark_group("convolution");
-    for cells in [64, 128, 256, 512] {
-        let grid = Grid::square(cells, 1.0).unwrap();
-        let kernel = InfluenceKernel::half_space(&grid).unwrap();
-        let mut work = kernel.workspace();
-        let (pressure, mut out) = (vec![1.0; grid.len()], vec![0.0; grid.len()]);
-        group.bench_function(BenchmarkId::from_parameter(cells), |b| {
-            b.iter(|| kernel.convolve(black_box(&pressure), &mut out, &mut work).unwrap());
-        });
-    }
-    group.finish();
+/// What is computed, and how.
+fn choices() -> [(&'static str, Settings); 5] {
+    let settings = Settings::default();
+    [
+        ("default", settings),
+        ("mixed precision", Settings { precision: Precision::Mixed, ..settings }),
+        ("no symmetry", Settings { symmetry: false, ..settings }),
+        ("whole grid", Settings { symmetry: false, window: false, ..settings }),
+        (
+            "whole grid, Polonsky–Keer",
+            Settings { symmetry: false, window: false, solver: Solver::PolonskyKeer, ..settings },
+        ),
+    ]
 }
 
 fn cold_solve(c: &mut Criterion) {
-    let mut group = c.benchmark_group("cold solve");
+    let mut group = c.benchmark_group("cold solve, 128²");
     let scene = StepLoadedSphere::maxwell();
-    for (name, solver) in [("active set", Solver::ActiveSet), ("Polonsky–Keer", Solver::PolonskyKeer)] {
-        let contact = scene.contact(128, Settings { solver, ..Settings::default() }).unwrap();
+    for (name, settings) in choices() {
+        let contact = scene.contact(128, settings).unwrap();
         group.bench_function(name, |b| {
             b.iter_batched_ref(
                 || contact.clone(),
@@ -41,15 +40,44 @@ fn cold_solve(c: &mut Criterion) {
 
 fn warm_step(c: &mut Criterion) {
     let mut group = c.benchmark_group("warm step");
+    group.sample_size(10);
     let scene = StepLoadedSphere::maxwell();
-    for cells in [32, 64, 128, 256] {
-        let (contact, _) = scene.run(cells, 50, Settings::default()).unwrap();
-        group.bench_function(BenchmarkId::from_parameter(cells), |b| {
-            b.iter_batched_ref(
-                || contact.clone(),
-                |contact| contact.step(1e-3, Load::force(1.0)).unwrap(),
-                BatchSize::LargeInput,
-            );
+    for (name, settings) in choices() {
+        for cells in [32, 64, 128, 256, 512, 1024] {
+            for threads in [1, 2] {
+                if cells == 1024 && settings.solver == Solver::PolonskyKeer {
+                    continue;
+                }
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let (contact, _) = pool.install(|| scene.run(cells, 20, settings).unwrap());
+                group.bench_function(BenchmarkId::new(format!("{name}, {threads} threads"), cells), |b| {
+                    b.iter_batched_ref(
+                        || contact.clone(),
+                        |contact| pool.install(|| contact.step(1e-3, Load::force(1.0)).unwrap()),
+                        BatchSize::LargeInput,
+                    );
+                });
+            }
+        }
+    }
+    group.finish();
+}
+
+/// The same contact on a grid that it fills a sixteenth of.
+fn small_contact(c: &mut Criterion) {
+    let mut group = c.benchmark_group("scene, contact on 1/16 of 256², 20 steps");
+    group.sample_size(10);
+    let scene = StepLoadedSphere::maxwell();
+    for (name, settings) in choices() {
+        let grid = Grid::square(256, 7.09 * scene.reference().unwrap().contact_radius(scene.duration)).unwrap();
+        group.bench_function(name, |b| {
+            b.iter(|| {
+                let mut contact = scene.contact_on(grid.clone(), settings).unwrap();
+                contact.step(0.0, Load::force(1.0)).unwrap();
+                for _ in 0..20 {
+                    contact.step(0.1, Load::force(1.0)).unwrap();
+                }
+            });
         });
     }
     group.finish();
@@ -95,5 +123,5 @@ fn whole_scene(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, convolution, cold_solve, warm_step, relaxation_times, fits, whole_scene);
+criterion_group!(benches, cold_solve, warm_step, small_contact, relaxation_times, fits, whole_scene);
 criterion_main!(benches);

@@ -70,7 +70,11 @@ impl StepLoadedSphere {
     }
 
     pub fn contact(&self, cells: usize, settings: Settings) -> Result<ViscoelasticContact> {
-        ViscoelasticContact::builder(self.grid(cells)?)
+        self.contact_on(self.grid(cells)?, settings)
+    }
+
+    pub fn contact_on(&self, grid: Grid, settings: Settings) -> Result<ViscoelasticContact> {
+        ViscoelasticContact::builder(grid)
             .geometry(&Sphere::new(self.radius)?)
             .material(self.material.clone())
             .settings(settings)

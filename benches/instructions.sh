@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# Counts the instructions of three small scenes with callgrind, and compares them with benches/instructions.csv: each may
+# differ by 3 %. `benches/instructions.sh --record` writes the file anew. Counts belong to a compiler: with another one
+# they are shown, not judged. Needs valgrind; without it, says so and succeeds.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+recorded=benches/instructions.csv
+
+if ! command -v valgrind >/dev/null; then
+    echo "valgrind is not installed: instructions are not counted"
+    exit 0
+fi
+compiler=$(rustc --version | cut -d' ' -f2)
+program=$(cargo bench --bench instructions --no-run 2>&1 | sed -n 's/.*(\(.*\)).*/\1/p' | tail -1)
+mkdir -p target/instructions
+
+count() {
+    valgrind --tool=callgrind --toggle-collect='instructions::measured' \
+        --callgrind-out-file="target/instructions/$1.out" "$program" "$1" 2>"target/instructions/$1.log" >/dev/null || {
+        cat "target/instructions/$1.log" >&2
+        return 1
+    }
+    sed -n 's/.*Collected : //p' "target/instructions/$1.log"
+}
+
+names=(held_sphere eccentric_punch wavy_surface)
+if [ "${1-}" = --record ]; then
+    echo "scene,instructions,rustc" >"$recorded"
+    for k in 0 1 2; do
+        now=$(count $k)
+        echo "${names[$k]},$now,$compiler" >>"$recorded"
+    done
+    cat "$recorded"
+    exit
+fi
+failed=0
+for k in 0 1 2; do
+    now=$(count $k)
+    IFS=, read -r _ before with < <(grep "^${names[$k]}," "$recorded")
+    change=$(awk -v a="$now" -v b="$before" 'BEGIN { printf "%+.2f", 100 * (a / b - 1) }')
+    verdict=ok
+    if [ "$with" != "$compiler" ]; then
+        verdict="recorded with rustc $with, not judged"
+    elif awk -v c="$change" 'BEGIN { exit !(c > 3 || c < -3) }'; then
+        verdict="MORE THAN 3 % (if it is meant to be: benches/instructions.sh --record)"
+        failed=1
+    fi
+    echo "${names[$k]}: $now instructions, $change %: $verdict"
+done
+exit $failed
