@@ -178,17 +178,24 @@ impl ActiveSet {
 
     /// A = {p > 0}; other cells that carry pressure are to leave; the pressure on A is in balance.
     fn start(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) {
-        self.direction.fill(0.0);
-        self.image.fill(0.0);
         self.energy = 0.0;
         let upright = self.is_upright(problem);
-        for (k, (member, &p)) in self.member.iter_mut().zip(&solution.pressure).enumerate() {
-            *member = (p > 0.0) & if upright { problem.gap[k].is_finite() } else { problem.possible(k) };
+        if upright {
+            let fields = solution.pressure.iter().zip(problem.gap);
+            for (member, (&p, &gap)) in self.member.iter_mut().zip(fields) {
+                *member = (p > 0.0) & (gap < f64::INFINITY);
+            }
+        } else {
+            self.direction.fill(0.0);
+            self.image.fill(0.0);
+            for (k, (member, &p)) in self.member.iter_mut().zip(&solution.pressure).enumerate() {
+                *member = p > 0.0 && problem.possible(k);
+            }
         }
         self.list_cells(problem);
         let mut fresh = false;
         for (body, active) in self.bodies.iter_mut().enumerate() {
-            if active.patch.cells.is_empty() && !problem.released(body) {
+            if active.patch.cells.is_empty() && (!upright || self.runs.count() == 0) && !problem.released(body) {
                 // a guess without positive pressure may hold negative ones, of which v speaks
                 fresh |= solution.pressure.iter().any(|&p| p != 0.0);
                 // K⁻¹ of a uniform displacement, but for its scale, is the pressure under a flat punch
@@ -236,6 +243,9 @@ impl ActiveSet {
     fn list_cells(&mut self, problem: &Problem<'_>) {
         self.find_runs(problem);
         self.bodies.iter_mut().for_each(|active| active.patch.cells.clear());
+        if self.is_upright(problem) {
+            return; // the runs say it all
+        }
         for k in self.runs.ranges().flatten() {
             self.bodies[problem.owner(k)].patch.cells.push(k as u32);
         }
@@ -374,7 +384,7 @@ impl ActiveSet {
                 residual: &mut self.residual,
             },
         );
-        let cells = self.bodies[0].patch.cells.len();
+        let cells = self.runs.count();
         let count = cells.max(1) as f64;
         self.mean = if problem.modes(0).translates() { found.residual / count } else { 0.0 };
         solution.motions[0][0] = motion - self.mean;
@@ -416,6 +426,12 @@ impl ActiveSet {
 
     /// Takes cells with negative pressure out of A.
     fn evict(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) {
+        if self.is_upright(problem) {
+            for k in self.runs.ranges().flatten().filter(|&k| solution.pressure[k] < 0.0) {
+                self.member[k] = false;
+                self.bodies[0].leaving.push(k as u32);
+            }
+        }
         for active in &mut self.bodies {
             for &k in active.patch.cells.iter().filter(|&&k| solution.pressure[k as usize] < 0.0) {
                 self.member[k as usize] = false;
@@ -484,10 +500,11 @@ impl ActiveSet {
         solution.counts.preconditioner_applications += 1;
 
         let [z, z_kd, kd, d] = passes::overlaps(&self.runs, &self.preconditioned, &self.image, &self.direction);
-        let share = if problem.modes(0).translates() { 1.0 / active.patch.cells.len().max(1) as f64 } else { 0.0 };
+        let share = if problem.modes(0).translates() { 1.0 / self.runs.count().max(1) as f64 } else { 0.0 };
         let beta = Self::conjugate(self.energy, z_kd - share * z * kd, pending);
         let scale = if pending { length } else { 1.0 };
-        let shift = -share * (z + beta * d);
+        // without a last direction, what is left in its place says nothing
+        let shift = -share * if beta == 0.0 { z } else { z + beta * d };
         passes::redirect(&self.runs, [scale, beta, shift], &self.preconditioned, &mut self.direction);
         for &k in &active.leaving {
             self.direction[k as usize] = -solution.pressure[k as usize];

@@ -15,16 +15,19 @@ const BLOCK: usize = 32;
 
 /// Cells in contact, as first and last-but-one of pieces of rows.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Runs(Vec<[u32; 2]>);
+pub(crate) struct Runs {
+    runs: Vec<[u32; 2]>,
+    cells: usize,
+}
 
 impl Runs {
     pub(crate) fn with_capacity(cells: usize) -> Runs {
-        Runs(Vec::with_capacity(cells.div_ceil(2)))
+        Runs { runs: Vec::with_capacity(cells.div_ceil(2)), cells: 0 }
     }
 
     /// Finds the runs of members.
     pub(crate) fn find(&mut self, member: &[bool]) {
-        self.0.clear();
+        self.runs.clear();
         let mut start = None;
         for (block, values) in member.chunks(BLOCK).enumerate() {
             // most blocks are all of one kind, the kind at hand
@@ -37,14 +40,20 @@ impl Runs {
                 match start {
                     None if m => start = Some(k),
                     Some(first) if !m => {
-                        self.0.push([first, k]);
+                        self.runs.push([first, k]);
                         start = None;
                     }
                     _ => {}
                 }
             }
         }
-        self.0.extend(start.map(|first| [first, member.len() as u32]));
+        self.runs.extend(start.map(|first| [first, member.len() as u32]));
+        self.cells = self.ranges().map(|run| run.len()).sum();
+    }
+
+    /// Number of cells in all.
+    pub(crate) fn count(&self) -> usize {
+        self.cells
     }
 
     /// Σ values over the runs.
@@ -53,7 +62,7 @@ impl Runs {
     }
 
     pub(crate) fn ranges(&self) -> impl Iterator<Item = Range<usize>> {
-        self.0.iter().map(|[start, end]| *start as usize..*end as usize)
+        self.runs.iter().map(|[start, end]| *start as usize..*end as usize)
     }
 }
 
@@ -87,7 +96,9 @@ pub(crate) fn survey(runs: &Runs, a: f64, c: f64, motion: f64, fields: Fields<'_
     for run in runs.ranges().chain(std::iter::once(gap.len()..gap.len())) {
         for apart in pieces(outside..run.start) {
             let (v, h) = (&mut potential[apart.clone()], &gap[apart.clone()]);
-            add(v, a, &image[apart]);
+            if a != 0.0 {
+                add(v, a, &image[apart]);
+            }
             reduce([&*v, h], &mut depth, |depth, [v, h]| {
                 let below = -(c * v + h);
                 if below > depth { below } else { depth }
@@ -97,8 +108,10 @@ pub(crate) fn survey(runs: &Runs, a: f64, c: f64, motion: f64, fields: Fields<'_
         for piece in pieces(run) {
             let (v, h) = (&mut potential[piece.clone()], &gap[piece.clone()]);
             let (p, r) = (&mut pressure[piece.clone()], &mut residual[piece.clone()]);
-            add(v, a, &image[piece.clone()]);
-            add(p, a, &direction[piece]);
+            if a != 0.0 {
+                add(v, a, &image[piece.clone()]);
+                add(p, a, &direction[piece]);
+            }
             for ((r, &v), &h) in r.iter_mut().zip(&*v).zip(h) {
                 *r = motion - (c * v + h);
             }
@@ -168,14 +181,17 @@ pub(crate) fn overlaps(runs: &Runs, z: &[f64], image: &[f64], direction: &[f64])
     sums
 }
 
-/// d ← scale (z + β d + shift) in contact, 0 elsewhere.
+/// d ← scale (z + β d + shift) in contact, 0 elsewhere; with β = 0 whatever d was.
 pub(crate) fn redirect(runs: &Runs, [scale, beta, shift]: [f64; 3], z: &[f64], direction: &mut [f64]) {
     let mut outside = 0;
     for run in runs.ranges() {
         direction[outside..run.start].fill(0.0);
         outside = run.end;
-        for (d, &z) in direction[run.clone()].iter_mut().zip(&z[run]) {
-            *d = scale * (z + beta * *d + shift);
+        let pairs = direction[run.clone()].iter_mut().zip(&z[run]);
+        if beta == 0.0 {
+            pairs.for_each(|(d, &z)| *d = scale * (z + shift));
+        } else {
+            pairs.for_each(|(d, &z)| *d = scale * (z + beta * *d + shift));
         }
     }
     direction[outside..].fill(0.0);
@@ -210,7 +226,7 @@ mod tests {
             let mut found = vec![false; cells];
             runs.ranges().for_each(|run| found[run].fill(true));
             assert_eq!(found, member);
-            assert!(runs.0.windows(2).all(|pair| pair[0][1] < pair[1][0]), "runs do not touch");
+            assert!(runs.runs.windows(2).all(|pair| pair[0][1] < pair[1][0]), "runs do not touch");
         }
     }
 
