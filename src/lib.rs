@@ -63,16 +63,21 @@
 //!
 //! A convolution of N cells is one forward and one inverse real transform of the zero-padded grid,
 //! O(N log N). A step of the default solver takes 3 to 5 of them on the scenes of the README at 256² cells, and
-//! a scene without tilt does no work for it. Its history costs no transform: one field a relaxation time, however many
+//! a scene without tilt does no work for it. Where gap and load are even in x1, x2 or both, half or a quarter of the cells is
+//! computed ([`contact::Settings::symmetry`]); where contact cannot reach, nothing is ([`contact::Settings::window`]); what a step
+//! takes, in every way there is, stands in `docs/performance.md`. Its history costs no transform: one field a relaxation time, however many
 //! steps came before; thirty of them make a step of 256² cells 1.05 to 1.15 times as long as one. A rheology without an exact
 //! exponential series has one fitted ([`rheology::Rheology::series`]), about two relaxation times a decade for an error
-//! of 1e-4, in a tenth of a second. Memory: about 175 bytes a cell, and 8 for each
+//! of 1e-4, in a tenth of a second. Memory: about 175 bytes a computed cell, and 8 for each
 //! further relaxation time (an elastic bulk doubles their number); a step allocates nothing, save the first one
-//! that takes time, if it has to fit a series.
+//! that takes time, if it has to fit a series, and those in which a window grows.
 //!
 //! # Features
 //!
 //! `csv` (on by default): tables of measured data from CSV files.
+//!
+//! `rayon` (on by default): grids of 2¹⁵ computed cells or more are shared between the threads of the
+//! pool a contact is built in. The answer does not depend on their number, bit by bit.
 //!
 //! # Not here
 //!

@@ -36,7 +36,7 @@ fn assert_same(contacts: &[ViscoelasticContact; 2], tolerance: f64, when: &str) 
     // what is left of a displacement that went, or of a gap that closed, is rounding
     let least = size(b.displacement()).max(1e-3 * size(&gap(b)));
     let compare = |what: &str, a: &[f64], b: &[f64]| {
-        let is_length = what.contains("displacement") || what == "gap";
+        let is_length = what.contains("displacement") || what == "gap" || what == "approach";
         let scale = size(b).max(if is_length { least } else { f64::MIN_POSITIVE });
         for (k, (a, b)) in a.iter().zip(b).enumerate() {
             assert!(a == b || (a - b).abs() <= tolerance * scale, "{when}, {what} of cell {k}: {a} {b}, scale {scale}");

@@ -12,7 +12,7 @@ pub struct StepReport {
     pub iterations: usize,
     /// Those of them that the slower, sure fall-back took.
     pub fallback_iterations: usize,
-    /// Convolutions with the influence kernel: padded transforms forth and back.
+    /// Convolutions with the influence kernel on the cells that are computed: padded transforms forth and back.
     pub convolutions: usize,
     /// Applications of the preconditioner, each on an unpadded grid of a quarter of the size.
     pub preconditioner_applications: usize,

@@ -49,6 +49,18 @@ impl<J: Task> WithSimd for Vectorised<'_, J> {
     }
 }
 
+/// Does both jobs, in parallel if they are `shared` and the feature `rayon` is on.
+pub(crate) fn join(shared: bool, first: impl FnOnce() + Send, second: impl FnOnce() + Send) {
+    #[cfg(feature = "rayon")]
+    if shared {
+        rayon::join(first, second);
+        return;
+    }
+    let _ = shared;
+    first();
+    second();
+}
+
 /// Threads that may share the work on a field of so many cells.
 pub(crate) fn lanes(cells: usize) -> usize {
     #[cfg(feature = "rayon")]

@@ -15,6 +15,7 @@ mod love;
 mod spectrum;
 mod transform;
 
+pub(crate) use lanes::{join, lanes};
 pub(crate) use transform::{Layout, SpectralOperator, TransformWorkspace};
 
 use std::sync::{Arc, OnceLock};

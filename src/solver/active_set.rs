@@ -28,7 +28,7 @@
 
 use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
-use crate::solver::passes::{self, Fields, Runs, Survey};
+use crate::solver::passes::{self, Fields, Passes, Survey};
 use crate::solver::preconditioner::Preconditioner;
 use crate::solver::problem::{Measure, PENETRATION_SLACK, Patch, Problem, Solution, Stop, relative_residual};
 use crate::solver::projected_gradient::ProjectedGradient;
@@ -66,8 +66,8 @@ pub(crate) struct ActiveSet {
     fallback: ProjectedGradient,
     /// Whether a cell is in A.
     member: Vec<bool>,
-    /// The pieces of rows that A consists of.
-    runs: Runs,
+    /// The pieces of rows that A consists of, and the passes over them.
+    passes: Passes,
     /// The greatest |gap| there.
     height: f64,
     bodies: Vec<ActiveBody>,
@@ -116,7 +116,7 @@ impl ActiveSet {
             preconditioner: Preconditioner::new(grid, kernel.folded(), kernel.is_mixed()),
             fallback: ProjectedGradient::default(),
             member: vec![false; grid.len()],
-            runs: Runs::with_capacity(grid.len()),
+            passes: Passes::new(grid.len()),
             height: 0.0,
             energy: 0.0,
             size: 1.0,
@@ -195,7 +195,7 @@ impl ActiveSet {
         self.list_cells(problem);
         let mut fresh = false;
         for (body, active) in self.bodies.iter_mut().enumerate() {
-            if active.patch.cells.is_empty() && (!upright || self.runs.count() == 0) && !problem.released(body) {
+            if active.patch.cells.is_empty() && (!upright || self.passes.runs.count() == 0) && !problem.released(body) {
                 // a guess without positive pressure may hold negative ones, of which v speaks
                 fresh |= solution.pressure.iter().any(|&p| p != 0.0);
                 // K⁻¹ of a uniform displacement, but for its scale, is the pressure under a flat punch
@@ -235,8 +235,8 @@ impl ActiveSet {
 
     /// Finds the runs of members of A.
     fn find_runs(&mut self, problem: &Problem<'_>) {
-        self.runs.find(&self.member);
-        self.height = passes::greatest(&self.runs, problem.gap);
+        self.passes.runs.find(&self.member);
+        self.height = passes::greatest(&self.passes.runs, problem.gap);
     }
 
     /// Lists the members of A.
@@ -246,7 +246,7 @@ impl ActiveSet {
         if self.is_upright(problem) {
             return; // the runs say it all
         }
-        for k in self.runs.ranges().flatten() {
+        for k in self.passes.runs.ranges().flatten() {
             self.bodies[problem.owner(k)].patch.cells.push(k as u32);
         }
         for (body, active) in self.bodies.iter_mut().enumerate() {
@@ -288,7 +288,7 @@ impl ActiveSet {
                 continue;
             }
             if single && !modes.tilts() {
-                let scale = problem.bodies[body].total / self.runs.sum(&solution.pressure);
+                let scale = problem.bodies[body].total / self.passes.runs.sum(&solution.pressure);
                 if scale != 1.0 {
                     solution.pressure.iter_mut().for_each(|p| *p *= scale);
                     solution.potential.iter_mut().for_each(|v| *v *= scale);
@@ -319,8 +319,8 @@ impl ActiveSet {
         if self.is_upright(problem) {
             // scaled, not by more than rounding
             if problem.modes(0).translates() {
-                let scale = problem.bodies[0].total / self.runs.sum(&solution.pressure);
-                for run in self.runs.ranges() {
+                let scale = problem.bodies[0].total / self.passes.runs.sum(&solution.pressure);
+                for run in self.passes.runs.ranges() {
                     solution.pressure[run].iter_mut().for_each(|p| *p *= scale);
                 }
                 let closed = (scale - 1.0).abs() <= CLOSED;
@@ -370,8 +370,7 @@ impl ActiveSet {
 
     fn advance_upright(&mut self, problem: &Problem<'_>, solution: &mut Solution, a: f64) -> (Measure, f64) {
         let motion = solution.motions[0][0];
-        let found = passes::survey(
-            &self.runs,
+        let found = self.passes.survey(
             a,
             problem.compliance,
             motion,
@@ -384,14 +383,14 @@ impl ActiveSet {
                 residual: &mut self.residual,
             },
         );
-        let cells = self.runs.count();
+        let cells = self.passes.runs.count();
         let count = cells.max(1) as f64;
         self.mean = if problem.modes(0).translates() { found.residual / count } else { 0.0 };
         solution.motions[0][0] = motion - self.mean;
         let mut square = found.square - count * self.mean * self.mean;
         // where the motion was far off, the difference is mostly rounding
         if square < CANCELLED * found.square {
-            square = passes::center(&self.runs, self.mean, &mut self.residual, &mut self.preconditioned);
+            square = self.passes.center(self.mean, &mut self.residual, &mut self.preconditioned);
             self.mean = 0.0;
         }
         let Survey { displacement, negative, .. } = found;
@@ -427,7 +426,7 @@ impl ActiveSet {
     /// Takes cells with negative pressure out of A.
     fn evict(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) {
         if self.is_upright(problem) {
-            for k in self.runs.ranges().flatten().filter(|&k| solution.pressure[k] < 0.0) {
+            for k in self.passes.runs.ranges().flatten().filter(|&k| solution.pressure[k] < 0.0) {
                 self.member[k] = false;
                 self.bodies[0].leaving.push(k as u32);
             }
@@ -490,7 +489,7 @@ impl ActiveSet {
 
     fn find_direction_upright(&mut self, problem: &Problem<'_>, solution: &mut Solution, length: f64, pending: bool) {
         let active = &self.bodies[0];
-        passes::center(&self.runs, self.mean, &mut self.residual, &mut self.preconditioned);
+        self.passes.center(self.mean, &mut self.residual, &mut self.preconditioned);
         self.mean = 0.0;
         for &k in &active.leaving {
             let response = -solution.pressure[k as usize] / (length * self.preconditioner.diagonal());
@@ -499,13 +498,13 @@ impl ActiveSet {
         self.preconditioner.apply(&mut self.preconditioned, self.size);
         solution.counts.preconditioner_applications += 1;
 
-        let [z, z_kd, kd, d] = passes::overlaps(&self.runs, &self.preconditioned, &self.image, &self.direction);
-        let share = if problem.modes(0).translates() { 1.0 / self.runs.count().max(1) as f64 } else { 0.0 };
+        let [z, z_kd, kd, d] = self.passes.overlaps(&self.preconditioned, &self.image, &self.direction);
+        let share = if problem.modes(0).translates() { 1.0 / self.passes.runs.count().max(1) as f64 } else { 0.0 };
         let beta = Self::conjugate(self.energy, z_kd - share * z * kd, pending);
         let scale = if pending { length } else { 1.0 };
         // without a last direction, what is left in its place says nothing
         let shift = -share * if beta == 0.0 { z } else { z + beta * d };
-        passes::redirect(&self.runs, [scale, beta, shift], &self.preconditioned, &mut self.direction);
+        self.passes.redirect([scale, beta, shift], &self.preconditioned, &mut self.direction);
         for &k in &active.leaving {
             self.direction[k as usize] = -solution.pressure[k as usize];
         }
@@ -519,7 +518,7 @@ impl ActiveSet {
     /// The length a of the step along d, 1 for a correction. Brings cells that leave to p = 0.
     fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> f64 {
         let [slope, curvature] = if self.is_upright(problem) {
-            passes::slope_and_curvature(&self.runs, &self.residual, &self.direction, &self.image)
+            self.passes.slope_and_curvature(&self.residual, &self.direction, &self.image)
         } else {
             let cells = self.bodies.iter().flat_map(|active| &active.patch.cells).map(|&k| k as usize);
             cells.fold([0.0; 2], |[slope, curvature], k| {

@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use crate::kernel::{join, lanes};
 use crate::sum::{sum, sum_of_pairs};
 
 /// Lanes of the greatest values.
@@ -61,6 +62,25 @@ impl Runs {
         self.ranges().map(|run| sum(&values[run])).sum()
     }
 
+    /// The parts of runs that lie in a band.
+    fn within(&self, band: &Range<usize>) -> impl Iterator<Item = Range<usize>> {
+        let (start, end) = (band.start, band.end);
+        let first = self.runs.partition_point(|run| run[1] as usize <= start);
+        let runs = self.runs[first..].iter().map(|run| run.map(|k| k as usize)).take_while(move |run| run[0] < end);
+        runs.map(move |run| run[0].max(start)..run[1].min(end))
+    }
+
+    /// Calls `visit` with pieces of a band, counted from its beginning, and whether they are in contact.
+    fn walk(&self, band: &Range<usize>, mut visit: impl FnMut(Range<usize>, bool)) {
+        let mut outside = 0;
+        for run in self.within(band).map(|run| run.start - band.start..run.end - band.start) {
+            pieces(outside..run.start).for_each(|piece| visit(piece, false));
+            outside = run.end;
+            pieces(run).for_each(|piece| visit(piece, true));
+        }
+        pieces(outside..band.len()).for_each(|piece| visit(piece, false));
+    }
+
     pub(crate) fn ranges(&self) -> impl Iterator<Item = Range<usize>> {
         self.runs.iter().map(|[start, end]| *start as usize..*end as usize)
     }
@@ -88,40 +108,186 @@ pub(crate) struct Fields<'a> {
     pub(crate) residual: &'a mut [f64],
 }
 
-/// p += a d, v += a K d, and r = motion − (c v + gap) on the cells in contact, with all sums that follow from them.
-pub(crate) fn survey(runs: &Runs, a: f64, c: f64, motion: f64, fields: Fields<'_>) -> Survey {
-    let Fields { gap, direction, image, pressure, potential, residual } = fields;
-    let (mut found, mut depth) = (Survey::default(), [f64::NEG_INFINITY; LANES]);
-    let mut outside = 0;
-    for run in runs.ranges().chain(std::iter::once(gap.len()..gap.len())) {
-        for apart in pieces(outside..run.start) {
-            let (v, h) = (&mut potential[apart.clone()], &gap[apart.clone()]);
-            if a != 0.0 {
-                add(v, a, &image[apart]);
-            }
-            reduce([&*v, h], &mut depth, |depth, [v, h]| {
-                let below = -(c * v + h);
-                if below > depth { below } else { depth }
-            });
-        }
-        outside = run.end;
-        for piece in pieces(run) {
-            let (v, h) = (&mut potential[piece.clone()], &gap[piece.clone()]);
-            let (p, r) = (&mut pressure[piece.clone()], &mut residual[piece.clone()]);
-            if a != 0.0 {
-                add(v, a, &image[piece.clone()]);
-                add(p, a, &direction[piece]);
-            }
-            for ((r, &v), &h) in r.iter_mut().zip(&*v).zip(h) {
-                *r = motion - (c * v + h);
-            }
-            found.residual += sum(r);
-            found.square += sum_of_pairs(r, r, |r, _| r * r);
-            found.displacement += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
-            found.negative += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
-        }
+/// Sums over one band.
+type Partial = [f64; 5];
+
+/// The passes over the fields of one contact, and what they need of their own.
+#[derive(Debug, Clone)]
+pub(crate) struct Passes {
+    pub(crate) runs: Runs,
+    partials: Vec<Partial>,
+    /// Whether threads share them.
+    shared: bool,
+}
+
+/// Cells passed over by one thread at a time. Sums are taken band by band, whatever the number of threads.
+const BAND: usize = 1 << 13;
+
+impl Passes {
+    pub(crate) fn new(cells: usize) -> Passes {
+        let partials = vec![Partial::default(); cells.div_ceil(BAND)];
+        Passes { runs: Runs::with_capacity(cells), partials, shared: lanes(cells) > 1 }
     }
-    Survey { depth: depth.into_iter().fold(f64::NEG_INFINITY, f64::max), ..found }
+
+    /// Calls `job` with each band, its part of `outputs`, and a place for its sums; returns all of these added up.
+    fn over_bands<const M: usize>(
+        &mut self,
+        outputs: [&mut [f64]; M],
+        cells: usize,
+        job: impl Fn(Range<usize>, [&mut [f64]; M]) -> Partial + Sync,
+    ) -> &[Partial] {
+        let partials = &mut self.partials[..cells.div_ceil(BAND)];
+        halve(0..cells, outputs, partials, self.shared, &job);
+        partials
+    }
+
+    /// p += a d, v += a K d, and r = motion − (c v + gap) on the cells in contact, with all sums that follow from them.
+    pub(crate) fn survey(&mut self, a: f64, c: f64, motion: f64, fields: Fields<'_>) -> Survey {
+        let Fields { gap, direction, image, pressure, potential, residual } = fields;
+        let runs = std::mem::take(&mut self.runs);
+        let partials = self.over_bands([pressure, potential, residual], gap.len(), |band, [p, v, r]| {
+            let [image, direction, gap] = [image, direction, gap].map(|field| &field[band.clone()]);
+            let (mut found, mut depth) = ([0.0; 4], [f64::NEG_INFINITY; LANES]);
+            runs.walk(&band, |piece, inside| {
+                let (v, h) = (&mut v[piece.clone()], &gap[piece.clone()]);
+                if a != 0.0 {
+                    add(v, a, &image[piece.clone()]);
+                }
+                if !inside {
+                    reduce([&*v, h], &mut depth, |depth, [v, h]| {
+                        let below = -(c * v + h);
+                        if below > depth { below } else { depth }
+                    });
+                    return;
+                }
+                let (p, r) = (&mut p[piece.clone()], &mut r[piece.clone()]);
+                if a != 0.0 {
+                    add(p, a, &direction[piece]);
+                }
+                for ((r, &v), &h) in r.iter_mut().zip(&*v).zip(h) {
+                    *r = motion - (c * v + h);
+                }
+                found[0] += sum(r);
+                found[1] += sum_of_pairs(r, r, |r, _| r * r);
+                found[2] += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
+                found[3] += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
+            });
+            let [residual, square, displacement, negative] = found;
+            [residual, square, displacement, negative, depth.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+        });
+        let total = |m: usize| partials.iter().map(|partial| partial[m]).sum::<f64>();
+        let found = Survey {
+            residual: total(0),
+            square: total(1),
+            displacement: total(2),
+            negative: total(3),
+            depth: partials.iter().map(|partial| partial[4]).fold(f64::NEG_INFINITY, f64::max),
+        };
+        self.runs = runs;
+        found
+    }
+
+    /// r ← r − mean, and z = r in contact, zero elsewhere; returns Σ r².
+    pub(crate) fn center(&mut self, mean: f64, residual: &mut [f64], z: &mut [f64]) -> f64 {
+        let runs = std::mem::take(&mut self.runs);
+        let cells = z.len();
+        let partials = self.over_bands([residual, z], cells, |band, [r, z]| {
+            let mut square = 0.0;
+            runs.walk(&band, |piece, inside| {
+                let (r, z) = (&mut r[piece.clone()], &mut z[piece]);
+                if !inside {
+                    return z.fill(0.0);
+                }
+                for (r, z) in r.iter_mut().zip(&mut *z) {
+                    *r -= mean;
+                    *z = *r;
+                }
+                square += sum_of_pairs(z, z, |z, _| z * z);
+            });
+            [square, 0.0, 0.0, 0.0, 0.0]
+        });
+        let square = partials.iter().map(|partial| partial[0]).sum();
+        self.runs = runs;
+        square
+    }
+
+    /// Σ z, Σ z·Kd, Σ Kd and Σ d in contact.
+    pub(crate) fn overlaps(&mut self, z: &[f64], image: &[f64], direction: &[f64]) -> [f64; 4] {
+        let runs = std::mem::take(&mut self.runs);
+        let partials = self.over_bands([], z.len(), |band, []| {
+            let mut sums = Partial::default();
+            for run in runs.within(&band) {
+                let (z, kd, d) = (&z[run.clone()], &image[run.clone()], &direction[run]);
+                sums[0] += sum(z);
+                sums[1] += sum_of_pairs(z, kd, |z, kd| z * kd);
+                sums[2] += sum(kd);
+                sums[3] += sum(d);
+            }
+            sums
+        });
+        let sums = [0, 1, 2, 3].map(|m| partials.iter().map(|partial| partial[m]).sum());
+        self.runs = runs;
+        sums
+    }
+
+    /// d ← scale (z + β d + shift) in contact, 0 elsewhere; with β = 0 whatever d was.
+    pub(crate) fn redirect(&mut self, [scale, beta, shift]: [f64; 3], z: &[f64], direction: &mut [f64]) {
+        let runs = std::mem::take(&mut self.runs);
+        self.over_bands([direction], z.len(), |band, [d]| {
+            let z = &z[band.clone()];
+            runs.walk(&band, |piece, inside| {
+                let (d, z) = (&mut d[piece.clone()], &z[piece]);
+                if !inside {
+                    d.fill(0.0);
+                } else if beta == 0.0 {
+                    d.iter_mut().zip(z).for_each(|(d, &z)| *d = scale * (z + shift));
+                } else {
+                    d.iter_mut().zip(z).for_each(|(d, &z)| *d = scale * (z + beta * *d + shift));
+                }
+            });
+            Partial::default()
+        });
+        self.runs = runs;
+    }
+
+    /// Σ r·d and Σ d·Kd in contact.
+    pub(crate) fn slope_and_curvature(&mut self, residual: &[f64], direction: &[f64], image: &[f64]) -> [f64; 2] {
+        let runs = std::mem::take(&mut self.runs);
+        let partials = self.over_bands([], residual.len(), |band, []| {
+            let mut sums = Partial::default();
+            for run in runs.within(&band) {
+                let (r, d, kd) = (&residual[run.clone()], &direction[run.clone()], &image[run]);
+                sums[0] += sum_of_pairs(r, d, |r, d| r * d);
+                sums[1] += sum_of_pairs(d, kd, |d, kd| d * kd);
+            }
+            sums
+        });
+        let sums = [0, 1].map(|m| partials.iter().map(|partial| partial[m]).sum());
+        self.runs = runs;
+        sums
+    }
+}
+
+/// Halves the cells until a band is left, and calls `job` with each.
+fn halve<const M: usize>(
+    cells: Range<usize>,
+    outputs: [&mut [f64]; M],
+    partials: &mut [Partial],
+    shared: bool,
+    job: &(impl Fn(Range<usize>, [&mut [f64]; M]) -> Partial + Sync),
+) {
+    if let [partial] = partials {
+        *partial = job(cells, outputs);
+        return;
+    }
+    let (bands, middle) = (partials.len() / 2, partials.len() / 2 * BAND);
+    let mut halves = outputs.map(|output| output.split_at_mut(middle));
+    let first = halves.each_mut().map(|(first, _)| std::mem::take(first));
+    let second = halves.map(|(_, second)| second);
+    let (partials, others) = partials.split_at_mut(bands);
+    let cells = [cells.start..cells.start + middle, cells.start + middle..cells.end];
+    let [before, after] = cells;
+    join(shared, || halve(before, first, partials, shared, job), || halve(after, second, others, shared, job));
 }
 
 /// Cells worked on together: what was read stays in the fastest cache.
@@ -151,63 +317,6 @@ fn reduce([x, y]: [&[f64]; 2], lanes: &mut [f64; LANES], join: impl Fn(f64, [f64
     }
 }
 
-/// r ← r − mean, and z = r in contact, zero elsewhere; returns Σ r².
-pub(crate) fn center(runs: &Runs, mean: f64, residual: &mut [f64], z: &mut [f64]) -> f64 {
-    let (mut square, mut outside) = (0.0, 0);
-    for run in runs.ranges() {
-        z[outside..run.start].fill(0.0);
-        outside = run.end;
-        let (r, z) = (&mut residual[run.clone()], &mut z[run]);
-        for (r, z) in r.iter_mut().zip(&mut *z) {
-            *r -= mean;
-            *z = *r;
-        }
-        square += sum_of_pairs(z, z, |z, _| z * z);
-    }
-    z[outside..].fill(0.0);
-    square
-}
-
-/// Σ z, Σ z·Kd, Σ Kd and Σ d in contact.
-pub(crate) fn overlaps(runs: &Runs, z: &[f64], image: &[f64], direction: &[f64]) -> [f64; 4] {
-    let mut sums = [0.0; 4];
-    for run in runs.ranges() {
-        let (z, kd, d) = (&z[run.clone()], &image[run.clone()], &direction[run]);
-        sums[0] += sum(z);
-        sums[1] += sum_of_pairs(z, kd, |z, kd| z * kd);
-        sums[2] += sum(kd);
-        sums[3] += sum(d);
-    }
-    sums
-}
-
-/// d ← scale (z + β d + shift) in contact, 0 elsewhere; with β = 0 whatever d was.
-pub(crate) fn redirect(runs: &Runs, [scale, beta, shift]: [f64; 3], z: &[f64], direction: &mut [f64]) {
-    let mut outside = 0;
-    for run in runs.ranges() {
-        direction[outside..run.start].fill(0.0);
-        outside = run.end;
-        let pairs = direction[run.clone()].iter_mut().zip(&z[run]);
-        if beta == 0.0 {
-            pairs.for_each(|(d, &z)| *d = scale * (z + shift));
-        } else {
-            pairs.for_each(|(d, &z)| *d = scale * (z + beta * *d + shift));
-        }
-    }
-    direction[outside..].fill(0.0);
-}
-
-/// Σ r·d and Σ d·Kd in contact.
-pub(crate) fn slope_and_curvature(runs: &Runs, residual: &[f64], direction: &[f64], image: &[f64]) -> [f64; 2] {
-    let mut sums = [0.0; 2];
-    for run in runs.ranges() {
-        let (r, d, kd) = (&residual[run.clone()], &direction[run.clone()], &image[run]);
-        sums[0] += sum_of_pairs(r, d, |r, d| r * d);
-        sums[1] += sum_of_pairs(d, kd, |d, kd| d * kd);
-    }
-    sums
-}
-
 /// The greatest |value| in contact.
 pub(crate) fn greatest(runs: &Runs, values: &[f64]) -> f64 {
     runs.ranges().map(|run| crate::sum::greatest(&values[run])).fold(0.0, f64::max)
@@ -233,17 +342,22 @@ mod tests {
     /// Every pass against its definition, cell by cell.
     #[test]
     fn passes_match_their_definitions() {
-        let n = 77;
+        for n in [77, BAND, 3 * BAND + 100] {
+            check_passes(n);
+        }
+    }
+
+    fn check_passes(n: usize) {
         let field = |seed: f64| (0..n).map(|k| (seed * k as f64 + seed).sin()).collect::<Vec<f64>>();
-        let member: Vec<bool> = (0..n).map(|k| (10..40).contains(&k) || k == 50 || k > 70).collect();
-        let mut runs = Runs::default();
-        runs.find(&member);
+        let member: Vec<bool> = (0..n).map(|k| (10..40).contains(&k) || k == 50 || k > 70 && k % 1000 != 7).collect();
+        let mut passes = Passes::new(n);
+        passes.runs.find(&member);
         let (gap, d, kd, c, motion, a) = (field(0.3), field(0.7), field(1.1), 0.8, 0.2, 0.4);
         let (mut p, mut v, mut r) = (field(1.3), field(1.7), vec![0.0; n]);
         let (p0, v0) = (p.clone(), v.clone());
         let fields =
             Fields { gap: &gap, direction: &d, image: &kd, pressure: &mut p, potential: &mut v, residual: &mut r };
-        let found = survey(&runs, a, c, motion, fields);
+        let found = passes.survey(a, c, motion, fields);
         let (mut sums, mut deepest, mut highest) = ([0.0; 4], f64::NEG_INFINITY, 0.0_f64);
         for k in 0..n {
             let u = c * (v0[k] + a * kd[k]);
@@ -259,29 +373,29 @@ mod tests {
             let parts = [residual, residual * residual, u * u, p[k].min(0.0).powi(2)];
             (0..4).for_each(|m| sums[m] += parts[m]);
         }
-        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-13, "{a} {b}");
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-13 * (1.0 + a.abs()), "{a} {b}");
         near(found.residual, sums[0]);
         near(found.square, sums[1]);
         near(found.displacement, sums[2]);
         near(found.negative, sums[3]);
-        assert_eq!((greatest(&runs, &gap), found.depth), (highest, deepest));
+        assert_eq!((greatest(&passes.runs, &gap), found.depth), (highest, deepest));
 
         let mut z = field(2.0);
-        let square = center(&runs, 0.1, &mut r, &mut z);
+        let square = passes.center(0.1, &mut r, &mut z);
         near(square, z.iter().map(|z| z * z).sum::<f64>());
         assert!((0..n).all(|k| z[k] == if member[k] { r[k] } else { 0.0 }));
         let inside = |f: &dyn Fn(usize) -> f64| (0..n).filter(|&k| member[k]).map(f).sum::<f64>();
         let z = field(2.2);
-        let sums = overlaps(&runs, &z, &kd, &d);
+        let sums = passes.overlaps(&z, &kd, &d);
         near(sums[0], inside(&|k| z[k]));
         near(sums[1], inside(&|k| z[k] * kd[k]));
         near(sums[2], inside(&|k| kd[k]));
         near(sums[3], inside(&|k| d[k]));
-        let [slope, curvature] = slope_and_curvature(&runs, &r, &d, &kd);
+        let [slope, curvature] = passes.slope_and_curvature(&r, &d, &kd);
         near(slope, inside(&|k| r[k] * d[k]));
         near(curvature, inside(&|k| d[k] * kd[k]));
         let mut turned = d.clone();
-        redirect(&runs, [2.0, 0.5, 0.1], &z, &mut turned);
+        passes.redirect([2.0, 0.5, 0.1], &z, &mut turned);
         assert!((0..n).all(|k| turned[k] == if member[k] { 2.0 * (z[k] + 0.5 * d[k] + 0.1) } else { 0.0 }));
     }
 }
