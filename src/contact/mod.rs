@@ -9,6 +9,7 @@ mod change;
 mod follow;
 mod guess;
 mod hull;
+mod loads;
 mod region;
 mod report;
 mod reside;

@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
+use crate::contact::loads::lowered;
 use crate::contact::region::Region;
-use crate::contact::stepper::{ContactSolver, ViscoelasticContact, lowered};
+use crate::contact::stepper::{ContactSolver, ViscoelasticContact};
 use crate::geometry::Gap;
 use crate::hereditary::{Exponential, History};
 use crate::load::{Load, Tilt};

@@ -6,15 +6,16 @@ use crate::Grid;
 use crate::contact::builder::Builder;
 use crate::contact::guess::Refresh;
 use crate::contact::hull::Hull;
+use crate::contact::loads::{first_touch, lowered};
 use crate::contact::region::Region;
 use crate::contact::report::StepReport;
-use crate::contact::reside::{Beyond, symmetry, upright};
+use crate::contact::reside::{Beyond, symmetry};
 use crate::contact::settings::{Edge, Settings, Solver, TimeRule};
 use crate::error::{Error, Result, non_negative};
 use crate::geometry::Gap;
 use crate::hereditary::{Change, History};
 use crate::kernel::{InfluenceKernel, LocalKernel, Workspace};
-use crate::load::{Load, Tilt};
+use crate::load::Load;
 use crate::rheology::{Material, is_known};
 use crate::solver::{ActiveSet, Counts, Freedom, Modes, PolonskyKeer, Problem, Solution, Stop};
 use crate::sum::sum;
@@ -353,97 +354,6 @@ impl ViscoelasticContact {
         self.undisturbed_until == self.time && self.contact_cells == 0
     }
 
-    /// Refuses loads that no pressure can balance.
-    fn admit(&mut self, time: f64, loads: &[Load]) -> Result<()> {
-        if loads.len() != self.loads.len() {
-            return Err(Error::WrongNumberOfLoads { loads: loads.len(), bodies: self.loads.len() });
-        }
-        for (body, load) in loads.iter().enumerate() {
-            load.validate()?;
-            let Freedom { translation, tilt, point, total } = freedom(load, &self.grid);
-            let lost = total == 0.0 && matches!(load, Load::Force { normal, .. } if *normal > 0.0);
-            if lost || !total.is_finite() {
-                return Err(Error::Overflow { time, what: "the force over the area of a cell" });
-            }
-            if tilt != [false; 2] && !(translation && total == 0.0) {
-                let gap = &self.initial_gap;
-                let own = |k: usize| gap.owner(k) == body && gap.above[k].is_finite();
-                let hull = self.hulls[body].get_or_insert_with(|| Hull::new(&self.grid, own));
-                if !hull.admits(point, tilt) {
-                    return Err(Error::LoadOutsideHull { time, body, at: point });
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Sets what the loads leave free of each body.
-    fn free(&mut self, loads: &[Load]) {
-        for (own, load) in self.freedoms.iter_mut().zip(loads) {
-            *own = upright(freedom(load, &self.grid), self.region.folded());
-            own.total /= self.region.images() as f64;
-        }
-    }
-
-    /// The gap of the step before any pressure and free motion: hi + u_old − what is prescribed of ω + α·x.
-    fn fill_gap(&mut self, loads: &[Load]) {
-        let initial_gap = self.gap_here.as_ref().unwrap_or(&self.initial_gap);
-        for ((gap, &initial), &u_old) in self.gap.iter_mut().zip(&initial_gap.above).zip(&self.trial_displacement) {
-            *gap = initial + u_old;
-        }
-        for (body, load) in loads.iter().enumerate() {
-            let [omega, alpha1, alpha2] = lowered(load, self.initial_gap.datum);
-            if loads.len() == 1 && [alpha1, alpha2] == [0.0; 2] && omega != 0.0 {
-                self.gap.iter_mut().for_each(|gap| *gap -= omega);
-                continue;
-            }
-            if [omega, alpha1, alpha2] == [0.0; 3] {
-                continue;
-            }
-            let n2 = self.region.cells()[1];
-            for k in (0..self.gap.len()).filter(|&k| initial_gap.owner(k) == body) {
-                let [x1, x2] = self.region.grid().center(k / n2, k % n2);
-                self.gap[k] -= omega + alpha1 * x1 + alpha2 * x2;
-            }
-        }
-    }
-
-    /// u = u_old + c K p; on a body with memory, the surface in contact is then laid on the rigid body. The
-    /// residual of this step would otherwise stay in u, and count many times over when a later step is
-    /// much stiffer than this one, as a jump after a long hold is.
-    fn displace(&mut self, c: f64) {
-        let keeps = self.history.keeps_displacement();
-        if let (true, &[Freedom { tilt: [false, false], .. }]) = (keeps, &self.freedoms[..]) {
-            let motion = self.trial.motions[0][0];
-            let state = self.trial.pressure.iter().zip(&self.trial.potential).zip(&self.gap);
-            for (u, ((&p, &v), &gap)) in self.trial_displacement.iter_mut().zip(state) {
-                let cv = c * v;
-                let h = gap + cv - motion;
-                *u = (*u + cv) - if (p > 0.0) | (h < 0.0) { h } else { 0.0 };
-            }
-            return;
-        }
-        for (u, &v) in self.trial_displacement.iter_mut().zip(&self.trial.potential) {
-            *u += c * v;
-        }
-        if !keeps {
-            return;
-        }
-        for (body, &freedom) in self.freedoms.iter().enumerate() {
-            let (modes, motion) = (Modes::new(self.region.grid(), freedom), self.trial.motions[body]);
-            let owner = self.gap_here.as_ref().unwrap_or(&self.initial_gap);
-            for k in 0..self.gap.len() {
-                if owner.owner(k) == body && self.gap[k].is_finite() {
-                    // u_old + c v with the gap h less the same: gap = hi + u_old − prescribed
-                    let h = self.gap[k] + c * self.trial.potential[k] - modes.displacement(motion, k);
-                    if self.trial.pressure[k] > 0.0 || h < 0.0 {
-                        self.trial_displacement[k] -= h;
-                    }
-                }
-            }
-        }
-    }
-
     /// Whether the trial may be accepted.
     fn check(&self, time: f64, dt: f64, tolerance: f64) -> Result<()> {
         let Solution { residual, counts, ref motions, .. } = self.trial;
@@ -484,28 +394,4 @@ impl ViscoelasticContact {
             force: self.force(),
         }
     }
-}
-
-/// What a load prescribes of (ω, α1, α2), zero where it leaves them free; ω from the datum of the gap.
-pub(super) fn lowered(load: &Load, datum: f64) -> [f64; 3] {
-    let omega = if let Load::Approach { approach, .. } = load { approach - datum } else { 0.0 };
-    let [alpha1, alpha2] = load.tilt().map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
-    [omega, alpha1, alpha2]
-}
-
-/// What a load leaves free of a body.
-fn freedom(load: &Load, grid: &Grid) -> Freedom {
-    let tilt = load.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
-    let point = load.tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
-    let (translation, total) = match load {
-        Load::Force { normal, .. } => (true, normal / grid.cell_area()),
-        Load::Approach { .. } => (false, 0.0),
-    };
-    Freedom { translation, tilt, point, total }
-}
-
-/// The motion at which an upright body just touches the undeformed surface.
-fn first_touch(gap: &Gap, body: usize) -> [f64; 3] {
-    let own = gap.above.iter().enumerate().filter(|(k, _)| gap.owner(*k) == body);
-    [gap.datum + own.map(|(_, &h)| h).fold(f64::INFINITY, f64::min), 0.0, 0.0]
 }

@@ -10,13 +10,15 @@
 //! of the transform is left to the caller.
 
 mod lanes;
+mod layout;
 mod lines;
 mod love;
 mod spectrum;
 mod transform;
 
 pub(crate) use lanes::{join, lanes};
-pub(crate) use transform::{Layout, SpectralOperator, TransformWorkspace};
+pub(crate) use layout::Layout;
+pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
 use std::sync::{Arc, OnceLock};
 

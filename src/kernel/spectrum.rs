@@ -3,7 +3,7 @@
 use num_complex::Complex64;
 use realfft::RealFftPlanner;
 
-use super::transform::Layout;
+use super::layout::Layout;
 
 /// A quarter of the real even spectrum on the period of a padded layout.
 pub(super) struct Spectrum {

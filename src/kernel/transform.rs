@@ -10,45 +10,21 @@
 //!   pieces of memory; a column is transformed, multiplied and transformed back while it is in cache.
 //! * Rows and columns are independent of each other: threads share them, and the answer is the same bit by bit.
 
+mod tasks;
+
 use std::fmt;
 
 use num_complex::Complex;
 
-use super::lanes::{Task, for_each_share, lanes};
-use super::lines::{Line, Scalar, separate, unite};
+use super::lanes::{for_each_share, lanes};
+use super::layout::Layout;
+use super::lines::{Line, Scalar};
 use super::spectrum::Spectrum;
+use tasks::{Columns, ColumnsInPlace, RowsForward, RowsInverse, multiply_apart};
 
 /// Sides of a tile: 8 complex numbers fill two cache lines.
 const TILE: usize = 8;
 const AREA: usize = TILE * TILE;
-
-/// What an operator is laid out for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Layout {
-    /// Cells along each axis; of a folded axis half of them.
-    pub(crate) cells: [usize; 2],
-    /// Whether the axes are padded, so that the convolution is linear, or periodic.
-    pub(crate) padded: bool,
-    /// Axes about whose beginning all fields are even.
-    pub(crate) folded: [bool; 2],
-}
-
-impl Layout {
-    /// The length of the transforms along an axis.
-    fn line(&self, axis: usize) -> usize {
-        let cells = self.cells[axis];
-        fast_length(match (self.padded, self.folded[axis]) {
-            (true, true) => 2 * cells,
-            (true, false) => 2 * cells - 1,
-            (false, _) => cells,
-        })
-    }
-
-    /// The period of the fields \[cells\].
-    pub(crate) fn period(&self, axis: usize) -> usize {
-        self.line(axis) * if self.folded[axis] { 2 } else { 1 }
-    }
-}
 
 /// A linear operator on fields, diagonal in wave-number space with a real even spectrum.
 #[derive(Clone)]
@@ -321,168 +297,6 @@ impl<T: Scalar> SpectralOperator<T> {
     }
 }
 
-/// Transforms rows of `input` into tiles.
-struct RowsForward<'a, T: Scalar> {
-    operator: &'a SpectralOperator<T>,
-    input: &'a [f64],
-    scale: f64,
-    share: usize,
-}
-
-impl<T: Scalar> Task for RowsForward<'_, T> {
-    type Lane = Lane<T>;
-    type Item = Complex<T>;
-
-    #[inline(always)]
-    fn run(&self, k: usize, lane: &mut Lane<T>, tiles: &mut [Complex<T>]) {
-        let (cells, line, scale) = (self.operator.layout.cells[1], &self.operator.rows, self.scale);
-        let (run, high) = (self.operator.across() * AREA, self.operator.rows_in_a_tile());
-        let (buffer, scratch) = (lane.line.get(), lane.scratch.get());
-        let [a, b] = lane.parts.each_mut().map(Buffer::get);
-        for (block, tiles) in tiles.chunks_exact_mut(run).enumerate() {
-            let first = (k * self.share + block) * high * cells;
-            let rows = &self.input[first..self.input.len().min(first + high * cells)];
-            for (i, pair) in rows.chunks(2 * cells).enumerate() {
-                let (first, second) = pair.split_at(cells);
-                line.pad(buffer, cells);
-                if second.is_empty() {
-                    line.fill(buffer, first.iter().map(|&a| Complex::from(T::new(scale * a))));
-                } else {
-                    let both = first.iter().zip(second);
-                    line.fill(buffer, both.map(|(&a, &b)| Complex::new(T::new(scale * a), T::new(scale * b))));
-                }
-                line.forward(buffer, scratch);
-                let mut keep = |i: usize, coefficients: &[Complex<T>]| {
-                    for (tile, piece) in tiles.chunks_exact_mut(AREA).zip(coefficients.chunks(TILE)) {
-                        let place = &mut tile[i * TILE..][..TILE];
-                        place[..piece.len()].copy_from_slice(piece);
-                        // beyond the last coefficient: half of a complex column, if the number is odd
-                        place[piece.len()..].fill(Complex::default());
-                    }
-                };
-                if line.is_folded() {
-                    if second.is_empty() {
-                        buffer.iter_mut().for_each(|z| z.im = T::default());
-                    }
-                    keep(i, buffer);
-                } else {
-                    separate(buffer, &mut a[..line.independent()], &mut b[..line.independent()]);
-                    keep(2 * i, a);
-                    if !second.is_empty() {
-                        keep(2 * i + 1, b);
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// Convolves the columns of tiles that lie row by row.
-struct ColumnsInPlace<'a, T: Scalar> {
-    operator: &'a SpectralOperator<T>,
-}
-
-impl<T: Scalar> Task for ColumnsInPlace<'_, T> {
-    type Lane = Lane<T>;
-    type Item = Complex<T>;
-
-    #[inline(always)]
-    fn run(&self, _: usize, lane: &mut Lane<T>, tiles: &mut [Complex<T>]) {
-        let across = self.operator.across();
-        for panel in 0..across {
-            let at = |tile: usize| (tile * across + panel) * AREA;
-            self.operator.gather(tiles, at, lane.block.get());
-            self.operator.convolve(panel, lane);
-            self.operator.scatter(lane.block.get(), tiles, at);
-        }
-    }
-}
-
-/// Convolves the columns of `tiles`; those of the result lie column by column.
-struct Columns<'a, T: Scalar> {
-    operator: &'a SpectralOperator<T>,
-    tiles: &'a [Complex<T>],
-    share: usize,
-}
-
-impl<T: Scalar> Task for Columns<'_, T> {
-    type Lane = Lane<T>;
-    type Item = Complex<T>;
-
-    #[inline(always)]
-    fn run(&self, k: usize, lane: &mut Lane<T>, result: &mut [Complex<T>]) {
-        let (across, down) = (self.operator.across(), self.operator.down());
-        for (panel, result) in result.chunks_exact_mut(down * AREA).enumerate() {
-            let panel = k * self.share + panel;
-            self.operator.gather(self.tiles, |tile| (tile * across + panel) * AREA, lane.block.get());
-            self.operator.convolve(panel, lane);
-            self.operator.scatter(lane.block.get(), result, |tile| tile * AREA);
-        }
-    }
-}
-
-/// Transforms tiles back into rows of the output.
-struct RowsInverse<'a, T: Scalar> {
-    operator: &'a SpectralOperator<T>,
-    tiles: &'a [Complex<T>],
-    in_place: bool,
-    scale: f64,
-    share: usize,
-}
-
-impl<T: Scalar> Task for RowsInverse<'_, T> {
-    type Lane = Lane<T>;
-    type Item = f64;
-
-    #[inline(always)]
-    fn run(&self, k: usize, lane: &mut Lane<T>, output: &mut [f64]) {
-        let (cells, line, scale) = (self.operator.layout.cells[1], &self.operator.rows, self.scale);
-        let (across, down, high) = (self.operator.across(), self.operator.down(), self.operator.rows_in_a_tile());
-        let (buffer, scratch) = (lane.line.get(), lane.scratch.get());
-        let [a, b] = lane.parts.each_mut().map(Buffer::get);
-        for (block, rows) in output.chunks_mut(high * cells).enumerate() {
-            let tile = k * self.share + block;
-            let at = |panel: usize| if self.in_place { tile * across + panel } else { panel * down + tile };
-            for (i, pair) in rows.chunks_mut(2 * cells).enumerate() {
-                let fetch = |i: usize, coefficients: &mut [Complex<T>]| {
-                    for (panel, piece) in coefficients.chunks_mut(TILE).enumerate() {
-                        piece.copy_from_slice(&self.tiles[at(panel) * AREA + i * TILE..][..piece.len()]);
-                    }
-                };
-                let (first, second) = pair.split_at_mut(cells);
-                if line.is_folded() {
-                    fetch(i, buffer);
-                } else {
-                    fetch(2 * i, a);
-                    fetch(2 * i + 1, b);
-                    unite(&a[..line.independent()], &b[..line.independent()], buffer);
-                }
-                line.inverse(buffer, scratch);
-                line.read(buffer, first, |z| scale * z.re.get());
-                line.read(buffer, second, |z| scale * z.im.get());
-            }
-        }
-    }
-}
-
-/// Multiplies the transforms of two real columns, together those of the complex `column`, by a real even spectrum each.
-#[inline(always)]
-fn multiply_apart<T: Scalar>(column: &mut [Complex<T>], first: &[T], second: &[T]) {
-    let half = T::new(0.5);
-    let multiply = |z: Complex<T>, mirror: Complex<T>, k: usize| {
-        z * ((first[k] + second[k]) * half) + mirror.conj() * ((first[k] - second[k]) * half)
-    };
-    let length = column.len();
-    column[0] = multiply(column[0], column[0], 0);
-    for k in 1..=length / 2 {
-        let (z, mirror) = (column[k], column[length - k]);
-        column[k] = multiply(z, mirror, k);
-        if k != length - k {
-            column[length - k] = multiply(mirror, z, k);
-        }
-    }
-}
-
 impl<T: Scalar> fmt::Debug for SpectralOperator<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("SpectralOperator").field("layout", &self.layout).finish_non_exhaustive()
@@ -502,35 +316,9 @@ impl<T: Scalar> TransformWorkspace<T> {
     }
 }
 
-/// The length ≥ `least` that is transformed fastest, of those whose only prime factors are 2, 3, 5 and 7.
-///
-/// Measured with rustfft on one processor with AVX: n log₂ n takes 0.12 to 0.14 ns a unit for powers of two, 0.15 to 0.2 for
-/// multiples of 16, and up to 0.3 for others: 63 takes 1.7 times as long as 64, 500 2.3 times as long as 512.
-fn fast_length(least: usize) -> usize {
-    let smooth = |mut n: usize| {
-        for factor in [2, 3, 5, 7] {
-            while n.is_multiple_of(factor) {
-                n /= factor;
-            }
-        }
-        n == 1
-    };
-    let power = least.next_power_of_two();
-    let step = if least > 32 { 16 } else { 4 };
-    let other = (least.div_ceil(step)..).map(|n| n * step).find(|&n| smooth(n)).unwrap_or(power);
-    if 10 * power <= 12 * other { power } else { other }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn fast_lengths() {
-        assert_eq!([1, 2, 3, 9, 63, 65, 95, 127, 129, 225].map(fast_length), [1, 2, 4, 12, 64, 80, 96, 128, 144, 256]);
-        assert_eq!([511, 513, 641, 1023, 1999, 8191].map(fast_length), [512, 560, 672, 1024, 2048, 8192]);
-        assert!((1..3000).all(|n| fast_length(n) >= n && fast_length(n) <= n + n / 3 + 16));
-    }
 
     const FOLDS: [[bool; 2]; 4] = [[false, false], [false, true], [true, false], [true, true]];
     const SIZES: [[usize; 2]; 8] = [[1, 1], [9, 9], [4, 3], [3, 5], [6, 6], [5, 9], [2, 40], [33, 14]];

@@ -1,0 +1,60 @@
+//! What an operator is laid out for, and the lengths of its transforms.
+
+/// What an operator is laid out for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Layout {
+    /// Cells along each axis; of a folded axis half of them.
+    pub(crate) cells: [usize; 2],
+    /// Whether the axes are padded, so that the convolution is linear, or periodic.
+    pub(crate) padded: bool,
+    /// Axes about whose beginning all fields are even.
+    pub(crate) folded: [bool; 2],
+}
+
+impl Layout {
+    /// The length of the transforms along an axis.
+    pub(super) fn line(&self, axis: usize) -> usize {
+        let cells = self.cells[axis];
+        fast_length(match (self.padded, self.folded[axis]) {
+            (true, true) => 2 * cells,
+            (true, false) => 2 * cells - 1,
+            (false, _) => cells,
+        })
+    }
+
+    /// The period of the fields \[cells\].
+    pub(crate) fn period(&self, axis: usize) -> usize {
+        self.line(axis) * if self.folded[axis] { 2 } else { 1 }
+    }
+}
+
+/// The length ≥ `least` that is transformed fastest, of those whose only prime factors are 2, 3, 5 and 7.
+///
+/// Measured with rustfft on one processor with AVX: n log₂ n takes 0.12 to 0.14 ns a unit for powers of two, 0.15 to 0.2 for
+/// multiples of 16, and up to 0.3 for others: 63 takes 1.7 times as long as 64, 500 2.3 times as long as 512.
+fn fast_length(least: usize) -> usize {
+    let smooth = |mut n: usize| {
+        for factor in [2, 3, 5, 7] {
+            while n.is_multiple_of(factor) {
+                n /= factor;
+            }
+        }
+        n == 1
+    };
+    let power = least.next_power_of_two();
+    let step = if least > 32 { 16 } else { 4 };
+    let other = (least.div_ceil(step)..).map(|n| n * step).find(|&n| smooth(n)).unwrap_or(power);
+    if 10 * power <= 12 * other { power } else { other }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fast_lengths() {
+        assert_eq!([1, 2, 3, 9, 63, 65, 95, 127, 129, 225].map(fast_length), [1, 2, 4, 12, 64, 80, 96, 128, 144, 256]);
+        assert_eq!([511, 513, 641, 1023, 1999, 8191].map(fast_length), [512, 560, 672, 1024, 2048, 8192]);
+        assert!((1..3000).all(|n| fast_length(n) >= n && fast_length(n) <= n + n / 3 + 16));
+    }
+}

@@ -1,0 +1,169 @@
+//! The three passes of an operator, as pieces of work for threads.
+
+use num_complex::Complex;
+
+use super::{AREA, Buffer, Lane, SpectralOperator, TILE};
+use crate::kernel::lanes::Task;
+use crate::kernel::lines::{Scalar, separate, unite};
+
+/// Transforms rows of `input` into tiles.
+pub(super) struct RowsForward<'a, T: Scalar> {
+    pub(super) operator: &'a SpectralOperator<T>,
+    pub(super) input: &'a [f64],
+    pub(super) scale: f64,
+    pub(super) share: usize,
+}
+
+impl<T: Scalar> Task for RowsForward<'_, T> {
+    type Lane = Lane<T>;
+    type Item = Complex<T>;
+
+    #[inline(always)]
+    fn run(&self, k: usize, lane: &mut Lane<T>, tiles: &mut [Complex<T>]) {
+        let (cells, line, scale) = (self.operator.layout.cells[1], &self.operator.rows, self.scale);
+        let (run, high) = (self.operator.across() * AREA, self.operator.rows_in_a_tile());
+        let (buffer, scratch) = (lane.line.get(), lane.scratch.get());
+        let [a, b] = lane.parts.each_mut().map(Buffer::get);
+        for (block, tiles) in tiles.chunks_exact_mut(run).enumerate() {
+            let first = (k * self.share + block) * high * cells;
+            let rows = &self.input[first..self.input.len().min(first + high * cells)];
+            for (i, pair) in rows.chunks(2 * cells).enumerate() {
+                let (first, second) = pair.split_at(cells);
+                line.pad(buffer, cells);
+                if second.is_empty() {
+                    line.fill(buffer, first.iter().map(|&a| Complex::from(T::new(scale * a))));
+                } else {
+                    let both = first.iter().zip(second);
+                    line.fill(buffer, both.map(|(&a, &b)| Complex::new(T::new(scale * a), T::new(scale * b))));
+                }
+                line.forward(buffer, scratch);
+                let mut keep = |i: usize, coefficients: &[Complex<T>]| {
+                    for (tile, piece) in tiles.chunks_exact_mut(AREA).zip(coefficients.chunks(TILE)) {
+                        let place = &mut tile[i * TILE..][..TILE];
+                        place[..piece.len()].copy_from_slice(piece);
+                        // beyond the last coefficient: half of a complex column, if the number is odd
+                        place[piece.len()..].fill(Complex::default());
+                    }
+                };
+                if line.is_folded() {
+                    if second.is_empty() {
+                        buffer.iter_mut().for_each(|z| z.im = T::default());
+                    }
+                    keep(i, buffer);
+                } else {
+                    separate(buffer, &mut a[..line.independent()], &mut b[..line.independent()]);
+                    keep(2 * i, a);
+                    if !second.is_empty() {
+                        keep(2 * i + 1, b);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Convolves the columns of tiles that lie row by row.
+pub(super) struct ColumnsInPlace<'a, T: Scalar> {
+    pub(super) operator: &'a SpectralOperator<T>,
+}
+
+impl<T: Scalar> Task for ColumnsInPlace<'_, T> {
+    type Lane = Lane<T>;
+    type Item = Complex<T>;
+
+    #[inline(always)]
+    fn run(&self, _: usize, lane: &mut Lane<T>, tiles: &mut [Complex<T>]) {
+        let across = self.operator.across();
+        for panel in 0..across {
+            let at = |tile: usize| (tile * across + panel) * AREA;
+            self.operator.gather(tiles, at, lane.block.get());
+            self.operator.convolve(panel, lane);
+            self.operator.scatter(lane.block.get(), tiles, at);
+        }
+    }
+}
+
+/// Convolves the columns of `tiles`; those of the result lie column by column.
+pub(super) struct Columns<'a, T: Scalar> {
+    pub(super) operator: &'a SpectralOperator<T>,
+    pub(super) tiles: &'a [Complex<T>],
+    pub(super) share: usize,
+}
+
+impl<T: Scalar> Task for Columns<'_, T> {
+    type Lane = Lane<T>;
+    type Item = Complex<T>;
+
+    #[inline(always)]
+    fn run(&self, k: usize, lane: &mut Lane<T>, result: &mut [Complex<T>]) {
+        let (across, down) = (self.operator.across(), self.operator.down());
+        for (panel, result) in result.chunks_exact_mut(down * AREA).enumerate() {
+            let panel = k * self.share + panel;
+            self.operator.gather(self.tiles, |tile| (tile * across + panel) * AREA, lane.block.get());
+            self.operator.convolve(panel, lane);
+            self.operator.scatter(lane.block.get(), result, |tile| tile * AREA);
+        }
+    }
+}
+
+/// Transforms tiles back into rows of the output.
+pub(super) struct RowsInverse<'a, T: Scalar> {
+    pub(super) operator: &'a SpectralOperator<T>,
+    pub(super) tiles: &'a [Complex<T>],
+    pub(super) in_place: bool,
+    pub(super) scale: f64,
+    pub(super) share: usize,
+}
+
+impl<T: Scalar> Task for RowsInverse<'_, T> {
+    type Lane = Lane<T>;
+    type Item = f64;
+
+    #[inline(always)]
+    fn run(&self, k: usize, lane: &mut Lane<T>, output: &mut [f64]) {
+        let (cells, line, scale) = (self.operator.layout.cells[1], &self.operator.rows, self.scale);
+        let (across, down, high) = (self.operator.across(), self.operator.down(), self.operator.rows_in_a_tile());
+        let (buffer, scratch) = (lane.line.get(), lane.scratch.get());
+        let [a, b] = lane.parts.each_mut().map(Buffer::get);
+        for (block, rows) in output.chunks_mut(high * cells).enumerate() {
+            let tile = k * self.share + block;
+            let at = |panel: usize| if self.in_place { tile * across + panel } else { panel * down + tile };
+            for (i, pair) in rows.chunks_mut(2 * cells).enumerate() {
+                let fetch = |i: usize, coefficients: &mut [Complex<T>]| {
+                    for (panel, piece) in coefficients.chunks_mut(TILE).enumerate() {
+                        piece.copy_from_slice(&self.tiles[at(panel) * AREA + i * TILE..][..piece.len()]);
+                    }
+                };
+                let (first, second) = pair.split_at_mut(cells);
+                if line.is_folded() {
+                    fetch(i, buffer);
+                } else {
+                    fetch(2 * i, a);
+                    fetch(2 * i + 1, b);
+                    unite(&a[..line.independent()], &b[..line.independent()], buffer);
+                }
+                line.inverse(buffer, scratch);
+                line.read(buffer, first, |z| scale * z.re.get());
+                line.read(buffer, second, |z| scale * z.im.get());
+            }
+        }
+    }
+}
+
+/// Multiplies the transforms of two real columns, together those of the complex `column`, by a real even spectrum each.
+#[inline(always)]
+pub(super) fn multiply_apart<T: Scalar>(column: &mut [Complex<T>], first: &[T], second: &[T]) {
+    let half = T::new(0.5);
+    let multiply = |z: Complex<T>, mirror: Complex<T>, k: usize| {
+        z * ((first[k] + second[k]) * half) + mirror.conj() * ((first[k] - second[k]) * half)
+    };
+    let length = column.len();
+    column[0] = multiply(column[0], column[0], 0);
+    for k in 1..=length / 2 {
+        let (z, mirror) = (column[k], column[length - k]);
+        column[k] = multiply(z, mirror, k);
+        if k != length - k {
+            column[length - k] = multiply(mirror, z, k);
+        }
+    }
+}
