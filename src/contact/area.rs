@@ -11,6 +11,9 @@ const THREE_BEFORE: f64 = 0.4;
 /// The contact ends less than a cell beyond the centre of the last; an estimate farther out than this is none.
 const TOO_FAR: f64 = 1.3;
 
+/// Pressures that are mirror images of each other do not rise, whatever they are rounded to.
+const RISES: f64 = 1.0 + 1e-6;
+
 impl ViscoelasticContact {
     /// Area of contact \[m²\].
     ///
@@ -86,7 +89,7 @@ impl ViscoelasticContact {
             return TO_THE_RIM;
         }
         let linear = linear.min(1.0);
-        if !(third > second && fourth > third) {
+        if !(third > RISES * second && fourth > RISES * third) {
             return linear;
         }
         // f(x) = second + slope x + bend x² at x = 0, −1, −2; its zero, one cell further out

@@ -31,6 +31,7 @@ impl ViscoelasticContact {
         if geometries.len() != self.loads.len() {
             return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.loads.len() });
         }
+        self.move_back();
         let gaps: Vec<_> = geometries.iter().map(|geometry| evaluate(*geometry, &self.grid)).collect();
         self.initial_gap = Gap::new(&gaps, &self.grid)?;
         self.gap_here = self.region.cut_gap(&self.initial_gap);

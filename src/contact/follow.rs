@@ -250,6 +250,7 @@ impl<'a> Follow<'a> {
                 return Ok(report);
             }
             wasted = self.wasted(wasted);
+            self.contact.move_back();
             self.may_shorten(time, dt)?;
         }
     }

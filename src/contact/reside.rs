@@ -217,7 +217,9 @@ impl ViscoelasticContact {
     /// Goes back to where the state was before a step that did not succeed.
     pub(super) fn move_back(&mut self) {
         if let Some(before) = self.before_move.take() {
+            let counts = self.trial.counts;
             *self = *before;
+            self.trial.counts = counts; // the work was done
         }
     }
 
@@ -225,7 +227,6 @@ impl ViscoelasticContact {
     pub(super) fn reside(&mut self, region: Region) {
         let old = std::mem::replace(&mut self.region, region);
         self.history.settle(&self.trial_displacement, &self.displacement);
-        self.before_is_kept = false;
         let (cells, bodies) = (self.region.len(), self.loads.len());
         self.kernel_here = self.kernel.on(self.region.grid(), self.region.folded(), self.settings.is_mixed());
         self.work = self.kernel_here.workspace();
@@ -248,6 +249,7 @@ impl ViscoelasticContact {
             history.settle(trial, strength);
         }
         let source = beyond.as_ref();
+        self.trial_displacement = induce(&self.trial_displacement, source.map(|beyond| &beyond.trial[..]));
         self.displacement = induce(&self.displacement, source.map(|beyond| &beyond.strength[..]));
         match &mut self.history {
             History::Exponential(history) => history.carry(old.len(), cells, |i, own| {
@@ -263,12 +265,11 @@ impl ViscoelasticContact {
             *state = Solution { pressure, potential, motions: std::mem::take(&mut state.motions), ..*state };
         }
         self.trial = Solution::zero(cells, bodies);
-        self.trial_displacement = vec![0.0; cells];
         self.gap = vec![0.0; cells];
         self.beyond = beyond.filter(|_| !region.covers()).map(|mut beyond| {
             let plain = |own: &[f64]| old.carry(own, &region, |_| 0.0);
             beyond.history.carry(old.len(), cells, |_, own| plain(&own));
-            (beyond.strength, beyond.trial) = (plain(&beyond.strength), vec![0.0; cells]);
+            (beyond.strength, beyond.trial) = (plain(&beyond.strength), plain(&beyond.trial));
             beyond
         });
         self.survey();
