@@ -9,6 +9,7 @@
 //! whole line, of period 2L. Lines shorter than their transform continue with zeros.
 
 use std::f64::consts::PI;
+use std::ops::Range;
 use std::sync::Arc;
 
 use num_complex::Complex;
@@ -243,30 +244,51 @@ fn pairs<T>(buffer: &mut [T]) -> impl Iterator<Item = (&mut T, &mut T)> {
     rising.iter_mut().zip(falling.iter_mut().rev())
 }
 
-/// Splits the transform of a complex line into those of its real and imaginary part, for 0 ≤ k ≤ P/2.
+/// Splits the transform of a complex line of length P into those of its real and imaginary part: the coefficients k, as
+/// many as `first` and `second` hold, but none at or beyond the end of `k`.
 #[inline(always)]
-pub(crate) fn separate<T: Scalar>(both: &[Complex<T>], first: &mut [Complex<T>], second: &mut [Complex<T>]) {
-    let zero = T::default();
-    let (value, half) = (both[0], T::new(0.5));
-    (first[0], second[0]) = (Complex::new(value.re, zero), Complex::new(value.im, zero));
-    let parts = first[1..].iter_mut().zip(&mut second[1..]);
-    for ((a, b), (z, mirror)) in parts.zip(both[1..].iter().zip(both[1..].iter().rev())) {
+pub(crate) fn separate<T: Scalar>(
+    both: &[Complex<T>],
+    k: Range<usize>,
+    first: &mut [Complex<T>],
+    second: &mut [Complex<T>],
+) {
+    let (zero, half) = (T::default(), T::new(0.5));
+    let (mut first, mut second, mut start) = (first, second, k.start);
+    if start == 0 {
+        let value = both[0];
+        (first[0], second[0]) = (Complex::new(value.re, zero), Complex::new(value.im, zero));
+        (first, second, start) = (&mut first[1..], &mut second[1..], 1);
+    }
+    let count = first.len().min(k.end.saturating_sub(start));
+    let end = both.len() + 1 - start;
+    let (values, mirrors) = (&both[start..start + count], &both[end - count..end]);
+    let parts = first[..count].iter_mut().zip(&mut second[..count]);
+    for ((a, b), (z, mirror)) in parts.zip(values.iter().zip(mirrors.iter().rev())) {
         let (sum, difference) = (*z + mirror.conj(), *z - mirror.conj());
         (*a, *b) = (sum * half, Complex::new(difference.im, zero - difference.re) * half);
     }
+    first[count..].fill(Complex::default());
+    second[count..].fill(Complex::default());
 }
 
-/// The reverse of [`separate`].
+/// The reverse of [`separate`]: sets the coefficients k and P − k.
 #[inline(always)]
-pub(crate) fn unite<T: Scalar>(first: &[Complex<T>], second: &[Complex<T>], both: &mut [Complex<T>]) {
-    both[0] = Complex::new(first[0].re, second[0].re);
-    let (rising, falling) = both[1..].split_at_mut(first.len() - 1);
-    let parts = first[1..].iter().zip(&second[1..]);
-    for ((z, a), b) in rising.iter_mut().zip(&first[1..]).zip(&second[1..]) {
-        *z = Complex::new(a.re - b.im, a.im + b.re);
+pub(crate) fn unite<T: Scalar>(first: &[Complex<T>], second: &[Complex<T>], k: Range<usize>, both: &mut [Complex<T>]) {
+    let (mut first, mut second, mut start) = (first, second, k.start);
+    if start == 0 {
+        both[0] = Complex::new(first[0].re, second[0].re);
+        (first, second, start) = (&first[1..], &second[1..], 1);
     }
-    for (z, (a, b)) in falling.iter_mut().rev().zip(parts) {
+    let count = first.len().min(k.end.saturating_sub(start));
+    let end = both.len() + 1 - start;
+    // the mirror images first: of an even length the middle is its own
+    let parts = first[..count].iter().zip(&second[..count]);
+    for (z, (a, b)) in both[end - count..end].iter_mut().rev().zip(parts.clone()) {
         *z = Complex::new(a.re + b.im, b.re - a.im);
+    }
+    for (z, (a, b)) in both[start..start + count].iter_mut().zip(parts) {
+        *z = Complex::new(a.re - b.im, a.im + b.re);
     }
 }
 
@@ -317,14 +339,20 @@ mod tests {
                 [0, 1].map(|part| both.iter().map(|z| Complex::from([z.re, z.im][part])).collect::<Vec<_>>());
             line.forward(&mut both, &mut scratch);
             parts.iter_mut().for_each(|part| line.forward(part, &mut scratch));
-            let mut found = [vec![Complex::default(); length / 2 + 1], vec![Complex::default(); length / 2 + 1]];
+            // in pieces of three
+            let half = length / 2 + 1;
+            let mut found = [vec![Complex::default(); half], vec![Complex::default(); half]];
             let [first, second] = &mut found;
-            separate(&both, first, second);
+            for (piece, (first, second)) in first.chunks_mut(3).zip(second.chunks_mut(3)).enumerate() {
+                separate(&both, 3 * piece..half, first, second);
+            }
             for (found, exact) in found.iter().zip(&parts) {
                 assert!(found.iter().zip(exact).all(|(a, b)| (a - b).norm() < 1e-13), "{length}");
             }
             let mut united = vec![Complex::default(); length];
-            unite(&found[0], &found[1], &mut united);
+            for (piece, (first, second)) in found[0].chunks(3).zip(found[1].chunks(3)).enumerate() {
+                unite(first, second, 3 * piece..half, &mut united);
+            }
             assert!(united.iter().zip(&both).all(|(a, b)| (a - b).norm() < 1e-13), "{length}");
         }
     }

@@ -51,7 +51,6 @@ pub(crate) struct TransformWorkspace<T: Scalar> {
 #[derive(Clone)]
 struct Lane<T> {
     line: Buffer<T>,
-    parts: [Buffer<T>; 2],
     block: Buffer<T>,
     scratch: Buffer<T>,
 }
@@ -107,10 +106,8 @@ impl<T: Scalar> SpectralOperator<T> {
     /// Buffers for so many threads.
     pub(crate) fn workspace_for(&self, lanes: usize) -> TransformWorkspace<T> {
         let zeros = |count| vec![Complex::default(); count];
-        let part = || Buffer::zeros(self.width());
         let lane = Lane {
             line: Buffer::zeros(self.rows.len()),
-            parts: [part(), part()],
             block: Buffer::zeros(TILE * self.stride()),
             scratch: Buffer::zeros(self.rows.scratch().max(self.columns.scratch())),
         };

@@ -2,7 +2,7 @@
 
 use num_complex::Complex;
 
-use super::{AREA, Buffer, Lane, SpectralOperator, TILE};
+use super::{AREA, Lane, SpectralOperator, TILE};
 use crate::kernel::lanes::Task;
 use crate::kernel::lines::{Scalar, separate, unite};
 
@@ -23,7 +23,6 @@ impl<T: Scalar> Task for RowsForward<'_, T> {
         let (cells, line, scale) = (self.operator.layout.cells[1], &self.operator.rows, self.scale);
         let (run, high) = (self.operator.across() * AREA, self.operator.rows_in_a_tile());
         let (buffer, scratch) = (lane.line.get(), lane.scratch.get());
-        let [a, b] = lane.parts.each_mut().map(Buffer::get);
         for (block, tiles) in tiles.chunks_exact_mut(run).enumerate() {
             let first = (k * self.share + block) * high * cells;
             let rows = &self.input[first..self.input.len().min(first + high * cells)];
@@ -51,10 +50,12 @@ impl<T: Scalar> Task for RowsForward<'_, T> {
                     }
                     keep(i, buffer);
                 } else {
-                    separate(buffer, &mut a[..line.independent()], &mut b[..line.independent()]);
-                    keep(2 * i, a);
-                    if !second.is_empty() {
-                        keep(2 * i + 1, b);
+                    for (panel, tile) in tiles.chunks_exact_mut(AREA).enumerate() {
+                        let (a, b) = tile[2 * i * TILE..][..2 * TILE].split_at_mut(TILE);
+                        separate(buffer, panel * TILE..line.independent(), a, b);
+                        if second.is_empty() {
+                            b.fill(Complex::default());
+                        }
                     }
                 }
             }
@@ -124,7 +125,6 @@ impl<T: Scalar> Task for RowsInverse<'_, T> {
         let (cells, line, scale) = (self.operator.layout.cells[1], &self.operator.rows, self.scale);
         let (across, down, high) = (self.operator.across(), self.operator.down(), self.operator.rows_in_a_tile());
         let (buffer, scratch) = (lane.line.get(), lane.scratch.get());
-        let [a, b] = lane.parts.each_mut().map(Buffer::get);
         for (block, rows) in output.chunks_mut(high * cells).enumerate() {
             let tile = k * self.share + block;
             let at = |panel: usize| if self.in_place { tile * across + panel } else { panel * down + tile };
@@ -138,9 +138,10 @@ impl<T: Scalar> Task for RowsInverse<'_, T> {
                 if line.is_folded() {
                     fetch(i, buffer);
                 } else {
-                    fetch(2 * i, a);
-                    fetch(2 * i + 1, b);
-                    unite(&a[..line.independent()], &b[..line.independent()], buffer);
+                    for panel in 0..across {
+                        let (a, b) = self.tiles[at(panel) * AREA + 2 * i * TILE..][..2 * TILE].split_at(TILE);
+                        unite(a, b, panel * TILE..line.independent(), buffer);
+                    }
                 }
                 line.inverse(buffer, scratch);
                 line.read(buffer, first, |z| scale * z.re.get());
