@@ -53,7 +53,7 @@ const FIRST_PART: f64 = 1e-6;
 /// Part of the estimate that a run really errs by, before and at most after the amplification by C(age)/C(Δ): see
 /// docs/accuracy.md.
 const SHARE: f64 = 0.25;
-const MOST_AMPLIFIED: f64 = 5.5;
+const MOST_AMPLIFIED: f64 = 5.0;
 /// Loads below this part of the greatest so far are measured against it.
 const SMALL_LOAD: f64 = 0.05;
 
