@@ -28,7 +28,8 @@ fn steps_allocate_nothing() {
             assert_eq!((change.allocations, change.reallocations), (0, 0), "{solver:?} on {cells}²: {change:?}");
 
             // a window takes memory while it grows, and then no more
-            let mut contact = scene.contact(cells, Settings { solver, symmetry, ..Settings::default() }).unwrap();
+            let wide = Grid::square(3 * cells, 3.0 * scene.grid(cells).unwrap().lengths()[0]).unwrap();
+            let mut contact = scene.contact_on(wide, Settings { solver, symmetry, ..Settings::default() }).unwrap();
             contact.step(0.0, Load::force(1.0)).unwrap();
             let region = Region::new(ALLOCATOR);
             for step in 0..80 {

@@ -61,7 +61,7 @@ impl ViscoelasticContact {
             return &self.displacement;
         }
         let source = self.beyond.as_ref().map(|beyond| &beyond.strength[..]);
-        self.whole_displacement.get_or_init(|| self.on_the_whole_grid(&self.displacement, source))
+        self.whole_displacement.get_or_init(|| self.on_the_whole_grid(&self.displacement, source).into_owned())
     }
 
     /// The part of the grid that is computed, and the displacement there.

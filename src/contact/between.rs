@@ -80,9 +80,6 @@ impl Between<'_> {
     /// If `out` does not hold one value a cell.
     pub fn pressure_into(&self, out: &mut [f64]) -> Result<()> {
         let contact = self.contact;
-        if contact.region.is_whole() {
-            return self.mix_into(out, "pressure", &contact.previous.pressure, &contact.current.pressure);
-        }
         let before = contact.on_the_whole_grid(&contact.previous.pressure, None);
         self.mix_into(out, "pressure", &before, contact.pressure())
     }
@@ -93,9 +90,6 @@ impl Between<'_> {
     /// If `out` does not hold one value a cell.
     pub fn displacement_into(&self, out: &mut [f64]) -> Result<()> {
         let contact = self.contact;
-        if contact.region.is_whole() {
-            return self.mix_into(out, "displacement", &contact.trial_displacement, &contact.displacement);
-        }
         let source = contact.beyond.as_ref().map(|beyond| &beyond.trial[..]);
         let before = contact.on_the_whole_grid(&contact.trial_displacement, source);
         self.mix_into(out, "displacement", &before, contact.displacement())

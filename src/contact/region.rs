@@ -2,6 +2,7 @@
 
 use crate::Grid;
 use crate::geometry::Gap;
+use crate::kernel::images;
 
 /// A rectangle of cells, by symmetry perhaps the half or the quarter of one: what happens elsewhere is its mirror image, or
 /// out of reach.
@@ -90,12 +91,12 @@ impl Region {
 
     /// How many cells of the whole grid each of its cells stands for.
     pub(crate) fn images(&self) -> usize {
-        self.folded.iter().map(|&folded| if folded { 2 } else { 1 }).product()
+        images(self.folded)
     }
 
     /// Whether it is the whole grid itself.
     pub(crate) fn is_whole(&self) -> bool {
-        self.grid == self.whole
+        self.len() == self.whole.len()
     }
 
     /// Whether it and its images are the whole grid.

@@ -1,5 +1,6 @@
 //! Which part of the grid a contact is computed on, and how it moves to a larger one.
 
+use std::borrow::Cow;
 use std::f64::consts::PI;
 
 use crate::contact::loads::lowered;
@@ -33,7 +34,7 @@ pub(super) struct Beyond {
 impl Beyond {
     pub(super) fn new(history: &Exponential, cells: usize) -> Beyond {
         let mut history = history.clone();
-        history.carry(0, cells, |_, _| vec![0.0; cells]);
+        history.undisturbed_on(cells);
         Beyond { history, strength: vec![0.0; cells], trial: vec![0.0; cells], lowest: f64::NEG_INFINITY }
     }
 
@@ -169,10 +170,9 @@ impl ViscoelasticContact {
     pub(super) fn outgrown(&self, loads: &[Load]) -> Option<Region> {
         let beyond = self.beyond.as_ref()?;
         let [l1, l2] = self.grid.lengths();
-        let motions: Vec<[f64; 3]> =
-            loads.iter().enumerate().map(|(body, load)| self.trial_motion(body, load)).collect();
-        let deepest = |m: &[f64; 3]| m[0] + 0.5 * (m[1].abs() * l1 + m[2].abs() * l2);
-        if motions.iter().all(|motion| deepest(motion) <= beyond.lowest) {
+        let motions = || loads.iter().enumerate().map(|(body, load)| self.trial_motion(body, load));
+        let deepest = |m: [f64; 3]| m[0] + 0.5 * (m[1].abs() * l1 + m[2].abs() * l2);
+        if motions().all(|motion| deepest(motion) <= beyond.lowest) {
             return None;
         }
         let (grid, folded) = (self.region.grid(), self.region.folded());
@@ -191,7 +191,7 @@ impl ViscoelasticContact {
         let under = |x: [f64; 2]| source / (distance(x) + radius);
         let (mut low, mut high) = self.region.extent();
         let mut grown = false;
-        for (body, &motion) in motions.iter().enumerate() {
+        for (body, motion) in motions().enumerate() {
             if let Some((l, h)) = self.cells_below(body, motion, under) {
                 grown = true;
                 (low, high) = ([0, 1].map(|a| low[a].min(l[a])), [0, 1].map(|a| high[a].max(h[a])));
@@ -295,8 +295,11 @@ impl ViscoelasticContact {
         }
     }
 
-    /// A displacement on the whole grid from one of the region and its source.
-    pub(super) fn on_the_whole_grid(&self, own: &[f64], source: Option<&[f64]>) -> Vec<f64> {
+    /// A field on the whole grid from one of the region; beyond it is K of its source, or zero if there is none.
+    pub(super) fn on_the_whole_grid<'a>(&self, own: &'a [f64], source: Option<&[f64]>) -> Cow<'a, [f64]> {
+        if self.region.is_whole() {
+            return Cow::Borrowed(own);
+        }
         let mut whole = vec![0.0; self.grid.len()];
         if let Some(source) = source {
             let all = Region::whole(&self.grid, self.region.folded());
@@ -306,7 +309,7 @@ impl ViscoelasticContact {
             all.spread(&far, &mut whole);
         }
         self.region.spread(own, &mut whole);
-        whole
+        Cow::Owned(whole)
     }
 }
 

@@ -79,6 +79,11 @@ impl Exponential {
         }
     }
 
+    /// An undisturbed past on so many cells.
+    pub(crate) fn undisturbed_on(&mut self, cells: usize) {
+        self.fields = vec![0.0; cells * self.branches()];
+    }
+
     /// Number of relaxation times.
     pub(crate) fn branches(&self) -> usize {
         self.factors.len()

@@ -74,7 +74,7 @@ impl History {
     /// An undisturbed past on so many cells.
     pub(crate) fn undisturbed_on(&mut self, cells: usize) {
         match self {
-            History::Exponential(history) => history.carry(0, cells, |_, _| vec![0.0; cells]),
+            History::Exponential(history) => history.undisturbed_on(cells),
             History::Direct(_) => {}
             History::Unfitted(history) => history.carry(cells),
         }

@@ -1,5 +1,10 @@
 //! What an operator is laid out for, and the lengths of its transforms.
 
+/// How many cells each cell stands for where axes are folded.
+pub(crate) fn images(folded: [bool; 2]) -> usize {
+    folded.into_iter().map(|folded| if folded { 2 } else { 1 }).product()
+}
+
 /// What an operator is laid out for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Layout {

@@ -17,7 +17,7 @@ mod spectrum;
 mod transform;
 
 pub(crate) use lanes::{join, lanes};
-pub(crate) use layout::Layout;
+pub(crate) use layout::{Layout, images};
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
 use std::sync::{Arc, OnceLock};
@@ -167,7 +167,7 @@ impl LocalKernel {
 
     /// How many cells each cell stands for.
     pub(crate) fn images(&self) -> f64 {
-        self.folded.iter().map(|&folded| if folded { 2.0 } else { 1.0 }).product()
+        images(self.folded) as f64
     }
 
     pub(crate) fn workspace(&self) -> Workspace {

@@ -121,14 +121,9 @@ impl<T: Scalar> SpectralOperator<T> {
         work.layout == self.layout
     }
 
-    /// Coefficients of a row, up to the end of a tile.
-    fn width(&self) -> usize {
-        self.rows.independent().next_multiple_of(TILE)
-    }
-
     /// Tiles side by side.
     fn across(&self) -> usize {
-        self.width() / TILE
+        self.rows.independent().div_ceil(TILE)
     }
 
     /// Tiles below each other.

@@ -30,7 +30,7 @@ mod search;
 
 use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
-use crate::solver::passes::{self, Passes};
+use crate::solver::passes::Passes;
 use crate::solver::preconditioner::Preconditioner;
 use crate::solver::problem::{Measure, PENETRATION_SLACK, Patch, Problem, Solution, Stop, relative_residual};
 use crate::solver::projected_gradient::ProjectedGradient;
@@ -238,7 +238,7 @@ impl ActiveSet {
     /// Finds the runs of members of A.
     fn find_runs(&mut self, problem: &Problem<'_>) {
         self.passes.runs.find(&self.member);
-        self.height = passes::greatest(&self.passes.runs, problem.gap);
+        self.height = self.passes.runs.greatest(problem.gap);
     }
 
     /// Lists the members of A.
@@ -345,7 +345,7 @@ impl ActiveSet {
         }
     }
 
-    /// Whether there is one body that does not tilt: then everything is done in a few [`passes`].
+    /// Whether there is one body that does not tilt: then everything is done in a few passes ([`Passes`]).
     fn is_upright(&self, problem: &Problem<'_>) -> bool {
         self.bodies.len() == 1 && !problem.modes(0).tilts()
     }
@@ -382,11 +382,12 @@ impl ActiveSet {
                 self.member[k] = false;
                 self.bodies[0].leaving.push(k as u32);
             }
-        }
-        for active in &mut self.bodies {
-            for &k in active.patch.cells.iter().filter(|&&k| solution.pressure[k as usize] < 0.0) {
-                self.member[k as usize] = false;
-                active.leaving.push(k);
+        } else {
+            for active in &mut self.bodies {
+                for &k in active.patch.cells.iter().filter(|&&k| solution.pressure[k as usize] < 0.0) {
+                    self.member[k as usize] = false;
+                    active.leaving.push(k);
+                }
             }
         }
         self.list_cells(problem);

@@ -6,7 +6,7 @@
 use std::ops::Range;
 
 use crate::kernel::{join, lanes};
-use crate::sum::{sum, sum_of_pairs};
+use crate::sum::{greatest, sum, sum_of_pairs};
 
 /// Lanes of the greatest values.
 const LANES: usize = 8;
@@ -62,6 +62,11 @@ impl Runs {
         self.ranges().map(|run| sum(&values[run])).sum()
     }
 
+    /// The greatest |value| over the runs.
+    pub(crate) fn greatest(&self, values: &[f64]) -> f64 {
+        self.ranges().map(|run| greatest(&values[run])).fold(0.0, f64::max)
+    }
+
     /// The parts of runs that lie in a band.
     fn within(&self, band: &Range<usize>) -> impl Iterator<Item = Range<usize>> {
         let (start, end) = (band.start, band.end);
@@ -86,7 +91,7 @@ impl Runs {
     }
 }
 
-/// What [`survey`] finds.
+/// What [`Passes::survey`] finds.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Survey {
     /// Σ r, Σ r², Σ (c v)², Σ min(p, 0)² over the cells in contact.
@@ -98,7 +103,7 @@ pub(crate) struct Survey {
     pub(crate) depth: f64,
 }
 
-/// The fields that [`survey`] goes through.
+/// The fields that [`Passes::survey`] goes through.
 pub(crate) struct Fields<'a> {
     pub(crate) gap: &'a [f64],
     pub(crate) direction: &'a [f64],
@@ -108,15 +113,33 @@ pub(crate) struct Fields<'a> {
     pub(crate) residual: &'a mut [f64],
 }
 
-/// Sums over one band.
-type Partial = [f64; 5];
+/// What a pass finds in a band.
+#[derive(Debug, Clone, Copy)]
+struct Found {
+    sums: [f64; 4],
+    greatest: f64,
+}
+
+impl Found {
+    const NOTHING: Found = Found { sums: [0.0; 4], greatest: f64::NEG_INFINITY };
+
+    fn and(self, other: Found) -> Found {
+        let sums = [0, 1, 2, 3].map(|m| self.sums[m] + other.sums[m]);
+        Found { sums, greatest: self.greatest.max(other.greatest) }
+    }
+}
 
 /// The passes over the fields of one contact, and what they need of their own.
 #[derive(Debug, Clone)]
 pub(crate) struct Passes {
     pub(crate) runs: Runs,
-    partials: Vec<Partial>,
-    /// Whether threads share them.
+    bands: Bands,
+}
+
+/// The fields cut into bands, which threads may share.
+#[derive(Debug, Clone)]
+struct Bands {
+    found: Vec<Found>,
     shared: bool,
 }
 
@@ -125,27 +148,15 @@ const BAND: usize = 1 << 13;
 
 impl Passes {
     pub(crate) fn new(cells: usize) -> Passes {
-        let partials = vec![Partial::default(); cells.div_ceil(BAND)];
-        Passes { runs: Runs::with_capacity(cells), partials, shared: lanes(cells) > 1 }
-    }
-
-    /// Calls `job` with each band, its part of `outputs`, and a place for its sums; returns all of these added up.
-    fn over_bands<const M: usize>(
-        &mut self,
-        outputs: [&mut [f64]; M],
-        cells: usize,
-        job: impl Fn(Range<usize>, [&mut [f64]; M]) -> Partial + Sync,
-    ) -> &[Partial] {
-        let partials = &mut self.partials[..cells.div_ceil(BAND)];
-        halve(0..cells, outputs, partials, self.shared, &job);
-        partials
+        let bands = Bands { found: vec![Found::NOTHING; cells.div_ceil(BAND)], shared: lanes(cells) > 1 };
+        Passes { runs: Runs::with_capacity(cells), bands }
     }
 
     /// p += a d, v += a K d, and r = motion − (c v + gap) on the cells in contact, with all sums that follow from them.
     pub(crate) fn survey(&mut self, a: f64, c: f64, motion: f64, fields: Fields<'_>) -> Survey {
         let Fields { gap, direction, image, pressure, potential, residual } = fields;
-        let runs = std::mem::take(&mut self.runs);
-        let partials = self.over_bands([pressure, potential, residual], gap.len(), |band, [p, v, r]| {
+        let Passes { runs, bands } = self;
+        let found = bands.over([pressure, potential, residual], gap.len(), |band, [p, v, r]| {
             let [image, direction, gap] = [image, direction, gap].map(|field| &field[band.clone()]);
             let (mut found, mut depth) = ([0.0; 4], [f64::NEG_INFINITY; LANES]);
             runs.walk(&band, |piece, inside| {
@@ -172,26 +183,17 @@ impl Passes {
                 found[2] += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
                 found[3] += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
             });
-            let [residual, square, displacement, negative] = found;
-            [residual, square, displacement, negative, depth.into_iter().fold(f64::NEG_INFINITY, f64::max)]
+            Found { sums: found, greatest: depth.into_iter().fold(f64::NEG_INFINITY, f64::max) }
         });
-        let total = |m: usize| partials.iter().map(|partial| partial[m]).sum::<f64>();
-        let found = Survey {
-            residual: total(0),
-            square: total(1),
-            displacement: total(2),
-            negative: total(3),
-            depth: partials.iter().map(|partial| partial[4]).fold(f64::NEG_INFINITY, f64::max),
-        };
-        self.runs = runs;
-        found
+        let [residual, square, displacement, negative] = found.sums;
+        Survey { residual, square, displacement, negative, depth: found.greatest }
     }
 
     /// r ← r − mean, and z = r in contact, zero elsewhere; returns Σ r².
     pub(crate) fn center(&mut self, mean: f64, residual: &mut [f64], z: &mut [f64]) -> f64 {
-        let runs = std::mem::take(&mut self.runs);
+        let Passes { runs, bands } = self;
         let cells = z.len();
-        let partials = self.over_bands([residual, z], cells, |band, [r, z]| {
+        let found = bands.over([residual, z], cells, |band, [r, z]| {
             let mut square = 0.0;
             runs.walk(&band, |piece, inside| {
                 let (r, z) = (&mut r[piece.clone()], &mut z[piece]);
@@ -204,18 +206,16 @@ impl Passes {
                 }
                 square += sum_of_pairs(z, z, |z, _| z * z);
             });
-            [square, 0.0, 0.0, 0.0, 0.0]
+            Found { sums: [square, 0.0, 0.0, 0.0], ..Found::NOTHING }
         });
-        let square = partials.iter().map(|partial| partial[0]).sum();
-        self.runs = runs;
-        square
+        found.sums[0]
     }
 
     /// Σ z, Σ z·Kd, Σ Kd and Σ d in contact.
     pub(crate) fn overlaps(&mut self, z: &[f64], image: &[f64], direction: &[f64]) -> [f64; 4] {
-        let runs = std::mem::take(&mut self.runs);
-        let partials = self.over_bands([], z.len(), |band, []| {
-            let mut sums = Partial::default();
+        let Passes { runs, bands } = self;
+        let found = bands.over([], z.len(), |band, []| {
+            let mut sums = [0.0; 4];
             for run in runs.within(&band) {
                 let (z, kd, d) = (&z[run.clone()], &image[run.clone()], &direction[run]);
                 sums[0] += sum(z);
@@ -223,17 +223,15 @@ impl Passes {
                 sums[2] += sum(kd);
                 sums[3] += sum(d);
             }
-            sums
+            Found { sums, ..Found::NOTHING }
         });
-        let sums = [0, 1, 2, 3].map(|m| partials.iter().map(|partial| partial[m]).sum());
-        self.runs = runs;
-        sums
+        found.sums
     }
 
     /// d ← scale (z + β d + shift) in contact, 0 elsewhere; with β = 0 whatever d was.
     pub(crate) fn redirect(&mut self, [scale, beta, shift]: [f64; 3], z: &[f64], direction: &mut [f64]) {
-        let runs = std::mem::take(&mut self.runs);
-        self.over_bands([direction], z.len(), |band, [d]| {
+        let Passes { runs, bands } = self;
+        bands.over([direction], z.len(), |band, [d]| {
             let z = &z[band.clone()];
             runs.walk(&band, |piece, inside| {
                 let (d, z) = (&mut d[piece.clone()], &z[piece]);
@@ -245,26 +243,37 @@ impl Passes {
                     d.iter_mut().zip(z).for_each(|(d, &z)| *d = scale * (z + beta * *d + shift));
                 }
             });
-            Partial::default()
+            Found::NOTHING
         });
-        self.runs = runs;
     }
 
     /// Σ r·d and Σ d·Kd in contact.
     pub(crate) fn slope_and_curvature(&mut self, residual: &[f64], direction: &[f64], image: &[f64]) -> [f64; 2] {
-        let runs = std::mem::take(&mut self.runs);
-        let partials = self.over_bands([], residual.len(), |band, []| {
-            let mut sums = Partial::default();
+        let Passes { runs, bands } = self;
+        let found = bands.over([], residual.len(), |band, []| {
+            let mut sums = [0.0; 4];
             for run in runs.within(&band) {
                 let (r, d, kd) = (&residual[run.clone()], &direction[run.clone()], &image[run]);
                 sums[0] += sum_of_pairs(r, d, |r, d| r * d);
                 sums[1] += sum_of_pairs(d, kd, |d, kd| d * kd);
             }
-            sums
+            Found { sums, ..Found::NOTHING }
         });
-        let sums = [0, 1].map(|m| partials.iter().map(|partial| partial[m]).sum());
-        self.runs = runs;
-        sums
+        [found.sums[0], found.sums[1]]
+    }
+}
+
+impl Bands {
+    /// Calls `job` with each band and its part of `outputs`; returns what was found in all of them.
+    fn over<const M: usize>(
+        &mut self,
+        outputs: [&mut [f64]; M],
+        cells: usize,
+        job: impl Fn(Range<usize>, [&mut [f64]; M]) -> Found + Sync,
+    ) -> Found {
+        let found = &mut self.found[..cells.div_ceil(BAND)];
+        halve(0..cells, outputs, found, self.shared, &job);
+        found.iter().fold(Found::NOTHING, |all, found| all.and(*found))
     }
 }
 
@@ -272,22 +281,22 @@ impl Passes {
 fn halve<const M: usize>(
     cells: Range<usize>,
     outputs: [&mut [f64]; M],
-    partials: &mut [Partial],
+    found: &mut [Found],
     shared: bool,
-    job: &(impl Fn(Range<usize>, [&mut [f64]; M]) -> Partial + Sync),
+    job: &(impl Fn(Range<usize>, [&mut [f64]; M]) -> Found + Sync),
 ) {
-    if let [partial] = partials {
-        *partial = job(cells, outputs);
+    if let [found] = found {
+        *found = job(cells, outputs);
         return;
     }
-    let (bands, middle) = (partials.len() / 2, partials.len() / 2 * BAND);
+    let bands = found.len() / 2;
+    let middle = bands * BAND;
     let mut halves = outputs.map(|output| output.split_at_mut(middle));
     let first = halves.each_mut().map(|(first, _)| std::mem::take(first));
     let second = halves.map(|(_, second)| second);
-    let (partials, others) = partials.split_at_mut(bands);
-    let cells = [cells.start..cells.start + middle, cells.start + middle..cells.end];
-    let [before, after] = cells;
-    join(shared, || halve(before, first, partials, shared, job), || halve(after, second, others, shared, job));
+    let (found, others) = found.split_at_mut(bands);
+    let (before, after) = (cells.start..cells.start + middle, cells.start + middle..cells.end);
+    join(shared, || halve(before, first, found, shared, job), || halve(after, second, others, shared, job));
 }
 
 /// Cells worked on together: what was read stays in the fastest cache.
@@ -315,11 +324,6 @@ fn reduce([x, y]: [&[f64]; 2], lanes: &mut [f64; LANES], join: impl Fn(f64, [f64
     for (lane, (&x, &y)) in lanes.iter_mut().zip(x_rest.iter().zip(y_rest)) {
         *lane = join(*lane, [x, y]);
     }
-}
-
-/// The greatest |value| in contact.
-pub(crate) fn greatest(runs: &Runs, values: &[f64]) -> f64 {
-    runs.ranges().map(|run| crate::sum::greatest(&values[run])).fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -378,7 +382,7 @@ mod tests {
         near(found.square, sums[1]);
         near(found.displacement, sums[2]);
         near(found.negative, sums[3]);
-        assert_eq!((greatest(&passes.runs, &gap), found.depth), (highest, deepest));
+        assert_eq!((passes.runs.greatest(&gap), found.depth), (highest, deepest));
 
         let mut z = field(2.0);
         let square = passes.center(0.1, &mut r, &mut z);

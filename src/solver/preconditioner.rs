@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::kernel::{Layout, SpectralOperator, TransformWorkspace};
+use crate::kernel::{Layout, SpectralOperator, TransformWorkspace, images};
 
 /// M ≈ K⁻¹: on an infinite plane K multiplies the wave q by 2/|q| (Westergaard 1939), so M multiplies
 /// by |q|/2 on a periodic grid without padding, a quarter of the size of a convolution.
@@ -31,8 +31,7 @@ impl Preconditioner {
         // a uniform pressure on a square of side L sinks it by 0.95 L p on average (Love): the mean is
         // treated as a wave of that compliance
         let [l1, l2] = grid.lengths();
-        let images: f64 = folded.iter().map(|&folded| if folded { 2.0 } else { 1.0 }).product();
-        let mean = 1.05 / (images * l1 * l2).sqrt();
+        let mean = 1.05 / (images(folded) as f64 * l1 * l2).sqrt();
         let unit = 1.0 / spacing[0].min(spacing[1]);
         let symbol = |k1, k2| match (k1, k2) {
             (0, 0) => mean / unit,

@@ -36,19 +36,16 @@ impl<T: Scalar> Task for RowsForward<'_, T> {
                     line.fill(buffer, both.map(|(&a, &b)| Complex::new(T::new(scale * a), T::new(scale * b))));
                 }
                 line.forward(buffer, scratch);
-                let mut keep = |i: usize, coefficients: &[Complex<T>]| {
-                    for (tile, piece) in tiles.chunks_exact_mut(AREA).zip(coefficients.chunks(TILE)) {
+                if line.is_folded() {
+                    if second.is_empty() {
+                        buffer.iter_mut().for_each(|z| z.im = T::default());
+                    }
+                    for (tile, piece) in tiles.chunks_exact_mut(AREA).zip(buffer.chunks(TILE)) {
                         let place = &mut tile[i * TILE..][..TILE];
                         place[..piece.len()].copy_from_slice(piece);
                         // beyond the last coefficient: half of a complex column, if the number is odd
                         place[piece.len()..].fill(Complex::default());
                     }
-                };
-                if line.is_folded() {
-                    if second.is_empty() {
-                        buffer.iter_mut().for_each(|z| z.im = T::default());
-                    }
-                    keep(i, buffer);
                 } else {
                     for (panel, tile) in tiles.chunks_exact_mut(AREA).enumerate() {
                         let (a, b) = tile[2 * i * TILE..][..2 * TILE].split_at_mut(TILE);
@@ -129,14 +126,11 @@ impl<T: Scalar> Task for RowsInverse<'_, T> {
             let tile = k * self.share + block;
             let at = |panel: usize| if self.in_place { tile * across + panel } else { panel * down + tile };
             for (i, pair) in rows.chunks_mut(2 * cells).enumerate() {
-                let fetch = |i: usize, coefficients: &mut [Complex<T>]| {
-                    for (panel, piece) in coefficients.chunks_mut(TILE).enumerate() {
-                        piece.copy_from_slice(&self.tiles[at(panel) * AREA + i * TILE..][..piece.len()]);
-                    }
-                };
                 let (first, second) = pair.split_at_mut(cells);
                 if line.is_folded() {
-                    fetch(i, buffer);
+                    for (panel, piece) in buffer.chunks_mut(TILE).enumerate() {
+                        piece.copy_from_slice(&self.tiles[at(panel) * AREA + i * TILE..][..piece.len()]);
+                    }
                 } else {
                     for panel in 0..across {
                         let (a, b) = self.tiles[at(panel) * AREA + 2 * i * TILE..][..2 * TILE].split_at(TILE);
