@@ -284,6 +284,10 @@ pub enum Error {
     #[error(transparent)]
     Table(#[from] crate::rheology::TableError),
 
+    /// A map of heights, or a file of one, is not what a measurement could have given.
+    #[error(transparent)]
+    Map(#[from] crate::geometry::MapError),
+
     /// Isotherms of a master curve measure different things.
     #[error("the {first} isotherms cannot be joined to {second} isotherms")]
     MixedIsotherms {

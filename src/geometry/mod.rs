@@ -15,6 +15,7 @@ mod cylinder;
 mod ellipsoid;
 mod flat_punch;
 mod function;
+mod height_map;
 mod shifted;
 mod sphere;
 
@@ -23,6 +24,7 @@ pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;
 pub use flat_punch::FlatPunch;
 pub use function::FnGeometry;
+pub use height_map::{HeightMap, MapError};
 pub use shifted::Shifted;
 pub use sphere::Sphere;
 
