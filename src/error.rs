@@ -169,6 +169,54 @@ pub enum Error {
         contact: crate::Grid,
     },
 
+    /// A user's influence coefficient, or the compliance of a wave, is not one that a body can have.
+    #[error("the influence {of} [{}, {}] is {value:?}: it must be {allowed}", .at[0], .at[1])]
+    InvalidInfluence {
+        /// A coefficient, or a wave.
+        of: &'static str,
+        /// Distance in cells, or wave numbers of the period.
+        at: [isize; 2],
+        /// The value \[m\].
+        value: f64,
+        /// What it must be.
+        allowed: &'static str,
+    },
+
+    /// A pressure would gain energy by pressing on a body with these influence coefficients: no contact on it is stable. Check
+    /// their sign, and that near cells influence each other more than distant ones.
+    #[error(
+        "the influence coefficients are not positive: a pressure was found that gains energy (eigenvalue {least:e} m, the greatest being {most:e} m)"
+    )]
+    NotPositive {
+        /// Estimate of the least eigenvalue \[m\].
+        least: f64,
+        /// Estimate of the greatest \[m\].
+        most: f64,
+    },
+
+    /// A body may not tilt against a surface that is periodic along the axis of its tilt.
+    #[error("at t = {time} s the load tilts the body along x{}, along which the bodies are periodic: a tilted plane is not", .axis + 1)]
+    TiltOfPeriodic {
+        /// End of the step \[s\].
+        time: f64,
+        /// The axis, 0 or 1.
+        axis: usize,
+    },
+
+    /// An approach lies beyond full contact on a surface whose mean displacement is held
+    /// ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)): no pressure closes the gap further.
+    #[error(
+        "at t = {time} s the approach {approach:e} m is not below {greatest:e} m, that of full contact, which no pressure can exceed on a periodic body: control the force"
+    )]
+    BeyondFullContact {
+        /// End of the step \[s\].
+        time: f64,
+        /// The approach asked for \[m\].
+        approach: f64,
+        /// The approach of full contact \[m\].
+        greatest: f64,
+    },
+
     /// The body has no elastic response (J(0) = 0, as Kelvin–Voigt): it cannot follow a jump, so
     /// a step of length zero, or the paper's rectangle rule, is impossible. Ramp the load over a
     /// short time, or give the body a glassy compliance.

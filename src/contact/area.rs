@@ -27,10 +27,12 @@ impl ViscoelasticContact {
         if self.contact_cells == 0 {
             return 0.0;
         }
-        // squares of four cell centres, one row and column beyond the grid on every side
+        // squares of four cell centres, one row and column beyond the grid on every side, or across the seam of a period
+        let periodic = self.kernel.periodic_axes();
+        let first = periodic.map(usize::from);
         let mut cells = 0.0;
-        for i in 0..=n1 {
-            for j in 0..=n2 {
+        for i in first[0]..=n1 {
+            for j in first[1]..=n2 {
                 let corners =
                     [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|[i, j]| [i as isize - 1, j as isize - 1]);
                 cells += self.covered(corners);
@@ -110,8 +112,10 @@ impl ViscoelasticContact {
         self.index(cell).is_some_and(|k| self.initial_gap.above[k].is_finite())
     }
 
-    fn index(&self, [i, j]: [isize; 2]) -> Option<usize> {
-        let [n1, n2] = self.grid.cells();
+    fn index(&self, cell: [isize; 2]) -> Option<usize> {
+        let ([n1, n2], periodic) = (self.grid.cells(), self.kernel.periodic_axes());
+        let wrap = |axis: usize, n: usize| if periodic[axis] { cell[axis].rem_euclid(n as isize) } else { cell[axis] };
+        let [i, j] = [wrap(0, n1), wrap(1, n2)];
         let (i, j) = (usize::try_from(i).ok()?, usize::try_from(j).ok()?);
         (i < n1 && j < n2).then_some(i * n2 + j)
     }

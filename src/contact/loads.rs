@@ -18,6 +18,10 @@ impl ViscoelasticContact {
         for (body, load) in loads.iter().enumerate() {
             load.validate()?;
             let Freedom { translation, tilt, point, total } = freedom(load, &self.grid);
+            let tilts = load.tilt().map(|tilt| tilt != Tilt::Fixed(0.0));
+            if let Some(axis) = (0..2).find(|&axis| tilts[axis] && self.kernel.periodic_axes()[axis]) {
+                return Err(Error::TiltOfPeriodic { time, axis });
+            }
             let lost = total == 0.0 && matches!(load, Load::Force { normal, .. } if *normal > 0.0);
             if lost || !total.is_finite() {
                 return Err(Error::Overflow { time, what: "the force over the area of a cell" });
@@ -63,6 +67,16 @@ impl ViscoelasticContact {
                 self.gap[k] -= omega + alpha1 * x1 + alpha2 * x2;
             }
         }
+    }
+
+    /// Refuses an approach beyond that which closes every gap, where the mean displacement is held: Σ h = Σ gap ≥ 0.
+    pub(super) fn stay_below_full_contact(&self, time: f64, loads: &[Load]) -> Result<()> {
+        let [Load::Approach { approach, .. }] = *loads else { return Ok(()) };
+        if !self.kernel.mean_is_held() {
+            return Ok(());
+        }
+        let left = self.gap.iter().sum::<f64>() / self.gap.len() as f64;
+        if left > 0.0 { Ok(()) } else { Err(Error::BeyondFullContact { time, approach, greatest: approach + left }) }
     }
 
     /// u = u_old + c K p; on a body with memory, the surface in contact is then laid on the rigid body. The

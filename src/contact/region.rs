@@ -164,11 +164,12 @@ impl Region {
         (0..other.len()).map(|k| self.find(other.cell(k)).map_or_else(|| elsewhere(k), |own_k| own[own_k])).collect()
     }
 
-    /// Number of cells on the edge of the whole grid whose value in `own` is positive.
-    pub(crate) fn positive_on_edge(&self, own: &[f64]) -> usize {
+    /// Number of cells on the edge of the whole grid whose value in `own` is positive; periodic axes have no edge.
+    pub(crate) fn positive_on_edge(&self, own: &[f64], periodic: [bool; 2]) -> usize {
         let [m1, m2] = self.cells();
         let ends = |axis: usize, count: usize| {
-            let outermost = [self.first[axis] == 0, self.first[axis] + count == self.whole.cells()[axis]];
+            let last = self.first[axis] + count == self.whole.cells()[axis];
+            let outermost = [self.first[axis] == 0, last].map(|at_end| at_end && !periodic[axis]);
             [outermost[0].then_some(0), outermost[1].then_some(count - 1).filter(|&last| last > 0 || !outermost[0])]
         };
         let (rows, columns) = (ends(0, m1), ends(1, m2));
@@ -205,13 +206,17 @@ mod tests {
                     continue;
                 }
                 let region = Region::whole(&grid(cells), folded);
-                assert_eq!(region.positive_on_edge(&vec![1.0; region.len()]), expected, "{cells:?} {folded:?}");
+                assert_eq!(
+                    region.positive_on_edge(&vec![1.0; region.len()], [false; 2]),
+                    expected,
+                    "{cells:?} {folded:?}"
+                );
             }
         }
         let inside = Region::around(&grid([64, 64]), [false; 2], [20, 30], [25, 35], 0.1);
-        assert_eq!(inside.positive_on_edge(&vec![1.0; inside.len()]), 0);
+        assert_eq!(inside.positive_on_edge(&vec![1.0; inside.len()], [false; 2]), 0);
         let aside = Region::around(&grid([64, 64]), [false; 2], [0, 30], [5, 35], 0.1);
-        assert_eq!(aside.positive_on_edge(&vec![1.0; aside.len()]), aside.cells()[1]);
+        assert_eq!(aside.positive_on_edge(&vec![1.0; aside.len()], [false; 2]), aside.cells()[1]);
     }
 
     /// What is cut out and spread again is the same, on every cell and its images.

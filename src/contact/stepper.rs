@@ -158,8 +158,11 @@ impl ViscoelasticContact {
         let Parts { grid, bodies, kernel, settings, initial_gap, material, mut history } = parts;
         let folded = if settings.symmetry { symmetry(&initial_gap, grid.cells()) } else { [false; 2] };
         // without load, each body is above the cell that it would touch first
+        // elsewhere than on a half-space nothing is known of the displacement beyond a window
         let region = match &history {
-            History::Exponential(_) if settings.window => Region::first_touched(&grid, folded, &initial_gap, bodies),
+            History::Exponential(_) if settings.window && kernel.is_half_space() => {
+                Region::first_touched(&grid, folded, &initial_gap, bodies)
+            }
             _ => Region::whole(&grid, folded),
         };
         let cells = region.len();
@@ -287,6 +290,7 @@ impl ViscoelasticContact {
             return Err(Error::Overflow { time, what: "the compliance of the step" });
         }
         self.fill_gap(loads);
+        self.stay_below_full_contact(time, loads)?;
 
         // the contact problem of the step
         self.guess(dt);
@@ -367,7 +371,7 @@ impl ViscoelasticContact {
             return Err(Error::NotConverged { time, dt, iterations: counts.iterations, residual, tolerance });
         }
         if self.settings.edge == Edge::Refuse {
-            let cells = self.region.positive_on_edge(&self.trial.pressure);
+            let cells = self.region.positive_on_edge(&self.trial.pressure, self.kernel.periodic_axes());
             if cells > 0 {
                 return Err(Error::ContactAtEdge { time, cells });
             }

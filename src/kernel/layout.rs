@@ -5,13 +5,24 @@ pub(crate) fn images(folded: [bool; 2]) -> usize {
     folded.into_iter().map(|folded| if folded { 2 } else { 1 }).product()
 }
 
+/// What follows where the cells of an axis end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ends {
+    /// Nothing: padded with zeros, so that the convolution is linear.
+    Free,
+    /// The same cells again.
+    Periodic,
+    /// The same cells again after as many more, zero, as make the transform fast: for what need not be exact.
+    Wrapped,
+}
+
 /// What an operator is laid out for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Layout {
     /// Cells along each axis; of a folded axis half of them.
     pub(crate) cells: [usize; 2],
-    /// Whether the axes are padded, so that the convolution is linear, or periodic.
-    pub(crate) padded: bool,
+    /// What follows where the cells of each axis end.
+    pub(crate) ends: [Ends; 2],
     /// Axes about whose beginning all fields are even.
     pub(crate) folded: [bool; 2],
 }
@@ -20,11 +31,21 @@ impl Layout {
     /// The length of the transforms along an axis.
     pub(super) fn line(&self, axis: usize) -> usize {
         let cells = self.cells[axis];
-        fast_length(match (self.padded, self.folded[axis]) {
-            (true, true) => 2 * cells,
-            (true, false) => 2 * cells - 1,
-            (false, _) => cells,
-        })
+        match (self.ends[axis], self.folded[axis]) {
+            (Ends::Free, true) => fast_length(2 * cells),
+            (Ends::Free, false) => fast_length(2 * cells - 1),
+            (Ends::Wrapped, _) => fast_length(cells),
+            (Ends::Periodic, _) => cells,
+        }
+    }
+
+    /// What the symbol of a real even operator is on average over all wave numbers: the coefficient of a cell on itself.
+    pub(crate) fn average(&self, symbol: impl Fn(usize, usize) -> f64) -> f64 {
+        let [period1, period2] = [self.period(0), self.period(1)];
+        let count = |k: usize, period: usize| if k == 0 || 2 * k == period { 1.0 } else { 2.0 };
+        let waves = |k1: usize| (0..=period2 / 2).map(move |k2| (k2, count(k1, period1) * count(k2, period2)));
+        let rows = (0..=period1 / 2).map(|k1| waves(k1).map(|(k2, times)| times * symbol(k1, k2)).sum::<f64>());
+        rows.sum::<f64>() / (period1 * period2) as f64
     }
 
     /// The period of the fields \[cells\].

@@ -1,31 +1,42 @@
 //! The influence of pressure on displacement: Boussinesq's half-space, discretised by Love and
-//! convolved by fast Fourier transforms.
+//! convolved by fast Fourier transforms; and its relatives.
 //!
 //! For an elastic body with contact compliance C = 1/E* the surface displacement is u = C K p with
-//! the purely geometric operator
+//! a purely geometric operator:
 //!
-//! (K p)(x) = ∬ p(x′) / (π |x − x′|) dx′;
+//! | body | K |
+//! |---|---|
+//! | half-space | (K p)(x) = ∬ p(x′) / (π \|x − x′\|) dx′ |
+//! | periodic along both axes | 2/\|q\| for each wave q, nothing for the mean |
+//! | periodic along one axis | (2/π) ∫ K0(κ \|x − s\|) p(s) ds for each wave κ along it, of the mean as for a line |
+//! | line contact | −(2/π) ∫ ln(\|x − s\|/d) p(s) ds |
+//! | a user's | coefficients from cell to cell, or the compliance of each wave |
 //!
-//! all behaviour of the material is in C. Normalisation: `convolve` returns K p in Pa·m, no factor
+//! All behaviour of the material is in C. Normalisation: `convolve` returns K p in Pa·m, no factor
 //! of the transform is left to the caller.
 
+mod constructors;
+mod influence;
 mod lanes;
 mod layout;
 mod lines;
 mod love;
+mod positive;
 mod spectrum;
+mod strip;
 mod transform;
 
 pub(crate) use lanes::{join, lanes};
-pub(crate) use layout::{Layout, images};
+pub(crate) use layout::images;
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
 use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
 use crate::error::{Result, exact_length};
+use influence::Influence;
+use layout::{Ends, Layout};
 use lines::Scalar;
-use love::Love;
 
 /// The discrete influence operator K of a grid: immutable, shared by `Arc` between contacts and threads.
 ///
@@ -51,7 +62,7 @@ use love::Love;
 #[derive(Debug, Clone)]
 pub struct InfluenceKernel {
     grid: Grid,
-    love: Love,
+    influence: Influence,
     /// On the whole grid, for each choice of folded axes.
     operators: [OnceLock<Arc<SpectralOperator<f64>>>; 4],
     /// The same in single precision.
@@ -72,28 +83,12 @@ pub(crate) struct LocalKernel {
     operator: Arc<SpectralOperator<f64>>,
     /// K over the influence of a cell on itself, in single precision, where that is wanted.
     single: Option<Arc<SpectralOperator<f32>>>,
+    influence: Influence,
     folded: [bool; 2],
     self_influence: f64,
 }
 
 impl InfluenceKernel {
-    /// The kernel of an elastic half-space: Love's coefficients, right to 1e-14 at every distance
-    /// and for cells of any aspect ratio up to 1000, zero-padded so that the convolution is
-    /// linear.
-    ///
-    /// Cost, at the first use: one Love integral a cell and one transform.
-    ///
-    /// # Errors
-    /// None today; the signature leaves room for grids too large to pad.
-    pub fn half_space(grid: &Grid) -> Result<InfluenceKernel> {
-        Ok(InfluenceKernel {
-            grid: grid.clone(),
-            love: Love::new(grid.spacing()),
-            operators: Default::default(),
-            singles: Default::default(),
-        })
-    }
-
     /// The grid the kernel was made for.
     pub fn grid(&self) -> &Grid {
         &self.grid
@@ -130,17 +125,22 @@ impl InfluenceKernel {
     /// The whole grid, half or a quarter of it where axes are folded.
     fn layout(&self, folded: [bool; 2]) -> Layout {
         let cells = [0, 1].map(|axis| self.grid.cells()[axis] / if folded[axis] { 2 } else { 1 });
-        Layout { cells, padded: true, folded }
+        Layout { cells, ends: self.influence.ends(), folded }
     }
 
     fn make<T: Scalar>(&self, layout: Layout, unit: f64) -> SpectralOperator<T> {
-        SpectralOperator::from_coefficients(layout, |i, j| self.love.coefficient(i, j) / unit)
+        let symbol = self.influence.symbol(&self.grid, layout);
+        SpectralOperator::from_symbol(layout, |k1, k2| symbol(k1, k2) / unit)
     }
 
     /// The kernel on a part of the grid and its mirror images along folded axes; `single` if it is wanted in single
-    /// precision, too.
+    /// precision, too. Parts of periodic bodies are whole.
     pub(crate) fn on(&self, part: &Grid, folded: [bool; 2], single: bool) -> LocalKernel {
-        let (layout, unit) = (Layout { cells: part.cells(), padded: true, folded }, self.love.coefficient(0, 0));
+        let layout = Layout { cells: part.cells(), ..self.layout(folded) };
+        let unit = self.influence.on_itself().unwrap_or_else(|| {
+            let symbol = self.influence.symbol(&self.grid, layout);
+            layout.average(symbol)
+        });
         let (operator, single) = if layout == self.layout(folded) {
             let kept = &self.singles[index(folded)];
             let single = single.then(|| Arc::clone(kept.get_or_init(|| Arc::new(self.make(layout, unit)))));
@@ -148,7 +148,27 @@ impl InfluenceKernel {
         } else {
             (Arc::new(self.make(layout, 1.0)), single.then(|| Arc::new(self.make(layout, unit))))
         };
-        LocalKernel { grid: part.clone(), operator, single, folded, self_influence: unit }
+        let influence = self.influence.clone();
+        LocalKernel { grid: part.clone(), operator, single, influence, folded, self_influence: unit }
+    }
+
+    /// Axes along which the bodies are periodic, the grid being one period.
+    pub fn periodic_axes(&self) -> [bool; 2] {
+        self.influence.ends().map(|end| end == Ends::Periodic)
+    }
+
+    /// Whether the surface sinks in everywhere around a load, and no less than the half-space does.
+    pub(crate) fn is_half_space(&self) -> bool {
+        matches!(self.influence, Influence::HalfSpace(_))
+    }
+
+    /// Whether a uniform pressure displaces nothing: then the approach cannot exceed that at which the gap is closed.
+    pub(crate) fn mean_is_held(&self) -> bool {
+        match &self.influence {
+            Influence::Periodic => true,
+            Influence::Waves { values, .. } => values[0] == 0.0,
+            _ => false,
+        }
     }
 }
 
@@ -161,8 +181,10 @@ impl LocalKernel {
         &self.grid
     }
 
-    pub(crate) fn folded(&self) -> [bool; 2] {
-        self.folded
+    /// What an approximate inverse, in the order of 1/`unit`, multiplies the waves of a layout without padding by.
+    pub(crate) fn inverse<T: Scalar>(&self, unit: f64) -> SpectralOperator<T> {
+        let (layout, symbol) = self.influence.inverse(&self.grid, self.grid.cells(), self.folded);
+        SpectralOperator::from_symbol(layout, |k1, k2| symbol(k1, k2) / unit)
     }
 
     /// How many cells each cell stands for.

@@ -1,9 +1,11 @@
 //! The spectrum of an even kernel that is known by its coefficients.
 
-use num_complex::Complex64;
-use realfft::RealFftPlanner;
+use std::sync::Arc;
 
-use super::layout::Layout;
+use num_complex::Complex64;
+use realfft::{RealFftPlanner, RealToComplex};
+
+use super::layout::{Ends, Layout};
 
 /// A quarter of the real even spectrum on the period of a padded layout.
 pub(super) struct Spectrum {
@@ -14,37 +16,24 @@ pub(super) struct Spectrum {
 impl Spectrum {
     /// Of the kernel with the given coefficients at distances that the layout knows, zero beyond.
     pub(super) fn of(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> Spectrum {
-        // of a periodic kernel, half a period is known
-        let known = [0, 1].map(|axis| match (layout.padded, layout.folded[axis]) {
-            (true, folded) => layout.cells[axis] * if folded { 2 } else { 1 },
-            (false, _) => layout.period(axis) / 2 + 1,
+        // of a kernel that is made periodic, half a period is known, but not beyond the cells
+        let known = [0, 1].map(|axis| {
+            let cells = layout.cells[axis] * if layout.folded[axis] { 2 } else { 1 };
+            if layout.ends[axis] == Ends::Free { cells } else { cells.min(layout.period(axis) / 2 + 1) }
         });
         let [period1, period2] = [layout.period(0), layout.period(1)];
         let (half1, half2) = (period1 / 2 + 1, period2 / 2 + 1);
-        let mut planner = RealFftPlanner::<f64>::new();
-        let plans = [planner.plan_fft_forward(period1), planner.plan_fft_forward(period2)];
-        let mut line = vec![0.0; period1.max(period2)];
-        let mut transformed = vec![Complex64::default(); half1.max(half2)];
-        let mut transform = |axis: usize, values: &mut dyn Iterator<Item = f64>, out: &mut [f64]| {
-            let period = [period1, period2][axis];
-            let line = &mut line[..period];
-            line.fill(0.0);
-            for (i, value) in values.enumerate() {
-                line[i] = value;
-                line[(period - i) % period] = value;
-            }
-            let done = plans[axis].process(line, &mut transformed[..period / 2 + 1]);
-            debug_assert!(done.is_ok());
-            out.iter_mut().zip(&transformed).for_each(|(out, z)| *out = z.re);
-        };
+        let [mut across, mut down] = [EvenLine::new(period2), EvenLine::new(period1)];
         let mut rows = vec![0.0; known[0] * half2];
         for (i, row) in rows.chunks_exact_mut(half2).enumerate() {
-            transform(1, &mut (0..known[1]).map(|j| coefficient(i, j)), row);
+            let values = across.transform((0..known[1]).map(|j| coefficient(i, j)));
+            row.iter_mut().zip(values).for_each(|(out, value)| *out = value);
         }
         // column after column
         let mut values = vec![0.0; half1 * half2];
         for (k2, column) in values.chunks_exact_mut(half1).enumerate() {
-            transform(0, &mut rows[k2..].iter().step_by(half2).copied(), column);
+            let values = down.transform(rows[k2..].iter().step_by(half2).copied());
+            column.iter_mut().zip(values).for_each(|(out, value)| *out = value);
         }
         Spectrum { values, columns: half1 }
     }
@@ -52,5 +41,32 @@ impl Spectrum {
     /// Its value at the wave numbers `k1`, `k2` of the period.
     pub(super) fn at(&self, k1: usize, k2: usize) -> f64 {
         self.values[k2 * self.columns + k1]
+    }
+}
+
+/// The transform of real even lines of one period.
+pub(super) struct EvenLine {
+    plan: Arc<dyn RealToComplex<f64>>,
+    line: Vec<f64>,
+    transformed: Vec<Complex64>,
+}
+
+impl EvenLine {
+    pub(super) fn new(period: usize) -> EvenLine {
+        let plan = RealFftPlanner::new().plan_fft_forward(period);
+        EvenLine { plan, line: vec![0.0; period], transformed: vec![Complex64::default(); period / 2 + 1] }
+    }
+
+    /// The independent coefficients of a line whose first values are known, the others zero.
+    pub(super) fn transform(&mut self, values: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
+        let period = self.line.len();
+        self.line.fill(0.0);
+        for (i, value) in values.enumerate() {
+            self.line[i] = value;
+            self.line[(period - i) % period] = value;
+        }
+        let done = self.plan.process(&mut self.line, &mut self.transformed);
+        debug_assert!(done.is_ok());
+        self.transformed.iter().map(|z| z.re)
     }
 }

@@ -19,7 +19,6 @@ use num_complex::Complex;
 use super::lanes::{for_each_share, lanes};
 use super::layout::Layout;
 use super::lines::{Line, Scalar};
-use super::spectrum::Spectrum;
 use tasks::{Columns, ColumnsInPlace, RowsForward, RowsInverse, multiply_apart};
 
 /// Sides of a tile: 8 complex numbers fill two cache lines.
@@ -79,13 +78,6 @@ impl<T: Scalar> Buffer<T> {
 }
 
 impl<T: Scalar> SpectralOperator<T> {
-    /// Convolution with the even kernel whose coefficient at distance (i, j) is `coefficient(i, j)`; asked for
-    /// distances below the number of cells (twice that along a folded axis), taken as zero beyond.
-    pub(crate) fn from_coefficients(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> SpectralOperator<T> {
-        let spectrum = Spectrum::of(layout, coefficient);
-        SpectralOperator::from_symbol(layout, |k1, k2| spectrum.at(k1, k2))
-    }
-
     /// Multiplication of the Fourier coefficients on [`Layout::period`] by `symbol(k1, k2)`, for wave numbers
     /// 0 … period/2 along each axis.
     pub(crate) fn from_symbol(layout: Layout, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator<T> {
@@ -311,6 +303,20 @@ impl<T: Scalar> TransformWorkspace<T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::layout::Ends;
+    use crate::kernel::spectrum::Spectrum;
+
+    impl<T: Scalar> SpectralOperator<T> {
+        /// Convolution with the even kernel whose coefficient at distance (i, j) is `coefficient(i, j)`; asked for
+        /// distances below the number of cells (twice that along a folded axis), taken as zero beyond.
+        pub(crate) fn from_coefficients(
+            layout: Layout,
+            coefficient: impl Fn(usize, usize) -> f64,
+        ) -> SpectralOperator<T> {
+            let spectrum = Spectrum::of(layout, coefficient);
+            SpectralOperator::from_symbol(layout, |k1, k2| spectrum.at(k1, k2))
+        }
+    }
 
     const FOLDS: [[bool; 2]; 4] = [[false, false], [false, true], [true, false], [true, true]];
     const SIZES: [[usize; 2]; 8] = [[1, 1], [9, 9], [4, 3], [3, 5], [6, 6], [5, 9], [2, 40], [33, 14]];
@@ -350,7 +356,7 @@ mod tests {
     fn convolution_matches_the_sum() {
         for folded in FOLDS {
             for cells in SIZES {
-                let layout = Layout { cells, padded: true, folded };
+                let layout = Layout { cells, ends: [Ends::Free; 2], folded };
                 let coefficient = |i: usize, j: usize| 1.0 / (1.0 + (i * i + 2 * j * j) as f64);
                 let operator = SpectralOperator::<f64>::from_coefficients(layout, coefficient);
                 let input = signal(cells);
@@ -392,12 +398,13 @@ mod tests {
             };
             let field = |cells: usize| vec![1e-3; cells];
             let [whole, half] = [[false; 2], [true; 2]];
-            let padded = |cells, folded| Layout { cells, padded: true, folded };
+            let padded = |cells, folded| Layout { cells, ends: [Ends::Free; 2], folded };
             let pruned = time(padded([n, n], whole), &mut field(n * n));
             let rows = time(padded([n, n / 2], [false, true]), &mut field(n * n / 2));
             let columns = time(padded([n / 2, n], [true, false]), &mut field(n * n / 2));
             let folded = time(padded([n / 2, n / 2], half), &mut field(n * n / 4));
-            let unpruned = time(Layout { cells: [2 * n, 2 * n], padded: false, folded: whole }, &mut field(4 * n * n));
+            let unpruned = Layout { cells: [2 * n, 2 * n], ends: [Ends::Wrapped; 2], folded: whole };
+            let unpruned = time(unpruned, &mut field(4 * n * n));
             println!(
                 "{n}: {pruned:.4} ms, unpruned {unpruned:.4}: {:.2}; folded {rows:.4} {columns:.4} {folded:.4}",
                 unpruned / pruned
@@ -408,7 +415,7 @@ mod tests {
     #[test]
     fn a_symbol_multiplies_its_wave() {
         for folded in FOLDS {
-            let layout = Layout { cells: [12, 16], padded: false, folded };
+            let layout = Layout { cells: [12, 16], ends: [Ends::Periodic; 2], folded };
             let period = [layout.period(0), layout.period(1)];
             for k in [[0, 0], [2, 3], [0, 5], [6, 0], [5, 4]] {
                 let operator = SpectralOperator::<f64>::from_symbol(layout, |k1, k2| (1 + k1 + 10 * k2) as f64);

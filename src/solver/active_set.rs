@@ -115,7 +115,7 @@ impl ActiveSet {
         let body =
             |_| ActiveBody { patch: Patch { cells: cells(), ..Patch::default() }, leaving: cells(), correction: None };
         ActiveSet {
-            preconditioner: Preconditioner::new(grid, kernel.folded(), kernel.is_mixed()),
+            preconditioner: Preconditioner::new(kernel),
             fallback: ProjectedGradient::default(),
             member: vec![false; grid.len()],
             passes: Passes::new(grid.len()),

@@ -1,13 +1,11 @@
 //! An approximate inverse of the influence operator.
 
-use std::f64::consts::TAU;
 use std::sync::Arc;
 
-use crate::Grid;
-use crate::kernel::{Layout, SpectralOperator, TransformWorkspace, images};
+use crate::kernel::{LocalKernel, SpectralOperator, TransformWorkspace};
 
-/// M ≈ K⁻¹: on an infinite plane K multiplies the wave q by 2/|q| (Westergaard 1939), so M multiplies
-/// by |q|/2 on a periodic grid without padding, a quarter of the size of a convolution.
+/// M ≈ K⁻¹, a multiplication of waves on a grid without padding ([`LocalKernel::inverse`]): for the half-space a quarter
+/// of the size of a convolution.
 #[derive(Debug, Clone)]
 pub(crate) struct Preconditioner {
     operator: Operator,
@@ -23,26 +21,17 @@ enum Operator {
 }
 
 impl Preconditioner {
-    pub(crate) fn new(grid: &Grid, folded: [bool; 2], single: bool) -> Preconditioner {
-        let (cells, spacing) = (grid.cells(), grid.spacing());
-        let layout = Layout { cells, padded: false, folded };
-        let period = [layout.period(0), layout.period(1)];
-        let wave_number = |axis: usize, k: usize| TAU * k as f64 / (period[axis] as f64 * spacing[axis]);
-        // a uniform pressure on a square of side L sinks it by 0.95 L p on average (Love): the mean is
-        // treated as a wave of that compliance
-        let [l1, l2] = grid.lengths();
-        let mean = 1.05 / (images(folded) as f64 * l1 * l2).sqrt();
-        let unit = 1.0 / spacing[0].min(spacing[1]);
-        let symbol = |k1, k2| match (k1, k2) {
-            (0, 0) => mean / unit,
-            _ => 0.5 * wave_number(0, k1).hypot(wave_number(1, k2)) / unit,
-        };
-        let operator = if single {
-            let operator = Arc::new(SpectralOperator::from_symbol(layout, symbol));
-            Operator::Single(Arc::clone(&operator), operator.workspace())
+    pub(crate) fn new(kernel: &LocalKernel) -> Preconditioner {
+        let (grid, cells) = (kernel.grid(), kernel.grid().cells());
+        let unit = 1.0 / grid.spacing()[0].min(grid.spacing()[1]);
+        let operator = if kernel.is_mixed() {
+            let operator = kernel.inverse(unit);
+            let work = operator.workspace();
+            Operator::Single(Arc::new(operator), work)
         } else {
-            let operator = Arc::new(SpectralOperator::from_symbol(layout, symbol));
-            Operator::Double(Arc::clone(&operator), operator.workspace())
+            let operator = kernel.inverse(unit);
+            let work = operator.workspace();
+            Operator::Double(Arc::new(operator), work)
         };
         let mut preconditioner = Preconditioner { operator, unit, diagonal: 0.0 };
         let mut impulse = vec![0.0; grid.len()];

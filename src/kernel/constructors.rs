@@ -1,0 +1,202 @@
+//! The kernels there are.
+
+use std::sync::Arc;
+
+use super::InfluenceKernel;
+use super::influence::Influence;
+use super::love::Love;
+use super::positive::least_eigenvalue;
+use super::strip::{Strip, wave_number};
+use crate::Grid;
+use crate::error::{Error, Result, within};
+
+/// How unequal mirrored coefficients may be, of the greatest.
+const UNEQUAL: f64 = 1e-12;
+/// Energy that a pressure may gain by rounding, of the most that any spends.
+const ROUNDING: f64 = 1e-10;
+
+impl InfluenceKernel {
+    fn new(grid: &Grid, influence: Influence) -> InfluenceKernel {
+        InfluenceKernel { grid: grid.clone(), influence, operators: Default::default(), singles: Default::default() }
+    }
+
+    /// The kernel of an elastic half-space: Love's coefficients, right to 1e-14 at every distance
+    /// and for cells of any aspect ratio up to 1000, zero-padded so that the convolution is
+    /// linear.
+    ///
+    /// Cost, at the first use: one Love integral a cell and one transform.
+    ///
+    /// # Errors
+    /// None today; the signature leaves room for grids too large to pad.
+    pub fn half_space(grid: &Grid) -> Result<InfluenceKernel> {
+        Ok(InfluenceKernel::new(grid, Influence::HalfSpace(Love::new(grid.spacing()))))
+    }
+
+    /// A half-space that is periodic along both axes, the grid being one period: Westergaard's K p = 2p/|q| for each
+    /// wave q of the pressure (Trans. ASME J. Appl. Mech. 6, 1939).
+    ///
+    /// The mean of the displacement has no meaning on an endless surface; it is the datum, and zero: the approach is
+    /// measured from where a rigid plane rests on the mean of the undeformed surface. It cannot exceed that of full contact.
+    /// Nothing is padded: a convolution costs a quarter of the half-space's. On a grid of N × 1 cells this is the periodic
+    /// contact in plane strain.
+    ///
+    /// ```
+    /// use viscocontact::{Grid, InfluenceKernel};
+    ///
+    /// let grid = Grid::new([64, 1], [1.0, 1.0])?;
+    /// let kernel = InfluenceKernel::periodic(&grid)?;
+    /// let q = std::f64::consts::TAU;
+    /// let wave: Vec<f64> = (0..64).map(|i| (q * grid.center(i, 0)[0]).cos()).collect();
+    /// let mut kp = vec![0.0; 64];
+    /// kernel.convolve(&wave, &mut kp, &mut kernel.workspace())?;
+    /// assert!((kp[10] - 2.0 / q * wave[10]).abs() < 1e-14);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the grid has one cell: nothing on it can be displaced.
+    pub fn periodic(grid: &Grid) -> Result<InfluenceKernel> {
+        if grid.len() == 1 {
+            let allowed = "2 or more: the mean of a periodic surface is not displaced";
+            return Err(Error::CountOutOfRange { field: "cells of a periodic grid", value: 1, allowed });
+        }
+        Ok(InfluenceKernel::new(grid, Influence::Periodic))
+    }
+
+    /// A half-space that is periodic along `axis` (0 is x1, 1 is x2), the grid being one period, and loaded on the grid only
+    /// along the other: K0(κ |x|) for each wave κ along the axis, as for a line load for the mean.
+    ///
+    /// A load on an endless line displaces a half-space without end. `datum` \[m\] is the distance from the line at which
+    /// the surface counts as unmoved, and from which the approach is measured: twice as far, and the approach is
+    /// greater by (2 ln 2/π) C times the force on a unit of length.
+    ///
+    /// # Errors
+    /// If `axis` is neither 0 nor 1, or `datum` is not finite, or less than the length of the grid along the other axis.
+    pub fn periodic_along(grid: &Grid, axis: usize, datum: f64) -> Result<InfluenceKernel> {
+        if axis > 1 {
+            return Err(Error::CountOutOfRange { field: "periodic axis", value: axis, allowed: "0 (x1) or 1 (x2)" });
+        }
+        let strip = strip(grid, 1 - axis, datum)?;
+        Ok(InfluenceKernel::new(grid, Influence::Strip { periodic: axis, strip }))
+    }
+
+    /// A line contact, in plane strain: a grid of N × 1 cells, and pressures that do not depend on x2,
+    /// (K p)(x) = −(2/π) ∫ ln(|x − s|/d) p(s) ds (K. L. Johnson, Contact Mechanics, 1985, section 2.3).
+    ///
+    /// The length of the grid along x2 is that on which the force acts: with 1 m, forces are forces on a metre. `datum` is
+    /// the distance d \[m\] from a line load at which the surface counts as unmoved, from which the approach is measured:
+    /// pressures and gaps do not depend on it.
+    ///
+    /// # Errors
+    /// If the grid has more than one cell along x2, or `datum` is not finite, or less than the length of the grid along x1: a
+    /// pressure would pull the surface up.
+    pub fn line(grid: &Grid, datum: f64) -> Result<InfluenceKernel> {
+        if grid.cells()[1] != 1 {
+            let field = "cells along x2 of a line contact";
+            return Err(Error::CountOutOfRange { field, value: grid.cells()[1], allowed: "1" });
+        }
+        Ok(InfluenceKernel::new(grid, Influence::Line(strip(grid, 0, datum)?)))
+    }
+
+    /// A body of the user's: `coefficient(i, j)` \[m\] is the displacement, over C, of a cell under a unit of pressure on the
+    /// cell i cells away along x1 and j along x2. Asked for all |i|, |j| below the number of cells.
+    ///
+    /// A layer, a coating, a point load of another resolution: whatever answers a pressure in proportion, everywhere
+    /// alike, and mirrored when the load is.
+    ///
+    /// # Errors
+    /// If a coefficient is not finite, or not that of its mirror images, or if a pressure is found that would gain energy: the
+    /// spectrum of K is positive, or else its least eigenvalue is sought by Lanczos' method, which finds any that is
+    /// far below zero.
+    pub fn from_coefficients(grid: &Grid, coefficient: impl Fn(isize, isize) -> f64) -> Result<InfluenceKernel> {
+        let [n1, n2] = grid.cells();
+        let mut values = Vec::with_capacity(grid.len());
+        for i in 0..n1 as isize {
+            for j in 0..n2 as isize {
+                let value = coefficient(i, j);
+                if !value.is_finite() {
+                    return Err(Error::InvalidInfluence { of: "coefficient", at: [i, j], value, allowed: "finite" });
+                }
+                values.push(value);
+            }
+        }
+        let greatest = values.iter().fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
+        for i in 0..n1 as isize {
+            for j in 0..n2 as isize {
+                let own = values[i as usize * n2 + j as usize];
+                for at in [[-i, j], [i, -j], [-i, -j]] {
+                    let value = coefficient(at[0], at[1]);
+                    if !((value - own).abs() <= UNEQUAL * greatest) {
+                        let allowed = "the same as that of its mirror images";
+                        return Err(Error::InvalidInfluence { of: "coefficient", at, value, allowed });
+                    }
+                }
+            }
+        }
+        let kernel = InfluenceKernel::new(grid, Influence::Coefficients { values: values.into(), columns: n2 });
+        let (layout, whole) = (kernel.layout([false; 2]), kernel.operator([false; 2]));
+        let symbol = kernel.influence.symbol(grid, layout);
+        let mut waves = (0..=layout.period(0) / 2).flat_map(|k1| (0..=layout.period(1) / 2).map(move |k2| (k1, k2)));
+        if !waves.all(|(k1, k2)| symbol(k1, k2) > 0.0) {
+            let (least, most) = least_eigenvalue(whole, grid.len());
+            if !(least > -ROUNDING * most) {
+                return Err(Error::NotPositive { least, most });
+            }
+        }
+        Ok(kernel)
+    }
+
+    /// A body of the user's that is periodic along both axes, the grid being one period: `compliance(q1, q2)` \[m\] is the
+    /// displacement, over C, under a unit wave of pressure cos(q1 x1) cos(q2 x2), wave numbers \[1/m\] ≥ 0. The half-space has 2/|q|.
+    ///
+    /// Zero at q = 0 holds the mean of the displacement, as [`InfluenceKernel::periodic`] does; a body on a foundation gives way
+    /// to a uniform pressure, too.
+    ///
+    /// ```
+    /// use viscocontact::{Grid, InfluenceKernel};
+    ///
+    /// // an incompressible layer bonded to a rigid base: thin against the wave it is stiff, thick against it a half-space
+    /// // (K. L. Johnson, Contact Mechanics, 1985, section 5.8)
+    /// let depth = 0.1;
+    /// let layer = |q: f64| 2.0 / q * ((2.0 * q * depth).sinh() - 2.0 * q * depth)
+    ///     / ((2.0 * q * depth).cosh() + 1.0 + 2.0 * (q * depth).powi(2));
+    /// let grid = Grid::square(32, 1.0)?;
+    /// let kernel = InfluenceKernel::from_spectrum(&grid, |q1, q2| {
+    ///     let q = f64::hypot(q1, q2);
+    ///     if q > 0.0 { layer(q) } else { 0.0 } // an incompressible layer keeps its volume
+    /// })?;
+    /// # let _ = kernel;
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the compliance of a wave is not finite and positive, or that of the mean not finite and ≥ 0.
+    pub fn from_spectrum(grid: &Grid, compliance: impl Fn(f64, f64) -> f64) -> Result<InfluenceKernel> {
+        let [half1, half2] = grid.cells().map(|cells| cells / 2);
+        let q = |axis: usize, k: usize| wave_number(k, grid.cells()[axis], grid.spacing()[axis]);
+        let mut values = Vec::with_capacity((half1 + 1) * (half2 + 1));
+        for k1 in 0..=half1 {
+            for k2 in 0..=half2 {
+                let value = compliance(q(0, k1), q(1, k2));
+                let mean = (k1, k2) == (0, 0);
+                if !(value.is_finite() && (value > 0.0 || (mean && value == 0.0))) {
+                    let allowed = if mean { "finite and >= 0" } else { "finite and > 0" };
+                    let at = [k1 as isize, k2 as isize];
+                    return Err(Error::InvalidInfluence { of: "wave", at, value, allowed });
+                }
+                values.push(value);
+            }
+        }
+        if values.iter().all(|&value| value == 0.0) {
+            let allowed = "> 0 on a grid of one cell";
+            return Err(Error::InvalidInfluence { of: "wave", at: [0, 0], value: 0.0, allowed });
+        }
+        Ok(InfluenceKernel::new(grid, Influence::Waves { values: Arc::from(values), columns: half2 + 1 }))
+    }
+}
+
+fn strip(grid: &Grid, axis: usize, datum: f64) -> Result<Strip> {
+    let reaches = datum >= grid.lengths()[axis];
+    within("datum of a line load", datum, reaches, "finite, and no less than the length of the grid across the lines")?;
+    Ok(Strip::new(grid.spacing()[axis], datum))
+}

@@ -1,0 +1,135 @@
+//! What a unit of pressure does to the surface, for each kind of body.
+
+use std::sync::Arc;
+
+use super::layout::{Ends, Layout};
+use super::love::Love;
+use super::spectrum::{EvenLine, Spectrum};
+use super::strip::{Strip, wave_number};
+use crate::Grid;
+
+/// A real even function of wave numbers.
+pub(super) type Symbol = Box<dyn Fn(usize, usize) -> f64>;
+
+/// Of a circulant approximation, waves that give way less than this part of the most yielding one are taken to give
+/// way so much.
+const STIFFEST: f64 = 1e-8;
+
+/// The influence of a cell on another, or of a wave on itself.
+#[derive(Debug, Clone)]
+pub(super) enum Influence {
+    /// A half-space, loaded in cells.
+    HalfSpace(Love),
+    /// A half-space, periodic along both axes: Westergaard's 2/|q|, the mean displacement being the datum.
+    Periodic,
+    /// A half-space, periodic along one axis.
+    Strip { periodic: usize, strip: Strip },
+    /// A half-space loaded along lines: plane strain in the plane of x1.
+    Line(Strip),
+    /// A user's coefficients, for the distances of the grid.
+    Coefficients { values: Arc<[f64]>, columns: usize },
+    /// A user's compliance of each wave, on the independent wave numbers of the period.
+    Waves { values: Arc<[f64]>, columns: usize },
+}
+
+impl Influence {
+    pub(super) fn ends(&self) -> [Ends; 2] {
+        match self {
+            Influence::Periodic | Influence::Waves { .. } => [Ends::Periodic; 2],
+            Influence::Strip { periodic, .. } => {
+                [0, 1].map(|axis| if axis == *periodic { Ends::Periodic } else { Ends::Free })
+            }
+            Influence::HalfSpace(_) | Influence::Line(_) | Influence::Coefficients { .. } => [Ends::Free; 2],
+        }
+    }
+
+    /// What the operator multiplies each wave of the layout by.
+    pub(super) fn symbol(&self, grid: &Grid, layout: Layout) -> Symbol {
+        let spectrum = |coefficient: &dyn Fn(usize, usize) -> f64| -> Symbol {
+            let spectrum = Spectrum::of(layout, coefficient);
+            Box::new(move |k1, k2| spectrum.at(k1, k2))
+        };
+        match self {
+            Influence::HalfSpace(love) => spectrum(&|i, j| love.coefficient(i, j)),
+            Influence::Line(strip) => spectrum(&|i, _| strip.coefficient(i, 0.0)),
+            Influence::Coefficients { values, columns } => spectrum(&|i, j| values[i * columns + j]),
+            Influence::Waves { values, columns } => {
+                let (values, columns) = (Arc::clone(values), *columns);
+                Box::new(move |k1, k2| values[k1 * columns + k2])
+            }
+            Influence::Periodic => {
+                let q = magnitude(grid, layout);
+                Box::new(move |k1, k2| if (k1, k2) == (0, 0) { 0.0 } else { 2.0 / q(k1, k2) })
+            }
+            Influence::Strip { periodic, strip } => {
+                // for each wave along the periodic axis, a convolution along the other
+                let (periodic, free) = (*periodic, 1 - periodic);
+                let (mut line, mut values) = (EvenLine::new(layout.period(free)), Vec::new());
+                let columns = layout.period(free) / 2 + 1;
+                for k in 0..=layout.period(periodic) / 2 {
+                    let kappa = wave_number(k, layout.period(periodic), grid.spacing()[periodic]);
+                    let known = layout.cells[free] * if layout.folded[free] { 2 } else { 1 };
+                    values.extend(line.transform((0..known).map(|i| strip.coefficient(i, kappa))));
+                }
+                Box::new(move |k1, k2| {
+                    let k = [k1, k2];
+                    values[k[periodic] * columns + k[free]]
+                })
+            }
+        }
+    }
+
+    /// A layout without padding, and what an approximate inverse of the operator multiplies each of its waves by.
+    ///
+    /// A half-space answers the wave q by 2/|q| (Westergaard 1939), whatever its ends: its approximate inverse is |q|/2, but
+    /// for the mean, which is stiffened by what a uniform pressure does. Other bodies are inverted wave by wave, on the
+    /// grid made periodic (G. Strang, Stud. Appl. Math. 74, 1986).
+    pub(super) fn inverse(&self, grid: &Grid, cells: [usize; 2], folded: [bool; 2]) -> (Layout, Symbol) {
+        let ends = self.ends().map(|end| if end == Ends::Free { Ends::Wrapped } else { end });
+        let layout = Layout { cells, ends, folded };
+        let lengths = [0, 1].map(|axis| grid.spacing()[axis] * (cells[axis] * if folded[axis] { 2 } else { 1 }) as f64);
+        let westergaard = |mean: f64| -> Symbol {
+            let q = magnitude(grid, layout);
+            Box::new(move |k1, k2| if (k1, k2) == (0, 0) { mean } else { 0.5 * q(k1, k2) })
+        };
+        let longest =
+            || (0..2).map(|axis| wave_number(1, layout.period(axis), grid.spacing()[axis])).fold(f64::MAX, f64::min);
+        let symbol = match self {
+            // a uniform pressure on a square of side L sinks it by 0.95 L p on average (Love)
+            Influence::HalfSpace(_) => westergaard(1.05 / (lengths[0] * lengths[1]).sqrt()),
+            Influence::Line(strip) => westergaard(1.0 / strip.uniform(lengths[0])),
+            Influence::Strip { periodic, strip } => westergaard(1.0 / strip.uniform(lengths[1 - periodic])),
+            // no pressure is worth the mean displacement, which is none: as if of the longest wave
+            Influence::Periodic => westergaard(0.5 * longest()),
+            Influence::Coefficients { .. } | Influence::Waves { .. } => {
+                let symbol = self.symbol(grid, layout);
+                let waves =
+                    (0..=layout.period(0) / 2).flat_map(|k1| (0..=layout.period(1) / 2).map(move |k2| (k1, k2)));
+                let most = waves.map(|(k1, k2)| symbol(k1, k2)).fold(0.0, f64::max);
+                Box::new(move |k1, k2| {
+                    let yields = symbol(k1, k2);
+                    // a mean that gives no way is no stiffness either
+                    1.0 / if (k1, k2) == (0, 0) && yields == 0.0 { most } else { yields.abs().max(STIFFEST * most) }
+                })
+            }
+        };
+        (layout, symbol)
+    }
+
+    /// The coefficient of a cell on itself \[m\], where cells are what is known.
+    pub(super) fn on_itself(&self) -> Option<f64> {
+        match self {
+            Influence::HalfSpace(love) => Some(love.coefficient(0, 0)),
+            Influence::Line(strip) => Some(strip.coefficient(0, 0.0)),
+            Influence::Coefficients { values, .. } => Some(values[0]),
+            Influence::Periodic | Influence::Strip { .. } | Influence::Waves { .. } => None,
+        }
+    }
+}
+
+/// |q| \[1/m\] of the wave numbers of a layout.
+fn magnitude(grid: &Grid, layout: Layout) -> impl Fn(usize, usize) -> f64 + 'static {
+    let (spacing, period) = (grid.spacing(), [layout.period(0), layout.period(1)]);
+    let q = move |axis: usize, k: usize| wave_number(k, period[axis], spacing[axis]);
+    move |k1, k2| q(0, k1).hypot(q(1, k2))
+}

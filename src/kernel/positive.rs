@@ -1,0 +1,49 @@
+//! Whether an operator spends energy on every pressure.
+
+use faer::{Mat, Side};
+
+use super::transform::SpectralOperator;
+use crate::sum::sum_of_pairs;
+
+/// Lanczos steps: they find the ends of a spectrum first.
+const STEPS: usize = 60;
+
+/// Estimates of the least and the greatest eigenvalue of a symmetric operator on fields of `cells` values, from within, by
+/// Lanczos' method.
+pub(super) fn least_eigenvalue(operator: &SpectralOperator<f64>, cells: usize) -> (f64, f64) {
+    let mut work = operator.workspace();
+    let (mut previous, mut image) = (vec![0.0; cells], vec![0.0; cells]);
+    // any field that has something of every wave
+    let mut vector: Vec<f64> = (0..cells).map(|k| ((k * k) as f64 * 0.7 + 1.0).sin()).collect();
+    let norm = sum_of_pairs(&vector, &vector, |a, b| a * b).sqrt();
+    vector.iter_mut().for_each(|value| *value /= norm);
+    let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
+    for _ in 0..STEPS.min(cells) {
+        operator.apply(&vector, &mut image, [1.0; 2], &mut work);
+        let alpha = sum_of_pairs(&vector, &image, |a, b| a * b);
+        let beta = beside.last().copied().unwrap_or(0.0);
+        for ((image, &own), &before) in image.iter_mut().zip(&vector).zip(&previous) {
+            *image -= alpha * own + beta * before;
+        }
+        diagonal.push(alpha);
+        let next = sum_of_pairs(&image, &image, |a, b| a * b).sqrt();
+        if next <= f64::EPSILON * alpha.abs() {
+            break;
+        }
+        beside.push(next);
+        std::mem::swap(&mut previous, &mut vector);
+        vector.iter_mut().zip(&image).for_each(|(vector, image)| *vector = image / next);
+    }
+    let entry = |i: usize, j: usize| match i.abs_diff(j) {
+        0 => diagonal[i],
+        1 => beside[i.min(j)],
+        _ => 0.0,
+    };
+    let matrix = Mat::from_fn(diagonal.len(), diagonal.len(), entry);
+    match matrix.self_adjoint_eigenvalues(Side::Lower) {
+        Ok(values) => values
+            .into_iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value))),
+        Err(_) => (f64::NAN, f64::NAN),
+    }
+}

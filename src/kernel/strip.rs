@@ -1,0 +1,157 @@
+//! Influence coefficients of a half-space whose pressure is a wave along one axis, and of one that is loaded in a plane.
+//!
+//! A pressure p(x) cos κy displaces the surface by v(x) cos κy with
+//!
+//! v(x) = (2/π) ∫ K0(κ |x − s|) p(s) ds,
+//!
+//! K0 the modified Bessel function, the integral of cos κy / (π √(x² + y²)) over y. Where κ = 0 that is a line load, whose
+//! displacement has no end, but for a datum: at the distance d from the load the surface stays where it was,
+//!
+//! v(x) = −(2/π) ∫ ln(|x − s|/d) p(s) ds   (Johnson, Contact Mechanics, 1985, section 2.3).
+
+use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
+
+/// Step of the trapezoidal rule for ∫ f(cosh t) dt: the integrand being analytic up to π/2 from the real axis, its error is
+/// e^(−π²/step) of the coefficient of a cell on itself.
+const STEP: f64 = 0.25;
+/// Where 1/cosh t is below rounding.
+const LAST: f64 = 42.0;
+/// e^(−x) is zero for larger x.
+const SPENT: f64 = 745.0;
+
+/// Coefficients of cells of one length along the axis that is loaded piece by piece \[m\].
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Strip {
+    /// Length of a cell \[m\].
+    side: f64,
+    /// Where a line load leaves the surface where it was \[m\].
+    datum: f64,
+}
+
+impl Strip {
+    pub(crate) fn new(side: f64, datum: f64) -> Strip {
+        Strip { side, datum }
+    }
+
+    /// The coefficient of the cell `i` cells away for the wave number `kappa` \[1/m\].
+    pub(crate) fn coefficient(&self, i: usize, kappa: f64) -> f64 {
+        if kappa == 0.0 { self.line(i) } else { self.wave(i, kappa) }
+    }
+
+    /// −(2/π) ∫ ln(s/d) ds over a cell.
+    fn line(&self, i: usize) -> f64 {
+        let (a, x) = (0.5 * self.side, i as f64 * self.side);
+        if i == 0 {
+            return FRAC_2_PI * self.side * (1.0 - (a / self.datum).ln());
+        }
+        // (x + a) ln (x + a) − (x − a) ln (x − a) − 2a, taken from 2a ln x, so that nothing large cancels
+        let z = a / x;
+        let excess = (1.0 + z) * z.ln_1p() - (1.0 - z) * (-z).ln_1p() - 2.0 * z;
+        -FRAC_2_PI * (self.side * (x / self.datum).ln() + x * series_of_excess(z).unwrap_or(excess))
+    }
+
+    /// (2/π) ∫ K0(κ |s|) ds over a cell, with K0(z) = ∫ e^(−z cosh t) dt over t > 0, the cell's integral taken first.
+    fn wave(&self, i: usize, kappa: f64) -> f64 {
+        let (far, width) = match i {
+            0 => (0.0, 0.5 * kappa * self.side),
+            _ => (kappa * self.side * (i as f64 - 0.5), kappa * self.side),
+        };
+        let twice = if i == 0 { 2.0 } else { 1.0 };
+        let mut sum = -0.5 * (-far).exp() * (-width).exp_m1();
+        for step in 1..=(LAST / STEP) as usize {
+            let cosh = (step as f64 * STEP).cosh();
+            if far * cosh > SPENT {
+                break;
+            }
+            sum -= (-far * cosh).exp() * (-width * cosh).exp_m1() / cosh;
+        }
+        twice * FRAC_2_PI / kappa * STEP * sum
+    }
+
+    /// What a uniform pressure on a length displaces it by on average, over the pressure \[m\].
+    pub(crate) fn uniform(&self, length: f64) -> f64 {
+        FRAC_2_PI * length * (1.5 - (length / self.datum).ln())
+    }
+}
+
+/// (1 + z) ln(1 + z) − (1 − z) ln(1 − z) − 2z for small z: −z³/3 − z⁵/10 − …, where the closed form cancels.
+fn series_of_excess(z: f64) -> Option<f64> {
+    // Σ −2 z^(2k+1)/(2k (2k+1)), seven terms: right to rounding for z < 1/16
+    (z < 0.0625).then(|| -(1..=7).map(|k| 2.0 * z.powi(2 * k + 1) / f64::from(2 * k * (2 * k + 1))).sum::<f64>())
+}
+
+/// The wave number \[1/m\] of a symbol's argument.
+pub(crate) fn wave_number(k: usize, period: usize, side: f64) -> f64 {
+    4.0 * FRAC_PI_2 * k as f64 / (period as f64 * side)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quadrature::GaussLegendre;
+
+    /// ln |s| over the cell by quadrature in pieces that shrink towards the load.
+    fn by_quadrature(side: f64, i: usize, f: impl Fn(f64) -> f64) -> f64 {
+        let rule = GaussLegendre::new(24);
+        let piece = |middle: f64, half: f64| half * rule.sum(|s| f(middle + half * s));
+        if i > 0 {
+            return piece(i as f64 * side, 0.5 * side);
+        }
+        // both halves, from the outside in, the last piece left out being nothing
+        (2..120).map(|n| 2.0 * piece(1.5 * side * 0.5_f64.powi(n), 0.5 * side * 0.5_f64.powi(n))).sum()
+    }
+
+    /// K0 by its integral, another way: Simpson's rule on e^(−z cosh t).
+    fn bessel_k0(z: f64) -> f64 {
+        let (steps, last) = (4000, (800.0 / z).max(2.0).acosh());
+        let h = last / f64::from(steps);
+        let weight = |n: i32| if n == 0 || n == steps { 1.0 } else { f64::from(2 + 2 * (n % 2)) };
+        (0..=steps).map(|n| weight(n) * (-z * (f64::from(n) * h).cosh()).exp()).sum::<f64>() * h / 3.0
+    }
+
+    #[test]
+    fn bessel_of_the_tests_is_right() {
+        // Abramowitz & Stegun, table 9.8
+        assert!((bessel_k0(1.0) / 0.421_024_438_240_708_3 - 1.0).abs() < 1e-12);
+        assert!((bessel_k0(0.1) / 2.427_069_024_702_017 - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn coefficients_are_their_integrals() {
+        for (side, datum) in [(1.0, 1.0), (2.0e-6, 1.0e-3), (0.5, 4.0e3)] {
+            let strip = Strip::new(side, datum);
+            for i in [0, 1, 2, 5, 17, 40, 1000, 100_000] {
+                let exact = -FRAC_2_PI * by_quadrature(side, i, |s| (s / datum).ln());
+                let scale = exact.abs().max(1e-3 * side);
+                let found = strip.coefficient(i, 0.0);
+                assert!((found - exact).abs() < 2e-14 * scale, "{side} {i}: {found} {exact}");
+            }
+            for kappa in [1e-3 / side, 0.1 / side, 1.0 / side, 3.0 / side] {
+                for i in [0, 1, 2, 5, 17] {
+                    let exact = FRAC_2_PI * by_quadrature(side, i, |s| bessel_k0(kappa * s));
+                    let found = strip.coefficient(i, kappa);
+                    let error = (found - exact).abs() / strip.coefficient(0, kappa);
+                    assert!(error < 1e-12, "{side} {kappa} {i}: {found} {exact}");
+                }
+            }
+        }
+    }
+
+    /// Over an infinitely long strip the waves add up to Westergaard's 2/κ.
+    #[test]
+    fn waves_add_up() {
+        for kappa in [0.05, 0.3, 2.0, 40.0] {
+            let strip = Strip::new(1.0, 1.0);
+            let sum = strip.coefficient(0, kappa) + 2.0 * (1..2000).map(|i| strip.coefficient(i, kappa)).sum::<f64>();
+            assert!((sum * kappa / 2.0 - 1.0).abs() < 1e-13, "{kappa}: {sum}");
+        }
+    }
+
+    #[test]
+    fn uniform_pressure_on_a_line() {
+        let (cells, strip) = (400, Strip::new(0.25, 300.0));
+        let row = |i: usize| (0..cells).map(|j: usize| strip.coefficient(i.abs_diff(j), 0.0)).sum::<f64>();
+        let mean = (0..cells).map(row).sum::<f64>() / cells as f64;
+        assert!((mean / strip.uniform(100.0) - 1.0).abs() < 1e-5);
+    }
+}
