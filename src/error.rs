@@ -203,6 +203,14 @@ pub enum Error {
         axis: usize,
     },
 
+    /// Something needs the grid to be fixed to the other of indenter and bodies ([`Frame`](crate::contact::Frame)): a step over
+    /// the bodies to the indenter, a path or a direct sum to the bodies.
+    #[error("{what} is not possible with the grid fixed to what Settings::frame says: choose the other Frame")]
+    WrongFrame {
+        /// What was asked for.
+        what: &'static str,
+    },
+
     /// An approach lies beyond full contact on a surface whose mean displacement is held
     /// ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)): no pressure closes the gap further.
     #[error(
@@ -405,6 +413,20 @@ pub enum Error {
         /// Residual reached.
         residual: f64,
         /// Residual asked for.
+        tolerance: f64,
+    },
+
+    /// A steady motion does not become steady: where contact comes and goes, as on a rough surface that moves with the
+    /// bodies, it has no steady state; else allow a greater change.
+    #[error(
+        "after {distance:e} m the pressure still changes by {change:e} over a length of contact, more than {tolerance:e}"
+    )]
+    NotSteady {
+        /// Distance travelled \[m\].
+        distance: f64,
+        /// Relative change of the pressure.
+        change: f64,
+        /// Change allowed.
         tolerance: f64,
     },
 

@@ -118,8 +118,8 @@ pub use kernel::{InfluenceKernel, Workspace};
 /// ```
 pub mod prelude {
     pub use crate::contact::{
-        BodyState, Builder, Edge, Follow, Precision, Settings, Solver, StepReport, Stepping, TimeRule,
-        ViscoelasticContact,
+        BodyState, Builder, Edge, Follow, Frame, Precision, Settings, Solver, SteadyMotion, StepReport, Stepping,
+        TimeRule, ViscoelasticContact,
     };
     pub use crate::geometry::{Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, Shifted, Sphere};
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};

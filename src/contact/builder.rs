@@ -4,11 +4,11 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::contact::settings::{Settings, TimeRule};
+use crate::contact::settings::{Frame, Settings, TimeRule};
 use crate::contact::stepper::{Parts, ViscoelasticContact};
 use crate::error::{Error, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
-use crate::hereditary::{Direct, Exponential, History, Unfitted, Weighting};
+use crate::hereditary::{Direct, Exponential, History, Sources, Unfitted, Weighting};
 use crate::kernel::InfluenceKernel;
 use crate::rheology::Material;
 
@@ -130,7 +130,6 @@ impl Builder {
         if let Some(other) = counter_body {
             material = material.against(other);
         }
-        let history = history(&mut material, times, &settings)?;
         let kernel = match kernel {
             Some(kernel) if *kernel.grid() != grid => {
                 return Err(Error::KernelMismatch { kernel: kernel.grid().clone(), contact: grid });
@@ -138,15 +137,24 @@ impl Builder {
             Some(kernel) => kernel,
             None => Arc::new(InfluenceKernel::half_space(&grid)?),
         };
+        let history = history(&mut material, times, &settings, kernel.periodic_axes())?;
         Ok(ViscoelasticContact::new(Parts { grid, bodies, kernel, settings, initial_gap, material, history }))
     }
 }
 
 /// The home of the past that a time rule needs, on no cells yet; `material` is fitted if there is a need and its times are known.
-fn history(material: &mut Material, times: Option<RangeInclusive<f64>>, settings: &Settings) -> Result<History> {
+fn history(
+    material: &mut Material,
+    times: Option<RangeInclusive<f64>>,
+    settings: &Settings,
+    periodic: [bool; 2],
+) -> Result<History> {
     let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
     let direct = |weighting| Ok(History::Direct(Direct::new(material.clone(), weighting, settings.history_limit)));
     match settings.time_rule {
+        TimeRule::Rectangle | TimeRule::Backward if settings.frame == Frame::Indenter => {
+            return Err(Error::WrongFrame { what: "a direct sum" });
+        }
         TimeRule::Rectangle if glassy == 0.0 => {
             return Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" });
         }
@@ -158,6 +166,8 @@ fn history(material: &mut Material, times: Option<RangeInclusive<f64>>, settings
         *material = material.fitted(times, settings.series_tolerance)?;
     }
     Ok(match material.contact_spectrum()? {
+        Some(creep) if settings.frame == Frame::Indenter => History::Sources(Box::new(Sources::new(&creep, periodic))),
+        None if settings.frame == Frame::Indenter => return Err(material.no_series("Frame::Indenter")),
         Some(creep) => History::Exponential(Exponential::new(&creep, 0)),
         None => History::Unfitted(Box::new(Unfitted::new(material.clone(), settings.series_tolerance))),
     })

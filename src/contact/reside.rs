@@ -61,7 +61,8 @@ impl ViscoelasticContact {
             })
         };
         let folded = self.region.folded();
-        let still = [0, 1].map(|axis| folded[axis] && upright(axis));
+        // nor does anything stay even that moves
+        let still = [0, 1].map(|axis| folded[axis] && upright(axis) && self.stride[axis] == 0);
         if still != folded {
             self.keep_for_failure();
             self.unfold(still);
@@ -258,6 +259,7 @@ impl ViscoelasticContact {
             }),
             History::Direct(history) => history.carry(|own| old.carry(own, &region, |_| 0.0)),
             History::Unfitted(history) => history.carry(cells),
+            History::Sources(history) => history.carry(region.cells(), |own| old.carry(own, &region, |_| 0.0)),
         }
         for state in [&mut self.current, &mut self.previous] {
             let potential = induce(&state.potential, Some(&state.pressure));

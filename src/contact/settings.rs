@@ -40,6 +40,24 @@ pub struct Settings {
     pub window: bool,
     /// The precision of the solver's inner work (default: [`Precision::Double`]).
     pub precision: Precision,
+    /// What the grid is fixed to (default: [`Frame::Bodies`]).
+    pub frame: Frame,
+}
+
+/// What the grid is fixed to. Nothing to choose where nothing moves along the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[non_exhaustive]
+pub enum Frame {
+    /// The creeping bodies: an indenter moves over the grid
+    /// ([`ViscoelasticContact::step_along`](crate::ViscoelasticContact::step_along)), by any path, as far as the grid reaches, or
+    /// endlessly on periodic bodies.
+    #[default]
+    Bodies,
+    /// The indenter: the bodies move under the grid, by whole cells
+    /// ([`ViscoelasticContact::step_over`](crate::ViscoelasticContact::step_over)), endlessly. A step costs one convolution
+    /// more, and a further relaxation time nothing but its recursion. Computed on the whole grid, and by the
+    /// exponential rule: a rheology without an exact series needs [`Builder::times`](crate::contact::Builder::times).
+    Indenter,
 }
 
 /// The precision of the inner work of [`Solver::ActiveSet`]: of the preconditioner, and of the convolutions of corrections to
@@ -114,6 +132,7 @@ impl Default for Settings {
             symmetry: true,
             window: true,
             precision: Precision::Double,
+            frame: Frame::Bodies,
         }
     }
 }

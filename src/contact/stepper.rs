@@ -67,6 +67,10 @@ pub struct ViscoelasticContact {
     pub(super) placed: bool,
     /// What it was before the step being tried moved it to another region.
     pub(super) before_move: Option<Box<ViscoelasticContact>>,
+    /// How far the indenter moves over the bodies in the step being tried \[cells\].
+    pub(super) stride: [isize; 2],
+    /// Convolutions that its past took.
+    pub(super) convolutions_of_the_past: usize,
     pub(super) settings: Settings,
     pub(super) solver: ContactSolver,
     pub(super) material: Material,
@@ -166,7 +170,7 @@ impl ViscoelasticContact {
             _ => Region::whole(&grid, folded),
         };
         let cells = region.len();
-        history.undisturbed_on(cells);
+        history.undisturbed_on(region.cells());
         let kernel_here = kernel.on(region.grid(), folded, settings.is_mixed());
         let beyond = match &history {
             History::Exponential(history) if !region.covers() => Some(Beyond::new(history, cells)),
@@ -183,6 +187,8 @@ impl ViscoelasticContact {
             beyond,
             placed: false,
             before_move: None,
+            stride: [0; 2],
+            convolutions_of_the_past: 0,
             shown: Vec::new(),
             whole_displacement: OnceLock::new(),
             hulls: vec![None; bodies],
@@ -284,8 +290,7 @@ impl ViscoelasticContact {
         }
         self.before_is_kept = false;
 
-        // what the past makes of the end of the step: u = u_old + c K p
-        let c = self.history.predict(time, dt, &self.displacement, &mut self.trial_displacement)?;
+        let c = self.predict(time, dt)?;
         if !(c > 0.0 && c.is_finite()) {
             return Err(Error::Overflow { time, what: "the compliance of the step" });
         }
@@ -304,6 +309,10 @@ impl ViscoelasticContact {
             ContactSolver::PolonskyKeer(solver) => solver.solve(&problem, stop, &mut self.trial, &mut self.work),
         }
         self.trial.follow_surface(&problem);
+        self.trial.counts.convolutions += self.convolutions_of_the_past;
+        if let History::Sources(history) = &mut self.history {
+            history.advance(c, &self.trial.pressure);
+        }
         if self.is_undisturbed() && self.trial.pressure.iter().any(|&p| p > 0.0) {
             self.remember(time)?;
         }

@@ -1,5 +1,7 @@
 //! Exponential integration of the relaxation form.
 
+use std::ops::Range;
+
 use crate::error::{Error, Result};
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 
@@ -89,31 +91,39 @@ impl Exponential {
         self.factors.len()
     }
 
+    /// Where the field q_i of so many cells lies, piece by piece.
+    fn pieces(branches: usize, i: usize, cells: usize) -> impl Iterator<Item = Range<usize>> {
+        (0..cells.div_ceil(BLOCK)).map(move |block| {
+            let width = BLOCK.min(cells - block * BLOCK);
+            let start = block * BLOCK * branches + i * width;
+            start..start + width
+        })
+    }
+
     /// The field q_i, on `cells` cells.
     pub(crate) fn branch(&self, i: usize, cells: usize) -> Vec<f64> {
-        let branches = self.branches();
-        (0..cells.div_ceil(BLOCK))
-            .flat_map(|block| {
-                let width = BLOCK.min(cells - block * BLOCK);
-                let start = block * BLOCK * branches + i * width;
-                &self.fields[start..start + width]
-            })
-            .copied()
-            .collect()
+        let mut field = vec![0.0; cells];
+        self.read_branch(i, &mut field);
+        field
+    }
+
+    /// Copies the field q_i to `field`.
+    pub(crate) fn read_branch(&self, i: usize, field: &mut [f64]) {
+        let pieces = Self::pieces(self.branches(), i, field.len());
+        field.chunks_mut(BLOCK).zip(pieces).for_each(|(out, piece)| out.copy_from_slice(&self.fields[piece]));
+    }
+
+    /// Replaces the field q_i.
+    pub(crate) fn write_branch(&mut self, i: usize, field: &[f64]) {
+        let pieces = Self::pieces(self.branches(), i, field.len());
+        field.chunks(BLOCK).zip(pieces).for_each(|(values, piece)| self.fields[piece].copy_from_slice(values));
     }
 
     /// The same past on other cells: what each field, settled, becomes there is up to `carry`.
     pub(crate) fn carry(&mut self, from: usize, to: usize, mut carry: impl FnMut(usize, Vec<f64>) -> Vec<f64>) {
-        let branches = self.branches();
-        let mut fields = vec![0.0; to * branches];
-        for i in 0..branches {
-            let branch = carry(i, self.branch(i, from));
-            for (block, values) in branch.chunks(BLOCK).enumerate() {
-                let start = block * BLOCK * branches + i * values.len();
-                fields[start..start + values.len()].copy_from_slice(values);
-            }
-        }
-        self.fields = fields;
+        let branches: Vec<_> = (0..self.branches()).map(|i| carry(i, self.branch(i, from))).collect();
+        self.undisturbed_on(to);
+        branches.iter().enumerate().for_each(|(i, branch)| self.write_branch(i, branch));
     }
 
     /// Whether there is a past at all: an elastic body has none.

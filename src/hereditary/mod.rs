@@ -12,15 +12,18 @@
 //!   steps of any length.
 //! * [`Direct`]: every past increment of v = K p, summed anew at each step with weights from C(t);
 //!   needs no exponential series, and serves the paper's rectangle rule and the backward rule.
+//! * [`Sources`]: the exponential rule for what causes the displacement, so that the bodies can move under the grid.
 //!
 //! A rheology without an exact series starts as [`Unfitted`], unless the scene says over which times it is wanted.
 
 mod direct;
 mod exponential;
+mod sources;
 mod unfitted;
 
 pub(crate) use direct::{Direct, Weighting};
 pub(crate) use exponential::Exponential;
+pub(crate) use sources::Sources;
 pub(crate) use unfitted::Unfitted;
 
 use crate::error::Result;
@@ -32,6 +35,7 @@ pub(crate) enum History {
     Exponential(Exponential),
     Direct(Direct),
     Unfitted(Box<Unfitted>),
+    Sources(Box<Sources>),
 }
 
 impl History {
@@ -43,6 +47,7 @@ impl History {
             History::Exponential(history) => history.predict(time, dt, displacement, u_old),
             History::Direct(history) => history.predict(time, dt, u_old),
             History::Unfitted(history) => history.predict(time, dt, displacement, u_old),
+            History::Sources(history) => history.predict(time, dt, [0; 2]),
         }
     }
 
@@ -50,7 +55,7 @@ impl History {
     pub(crate) fn keeps_displacement(&self) -> bool {
         match self {
             History::Exponential(history) => history.remembers(),
-            History::Direct(_) => false,
+            History::Direct(_) | History::Sources(_) => false,
             History::Unfitted(_) => true,
         }
     }
@@ -62,6 +67,7 @@ impl History {
             History::Exponential(history) => history.commit(),
             History::Direct(history) if touched => history.commit(change),
             History::Direct(_) => {}
+            History::Sources(history) => history.commit(),
             History::Unfitted(history) => {
                 let fitted = history.commit(touched)?;
                 *self = History::Exponential(fitted.history);
@@ -72,11 +78,12 @@ impl History {
     }
 
     /// An undisturbed past on so many cells.
-    pub(crate) fn undisturbed_on(&mut self, cells: usize) {
+    pub(crate) fn undisturbed_on(&mut self, cells: [usize; 2]) {
         match self {
-            History::Exponential(history) => history.undisturbed_on(cells),
+            History::Exponential(history) => history.undisturbed_on(cells[0] * cells[1]),
             History::Direct(_) => {}
-            History::Unfitted(history) => history.carry(cells),
+            History::Unfitted(history) => history.carry(cells[0] * cells[1]),
+            History::Sources(history) => history.undisturbed_on(cells),
         }
     }
 

@@ -83,7 +83,7 @@ impl InfluenceKernel {
     /// A line contact, in plane strain: a grid of N × 1 cells, and pressures that do not depend on x2,
     /// (K p)(x) = −(2/π) ∫ ln(|x − s|/d) p(s) ds (K. L. Johnson, Contact Mechanics, 1985, section 2.3).
     ///
-    /// The length of the grid along x2 is that on which the force acts: with 1 m, forces are forces on a metre. `datum` is
+    /// What is uniform along x2 is periodic there, and has no edge. The length of the grid along x2 is that on which the force acts: with 1 m, forces are forces on a metre. `datum` is
     /// the distance d \[m\] from a line load at which the surface counts as unmoved, from which the approach is measured:
     /// pressures and gaps do not depend on it.
     ///
@@ -95,7 +95,7 @@ impl InfluenceKernel {
             let field = "cells along x2 of a line contact";
             return Err(Error::CountOutOfRange { field, value: grid.cells()[1], allowed: "1" });
         }
-        Ok(InfluenceKernel::new(grid, Influence::Line(strip(grid, 0, datum)?)))
+        Ok(InfluenceKernel::new(grid, Influence::Strip { periodic: 1, strip: strip(grid, 0, datum)? }))
     }
 
     /// A body of the user's: `coefficient(i, j)` \[m\] is the displacement, over C, of a cell under a unit of pressure on the

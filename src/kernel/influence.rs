@@ -22,10 +22,8 @@ pub(super) enum Influence {
     HalfSpace(Love),
     /// A half-space, periodic along both axes: Westergaard's 2/|q|, the mean displacement being the datum.
     Periodic,
-    /// A half-space, periodic along one axis.
+    /// A half-space, periodic along one axis; of a single cell along it: a line contact.
     Strip { periodic: usize, strip: Strip },
-    /// A half-space loaded along lines: plane strain in the plane of x1.
-    Line(Strip),
     /// A user's coefficients, for the distances of the grid.
     Coefficients { values: Arc<[f64]>, columns: usize },
     /// A user's compliance of each wave, on the independent wave numbers of the period.
@@ -39,7 +37,7 @@ impl Influence {
             Influence::Strip { periodic, .. } => {
                 [0, 1].map(|axis| if axis == *periodic { Ends::Periodic } else { Ends::Free })
             }
-            Influence::HalfSpace(_) | Influence::Line(_) | Influence::Coefficients { .. } => [Ends::Free; 2],
+            Influence::HalfSpace(_) | Influence::Coefficients { .. } => [Ends::Free; 2],
         }
     }
 
@@ -51,7 +49,6 @@ impl Influence {
         };
         match self {
             Influence::HalfSpace(love) => spectrum(&|i, j| love.coefficient(i, j)),
-            Influence::Line(strip) => spectrum(&|i, _| strip.coefficient(i, 0.0)),
             Influence::Coefficients { values, columns } => spectrum(&|i, j| values[i * columns + j]),
             Influence::Waves { values, columns } => {
                 let (values, columns) = (Arc::clone(values), *columns);
@@ -97,7 +94,6 @@ impl Influence {
         let symbol = match self {
             // a uniform pressure on a square of side L sinks it by 0.95 L p on average (Love)
             Influence::HalfSpace(_) => westergaard(1.05 / (lengths[0] * lengths[1]).sqrt()),
-            Influence::Line(strip) => westergaard(1.0 / strip.uniform(lengths[0])),
             Influence::Strip { periodic, strip } => westergaard(1.0 / strip.uniform(lengths[1 - periodic])),
             // no pressure is worth the mean displacement, which is none: as if of the longest wave
             Influence::Periodic => westergaard(0.5 * longest()),
@@ -120,7 +116,6 @@ impl Influence {
     pub(super) fn on_itself(&self) -> Option<f64> {
         match self {
             Influence::HalfSpace(love) => Some(love.coefficient(0, 0)),
-            Influence::Line(strip) => Some(strip.coefficient(0, 0.0)),
             Influence::Coefficients { values, .. } => Some(values[0]),
             Influence::Periodic | Influence::Strip { .. } | Influence::Waves { .. } => None,
         }

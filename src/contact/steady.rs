@@ -1,0 +1,183 @@
+//! Moving on until nothing changes any more.
+
+use crate::contact::report::StepReport;
+use crate::contact::stepper::ViscoelasticContact;
+use crate::error::{Error, Result, finite, within};
+use crate::load::Load;
+
+/// The contact is this many steps long, or more, in the longest strides.
+const STEPS_A_CONTACT: usize = 8;
+/// Lengths of the contact that each shorter stride is kept for: the past that the contact feels is then made of it.
+const CONTACTS_A_STRIDE: usize = 2;
+/// Lengths of the grid after which a motion that is still not steady is given up.
+const FARTHEST: usize = 10;
+
+/// A steady motion of the indenter over the bodies, and how steady the contact shall be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[expect(clippy::exhaustive_structs, reason = "users write it field by field")]
+pub struct SteadyMotion {
+    /// Axis of the motion, 0 for x1 and 1 for x2.
+    pub axis: usize,
+    /// Velocity of the indenter over the bodies \[m/s\], of either sign.
+    pub velocity: f64,
+    /// The load that it carries.
+    pub load: Load,
+    /// What the pressure may change by while the indenter travels by the length of the contact: Σ |Δp| over Σ p,
+    /// in (0, 1); the solver's own noise is about a hundred times
+    /// [`Settings::tolerance`](crate::contact::Settings::tolerance).
+    pub tolerance: f64,
+}
+
+/// A contact on its way to a steady state, made by [`ViscoelasticContact::toward_steady`].
+#[derive(Debug)]
+pub struct TowardSteady<'a> {
+    contact: &'a mut ViscoelasticContact,
+    motion: SteadyMotion,
+    /// Cells a step.
+    stride: usize,
+    /// Cells still to go with it.
+    left: usize,
+    /// Cells travelled so far.
+    travelled: usize,
+    /// The pressure one length of contact ago.
+    before: Vec<f64>,
+    change: f64,
+    arrived: bool,
+}
+
+impl ViscoelasticContact {
+    /// Moves the indenter steadily over the bodies, by steps of whole cells, until the pressure no longer changes. Needs
+    /// [`Frame::Indenter`](crate::contact::Frame::Indenter).
+    ///
+    /// Long strides come first, an eighth of the contact's length each, until the bodies have passed the whole grid; then shorter
+    /// ones, down to a cell, and these until the motion is steady: what happened before is forgotten step by step,
+    /// and costs little.
+    ///
+    /// ```
+    /// use std::sync::Arc;
+    /// use viscocontact::prelude::*;
+    ///
+    /// let grid = Grid::new([256, 1], [8.0e-3, 1.0])?;
+    /// let cylinder = Shifted::new(Cylinder::new(10.0e-3)?, [2.0e-3, 0.0])?;
+    /// let mut contact = ViscoelasticContact::builder(grid.clone())
+    ///     .geometry(&cylinder)
+    ///     .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.005e6)?))
+    ///     .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0)?))
+    ///     .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
+    ///     .build()?;
+    /// let motion = SteadyMotion { axis: 0, velocity: 0.1, load: Load::force(100.0), tolerance: 1.0e-4 };
+    /// contact.toward_steady(motion)?.run()?;
+    /// assert!(contact.lateral_force(&cylinder)[0] > 0.01 * contact.force());
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the axis is neither 0 nor 1, the velocity zero or not finite, or the tolerance not in (0, 1).
+    pub fn toward_steady(&mut self, motion: SteadyMotion) -> Result<TowardSteady<'_>> {
+        if motion.axis > 1 {
+            let allowed = "0 (x1) or 1 (x2)";
+            return Err(Error::CountOutOfRange { field: "axis of the motion", value: motion.axis, allowed });
+        }
+        let velocity = finite("velocity", motion.velocity)?;
+        within("velocity", velocity, velocity != 0.0, "finite and not 0")?;
+        let tolerance = motion.tolerance;
+        within("tolerance of a steady motion", tolerance, tolerance > 0.0 && tolerance < 1.0, "in (0, 1)")?;
+        let before = self.pressure().to_vec();
+        let change = f64::INFINITY;
+        Ok(TowardSteady { contact: self, motion, stride: 0, left: 0, travelled: 0, before, change, arrived: false })
+    }
+}
+
+impl TowardSteady<'_> {
+    /// Makes one step, or says that the motion is steady.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::step_over`], or if the motion is not steady after ten times the length of the grid.
+    pub fn next_step(&mut self) -> Result<Option<StepReport>> {
+        if self.arrived {
+            return Ok(None);
+        }
+        if self.stride == 0 && self.contact.contact_cells() == 0 {
+            // the first touch
+            let motion = self.motion;
+            let dt = self.contact.grid().spacing()[motion.axis] / motion.velocity.abs();
+            return self.contact.step_over([0; 2], dt, motion.load).map(Some);
+        }
+        if self.left == 0 && !self.next_stride()? {
+            return Ok(None);
+        }
+        let SteadyMotion { axis, velocity, load, .. } = self.motion;
+        let mut cells = [0; 2];
+        cells[axis] = if velocity > 0.0 { self.stride as isize } else { -(self.stride as isize) };
+        let dt = self.stride as f64 * self.contact.grid().spacing()[axis] / velocity.abs();
+        let report = self.contact.step_over(cells, dt, load)?;
+        self.travelled += self.stride;
+        self.left = self.left.saturating_sub(self.stride);
+        Ok(Some(report))
+    }
+
+    /// Moves on to the steady state.
+    ///
+    /// # Errors
+    /// As [`TowardSteady::next_step`].
+    pub fn run(mut self) -> Result<()> {
+        while self.next_step()?.is_some() {}
+        Ok(())
+    }
+
+    /// The contact.
+    pub fn contact(&self) -> &ViscoelasticContact {
+        self.contact
+    }
+
+    /// What the pressure has changed by over the last length of contact, Σ |Δp| over Σ p; infinite before that is known.
+    pub fn change(&self) -> f64 {
+        self.change
+    }
+
+    /// How far the indenter has travelled \[m\].
+    pub fn distance(&self) -> f64 {
+        self.travelled as f64 * self.contact.grid().spacing()[self.motion.axis]
+    }
+
+    /// Sets the stride of the steps to come, and how long it is kept; false if the motion is steady.
+    fn next_stride(&mut self) -> Result<bool> {
+        let (axis, grid) = (self.motion.axis, self.contact.grid());
+        let (cells, contact) = (grid.cells()[axis], self.length_of_contact());
+        let limit = self.motion.tolerance;
+        (self.stride, self.left) = match self.stride {
+            0 => (longest_stride(contact), cells),
+            1 => {
+                let pairs = self.contact.pressure().iter().zip(&self.before);
+                let change: f64 = pairs.map(|(now, before)| (now - before).abs()).sum();
+                self.change = change / self.contact.pressure().iter().sum::<f64>();
+                self.arrived = !(self.change > limit);
+                if self.arrived {
+                    return Ok(false);
+                }
+                if self.travelled > FARTHEST * cells {
+                    let (change, distance) = (self.change, self.distance());
+                    return Err(Error::NotSteady { distance, change, tolerance: limit });
+                }
+                (1, contact)
+            }
+            longer => (longer / 2, CONTACTS_A_STRIDE * contact),
+        };
+        self.before.copy_from_slice(self.contact.pressure());
+        Ok(true)
+    }
+
+    /// Cells from end to end of the contact, along the axis of the motion.
+    fn length_of_contact(&self) -> usize {
+        let n2 = self.contact.grid().cells()[1];
+        let touched = self.contact.pressure().iter().enumerate().filter(|(_, p)| **p > 0.0);
+        let along = touched.map(|(k, _)| [k / n2, k % n2][self.motion.axis]);
+        let (low, high) = along.fold((usize::MAX, 0), |(low, high), i| (low.min(i), high.max(i)));
+        (high + 1).saturating_sub(low).max(1)
+    }
+}
+
+/// The largest power of two of which a contact has enough.
+fn longest_stride(contact: usize) -> usize {
+    1 << (contact / STEPS_A_CONTACT).max(1).ilog2()
+}
