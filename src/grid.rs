@@ -59,6 +59,11 @@ impl Grid {
         Grid { cells, spacing: self.spacing, start }
     }
 
+    /// The centred grid of cells known to be valid ones, as those of another grid.
+    pub(crate) fn of_spacing(cells: [usize; 2], spacing: [f64; 2]) -> Grid {
+        Grid { cells, spacing, start: cells.map(|count| 1 - count as i64) }
+    }
+
     /// A square grid of `cells` × `cells` cells with sides of `length` \[m\].
     ///
     /// # Errors

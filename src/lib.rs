@@ -121,7 +121,10 @@ pub mod prelude {
         BodyState, Builder, Edge, Follow, Frame, Precision, Settings, Solver, SteadyMotion, StepReport, Stepping,
         TimeRule, ViscoelasticContact,
     };
-    pub use crate::geometry::{Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, Shifted, Sphere};
+    pub use crate::geometry::{
+        Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Form, Geometry, HeightMap, Repeated, Rough,
+        RoughSpec, Roughness, Shifted, Sphere, Sum, SurfaceStatistics, Wavy,
+    };
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{

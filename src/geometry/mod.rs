@@ -7,7 +7,12 @@
 //! | [`Cylinder`] | x1² / 2R, its axis along x2 |
 //! | [`Cone`] | r tan β |
 //! | [`FlatPunch`] | 0 on the face, +∞ off it |
+//! | [`Wavy`] | A (1 − cos 2πx1/λ), or the sum of two such waves |
+//! | [`HeightMap`] | a measured surface |
+//! | [`Rough`] | a random self-affine surface |
+//! | [`Sum`] | shapes on top of each other, as roughness on a sphere |
 //! | [`Shifted`] | another shape, moved in the plane |
+//! | [`Repeated`] | another shape, once a period |
 //! | [`FnGeometry`] | any closure of (x1, x2) |
 
 mod cone;
@@ -16,17 +21,28 @@ mod ellipsoid;
 mod flat_punch;
 mod function;
 mod height_map;
+mod repeated;
+mod rough;
 mod shifted;
+mod spectrum;
 mod sphere;
+mod statistics;
+mod sum;
+mod wavy;
 
 pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;
 pub use flat_punch::FlatPunch;
 pub use function::FnGeometry;
-pub use height_map::{HeightMap, MapError};
+pub use height_map::{Form, HeightMap, MapError, Resampled, ResamplingError};
+pub use repeated::Repeated;
+pub use rough::{Anisotropy, Rough, RoughSpec, Roughness};
 pub use shifted::Shifted;
 pub use sphere::Sphere;
+pub use statistics::SurfaceStatistics;
+pub use sum::Sum;
+pub use wavy::Wavy;
 
 use std::fmt::Debug;
 
@@ -68,13 +84,29 @@ pub trait Geometry: Debug + Send + Sync {
     /// # Panics
     /// If `gap` is not of length [`Grid::len`].
     fn fill_gap(&self, grid: &Grid, gap: &mut [f64]) {
-        assert_eq!(gap.len(), grid.len(), "gap must hold one value a cell");
-        let [_, n2] = grid.cells();
-        for (i, row) in gap.chunks_exact_mut(n2).enumerate() {
-            for (j, value) in row.iter_mut().enumerate() {
-                let [x1, x2] = grid.center(i, j);
-                *value = self.initial_gap(x1, x2);
-            }
+        fill_by_points(self, grid, [0.0; 2], gap);
+    }
+
+    /// As [`fill_gap`](Geometry::fill_gap), of the shape with its origin moved to the point `by` \[m\].
+    ///
+    /// Override it where a whole field can be moved better than its points one by one, as the waves of a periodic
+    /// surface.
+    ///
+    /// # Panics
+    /// If `gap` is not of length [`Grid::len`].
+    fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
+        fill_by_points(self, grid, by, gap);
+    }
+}
+
+/// The gap of the moved shape at the cell centres one by one.
+fn fill_by_points<G: Geometry + ?Sized>(shape: &G, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
+    assert_eq!(gap.len(), grid.len(), "gap must hold one value a cell");
+    let [_, n2] = grid.cells();
+    for (i, row) in gap.chunks_exact_mut(n2).enumerate() {
+        for (j, value) in row.iter_mut().enumerate() {
+            let [x1, x2] = grid.center(i, j);
+            *value = shape.initial_gap(x1 - by[0], x2 - by[1]);
         }
     }
 }
@@ -89,6 +121,10 @@ macro_rules! forward_geometry {
 
             fn fill_gap(&self, grid: &Grid, gap: &mut [f64]) {
                 (**self).fill_gap(grid, gap);
+            }
+
+            fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
+                (**self).fill_gap_at(grid, by, gap);
             }
         }
     )*};

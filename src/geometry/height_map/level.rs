@@ -1,0 +1,142 @@
+//! The form of a surface, taken out of its heights.
+
+use super::HeightMap;
+use crate::error::Result;
+
+/// What is taken out of a map as its form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Form {
+    /// The mean height.
+    Mean,
+    /// A plane.
+    Tilt,
+    /// A paraboloid with any axes, and the plane.
+    Curvature,
+}
+
+/// Most functions that a form is made of.
+const MOST: usize = 6;
+/// Squares smaller than this, of what a function has that those before do not, are rounding.
+const DEPENDENT: f64 = 1e-10;
+
+impl Form {
+    /// How many of 1, x1, x2, x1², x1 x2 and x2² it is made of.
+    fn terms(self) -> usize {
+        match self {
+            Form::Mean => 1,
+            Form::Tilt => 3,
+            Form::Curvature => MOST,
+        }
+    }
+}
+
+impl HeightMap {
+    /// The map less the form that fits the known heights best, in the least squares.
+    ///
+    /// # Errors
+    /// If no height is known.
+    pub fn leveled(self, form: Form) -> Result<HeightMap> {
+        self.some_known()?;
+        let terms = form.terms();
+        let mut heights = self.heights.clone();
+        // Once more for what rounding left, which counts where the form is far larger than the roughness.
+        for _ in 0..2 {
+            let (mut matrix, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);
+            for (k, &height) in heights.iter().enumerate().filter(|(_, height)| !height.is_nan()) {
+                let basis = self.basis(k);
+                for a in 0..terms {
+                    right[a] += basis[a] * height;
+                    for b in 0..terms {
+                        matrix[a][b] += basis[a] * basis[b];
+                    }
+                }
+            }
+            let factors = solved(matrix, right, terms);
+            for (k, height) in heights.iter_mut().enumerate() {
+                *height -= self.basis(k).iter().zip(&factors).map(|(b, f)| b * f).sum::<f64>();
+            }
+        }
+        Ok(self.with_heights(heights))
+    }
+
+    /// The functions at the point `k`, of coordinates from −1 to 1 so that they have like sizes.
+    fn basis(&self, k: usize) -> [f64; MOST] {
+        let at = |index: usize, n: usize| (2 * index + 1) as f64 / n as f64 - 1.0;
+        let (x, y) = (at(k / self.cells[1], self.cells[0]), at(k % self.cells[1], self.cells[1]));
+        [1.0, x, y, x * x, x * y, y * y]
+    }
+}
+
+/// Solves the normal equations of the first `terms` functions by elimination. One that the functions before it make
+/// up already, as a slope across a single row of points, gets no share.
+fn solved(mut matrix: [[f64; MOST]; MOST], mut right: [f64; MOST], terms: usize) -> [f64; MOST] {
+    let whole: [f64; MOST] = std::array::from_fn(|a| matrix[a][a]);
+    let counts = |matrix: &[[f64; MOST]; MOST], a: usize| matrix[a][a] > DEPENDENT * whole[a];
+    for a in 0..terms {
+        if !counts(&matrix, a) {
+            continue;
+        }
+        let pivot = matrix[a];
+        for b in a + 1..terms {
+            let factor = matrix[b][a] / pivot[a];
+            for (entry, of_pivot) in matrix[b].iter_mut().zip(&pivot).skip(a) {
+                *entry -= factor * of_pivot;
+            }
+            right[b] -= factor * right[a];
+        }
+    }
+    let mut factors = [0.0; MOST];
+    for a in (0..terms).rev().filter(|&a| counts(&matrix, a)) {
+        let known: f64 = (a + 1..terms).map(|b| matrix[a][b] * factors[b]).sum();
+        factors[a] = (right[a] - known) / matrix[a][a];
+    }
+    factors
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{map_of, waves};
+    use super::*;
+    use crate::error::Error;
+    use crate::geometry::MapError;
+
+    fn greatest(map: &HeightMap) -> f64 {
+        map.known().fold(0.0, |greatest, z| greatest.max(z.abs()))
+    }
+
+    #[test]
+    fn forms_are_taken_out_whole() {
+        let hole = |x1: f64, x2: f64| if x1 > 0.3 && x2 > 0.1 { f64::NAN } else { 0.0 };
+        let forms: [(Form, fn(f64, f64) -> f64); 3] = [
+            (Form::Mean, |_, _| 7.0),
+            (Form::Tilt, |x1, x2| 7.0 - 2.0 * x1 + 50.0 * x2),
+            (Form::Curvature, |x1, x2| 7.0 - 2.0 * x1 + 5.0 * x2 + x1 * x1 - 3.0 * x1 * x2 + 40.0 * x2 * x2),
+        ];
+        for (form, surface) in forms {
+            let left = map_of([11, 14], |x1, x2| surface(x1, x2) + hole(x1, x2)).leveled(form).unwrap();
+            assert!(greatest(&left) < 1e-13, "{form:?}: {}", greatest(&left));
+            assert!(left.missing() > 0);
+        }
+    }
+
+    #[test]
+    fn what_is_left_is_orthogonal_to_the_form() {
+        let map = map_of([10, 13], |x1, x2| waves(x1, x2) + 1e3 * x1 + 1e4);
+        let left = map.leveled(Form::Curvature).unwrap();
+        for term in 0..MOST {
+            let share: f64 = (0..130).map(|k| left.basis(k)[term] * left.heights[k]).sum();
+            assert!(share.abs() < 1e-10, "{term}: {share}");
+        }
+        assert!(greatest(&left) > 0.5);
+    }
+
+    #[test]
+    fn rows_and_few_points_serve() {
+        let row = map_of([9, 1], |x1, _| 3.0 + x1 + x1 * x1).leveled(Form::Curvature).unwrap();
+        assert!(greatest(&row) < 1e-14);
+        let few = map_of([3, 3], |x1, x2| if x1 == 0.0 && x2 > -0.2 { 4.0 + x2 } else { f64::NAN });
+        assert!(greatest(&few.leveled(Form::Curvature).unwrap()) < 1e-13);
+        let nothing = map_of([2, 2], |_, _| f64::NAN);
+        assert_eq!(nothing.leveled(Form::Mean), Err(Error::Map(MapError::NothingKnown)));
+    }
+}

@@ -1,0 +1,151 @@
+//! Maps cut, turned and placed.
+
+use super::{HeightMap, MapError};
+use crate::Grid;
+use crate::error::{Error, Result, finite};
+
+impl HeightMap {
+    /// The map with nothing to touch where heights are missing.
+    #[must_use]
+    pub fn masked(self) -> HeightMap {
+        HeightMap { masked: true, ..self }
+    }
+
+    /// The part of `cells` points that begins with the point `first`, in the middle of where the whole was. It is not
+    /// periodic.
+    ///
+    /// # Errors
+    /// If there are no points in the part, or it goes beyond the map.
+    pub fn cropped(self, first: [usize; 2], cells: [usize; 2]) -> Result<HeightMap> {
+        let fields = [("first point along x1", "points along x1"), ("first point along x2", "points along x2")];
+        for (axis, (of_first, of_cells)) in fields.into_iter().enumerate() {
+            if first[axis] >= self.cells[axis] {
+                let allowed = "below the number of points of the map";
+                return Err(Error::CountOutOfRange { field: of_first, value: first[axis], allowed });
+            }
+            if cells[axis] == 0 || cells[axis] > self.cells[axis] - first[axis] {
+                let allowed = "1 or more, and no more than the map has from the first on";
+                return Err(Error::CountOutOfRange { field: of_cells, value: cells[axis], allowed });
+            }
+        }
+        let n2 = self.cells[1];
+        let rows = (first[0]..first[0] + cells[0]).map(|i| i * n2 + first[1]);
+        let heights = rows.flat_map(|from| self.heights[from..from + cells[1]].iter().copied()).collect();
+        let part = HeightMap { cells, periodic: false, heights: Vec::new(), ..self };
+        Ok(part.with_heights(heights))
+    }
+
+    /// The mirror image: the order of the points is reversed along the axes named. What was measured from above and
+    /// is to lie face down on another body is reversed along one axis.
+    #[must_use]
+    pub fn flipped(mut self, along: [bool; 2]) -> HeightMap {
+        if along[0] != along[1] {
+            self.heights.chunks_exact_mut(self.cells[1]).for_each(<[f64]>::reverse);
+        }
+        // All points in reverse are those of both axes; along x1 alone is this and once more along x2.
+        if along[0] {
+            self.heights.reverse();
+        }
+        self
+    }
+
+    /// The map with x1 and x2 in each other's place.
+    #[must_use]
+    pub fn transposed(mut self) -> HeightMap {
+        let [n1, n2] = self.cells;
+        self.heights = (0..n1 * n2).map(|k| self.heights[k % n1 * n2 + k / n1]).collect();
+        self.cells.swap(0, 1);
+        self.spacing.swap(0, 1);
+        self.center.swap(0, 1);
+        self
+    }
+
+    /// The map with peaks as valleys, as of a replica: z becomes −z.
+    #[must_use]
+    pub fn inverted(self) -> HeightMap {
+        let heights = self.heights.iter().map(|z| -z).collect();
+        self.with_heights(heights)
+    }
+
+    /// The map with all heights times `factor`.
+    ///
+    /// # Errors
+    /// If the factor is not finite, or a height no longer is.
+    pub fn scaled(self, factor: f64) -> Result<HeightMap> {
+        finite("factor of the heights", factor)?;
+        let heights: Vec<f64> = self.heights.iter().map(|z| factor * z).collect();
+        if let Some(entry) = heights.iter().position(|z| z.is_infinite()) {
+            return Err(Error::Map(MapError::NotFinite { entry, value: heights[entry] }));
+        }
+        Ok(self.with_heights(heights))
+    }
+
+    /// The map with its middle at the point `center` \[m\].
+    ///
+    /// # Errors
+    /// If a coordinate is not finite.
+    pub fn centered_at(self, center: [f64; 2]) -> Result<HeightMap> {
+        let center =
+            [finite("middle of the map along x1", center[0])?, finite("middle of the map along x2", center[1])?];
+        Ok(HeightMap { center, ..self })
+    }
+
+    /// The map repeated beyond its edges along both axes, with its lengths as periods.
+    #[must_use]
+    pub fn periodic(self) -> HeightMap {
+        HeightMap { periodic: true, ..self }
+    }
+
+    /// Middle of a grid \[m\], the origin for all that are whole.
+    pub(super) fn middle_of(grid: &Grid) -> [f64; 2] {
+        [0, 1].map(|axis| 0.5 * (grid.coordinate(axis, 0) + grid.coordinate(axis, grid.cells()[axis] - 1)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map() -> HeightMap {
+        HeightMap::new([2, 3], [2.0, 6.0], vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap()
+    }
+
+    #[test]
+    fn maps_are_cut_and_turned() {
+        let part = map().periodic().cropped([0, 1], [2, 2]).unwrap();
+        assert_eq!((part.heights(), part.lengths()), (&[2.0, 3.0, 5.0, 6.0][..], [2.0, 4.0]));
+        assert!(!part.is_periodic());
+        assert_eq!(map().flipped([true, false]).heights(), [4.0, 5.0, 6.0, 1.0, 2.0, 3.0]);
+        assert_eq!(map().flipped([false, true]).heights(), [3.0, 2.0, 1.0, 6.0, 5.0, 4.0]);
+        assert_eq!(map().flipped([true, true]).heights(), [6.0, 5.0, 4.0, 3.0, 2.0, 1.0]);
+        assert_eq!(map().flipped([false, false]), map());
+        let turned = map().centered_at([1.0, 2.0]).unwrap().transposed();
+        assert_eq!(turned.heights(), [1.0, 4.0, 2.0, 5.0, 3.0, 6.0]);
+        assert_eq!((turned.cells(), turned.spacing(), turned.center()), ([3, 2], [2.0, 1.0], [2.0, 1.0]));
+        assert_eq!(turned.height_at(2.0, 1.5), Some(5.0));
+    }
+
+    #[test]
+    fn heights_follow_and_the_highest_with_them() {
+        use crate::geometry::Geometry;
+        let turned = map().inverted();
+        assert_eq!((turned.heights()[0], turned.initial_gap(-0.5, -2.0)), (-1.0, 0.0));
+        let doubled = map().scaled(2.0).unwrap();
+        assert_eq!((doubled.heights()[5], doubled.initial_gap(-0.5, -2.0)), (12.0, 10.0));
+        assert_eq!(map().cropped([0, 0], [1, 3]).unwrap().initial_gap(0.0, 2.0), 0.0);
+    }
+
+    #[test]
+    fn bad_arguments_are_refused_by_name() {
+        let field = |result: Result<HeightMap>| match result.unwrap_err() {
+            Error::OutOfRange { field, .. } | Error::CountOutOfRange { field, .. } => field,
+            other => panic!("unexpected {other}"),
+        };
+        assert_eq!(field(map().cropped([2, 0], [1, 1])), "first point along x1");
+        assert_eq!(field(map().cropped([0, 1], [1, 3])), "points along x2");
+        assert_eq!(field(map().cropped([0, 1], [0, 1])), "points along x1");
+        assert_eq!(field(map().scaled(f64::NAN)), "factor of the heights");
+        assert_eq!(field(map().centered_at([0.0, f64::INFINITY])), "middle of the map along x2");
+        assert!(matches!(map().scaled(1e308), Err(Error::Map(MapError::NotFinite { entry: 1, .. }))));
+    }
+}

@@ -1,0 +1,133 @@
+//! A map on another grid.
+
+use super::HeightMap;
+use crate::Grid;
+use crate::error::Result;
+
+/// A range of heights smaller than this, relative to the heights, is rounding.
+const FLAT: f64 = 1e-14;
+
+/// A map on another grid, and what it lost.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resampled {
+    /// The map on the new grid.
+    pub map: HeightMap,
+    /// How far it is from the old one.
+    pub error: ResamplingError,
+}
+
+/// What the new grid of a map does not resolve: the new map, interpolated back to the points of the old one, less the old
+/// one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ResamplingError {
+    /// Root mean square \[m\].
+    pub rms: f64,
+    /// Greatest absolute value \[m\].
+    pub greatest: f64,
+    /// The first in proportion to the rms height of the old map about its mean, at the points compared; 0 for a flat
+    /// one.
+    pub of_rms_height: f64,
+}
+
+impl HeightMap {
+    /// The map on the cells of `grid`, by [`HeightMap::height_at`], with what a grid coarser than the map loses.
+    ///
+    /// Points beyond the map are masked. It stays periodic on a grid of the same lengths.
+    ///
+    /// ```
+    /// use viscocontact::{Grid, geometry::HeightMap};
+    ///
+    /// let ridges = (0..64).map(|i| (i as f64 * std::f64::consts::TAU / 16.0).sin()).collect();
+    /// let map = HeightMap::new([64, 1], [1.0, 1.0], ridges)?.periodic();
+    /// let fine = map.resampled(&Grid::new([128, 1], [1.0, 1.0])?)?;
+    /// let coarse = map.resampled(&Grid::new([12, 1], [1.0, 1.0])?)?;
+    /// assert!(fine.error.of_rms_height < 0.01 && coarse.error.of_rms_height > 0.1);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If map and grid have no known points in common.
+    pub fn resampled(&self, grid: &Grid) -> Result<Resampled> {
+        let [_, n2] = grid.cells();
+        let heights = (0..grid.len()).map(|k| {
+            let [x1, x2] = grid.center(k / n2, k % n2);
+            self.height_at(x1, x2).unwrap_or(f64::NAN)
+        });
+        let mut map = HeightMap::on(grid, heights.collect());
+        map.some_known()?;
+        map.center = HeightMap::middle_of(grid);
+        // Without missing points in the old map all those of the new one are beyond it.
+        map.masked = self.masked || self.missing == 0;
+        let (old, new) = (self.lengths(), map.lengths());
+        map.periodic = self.periodic && (0..2).all(|axis| (new[axis] / old[axis] - 1.0).abs() < 1e-9);
+        let error = self.error_of(&map)?;
+        Ok(Resampled { map, error })
+    }
+
+    /// How far `other` is from this map at the points of this one.
+    fn error_of(&self, other: &HeightMap) -> Result<ResamplingError> {
+        let grid = self.grid();
+        let pairs = || {
+            (self.heights.iter().enumerate()).filter(|(_, z)| !z.is_nan()).filter_map(|(k, &z)| {
+                let [x1, x2] = grid.center(k / self.cells[1], k % self.cells[1]);
+                other.height_at(x1 + self.center[0], x2 + self.center[1]).map(|back| (z, back))
+            })
+        };
+        let count = pairs().count() as f64;
+        if count == 0.0 {
+            return Err(crate::Error::Map(super::MapError::NothingKnown));
+        }
+        let mean = pairs().map(|(z, _)| z / count).sum::<f64>();
+        let rms_height = (pairs().map(|(z, _)| (z - mean).powi(2)).sum::<f64>() / count).sqrt();
+        let rms = (pairs().map(|(z, back)| (back - z).powi(2)).sum::<f64>() / count).sqrt();
+        let greatest = pairs().fold(0.0, |greatest: f64, (z, back)| greatest.max((back - z).abs()));
+        let of_rms_height = if rms_height > FLAT * mean.abs() { rms / rms_height } else { 0.0 };
+        Ok(ResamplingError { rms, greatest, of_rms_height })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{map_of, waves};
+    use super::*;
+    use crate::error::Error;
+    use crate::geometry::{Geometry, MapError};
+
+    #[test]
+    fn its_own_grid_changes_nothing() {
+        let map = map_of([12, 10], waves).periodic();
+        let again = map.resampled(&map.grid()).unwrap();
+        assert_eq!(again.map, HeightMap { masked: true, ..map });
+        assert_eq!(again.error, ResamplingError { rms: 0.0, greatest: 0.0, of_rms_height: 0.0 });
+    }
+
+    #[test]
+    fn the_error_of_a_coarse_grid_is_that_of_what_it_cannot_hold() {
+        // One wave that four cells hold poorly, against the same computed by hand.
+        let map = map_of([64, 8], waves).periodic();
+        let errors = [64, 32, 16, 8].map(|n| {
+            let coarse = map.resampled(&Grid::new([n, 8], [1.0, 1.0]).unwrap()).unwrap();
+            assert!(coarse.map.is_periodic());
+            let by_hand = (map.heights.iter().enumerate()).map(|(k, z)| {
+                let [x1, x2] = map.grid().center(k / 8, k % 8);
+                (coarse.map.height_at(x1, x2).unwrap() - z).powi(2)
+            });
+            let by_hand = (by_hand.sum::<f64>() / 512.0).sqrt();
+            assert!((coarse.error.rms - by_hand).abs() < 1e-15 && coarse.error.greatest >= by_hand);
+            coarse.error.of_rms_height
+        });
+        assert!(errors.is_sorted() && errors[1] < 0.01 && errors[3] > 0.05, "{errors:?}");
+    }
+
+    #[test]
+    fn beyond_the_map_there_is_nothing_to_touch() {
+        let map = map_of([8, 8], waves).centered_at([0.5, 0.0]).unwrap();
+        let wide = map.resampled(&Grid::new([16, 8], [2.0, 1.0]).unwrap()).unwrap().map;
+        assert_eq!(wide.missing(), 64);
+        assert_eq!(wide.initial_gap(-0.5, 0.0), f64::INFINITY);
+        assert!((wide.height_at(0.3, 0.2).unwrap() - map.height_at(0.3, 0.2).unwrap()).abs() < 1e-12);
+        let beside = map.centered_at([5.0, 0.0]).unwrap();
+        let refused = beside.resampled(&Grid::square(4, 1.0).unwrap()).unwrap_err();
+        assert_eq!(refused, Error::Map(MapError::NothingKnown));
+    }
+}

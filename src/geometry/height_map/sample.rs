@@ -1,0 +1,226 @@
+//! Heights between the points of a map.
+
+use super::{HeightMap, ROUNDING};
+
+/// The points along one axis that a value between them depends on, with their weights.
+struct Stencil {
+    index: [usize; 4],
+    weight: [f64; 4],
+    /// Derivatives of the weights by the index.
+    slope: [f64; 4],
+}
+
+/// Weights of the four points around one that lies `t` behind the second (Keys 1981, a = −1/2).
+fn cubic(t: f64) -> [f64; 4] {
+    let (t2, t3) = (t * t, t * t * t);
+    [0.5 * (2.0 * t2 - t3 - t), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0), 0.5 * (4.0 * t2 - 3.0 * t3 + t), 0.5 * (t3 - t2)]
+}
+
+/// Their derivatives.
+fn cubic_slope(t: f64) -> [f64; 4] {
+    let t2 = t * t;
+    [
+        0.5 * (4.0 * t - 3.0 * t2 - 1.0),
+        0.5 * (9.0 * t2 - 10.0 * t),
+        0.5 * (8.0 * t - 9.0 * t2 + 1.0),
+        0.5 * (3.0 * t2 - 2.0 * t),
+    ]
+}
+
+/// Splits an index into the point before and the fraction beyond it, without rounding errors of the coordinates.
+fn split(index: f64) -> (f64, f64) {
+    let nearest = index.round();
+    let at = if (index - nearest).abs() <= ROUNDING { nearest } else { index };
+    (at.floor(), at - at.floor())
+}
+
+impl Stencil {
+    /// Around the point with `index` among `n`.
+    fn new(index: f64, n: usize, periodic: bool) -> Stencil {
+        let (before, t) = split(index);
+        let (weights, slopes) = (cubic(t), cubic_slope(t));
+        if periodic {
+            let first = before.rem_euclid(n as f64) as usize + n - 1;
+            return Stencil { index: [0, 1, 2, 3].map(|k| (first + k) % n), weight: weights, slope: slopes };
+        }
+        // Beyond its ends a row goes on straight: such a point is (1 + d) times the last less d times the one before.
+        let (before, last) = (before as isize, n as isize - 1);
+        let window = (before - 1).clamp(0, (last - 3).max(0));
+        let mut stencil =
+            Stencil { index: [0, 1, 2, 3].map(|k| (window + k).min(last) as usize), weight: [0.0; 4], slope: [0.0; 4] };
+        for (k, (weight, slope)) in weights.into_iter().zip(slopes).enumerate() {
+            let node = before - 1 + k as isize;
+            let end = node.clamp(0, last);
+            let next = if node < 0 { 1.min(last) } else { (last - 1).max(0) };
+            let beyond = (node - end).unsigned_abs() as f64;
+            for (to, part) in [(end, 1.0 + beyond), (next, -beyond)] {
+                if part != 0.0 {
+                    stencil.weight[(to - window) as usize] += part * weight;
+                    stencil.slope[(to - window) as usize] += part * slope;
+                }
+            }
+        }
+        stencil
+    }
+}
+
+impl HeightMap {
+    /// Coordinate as an index among the points along `axis`, with its fraction.
+    pub(super) fn index(&self, axis: usize, x: f64) -> f64 {
+        (x - self.center[axis]) / self.spacing[axis] + 0.5 * (self.cells[axis] as f64 - 1.0)
+    }
+
+    /// Whether the point lies in the cell of one of the points.
+    pub(super) fn covers(&self, x1: f64, x2: f64) -> bool {
+        let inside = |axis: usize, x: f64| {
+            let index = self.index(axis, x);
+            let end = self.cells[axis] as f64 - 0.5 + ROUNDING;
+            if self.periodic { index.is_finite() } else { index >= -0.5 - ROUNDING && index <= end }
+        };
+        inside(0, x1) && inside(1, x2)
+    }
+
+    /// Height at the point (x1, x2) \[m\]; `None` beyond the edges and where it is missing.
+    ///
+    /// Bicubic, and exact at the points of the map. Beside masked points it is linear between those known, and it
+    /// is missing where the nearest point is; beside undecided ones it is missing.
+    pub fn height_at(&self, x1: f64, x2: f64) -> Option<f64> {
+        if !self.covers(x1, x2) {
+            return None;
+        }
+        let [u1, u2] = [self.index(0, x1), self.index(1, x2)];
+        let (along1, along2) = self.stencils(u1, u2);
+        let height = self.weighted(&along1.index, &along1.weight, &along2.index, &along2.weight);
+        if height.is_nan() && self.masked { self.between_known(u1, u2) } else { Some(height).filter(|z| !z.is_nan()) }
+    }
+
+    /// Slopes ∂z/∂x1 and ∂z/∂x2 of the surface at the point (x1, x2), those of [`HeightMap::height_at`]; `None` beyond
+    /// the edges and where one of the sixteen points around is missing.
+    pub fn slope_at(&self, x1: f64, x2: f64) -> Option<[f64; 2]> {
+        if !self.covers(x1, x2) {
+            return None;
+        }
+        let (along1, along2) = self.stencils(self.index(0, x1), self.index(1, x2));
+        let slope = [
+            self.weighted(&along1.index, &along1.slope, &along2.index, &along2.weight) / self.spacing[0],
+            self.weighted(&along1.index, &along1.weight, &along2.index, &along2.slope) / self.spacing[1],
+        ];
+        Some(slope).filter(|slope| slope.iter().all(|s| !s.is_nan()))
+    }
+
+    fn stencils(&self, u1: f64, u2: f64) -> (Stencil, Stencil) {
+        (Stencil::new(u1, self.cells[0], self.periodic), Stencil::new(u2, self.cells[1], self.periodic))
+    }
+
+    /// Weighted sum of sixteen heights; NaN if one that counts is missing.
+    fn weighted(&self, rows: &[usize; 4], of_rows: &[f64; 4], columns: &[usize; 4], of_columns: &[f64; 4]) -> f64 {
+        let mut sum = 0.0;
+        for (i, a) in rows.iter().zip(of_rows).filter(|(_, a)| **a != 0.0) {
+            for (j, b) in columns.iter().zip(of_columns).filter(|(_, b)| **b != 0.0) {
+                sum += a * b * self.heights[i * self.cells[1] + j];
+            }
+        }
+        sum
+    }
+
+    /// Linear between those of the four neighbours that are known, if the nearest is.
+    fn between_known(&self, u1: f64, u2: f64) -> Option<f64> {
+        let ((b1, t1), (b2, t2)) = (split(u1), split(u2));
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (d1, w1) in [(0.0, 1.0 - t1), (1.0, t1)] {
+            for (d2, w2) in [(0.0, 1.0 - t2), (1.0, t2)] {
+                let height = self.point(b1 + d1, b2 + d2).filter(|z| !z.is_nan());
+                if d1 == t1.round() && d2 == t2.round() {
+                    height?;
+                }
+                if let Some(height) = height {
+                    sum += w1 * w2 * height;
+                    weights += w1 * w2;
+                }
+            }
+        }
+        Some(sum / weights).filter(|z| z.is_finite())
+    }
+
+    /// The height of a point given by whole numbers, if the map has it.
+    fn point(&self, i: f64, j: f64) -> Option<f64> {
+        let whole = |at: f64, n: usize| {
+            let n = n as f64;
+            if self.periodic { Some(at.rem_euclid(n) as usize) } else { (at >= 0.0 && at < n).then_some(at as usize) }
+        };
+        Some(self.heights[whole(i, self.cells[0])? * self.cells[1] + whole(j, self.cells[1])?])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{map_of, waves};
+    use crate::geometry::{Geometry, HeightMap};
+
+    #[test]
+    fn points_are_exact_and_planes_too() {
+        let map = map_of([7, 5], waves);
+        for k in 0..35 {
+            let [x1, x2] = map.grid().center(k / 5, k % 5);
+            assert_eq!(map.height_at(x1, x2), Some(map.heights[k]));
+        }
+        let plane = map_of([7, 5], |x1, x2| 2.0 * x1 - 3.0 * x2 + 0.25);
+        for (x1, x2) in [(-0.5, 0.5), (0.499, -0.123), (0.01, 0.02), (-0.47, 0.3), (0.5, 0.5)] {
+            let (height, slope) = (plane.height_at(x1, x2).unwrap(), plane.slope_at(x1, x2).unwrap());
+            assert!((height - (2.0 * x1 - 3.0 * x2 + 0.25)).abs() < 1e-14, "({x1}, {x2}): {height}");
+            assert!((slope[0] - 2.0).abs() < 1e-13 && (slope[1] + 3.0).abs() < 1e-13, "{slope:?}");
+        }
+        assert_eq!(plane.height_at(0.501, 0.0), None);
+        assert_eq!(plane.initial_gap(0.0, -0.501), f64::INFINITY);
+    }
+
+    #[test]
+    fn parabolas_are_exact_inside_and_slopes_are_derivatives() {
+        let map = map_of([9, 8], |x1, x2| x1 * x1 - 0.5 * x2 * x2 + x1 * x2);
+        let (x1, x2) = (0.13, -0.21);
+        assert!((map.height_at(x1, x2).unwrap() - (x1 * x1 - 0.5 * x2 * x2 + x1 * x2)).abs() < 1e-15);
+        let map = map_of([9, 8], waves).periodic();
+        let (at, step) = ((0.47, -0.49), 1e-6);
+        let slope = map.slope_at(at.0, at.1).unwrap();
+        let height = |d1: f64, d2: f64| map.height_at(at.0 + d1, at.1 + d2).unwrap();
+        assert!((slope[0] - (height(step, 0.0) - height(-step, 0.0)) / (2.0 * step)).abs() < 1e-7);
+        assert!((slope[1] - (height(0.0, step) - height(0.0, -step)) / (2.0 * step)).abs() < 1e-7);
+    }
+
+    #[test]
+    fn smooth_maps_converge_with_the_third_power() {
+        let error = |n: usize| {
+            let map = map_of([n, n], waves).periodic();
+            let points = (0..200).map(|k| (0.0137 * k as f64, 0.0271 * k as f64));
+            points.map(|(x1, x2)| (map.height_at(x1, x2).unwrap() - waves(x1, x2)).abs()).fold(0.0, f64::max)
+        };
+        let order = (error(64) / error(128)).log2();
+        assert!(order > 2.7, "{order}");
+    }
+
+    #[test]
+    fn missing_points_are_decided() {
+        let plane = |x1: f64, x2: f64| if x1.hypot(x2) < 0.05 { f64::NAN } else { x1 + x2 };
+        let map = map_of([5, 5], plane);
+        assert!(map.initial_gap(0.0, 0.0).is_nan() && map.initial_gap(0.15, 0.0).is_nan());
+        let map = map.masked();
+        assert_eq!(map.initial_gap(0.09, 0.0), f64::INFINITY);
+        // Between (0.2, 0), known, and the middle, unknown: what is known counts.
+        assert!((map.initial_gap(0.15, 0.0) - (0.8 - 0.2)).abs() < 1e-14);
+        assert!((map.height_at(0.2, 0.1).unwrap() - 0.3).abs() < 1e-14);
+    }
+
+    #[test]
+    fn rows_of_one_to_three_points_serve() {
+        let constant = HeightMap::new([1, 1], [1.0, 1.0], vec![2.0]).unwrap();
+        assert_eq!(constant.height_at(0.3, -0.4), Some(2.0));
+        assert_eq!(constant.clone().periodic().height_at(7.3, -9.4), Some(2.0));
+        for n in [2, 3] {
+            let line = map_of([n, 1], |x1, _| 3.0 * x1);
+            assert!((line.height_at(0.45, 0.2).unwrap() - 1.35).abs() < 1e-15);
+            let ring = map_of([n, 1], |x1, _| 3.0 * x1).periodic();
+            let [x1, _] = ring.grid().center(0, 0);
+            assert_eq!(ring.height_at(x1 + 1.0, 0.0), Some(ring.heights[0]));
+        }
+    }
+}

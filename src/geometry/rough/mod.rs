@@ -1,0 +1,285 @@
+//! Random surfaces.
+
+mod spec;
+
+pub use spec::{Anisotropy, RoughSpec, Roughness};
+
+use std::f64::consts::TAU;
+
+use num_complex::Complex64;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::Grid;
+use crate::error::{Error, Result, within};
+use crate::geometry::spectrum::{Spectrum, wave_numbers};
+use crate::geometry::{Geometry, HeightMap};
+
+/// A self-affine random surface: a sum of waves with random amplitudes, Gaussian, of the spectrum of its [`RoughSpec`].
+///
+/// The heights have no mean. The gap is what the highest point of the mesh exceeds the surface by. It moves over the
+/// grid that it was made for exactly, by any distance, as it has no waves that the grid does not resolve; on other
+/// grids it is interpolated as a [`HeightMap`] is.
+///
+/// ```
+/// use viscocontact::prelude::*;
+///
+/// let grid = Grid::square(64, 1e-3)?;
+/// let spec = RoughSpec {
+///     hurst: 0.8,
+///     longest: 1e-3,
+///     roll_off: 0.25e-3,
+///     shortest: 0.05e-3,
+///     anisotropy: Anisotropy::default(),
+///     roughness: Roughness::RmsHeight(1e-6),
+///     seed: 1,
+/// };
+/// let rough = Rough::new(&grid, spec)?;
+/// let statistics = SurfaceStatistics::of(rough.height_map())?;
+/// assert!((statistics.rms_height - 1e-6).abs() < 1e-15);
+///
+/// let rough_sphere = Sum::new(Sphere::new(0.1)?, rough);
+/// # let _ = rough_sphere;
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rough {
+    spec: RoughSpec,
+    map: HeightMap,
+}
+
+impl Rough {
+    /// A surface with the lengths of `grid` as its periods.
+    ///
+    /// # Errors
+    /// If a number of the spec is out of its range, the shortest wavelength is below two cells, or no wave of the
+    /// spectrum fits the lengths.
+    pub fn new(grid: &Grid, spec: RoughSpec) -> Result<Rough> {
+        spec.validate()?;
+        let (cells, spacing) = (grid.cells(), grid.spacing());
+        for axis in (0..2).filter(|&axis| cells[axis] > 1) {
+            let resolved = spec.shortest >= 2.0 * spacing[axis] * (1.0 - 1e-12);
+            within("shortest wavelength", spec.shortest, resolved, "two cells of the grid or more")?;
+        }
+        let spectrum = spectrum(grid, &spec)?;
+        let map = HeightMap::on(&Grid::of_spacing(cells, spacing), spectrum.heights());
+        match map.heights().iter().position(|z| !z.is_finite()) {
+            Some(entry) => {
+                let value = map.heights()[entry];
+                Err(Error::Map(super::MapError::NotFinite { entry, value }))
+            }
+            None => Ok(Rough { spec, map: map.periodic() }),
+        }
+    }
+
+    /// A surface with a longer `period` \[m\], of which the grid shows a part: not periodic on the grid.
+    ///
+    /// # Errors
+    /// As [`Rough::new`], and if a period is shorter than the grid or no whole number of its cells.
+    pub fn windowed(grid: &Grid, spec: RoughSpec, period: [f64; 2]) -> Result<Rough> {
+        let fields = ["period along x1", "period along x2"];
+        let mut cells = [0; 2];
+        for axis in 0..2 {
+            let count = period[axis] / grid.spacing()[axis];
+            let whole = (count - count.round()).abs() <= 1e-9 * count && count.round() >= grid.cells()[axis] as f64;
+            within(fields[axis], period[axis], whole, "a whole number of cells and no less than the grid is long")?;
+            cells[axis] = count.round() as usize;
+        }
+        // The check of the counts.
+        Grid::new(cells, period)?;
+        Rough::new(&Grid::of_spacing(cells, grid.spacing()), spec)
+    }
+
+    /// What it was asked to be.
+    pub fn spec(&self) -> &RoughSpec {
+        &self.spec
+    }
+
+    /// The heights of a whole period, as a periodic map.
+    pub fn height_map(&self) -> &HeightMap {
+        &self.map
+    }
+}
+
+impl Geometry for Rough {
+    fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
+        self.map.initial_gap(x1, x2)
+    }
+
+    fn fill_gap(&self, grid: &Grid, gap: &mut [f64]) {
+        self.map.fill_gap(grid, gap);
+    }
+
+    fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
+        self.map.fill_gap_at(grid, by, gap);
+    }
+}
+
+/// The random waves, as rough as asked for.
+fn spectrum(grid: &Grid, spec: &RoughSpec) -> Result<Spectrum> {
+    let (cells, lengths) = (grid.cells(), grid.lengths());
+    let line = cells[0] == 1 || cells[1] == 1;
+    // The last waves along each axis: within the spectrum, and with a direction on the grid.
+    let last = [0, 1].map(|axis| {
+        let resolved = (cells[axis] as i64 - 1) / 2;
+        resolved.min((lengths[axis] / spec.shortest).ceil() as i64)
+    });
+    let origin = grid.center(0, 0);
+    let mut spectrum = Spectrum::zero(cells);
+    let mut random = ChaCha8Rng::seed_from_u64(spec.seed);
+    let (mut height, mut slope) = (0.0, 0.0);
+    for k1 in -last[0]..=last[0] {
+        // A wave's numbers say where its random numbers are, so that they are the same on every mesh.
+        random.set_stream(if k1 < 0 { -2 * k1 - 1 } else { 2 * k1 } as u64);
+        random.set_word_pos(0);
+        for k2 in 0..=last[1] {
+            let amplitude = gaussian(&mut random);
+            if k2 == 0 && k1 <= 0 {
+                continue; // the conjugates of those with k1 > 0, and the mean
+            }
+            let q = wave_numbers([k1, k2], lengths);
+            let density = spec.density(q, line);
+            if density > 0.0 {
+                // The phase counts from the middle of the grid.
+                let amplitude = amplitude * density.sqrt() * Complex64::cis(q[0] * origin[0] + q[1] * origin[1]);
+                spectrum.set([k1, k2], amplitude);
+                height += 2.0 * amplitude.norm_sqr();
+                slope += 2.0 * amplitude.norm_sqr() * (q[0] * q[0] + q[1] * q[1]);
+            }
+        }
+    }
+    if height == 0.0 {
+        let allowed = "short enough that a wave between shortest and longest fits the period";
+        return Err(Error::OutOfRange { field: "shortest wavelength", value: spec.shortest, allowed });
+    }
+    spectrum.scale(match spec.roughness {
+        Roughness::RmsHeight(wanted) => wanted / height.sqrt(),
+        Roughness::RmsSlope(wanted) => wanted / slope.sqrt(),
+    });
+    Ok(spectrum)
+}
+
+/// A complex number whose parts are independent and standard normal (Box and Muller 1958).
+fn gaussian(random: &mut ChaCha8Rng) -> Complex64 {
+    // 53 bits each; the first is never 0.
+    let unit = 1.0 / (1_u64 << 53) as f64;
+    let radius = ((random.next_u64() >> 11) as f64 + 1.0) * unit;
+    let angle = (random.next_u64() >> 11) as f64 * unit;
+    Complex64::from_polar((-2.0 * radius.ln()).sqrt(), TAU * angle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::SurfaceStatistics;
+
+    const SPEC: RoughSpec = RoughSpec {
+        hurst: 0.8,
+        longest: 1.0,
+        roll_off: 0.25,
+        shortest: 1.0 / 15.0,
+        anisotropy: Anisotropy { ratio: 1.0, direction: 0.0 },
+        roughness: Roughness::RmsHeight(0.02),
+        seed: 7,
+    };
+
+    fn field(grid: &Grid, shape: &dyn Geometry, by: [f64; 2]) -> Vec<f64> {
+        let mut gap = vec![0.0; grid.len()];
+        shape.fill_gap_at(grid, by, &mut gap);
+        gap
+    }
+
+    #[test]
+    fn it_is_as_rough_as_asked_for() {
+        for grid in [Grid::square(64, 1.0).unwrap(), Grid::new([48, 81], [1.0, 2.0]).unwrap()] {
+            let by_height = Rough::new(&grid, SPEC).unwrap();
+            let heights = by_height.height_map().heights();
+            let mean = heights.iter().sum::<f64>() / grid.len() as f64;
+            let rms = (heights.iter().map(|z| z * z).sum::<f64>() / grid.len() as f64).sqrt();
+            assert!(mean.abs() < 1e-16 && (rms / 0.02 - 1.0).abs() < 1e-13);
+            let by_slope = Rough::new(&grid, RoughSpec { roughness: Roughness::RmsSlope(0.3), ..SPEC }).unwrap();
+            let statistics = SurfaceStatistics::of(by_slope.height_map()).unwrap();
+            assert!((statistics.rms_slope / 0.3 - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn a_seed_is_one_surface_on_every_mesh() {
+        let surface =
+            |n: usize, seed: u64| Rough::new(&Grid::square(n, 1.0).unwrap(), RoughSpec { seed, ..SPEC }).unwrap();
+        // The cells of the coarse mesh are the middle ones of three on the fine mesh.
+        let (coarse, fine) = (surface(31, 7), surface(93, 7));
+        for k in 0..31 * 31 {
+            let (i, j) = (k / 31, k % 31);
+            let (a, b) = (coarse.map.heights()[k], fine.map.heights()[(3 * i + 1) * 93 + 3 * j + 1]);
+            assert!((a - b).abs() < 1e-14, "{a} and {b}");
+        }
+        assert_ne!(surface(31, 8).map, coarse.map);
+    }
+
+    #[test]
+    fn it_moves_exactly() {
+        let rough = Rough::new(&Grid::square(32, 1.0).unwrap(), SPEC).unwrap();
+        let fine = Rough::new(&Grid::square(320, 1.0).unwrap(), SPEC).unwrap();
+        // By a tenth of a cell at a time; gaps count from different points.
+        let (grid, of_fine) = (Grid::square(32, 1.0).unwrap(), Grid::square(320, 1.0).unwrap());
+        let (a, b) =
+            (field(&grid, &rough, [0.3 / 32.0, -0.4 / 32.0]), field(&of_fine, &fine, [3.5 / 320.0, -3.5 / 320.0]));
+        let datum = rough.map.heights()[0] + rough.initial_gap(-15.5 / 32.0, -15.5 / 32.0)
+            - fine.map.heights()[0]
+            - fine.initial_gap(-159.5 / 320.0, -159.5 / 320.0);
+        for k in 0..32 * 32 {
+            let (i, j) = (k / 32, k % 32);
+            // The coarse centre lies between the fine cells 4 and 5 of ten.
+            let at = b[(10 * i + 5) * 320 + (10 * j + 4)];
+            assert!((a[k] - at - datum).abs() < 1e-12, "{} and {}", a[k], at + datum);
+        }
+    }
+
+    #[test]
+    fn waves_are_longer_along_the_direction() {
+        let grid = Grid::square(128, 1.0).unwrap();
+        let lay = Anisotropy { ratio: 4.0, direction: std::f64::consts::FRAC_PI_2 };
+        let rough = Rough::new(&grid, RoughSpec { anisotropy: lay, shortest: 1.0 / 40.0, ..SPEC }).unwrap();
+        let slopes = SurfaceStatistics::of(rough.height_map()).unwrap().rms_slopes;
+        assert!((3.0..5.5).contains(&(slopes[0] / slopes[1])), "{slopes:?}");
+    }
+
+    #[test]
+    fn a_window_shows_a_part_of_its_period() {
+        let grid = Grid::square(32, 1.0).unwrap();
+        let wide = Rough::windowed(&grid, RoughSpec { longest: 2.0, ..SPEC }, [2.0, 1.5]).unwrap();
+        assert_eq!(wide.height_map().cells(), [64, 48]);
+        let (window, whole) = (field(&grid, &wide, [0.0; 2]), field(&wide.map.grid(), &wide, [0.0; 2]));
+        for k in 0..32 * 32 {
+            assert_eq!(window[k], whole[(k / 32 + 16) * 48 + k % 32 + 8]);
+        }
+        let row = Grid::new([64, 1], [1.0, 1.0]).unwrap();
+        assert!(Rough::new(&row, SPEC).is_ok());
+    }
+
+    #[test]
+    fn bad_specs_are_refused_by_name() {
+        let grid = Grid::square(32, 1.0).unwrap();
+        let refused = |spec: RoughSpec| match Rough::new(&grid, spec).unwrap_err() {
+            Error::OutOfRange { field, .. } => field,
+            other => panic!("unexpected {other}"),
+        };
+        assert_eq!(refused(RoughSpec { hurst: 1.1, ..SPEC }), "Hurst exponent");
+        assert_eq!(refused(RoughSpec { longest: 0.2, ..SPEC }), "longest wavelength");
+        assert_eq!(refused(RoughSpec { roll_off: 0.01, ..SPEC }), "roll-off wavelength");
+        assert_eq!(refused(RoughSpec { shortest: 0.06, ..SPEC }), "shortest wavelength");
+        assert_eq!(refused(RoughSpec { roughness: Roughness::RmsSlope(0.0), ..SPEC }), "rms slope");
+        let lay = Anisotropy { ratio: 0.5, direction: 0.0 };
+        assert_eq!(refused(RoughSpec { anisotropy: lay, ..SPEC }), "ratio of the anisotropy");
+        // No wave of a period of 1 lies between 1/√2 and 1, save those that the spectrum excludes.
+        let between = RoughSpec { longest: 0.99, roll_off: 0.99, shortest: 0.72, ..SPEC };
+        assert_eq!(refused(between), "shortest wavelength");
+        for period in [[0.5, 1.0], [1.01, 1.0], [f64::NAN, 1.0]] {
+            assert!(matches!(
+                Rough::windowed(&grid, SPEC, period),
+                Err(Error::OutOfRange { field: "period along x1", .. })
+            ));
+        }
+    }
+}

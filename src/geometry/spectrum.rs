@@ -1,0 +1,169 @@
+//! Surfaces as sums of waves.
+
+use std::f64::consts::{PI, TAU};
+
+use num_complex::Complex64;
+use realfft::RealFftPlanner;
+use rustfft::FftPlanner;
+
+/// The waves of a real field on `cells` points: amplitudes `a` of exp(2πi (k1 i/n1 + k2 j/n2)), normalised so that their sum is
+/// the field. Only those with k2 ≥ 0 are kept; the others are their conjugates.
+#[derive(Debug, Clone)]
+pub(super) struct Spectrum {
+    cells: [usize; 2],
+    /// k2 from 0 to half of n2, and for each all k1, negative ones after the positive.
+    amplitudes: Vec<Complex64>,
+}
+
+/// One wave of a [`Spectrum`].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wave {
+    /// Its place in the spectrum.
+    pub(super) place: usize,
+    /// Waves along the whole of each axis.
+    pub(super) number: [i64; 2],
+    /// How many waves of the field it stands for: 2 with its conjugate, or 1.
+    pub(super) count: f64,
+}
+
+impl Spectrum {
+    /// Of no waves.
+    pub(super) fn zero(cells: [usize; 2]) -> Spectrum {
+        Spectrum { cells, amplitudes: vec![Complex64::ZERO; (cells[1] / 2 + 1) * cells[0]] }
+    }
+
+    /// Of a field without missing values, one value a point.
+    pub(super) fn of(cells: [usize; 2], field: &[f64]) -> Spectrum {
+        let [n1, n2] = cells;
+        let along2 = RealFftPlanner::new().plan_fft_forward(n2);
+        let (mut input, mut output) = (along2.make_input_vec(), along2.make_output_vec());
+        let mut spectrum = Spectrum::zero(cells);
+        for (i, row) in field.chunks_exact(n2).enumerate() {
+            input.copy_from_slice(row);
+            along2.process(&mut input, &mut output).expect("buffers come from the plan");
+            for (k2, value) in output.iter().enumerate() {
+                spectrum.amplitudes[k2 * n1 + i] = value / (n1 * n2) as f64;
+            }
+        }
+        FftPlanner::new().plan_fft_forward(n1).process(&mut spectrum.amplitudes);
+        spectrum
+    }
+
+    /// The field.
+    pub(super) fn heights(mut self) -> Vec<f64> {
+        let [n1, n2] = self.cells;
+        FftPlanner::new().plan_fft_inverse(n1).process(&mut self.amplitudes);
+        let along2 = RealFftPlanner::new().plan_fft_inverse(n2);
+        let mut input = along2.make_input_vec();
+        let mut field = vec![0.0; n1 * n2];
+        for (i, row) in field.chunks_exact_mut(n2).enumerate() {
+            for (k2, value) in input.iter_mut().enumerate() {
+                *value = self.amplitudes[k2 * n1 + i];
+                if k2 == 0 || 2 * k2 == n2 {
+                    // Real but for rounding, which the transform takes amiss.
+                    value.im = 0.0;
+                }
+            }
+            along2.process(&mut input, row).expect("buffers come from the plan");
+        }
+        field
+    }
+
+    /// All waves kept.
+    pub(super) fn waves(&self) -> impl Iterator<Item = Wave> + use<> {
+        let [n1, n2] = self.cells;
+        (0..(n2 / 2 + 1) * n1).map(move |place| {
+            let (k1, k2) = (place % n1, place / n1);
+            let k1 = if 2 * k1 <= n1 { k1 as i64 } else { k1 as i64 - n1 as i64 };
+            Wave { place, number: [k1, k2 as i64], count: if k2 == 0 || 2 * k2 == n2 { 1.0 } else { 2.0 } }
+        })
+    }
+
+    /// Amplitude of a wave.
+    pub(super) fn at(&self, wave: Wave) -> Complex64 {
+        self.amplitudes[wave.place]
+    }
+
+    /// Gives a wave, and its conjugate where that is kept too, an amplitude.
+    pub(super) fn set(&mut self, number: [i64; 2], amplitude: Complex64) {
+        let n1 = self.cells[0] as i64;
+        let place = |k1: i64| (number[1] * n1 + k1.rem_euclid(n1)) as usize;
+        self.amplitudes[place(number[0])] = amplitude;
+        if number[1] == 0 {
+            self.amplitudes[place(-number[0])] = amplitude.conj();
+        }
+    }
+
+    /// All amplitudes times `factor`.
+    pub(super) fn scale(&mut self, factor: f64) {
+        self.amplitudes.iter_mut().for_each(|amplitude| *amplitude *= factor);
+    }
+
+    /// Moves the field so that each point gets the value that was at its index plus `by`.
+    pub(super) fn shift(&mut self, by: [f64; 2]) {
+        let cells = self.cells;
+        let factor = |axis: usize, k: i64| {
+            let n = cells[axis] as i64;
+            // The shortest wave of an even number of points has no direction: what is left of it is its real part.
+            if 2 * k == n {
+                Complex64::from((PI * by[axis]).cos())
+            } else {
+                Complex64::cis(TAU * k as f64 * by[axis] / n as f64)
+            }
+        };
+        let waves = self.waves();
+        let along1: Vec<Complex64> = waves.take(cells[0]).map(|wave| factor(0, wave.number[0])).collect();
+        for (k2, row) in self.amplitudes.chunks_exact_mut(cells[0]).enumerate() {
+            let along2 = factor(1, k2 as i64);
+            row.iter_mut().zip(&along1).for_each(|(a, f)| *a *= f * along2);
+        }
+    }
+}
+
+/// Wave numbers of a wave on the given lengths \[rad/m\].
+pub(super) fn wave_numbers(number: [i64; 2], lengths: [f64; 2]) -> [f64; 2] {
+    [0, 1].map(|axis| TAU * number[axis] as f64 / lengths[axis])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn amplitudes_match_the_naive_sum_and_lead_back() {
+        for cells in [[4, 6], [5, 3], [1, 4], [3, 1], [2, 2]] {
+            let [n1, n2] = cells;
+            let field: Vec<f64> = (0..n1 * n2).map(|k| ((k * k) as f64 * 0.37).sin()).collect();
+            let spectrum = Spectrum::of(cells, &field);
+            let mut energy = 0.0;
+            for wave in spectrum.waves() {
+                let naive: Complex64 = (0..n1 * n2)
+                    .map(|k| {
+                        let [a, b] = wave.number.map(|k| k as f64);
+                        let turns = a * (k / n2) as f64 / n1 as f64 + b * (k % n2) as f64 / n2 as f64;
+                        field[k] * Complex64::cis(-TAU * turns) / (n1 * n2) as f64
+                    })
+                    .sum();
+                assert!((spectrum.at(wave) - naive).norm() < 1e-14, "{wave:?}");
+                energy += wave.count * naive.norm_sqr();
+            }
+            let squares = field.iter().map(|z| z * z).sum::<f64>() / (n1 * n2) as f64;
+            assert!((energy - squares).abs() < 1e-14);
+            for (a, b) in spectrum.heights().iter().zip(&field) {
+                assert!((a - b).abs() < 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn a_wave_that_is_set_is_a_cosine() {
+        for number in [[-2, 1], [2, 0]] {
+            let mut spectrum = Spectrum::zero([6, 5]);
+            spectrum.set(number, Complex64::from(0.5));
+            for (k, z) in spectrum.heights().iter().enumerate() {
+                let turns = number[0] as f64 * (k / 5) as f64 / 6.0 + number[1] as f64 * (k % 5) as f64 / 5.0;
+                assert!((z - (TAU * turns).cos()).abs() < 1e-14);
+            }
+        }
+    }
+}

@@ -1,0 +1,321 @@
+//! Statistics of surfaces.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::error::{Error, Result, positive};
+use crate::geometry::spectrum::{Spectrum, wave_numbers};
+use crate::geometry::{HeightMap, MapError};
+
+/// How rough a surface is, over its known points.
+///
+/// Slopes and curvatures of a periodic map without missing points are those of its waves; of others they are central
+/// differences over two cells, wherever all the points they need are known: they see waves of a few cells as less
+/// steep than they are.
+///
+/// ```
+/// use viscocontact::geometry::{HeightMap, SurfaceStatistics};
+///
+/// let wave = (0..32).map(|i| 1e-6 * (i as f64 * std::f64::consts::TAU / 32.0).sin()).collect();
+/// let statistics = SurfaceStatistics::of(&HeightMap::new([32, 1], [1e-3, 1e-3], wave)?.periodic())?;
+/// assert!((statistics.rms_height / (1e-6 / 2_f64.sqrt()) - 1.0).abs() < 1e-12);
+/// assert!((statistics.kurtosis - 1.5).abs() < 1e-12);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SurfaceStatistics {
+    /// Mean height \[m\].
+    pub mean: f64,
+    /// Root mean square of the height above the mean, S_q \[m\].
+    pub rms_height: f64,
+    /// Skewness of the heights, S_sk; 0 for a Gaussian surface, negative for one with valleys rather than peaks.
+    pub skewness: f64,
+    /// Kurtosis of the heights, S_ku; 3 for a Gaussian surface.
+    pub kurtosis: f64,
+    /// Root mean square of the slope |∇z|, S_dq.
+    pub rms_slope: f64,
+    /// Root mean squares of ∂z/∂x1 and ∂z/∂x2; 0 along an axis without differences.
+    pub rms_slopes: [f64; 2],
+    /// Root mean square of the mean curvature, (∂²z/∂x1² + ∂²z/∂x2²)/2 \[1/m\].
+    pub rms_curvature: f64,
+}
+
+/// Mean squares of the derivatives: ∂z/∂x1, ∂z/∂x2 and the mean curvature.
+type MeanSquares = [f64; 3];
+
+impl SurfaceStatistics {
+    /// The statistics of a map.
+    ///
+    /// # Errors
+    /// If no height is known, or all of them are equal, so that there is no distribution.
+    pub fn of(map: &HeightMap) -> Result<SurfaceStatistics> {
+        map.some_known()?;
+        let count = map.known().count() as f64;
+        let mean = map.known().map(|z| z / count).sum::<f64>();
+        let moment = |power: i32| map.known().map(|z| (z - mean).powi(power) / count).sum::<f64>();
+        let rms_height = moment(2).sqrt();
+        if rms_height <= 1e-14 * mean.abs() {
+            positive("rms height", 0.0)?;
+        }
+        positive("rms height", rms_height)?;
+        // In units of the rms height, whose fourth power may be too small to be represented.
+        let scaled = |power: i32| map.known().map(|z| ((z - mean) / rms_height).powi(power) / count).sum::<f64>();
+        let squares = if map.is_periodic() && map.missing() == 0 { of_waves(map) } else { of_differences(map) };
+        let rms_slopes = [squares[0].sqrt(), squares[1].sqrt()];
+        Ok(SurfaceStatistics {
+            mean,
+            rms_height,
+            skewness: scaled(3),
+            kurtosis: scaled(4),
+            rms_slope: rms_slopes[0].hypot(rms_slopes[1]),
+            rms_slopes,
+            rms_curvature: squares[2].sqrt(),
+        })
+    }
+}
+
+/// Of the waves of a periodic map, each with its own wave number.
+fn of_waves(map: &HeightMap) -> MeanSquares {
+    let spectrum = Spectrum::of(map.cells(), map.heights());
+    let lengths = map.lengths();
+    spectrum.waves().fold([0.0; 3], |[a, b, c], wave| {
+        let [q1, q2] = wave_numbers(wave.number, lengths).map(|q| q * q);
+        let power = wave.count * spectrum.at(wave).norm_sqr();
+        [a + power * q1, b + power * q2, c + power * (0.5 * (q1 + q2)).powi(2)]
+    })
+}
+
+/// Of central differences.
+fn of_differences(map: &HeightMap) -> MeanSquares {
+    let ([n1, n2], [s1, s2]) = (map.cells(), map.spacing());
+    let (z, periodic) = (map.heights(), map.is_periodic());
+    let around = |index: usize, n: usize| {
+        let inside = index > 0 && index + 1 < n;
+        (n > 2 && (inside || periodic)).then(|| ((index + n - 1) % n, (index + 1) % n))
+    };
+    let (mut sums, mut counts) = ([0.0; 3], [0_usize; 3]);
+    let mut add = |which: usize, value: f64| {
+        if !value.is_nan() {
+            sums[which] += value * value;
+            counts[which] += 1;
+        }
+    };
+    for i in 0..n1 {
+        for j in 0..n2 {
+            let here = z[i * n2 + j];
+            let along1 = around(i, n1).map(|(a, b)| (z[a * n2 + j], z[b * n2 + j]));
+            let along2 = around(j, n2).map(|(a, b)| (z[i * n2 + a], z[i * n2 + b]));
+            let bend = |(a, b): (f64, f64), s: f64| (a - 2.0 * here + b) / (s * s);
+            if let Some((a, b)) = along1 {
+                add(0, (b - a) / (2.0 * s1));
+            }
+            if let Some((a, b)) = along2 {
+                add(1, (b - a) / (2.0 * s2));
+            }
+            // A row of points is straight across.
+            let bends = [(along1, s1, n1), (along2, s2, n2)];
+            let bends = bends.map(|(pair, s, n)| if n == 1 { Some(0.0) } else { pair.map(|pair| bend(pair, s)) });
+            if let [Some(a), Some(b)] = bends {
+                add(2, 0.5 * (a + b));
+            }
+        }
+    }
+    [0, 1, 2].map(|which| if counts[which] > 0 { sums[which] / counts[which] as f64 } else { 0.0 })
+}
+
+impl HeightMap {
+    /// Probability density of the known heights: the middles of `bins` equal intervals between the lowest and the
+    /// highest \[m\], with the density in each \[1/m\], whose integral is 1.
+    ///
+    /// # Errors
+    /// If there are no bins, or the heights have no range.
+    pub fn height_distribution(&self, bins: usize) -> Result<Vec<(f64, f64)>> {
+        if bins == 0 {
+            return Err(Error::CountOutOfRange { field: "bins of the heights", value: 0, allowed: "1 or more" });
+        }
+        self.some_known()?;
+        let low = self.known().fold(f64::INFINITY, f64::min);
+        let range = positive("range of the heights", self.known().fold(low, f64::max) - low)?;
+        let width = positive("width of a bin", range / bins as f64)?;
+        let mut counts = vec![0_usize; bins];
+        for z in self.known() {
+            counts[(((z - low) / range * bins as f64) as usize).min(bins - 1)] += 1;
+        }
+        let all = self.known().count() as f64;
+        let bin = |(k, count): (usize, usize)| (low + (k as f64 + 0.5) * width, count as f64 / all / width);
+        Ok(counts.into_iter().enumerate().map(bin).collect())
+    }
+
+    /// Power spectral density of the heights above their mean: wave numbers q \[rad/m\], and the radial mean of C
+    /// \[m⁴\] there, normalised so that
+    ///
+    /// $$ \int_0^\infty C(q)\, 2\pi q \,dq = \langle (z - \bar z)^2 \rangle $$
+    ///
+    /// to within the width 2π/L of the rings, L the shorter side, and the waves in the corners beyond the last ring,
+    /// at two cells of the coarser side. Of a single row of points it is that of a profile \[m³\], with
+    /// 2 ∫ C dq as the mean square. A map that is not periodic is weighted by a Hann window, corrected for the power
+    /// that it takes; level the map before ([`HeightMap::leveled`]).
+    ///
+    /// # Errors
+    /// If heights are missing: fill them, or crop the map.
+    pub fn power_spectrum(&self) -> Result<Vec<(f64, f64)>> {
+        if self.missing() > 0 {
+            return Err(Error::Map(MapError::Missing { missing: self.missing() }));
+        }
+        let (cells, lengths) = (self.cells(), self.lengths());
+        let count = self.heights().len() as f64;
+        let mean = self.heights().iter().map(|z| z / count).sum::<f64>();
+        let mut field: Vec<f64> = self.heights().iter().map(|z| z - mean).collect();
+        if !self.is_periodic() {
+            let window = cells.map(hann);
+            field.iter_mut().enumerate().for_each(|(k, z)| *z *= window[0][k / cells[1]] * window[1][k % cells[1]]);
+        }
+        let axes = || (0..2).filter(|&axis| cells[axis] > 1);
+        // Modes on a square of 2π/L1 by 2π/L2 each: power over its area is the density.
+        let area: f64 = axes().map(|axis| lengths[axis] / TAU).product();
+        let width = axes().map(|axis| TAU / lengths[axis]).fold(0.0, f64::max);
+        let last = axes().map(|axis| PI / self.spacing()[axis]).fold(f64::INFINITY, f64::min);
+        if width == 0.0 {
+            return Ok(Vec::new()); // a single point
+        }
+        let rings = (last / width * (1.0 + 1e-12)) as usize;
+        let mut sums = vec![[0.0; 3]; rings + 1];
+        let spectrum = Spectrum::of(cells, &field);
+        for wave in spectrum.waves() {
+            let [q1, q2] = wave_numbers(wave.number, lengths);
+            let q = q1.hypot(q2);
+            if let Some(sum) = sums.get_mut((q / width).round() as usize) {
+                let power = spectrum.at(wave).norm_sqr();
+                sum.iter_mut().zip([1.0, q, area * power]).for_each(|(s, value)| *s += wave.count * value);
+            }
+        }
+        let rings = sums.into_iter().skip(1).filter(|[count, ..]| *count > 0.0);
+        Ok(rings.map(|[count, q, c]| (q / count, c / count)).collect())
+    }
+}
+
+/// A Hann window over the points of an axis, with a mean square of 1.
+fn hann(n: usize) -> Vec<f64> {
+    if n == 1 {
+        return vec![1.0];
+    }
+    let window = (0..n).map(|i| 1.0 - (TAU * (i as f64 + 0.5) / n as f64).cos());
+    let power = window.clone().map(|w| w * w).sum::<f64>() / n as f64;
+    window.map(|w| w / power.sqrt()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Grid;
+    use crate::geometry::{Anisotropy, Rough, RoughSpec, Roughness};
+
+    fn rough(n: usize, hurst: f64, seed: u64) -> HeightMap {
+        let spec = RoughSpec {
+            hurst,
+            longest: 2.0,
+            roll_off: 0.25,
+            shortest: 8.0 / n as f64,
+            anisotropy: Anisotropy::default(),
+            roughness: Roughness::RmsHeight(3e-3),
+            seed,
+        };
+        Rough::new(&Grid::square(n, 2.0).unwrap(), spec).unwrap().height_map().clone()
+    }
+
+    /// Slope of log C over log q between two wave numbers, by least squares.
+    fn slope(spectrum: &[(f64, f64)], from: f64, to: f64) -> f64 {
+        let points = spectrum.iter().filter(|(q, _)| (from..to).contains(q)).map(|(q, c)| (q.ln(), c.ln()));
+        let n = points.clone().count() as f64;
+        let (x, y) = points.clone().fold((0.0, 0.0), |(a, b), (x, y)| (a + x / n, b + y / n));
+        let (xy, xx) = points.fold((0.0, 0.0), |(a, b), (u, v)| (a + (u - x) * (v - y), b + (u - x) * (u - x)));
+        xy / xx
+    }
+
+    #[test]
+    fn a_wave_has_the_moments_of_a_wave() {
+        let grid = Grid::new([32, 24], [1.0, 2.0]).unwrap();
+        let (q1, q2) = (3.0 * TAU, 2.0 * PI);
+        let heights = (0..grid.len()).map(|k| {
+            let [x1, x2] = grid.center(k / 24, k % 24);
+            5.0 + 0.1 * (q1 * x1 + q2 * x2).sin()
+        });
+        let map = HeightMap::new([32, 24], [1.0, 2.0], heights.collect()).unwrap();
+        let exact = SurfaceStatistics::of(&map.clone().periodic()).unwrap();
+        let rms = 0.1 / 2_f64.sqrt();
+        let close = |a: f64, b: f64, within: f64| assert!((a - b).abs() < within, "{a} for {b}");
+        close(exact.mean, 5.0, 1e-14);
+        close(exact.rms_height, rms, 1e-14);
+        close(exact.skewness, 0.0, 1e-12);
+        close(exact.kurtosis, 1.5, 1e-12);
+        close(exact.rms_slopes[0], rms * q1, 1e-12);
+        close(exact.rms_slopes[1], rms * q2, 1e-12);
+        close(exact.rms_slope, rms * q1.hypot(q2), 1e-12);
+        close(exact.rms_curvature, rms * 0.5 * (q1 * q1 + q2 * q2), 1e-11);
+        // Differences over two cells take sin(qs)/(qs) off, up to the ends that they lack.
+        let seen = SurfaceStatistics::of(&map).unwrap();
+        close(seen.rms_slopes[0], rms * (q1 / 32.0).sin() * 32.0, 2e-2 * rms * q1);
+        let curvature = 0.5 * (2.0 * (1.0 - (q1 / 32.0).cos()) * 1024.0 + 2.0 * (1.0 - (q2 / 12.0).cos()) * 144.0);
+        close(seen.rms_curvature, rms * curvature, 2e-2 * rms * curvature);
+        // With a point missing, a periodic map is seen in differences too.
+        let mut holed = map.heights().to_vec();
+        holed[100] = f64::NAN;
+        let holed = HeightMap::new([32, 24], [1.0, 2.0], holed).unwrap().periodic();
+        close(SurfaceStatistics::of(&holed).unwrap().rms_slopes[0], seen.rms_slopes[0], 2e-2 * rms * q1);
+    }
+
+    #[test]
+    fn rough_surfaces_come_back_with_their_exponent() {
+        for (hurst, seed) in [(0.5, 1), (0.8, 2), (1.0, 3)] {
+            let map = rough(256, hurst, seed);
+            let (from, to) = (1.2 * TAU / 0.25, 0.9 * TAU * 32.0);
+            let found = slope(&map.power_spectrum().unwrap(), from, to);
+            assert!((found + 2.0 * (hurst + 1.0)).abs() < 0.15, "H = {hurst}: {found}");
+            // A window of it, which is not periodic.
+            let part = map.cropped([20, 30], [160, 160]).unwrap();
+            let found = slope(&part.power_spectrum().unwrap(), from, to);
+            assert!((found + 2.0 * (hurst + 1.0)).abs() < 0.3, "window, H = {hurst}: {found}");
+        }
+    }
+
+    #[test]
+    fn spectra_integrate_to_the_mean_square() {
+        let map = rough(128, 0.8, 4);
+        let integral = |map: &HeightMap| {
+            let (spectrum, width) = (map.power_spectrum().unwrap(), TAU / map.lengths()[0]);
+            spectrum.iter().map(|(q, c)| c * TAU * q * width).sum::<f64>().sqrt()
+        };
+        assert!((integral(&map) / 3e-3 - 1.0).abs() < 0.05, "{}", integral(&map));
+        // The mean over twenty surfaces, as the window weighs the middle of each more.
+        let seen = (0..20).map(|seed| integral(&rough(128, 0.8, seed).cropped([0, 0], [127, 127]).unwrap()));
+        let mean = seen.sum::<f64>() / 20.0;
+        assert!((mean / 3e-3 - 1.0).abs() < 0.05, "{mean}");
+        let row: Vec<f64> = (0..64).map(|i| (TAU * 5.0 * i as f64 / 64.0).sin()).collect();
+        let row = HeightMap::new([1, 64], [1.0, 2.0], row).unwrap().periodic().power_spectrum().unwrap();
+        assert!((row.iter().map(|(_, c)| 2.0 * c * PI).sum::<f64>() - 0.5).abs() < 1e-13);
+        assert!((row[4].0 - 5.0 * PI).abs() < 1e-12 && row[4].1 > 0.1);
+    }
+
+    #[test]
+    fn random_heights_are_gaussian() {
+        // Many short waves: the fourth moment of their sum is that of a normal distribution.
+        let statistics = SurfaceStatistics::of(&rough(512, 0.3, 5)).unwrap();
+        assert!(statistics.skewness.abs() < 0.2 && (statistics.kurtosis - 3.0).abs() < 0.3, "{statistics:?}");
+        let distribution = rough(512, 0.3, 5).height_distribution(41).unwrap();
+        let width = distribution[1].0 - distribution[0].0;
+        assert!((distribution.iter().map(|(_, p)| p * width).sum::<f64>() - 1.0).abs() < 1e-12);
+        let normal = |z: f64| (-0.5 * (z / 3e-3).powi(2)).exp() / (3e-3 * TAU.sqrt());
+        for (z, p) in distribution {
+            assert!((p - normal(z)).abs() < 0.1 * normal(0.0), "{z}: {p} for {}", normal(z));
+        }
+    }
+
+    #[test]
+    fn what_has_no_statistics_is_refused() {
+        let flat = HeightMap::new([3, 3], [1.0, 1.0], vec![0.1; 9]).unwrap();
+        assert!(matches!(SurfaceStatistics::of(&flat), Err(Error::OutOfRange { field: "rms height", .. })));
+        assert!(matches!(flat.height_distribution(3), Err(Error::OutOfRange { field: "range of the heights", .. })));
+        assert!(matches!(flat.height_distribution(0), Err(Error::CountOutOfRange { .. })));
+        let empty = HeightMap::new([2, 1], [1.0, 1.0], vec![f64::NAN, 1.0]).unwrap();
+        assert_eq!(empty.power_spectrum(), Err(Error::Map(MapError::Missing { missing: 1 })));
+    }
+}

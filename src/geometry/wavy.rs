@@ -1,0 +1,85 @@
+use std::f64::consts::PI;
+
+use crate::error::{Result, positive};
+use crate::geometry::Geometry;
+
+/// A wavy surface, A (1 − cos 2πx1/λ), or the sum of one wave along x1 and one along x2. A crest lies on the origin.
+///
+/// ```
+/// use viscocontact::geometry::{Geometry, Wavy};
+///
+/// let wave = Wavy::new(1e-6, 1e-3)?;
+/// assert_eq!(wave.initial_gap(0.0, 0.3e-3), 0.0);
+/// assert_eq!(wave.initial_gap(0.5e-3, 0.0), 2e-6);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wavy {
+    amplitude: [f64; 2],
+    wavelength: [f64; 2],
+}
+
+impl Wavy {
+    /// A wave along x1 of `amplitude` A \[m\], half its height from trough to crest, and `wavelength` λ \[m\].
+    ///
+    /// # Errors
+    /// If amplitude or wavelength is not finite and positive.
+    pub fn new(amplitude: f64, wavelength: f64) -> Result<Wavy> {
+        let amplitude = [positive("amplitude along x1", amplitude)?, 0.0];
+        Ok(Wavy { amplitude, wavelength: [positive("wavelength along x1", wavelength)?, f64::INFINITY] })
+    }
+
+    /// The sum of a wave along x1 and one along x2, with their amplitudes \[m\] and wavelengths \[m\].
+    ///
+    /// # Errors
+    /// If an amplitude or wavelength is not finite and positive.
+    pub fn in_two_directions(amplitudes: [f64; 2], wavelengths: [f64; 2]) -> Result<Wavy> {
+        let amplitude =
+            [positive("amplitude along x1", amplitudes[0])?, positive("amplitude along x2", amplitudes[1])?];
+        let wavelength =
+            [positive("wavelength along x1", wavelengths[0])?, positive("wavelength along x2", wavelengths[1])?];
+        Ok(Wavy { amplitude, wavelength })
+    }
+}
+
+impl Geometry for Wavy {
+    fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
+        // 1 − cos 2a = 2 sin² a, which keeps its digits near the crest.
+        let wave = |axis: usize, x: f64| {
+            let periods = x / self.wavelength[axis];
+            2.0 * self.amplitude[axis] * (PI * (periods - periods.round())).sin().powi(2)
+        };
+        wave(0, x1) + wave(1, x2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Error;
+
+    #[test]
+    fn waves_match_their_formula() {
+        let (a, b) = (2.0, 0.5);
+        let wave = Wavy::in_two_directions([a, b], [3.0, 7.0]).unwrap();
+        for (x1, x2) in [(0.3, -0.4), (100.1, 55.5), (-1.5, 3.5)] {
+            let tau = 2.0 * PI;
+            let expected = a * (1.0 - (tau * x1 / 3.0).cos()) + b * (1.0 - (tau * x2 / 7.0).cos());
+            assert!((wave.initial_gap(x1, x2) - expected).abs() < 1e-12);
+        }
+        let ridge = Wavy::new(a, 3.0).unwrap();
+        assert!((ridge.initial_gap(1e-9, 5.0) / (a * (2.0 * PI * 1e-9 / 3.0).powi(2) / 2.0) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn bad_waves_are_refused_by_name() {
+        let field = |result: Result<Wavy>| match result.unwrap_err() {
+            Error::OutOfRange { field, .. } => field,
+            other => panic!("unexpected {other}"),
+        };
+        assert_eq!(field(Wavy::new(0.0, 1.0)), "amplitude along x1");
+        assert_eq!(field(Wavy::new(1.0, f64::INFINITY)), "wavelength along x1");
+        assert_eq!(field(Wavy::in_two_directions([1.0, f64::NAN], [1.0, 1.0])), "amplitude along x2");
+        assert_eq!(field(Wavy::in_two_directions([1.0, 1.0], [1.0, -1.0])), "wavelength along x2");
+    }
+}
