@@ -91,7 +91,7 @@ mod tests {
         assert!((found.skewness()[0] - 0.2e-3 / a).abs() < 0.05);
         assert!(found.skewness()[1].abs() < 1e-9);
         // seen from beyond its edge it lies on one side
-        let beyond = contact.asymmetry([0.9e-3, 0.0]).unwrap().unwrap();
+        let beyond = contact.asymmetry([1.1e-3, 0.0]).unwrap().unwrap();
         assert!(beyond.reach[0][1] < 0.0 && beyond.skewness()[0] < -1.0);
         assert!(contact.asymmetry([f64::NAN, 0.0]).is_err());
     }
