@@ -344,6 +344,15 @@ pub enum Error {
     #[error(transparent)]
     Map(#[from] crate::geometry::MapError),
 
+    /// A file of results cannot be written: the medium, the permissions, or what stands there already.
+    #[error("{path} cannot be written: {what}")]
+    Output {
+        /// The file or folder.
+        path: String,
+        /// What stood in the way.
+        what: String,
+    },
+
     /// Isotherms of a master curve measure different things.
     #[error("the {first} isotherms cannot be joined to {second} isotherms")]
     MixedIsotherms {

@@ -96,6 +96,8 @@ mod grid;
 mod hereditary;
 mod kernel;
 pub mod load;
+pub mod observe;
+pub mod output;
 pub mod plan;
 mod quadrature;
 pub mod rheology;

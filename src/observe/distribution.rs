@@ -1,0 +1,158 @@
+//! How gaps and pressures are distributed.
+
+use crate::ViscoelasticContact;
+use crate::error::{Error, Result, positive};
+
+const MOST_BINS: usize = 1_000_000;
+
+/// The distribution of a quantity over the surface: a share of it where the quantity is zero, and a density in bins of
+/// equal width where it is above. Their sum over the surface is 1, as of P in Persson's theory of contact.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Distribution {
+    share_at_zero: f64,
+    width: f64,
+    density: Vec<f64>,
+}
+
+impl Distribution {
+    /// Of values `above` zero, of `all` values.
+    fn new(above: impl Iterator<Item = f64> + Clone, all: usize, bins: usize) -> Result<Distribution> {
+        if !(1..=MOST_BINS).contains(&bins) {
+            return Err(Error::CountOutOfRange { field: "bins", value: bins, allowed: "in [1, 1000000]" });
+        }
+        let greatest = above.clone().fold(0.0, f64::max);
+        if greatest == 0.0 {
+            return Ok(Distribution { share_at_zero: 1.0, width: 0.0, density: Vec::new() });
+        }
+        let width = positive("width of a bin", greatest / bins as f64)?;
+        let (mut counts, mut counted) = (vec![0_usize; bins], 0);
+        for value in above {
+            // the last bin holds the greatest value too
+            counts[((value / width) as usize).min(bins - 1)] += 1;
+            counted += 1;
+        }
+        let density = counts.into_iter().map(|count| count as f64 / all as f64 / width);
+        let density = density.map(|value| crate::error::finite("density", value)).collect::<Result<_>>()?;
+        Ok(Distribution { share_at_zero: (all - counted) as f64 / all as f64, width, density })
+    }
+
+    /// Share of the surface where the quantity is zero.
+    pub fn share_at_zero(&self) -> f64 {
+        self.share_at_zero
+    }
+
+    /// Width of a bin, in the unit of the quantity; 0 if there are none.
+    pub fn width(&self) -> f64 {
+        self.width
+    }
+
+    /// Density in each bin, in 1 over the unit of the quantity; none where the quantity is zero all over.
+    ///
+    /// Times the width it adds up to 1 − [`share_at_zero`](Distribution::share_at_zero).
+    pub fn density(&self) -> &[f64] {
+        &self.density
+    }
+
+    /// Middles of the bins, in the unit of the quantity.
+    pub fn centers(&self) -> impl Iterator<Item = f64> {
+        (0..self.density.len()).map(|k| (k as f64 + 0.5) * self.width)
+    }
+}
+
+impl ViscoelasticContact {
+    /// The distribution of the gap \[m\] over all cells that have something to touch, in `bins` between 0 and the greatest
+    /// gap. [`Distribution::share_at_zero`] is the share in contact, cells that touch without pressure included.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .build()?;
+    /// contact.step(0.0, Load::force(0.5))?;
+    /// let gaps = contact.gap_distribution(20)?;
+    /// for (gap, density) in gaps.centers().zip(gaps.density()) {
+    ///     println!("{gap:.2e} m  {density:.3e} 1/m");
+    /// }
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If `bins` is 0 or more than a million.
+    pub fn gap_distribution(&self, bins: usize) -> Result<Distribution> {
+        let mut gap = vec![0.0; self.grid().len()];
+        self.gap_into(&mut gap)?;
+        let finite = gap.iter().filter(|h| h.is_finite()).count();
+        let open = gap.iter().zip(self.pressure()).filter(|(h, p)| h.is_finite() && **h > 0.0 && **p == 0.0);
+        Distribution::new(open.map(|(h, _)| *h), finite, bins)
+    }
+
+    /// The distribution of the pressure \[Pa\] over all cells of the grid, in `bins` between 0 and the greatest pressure.
+    /// [`Distribution::share_at_zero`] is the share out of contact.
+    ///
+    /// # Errors
+    /// If `bins` is 0 or more than a million.
+    pub fn pressure_distribution(&self, bins: usize) -> Result<Distribution> {
+        let pressed = self.pressure().iter().copied().filter(|p| *p > 0.0);
+        Distribution::new(pressed, self.grid().len(), bins)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::analytic::Hertz;
+    use crate::observe::sphere;
+    use crate::prelude::*;
+
+    #[test]
+    fn values_are_counted_in_their_bins() {
+        let found = Distribution::new([1.0, 2.5, 4.0, 3.9, 0.5].into_iter(), 8, 4).unwrap();
+        assert_eq!(found, Distribution { share_at_zero: 0.375, width: 1.0, density: vec![0.125, 0.125, 0.125, 0.25] });
+        assert_eq!(found.centers().collect::<Vec<_>>(), [0.5, 1.5, 2.5, 3.5]);
+        let none = Distribution::new(std::iter::empty(), 8, 4).unwrap();
+        assert_eq!((none.share_at_zero(), none.density().len(), none.width()), (1.0, 0, 0.0));
+        for bins in [0, MOST_BINS + 1] {
+            assert!(matches!(Distribution::new([1.0].into_iter(), 1, bins), Err(Error::CountOutOfRange { .. })));
+        }
+        // a width that is no number any more
+        assert!(matches!(Distribution::new([5e-324].into_iter(), 1, 2), Err(Error::OutOfRange { .. })));
+    }
+
+    /// Under a sphere p² falls linearly with the area: the density of the pressure is 2πa² p / p0², over the area of
+    /// the grid.
+    #[test]
+    fn pressures_under_a_sphere() {
+        let exact = Hertz::new(10.0e-3, 4.0e6, 0.5).unwrap();
+        let (a, peak, side) = (exact.contact_radius(), exact.pressure(0.0), 2.6 * exact.contact_radius());
+        let found = sphere([256; 2], [side; 2], [0.0; 2], 0.5).pressure_distribution(10).unwrap();
+        let scale = 2.0 * std::f64::consts::PI * (a / side).powi(2) / peak.powi(2);
+        for (p, density) in found.centers().zip(found.density()) {
+            // a tenth of the peak holds 200 cells and more
+            assert!((density - scale * p).abs() < 0.03 * scale * peak, "{p:e}: {density:e} {:e}", scale * p);
+        }
+        let share = std::f64::consts::PI * (a / side).powi(2);
+        assert!((1.0 - found.share_at_zero() - share).abs() < 0.01 * share);
+    }
+
+    #[test]
+    fn shares_add_up_and_cells_with_nothing_to_touch_do_not_count() {
+        let mut contact = ViscoelasticContact::builder(Grid::square(40, 4.0e-3).unwrap())
+            .geometry(&FlatPunch::circular(1.0e-3).unwrap())
+            .material(Material::incompressible(Elastic::new(1.0e6).unwrap()))
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(1.0)).unwrap();
+        let found = contact.gap_distribution(5).unwrap();
+        assert_eq!((found.share_at_zero(), found.density()), (1.0, &[][..]));
+
+        let contact = sphere([32; 2], [4.0e-3; 2], [0.0; 2], 0.5);
+        let found = contact.gap_distribution(50).unwrap();
+        assert_eq!(found.share_at_zero(), contact.contact_cells() as f64 / 1024.0);
+        let sum = found.density().iter().sum::<f64>() * found.width();
+        assert!((sum + found.share_at_zero() - 1.0).abs() < 1e-12);
+        let corner = contact.profile(crate::observe::Axis::X1, -2.0e-3).unwrap().gap[0];
+        assert!((found.width() * 50.0 / corner - 1.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,291 @@
+//! The separate spots of a contact.
+
+use crate::error::{Error, Result, exact_length, finite};
+use crate::{Grid, ViscoelasticContact};
+
+/// One patch of contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Patch {
+    /// Its number of cells.
+    pub cells: usize,
+    /// Its area, that of its cells \[m²\].
+    pub area: f64,
+    /// The force that it carries \[N\].
+    pub force: f64,
+    /// Centroid of its area \[m\], on the grid. Where the patch lies across the edge of a periodic grid, it is put
+    /// together first; along an axis which it winds around it is the mean of the coordinates on the grid.
+    pub centroid: [f64; 2],
+    /// Its greatest pressure \[Pa\].
+    pub greatest_pressure: f64,
+    /// Whether the patch meets itself around the periodic axes x1 and x2.
+    pub winds: [bool; 2],
+}
+
+/// The connected patches of a contact: cells under pressure that share a side, not merely a corner, belong together.
+///
+/// ```
+/// use viscocontact::{Grid, observe::Patches};
+///
+/// let grid = Grid::new([3, 4], [3.0, 4.0])?;
+/// let pressure = [
+///     5.0, 0.0, 0.0, 1.0, //
+///     2.0, 0.0, 3.0, 0.0,
+///     0.0, 0.0, 3.0, 0.0,
+/// ];
+/// let patches = Patches::new(&grid, &pressure, [false; 2])?;
+/// assert_eq!(patches.labels(), [1, 0, 0, 2, 1, 0, 3, 0, 0, 0, 3, 0]);
+/// assert_eq!(patches.all()[0].force, 7.0);
+/// assert_eq!(Patches::new(&grid, &pressure, [false, true])?.all().len(), 2);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Patches {
+    labels: Vec<u32>,
+    all: Vec<Patch>,
+}
+
+impl Patches {
+    /// The patches where `pressure` \[Pa\], one value a cell, is above zero. Along axes that are `periodic` the first
+    /// and the last cells are neighbours.
+    ///
+    /// # Errors
+    /// If there is not one value a cell, a value is not finite or below zero, or the force of a patch is beyond the range
+    /// of `f64`.
+    pub fn new(grid: &Grid, pressure: &[f64], periodic: [bool; 2]) -> Result<Patches> {
+        exact_length("pressure", pressure.len(), grid.len())?;
+        if let Some(&value) = pressure.iter().find(|p| !(p.is_finite() && **p >= 0.0)) {
+            return Err(Error::OutOfRange { field: "pressure", value, allowed: "finite and >= 0" });
+        }
+        let mut search =
+            Search { grid, pressure, periodic, labels: vec![0; grid.len()], turns: vec![[0; 2]; grid.len()] };
+        let mut all = Vec::new();
+        for (k, &p) in pressure.iter().enumerate() {
+            if p > 0.0 && search.labels[k] == 0 {
+                // a grid has less than 2³² cells
+                let patch = search.patch(k, all.len() as u32 + 1);
+                finite("force of a patch", patch.force)?;
+                all.push(patch);
+            }
+        }
+        Ok(Patches { labels: search.labels, all })
+    }
+
+    /// The label of each cell: 0 out of contact, k + 1 in the patch `all()[k]`.
+    pub fn labels(&self) -> &[u32] {
+        &self.labels
+    }
+
+    /// The patches, in the order of their first cells on the grid.
+    pub fn all(&self) -> &[Patch] {
+        &self.all
+    }
+
+    /// How many patches there are.
+    pub fn count(&self) -> usize {
+        self.all.len()
+    }
+
+    /// The patch of the most cells, the first if there are several; `None` without contact.
+    pub fn largest(&self) -> Option<&Patch> {
+        self.all.iter().rev().max_by_key(|patch| patch.cells)
+    }
+}
+
+/// Patches are followed from a first cell to its neighbours.
+struct Search<'a> {
+    grid: &'a Grid,
+    pressure: &'a [f64],
+    periodic: [bool; 2],
+    labels: Vec<u32>,
+    /// How often the way from the first cell of its patch to a cell went around the axes, up less down.
+    turns: Vec<[i32; 2]>,
+}
+
+impl Search<'_> {
+    /// Labels the patch that the cell `first` belongs to.
+    fn patch(&mut self, first: usize, label: u32) -> Patch {
+        let grid = self.grid;
+        let ([n1, n2], lengths) = (grid.cells(), grid.lengths());
+        let (mut cells, mut sum, mut greatest, mut winds) = (0, 0.0, 0.0_f64, [false; 2]);
+        // coordinates on the grid, and of the patch when put together
+        let (mut plain, mut unwound) = ([0.0; 2], [0.0; 2]);
+        self.labels[first] = label;
+        let mut waiting = vec![first];
+        while let Some(k) = waiting.pop() {
+            let (cell, turns) = ([k / n2, k % n2], self.turns[k]);
+            cells += 1;
+            sum += self.pressure[k];
+            greatest = greatest.max(self.pressure[k]);
+            for axis in 0..2 {
+                let x = grid.coordinate(axis, cell[axis]);
+                plain[axis] += x;
+                unwound[axis] += x + f64::from(turns[axis]) * lengths[axis];
+            }
+            for axis in 0..2 {
+                for up in [false, true] {
+                    let Some((next, turn)) = self.neighbour(cell[axis], [n1, n2][axis], self.periodic[axis], up) else {
+                        continue;
+                    };
+                    let other = if axis == 0 { next * n2 + cell[1] } else { cell[0] * n2 + next };
+                    if self.pressure[other] <= 0.0 {
+                        continue;
+                    }
+                    let mut there = turns;
+                    there[axis] += turn;
+                    if self.labels[other] == 0 {
+                        (self.labels[other], self.turns[other]) = (label, there);
+                        waiting.push(other);
+                    } else {
+                        // reached on two ways, one of which goes around
+                        (0..2).for_each(|axis| winds[axis] |= self.turns[other][axis] != there[axis]);
+                    }
+                }
+            }
+        }
+        let centroid = [0, 1].map(|axis| {
+            let mean = (if winds[axis] { plain } else { unwound })[axis] / cells as f64;
+            mean - (mean / lengths[axis]).round() * lengths[axis]
+        });
+        let area = grid.cell_area();
+        Patch { cells, area: cells as f64 * area, force: sum * area, centroid, greatest_pressure: greatest, winds }
+    }
+
+    /// The next cell along an axis of `count`, and by how many turns it goes around.
+    fn neighbour(&self, index: usize, count: usize, periodic: bool, up: bool) -> Option<(usize, i32)> {
+        match (up, index) {
+            (true, k) if k + 1 < count => Some((k + 1, 0)),
+            (true, _) if periodic => Some((0, 1)),
+            (false, k) if k > 0 => Some((k - 1, 0)),
+            (false, _) if periodic => Some((count - 1, -1)),
+            _ => None,
+        }
+    }
+}
+
+impl ViscoelasticContact {
+    /// The patches of the contact; along axes that are `periodic` the first and the last cells are neighbours.
+    ///
+    /// # Errors
+    /// None that a contact can raise; as [`Patches::new`].
+    pub fn patches(&self, periodic: [bool; 2]) -> Result<Patches> {
+        Patches::new(self.grid(), self.pressure(), periodic)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::observe::sphere;
+
+    /// A map of digits, the pressures, on cells of 1 m × 2 m.
+    fn patches(rows: &[&str], periodic: [bool; 2]) -> Patches {
+        let cells = [rows.len(), rows[0].len()];
+        let grid = Grid::new(cells, [cells[0] as f64, 2.0 * cells[1] as f64]).unwrap();
+        let pressure: Vec<f64> = rows.concat().chars().map(|c| f64::from(c.to_digit(10).unwrap())).collect();
+        Patches::new(&grid, &pressure, periodic).unwrap()
+    }
+
+    #[test]
+    fn corners_do_not_join_and_rings_are_one() {
+        let found = patches(&["11100", "10100", "11102", "00020"], [false; 2]);
+        assert_eq!(found.labels(), [1, 1, 1, 0, 0, 1, 0, 1, 0, 0, 1, 1, 1, 0, 2, 0, 0, 0, 3, 0]);
+        assert_eq!(found.count(), 3);
+        let ring = found.all()[0];
+        assert_eq!((ring.cells, ring.area, ring.force, ring.winds), (8, 16.0, 16.0, [false; 2]));
+        // rows 0 to 2 of 4, columns 0 to 2 of 5
+        assert_eq!(ring.centroid, [-0.5, -2.0]);
+        assert_eq!(found.largest(), Some(&ring));
+        assert_eq!(found.all()[2].greatest_pressure, 2.0);
+        assert_eq!(patches(&["00", "00"], [true; 2]).largest(), None);
+    }
+
+    #[test]
+    fn periodic_axes_join_what_lies_across_the_edge() {
+        let rows = ["30001", "00000", "00000", "20000"];
+        assert_eq!(patches(&rows, [false; 2]).count(), 3);
+        assert_eq!(patches(&rows, [true, false]).labels()[15], 1);
+        assert_eq!(patches(&rows, [true, false]).count(), 2);
+        let found = patches(&rows, [true; 2]);
+        let [patch] = *found.all() else { panic!("{found:?}") };
+        // from the corner cell at (−1.5, −4) one cell up and one to the left, each beyond the edge
+        let expected: [f64; 2] = [-1.5 - 1.0 / 3.0, -4.0 - 2.0 / 3.0];
+        assert!((0..2).all(|axis| (patch.centroid[axis] - expected[axis]).abs() < 1e-14), "{:?}", patch.centroid);
+        assert_eq!((patch.cells, patch.force, patch.greatest_pressure, patch.winds), (3, 12.0, 3.0, [false; 2]));
+    }
+
+    #[test]
+    fn patches_that_meet_themselves_wind() {
+        let found = patches(&["000", "121", "000"], [true; 2]);
+        assert_eq!((found.all()[0].winds, found.all()[0].centroid), ([false, true], [0.0; 2]));
+        let found = patches(&["000", "121", "000"], [true, false]);
+        assert_eq!(found.all()[0].winds, [false; 2]);
+        // up the stairs, around both axes
+        let found = patches(&["1100", "0110", "0011", "1001"], [true; 2]);
+        assert_eq!((found.count(), found.all()[0].winds), (1, [true; 2]));
+        // a cell that is its own neighbour
+        assert_eq!(patches(&["1"], [true; 2]).all()[0].winds, [true; 2]);
+    }
+
+    /// Against labels that spread from cell to cell until nothing changes.
+    #[test]
+    fn random_maps_against_slow_spreading() {
+        let (n1, n2, mut seed) = (13_usize, 17_usize, 1_u64);
+        for round in 0..200 {
+            let periodic = [round % 2 == 0, round % 3 == 0];
+            let pressure: Vec<f64> = (0..n1 * n2)
+                .map(|_| {
+                    seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                    if seed >> 33 < (round + 50) << 23 { 1.0 } else { 0.0 }
+                })
+                .collect();
+            let grid = Grid::new([n1, n2], [1.0, 1.0]).unwrap();
+            let found = Patches::new(&grid, &pressure, periodic).unwrap();
+            let mut slow: Vec<usize> = (0..n1 * n2).collect();
+            let mut changed = true;
+            while changed {
+                changed = false;
+                for k in 0..n1 * n2 {
+                    let (i, j) = (k / n2, k % n2);
+                    let below = if i + 1 < n1 { Some((i + 1) * n2 + j) } else { periodic[0].then_some(j) };
+                    let right = if j + 1 < n2 { Some(k + 1) } else { periodic[1].then_some(i * n2) };
+                    for other in [below, right].into_iter().flatten() {
+                        if pressure[k] * pressure[other] > 0.0 && slow[k] != slow[other] {
+                            let least = slow[k].min(slow[other]);
+                            (slow[k], slow[other], changed) = (least, least, true);
+                        }
+                    }
+                }
+            }
+            let mut roots: Vec<usize> = (0..n1 * n2).filter(|&k| pressure[k] > 0.0).map(|k| slow[k]).collect();
+            roots.sort_unstable();
+            roots.dedup();
+            for k in 0..n1 * n2 {
+                let label = if pressure[k] > 0.0 { roots.binary_search(&slow[k]).unwrap() + 1 } else { 0 };
+                assert_eq!(found.labels()[k] as usize, label, "round {round}, cell {k}");
+            }
+            assert_eq!(found.all().iter().map(|patch| patch.cells).sum::<usize>() as f64, pressure.iter().sum::<f64>());
+        }
+    }
+
+    #[test]
+    fn a_sphere_has_one_patch_that_carries_all() {
+        let contact = sphere([64, 48], [2.0e-3, 1.5e-3], [0.1e-3, -0.05e-3], 0.1);
+        let found = contact.patches([false; 2]).unwrap();
+        assert_eq!(found.count(), 1);
+        let patch = found.all()[0];
+        assert_eq!(patch.cells, contact.contact_cells());
+        assert!((patch.force - 0.1).abs() < 1e-9);
+        assert!((patch.centroid[0] - 0.1e-3).abs() < 1e-5 && (patch.centroid[1] + 0.05e-3).abs() < 1e-5);
+        assert_eq!(patch.greatest_pressure, contact.greatest_pressure());
+    }
+
+    #[test]
+    fn bad_pressures_are_refused() {
+        let grid = Grid::square(1, 1.0).unwrap();
+        for value in [-1.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(Patches::new(&grid, &[value], [false; 2]), Err(Error::OutOfRange { .. })));
+        }
+        assert!(matches!(Patches::new(&grid, &[], [false; 2]), Err(Error::WrongLength { .. })));
+    }
+}

@@ -1,0 +1,112 @@
+//! The state along a line of cells.
+
+use crate::ViscoelasticContact;
+use crate::error::{Result, within};
+
+/// One of the two axes in the plane of contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(clippy::exhaustive_enums, reason = "a plane has two")]
+pub enum Axis {
+    /// Along x1.
+    X1,
+    /// Along x2.
+    X2,
+}
+
+/// Pressure, displacement and gap along a line of cells, see [`ViscoelasticContact::profile`].
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct LineProfile {
+    /// The coordinate that is the same all along, that of the centres of the line of cells \[m\].
+    pub at: f64,
+    /// Cell centres along the line \[m\].
+    pub positions: Vec<f64>,
+    /// Pressure \[Pa\].
+    pub pressure: Vec<f64>,
+    /// Displacement \[m\].
+    pub displacement: Vec<f64>,
+    /// Gap \[m\]; +∞ where there is nothing to touch.
+    pub gap: Vec<f64>,
+}
+
+impl ViscoelasticContact {
+    /// The state along the line of cells that runs in the direction of `along` and holds the other coordinate `at`
+    /// \[m\]; of two lines that meet there, the upper. Nothing is interpolated: [`LineProfile::at`] is where the centres
+    /// of the line lie.
+    ///
+    /// ```
+    /// use viscocontact::{observe::Axis, prelude::*};
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(33, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .build()?;
+    /// contact.step(0.0, Load::force(0.5))?;
+    /// let profile = contact.profile(Axis::X1, 0.0)?;
+    /// assert_eq!([profile.positions.len(), profile.pressure.len()], [33, 33]);
+    /// assert_eq!(profile.pressure[16], contact.greatest_pressure());
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If `at` lies outside the grid.
+    pub fn profile(&self, along: Axis, at: f64) -> Result<LineProfile> {
+        let grid = self.grid();
+        let (along, across) = match along {
+            Axis::X1 => (0, 1),
+            Axis::X2 => (1, 0),
+        };
+        let cells = grid.cells();
+        let half = 0.5 * grid.lengths()[across];
+        within("coordinate of the profile", at, at.abs() <= half, "inside the grid")?;
+        // the last line holds the edge of the grid too
+        let line = (((at + half) / grid.spacing()[across]) as usize).min(cells[across] - 1);
+        let cell = |k: usize| if along == 0 { k * cells[1] + line } else { line * cells[1] + k };
+        let mut gap = vec![0.0; grid.len()];
+        self.gap_into(&mut gap)?;
+        let take = |field: &[f64]| (0..cells[along]).map(|k| field[cell(k)]).collect();
+        Ok(LineProfile {
+            at: grid.coordinate(across, line),
+            positions: (0..cells[along]).map(|k| grid.coordinate(along, k)).collect(),
+            pressure: take(self.pressure()),
+            displacement: take(self.displacement()),
+            gap: take(&gap),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Error;
+    use crate::observe::sphere;
+
+    #[test]
+    fn lines_are_those_of_the_fields() {
+        let contact = sphere([24, 32], [2.4e-3, 3.2e-3], [0.2e-3, -0.1e-3], 0.2);
+        let mut gap = vec![0.0; 24 * 32];
+        contact.gap_into(&mut gap).unwrap();
+        let profile = contact.profile(Axis::X1, 0.26e-3).unwrap();
+        assert!((profile.at - 0.25e-3).abs() < 1e-12);
+        for i in 0..24 {
+            let k = i * 32 + 18;
+            assert_eq!(profile.positions[i], contact.grid().center(i, 18)[0]);
+            let values = [contact.pressure()[k], contact.displacement()[k], gap[k]];
+            assert_eq!([profile.pressure[i], profile.displacement[i], profile.gap[i]], values);
+        }
+        let profile = contact.profile(Axis::X2, -1.2e-3).unwrap();
+        assert_eq!(profile.at, contact.grid().center(0, 0)[0]);
+        assert_eq!(profile.gap, gap[..32]);
+        assert_eq!(profile.positions[31], contact.grid().center(0, 31)[1]);
+        assert_eq!(contact.profile(Axis::X2, 1.2e-3).unwrap().gap, gap[23 * 32..]);
+    }
+
+    #[test]
+    fn lines_outside_the_grid_are_refused() {
+        let contact = sphere([8, 8], [4.0e-3; 2], [0.0; 2], 0.1);
+        for at in [2.1e-3, f64::NAN, f64::NEG_INFINITY] {
+            let error = contact.profile(Axis::X1, at).unwrap_err();
+            assert!(matches!(error, Error::OutOfRange { field: "coordinate of the profile", .. }));
+        }
+    }
+}

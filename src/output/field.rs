@@ -1,0 +1,60 @@
+//! The fields of a contact.
+
+#[cfg(any(feature = "npy", feature = "vtk"))]
+use crate::{Result, ViscoelasticContact};
+
+/// A field that can be written: one value a cell.
+///
+/// ```
+/// use viscocontact::output::Field;
+///
+/// assert_eq!(Field::Gap.name(), "gap");
+/// assert_eq!(Field::Pressure.unit(), "Pa");
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Field {
+    /// [`ViscoelasticContact::pressure`](crate::ViscoelasticContact::pressure) \[Pa\].
+    Pressure,
+    /// [`ViscoelasticContact::displacement`](crate::ViscoelasticContact::displacement) \[m\].
+    Displacement,
+    /// [`ViscoelasticContact::gap_into`](crate::ViscoelasticContact::gap_into) \[m\]; +∞ where there is nothing
+    /// to touch.
+    Gap,
+}
+
+impl Field {
+    /// All of them.
+    pub const ALL: [Field; 3] = [Field::Pressure, Field::Displacement, Field::Gap];
+
+    /// Its name in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Field::Pressure => "pressure",
+            Field::Displacement => "displacement",
+            Field::Gap => "gap",
+        }
+    }
+
+    /// Its unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Field::Pressure => "Pa",
+            Field::Displacement | Field::Gap => "m",
+        }
+    }
+
+    /// The values in the state the contact is in; `buffer` holds those that the contact does not keep.
+    #[cfg(any(feature = "npy", feature = "vtk"))]
+    pub(super) fn values<'a>(self, contact: &'a ViscoelasticContact, buffer: &'a mut Vec<f64>) -> Result<&'a [f64]> {
+        match self {
+            Field::Pressure => Ok(contact.pressure()),
+            Field::Displacement => Ok(contact.displacement()),
+            Field::Gap => {
+                buffer.resize(contact.grid().len(), 0.0);
+                contact.gap_into(buffer)?;
+                Ok(buffer)
+            }
+        }
+    }
+}

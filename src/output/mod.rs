@@ -1,0 +1,42 @@
+//! Results as files that other tools open, written frame by frame: a run does not have to fit into memory.
+//!
+//! | what | feature | opened by |
+//! |---|---|---|
+//! | `NpzSeries`: a folder of NPZ archives, one a frame | `npy` | NumPy, Julia, MATLAB |
+//! | `write_npy`: one field as an NPY file | `npy` | NumPy, Julia, MATLAB |
+//! | `VtkSeries`: a folder of VTK images and a `series.pvd` | `vtk` | ParaView, VisIt, PyVista |
+//! | `CsvHistory`: one row a step | `csv` | pandas, spreadsheets, gnuplot |
+//!
+//! Values are written in double precision, bit by bit, in SI units; each file carries a [`Scene`] that says
+//! what was computed. Which [`Field`]s are written is chosen. A frame is complete on disk when its `write`
+//! returns, so that a run that is killed leaves all frames before readable.
+//!
+//! Nothing of an earlier run is overwritten: a series is refused a folder that holds frames, a history a file
+//! that exists.
+
+#[cfg(feature = "csv")]
+mod csv;
+mod field;
+#[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
+mod file;
+#[cfg(any(feature = "npy", feature = "vtk"))]
+mod frames;
+mod json;
+#[cfg(feature = "npy")]
+mod npy;
+#[cfg(feature = "npy")]
+mod npz;
+mod scene;
+#[cfg(feature = "vtk")]
+mod vtk;
+
+#[cfg(feature = "csv")]
+pub use csv::CsvHistory;
+pub use field::Field;
+#[cfg(feature = "npy")]
+pub use npy::write_npy;
+#[cfg(feature = "npy")]
+pub use npz::NpzSeries;
+pub use scene::Scene;
+#[cfg(feature = "vtk")]
+pub use vtk::VtkSeries;

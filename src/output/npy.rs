@@ -1,0 +1,56 @@
+//! Arrays in NumPy's own format.
+
+use std::io::{self, BufWriter, Write};
+use std::path::Path;
+
+use npyz::WriterBuilder;
+
+use crate::Grid;
+use crate::error::{Result, exact_length};
+use crate::output::file::replace;
+
+/// Writes a field, one value a cell of `grid`, as an NPY file: an array of `float64` of the shape of the grid,
+/// so that `numpy.load(path)[i, j]` is the value of the cell `[i, j]`. A file of this name is replaced.
+///
+/// ```
+/// use viscocontact::{Grid, output::write_npy};
+///
+/// let grid = Grid::new([2, 3], [2.0e-3, 3.0e-3])?;
+/// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-npy-{}", std::process::id()));
+/// # std::fs::create_dir_all(&folder).unwrap();
+/// # let path = folder.join("heights.npy");
+/// write_npy(&path, &grid, &[0.0, 1.0, 2.0, 10.0, 11.0, 12.0])?;
+/// # std::fs::remove_dir_all(&folder).unwrap();
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+///
+/// # Errors
+/// If there is not one value a cell, or the file cannot be written.
+pub fn write_npy(path: impl AsRef<Path>, grid: &Grid, values: &[f64]) -> Result<()> {
+    exact_length("field", values.len(), grid.len())?;
+    replace(path.as_ref(), |out| array(out, &grid.cells(), values))
+}
+
+/// An array of numbers in row-major order.
+pub(super) fn array(out: impl Write, shape: &[usize], values: &[f64]) -> io::Result<()> {
+    let shape: Vec<u64> = shape.iter().map(|&n| n as u64).collect();
+    let mut out = BufWriter::with_capacity(1 << 16, out);
+    let number = npyz::DType::Plain(type_string("<f8")?);
+    let mut writer = npyz::WriteOptions::new().dtype(number).shape(&shape).writer(&mut out).begin_nd()?;
+    writer.extend(values.iter().copied())?;
+    writer.finish()?;
+    out.flush()
+}
+
+/// A text, as a NumPy string without a dimension: `str(array)` is the text.
+pub(super) fn text(mut out: impl Write, text: &str) -> io::Result<()> {
+    let text: Vec<char> = text.chars().collect();
+    let string = npyz::DType::Plain(type_string(&format!("<U{}", text.len().max(1)))?);
+    let mut writer = npyz::WriteOptions::new().dtype(string).shape(&[]).writer(&mut out).begin_nd()?;
+    writer.push(&text[..])?;
+    writer.finish()
+}
+
+fn type_string(text: &str) -> io::Result<npyz::TypeStr> {
+    text.parse().map_err(io::Error::other)
+}

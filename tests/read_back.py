@@ -1,0 +1,130 @@
+"""Reads a run that the test `a_run_for_other_readers` wrote, with numpy, with VTK itself and with csv, and compares
+every number bit by bit with the bare numbers (*.raw) beside it. Exits with 1 if anything differs.
+
+Usage: read_back.py FOLDER
+"""
+
+import csv
+import json
+import pathlib
+import sys
+import xml.etree.ElementTree
+
+import numpy
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+UNITS = {"pressure": "Pa", "displacement": "m", "gap": "m"}
+checks, differences = 0, 0
+
+
+def check(what, same):
+    """Counts a comparison and tells of one that fails."""
+    global checks, differences
+    checks += 1
+    if not same:
+        differences += 1
+        print(f"differs: {what}", file=sys.stderr)
+
+
+def same_bits(found, expected):
+    """Whether two arrays are equal in shape and in every bit."""
+    found, expected = numpy.asarray(found), numpy.asarray(expected)
+    return (
+        found.dtype == numpy.float64
+        and found.shape == expected.shape
+        and numpy.ascontiguousarray(found).tobytes() == numpy.ascontiguousarray(expected).tobytes()
+    )
+
+
+def check_archive(folder, frame, raw, shape, scene):
+    with numpy.load(folder / f"{frame}.npz", allow_pickle=False) as archive:
+        names = {"time", "x1", "x2", "approach", "force", "tilt", "contact_area", "scene", *UNITS}
+        check(f"{frame}.npz: names", set(archive.files) == names)
+        for name in names - {"scene"}:
+            expected = raw(name)
+            if name in UNITS:
+                expected = expected.reshape(shape)
+            elif name not in ("x1", "x2", "tilt"):
+                expected = expected.reshape(())
+            check(f"{frame}.npz: {name}", same_bits(archive[name], expected))
+        check(f"{frame}.npz: scene", json.loads(str(archive["scene"])) == scene)
+    gap = numpy.load(folder / f"{frame}.npy", allow_pickle=False)
+    check(f"{frame}.npy", same_bits(gap, raw("gap").reshape(shape)))
+
+
+def check_image(path, raw, shape, scene):
+    frame = path.name
+    failures = []
+    reader = vtk.vtkXMLImageDataReader()
+    reader.AddObserver("ErrorEvent", lambda *event: failures.append(event))
+    check(f"{frame}: CanReadFile", reader.CanReadFile(str(path)))
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    times = reader.GetOutputInformation(0).Get(vtk.vtkStreamingDemandDrivenPipeline.TIME_STEPS())
+    reader.Update()
+    check(f"{frame}: read without errors", not failures)
+    image = reader.GetOutput()
+    check(f"{frame}: dimensions", image.GetDimensions() == (shape[0] + 1, shape[1] + 1, 1))
+    check(f"{frame}: number of cells", image.GetNumberOfCells() == shape[0] * shape[1])
+    cells, state = image.GetCellData(), image.GetFieldData()
+    check(f"{frame}: arrays", cells.GetNumberOfArrays() == len(UNITS) and state.GetNumberOfArrays() == 6)
+    for name, unit in UNITS.items():
+        # x runs fastest in VTK, the last axis in numpy
+        found = vtk_to_numpy(cells.GetArray(f"{name} [{unit}]")).reshape(shape[::-1]).T
+        check(f"{frame}: {name}", same_bits(found, raw(name).reshape(shape)))
+    numbers = {
+        "TimeValue": "time",
+        "approach [m]": "approach",
+        "force [N]": "force",
+        "tilt [rad]": "tilt",
+        "contact area [m2]": "contact_area",
+    }
+    for name, other in numbers.items():
+        check(f"{frame}: {name}", same_bits(vtk_to_numpy(state.GetArray(name)).ravel(), raw(other)))
+    check(f"{frame}: time steps of the pipeline", times is None or tuple(times) == tuple(raw("time")))
+    check(f"{frame}: scene", json.loads(state.GetAbstractArray("scene").GetValue(0)) == scene)
+    # cells lie where they belong: the one that VTK finds at a centre is the one of this centre
+    x1, x2 = raw("x1"), raw("x2")
+    for i in range(shape[0]):
+        for j in range(shape[1]):
+            cell = image.FindCell([x1[i], x2[j], 0.0], None, -1, 1e-12, vtk.reference(0), [0.0] * 3, [0.0] * 8)
+            check(f"{frame}: cell at ({x1[i]}, {x2[j]})", cell == j * shape[0] + i)
+
+
+def check_history(folder, frames, raws, scene):
+    with open(folder / "history.csv", encoding="utf-8", newline="") as file:
+        head = file.readline()
+        check("history.csv: scene", head.startswith("# ") and json.loads(head[2:]) == scene)
+        rows = list(csv.DictReader(file))
+    check("history.csv: rows", len(rows) == len(frames))
+    columns = {"time [s]": "time", "force [N]": "force", "approach [m]": "approach", "contact area [m2]": "contact_area"}
+    for row, raw in zip(rows, raws):
+        for column, name in columns.items():
+            check(f"history.csv: {column}", same_bits([float(row[column])], raw(name)))
+        check("history.csv: greatest pressure", float(row["greatest pressure [Pa]"]) == raw("pressure").max())
+        check("history.csv: own column", float(row["twice, force [N]"]) == 2.0 * float(row["force [N]"]))
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    *shape, count = map(int, (folder / "shape.txt").read_text().split())
+    scene = json.loads((folder / "scene.json").read_text(encoding="utf-8"))
+    frames = [f"frame_{k:06}" for k in range(count)]
+    raws = [lambda name, frame=frame: numpy.fromfile(folder / f"{frame}.{name}.raw", dtype="<f8") for frame in frames]
+
+    collection = xml.etree.ElementTree.parse(folder / "series.pvd").getroot().findall("Collection/DataSet")
+    check("series.pvd: files", [entry.get("file") for entry in collection] == [f"{frame}.vti" for frame in frames])
+    for frame, raw, entry in zip(frames, raws, collection):
+        check(f"series.pvd: time of {frame}", same_bits([float(entry.get("timestep"))], raw("time")))
+        check_archive(folder, frame, raw, shape, scene)
+        check_image(folder / entry.get("file"), raw, shape, scene)
+    check_history(folder, frames, raws, scene)
+    check("leftovers", not list(folder.glob("*.part")))
+
+    print(f"{checks} comparisons with numpy {numpy.__version__} and VTK {vtk.vtkVersion.GetVTKVersion()}: {differences} differ")
+    sys.exit(1 if differences or count == 0 else 0)
+
+
+if __name__ == "__main__":
+    main()
