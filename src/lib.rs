@@ -121,7 +121,9 @@ pub mod prelude {
         BodyState, Builder, Edge, Follow, Precision, Settings, Solver, StepReport, Stepping, TimeRule,
         ViscoelasticContact,
     };
-    pub use crate::geometry::{Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, Shifted, Sphere};
+    pub use crate::geometry::{
+        Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, HeightMap, LengthUnit, Shifted, Sphere,
+    };
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{

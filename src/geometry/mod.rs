@@ -24,7 +24,7 @@ pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;
 pub use flat_punch::FlatPunch;
 pub use function::FnGeometry;
-pub use height_map::{HeightMap, MapError};
+pub use height_map::{HeightMap, LengthUnit, MapError};
 pub use shifted::Shifted;
 pub use sphere::Sphere;
 

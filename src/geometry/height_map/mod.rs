@@ -1,8 +1,12 @@
 //! Measured surfaces.
 
 mod error;
+mod read;
+mod unit;
+mod write;
 
 pub use error::MapError;
+pub use unit::LengthUnit;
 
 use crate::error::{Error, Result};
 
