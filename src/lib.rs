@@ -124,8 +124,8 @@ pub mod prelude {
         TimeRule, ViscoelasticContact,
     };
     pub use crate::geometry::{
-        Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Form, Geometry, HeightMap, Repeated, Rough,
-        RoughSpec, Roughness, Shifted, Sphere, Sum, SurfaceStatistics, Wavy,
+        Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Form, Geometry, HeightMap, LengthUnit, Repeated,
+        Rough, RoughSpec, Roughness, Shifted, Sphere, Sum, SurfaceStatistics, Wavy,
     };
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::plan::{Accuracy, Plan};

@@ -35,7 +35,7 @@ pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;
 pub use flat_punch::FlatPunch;
 pub use function::FnGeometry;
-pub use height_map::{Form, HeightMap, MapError, Resampled, ResamplingError};
+pub use height_map::{Form, HeightMap, LengthUnit, MapError, Resampled, ResamplingError};
 pub use repeated::Repeated;
 pub use rough::{Anisotropy, Rough, RoughSpec, Roughness};
 pub use shifted::Shifted;

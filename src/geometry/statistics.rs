@@ -159,7 +159,7 @@ impl HeightMap {
     /// If heights are missing: fill them, or crop the map.
     pub fn power_spectrum(&self) -> Result<Vec<(f64, f64)>> {
         if self.missing() > 0 {
-            return Err(Error::Map(MapError::Missing { missing: self.missing() }));
+            return Err(Error::Map(MapError::Incomplete { missing: self.missing() }));
         }
         let (cells, lengths) = (self.cells(), self.lengths());
         let count = self.heights().len() as f64;
@@ -316,6 +316,6 @@ mod tests {
         assert!(matches!(flat.height_distribution(3), Err(Error::OutOfRange { field: "range of the heights", .. })));
         assert!(matches!(flat.height_distribution(0), Err(Error::CountOutOfRange { .. })));
         let empty = HeightMap::new([2, 1], [1.0, 1.0], vec![f64::NAN, 1.0]).unwrap();
-        assert_eq!(empty.power_spectrum(), Err(Error::Map(MapError::Missing { missing: 1 })));
+        assert_eq!(empty.power_spectrum(), Err(Error::Map(MapError::Incomplete { missing: 1 })));
     }
 }

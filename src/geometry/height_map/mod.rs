@@ -4,12 +4,16 @@ mod error;
 mod fill;
 mod level;
 mod prepare;
+mod read;
 mod resample;
 mod sample;
+mod unit;
+mod write;
 
 pub use error::MapError;
 pub use level::Form;
 pub use resample::{Resampled, ResamplingError};
+pub use unit::LengthUnit;
 
 use crate::Grid;
 use crate::error::{Error, Result, exact_length};

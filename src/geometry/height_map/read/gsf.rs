@@ -1,0 +1,169 @@
+//! Gwyddion Simple Field 1.0, as the user guide of Gwyddion describes it (<http://gwyddion.net/documentation/user-guide-en/gsf.html>).
+
+use std::io::Read;
+
+use super::header::Header;
+use super::number::{Kind, Number};
+use super::{First, bytes, count};
+use crate::error::Result;
+use crate::geometry::{HeightMap, LengthUnit, MapError};
+
+pub(in crate::geometry::height_map) const MAGIC: &str = "Gwyddion Simple Field 1.0\n";
+const FORMAT: &str = "GSF";
+
+impl HeightMap {
+    /// Reads a Gwyddion Simple Field 1.0, the [format](http://gwyddion.net/documentation/user-guide-en/gsf.html) in which
+    /// Gwyddion exchanges single maps: heights in single precision, NaN where nothing was measured.
+    ///
+    /// The file must name lengths and units ([`LengthUnit`]), which the format leaves open; [`HeightMap::from_gsf_with`]
+    /// reads one whose numbers have no unit. Its first row is the top; `XOffset` and `YOffset` are not kept.
+    ///
+    /// # Errors
+    /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed, or lacks a unit; as [`HeightMap::new`] if
+    /// its map is not one that may be.
+    pub fn from_gsf(reader: impl Read) -> Result<HeightMap> {
+        from_gsf(reader, None)
+    }
+
+    /// [`HeightMap::from_gsf`] for a file whose lengths or heights have no unit: they are in `unit`. A unit that the
+    /// file does name holds.
+    ///
+    /// ```
+    /// use viscocontact::geometry::{HeightMap, LengthUnit};
+    ///
+    /// let mut file = b"Gwyddion Simple Field 1.0\nXRes = 1\nYRes = 2\nXReal = 5\nYReal = 10\nXYUnits = mm\n\0\0".to_vec();
+    /// file.extend([1.0_f32, 2.0].iter().flat_map(|height| height.to_le_bytes()));
+    /// assert!(HeightMap::from_gsf(&file[..]).is_err());
+    /// let map = HeightMap::from_gsf_with(&file[..], LengthUnit::Micrometre)?;
+    /// assert_eq!(map, HeightMap::new([1, 2], [5e-3, 10e-3], vec![2e-6, 1e-6])?);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`HeightMap::from_gsf`].
+    pub fn from_gsf_with(reader: impl Read, unit: LengthUnit) -> Result<HeightMap> {
+        from_gsf(reader, Some(unit))
+    }
+}
+
+fn from_gsf(reader: impl Read, fallback: Option<LengthUnit>) -> Result<HeightMap> {
+    let file = bytes(reader, FORMAT)?;
+    let Some(rest) = file.strip_prefix(MAGIC.as_bytes()) else {
+        return Err(MapError::Magic { format: FORMAT, magic: MAGIC.trim_end() }.into());
+    };
+    let Some(end) = rest.iter().position(|&byte| byte == 0) else {
+        return Err(MapError::Missing { format: FORMAT, key: "NUL byte after the header" }.into());
+    };
+    // titles may hold anything
+    let lines = String::from_utf8_lossy(&rest[..end]);
+    let header = Header::new(FORMAT, &lines);
+    let unit = |key: &'static str| match (header.get(key), fallback) {
+        (Some(symbol), _) => symbol.parse(),
+        (None, Some(unit)) => Ok(unit),
+        (None, None) => Err(MapError::NoUnit { format: FORMAT, key }.into()),
+    };
+    let cells = [header.count("XRes")?, header.count("YRes")?];
+    let lengths = [header.positive("XReal")?, header.positive("YReal")?];
+    let (lateral, vertical) = (unit("XYUnits")?, unit("ZUnits")?);
+    let spacing = [0, 1].map(|axis| lateral.to_metres(lengths[axis]) / cells[axis] as f64);
+    let count = count(cells, spacing)?;
+    // one to four NUL bytes, up to a multiple of four from the start of the file
+    let header_length = MAGIC.len() + end;
+    let start = header_length + 4 - header_length % 4;
+    let padding = file.get(header_length..start).unwrap_or_default();
+    if padding.is_empty() || padding.iter().any(|&byte| byte != 0) {
+        return Err(MapError::Missing { format: FORMAT, key: "padding of NUL bytes to a multiple of four" }.into());
+    }
+    let mut rows = Number::little(Kind::Float, 4).decode_all(FORMAT, &file[start..], count, true)?;
+    rows.iter_mut().for_each(|height| *height = vertical.to_metres(*height));
+    HeightMap::from_rows(cells, spacing, &rows, First::Top)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Error;
+
+    const FULL: &str =
+        "XRes = 3\nYRes=2\n XReal = 6e-3 \nYReal = 2\nXOffset = 7\nXYUnits = mm\nTitle = height, µm\nZUnits = nm\n";
+
+    fn file(header: &str, heights: &[f32]) -> Vec<u8> {
+        let mut file = format!("{MAGIC}{header}").into_bytes();
+        file.resize(file.len() + 4 - file.len() % 4, 0);
+        file.extend(heights.iter().flat_map(|height| height.to_le_bytes()));
+        file
+    }
+
+    #[test]
+    fn first_row_is_the_top() {
+        let map = HeightMap::from_gsf(&file(FULL, &[10.0, 20.0, 30.0, 40.0, f32::NAN, 60.0])[..]).unwrap();
+        assert_eq!((map.cells, map.spacing), ([3, 2], [6e-6 / 3.0, 1e-3]));
+        assert_eq!(map.heights[..2], [40e-9, 10e-9]);
+        assert!(map.heights[2].is_nan());
+        assert_eq!(map.heights[3..], [20e-9, 60e-9, 30e-9]);
+    }
+
+    #[test]
+    fn headers_of_every_length_are_padded() {
+        for length in 0..9 {
+            let header = format!("{FULL}Note = {}\n", "x".repeat(length));
+            let map = HeightMap::from_gsf(&file(&header, &[1.0; 6])[..]).unwrap();
+            assert_eq!(map.heights, [1e-9; 6]);
+        }
+    }
+
+    #[test]
+    fn malformed_files_are_refused_by_what_is_wrong() {
+        let read = |header: &str, heights: &[f32]| HeightMap::from_gsf(&file(header, heights)[..]).unwrap_err();
+        let six = [1.0; 6];
+        let size =
+            |found| MapError::Size { format: FORMAT, what: "bytes of heights", found, expected: 24, exact: true };
+        assert_eq!(read(FULL, &six[1..]), size(20).into());
+        assert_eq!(read(FULL, &[1.0; 7]), size(28).into());
+        let missing = |key| Error::Map(MapError::Missing { format: FORMAT, key });
+        for (key, start) in [("XRes", 0), ("YRes", 9)] {
+            let cut = format!("{}Other{}", &FULL[..start], &FULL[start..]);
+            assert_eq!(read(&cut, &six), missing(key));
+        }
+        let without = |name: &str| FULL.replace(name, "Other");
+        assert_eq!(read(&without("XReal"), &six), missing("XReal"));
+        assert_eq!(read(&without("YReal"), &six), missing("YReal"));
+        assert_eq!(read(&without("XYUnits"), &six), MapError::NoUnit { format: FORMAT, key: "XYUnits" }.into());
+        assert_eq!(read(&FULL.replace("nm", ""), &six), MapError::NoUnit { format: FORMAT, key: "ZUnits" }.into());
+        assert_eq!(read(&FULL.replace("nm", "V"), &six), MapError::Unit { symbol: "V".into() }.into());
+        let text = "three".to_owned();
+        let entry = MapError::Entry { format: FORMAT, key: "XRes", text, allowed: "a whole number" };
+        assert_eq!(read(&FULL.replace("XRes = 3", "XRes = three"), &six), entry.into());
+        for length in ["0", "-6e-3", "inf", "nan"] {
+            let error = read(&FULL.replace("6e-3", length), &six);
+            assert!(matches!(error, Error::OutOfRange { field: "XReal", .. }), "{error}");
+        }
+        let zero = read(&FULL.replace("XRes = 3", "XRes = 0"), &six);
+        assert!(matches!(zero, Error::CountOutOfRange { value: 0, .. }), "{zero}");
+        let infinite = read(FULL, &[1.0, f32::INFINITY, 1.0, 1.0, 1.0, 1.0]);
+        assert_eq!(infinite, MapError::NotFinite { entry: 3, value: f64::INFINITY }.into());
+    }
+
+    #[test]
+    fn a_damaged_frame_is_refused() {
+        let magic = MapError::Magic { format: FORMAT, magic: "Gwyddion Simple Field 1.0" };
+        assert_eq!(HeightMap::from_gsf(&b"Gwyddion Simple Field 2.0\n"[..]).unwrap_err(), magic.clone().into());
+        assert_eq!(HeightMap::from_gsf(&b""[..]).unwrap_err(), magic.into());
+        let unending = format!("{MAGIC}{FULL}");
+        let error = HeightMap::from_gsf(unending.as_bytes()).unwrap_err();
+        assert_eq!(error, MapError::Missing { format: FORMAT, key: "NUL byte after the header" }.into());
+        for cut in 0..4 {
+            let mut ends = format!("{MAGIC}{FULL}").into_bytes();
+            ends.extend(std::iter::repeat_n(0, cut));
+            assert!(HeightMap::from_gsf(&ends[..]).is_err(), "{cut}");
+        }
+    }
+
+    #[test]
+    fn absurd_sizes_are_refused_before_memory_is_taken() {
+        for size in ["65000", "4000000000", "18446744073709551615"] {
+            let header = FULL.replace("XRes = 3", &format!("XRes = {size}")).replace("YRes=2", &format!("YRes={size}"));
+            assert!(HeightMap::from_gsf(&file(&header, &[1.0; 6])[..]).is_err());
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! Arrays of NumPy, as its NEP 1 and the documentation of `numpy.lib.format` describe them.
+//!
+//! The header is read here: readers that serve arrays of every kind trust the sizes in it.
+
+use std::io::Read;
+
+use super::number::{Kind, Number};
+use super::{bytes, count};
+use crate::Grid;
+use crate::error::Result;
+use crate::geometry::{HeightMap, LengthUnit, MapError};
+
+pub(in crate::geometry::height_map) const MAGIC: &[u8] = b"\x93NUMPY";
+const FORMAT: &str = "NPY";
+
+impl HeightMap {
+    /// Reads an array of two dimensions as `numpy.save` writes it, the map in `unit` of a rectangle of `lengths` \[m\]. Its first
+    /// axis is x1, its second x2: `heights[i, j]` is that of the cell `[i, j]`.
+    ///
+    /// Floats of single and double precision and integers are read, in either byte order and in the order of C or of
+    /// Fortran; NaN is what was not measured. An image, whose first axis points down, is turned by `numpy.flipud(image).T`.
+    ///
+    /// # Errors
+    /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed or holds something else; as
+    /// [`HeightMap::new`] if its map is not one that may be.
+    pub fn from_npy(reader: impl Read, lengths: [f64; 2], unit: LengthUnit) -> Result<HeightMap> {
+        let file = bytes(reader, FORMAT)?;
+        let (header, data) = split(&file)?;
+        let array = Array::new(&header)?;
+        let spacing = Grid::new(array.cells, lengths)?.spacing();
+        let count = count(array.cells, spacing)?;
+        let stored = array.number.decode_all(FORMAT, data, count, true)?;
+        let [n1, n2] = array.cells;
+        let place = |i: usize, j: usize| if array.fortran { j * n1 + i } else { i * n2 + j };
+        let heights = (0..n1).flat_map(|i| (0..n2).map(move |j| place(i, j))).map(|k| unit.to_metres(stored[k]));
+        HeightMap::new(array.cells, lengths, heights.collect())
+    }
+}
+
+/// Header and data.
+fn split(file: &[u8]) -> Result<(String, &[u8])> {
+    let Some(rest) = file.strip_prefix(MAGIC) else {
+        return Err(MapError::Magic { format: FORMAT, magic: "\\x93NUMPY" }.into());
+    };
+    let (length, start) = match *rest {
+        [1, _, a, b, ..] => (usize::from(u16::from_le_bytes([a, b])), 4),
+        [2 | 3, _, a, b, c, d, ..] => (u32::from_le_bytes([a, b, c, d]) as usize, 6),
+        [1..=3, ..] | [] => return Err(MapError::Missing { format: FORMAT, key: "header" }.into()),
+        [version, ..] => {
+            let (text, allowed) = (version.to_string(), "1, 2 or 3");
+            return Err(MapError::Entry { format: FORMAT, key: "version", text, allowed }.into());
+        }
+    };
+    let rest = &rest[start..];
+    if rest.len() < length {
+        let (found, expected) = (rest.len() as u64, length as u64);
+        return Err(MapError::Size { format: FORMAT, what: "bytes of header", found, expected, exact: true }.into());
+    }
+    let (header, data) = rest.split_at(length);
+    // strings of Python may be in either quotes
+    Ok((String::from_utf8_lossy(header).replace('"', "'"), data))
+}
+
+/// What the header says.
+struct Array {
+    number: Number,
+    fortran: bool,
+    cells: [usize; 2],
+}
+
+impl Array {
+    fn new(header: &str) -> Result<Array> {
+        let entry = |key: &'static str| {
+            let (_, rest) = header.split_once(&format!("'{key}'")).ok_or(MapError::Missing { format: FORMAT, key })?;
+            Ok::<_, MapError>(rest.trim_start().strip_prefix(':').unwrap_or_default().trim_start())
+        };
+        let refuse = |key: &'static str, text: &str, allowed: &'static str| {
+            let text = text.split(['\n', '}']).next().unwrap_or_default().trim_end().to_owned();
+            MapError::Entry { format: FORMAT, key, text, allowed }
+        };
+        let text = entry("descr")?;
+        let number = text.strip_prefix('\'').and_then(|text| number(text.split('\'').next()?));
+        let number = number.ok_or_else(|| refuse("descr", text, "a float of 4 or 8 bytes or an integer, as '<f8'"))?;
+        let text = entry("fortran_order")?;
+        let fortran = match text {
+            _ if text.starts_with("True") => true,
+            _ if text.starts_with("False") => false,
+            _ => return Err(refuse("fortran_order", text, "True or False").into()),
+        };
+        let text = entry("shape")?;
+        let sides = text.strip_prefix('(').and_then(|text| text.split_once(')')).map_or("", |(sides, _)| sides);
+        let sides: Vec<_> = sides.split(',').map(str::trim).filter(|side| !side.is_empty()).collect();
+        let sides: Result<Vec<usize>, _> = sides.iter().map(|side| side.parse()).collect();
+        match sides.as_deref() {
+            Ok(&[n1, n2]) => Ok(Array { number, fortran, cells: [n1, n2] }),
+            _ => Err(refuse("shape", text, "two numbers").into()),
+        }
+    }
+}
+
+/// The numbers that a type such as `<f8` means.
+fn number(descr: &str) -> Option<Number> {
+    let (order, rest) = descr.split_at_checked(1)?;
+    let (kind, size) = rest.split_at_checked(1)?;
+    let big_endian = match order {
+        "<" => false,
+        ">" => true,
+        "|" if size == "1" => false,
+        _ => return None,
+    };
+    let size = size.parse().ok()?;
+    let kind = match (kind, size) {
+        ("f", 4 | 8) => Kind::Float,
+        ("i", 1 | 2 | 4 | 8) => Kind::Signed,
+        ("u", 1 | 2 | 4 | 8) => Kind::Unsigned,
+        _ => return None,
+    };
+    Some(Number { kind, size, big_endian })
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::Error;
+
+    /// A file as `numpy.save` writes it, less the padding.
+    pub(in super::super) fn file(header: &str, data: &[u8]) -> Vec<u8> {
+        [MAGIC, &[1, 0], &(header.len() as u16).to_le_bytes(), header.as_bytes(), data].concat()
+    }
+
+    fn read(file: &[u8]) -> Result<HeightMap> {
+        HeightMap::from_npy(file, [2.0, 6.0], LengthUnit::Millimetre)
+    }
+
+    #[test]
+    fn axes_are_x1_and_x2_in_either_order() {
+        let wanted = HeightMap::new([2, 3], [2.0, 6.0], [1, 2, 3, 4, 5, 6].map(|h| f64::from(h) / 1e3).into()).unwrap();
+        let c: Vec<u8> = [1.0_f64, 2.0, 3.0, 4.0, 5.0, 6.0].iter().flat_map(|h| h.to_le_bytes()).collect();
+        let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }\n";
+        assert_eq!(read(&file(header, &c)).unwrap(), wanted);
+        let fortran: Vec<u8> = [1_i16, 4, 2, 5, 3, 6].iter().flat_map(|h| h.to_be_bytes()).collect();
+        let header = r#"{"shape":(2,3,),"fortran_order":True,"descr":">i2"}"#;
+        assert_eq!(read(&file(header, &fortran)).unwrap(), wanted);
+        let floats: Vec<u8> = [1.0_f32, 2.0, 3.0, 4.0, 5.0, 6.0].iter().flat_map(|h| h.to_be_bytes()).collect();
+        let header = "{'descr': '>f4', 'fortran_order': False, 'shape': (2, 3), }      \n";
+        assert_eq!(read(&file(header, &floats)).unwrap(), wanted);
+        let header = "{'descr': '|u1', 'fortran_order': False, 'shape': (2, 3), }";
+        assert_eq!(read(&file(header, &[1, 2, 3, 4, 5, 6])).unwrap(), wanted);
+        let long = [MAGIC, &[2, 0, header.len() as u8, 0, 0, 0], header.as_bytes(), &[1, 2, 3, 4, 5, 6]].concat();
+        assert_eq!(read(&long).unwrap(), wanted);
+    }
+
+    #[test]
+    fn malformed_files_are_refused_by_what_is_wrong() {
+        let header = "{'descr': '|i1', 'fortran_order': False, 'shape': (2, 3), }";
+        let with = |from: &str, to: &str| read(&file(&header.replace(from, to), &[0; 6])).unwrap_err();
+        for key in ["descr", "fortran_order", "shape"] {
+            assert_eq!(with(key, "other"), MapError::Missing { format: FORMAT, key }.into());
+        }
+        for descr in ["'<f2'", "'<c8'", "'|O'", "'<U3'", "'<i3'", "'=f8'", "''", "'µ'", "[('a', '<f8')]", "'<f80'", "7"]
+        {
+            let error = with("'|i1'", descr);
+            assert!(matches!(error, Error::Map(MapError::Entry { key: "descr", .. })), "{error}");
+        }
+        for shape in ["()", "(6,)", "(1, 2, 3)", "(2, x)", "(2, -3)", "2, 3", "(2, 3", "(99999999999999999999, 1)"] {
+            let error = with("(2, 3)", shape);
+            assert!(matches!(error, Error::Map(MapError::Entry { key: "shape", .. })), "{error}");
+        }
+        assert!(matches!(with("False", "None"), Error::Map(MapError::Entry { key: "fortran_order", .. })));
+        assert!(matches!(with("(2, 3)", "(0, 3)"), Error::CountOutOfRange { value: 0, .. }));
+        assert!(matches!(with("(2, 3)", "(18446744073709551615, 3)"), Error::CountOutOfRange { .. }));
+        let size =
+            |found, expected| MapError::Size { format: FORMAT, what: "bytes of heights", found, expected, exact: true };
+        assert_eq!(with("(2, 3)", "(4000000000, 1)"), size(6, 4_000_000_000).into());
+        assert_eq!(with("(2, 3)", "(2, 2)"), size(6, 4).into());
+        let whole = file(header, &[0; 6]);
+        for length in 0..whole.len() {
+            assert!(read(&whole[..length]).is_err(), "{length}");
+        }
+        assert!(matches!(read(b"\x93NUMPX"), Err(Error::Map(MapError::Magic { .. }))));
+        assert!(matches!(read(b"\x93NUMPY\x09\0\0\0\0\0"), Err(Error::Map(MapError::Entry { key: "version", .. }))));
+        let absurd = b"\x93NUMPY\x02\0\xff\xff\xff\xff{}";
+        assert!(matches!(read(absurd), Err(Error::Map(MapError::Size { what: "bytes of header", .. }))));
+    }
+}

@@ -1,0 +1,82 @@
+//! Numbers in binary files.
+
+use crate::error::Result;
+use crate::geometry::MapError;
+
+/// How a number is written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Number {
+    pub(super) kind: Kind,
+    /// Bytes it takes: 1, 2, 4 or 8; 4 or 8 of a float.
+    pub(super) size: usize,
+    pub(super) big_endian: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Kind {
+    Signed,
+    #[cfg_attr(not(feature = "npy"), expect(dead_code, reason = "only NPY files have them"))]
+    Unsigned,
+    Float,
+}
+
+impl Number {
+    pub(super) const fn little(kind: Kind, size: usize) -> Number {
+        Number { kind, size, big_endian: false }
+    }
+
+    /// The number that `bytes` stand for.
+    fn decode(self, bytes: &[u8]) -> f64 {
+        let mut word = [0; 8];
+        for (k, &byte) in bytes.iter().enumerate() {
+            word[if self.big_endian { self.size - 1 - k } else { k }] = byte;
+        }
+        let word = u64::from_le_bytes(word);
+        let unused = 64 - 8 * self.size;
+        match self.kind {
+            Kind::Unsigned => word as f64,
+            Kind::Signed => ((word << unused) as i64 >> unused) as f64,
+            Kind::Float if self.size == 4 => f32::from_bits(word as u32).into(),
+            Kind::Float => f64::from_bits(word),
+        }
+    }
+
+    /// The least number that can be written so.
+    pub(super) fn least(self) -> f64 {
+        match self.kind {
+            Kind::Unsigned => 0.0,
+            Kind::Signed => -(2.0_f64.powi(8 * self.size as i32 - 1)),
+            Kind::Float if self.size == 4 => f32::MIN.into(),
+            Kind::Float => f64::MIN,
+        }
+    }
+
+    /// The `count` numbers that `data` begin with, or, if `exact`, that they are.
+    pub(super) fn decode_all(self, format: &'static str, data: &[u8], count: usize, exact: bool) -> Result<Vec<f64>> {
+        let (found, expected) = (data.len() as u64, count as u64 * self.size as u64);
+        if found < expected || exact && found > expected {
+            return Err(MapError::Size { format, what: "bytes of heights", found, expected, exact: true }.into());
+        }
+        Ok(data.chunks_exact(self.size).take(count).map(|bytes| self.decode(bytes)).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_those_that_were_written() {
+        let number = |kind, size, big_endian| Number { kind, size, big_endian };
+        assert_eq!(number(Kind::Signed, 1, false).decode(&[0xfe]), -2.0);
+        assert_eq!(number(Kind::Signed, 2, true).decode(&(-300_i16).to_be_bytes()), -300.0);
+        assert_eq!(number(Kind::Signed, 4, false).decode(&(-70_000_i32).to_le_bytes()), -70_000.0);
+        assert_eq!(number(Kind::Signed, 8, true).decode(&(-7_i64).to_be_bytes()), -7.0);
+        assert_eq!(number(Kind::Unsigned, 2, true).decode(&65_000_u16.to_be_bytes()), 65_000.0);
+        assert_eq!(number(Kind::Unsigned, 8, false).decode(&(1_u64 << 63).to_le_bytes()), 2f64.powi(63));
+        assert_eq!(number(Kind::Float, 4, true).decode(&1.5e-7_f32.to_be_bytes()), f64::from(1.5e-7_f32));
+        assert_eq!(number(Kind::Float, 8, false).decode(&(-1.1e-7_f64).to_le_bytes()), -1.1e-7);
+        assert_eq!(number(Kind::Signed, 2, false).least(), -32768.0);
+        assert_eq!(number(Kind::Signed, 4, false).least(), f64::from(i32::MIN));
+    }
+}

@@ -1,0 +1,267 @@
+//! Surface data files of ISO 25178-71 and EUR 15178.
+//!
+//! The layout is that of ISO 25178-71:2012; the records and the number types of the older files are those of K. J. Stout et al., *The
+//! development of methods for the characterisation of roughness in three dimensions*, EUR 15178 EN (1993), as NIST
+//! (<https://physics.nist.gov/VSC/Help/DataFormat/SDF_Format.jsp>) and NPL (<http://resource.npl.co.uk/softgauges/Help.htm>) have them.
+
+use std::io::Read;
+
+use super::header::Header;
+use super::number::{Kind, Number};
+use super::{First, bytes, count};
+use crate::error::{Result, positive};
+use crate::geometry::{HeightMap, MapError};
+
+const FORMAT: &str = "SDF";
+/// How the binary header is divided: version, manufacturer, two dates, two counts, four scales, three kinds.
+const BINARY_HEADER: usize = 8 + 10 + 2 * 12 + 2 * 2 + 4 * 8 + 3;
+/// What some instruments write after it: the numbers 5 and 1.
+const EXTRA: [u8; 8] = [5, 0, 0, 0, 1, 0, 0, 0];
+
+impl HeightMap {
+    /// Reads a surface data file (SDF) of ISO 25178-71 or, before it, EUR 15178: text (`aISO-1.0`, `aBCR-1.0`) or binary
+    /// (`bISO-1.0`, `bBCR-1.0`), in m.
+    ///
+    /// Points that were not measured are `BAD` in text; in binary they are the least number of their type, or NaN. Of the
+    /// number types of binary files, 3 (single precision), 4, 5, 6 (8, 16, 32 bits with sign) and 7 (double precision)
+    /// are read, little endian. Unsigned ones are not: sources disagree on how they mark a missing point. The first
+    /// profile is that of smallest x2. Dates, `Zresolution` and the trailer are not kept.
+    ///
+    /// ```
+    /// use viscocontact::geometry::HeightMap;
+    ///
+    /// let file = "aISO-1.0\nNumPoints = 2\nNumProfiles = 2\nXscale = 1e-6\nYscale = 2e-6\nZscale = 1e-9\n\
+    ///             Compression = 0\nDataType = 7\nCheckType = 0\n*\n10 20\n30 40\n*\n";
+    /// let map = HeightMap::from_sdf(file.as_bytes())?;
+    /// assert_eq!(map, HeightMap::new([2, 2], [2e-6, 4e-6], vec![1e-8, 3e-8, 2e-8, 4e-8])?);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Map`](crate::Error::Map) if the file cannot be read or is malformed, compressed or of an unknown
+    /// type; as [`HeightMap::new`] if its map is not one that may be.
+    pub fn from_sdf(reader: impl Read) -> Result<HeightMap> {
+        let file = bytes(reader, FORMAT)?;
+        match file.get(..8) {
+            Some(b"aISO-1.0" | b"aBCR-1.0") => from_text(&String::from_utf8_lossy(&file[8..])),
+            Some(b"bISO-1.0" | b"bBCR-1.0") => from_binary(&file),
+            _ => Err(MapError::Magic { format: FORMAT, magic: "aISO-1.0, aBCR-1.0, bISO-1.0 or bBCR-1.0" }.into()),
+        }
+    }
+}
+
+/// What is left to do is the same for text and binary.
+struct Layout {
+    cells: [usize; 2],
+    spacing: [f64; 2],
+    scale: f64,
+}
+
+impl Layout {
+    fn map(&self, mut rows: Vec<f64>) -> Result<HeightMap> {
+        rows.iter_mut().for_each(|height| *height *= self.scale);
+        HeightMap::from_rows(self.cells, self.spacing, &rows, First::Bottom)
+    }
+}
+
+/// Nothing but plain data is read.
+fn plain(key: &'static str, value: usize) -> Result<()> {
+    match value {
+        0 => Ok(()),
+        _ => Err(MapError::Entry { format: FORMAT, key, text: value.to_string(), allowed: "0 (none)" }.into()),
+    }
+}
+
+fn from_text(text: &str) -> Result<HeightMap> {
+    let Some((head, rest)) = text.split_once("\n*") else {
+        return Err(MapError::Missing { format: FORMAT, key: "line * after the header" }.into());
+    };
+    let header = Header::new(FORMAT, head);
+    let cells = [header.count("NumPoints")?, header.count("NumProfiles")?];
+    let spacing = [header.positive("Xscale")?, header.positive("Yscale")?];
+    let scale = header.positive("Zscale")?;
+    plain("Compression", header.count("Compression")?)?;
+    plain("CheckType", header.count("CheckType")?)?;
+    let count = count(cells, spacing)?;
+    let area = rest.split('*').next().unwrap_or_default();
+    let mut rows = Vec::new();
+    for token in area.split_whitespace() {
+        rows.push(match token.parse::<f64>() {
+            _ if token.eq_ignore_ascii_case("bad") => f64::NAN,
+            Ok(height) if !height.is_infinite() => height,
+            _ => return Err(header.error("height", token, "a finite number or BAD").into()),
+        });
+    }
+    if rows.len() != count {
+        let (found, expected) = (rows.len() as u64, count as u64);
+        return Err(MapError::Size { format: FORMAT, what: "heights", found, expected, exact: true }.into());
+    }
+    Layout { cells, spacing, scale }.map(rows)
+}
+
+fn from_binary(file: &[u8]) -> Result<HeightMap> {
+    if file.len() < BINARY_HEADER {
+        let (found, expected) = (file.len() as u64, BINARY_HEADER as u64);
+        return Err(MapError::Size { format: FORMAT, what: "bytes of header", found, expected, exact: true }.into());
+    }
+    let (header, mut data) = file.split_at(BINARY_HEADER);
+    let half = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
+    let double = |at: usize| {
+        let mut word = [0; 8];
+        word.copy_from_slice(&header[at..at + 8]);
+        f64::from_le_bytes(word)
+    };
+    let cells = [half(42), half(44)];
+    let spacing = [positive("Xscale", double(46))?, positive("Yscale", double(54))?];
+    let scale = positive("Zscale", double(62))?;
+    let [compression, data_type, check] = [78, 79, 80].map(|at| usize::from(header[at]));
+    plain("Compression", compression)?;
+    plain("CheckType", check)?;
+    let number = match data_type {
+        3 => Number::little(Kind::Float, 4),
+        4 => Number::little(Kind::Signed, 1),
+        5 => Number::little(Kind::Signed, 2),
+        6 => Number::little(Kind::Signed, 4),
+        7 => Number::little(Kind::Float, 8),
+        _ => {
+            let (text, allowed) = (data_type.to_string(), "3, 4, 5, 6 or 7 (with sign)");
+            return Err(MapError::Entry { format: FORMAT, key: "DataType", text, allowed }.into());
+        }
+    };
+    let count = count(cells, spacing)?;
+    if data.len() as u64 == count as u64 * number.size as u64 + 8 {
+        data = data.strip_prefix(&EXTRA).unwrap_or(data);
+    }
+    let mut rows = number.decode_all(FORMAT, data, count, false)?;
+    rows.iter_mut().filter(|height| **height == number.least()).for_each(|height| *height = f64::NAN);
+    Layout { cells, spacing, scale }.map(rows)
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::Error;
+
+    const TEXT: &str = "aISO-1.0\r\nManufacID = Nobody\r\nCreateDate = 010120240000\r\nModDate = 010120240000\r\n\
+        NumPoints = 3\r\nNumProfiles = 2\r\nXscale = 1e-6\r\nYscale = 2.5E-06\r\nZscale = 1e-9\r\nZresolution = -1\r\n\
+        Compression = 0\r\nDataType = 7\r\nCheckType = 0\r\n*\r\n1 2 BAD\r\n4 5.5\r\n-6\r\n*\r\nNote = * and 7\r\n*\r\n";
+
+    /// A binary file of 3 × 2 points.
+    pub(in super::super) fn binary(data_type: u8, data: &[u8]) -> Vec<u8> {
+        let mut file = b"bISO-1.0Nobody    010120240000010120240000".to_vec();
+        file.extend([3, 0, 2, 0]);
+        file.extend([1e-6_f64, 2.5e-6, 1e-9, -1.0].iter().flat_map(|scale| scale.to_le_bytes()));
+        file.extend([0, data_type, 0]);
+        file.extend(data);
+        file
+    }
+
+    fn expected(map: &HeightMap) {
+        assert_eq!((map.cells, map.spacing), ([3, 2], [1e-6, 2.5e-6]));
+        let wanted = [1.0, 4.0, 2.0, 5.5, f64::NAN, -6.0].map(|height| height * 1e-9);
+        for (height, wanted) in map.heights.iter().zip(wanted) {
+            assert!(*height == wanted || height.is_nan() && wanted.is_nan(), "{height} for {wanted}");
+        }
+    }
+
+    #[test]
+    fn first_profile_is_the_lowest() {
+        expected(&HeightMap::from_sdf(TEXT.as_bytes()).unwrap());
+        expected(&HeightMap::from_sdf(TEXT.replace("aISO", "aBCR").replace("\r\n", "\n").as_bytes()).unwrap());
+    }
+
+    #[test]
+    fn binary_numbers_of_every_type_are_read() {
+        let rows = [1.0, 2.0, f64::NAN, 4.0, 5.5, -6.0];
+        let doubles: Vec<u8> = rows.iter().flat_map(|height| height.to_le_bytes()).collect();
+        expected(&HeightMap::from_sdf(&binary(7, &doubles)[..]).unwrap());
+        let marked: Vec<u8> = rows.iter().flat_map(|h| if h.is_nan() { f64::MIN } else { *h }.to_le_bytes()).collect();
+        expected(&HeightMap::from_sdf(&binary(7, &marked)[..]).unwrap());
+        let floats: Vec<u8> = rows.iter().flat_map(|height| (*height as f32).to_le_bytes()).collect();
+        expected(&HeightMap::from_sdf(&binary(3, &floats)[..]).unwrap());
+        let extra = [&EXTRA[..], &floats].concat();
+        expected(&HeightMap::from_sdf(&binary(3, &extra)[..]).unwrap());
+        let trailer = [&floats[..], b"trailing"].concat();
+        expected(&HeightMap::from_sdf(&binary(3, &trailer)[..]).unwrap());
+
+        let whole = [1, 2, i32::MIN, 4, 5, -6];
+        let bytes: [Vec<u8>; 3] = [
+            whole.iter().map(|&h| if h == i32::MIN { i8::MIN } else { h as i8 } as u8).collect(),
+            whole.iter().flat_map(|&h| if h == i32::MIN { i16::MIN } else { h as i16 }.to_le_bytes()).collect(),
+            whole.iter().flat_map(|h| h.to_le_bytes()).collect(),
+        ];
+        for (data_type, data) in (4..).zip(bytes) {
+            let map = HeightMap::from_sdf(&binary(data_type, &data)[..]).unwrap();
+            assert_eq!(map.heights[..4], [1.0, 4.0, 2.0, 5.0].map(|height| height * 1e-9), "type {data_type}");
+            assert!(map.heights[4].is_nan() && map.heights[5] == -6.0 * 1e-9, "type {data_type}");
+        }
+    }
+
+    #[test]
+    fn malformed_text_is_refused_by_what_is_wrong() {
+        let read = |from: &str, to: &str| {
+            assert!(TEXT.contains(from));
+            HeightMap::from_sdf(TEXT.replacen(from, to, 1).as_bytes()).unwrap_err()
+        };
+        let keys = ["NumPoints", "NumProfiles", "Xscale", "Yscale", "Zscale", "Compression", "CheckType"];
+        for key in keys {
+            assert_eq!(read(key, "Other"), MapError::Missing { format: FORMAT, key }.into());
+        }
+        for (key, from) in [("Xscale", "1e-6"), ("Yscale", "2.5E-06"), ("Zscale", "1e-9")] {
+            for scale in ["0", "-1e-6", "nan", "inf"] {
+                let error = read(from, scale);
+                assert!(matches!(error, Error::OutOfRange { field, .. } if field == key), "{error}");
+            }
+            let entry = MapError::Entry { format: FORMAT, key, text: "small".into(), allowed: "a number" };
+            assert_eq!(read(from, "small"), entry.into());
+        }
+        let size = |found| MapError::Size { format: FORMAT, what: "heights", found, expected: 6, exact: true };
+        assert_eq!(read("5.5", ""), size(5).into());
+        assert_eq!(read("5.5", "5 5"), size(7).into());
+        for token in ["GOOD", "inf", "1,5", "1e999"] {
+            let text = token.to_owned();
+            let entry = MapError::Entry { format: FORMAT, key: "height", text, allowed: "a finite number or BAD" };
+            assert_eq!(read("5.5", token), entry.into());
+        }
+        assert!(matches!(
+            read("Compression = 0", "Compression = 1"),
+            Error::Map(MapError::Entry { key: "Compression", .. })
+        ));
+        assert!(matches!(read("CheckType = 0", "CheckType = 1"), Error::Map(MapError::Entry { key: "CheckType", .. })));
+        assert!(matches!(
+            read("NumPoints = 3", "NumPoints = 3.5"),
+            Error::Map(MapError::Entry { key: "NumPoints", .. })
+        ));
+        assert!(matches!(read("NumPoints = 3", "NumPoints = 0"), Error::CountOutOfRange { value: 0, .. }));
+        assert!(matches!(read("NumPoints = 3", "NumPoints = 2000000000"), Error::Map(MapError::Size { .. })));
+        assert!(matches!(read("NumPoints = 3", "NumPoints = 4000000000"), Error::CountOutOfRange { .. }));
+        assert!(matches!(read("aISO", "aBC"), Error::Map(MapError::Magic { .. })));
+        let cut = HeightMap::from_sdf(TEXT.split('*').next().unwrap().as_bytes()).unwrap_err();
+        assert_eq!(cut, MapError::Missing { format: FORMAT, key: "line * after the header" }.into());
+    }
+
+    #[test]
+    fn malformed_binary_is_refused_by_what_is_wrong() {
+        let whole = binary(5, &[0; 12]);
+        let read = |at: usize, bytes: &[u8]| {
+            let mut file = whole.clone();
+            file[at..at + bytes.len()].copy_from_slice(bytes);
+            HeightMap::from_sdf(&file[..]).unwrap_err()
+        };
+        for length in 0..whole.len() {
+            assert!(HeightMap::from_sdf(&whole[..length]).is_err(), "{length}");
+        }
+        assert!(matches!(read(42, &[0, 0]), Error::CountOutOfRange { value: 0, .. }));
+        assert!(matches!(read(42, &[255; 4]), Error::Map(MapError::Size { expected: 8_589_672_450, .. })));
+        for (at, key) in [(46, "Xscale"), (54, "Yscale"), (62, "Zscale")] {
+            for scale in [0.0_f64, -1.0, f64::NAN, f64::INFINITY] {
+                let error = read(at, &scale.to_le_bytes());
+                assert!(matches!(error, Error::OutOfRange { field, .. } if field == key), "{error}");
+            }
+        }
+        for (at, name) in [(78, "Compression"), (79, "DataType"), (80, "CheckType")] {
+            let error = read(at, &[9]);
+            assert!(matches!(error, Error::Map(MapError::Entry { key, .. }) if key == name), "{error}");
+        }
+    }
+}

@@ -1,0 +1,128 @@
+//! What holds of every format.
+
+use super::*;
+use crate::Error;
+use crate::geometry::LengthUnit;
+
+/// Reads any file as one of its format.
+type Reader = fn(&[u8]) -> Result<HeightMap>;
+
+/// A valid file of each format.
+fn files() -> Vec<(&'static str, Vec<u8>, Reader)> {
+    let map = HeightMap::new([3, 2], [3e-6, 2e-6], vec![1e-6, 2e-6, f64::NAN, 4e-6, 5e-6, -6e-6]).unwrap();
+    let (mut gsf, mut sdf) = (Vec::new(), Vec::new());
+    map.write_gsf(&mut gsf).unwrap();
+    map.write_sdf(&mut sdf).unwrap();
+    let xyz = b"0 0 1\n1 0 2\n2 0 nan\n0 1 4\n1 1 5\n2 1 6\n".to_vec();
+    #[cfg_attr(not(any(feature = "npy", feature = "x3p")), expect(unused_mut, reason = "more with features"))]
+    let mut files: Vec<(_, _, Reader)> = vec![
+        ("gsf", gsf, |file| HeightMap::from_gsf(file)),
+        ("sdf", sdf, |file| HeightMap::from_sdf(file)),
+        ("binary sdf", sdf::tests::binary(5, &[1; 12]), |file| HeightMap::from_sdf(file)),
+        ("text", b"# a\n1, 2, 3\n4, bad, 6\n".to_vec(), |file| HeightMap::from_text(file, [1.0; 2], LengthUnit::Metre)),
+        ("xyz", xyz, |file| HeightMap::from_xyz(file, LengthUnit::Metre, LengthUnit::Metre)),
+    ];
+    #[cfg(feature = "npy")]
+    {
+        let mut npy = Vec::new();
+        map.write_npy(&mut npy).unwrap();
+        files.push(("npy", npy, |file| HeightMap::from_npy(file, [1.0; 2], LengthUnit::Metre)));
+    }
+    #[cfg(feature = "x3p")]
+    {
+        let xml = x3p::tests::xml("F</DataType>", x3p::tests::LINK);
+        let x3p = x3p::tests::archive(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &[1; 24])]);
+        files.push(("x3p", x3p, |file| HeightMap::from_x3p(file)));
+        // the XML as it is, so that damage is not found by the check sum
+        files.push(("x3p, xml", xml.into_bytes(), |file| {
+            HeightMap::from_x3p(&x3p::tests::archive(&[("main.xml", file), ("bindata/data.bin", &[1; 24])])[..])
+        }));
+    }
+    files
+}
+
+/// Splitmix64.
+fn random(state: &mut u64) -> usize {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    (z ^ (z >> 31)) as usize
+}
+
+#[test]
+fn damaged_files_are_errors_or_maps() {
+    let mut state = 7;
+    for (name, file, read) in files() {
+        assert!(read(&file).is_ok(), "{name}");
+        let (mut refused, trials) = (0, 4000);
+        for _ in 0..trials {
+            let mut damaged = file.clone();
+            for _ in 0..1 + random(&mut state) % 4 {
+                let at = random(&mut state) % damaged.len();
+                match random(&mut state) % 6 {
+                    0 => damaged.truncate(at.max(1)),
+                    1 => damaged.insert(at, random(&mut state) as u8),
+                    2 => damaged[at] = b"0123456789.-e,; \n\0\xff"[random(&mut state) % 19],
+                    3 => drop(damaged.remove(at)),
+                    _ => damaged[at] = random(&mut state) as u8,
+                }
+                if damaged.is_empty() {
+                    break;
+                }
+            }
+            match read(&damaged) {
+                Ok(map) => {
+                    assert_eq!(map.heights.len(), map.cells[0] * map.cells[1], "{name}");
+                    assert!(map.heights.iter().all(|height| !height.is_infinite()), "{name}");
+                    assert!(map.spacing.iter().all(|spacing| *spacing > 0.0 && spacing.is_finite()), "{name}");
+                }
+                Err(error) => {
+                    assert!(!error.to_string().is_empty(), "{name}");
+                    refused += 1;
+                }
+            }
+        }
+        assert!(refused > trials / 10, "{name}: {refused}");
+    }
+}
+
+#[test]
+fn the_extension_tells_the_format() {
+    let folder = std::env::temp_dir().join(format!("viscocontact-maps-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let mut read = Vec::new();
+    for (name, file, reader) in files() {
+        let path = folder.join(format!("map.{}", if name == "sdf" { "SDF" } else { name }));
+        if ["gsf", "sdf", "x3p"].contains(&name) {
+            std::fs::write(&path, &file).unwrap();
+            read.push((HeightMap::read(&path).unwrap(), reader(&file).unwrap()));
+        }
+    }
+    let unknown = |name: &str| HeightMap::read(folder.join(name)).unwrap_err();
+    for name in ["map.npy", "map", "map.txt", ".gsf"] {
+        assert!(matches!(unknown(name), Error::Map(MapError::Extension { .. })), "{name}");
+    }
+    let absent = unknown("absent.gsf");
+    assert!(
+        matches!(&absent, Error::Map(MapError::Unreadable { file, .. }) if file.ends_with("absent.gsf")),
+        "{absent}"
+    );
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert_eq!(read.len(), if cfg!(feature = "x3p") { 3 } else { 2 });
+    for (map, wanted) in read {
+        assert_eq!((map.cells, map.spacing), (wanted.cells, wanted.spacing));
+    }
+}
+
+#[test]
+fn a_reader_that_fails_is_told() {
+    struct Broken;
+    impl Read for Broken {
+        fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {
+            Err(std::io::Error::other("the disk is on fire"))
+        }
+    }
+    let error = HeightMap::from_sdf(Broken).unwrap_err();
+    assert_eq!(error.to_string(), "SDF file: the disk is on fire");
+}

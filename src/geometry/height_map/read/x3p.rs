@@ -1,0 +1,365 @@
+//! X3P, the archive of ISO 25178-72 (ISO 5436-2 before): `main.xml` and the heights, which it refers to or holds.
+//!
+//! Elements and number types are those of the schema of the openGPS consortium (<https://sourceforge.net/p/open-gps/mwiki>).
+
+use std::io::{Cursor, Read};
+
+use roxmltree::{Document, Node, ParsingOptions};
+use zip::ZipArchive;
+
+use super::number::{Kind, Number};
+use super::{First, bytes, count};
+use crate::error::{Result, finite, positive};
+use crate::geometry::{HeightMap, MapError};
+
+const FORMAT: &str = "X3P";
+/// Most bytes of `main.xml`, and most nodes in it: an archive may expand a thousandfold.
+const MOST_XML: u64 = 1 << 26;
+const MOST_NODES: u32 = 1 << 23;
+/// Most bytes of heights: those of 16384² in double precision.
+const MOST_DATA: u64 = 1 << 31;
+
+const HEIGHT_TYPE: &str = "Record1/Axes/CZ/DataType";
+const INCREMENT: &str = "Record1/Axes/CZ/Increment";
+const OFFSET: &str = "Record1/Axes/CZ/Offset";
+const POINTS: &str = "Record3/DataLink/PointDataLink";
+const VALID: &str = "Record3/DataLink/ValidPointsLink";
+const LIST: &str = "Record3/DataList";
+
+impl HeightMap {
+    /// Reads an X3P archive of ISO 25178-72, in m: a surface (`SUR`) whose points are a matrix, equally spaced along x and y.
+    ///
+    /// Heights are integers of 16 or 32 bits with sign (`I`, `L`) or of single or double precision (`F`, `D`), in a binary file
+    /// or in the XML itself, times `Increment` plus `Offset` of their axis. What was not measured is NaN, empty in the
+    /// XML, or marked in the file of valid points. The first row is that of smallest x2; the offsets of x and y are not kept.
+    /// The MD5 sums are not verified; the check sums of the archive are.
+    ///
+    /// An archive is expected to hold 2 GiB of heights and 64 MiB of XML at most, so that a small one cannot fill the memory.
+    ///
+    /// # Errors
+    /// [`Error::Map`](crate::Error::Map) if the archive cannot be read, is malformed or holds something else; as
+    /// [`HeightMap::new`] if its map is not one that may be.
+    pub fn from_x3p(reader: impl Read) -> Result<HeightMap> {
+        let file = bytes(reader, FORMAT)?;
+        if !file.starts_with(b"PK") {
+            return Err(MapError::Magic { format: FORMAT, magic: "PK, as zip archives do" }.into());
+        }
+        let mut archive = ZipArchive::new(Cursor::new(file)).map_err(|error| unreadable(&error.to_string()))?;
+        let xml = member(&mut archive, "main.xml", MOST_XML)?;
+        if xml.len() as u64 > MOST_XML {
+            let (found, expected) = (xml.len() as u64, MOST_XML);
+            let what = "bytes of main.xml at most";
+            return Err(MapError::Size { format: FORMAT, what, found, expected, exact: false }.into());
+        }
+        let xml = String::from_utf8(xml).map_err(|error| unreadable(&format!("main.xml: {error}")))?;
+        let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+        let document = Document::parse_with_options(xml.trim_start_matches('\u{feff}'), options)
+            .map_err(|error| unreadable(&format!("main.xml: {error}")))?;
+        Header { root: document.root_element() }.map(&mut archive)
+    }
+}
+
+type Archive = ZipArchive<Cursor<Vec<u8>>>;
+
+fn unreadable(reason: &str) -> MapError {
+    MapError::Unreadable { file: format!("{FORMAT} file"), reason: reason.to_owned() }
+}
+
+/// What a file of the archive holds, up to one byte more than `most`.
+fn member(archive: &mut Archive, name: &str, most: u64) -> Result<Vec<u8>> {
+    let name = name.strip_prefix("./").unwrap_or(name);
+    let broken = |reason: String| unreadable(&format!("{name}: {reason}"));
+    let file = archive.by_name(name).map_err(|error| broken(error.to_string()))?;
+    let mut bytes = Vec::new();
+    file.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| broken(error.to_string()))?;
+    Ok(bytes)
+}
+
+/// The contents of `main.xml`.
+struct Header<'a, 'i> {
+    root: Node<'a, 'i>,
+}
+
+impl<'a, 'i> Header<'a, 'i> {
+    fn node(&self, path: &str) -> Option<Node<'a, 'i>> {
+        let child = |node: Node<'a, 'i>, name| node.children().find(|child| child.tag_name().name() == name);
+        path.split('/').try_fold(self.root, child)
+    }
+
+    /// The text of an element, if there is one that says something.
+    fn get(&self, path: &'static str) -> Option<&'a str> {
+        self.node(path).and_then(|node| node.text()).map(str::trim).filter(|text| !text.is_empty())
+    }
+
+    fn require(&self, path: &'static str) -> Result<&'a str> {
+        self.get(path).ok_or_else(|| MapError::Missing { format: FORMAT, key: path }.into())
+    }
+
+    fn error(path: &'static str, text: &str, allowed: &'static str) -> MapError {
+        MapError::Entry { format: FORMAT, key: path, text: text.to_owned(), allowed }
+    }
+
+    fn number(&self, path: &'static str) -> Result<f64> {
+        let text = self.require(path)?;
+        finite(path, text.parse().map_err(|_| Self::error(path, text, "a number"))?)
+    }
+
+    fn count(&self, path: &'static str) -> Result<usize> {
+        let text = self.require(path)?;
+        text.parse().map_err(|_| Self::error(path, text, "a whole number").into())
+    }
+
+    fn must_be(&self, path: &'static str, allowed: &'static str) -> Result<()> {
+        match self.require(path)? {
+            text if text == allowed => Ok(()),
+            text => Err(Self::error(path, text, allowed).into()),
+        }
+    }
+
+    fn map(&self, archive: &mut Archive) -> Result<HeightMap> {
+        self.must_be("Record1/FeatureType", "SUR")?;
+        self.must_be("Record1/Axes/CX/AxisType", "I")?;
+        self.must_be("Record1/Axes/CY/AxisType", "I")?;
+        self.must_be("Record1/Axes/CZ/AxisType", "A")?;
+        self.unturned()?;
+        let increment = |path| positive(path, self.number(path)?);
+        let spacing = [increment("Record1/Axes/CX/Increment")?, increment("Record1/Axes/CY/Increment")?];
+        let text = self.require(HEIGHT_TYPE)?;
+        let number = match text {
+            "I" => Number::little(Kind::Signed, 2),
+            "L" => Number::little(Kind::Signed, 4),
+            "F" => Number::little(Kind::Float, 4),
+            "D" => Number::little(Kind::Float, 8),
+            _ => return Err(Self::error(HEIGHT_TYPE, text, "I, L, F or D").into()),
+        };
+        // integers mean nothing without it
+        let scale = match self.get(INCREMENT) {
+            None if number.kind == Kind::Float => 1.0,
+            _ => increment(INCREMENT)?,
+        };
+        let offset = self.get(OFFSET).map_or(Ok(0.0), |_| self.number(OFFSET))?;
+        let cells = ["Record3/MatrixDimension/SizeX", "Record3/MatrixDimension/SizeY"];
+        let cells = [self.count(cells[0])?, self.count(cells[1])?];
+        self.must_be("Record3/MatrixDimension/SizeZ", "1")?;
+        let count = count(cells, spacing)?;
+        let mut rows = match self.get(POINTS) {
+            Some(name) => {
+                let expected = count as u64 * number.size as u64;
+                if expected > MOST_DATA {
+                    let (what, found) = ("bytes of heights at most", expected);
+                    return Err(MapError::Size { format: FORMAT, what, found, expected: MOST_DATA, exact: true }.into());
+                }
+                let data = member(archive, name, expected)?;
+                number.decode_all(FORMAT, &data, count, true)?
+            }
+            None => self.listed(count)?,
+        };
+        for height in &mut rows {
+            *height = *height * scale + offset;
+        }
+        if let Some(name) = self.get(VALID) {
+            let expected = (count as u64).div_ceil(8);
+            let valid = member(archive, name, expected)?;
+            if valid.len() as u64 != expected {
+                let (what, found) = ("bytes of valid points", valid.len() as u64);
+                return Err(MapError::Size { format: FORMAT, what, found, expected, exact: found < expected }.into());
+            }
+            // one bit a point, the lowest of a byte first
+            let missing = |k: &usize| valid[k / 8] >> (k % 8) & 1 == 0;
+            (0..count).filter(missing).for_each(|k| rows[k] = f64::NAN);
+        }
+        HeightMap::from_rows(cells, spacing, &rows, First::Bottom)
+    }
+
+    /// Refuses axes that are turned in space.
+    fn unturned(&self) -> Result<()> {
+        const ROTATION: &str = "Record1/Axes/Rotation";
+        let Some(rotation) = self.node(ROTATION) else { return Ok(()) };
+        for entry in rotation.children().filter(Node::is_element) {
+            let text = entry.text().unwrap_or_default().trim();
+            let identity = match entry.tag_name().name() {
+                "r11" | "r22" | "r33" => 1.0,
+                _ => 0.0,
+            };
+            if !text.parse().is_ok_and(|value: f64| (value - identity).abs() < 1e-9) {
+                return Err(Self::error(ROTATION, text, "none (1 on the diagonal, 0 off it)").into());
+            }
+        }
+        Ok(())
+    }
+
+    /// The heights in the XML itself: the last number of each datum, those of x and y before it, if there are any.
+    fn listed(&self, count: usize) -> Result<Vec<f64>> {
+        let list = self.node(LIST).ok_or(MapError::Missing { format: FORMAT, key: "PointDataLink or DataList" })?;
+        let mut rows = Vec::new();
+        for datum in list.children().filter(|child| child.tag_name().name() == "Datum") {
+            let text = datum.text().unwrap_or_default().rsplit(';').next().unwrap_or_default().trim();
+            rows.push(match text.parse::<f64>() {
+                _ if text.is_empty() => f64::NAN,
+                Ok(height) if !height.is_infinite() => height,
+                _ => return Err(Self::error("Datum", text, "a finite number or nothing").into()),
+            });
+        }
+        if rows.len() != count {
+            let (found, expected) = (rows.len() as u64, count as u64);
+            return Err(MapError::Size { format: FORMAT, what: "heights", found, expected, exact: true }.into());
+        }
+        Ok(rows)
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use std::io::Write;
+
+    use zip::write::{SimpleFileOptions, ZipWriter};
+
+    use super::*;
+    use crate::Error;
+
+    pub(in super::super) const LINK: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>";
+    const MASK: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink>\
+        <ValidPointsLink>bindata/valid.bin</ValidPointsLink></DataLink>";
+
+    pub(in super::super) fn xml(height: &str, data: &str) -> String {
+        format!(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?><p:ISO5436_2 xmlns:p=\"http://www.opengps.eu/2008/ISO5436_2\">\
+             <Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>\
+             <CX><AxisType>I</AxisType><DataType>D</DataType><Increment>1e-6</Increment><Offset>0</Offset></CX>\
+             <CY><AxisType>I</AxisType><DataType>D</DataType><Increment>2.5E-6</Increment><Offset>0</Offset></CY>\
+             <CZ><AxisType>A</AxisType><DataType>{height}</CZ></Axes></Record1>\
+             <Record3><MatrixDimension><SizeX> 3 </SizeX><SizeY>2</SizeY><SizeZ>1</SizeZ></MatrixDimension>{data}</Record3>\
+             </p:ISO5436_2>"
+        )
+    }
+
+    pub(in super::super) fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
+        let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+        for (name, content) in files {
+            archive.start_file(*name, SimpleFileOptions::default()).unwrap();
+            archive.write_all(content).unwrap();
+        }
+        archive.finish().unwrap().into_inner()
+    }
+
+    fn read(xml: &str, data: &[u8]) -> Result<HeightMap> {
+        let files = [("main.xml", xml.as_bytes()), ("bindata/data.bin", data), ("bindata/valid.bin", &[0b10_1111])];
+        HeightMap::from_x3p(&archive(&files)[..])
+    }
+
+    fn expected(map: &HeightMap) {
+        assert_eq!((map.cells, map.spacing), ([3, 2], [1e-6, 2.5e-6]));
+        let wanted = [1.0, 4.0, 2.0, f64::NAN, 3.0, -6.0];
+        for (height, wanted) in map.heights.iter().zip(wanted) {
+            assert!(
+                (height / wanted - 1.0).abs() < 1e-15 || height.is_nan() && wanted.is_nan(),
+                "{height} for {wanted}"
+            );
+        }
+    }
+
+    const DOUBLE: &str = "D</DataType>";
+
+    #[test]
+    fn first_row_is_the_lowest_in_every_type() {
+        let rows = [1.0, 2.0, 3.0, 4.0, f64::NAN, -6.0];
+        let doubles: Vec<u8> = rows.iter().flat_map(|height| height.to_le_bytes()).collect();
+        expected(&read(&xml(DOUBLE, LINK), &doubles).unwrap());
+        let floats: Vec<u8> = rows.iter().flat_map(|height| (*height as f32).to_le_bytes()).collect();
+        let scaled = "F</DataType><Increment>1</Increment><Offset>0</Offset>";
+        expected(&read(&xml(scaled, LINK), &floats).unwrap());
+        let halves: Vec<u8> = [2_i16, 4, 6, 8, 0, -12].iter().flat_map(|height| height.to_le_bytes()).collect();
+        expected(&read(&xml("I</DataType><Increment>0.5</Increment>", MASK), &halves).unwrap());
+        let longs: Vec<u8> = [0_i32, 2, 4, 6, 0, -14].iter().flat_map(|height| height.to_le_bytes()).collect();
+        let offset = "L</DataType><Increment>0.5</Increment><Offset>1</Offset>";
+        expected(&read(&xml(offset, MASK), &longs).unwrap());
+    }
+
+    #[test]
+    fn heights_may_stand_in_the_xml() {
+        for list in [
+            "<Datum>1</Datum><Datum>2</Datum><Datum>3</Datum><Datum>4</Datum><Datum/><Datum>-6</Datum>",
+            "<Datum>;;1</Datum><Datum>1;0;2</Datum><Datum>3</Datum> <Datum>4</Datum><Datum>1;1;</Datum><Datum> -6 </Datum>",
+        ] {
+            expected(&read(&xml(DOUBLE, &format!("<DataList>{list}</DataList>")), &[]).unwrap());
+        }
+    }
+
+    #[test]
+    fn malformed_archives_are_refused_by_what_is_wrong() {
+        let whole = xml(DOUBLE, LINK);
+        let with = |from: &str, to: &str| {
+            assert!(whole.contains(from), "{from}");
+            read(&whole.replacen(from, to, 1), &[0; 48]).unwrap_err()
+        };
+        for (from, to, key) in [
+            ("SUR", "PRF", "Record1/FeatureType"),
+            ("<CX><AxisType>I", "<CX><AxisType>A", "Record1/Axes/CX/AxisType"),
+            ("<CY><AxisType>I", "<CY><AxisType>A", "Record1/Axes/CY/AxisType"),
+            ("<CZ><AxisType>A", "<CZ><AxisType>I", "Record1/Axes/CZ/AxisType"),
+            ("<CZ><AxisType>A</AxisType><DataType>D", "<CZ><AxisType>A</AxisType><DataType>Q", HEIGHT_TYPE),
+            ("1e-6", "small", "Record1/Axes/CX/Increment"),
+            (" 3 ", "3.5", "Record3/MatrixDimension/SizeX"),
+            ("<SizeZ>1", "<SizeZ>2", "Record3/MatrixDimension/SizeZ"),
+            ("<Axes>", "<Axes><Rotation><r11>0.9</r11></Rotation>", "Record1/Axes/Rotation"),
+        ] {
+            let error = with(from, to);
+            assert!(matches!(error, Error::Map(MapError::Entry { key: found, .. }) if found == key), "{error}");
+        }
+        for (from, to, key) in [
+            ("FeatureType>SUR</FeatureType", "Other>SUR</Other", "Record1/FeatureType"),
+            ("1e-6", "", "Record1/Axes/CX/Increment"),
+            ("<MatrixDimension>", "<MatrixDimension/><ListDimension>", "Record3/MatrixDimension/SizeX"),
+            ("<DataType>D</DataType></CZ>", "<DataType>I</DataType></CZ>", INCREMENT),
+            (LINK, "", "PointDataLink or DataList"),
+        ] {
+            let from_to = whole.replacen(from, to, 1).replace(
+                "</MatrixDimension>",
+                if to.contains("List") { "</ListDimension>" } else { "</MatrixDimension>" },
+            );
+            let error = read(&from_to, &[0; 48]).unwrap_err();
+            assert!(matches!(error, Error::Map(MapError::Missing { key: found, .. }) if found == key), "{error}");
+        }
+        for increment in ["0", "-1", "NaN", "INF"] {
+            assert!(matches!(with("1e-6", increment), Error::OutOfRange { field: "Record1/Axes/CX/Increment", .. }));
+        }
+        assert!(matches!(with(" 3 ", "0"), Error::CountOutOfRange { value: 0, .. }));
+        for size in ["400000000", "4000000000", "18446744073709551615"] {
+            let error = with(" 3 ", size);
+            assert!(matches!(error, Error::Map(MapError::Size { .. }) | Error::CountOutOfRange { .. }), "{error}");
+        }
+        for (length, found) in [(40, 40), (47, 47), (49, 49), (4000, 49)] {
+            let error = read(&whole, &vec![0; length]).unwrap_err();
+            let size = MapError::Size { format: FORMAT, what: "bytes of heights", found, expected: 48, exact: true };
+            assert_eq!(error, size.into());
+        }
+        for broken in ["", "<a", "<a></a></a>", "<!DOCTYPE a [<!ENTITY b \"c\">]><a>&b;</a>"] {
+            assert!(matches!(read(broken, &[]), Err(Error::Map(MapError::Unreadable { .. }))), "{broken}");
+        }
+        assert!(matches!(with("bindata/data.bin", "nowhere"), Error::Map(MapError::Unreadable { .. })));
+        let none = HeightMap::from_x3p(&archive(&[("other.xml", b"")])[..]);
+        assert!(matches!(none, Err(Error::Map(MapError::Unreadable { .. }))));
+        assert!(matches!(HeightMap::from_x3p(&b"<xml/>"[..]), Err(Error::Map(MapError::Magic { .. }))));
+    }
+
+    #[test]
+    fn valid_points_must_be_as_many_as_the_points() {
+        let files = |valid: &'static [u8]| {
+            let xml = xml(DOUBLE, MASK);
+            let files = [("main.xml", xml.as_bytes()), ("bindata/data.bin", &[0; 48]), ("bindata/valid.bin", valid)];
+            HeightMap::from_x3p(&archive(&files)[..])
+        };
+        assert!(files(&[0xff]).is_ok());
+        for valid in [&b""[..], b"\xff\xff"] {
+            assert!(matches!(files(valid), Err(Error::Map(MapError::Size { what: "bytes of valid points", .. }))));
+        }
+    }
+
+    #[test]
+    fn deep_and_swollen_xml_is_refused() {
+        let deep = "<a>".repeat(300_000);
+        assert!(matches!(read(&deep, &[]), Err(Error::Map(MapError::Unreadable { .. }))));
+        let swollen = " ".repeat(MOST_XML as usize + 2);
+        assert!(matches!(read(&swollen, &[]), Err(Error::Map(MapError::Size { exact: false, .. }))));
+    }
+}

@@ -1,0 +1,231 @@
+//! Maps as text: triplets of coordinates and height.
+
+use std::io::Read;
+
+use super::text::{Table, height, text};
+use super::{First, count};
+use crate::error::{Result, least_length, positive};
+use crate::geometry::{HeightMap, LengthUnit, MapError};
+
+/// How far a point may lie off the regular grid, in spacings.
+const OFF: f64 = 1e-3;
+/// Coordinates closer than this part of the spacing are one.
+const SAME: f64 = 1e-2;
+/// Most points of the grid for one of the file.
+const MOST_CELLS_A_POINT: usize = 100;
+
+impl HeightMap {
+    /// Reads lines of x, y and height from text, the coordinates in `lateral` units and the heights in `height` ones.
+    ///
+    /// The points may stand in any order, but must lie on a regular grid along x and y to within 1/1000 of its
+    /// spacing, which is found from them. Points of the grid that are absent, or whose height says `nan` or `bad`, were not
+    /// measured. Columns are separated by semicolons, tabs, commas or blanks, lines that start with `#` and empty lines
+    /// are skipped.
+    ///
+    /// ```
+    /// use viscocontact::geometry::{HeightMap, LengthUnit};
+    ///
+    /// let text = "0 0 1.0\n1 0 1.5\n2 0 2.0\n0 2 1.1\n1 2 1.6\n2 2 2.1\n";
+    /// let map = HeightMap::from_xyz(text.as_bytes(), LengthUnit::Millimetre, LengthUnit::Micrometre)?;
+    /// let heights = vec![1.0e-6, 1.1e-6, 1.5e-6, 1.6e-6, 2.0e-6, 2.1e-6];
+    /// assert_eq!(map, HeightMap::new([3, 2], [3e-3, 4e-3], heights)?);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Map`](crate::Error::Map) if the text cannot be read, a line has other than three columns, something that is not a number, a
+    /// point off the grid or a point that another line has given, or there is less than one point to a hundred of the grid;
+    /// if there are fewer than two different coordinates along x or y; as [`HeightMap::new`] if the map is not one that may be.
+    pub fn from_xyz(reader: impl Read, lateral: LengthUnit, vertical: LengthUnit) -> Result<HeightMap> {
+        let text = text(reader)?;
+        let points = points(&text, lateral, vertical)?;
+        let axes = [axis(&points, "x", 0)?, axis(&points, "y", 1)?];
+        let (cells, spacing) = (axes.each_ref().map(|axis| axis.cells), axes.each_ref().map(|axis| axis.spacing));
+        let count = count(cells, spacing)?;
+        if count / MOST_CELLS_A_POINT > points.len() {
+            return Err(MapError::Sparse { points: points.len(), cells }.into());
+        }
+        let (mut rows, mut lines) = (vec![f64::NAN; count], vec![0; count]);
+        for (k, point) in points.iter().enumerate() {
+            let at = axes[1].indices[k] * cells[0] + axes[0].indices[k];
+            if lines[at] != 0 {
+                return Err(MapError::Duplicate { line: point.line, earlier: lines[at], at: point.at }.into());
+            }
+            (rows[at], lines[at]) = (point.height, point.line);
+        }
+        HeightMap::from_rows(cells, spacing, &rows, First::Bottom)
+    }
+}
+
+/// A line of the file.
+struct Point {
+    line: u64,
+    at: [f64; 2],
+    height: f64,
+}
+
+fn points(text: &str, lateral: LengthUnit, vertical: LengthUnit) -> Result<Vec<Point>> {
+    let table = Table::new(text);
+    let point = |(line, content)| {
+        let fields = table.fields(content);
+        let &[x, y, z] = &fields[..] else {
+            return Err(MapError::Columns { line, found: fields.len(), expected: 3 }.into());
+        };
+        let coordinate = |column: usize, text: &str| match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(lateral.to_metres(value)),
+            _ => Err(MapError::NotNumeric { line, column, text: text.to_owned() }),
+        };
+        let at = [coordinate(1, x)?, coordinate(2, y)?];
+        Ok(Point { line, at, height: vertical.to_metres(height(line, 3, z)?) })
+    };
+    table.lines().map(point).collect()
+}
+
+/// The regular positions along an axis.
+struct Axis {
+    cells: usize,
+    spacing: f64,
+    /// The position of each point.
+    indices: Vec<usize>,
+}
+
+/// The regular positions along one axis of the points.
+///
+/// Coordinates that differ by a small part of the spacing are one and the same. The smallest of the steps between different
+/// ones is about the spacing; a straight line through all of them makes it exact.
+fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<Axis> {
+    let field = if axis == 0 { "different x of the points" } else { "different y of the points" };
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|&a, &b| points[a].at[axis].total_cmp(&points[b].at[axis]));
+    let value = |k: usize| points[order[k]].at[axis];
+    let mut steps: Vec<f64> = (1..order.len()).map(|k| value(k) - value(k - 1)).filter(|step| *step > 0.0).collect();
+    steps.sort_by(|a, b| b.total_cmp(a));
+    let Some(&greatest) = steps.first() else {
+        // none or all the same
+        return Err(least_length(field, order.len().min(1), 2)
+            .err()
+            .unwrap_or(MapError::Sparse { points: points.len(), cells: [1, 1] }.into()));
+    };
+    // down from the greatest step, those before the first that is a small part of its neighbour
+    let smallest = steps.iter().try_fold(greatest, |last, &step| if step < SAME * last { Err(last) } else { Ok(step) });
+    let smallest = positive("step between the points", smallest.unwrap_or_else(|last| last))?;
+
+    let mut positions = Vec::with_capacity(order.len());
+    let mut position = 0.0;
+    for k in 0..order.len() {
+        if k > 0 && value(k) - value(k - 1) >= SAME * smallest {
+            position += ((value(k) - value(k - 1)) / smallest).round();
+        }
+        positions.push(position);
+    }
+    let (origin, spacing) = line(&positions, value);
+    positive("spacing of the points", spacing)?;
+    let mut indices = vec![0; order.len()];
+    for (k, &position) in positions.iter().enumerate() {
+        let off = ((value(k) - origin) / spacing - position).abs();
+        if !(off <= OFF) {
+            let line = points[order[k]].line;
+            return Err(MapError::OffGrid { line, axis: name, value: value(k), spacing, off, allowed: OFF }.into());
+        }
+        indices[order[k]] = position as usize;
+    }
+    Ok(Axis { cells: (position as usize).saturating_add(1), spacing, indices })
+}
+
+/// Origin and slope of the straight line of least squares through the values at the positions.
+fn line(positions: &[f64], value: impl Fn(usize) -> f64) -> (f64, f64) {
+    let count = positions.len() as f64;
+    // about the first value, so that a distant origin of coordinates costs no digits
+    let first = value(0);
+    let mean = positions.iter().sum::<f64>() / count;
+    let height = (0..positions.len()).map(|k| value(k) - first).sum::<f64>() / count;
+    let (mut across, mut along) = (0.0, 0.0);
+    for (k, position) in positions.iter().enumerate() {
+        across += (position - mean) * (value(k) - first - height);
+        along += (position - mean).powi(2);
+    }
+    let slope = across / along;
+    (first + height - slope * mean, slope)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Error;
+
+    fn read(text: &str) -> Result<HeightMap> {
+        HeightMap::from_xyz(text.as_bytes(), LengthUnit::Micrometre, LengthUnit::Nanometre)
+    }
+
+    #[test]
+    fn points_in_any_order_make_the_grid() {
+        // x: 10, 10.5, 11; y: -1, 1; one absent, one not measured
+        let map = read("# x y z\n11;1;6\n10; -1 ;1\n10.5;1;nan\n\n10;1;4\n11;-1;3").unwrap();
+        assert_eq!(map.cells, [3, 2]);
+        assert!((map.spacing[0] / 0.5e-6 - 1.0).abs() < 1e-12 && (map.spacing[1] / 2e-6 - 1.0).abs() < 1e-12);
+        let wanted = [1.0, 4.0, f64::NAN, f64::NAN, 3.0, 6.0].map(|height| height / 1e9);
+        for (height, wanted) in map.heights.iter().zip(wanted) {
+            assert!(*height == wanted || height.is_nan() && wanted.is_nan(), "{height} for {wanted}");
+        }
+    }
+
+    #[test]
+    fn rounded_coordinates_of_a_long_grid_are_found() {
+        // a spacing of 1/3 to three places: steps of 0.333 and 0.334, by which 2000 of them would not be counted right
+        let mut text = String::new();
+        for i in 0..2000 {
+            for j in 0..2 {
+                if i % 7 != 3 || j == 0 {
+                    text += &format!("{:.4},{},{}\n", f64::from(i) / 3.0, 5 * j, i + 10_000 * j);
+                }
+            }
+        }
+        let map = read(&text).unwrap();
+        assert_eq!(map.cells, [2000, 2]);
+        assert!((map.spacing[0] * 3e6 - 1.0).abs() < 1e-6);
+        for i in 0..2000 {
+            assert_eq!(map.heights[2 * i], i as f64 / 1e9);
+            assert!(
+                map.heights[2 * i + 1] == (i + 10_000) as f64 / 1e9 || i % 7 == 3 && map.heights[2 * i + 1].is_nan()
+            );
+        }
+    }
+
+    #[test]
+    fn columns_that_are_absent_throughout_are_missing() {
+        let map = read("0 0 1\n1 0 2\n5 0 3\n0 1 4\n1 1 5\n5 1 6\n").unwrap();
+        assert_eq!(map.cells, [6, 2]);
+        assert_eq!(map.heights.iter().filter(|height| height.is_nan()).count(), 6);
+        assert_eq!(map.heights[10..], [3.0 / 1e9, 6.0 / 1e9]);
+    }
+
+    #[test]
+    fn what_is_no_grid_is_refused() {
+        let square = "0 0 1\n1 0 2\n2 0 3\n0 1 4\n1 1 5\n";
+        assert!(read(square).is_ok());
+        let duplicate = read(&format!("{square}1.0002 0 7\n")).unwrap_err();
+        assert!(matches!(duplicate, Error::Map(MapError::Duplicate { line: 6, earlier: 2, .. })), "{duplicate}");
+        for (stray, name) in [("2.01 1 6", "x"), ("2.3 1 6", "x"), ("2 1.4 6", "y")] {
+            let error = read(&format!("{square}{stray}\n")).unwrap_err();
+            assert!(matches!(error, Error::Map(MapError::OffGrid { axis, .. }) if axis == name), "{error}");
+        }
+        for text in ["", "0 0 1\n", "0 0 1\n1 0 2\n", "0 0 1\n0 1 2\n"] {
+            assert!(matches!(read(text), Err(Error::WrongLength { expected: 2, .. })), "{text}");
+        }
+        // scattered: a diagonal fills a grid of a million
+        let diagonal: String = (0..1000).map(|k| format!("{k} {k} 1\n")).collect();
+        let sparse = MapError::Sparse { points: 1000, cells: [1000, 1000] };
+        assert_eq!(read(&diagonal).unwrap_err(), sparse.into());
+        assert!(read("-1e308 0 1\n1e308 0 1\n0 1 1\n").is_err());
+        assert!(read("0 0 1\n1e-320 0 1\n0 1 1\n").is_err());
+    }
+
+    #[test]
+    fn malformed_lines_are_told() {
+        assert_eq!(read("0 0 1\n1 0\n").unwrap_err(), MapError::Columns { line: 2, found: 2, expected: 3 }.into());
+        for (line, column, text) in [("one 0 1", 1, "one"), ("1 nan 1", 2, "nan"), ("1 0 inf", 3, "inf")] {
+            let wanted = MapError::NotNumeric { line: 2, column, text: text.into() };
+            assert_eq!(read(&format!("0 0 1\n{line}\n")).unwrap_err(), wanted.into());
+        }
+    }
+}

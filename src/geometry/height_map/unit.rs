@@ -1,0 +1,116 @@
+//! Units of length that files of surfaces use.
+
+use std::str::FromStr;
+
+use crate::error::{Error, Result};
+use crate::geometry::MapError;
+
+/// A unit of length, as files of measured surfaces have them.
+///
+/// ```
+/// use viscocontact::geometry::LengthUnit;
+///
+/// assert_eq!("µm".parse(), Ok(LengthUnit::Micrometre));
+/// assert_eq!(LengthUnit::Micrometre.to_metres(2.5), 2.5e-6);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum LengthUnit {
+    /// m.
+    Metre,
+    /// cm.
+    Centimetre,
+    /// mm.
+    Millimetre,
+    /// µm.
+    Micrometre,
+    /// nm.
+    Nanometre,
+    /// Å, 0.1 nm.
+    Angstrom,
+    /// pm.
+    Picometre,
+}
+
+impl LengthUnit {
+    /// One of it \[m\].
+    pub fn factor(self) -> f64 {
+        1.0 / self.per_metre()
+    }
+
+    /// `value` of them \[m\].
+    ///
+    /// The metre holds a whole number of each unit, so that a decimal number is rounded once: 2.5 µm is `2.5e-6` to the last bit.
+    pub fn to_metres(self, value: f64) -> f64 {
+        value / self.per_metre()
+    }
+
+    /// How many make a metre.
+    fn per_metre(self) -> f64 {
+        match self {
+            LengthUnit::Metre => 1.0,
+            LengthUnit::Centimetre => 1e2,
+            LengthUnit::Millimetre => 1e3,
+            LengthUnit::Micrometre => 1e6,
+            LengthUnit::Nanometre => 1e9,
+            LengthUnit::Angstrom => 1e10,
+            LengthUnit::Picometre => 1e12,
+        }
+    }
+}
+
+impl FromStr for LengthUnit {
+    type Err = Error;
+
+    /// The unit of that symbol: m, cm, mm, µm (um), nm, Å (A), pm. Capitals count: Mm is no millimetre.
+    fn from_str(symbol: &str) -> Result<LengthUnit> {
+        match symbol.trim() {
+            "m" => Ok(LengthUnit::Metre),
+            "cm" => Ok(LengthUnit::Centimetre),
+            "mm" => Ok(LengthUnit::Millimetre),
+            // the micro sign, the Greek letter, and what stands for them in ASCII
+            "\u{b5}m" | "\u{3bc}m" | "um" => Ok(LengthUnit::Micrometre),
+            "nm" => Ok(LengthUnit::Nanometre),
+            // the letter, the sign, and what stands for them in ASCII
+            "\u{c5}" | "\u{212b}" | "A" => Ok(LengthUnit::Angstrom),
+            "pm" => Ok(LengthUnit::Picometre),
+            other => Err(MapError::Unit { symbol: other.to_owned() }.into()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn symbols_name_their_units() {
+        let cases = [
+            ("m", 1.0),
+            ("cm", 1e-2),
+            ("mm", 1e-3),
+            ("µm", 1e-6),
+            ("μm", 1e-6),
+            (" um\r", 1e-6),
+            ("nm", 1e-9),
+            ("Å", 1e-10),
+            ("pm", 1e-12),
+        ];
+        for (symbol, metres) in cases {
+            let unit: LengthUnit = symbol.parse().unwrap();
+            assert_eq!((unit.factor(), unit.to_metres(1.0)), (metres, metres), "{symbol}");
+        }
+        for symbol in ["", "Mm", "V", "m^2", "inch"] {
+            let unknown = MapError::Unit { symbol: symbol.to_owned() };
+            assert_eq!(symbol.parse::<LengthUnit>(), Err(Error::Map(unknown)));
+        }
+    }
+
+    #[test]
+    fn decimal_numbers_are_rounded_once() {
+        for (text, metres) in [("0.7", 0.7e-6), ("2.9", 2.9e-6), ("123.456", 123.456e-6)] {
+            let value: f64 = text.parse().unwrap();
+            assert!((LengthUnit::Micrometre.to_metres(value) - metres).abs() <= f64::EPSILON * metres / 2.0, "{text}");
+        }
+    }
+}
