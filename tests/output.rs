@@ -1,5 +1,9 @@
 //! Files of results are read back bit by bit, by readers that share no code with the writers.
 #![cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
+#![cfg_attr(
+    not(all(feature = "csv", feature = "npy", feature = "vtk")),
+    allow(dead_code, reason = "not every format needs every helper")
+)]
 
 use std::fs;
 use std::path::{Path, PathBuf};
