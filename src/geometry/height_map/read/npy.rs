@@ -75,8 +75,9 @@ impl Array {
             Ok::<_, MapError>(rest.trim_start().strip_prefix(':').unwrap_or_default().trim_start())
         };
         let refuse = |key: &'static str, text: &str, allowed: &'static str| {
-            let text = text.split(['\n', '}']).next().unwrap_or_default().trim_end().to_owned();
-            MapError::Entry { format: FORMAT, key, text, allowed }
+            // up to the next entry
+            let text = text.split(", '").next().unwrap_or_default().split('}').next().unwrap_or_default();
+            MapError::Entry { format: FORMAT, key, text: text.trim_end_matches([',', ' ', '\n']).to_owned(), allowed }
         };
         let text = entry("descr")?;
         let number = text.strip_prefix('\'').and_then(|text| number(text.split('\'').next()?));

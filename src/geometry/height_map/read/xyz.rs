@@ -216,7 +216,8 @@ mod tests {
         let diagonal: String = (0..1000).map(|k| format!("{k} {k} 1\n")).collect();
         let sparse = MapError::Sparse { points: 1000, cells: [1000, 1000] };
         assert_eq!(read(&diagonal).unwrap_err(), sparse.into());
-        assert!(read("-1e308 0 1\n1e308 0 1\n0 1 1\n").is_err());
+        let wide = "-1e308 0 1\n1e308 0 1\n0 1 1\n1e308 1 1\n";
+        assert!(HeightMap::from_xyz(wide.as_bytes(), LengthUnit::Metre, LengthUnit::Metre).is_err());
         assert!(read("0 0 1\n1e-320 0 1\n0 1 1\n").is_err());
     }
 
