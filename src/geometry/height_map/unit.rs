@@ -40,7 +40,8 @@ impl LengthUnit {
 
     /// `value` of them \[m\].
     ///
-    /// The metre holds a whole number of each unit, by which it is divided: the result is rounded once, 2.5 µm is `2.5e-6` to the last bit.
+    /// The metre holds a whole number of each unit, by which it is divided: the result is rounded once, 2.5 µm is
+    /// `2.5e-6` to the last bit.
     pub fn to_metres(self, value: f64) -> f64 {
         value / self.per_metre()
     }

@@ -1,6 +1,7 @@
 //! X3P, the archive of ISO 25178-72 (ISO 5436-2 before): `main.xml` and the heights, which it refers to or holds.
 //!
-//! Elements and number types are those of the schema of the openGPS consortium (<https://sourceforge.net/p/open-gps/mwiki>).
+//! Elements and number types are those of the schema of the openGPS consortium
+//! (<https://sourceforge.net/p/open-gps/mwiki>).
 
 use std::io::{Cursor, Read};
 
@@ -27,14 +28,16 @@ const VALID: &str = "Record3/DataLink/ValidPointsLink";
 const LIST: &str = "Record3/DataList";
 
 impl HeightMap {
-    /// Reads an X3P archive of ISO 25178-72, in m: a surface (`SUR`) whose points are a matrix, equally spaced along x and y.
+    /// Reads an X3P archive of ISO 25178-72, in m: a surface (`SUR`) whose points are a matrix, equally spaced along x
+    /// and y.
     ///
-    /// Heights are integers of 16 or 32 bits with sign (`I`, `L`) or of single or double precision (`F`, `D`), in a binary file
-    /// or in the XML itself, times `Increment` plus `Offset` of their axis. What was not measured is NaN, empty in the
-    /// XML, or marked in the file of valid points. The first row is that of smallest x2; the offsets of x and y are not kept.
-    /// The MD5 sums are not verified; the check sums of the archive are.
+    /// Heights are integers of 16 or 32 bits with sign (`I`, `L`) or of single or double precision (`F`, `D`), in a
+    /// binary file or in the XML itself, times `Increment` plus `Offset` of their axis. What was not measured is NaN,
+    /// empty in the XML, or marked in the file of valid points. The first row is that of smallest x2; the offsets of x
+    /// and y are not kept. The MD5 sums are not verified; the check sums of the archive are.
     ///
-    /// An archive is expected to hold 2 GiB of heights and 64 MiB of XML at most, so that a small one cannot fill the memory.
+    /// An archive is expected to hold 2 GiB of heights and 64 MiB of XML at most, so that a small one cannot fill the
+    /// memory.
     ///
     /// # Errors
     /// [`Error::Map`](crate::Error::Map) if the archive cannot be read, is malformed or holds something else; as
