@@ -76,8 +76,8 @@ impl HeightMap {
         save(writer, "SDF", file.as_bytes())
     }
 
-    /// Writes the heights in m as an array of NumPy, double precision, little endian, the first axis x1 and the second x2. Its
-    /// lengths are not in the file.
+    /// Writes the heights in m as an array of NumPy, double precision, little endian, the first axis x1 and the second
+    /// x2. Its lengths are not in the file.
     ///
     /// ```
     /// use viscocontact::geometry::{HeightMap, LengthUnit};

@@ -1,4 +1,5 @@
-//! Gwyddion Simple Field 1.0, as the user guide of Gwyddion describes it (<http://gwyddion.net/documentation/user-guide-en/gsf.html>).
+//! Gwyddion Simple Field 1.0, as the user guide of Gwyddion describes it
+//! (<http://gwyddion.net/documentation/user-guide-en/gsf.html>).
 
 use std::io::Read;
 
@@ -12,15 +13,16 @@ pub(in crate::geometry::height_map) const MAGIC: &str = "Gwyddion Simple Field 1
 const FORMAT: &str = "GSF";
 
 impl HeightMap {
-    /// Reads a Gwyddion Simple Field 1.0, the [format](http://gwyddion.net/documentation/user-guide-en/gsf.html) in which
-    /// Gwyddion exchanges single maps: heights in single precision, NaN where nothing was measured.
+    /// Reads a Gwyddion Simple Field 1.0, the [format](http://gwyddion.net/documentation/user-guide-en/gsf.html) in
+    /// which Gwyddion exchanges single maps: heights in single precision, NaN where nothing was measured.
     ///
-    /// The file must name lengths and units ([`LengthUnit`]), which the format leaves open; [`HeightMap::from_gsf_with`]
-    /// reads one whose numbers have no unit. Its first row is the top; `XOffset` and `YOffset` are not kept.
+    /// The file must name lengths and units ([`LengthUnit`]), which the format leaves open;
+    /// [`HeightMap::from_gsf_with`] reads one whose numbers have no unit. Its first row is the top; `XOffset` and
+    /// `YOffset` are not kept.
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed, or lacks a unit; as [`HeightMap::new`] if
-    /// its map is not one that may be.
+    /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed, or lacks a unit; as
+    /// [`HeightMap::new`] if its map is not one that may be.
     pub fn from_gsf(reader: impl Read) -> Result<HeightMap> {
         from_gsf(reader, None)
     }

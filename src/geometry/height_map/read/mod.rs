@@ -1,7 +1,7 @@
 //! Maps from files.
 //!
-//! Orientation: x1 is the x of the file, along its rows, and x2 its y, which points up. Formats that are images (GSF, text
-//! matrices) begin with the top row, the one of largest x2; SDF and X3P begin with the lowest.
+//! Orientation: x1 is the x of the file, along its rows, and x2 its y, which points up. Formats that are images (GSF,
+//! text matrices) begin with the top row, the one of largest x2; SDF and X3P begin with the lowest.
 
 pub(super) mod gsf;
 mod header;
@@ -40,15 +40,15 @@ enum First {
 }
 
 impl HeightMap {
-    /// Reads a file whose format carries the lengths of the map, which its extension tells: [`gsf`](HeightMap::from_gsf),
-    /// [`sdf`](HeightMap::from_sdf), or `x3p` with the feature of that name.
+    /// Reads a file whose format carries the lengths of the map, which its extension tells:
+    /// [`gsf`](HeightMap::from_gsf), [`sdf`](HeightMap::from_sdf), or `x3p` with the feature of that name.
     ///
     /// # Orientation
     ///
-    /// x1 is the x of a file, along its rows, x2 its y, which points up, and the map has the height of
-    /// the point i along x1, j along x2 in the cell `[i, j]`. Formats that are images (GSF, text matrices) begin with the
-    /// top row, the one of largest x2; SDF and X3P begin with the lowest. The origin that a file may state is
-    /// not kept: a map is centred on its rectangle.
+    /// x1 is the x of a file, along its rows, x2 its y, which points up, and the map has the height of the point i
+    /// along x1, j along x2 in the cell `[i, j]`. Formats that are images (GSF, text matrices) begin with the top row,
+    /// the one of largest x2; SDF and X3P begin with the lowest. The origin that a file may state is not kept: a map
+    /// is centred on its rectangle.
     ///
     /// # Errors
     /// [`Error::Map`](crate::Error::Map) if the extension is none of these, the file cannot be read or is malformed;

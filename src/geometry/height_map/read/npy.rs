@@ -14,11 +14,12 @@ pub(in crate::geometry::height_map) const MAGIC: &[u8] = b"\x93NUMPY";
 const FORMAT: &str = "NPY";
 
 impl HeightMap {
-    /// Reads an array of two dimensions as `numpy.save` writes it, the map in `unit` of a rectangle of `lengths` \[m\]. Its first
-    /// axis is x1, its second x2: `heights[i, j]` is that of the cell `[i, j]`.
+    /// Reads an array of two dimensions as `numpy.save` writes it, the map in `unit` of a rectangle of `lengths`
+    /// \[m\]. Its first axis is x1, its second x2: `heights[i, j]` is that of the cell `[i, j]`.
     ///
     /// Floats of single and double precision and integers are read, in either byte order and in the order of C or of
-    /// Fortran; NaN is what was not measured. An image, whose first axis points down, is turned by `numpy.flipud(image).T`.
+    /// Fortran; NaN is what was not measured. An image, whose first axis points down, is turned by
+    /// `numpy.flipud(image).T`.
     ///
     /// # Errors
     /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed or holds something else; as
@@ -75,8 +76,9 @@ impl Array {
             Ok::<_, MapError>(rest.trim_start().strip_prefix(':').unwrap_or_default().trim_start())
         };
         let refuse = |key: &'static str, text: &str, allowed: &'static str| {
-            let text = text.split(['\n', '}']).next().unwrap_or_default().trim_end().to_owned();
-            MapError::Entry { format: FORMAT, key, text, allowed }
+            // up to the next entry
+            let text = text.split(", '").next().unwrap_or_default().split('}').next().unwrap_or_default();
+            MapError::Entry { format: FORMAT, key, text: text.trim_end_matches([',', ' ', '\n']).to_owned(), allowed }
         };
         let text = entry("descr")?;
         let number = text.strip_prefix('\'').and_then(|text| number(text.split('\'').next()?));

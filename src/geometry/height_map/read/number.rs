@@ -15,7 +15,7 @@ pub(super) struct Number {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     Signed,
-    #[cfg_attr(not(feature = "npy"), expect(dead_code, reason = "only NPY files have them"))]
+    #[cfg_attr(not(feature = "npy"), allow(dead_code, reason = "only NPY files have them"))]
     Unsigned,
     Float,
 }

@@ -10,8 +10,8 @@ use crate::geometry::{HeightMap, LengthUnit, MapError};
 const FORMAT: &str = "text";
 
 impl HeightMap {
-    /// Reads a matrix of heights in `unit` from text, the map of a rectangle of `lengths` \[m\]: a line is a row of it along x1,
-    /// the first one the top.
+    /// Reads a matrix of heights in `unit` from text, the map of a rectangle of `lengths` \[m\]: a line is a row of it
+    /// along x1, the first one the top.
     ///
     /// Heights are separated by semicolons, tabs, commas or blanks. What is empty between two separators, or says
     /// `nan` or `bad`, was not measured. Lines that start with `#` and empty lines are skipped.
@@ -26,8 +26,9 @@ impl HeightMap {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the text cannot be read, a line has another number of columns than the first, or
-    /// something that is not a number, each told with its line; as [`HeightMap::new`] if the map is not one that may be.
+    /// [`Error::Map`](crate::Error::Map) if the text cannot be read, a line has another number of columns than the
+    /// first, or something that is not a number, each told with its line; as [`HeightMap::new`] if the map is not one
+    /// that may be.
     pub fn from_text(reader: impl Read, lengths: [f64; 2], unit: LengthUnit) -> Result<HeightMap> {
         let text = text(reader)?;
         let table = Table::new(&text);

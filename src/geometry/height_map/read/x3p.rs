@@ -1,6 +1,7 @@
 //! X3P, the archive of ISO 25178-72 (ISO 5436-2 before): `main.xml` and the heights, which it refers to or holds.
 //!
-//! Elements and number types are those of the schema of the openGPS consortium (<https://sourceforge.net/p/open-gps/mwiki>).
+//! Elements and number types are those of the schema of the openGPS consortium
+//! (<https://sourceforge.net/p/open-gps/mwiki>).
 
 use std::io::{Cursor, Read};
 
@@ -27,14 +28,16 @@ const VALID: &str = "Record3/DataLink/ValidPointsLink";
 const LIST: &str = "Record3/DataList";
 
 impl HeightMap {
-    /// Reads an X3P archive of ISO 25178-72, in m: a surface (`SUR`) whose points are a matrix, equally spaced along x and y.
+    /// Reads an X3P archive of ISO 25178-72, in m: a surface (`SUR`) whose points are a matrix, equally spaced along x
+    /// and y.
     ///
-    /// Heights are integers of 16 or 32 bits with sign (`I`, `L`) or of single or double precision (`F`, `D`), in a binary file
-    /// or in the XML itself, times `Increment` plus `Offset` of their axis. What was not measured is NaN, empty in the
-    /// XML, or marked in the file of valid points. The first row is that of smallest x2; the offsets of x and y are not kept.
-    /// The MD5 sums are not verified; the check sums of the archive are.
+    /// Heights are integers of 16 or 32 bits with sign (`I`, `L`) or of single or double precision (`F`, `D`), in a
+    /// binary file or in the XML itself, times `Increment` plus `Offset` of their axis. What was not measured is NaN,
+    /// empty in the XML, or marked in the file of valid points. The first row is that of smallest x2; the offsets of x
+    /// and y are not kept. The MD5 sums are not verified; the check sums of the archive are.
     ///
-    /// An archive is expected to hold 2 GiB of heights and 64 MiB of XML at most, so that a small one cannot fill the memory.
+    /// An archive is expected to hold 2 GiB of heights and 64 MiB of XML at most, so that a small one cannot fill the
+    /// memory.
     ///
     /// # Errors
     /// [`Error::Map`](crate::Error::Map) if the archive cannot be read, is malformed or holds something else; as
@@ -45,12 +48,7 @@ impl HeightMap {
             return Err(MapError::Magic { format: FORMAT, magic: "PK, as zip archives do" }.into());
         }
         let mut archive = ZipArchive::new(Cursor::new(file)).map_err(|error| unreadable(&error.to_string()))?;
-        let xml = member(&mut archive, "main.xml", MOST_XML)?;
-        if xml.len() as u64 > MOST_XML {
-            let (found, expected) = (xml.len() as u64, MOST_XML);
-            let what = "bytes of main.xml at most";
-            return Err(MapError::Size { format: FORMAT, what, found, expected, exact: false }.into());
-        }
+        let xml = member(&mut archive, "main.xml", "bytes of main.xml at most", MOST_XML)?;
         let xml = String::from_utf8(xml).map_err(|error| unreadable(&format!("main.xml: {error}")))?;
         let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
         let document = Document::parse_with_options(xml.trim_start_matches('\u{feff}'), options)
@@ -65,14 +63,20 @@ fn unreadable(reason: &str) -> MapError {
     MapError::Unreadable { file: format!("{FORMAT} file"), reason: reason.to_owned() }
 }
 
-/// What a file of the archive holds, up to one byte more than `most`.
-fn member(archive: &mut Archive, name: &str, most: u64) -> Result<Vec<u8>> {
+/// What a file of the archive holds, which may be `most` bytes.
+fn member(archive: &mut Archive, name: &str, what: &'static str, most: u64) -> Result<Vec<u8>> {
     let name = name.strip_prefix("./").unwrap_or(name);
     let broken = |reason: String| unreadable(&format!("{name}: {reason}"));
     let file = archive.by_name(name).map_err(|error| broken(error.to_string()))?;
     let mut bytes = Vec::new();
-    file.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| broken(error.to_string()))?;
-    Ok(bytes)
+    file.take(most + 1).read_to_end(&mut bytes).map_err(|error| broken(error.to_string()))?;
+    // no more is read than shows that there is too much
+    match bytes.len() as u64 {
+        found if found > most => {
+            Err(MapError::Size { format: FORMAT, what, found, expected: most, exact: false }.into())
+        }
+        _ => Ok(bytes),
+    }
 }
 
 /// The contents of `main.xml`.
@@ -149,7 +153,7 @@ impl<'a, 'i> Header<'a, 'i> {
                     let (what, found) = ("bytes of heights at most", expected);
                     return Err(MapError::Size { format: FORMAT, what, found, expected: MOST_DATA, exact: true }.into());
                 }
-                let data = member(archive, name, expected)?;
+                let data = member(archive, name, "bytes of heights", expected)?;
                 number.decode_all(FORMAT, &data, count, true)?
             }
             None => self.listed(count)?,
@@ -159,10 +163,11 @@ impl<'a, 'i> Header<'a, 'i> {
         }
         if let Some(name) = self.get(VALID) {
             let expected = (count as u64).div_ceil(8);
-            let valid = member(archive, name, expected)?;
-            if valid.len() as u64 != expected {
-                let (what, found) = ("bytes of valid points", valid.len() as u64);
-                return Err(MapError::Size { format: FORMAT, what, found, expected, exact: found < expected }.into());
+            let what = "bytes of valid points";
+            let valid = member(archive, name, what, expected)?;
+            let found = valid.len() as u64;
+            if found < expected {
+                return Err(MapError::Size { format: FORMAT, what, found, expected, exact: true }.into());
             }
             // one bit a point, the lowest of a byte first
             let missing = |k: &usize| valid[k / 8] >> (k % 8) & 1 == 0;
@@ -330,7 +335,8 @@ pub(super) mod tests {
         }
         for (length, found) in [(40, 40), (47, 47), (49, 49), (4000, 49)] {
             let error = read(&whole, &vec![0; length]).unwrap_err();
-            let size = MapError::Size { format: FORMAT, what: "bytes of heights", found, expected: 48, exact: true };
+            let exact = found < 48;
+            let size = MapError::Size { format: FORMAT, what: "bytes of heights", found, expected: 48, exact };
             assert_eq!(error, size.into());
         }
         for broken in ["", "<a", "<a></a></a>", "<!DOCTYPE a [<!ENTITY b \"c\">]><a>&b;</a>"] {

