@@ -96,6 +96,7 @@ mod grid;
 mod hereditary;
 mod kernel;
 pub mod load;
+pub mod motion;
 pub mod observe;
 pub mod output;
 pub mod plan;
@@ -128,6 +129,7 @@ pub mod prelude {
         Rough, RoughSpec, Roughness, Shifted, Sphere, Sum, SurfaceStatistics, Wavy,
     };
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
+    pub use crate::motion::{FnPath, Path, Straight, Travel};
     pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,

@@ -31,9 +31,16 @@ impl ViscoelasticContact {
         if geometries.len() != self.loads.len() {
             return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.loads.len() });
         }
-        self.move_back();
         let gaps: Vec<_> = geometries.iter().map(|geometry| evaluate(*geometry, &self.grid)).collect();
-        self.initial_gap = Gap::new(&gaps, &self.grid)?;
+        self.replace_gap(Gap::new(&gaps, &self.grid)?);
+        self.last_dt = 0.0; // the last change of the pressure says nothing about the next
+        Ok(())
+    }
+
+    /// Puts another gap in the place of the one at hand, which is returned.
+    pub(super) fn replace_gap(&mut self, gap: Gap) -> Gap {
+        self.move_back();
+        let before = std::mem::replace(&mut self.initial_gap, gap);
         self.gap_here = self.region.cut_gap(&self.initial_gap);
         self.survey();
         let folded = self.region.folded();
@@ -43,7 +50,6 @@ impl ViscoelasticContact {
             self.unfold(still);
         }
         self.hulls.fill(None);
-        self.last_dt = 0.0; // the last change of the pressure says nothing about the next
-        Ok(())
+        before
     }
 }

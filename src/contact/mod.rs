@@ -19,6 +19,7 @@ mod settings;
 mod spatial;
 mod steady;
 mod stepper;
+mod travel;
 
 pub use between::Between;
 pub use builder::Builder;

@@ -1,0 +1,74 @@
+use std::fmt;
+
+use crate::error::{Result, finite};
+
+/// Where an indenter is at each time.
+pub trait Path: fmt::Debug + Send + Sync {
+    /// Where the origin of its shape is at time `t` \[s\], as (x1, x2) \[m\].
+    fn at(&self, t: f64) -> [f64; 2];
+}
+
+/// A straight path at constant velocity.
+///
+/// ```
+/// use viscocontact::motion::{Path, Straight};
+///
+/// let path = Straight::new([1.0e-3, 0.0], [0.0, 2.0])?;
+/// assert_eq!(path.at(0.5), [1.0e-3, 1.0]);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Straight {
+    start: [f64; 2],
+    velocity: [f64; 2],
+}
+
+impl Straight {
+    /// From `start` \[m\] at t = 0 with `velocity` \[m/s\].
+    ///
+    /// # Errors
+    /// If a number is not finite.
+    pub fn new(start: [f64; 2], velocity: [f64; 2]) -> Result<Straight> {
+        Ok(Straight {
+            start: [finite("start along x1", start[0])?, finite("start along x2", start[1])?],
+            velocity: [finite("velocity along x1", velocity[0])?, finite("velocity along x2", velocity[1])?],
+        })
+    }
+}
+
+impl Path for Straight {
+    fn at(&self, t: f64) -> [f64; 2] {
+        [0, 1].map(|axis| self.start[axis] + self.velocity[axis] * t)
+    }
+}
+
+/// A path given by a closure of time: back and forth, round in circles, measured.
+///
+/// ```
+/// use viscocontact::motion::{FnPath, Path};
+///
+/// let fretting = FnPath::new(|t| [1.0e-5 * (100.0 * t).sin(), 0.0]);
+/// assert_eq!(fretting.at(0.0), [0.0, 0.0]);
+/// ```
+pub struct FnPath<F> {
+    at: F,
+}
+
+impl<F: Fn(f64) -> [f64; 2] + Send + Sync> FnPath<F> {
+    /// Wraps the closure; its values are checked at each step.
+    pub fn new(at: F) -> FnPath<F> {
+        FnPath { at }
+    }
+}
+
+impl<F> fmt::Debug for FnPath<F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("FnPath").finish_non_exhaustive()
+    }
+}
+
+impl<F: Fn(f64) -> [f64; 2] + Send + Sync> Path for FnPath<F> {
+    fn at(&self, t: f64) -> [f64; 2] {
+        (self.at)(t)
+    }
+}

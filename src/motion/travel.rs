@@ -1,0 +1,92 @@
+use std::sync::Arc;
+
+use crate::Grid;
+use crate::contact::StepReport;
+use crate::error::{Result, finite};
+use crate::geometry::{Geometry, Shifted};
+use crate::motion::Path;
+
+/// A shape that travels along a path, perhaps over something that stays where it is.
+///
+/// ```
+/// use viscocontact::motion::{Straight, Travel};
+/// use viscocontact::prelude::*;
+///
+/// let (grid, load) = (Grid::new([96, 48], [8.0e-3, 4.0e-3])?, Load::force(0.5));
+/// let travel = Travel::new(Sphere::new(10.0e-3)?, Straight::new([-2.0e-3, 0.0], [0.1, 0.0])?);
+/// let mut contact = ViscoelasticContact::builder(grid)
+///     .geometry(&travel.shape_at(0.0)?)
+///     .material(Material::incompressible(Zener::new(1.0e6, 0.3e6, 0.01e6)?))
+///     .build()?;
+/// contact.step(0.0, load)?;
+/// for _ in 0..20 {
+///     let report = contact.step_along(&travel, 2.0e-3, load)?;
+///     println!("{:.2e} m: {:.2e} N, {:.2e} W", report.position[0], report.lateral_force[0], report.power);
+/// }
+/// assert!(contact.asymmetry([2.0e-3, 0.0])?.unwrap().center_of_pressure[0] > 2.0e-3); // it leans forward
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct Travel {
+    shape: Arc<dyn Geometry>,
+    path: Arc<dyn Path>,
+    track: Option<Arc<dyn Geometry>>,
+}
+
+/// A step along a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct TravelReport {
+    /// The step itself.
+    pub step: StepReport,
+    /// Where the shape is at its end \[m\].
+    pub position: [f64; 2],
+    /// The force that moves it \[N\], see
+    /// [`ViscoelasticContact::lateral_force`](crate::ViscoelasticContact::lateral_force).
+    pub lateral_force: [f64; 2],
+    /// The power that it feeds into the bodies \[W\]: force at the end of the step times mean velocity, 0 for a jump.
+    pub power: f64,
+}
+
+impl Travel {
+    /// `shape` along `path`.
+    pub fn new(shape: impl Geometry + 'static, path: impl Path + 'static) -> Travel {
+        Travel { shape: Arc::new(shape), path: Arc::new(path), track: None }
+    }
+
+    /// What stays where it is, its gap added to that of the moving shape: the roughness of the creeping body, or of a rolling
+    /// indenter.
+    #[must_use]
+    pub fn over(mut self, track: impl Geometry + 'static) -> Travel {
+        self.track = Some(Arc::new(track));
+        self
+    }
+
+    /// Where the shape is at time `t` \[m\].
+    ///
+    /// # Errors
+    /// If the path returns what is not finite.
+    pub fn position(&self, t: f64) -> Result<[f64; 2]> {
+        let [x1, x2] = self.path.at(t);
+        Ok([finite("position along x1", x1)?, finite("position along x2", x2)?])
+    }
+
+    /// The moving shape where it is at time `t` \[s\], without what stays in place.
+    ///
+    /// # Errors
+    /// As [`Travel::position`].
+    pub fn shape_at(&self, t: f64) -> Result<Shifted> {
+        Shifted::new(Arc::clone(&self.shape), self.position(t)?)
+    }
+
+    /// The gap \[m\] at time `t` \[s\] on every cell, of the moving shape and what it moves over.
+    pub(crate) fn fill_gap(&self, t: f64, grid: &Grid, gap: &mut [f64], scratch: &mut Vec<f64>) -> Result<()> {
+        self.shape.fill_gap_at(grid, self.position(t)?, gap);
+        if let Some(track) = &self.track {
+            scratch.resize(grid.len(), 0.0);
+            track.fill_gap(grid, scratch);
+            gap.iter_mut().zip(scratch).for_each(|(gap, track)| *gap += *track);
+        }
+        Ok(())
+    }
+}
