@@ -254,6 +254,19 @@ mod tests {
     }
 
     #[test]
+    fn undecided_points_are_refused_where_the_gap_is_used() {
+        use crate::geometry::{Gap, evaluate};
+        let map = map_of([4, 4], |x1, x2| if x1 > 0.3 && x2 > 0.3 { f64::NAN } else { x1 });
+        let joined = |map: &HeightMap| Gap::new(&[evaluate(map, &map.grid())], &map.grid());
+        let refused = joined(&map).unwrap_err();
+        assert!(matches!(refused, Error::InvalidGap { cell: [3, 3], value, .. } if value.is_nan()));
+        assert_eq!(joined(&map.clone().masked()).unwrap().above[15], f64::INFINITY);
+        assert!(joined(&map.filled().unwrap()).unwrap().above.iter().all(|h| h.is_finite()));
+        let nothing = map_of([2, 2], |_, _| f64::NAN).masked();
+        assert_eq!(joined(&nothing), Err(Error::NothingToTouch { body: 0, cells: 4 }));
+    }
+
+    #[test]
     fn band_limited_maps_move_exactly() {
         for cells in [[16, 12], [15, 13], [16, 15]] {
             let map = map_of(cells, waves).periodic();
