@@ -6,8 +6,8 @@ use num_complex::Complex64;
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 
-/// The waves of a real field on `cells` points: amplitudes `a` of exp(2πi (k1 i/n1 + k2 j/n2)), normalised so that their sum is
-/// the field. Only those with k2 ≥ 0 are kept; the others are their conjugates.
+/// The waves of a real field on `cells` points: amplitudes `a` of exp(2πi (k1 i/n1 + k2 j/n2)), normalised so
+/// that their sum is the field. Only those with k2 ≥ 0 are kept; the others are their conjugates.
 #[derive(Debug, Clone)]
 pub(super) struct Spectrum {
     cells: [usize; 2],

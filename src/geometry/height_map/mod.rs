@@ -67,11 +67,12 @@ pub struct HeightMap {
 }
 
 impl HeightMap {
-    /// A map of `cells[0]` × `cells[1]` heights \[m\], each in the middle of its cell of a rectangle of `lengths` \[m\],
-    /// row-major with x2 fastest; NaN where nothing was measured.
+    /// A map of `cells[0]` × `cells[1]` heights \[m\], each in the middle of its cell of a rectangle of `lengths`
+    /// \[m\], row-major with x2 fastest; NaN where nothing was measured.
     ///
     /// # Errors
-    /// If a count or a length is not one a [`Grid`](crate::Grid) may have, there are not `cells[0] * cells[1]` heights, or one is infinite.
+    /// If a count or a length is not one a [`Grid`] may have, there are not `cells[0] * cells[1]` heights,
+    /// or one is infinite.
     pub fn new(cells: [usize; 2], lengths: [f64; 2], heights: Vec<f64>) -> Result<HeightMap> {
         let grid = Grid::new(cells, lengths)?;
         exact_length("heights", heights.len(), grid.len())?;

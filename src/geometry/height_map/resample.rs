@@ -16,8 +16,8 @@ pub struct Resampled {
     pub error: ResamplingError,
 }
 
-/// What the new grid of a map does not resolve: the new map, interpolated back to the points of the old one, less the old
-/// one.
+/// What the new grid of a map does not resolve: the new map, interpolated back to the points of the old one,
+/// less the old one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResamplingError {
     /// Root mean square \[m\].
