@@ -107,13 +107,14 @@ mod tests {
     #[test]
     fn forms_are_taken_out_whole() {
         let hole = |x1: f64, x2: f64| if x1 > 0.3 && x2 > 0.1 { f64::NAN } else { 0.0 };
-        let forms: [(Form, fn(f64, f64) -> f64); 3] = [
-            (Form::Mean, |_, _| 7.0),
-            (Form::Tilt, |x1, x2| 7.0 - 2.0 * x1 + 50.0 * x2),
-            (Form::Curvature, |x1, x2| 7.0 - 2.0 * x1 + 5.0 * x2 + x1 * x1 - 3.0 * x1 * x2 + 40.0 * x2 * x2),
+        let forms = [
+            (Form::Mean, [7.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
+            (Form::Tilt, [7.0, -2.0, 50.0, 0.0, 0.0, 0.0]),
+            (Form::Curvature, [7.0, -2.0, 5.0, 1.0, -3.0, 40.0]),
         ];
-        for (form, surface) in forms {
-            let left = map_of([11, 14], |x1, x2| surface(x1, x2) + hole(x1, x2)).leveled(form).unwrap();
+        for (form, [a, b, c, d, e, f]) in forms {
+            let surface = |x: f64, y: f64| a + b * x + c * y + d * x * x + e * x * y + f * y * y + hole(x, y);
+            let left = map_of([11, 14], surface).leveled(form).unwrap();
             assert!(greatest(&left) < 1e-13, "{form:?}: {}", greatest(&left));
             assert!(left.missing() > 0);
         }

@@ -71,11 +71,12 @@ pub struct HeightMap {
 }
 
 impl HeightMap {
-    /// A map of `cells[0]` × `cells[1]` heights \[m\], each in the middle of its cell of a rectangle of `lengths` \[m\],
-    /// row-major with x2 fastest; NaN where nothing was measured.
+    /// A map of `cells[0]` × `cells[1]` heights \[m\], each in the middle of its cell of a rectangle of `lengths`
+    /// \[m\], row-major with x2 fastest; NaN where nothing was measured.
     ///
     /// # Errors
-    /// If a count or a length is not one a [`Grid`](crate::Grid) may have, there are not `cells[0] * cells[1]` heights, or one is infinite.
+    /// If a count or a length is not one a [`Grid`] may have, there are not `cells[0] * cells[1]` heights,
+    /// or one is infinite.
     pub fn new(cells: [usize; 2], lengths: [f64; 2], heights: Vec<f64>) -> Result<HeightMap> {
         let grid = Grid::new(cells, lengths)?;
         exact_length("heights", heights.len(), grid.len())?;
@@ -255,6 +256,19 @@ mod tests {
         assert_eq!(gap.iter().copied().fold(f64::INFINITY, f64::min), 0.0);
         assert_eq!(gap[9], 0.0);
         assert!((gap[2] - (9.0 / 4.0 + 2.0 / 3.0)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn undecided_points_are_refused_where_the_gap_is_used() {
+        use crate::geometry::{Gap, evaluate};
+        let map = map_of([4, 4], |x1, x2| if x1 > 0.3 && x2 > 0.3 { f64::NAN } else { x1 });
+        let joined = |map: &HeightMap| Gap::new(&[evaluate(map, &map.grid())], &map.grid());
+        let refused = joined(&map).unwrap_err();
+        assert!(matches!(refused, Error::InvalidGap { cell: [3, 3], value, .. } if value.is_nan()));
+        assert_eq!(joined(&map.clone().masked()).unwrap().above[15], f64::INFINITY);
+        assert!(joined(&map.filled().unwrap()).unwrap().above.iter().all(|h| h.is_finite()));
+        let nothing = map_of([2, 2], |_, _| f64::NAN).masked();
+        assert_eq!(joined(&nothing), Err(Error::NothingToTouch { body: 0, cells: 4 }));
     }
 
     #[test]

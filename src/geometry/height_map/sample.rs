@@ -213,8 +213,8 @@ mod tests {
     #[test]
     fn rows_of_one_to_three_points_serve() {
         let constant = HeightMap::new([1, 1], [1.0, 1.0], vec![2.0]).unwrap();
-        assert_eq!(constant.height_at(0.3, -0.4), Some(2.0));
-        assert_eq!(constant.clone().periodic().height_at(7.3, -9.4), Some(2.0));
+        assert!((constant.height_at(0.3, -0.4).unwrap() - 2.0).abs() < 1e-15);
+        assert!((constant.clone().periodic().height_at(7.3, -9.4).unwrap() - 2.0).abs() < 1e-14);
         for n in [2, 3] {
             let line = map_of([n, 1], |x1, _| 3.0 * x1);
             assert!((line.height_at(0.45, 0.2).unwrap() - 1.35).abs() < 1e-15);

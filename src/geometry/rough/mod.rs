@@ -221,18 +221,18 @@ mod tests {
     fn it_moves_exactly() {
         let rough = Rough::new(&Grid::square(32, 1.0).unwrap(), SPEC).unwrap();
         let fine = Rough::new(&Grid::square(320, 1.0).unwrap(), SPEC).unwrap();
-        // By a tenth of a cell at a time; gaps count from different points.
+        // Gaps count from different points.
         let (grid, of_fine) = (Grid::square(32, 1.0).unwrap(), Grid::square(320, 1.0).unwrap());
         let (a, b) =
-            (field(&grid, &rough, [0.3 / 32.0, -0.4 / 32.0]), field(&of_fine, &fine, [3.5 / 320.0, -3.5 / 320.0]));
+            (field(&grid, &rough, [0.3 / 32.0, -0.4 / 32.0]), field(&of_fine, &fine, [3.5 / 320.0, -4.5 / 320.0]));
         let datum = rough.map.heights()[0] + rough.initial_gap(-15.5 / 32.0, -15.5 / 32.0)
             - fine.map.heights()[0]
             - fine.initial_gap(-159.5 / 320.0, -159.5 / 320.0);
-        for k in 0..32 * 32 {
+        for (k, here) in a.into_iter().enumerate() {
             let (i, j) = (k / 32, k % 32);
-            // The coarse centre lies between the fine cells 4 and 5 of ten.
+            // Moved, the coarse centre is that of a fine cell.
             let at = b[(10 * i + 5) * 320 + (10 * j + 4)];
-            assert!((a[k] - at - datum).abs() < 1e-12, "{} and {}", a[k], at + datum);
+            assert!((here - at - datum).abs() < 1e-12, "{} and {}", here, at + datum);
         }
     }
 
