@@ -1,0 +1,251 @@
+//! Indenters that move: two frames that must agree, energy, what is rough where, and steps that fail.
+
+use std::sync::Arc;
+
+use viscocontact::prelude::*;
+
+fn zener() -> Material {
+    Material::incompressible(Zener::new(1.0e6, 0.4e6, 0.02e6).unwrap())
+}
+
+fn builder(grid: &Grid, shape: &dyn Geometry, frame: Frame) -> viscocontact::contact::Builder {
+    let settings = Settings { frame, tolerance: 1e-9, ..Settings::default() };
+    ViscoelasticContact::builder(grid.clone()).geometry(shape).material(zener()).settings(settings)
+}
+
+/// Of two fields, the second seen from so many cells further on, the greatest difference over the greatest value.
+fn difference(grid: &Grid, fixed: &[f64], moving: &[f64], by: [isize; 2]) -> f64 {
+    let [n1, n2] = grid.cells().map(|n| n as isize);
+    let mut difference: f64 = 0.0;
+    for i in 0..n1 {
+        for j in 0..n2 {
+            let (from, to) = ([i + by[0], j + by[1]], [i, j]);
+            let index = |cell: [isize; 2]| (cell[0].rem_euclid(n1) * n2 + cell[1].rem_euclid(n2)) as usize;
+            difference = difference.max((fixed[index(from)] - moving[index(to)]).abs());
+        }
+    }
+    difference / fixed.iter().copied().fold(0.0, f64::max)
+}
+
+/// A ball on endless periodic bodies, diagonally, several times around: over the grid, and with it.
+#[test]
+fn frames_agree_on_periodic_bodies() {
+    let grid = Grid::new([40, 32], [4.0e-3, 3.2e-3]).unwrap();
+    let ball = || Repeated::new(Sphere::new(5.0e-3).unwrap(), [4.0e-3, 3.2e-3]).unwrap();
+    let kernel = Arc::new(InfluenceKernel::periodic(&grid).unwrap());
+    let (load, dt, stride) = (Load::force(0.3), 4.0e-3, [3, -2]);
+    let velocity = [0, 1].map(|axis| f64::from(stride[axis]) * grid.spacing()[axis] / dt);
+    let travel = Travel::new(ball(), Straight::new([0.0; 2], velocity).unwrap());
+    let mut fixed = builder(&grid, &ball(), Frame::Bodies).kernel(Arc::clone(&kernel)).build().unwrap();
+    let mut moving = builder(&grid, &ball(), Frame::Indenter).kernel(kernel).build().unwrap();
+    fixed.step(0.0, load).unwrap();
+    moving.step(0.0, load).unwrap();
+    for step in 1..=30 {
+        let report = fixed.step_along(&travel, dt, load).unwrap();
+        moving.step_over(stride.map(|cells| cells as isize), dt, load).unwrap();
+        let by = stride.map(|cells| (cells * step) as isize);
+        let apart = difference(&grid, fixed.pressure(), moving.pressure(), by);
+        assert!(apart < 1e-5, "step {step}: {apart}");
+        let u = difference(&grid, fixed.displacement(), moving.displacement(), by);
+        assert!(u < 1e-7, "step {step}: {u}");
+        assert!((fixed.approach() / moving.approach() - 1.0).abs() < 1e-7);
+        let (here, there) = (report.lateral_force, moving.lateral_force(&ball()));
+        assert!((0..2).all(|axis| (here[axis] - there[axis]).abs() < 1e-6 * 0.3), "{here:?} {there:?}");
+        assert!(step < 4 || report.power > 0.0);
+    }
+}
+
+/// A ball on a half-space: with the grid it comes upon bodies that the grid did not know, and forgets none it still feels.
+#[test]
+fn frames_agree_on_a_half_space() {
+    let track = Grid::new([96, 24], [9.6e-3, 2.4e-3]).unwrap();
+    let grid = Grid::new([64, 24], [6.4e-3, 2.4e-3]).unwrap();
+    let at = |x1: f64| Shifted::new(Sphere::new(5.0e-3).unwrap(), [x1, 0.0]).unwrap();
+    let (load, dt) = (Load::force(0.1), 2.0e-3);
+    // both begin with the ball at the 20th cell from the front of the smaller grid
+    let travel = Travel::new(Sphere::new(5.0e-3).unwrap(), Straight::new([-3.35e-3, 0.0], [0.1e-3 / dt, 0.0]).unwrap());
+    let mut fixed = builder(&track, &travel.shape_at(0.0).unwrap(), Frame::Bodies).build().unwrap();
+    let mut moving = builder(&grid, &at(1.25e-3), Frame::Indenter).build().unwrap();
+    fixed.step(0.0, load).unwrap();
+    moving.step(0.0, load).unwrap();
+    for step in 1..=30 {
+        fixed.step_along(&travel, dt, load).unwrap();
+        moving.step_over([1, 0], dt, load).unwrap();
+        let offset = 14 + step - 44;
+        for i in 0..64_isize {
+            let k = i + offset;
+            let rows = |contact: &ViscoelasticContact, i: usize| contact.pressure()[i * 24..(i + 1) * 24].to_vec();
+            let here = rows(&moving, i as usize);
+            let there = usize::try_from(k).map_or(vec![0.0; 24], |k| rows(&fixed, k));
+            let greatest = fixed.greatest_pressure();
+            assert!(here.iter().zip(&there).all(|(a, b)| (a - b).abs() < 1e-5 * greatest), "step {step}, row {i}");
+        }
+        assert!((fixed.approach() / moving.approach() - 1.0).abs() < 1e-7, "{step}");
+    }
+    assert!(moving.lateral_force(&at(1.25e-3))[0] > 0.01 * moving.force());
+}
+
+/// What force and lateral force do at a contact is what the pressure does at the surface: Σ p Δu = W Δω + F Δs, to second
+/// order in the step.
+#[test]
+fn work_is_done_on_the_bodies() {
+    let grid = Grid::new([128, 1], [8.0e-3, 1.0]).unwrap();
+    let errors = [16, 32, 64].map(|steps: usize| {
+        let (load, dt) = (Load::force(150.0), 0.016 / steps as f64);
+        let path = FnPath::new(|t: f64| [1.0e-3 * (200.0 * t).sin(), 0.0]);
+        let travel = Travel::new(Cylinder::new(8.0e-3).unwrap(), path);
+        let mut contact = builder(&grid, &travel.shape_at(0.0).unwrap(), Frame::Bodies)
+            .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+            .build()
+            .unwrap();
+        contact.step(0.0, load).unwrap();
+        let (mut inside, mut outside) = (0.0, 0.0);
+        let state = |contact: &ViscoelasticContact| (contact.pressure().to_vec(), contact.displacement().to_vec());
+        for _ in 0..steps {
+            let (p, u) = state(&contact);
+            let before = (contact.lateral_force(&travel.shape_at(contact.time()).unwrap()), contact.approach());
+            let from = travel.position(contact.time()).unwrap();
+            let report = contact.step_along(&travel, dt, load).unwrap();
+            let (q, w) = state(&contact);
+            let pairs = p.iter().zip(&q).zip(u.iter().zip(&w));
+            inside += pairs.map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum::<f64>() * grid.cell_area();
+            outside += 150.0 * (contact.approach() - before.1)
+                + 0.5 * (report.lateral_force[0] + before.0[0]) * (report.position[0] - from[0]);
+        }
+        assert!(outside > 0.0);
+        (inside / outside - 1.0).abs()
+    });
+    println!("{errors:?}");
+    assert!(errors[0] < 0.05 && errors[2] < 0.35 * errors[1] && errors[1] < 0.4 * errors[0], "{errors:?}");
+}
+
+/// Elastic bodies give back what they take, cell by cell or in between: over a period of the track the lateral force is zero
+/// on average, and the state where it was.
+#[test]
+fn elastic_bodies_dissipate_nothing() {
+    let grid = Grid::square(48, 1.0e-3).unwrap();
+    let spec = RoughSpec {
+        hurst: 0.8,
+        longest: 0.5e-3,
+        roll_off: 0.5e-3,
+        shortest: 0.1e-3,
+        anisotropy: Anisotropy::default(),
+        roughness: Roughness::RmsSlope(0.05),
+        seed: 3,
+    };
+    let slider = Rough::new(&grid, spec).unwrap();
+    let travel = Travel::new(slider.clone(), Straight::new([0.0; 2], [1.0e-3, 0.0]).unwrap());
+    let track = Rough::new(&grid, RoughSpec { seed: 4, ..spec }).unwrap();
+    let mut contact = ViscoelasticContact::builder(grid.clone())
+        .geometry(&Sum::new(slider, track.clone()))
+        .material(Material::incompressible(Elastic::new(1.0e6).unwrap()))
+        .kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()))
+        .build()
+        .unwrap();
+    let travel = travel.over(track);
+    contact.step(0.0, Load::force(0.02)).unwrap();
+    let (approach, pressure) = (contact.approach(), contact.pressure().to_vec());
+    let (mut sum, mut greatest) = (0.0, 0.0_f64);
+    for _ in 0..100 {
+        let report = contact.step_along(&travel, 0.01, Load::force(0.02)).unwrap();
+        sum += report.lateral_force[0];
+        greatest = greatest.max(report.lateral_force[0].abs());
+    }
+    assert!(greatest > 1e-4, "the surfaces are rough: {greatest}");
+    assert!((sum / 100.0).abs() < 0.02 * greatest, "{sum} {greatest}");
+    assert!((contact.approach() / approach - 1.0).abs() < 1e-6);
+    let most = pressure.iter().copied().fold(0.0, f64::max);
+    assert!(contact.pressure().iter().zip(&pressure).all(|(a, b)| (a - b).abs() < 1e-3 * most));
+}
+
+/// Roughness of the creeping body stays where it is, that of a slider wanders: the same at the start, not thereafter.
+#[test]
+fn it_matters_what_is_rough() {
+    let grid = Grid::new([128, 1], [8.0e-3, 1.0]).unwrap();
+    let waves = || Wavy::new(2.0e-6, 1.0e-3).unwrap();
+    let cylinder = || Cylinder::new(10.0e-3).unwrap();
+    let path = Straight::new([-1.0e-3, 0.0], [0.1, 0.0]).unwrap();
+    let sliding = Travel::new(Sum::new(cylinder(), waves()), path);
+    let rolling = Travel::new(cylinder(), path).over(waves());
+    let end = |travel: &Travel| {
+        let start = Sum::new(Shifted::new(cylinder(), [-1.0e-3, 0.0]).unwrap(), waves());
+        let mut contact = builder(&grid, &start, Frame::Bodies)
+            .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(60.0)).unwrap();
+        // to a place where the waves of both lie alike again
+        for _ in 0..40 {
+            contact.step_along(travel, 5.0e-4, Load::force(60.0)).unwrap();
+        }
+        contact
+    };
+    let (sliding, rolling) = (end(&sliding), end(&rolling));
+    let pairs = sliding.pressure().iter().zip(rolling.pressure());
+    let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / rolling.greatest_pressure();
+    assert!(apart > 0.01, "{apart}");
+}
+
+#[test]
+fn steps_that_fail_leave_the_indenter_where_it_was() {
+    let grid = Grid::square(32, 4.0e-3).unwrap();
+    let sphere = || Sphere::new(5.0e-3).unwrap();
+    let load = Load::force(0.1);
+    let travel = Travel::new(sphere(), Straight::new([0.0; 2], [0.01, 0.0]).unwrap());
+    let mut contact = builder(&grid, &sphere(), Frame::Bodies).build().unwrap();
+    contact.step(0.0, load).unwrap();
+    contact.step_along(&travel, 0.01, load).unwrap();
+    let mut twin = contact.clone();
+    // over the edge, and nowhere
+    assert!(matches!(contact.step_along(&travel, 0.2, load), Err(Error::ContactAtEdge { .. })));
+    let lost = Travel::new(sphere(), FnPath::new(|_| [f64::NAN, 0.0]));
+    assert!(matches!(contact.step_along(&lost, 0.01, load), Err(Error::OutOfRange { field: "position along x1", .. })));
+    contact.step(0.01, load).unwrap();
+    twin.step(0.01, load).unwrap();
+    let pairs = contact.pressure().iter().zip(twin.pressure());
+    let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-6 * twin.greatest_pressure(), "{apart}");
+
+    assert!(matches!(contact.step_over([1, 0], 0.01, load), Err(Error::WrongFrame { .. })));
+    let mut moving = builder(&grid, &sphere(), Frame::Indenter).build().unwrap();
+    assert!(matches!(moving.step_along(&travel, 0.01, load), Err(Error::WrongFrame { .. })));
+    moving.step(0.0, load).unwrap();
+    moving.step_over([2, 0], 0.01, load).unwrap();
+    let mut twin = moving.clone();
+    let error = moving.step_over([2, 0], 0.01, Load::eccentric_force(0.1, [1.0, 0.0])).unwrap_err();
+    assert!(matches!(error, Error::LoadOutsideHull { .. }));
+    assert!(matches!(moving.step_over([2, 0], 0.01, Load::force(30.0)), Err(Error::ContactAtEdge { .. })));
+    moving.step_over([1, 0], 0.01, load).unwrap();
+    twin.step_over([1, 0], 0.01, load).unwrap();
+    let pairs = moving.pressure().iter().zip(twin.pressure());
+    let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-6 * twin.greatest_pressure(), "{apart}");
+
+    let direct = Settings { frame: Frame::Indenter, time_rule: TimeRule::Backward, ..Settings::default() };
+    let built = builder(&grid, &sphere(), Frame::Indenter).settings(direct).build();
+    assert!(matches!(built, Err(Error::WrongFrame { .. })));
+    let closure = Material::incompressible(FnRheology::new(|t: f64| 1e-6 * (1.0 + t.powf(0.3))));
+    let built = builder(&grid, &sphere(), Frame::Indenter).material(closure).build();
+    assert!(matches!(built, Err(Error::NoExponentialSeries { .. })));
+    let motion = SteadyMotion { axis: 0, velocity: 0.0, load, tolerance: 1e-3 };
+    assert!(matches!(moving.toward_steady(motion), Err(Error::OutOfRange { field: "velocity", .. })));
+}
+
+/// A step along a path costs what a step in place does, and a guess that goes on is worth having.
+#[test]
+fn sliding_steps_are_warm() {
+    let grid = Grid::new([192, 64], [12.0e-3, 4.0e-3]).unwrap();
+    let travel = Travel::new(Sphere::new(10.0e-3).unwrap(), Straight::new([-4.0e-3, 0.0], [0.1, 0.0]).unwrap());
+    let mut contact = ViscoelasticContact::builder(grid.clone())
+        .geometry(&travel.shape_at(0.0).unwrap())
+        .material(zener())
+        .build()
+        .unwrap();
+    contact.step(0.0, Load::force(0.5)).unwrap();
+    let mut work = 0;
+    for _ in 0..60 {
+        work += contact.step_along(&travel, 0.7 * grid.spacing()[0] / 0.1, Load::force(0.5)).unwrap().step.convolutions;
+    }
+    println!("{} convolutions a step", f64::from(work as u32) / 60.0);
+    assert!(work < 60 * 9, "{work}");
+}
