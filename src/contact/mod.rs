@@ -19,6 +19,7 @@ mod settings;
 mod spatial;
 mod steady;
 mod stepper;
+mod stiffness;
 mod travel;
 
 pub use between::Between;

@@ -151,7 +151,7 @@ impl TowardSteady<'_> {
                 let pairs = self.contact.pressure().iter().zip(&self.before);
                 let change: f64 = pairs.map(|(now, before)| (now - before).abs()).sum();
                 self.change = change / self.contact.pressure().iter().sum::<f64>();
-                self.arrived = !(self.change > limit);
+                self.arrived = self.change <= limit || self.change.is_nan();
                 if self.arrived {
                     return Ok(false);
                 }

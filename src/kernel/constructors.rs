@@ -126,7 +126,8 @@ impl InfluenceKernel {
                 let own = values[i as usize * n2 + j as usize];
                 for at in [[-i, j], [i, -j], [-i, -j]] {
                     let value = coefficient(at[0], at[1]);
-                    if !((value - own).abs() <= UNEQUAL * greatest) {
+                    let equal = (value - own).abs() <= UNEQUAL * greatest;
+                    if !equal {
                         let allowed = "the same as that of its mirror images";
                         return Err(Error::InvalidInfluence { of: "coefficient", at, value, allowed });
                     }
@@ -139,7 +140,8 @@ impl InfluenceKernel {
         let mut waves = (0..=layout.period(0) / 2).flat_map(|k1| (0..=layout.period(1) / 2).map(move |k2| (k1, k2)));
         if !waves.all(|(k1, k2)| symbol(k1, k2) > 0.0) {
             let (least, most) = least_eigenvalue(whole, grid.len());
-            if !(least > -ROUNDING * most) {
+            let positive = least > -ROUNDING * most;
+            if !positive {
                 return Err(Error::NotPositive { least, most });
             }
         }

@@ -9,8 +9,10 @@ mod problem;
 mod projected_gradient;
 mod rest;
 mod rigid;
+mod stiffness;
 
 pub(crate) use active_set::ActiveSet;
 pub(crate) use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::{Counts, Problem, Solution, Stop};
 pub(crate) use rigid::{Freedom, Modes};
+pub(crate) use stiffness::{FLAT_PUNCH_TOLERANCE, flat_punch};

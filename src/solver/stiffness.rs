@@ -1,0 +1,48 @@
+//! How stiff a contact of a given area is.
+
+use crate::kernel::LocalKernel;
+use crate::solver::preconditioner::Preconditioner;
+use crate::sum::{sum, sum_of_pairs};
+
+/// Residual of the displacement, relative to it.
+pub(crate) const FLAT_PUNCH_TOLERANCE: f64 = 1e-7;
+const MOST_ITERATIONS: usize = 500;
+
+/// Σ q over the cells with K q = 1 on those for which `touches` holds and q = 0 elsewhere: the pressure under a rigid
+/// displacement of a body of unit compliance, by preconditioned conjugate gradients. If they do not converge, their
+/// iterations and the residual reached.
+pub(crate) fn flat_punch(kernel: &LocalKernel, touches: impl Fn(usize) -> bool) -> Result<f64, (usize, f64)> {
+    let cells = kernel.grid().len();
+    let mut preconditioner = Preconditioner::new(kernel);
+    let mut work = kernel.workspace();
+    let inside: Vec<f64> = (0..cells).map(|k| f64::from(u8::from(touches(k)))).collect();
+    let restrict = |field: &mut [f64]| field.iter_mut().zip(&inside).for_each(|(value, inside)| *value *= inside);
+    let (mut q, mut residual, mut image) = (vec![0.0; cells], inside.clone(), vec![0.0; cells]);
+    let (mut direction, mut last) = (vec![0.0; cells], 0.0);
+    let limit = FLAT_PUNCH_TOLERANCE * FLAT_PUNCH_TOLERANCE * sum(&inside);
+    let mut iterations = 0;
+    loop {
+        let square = sum_of_pairs(&residual, &residual, |a, b| a * b);
+        if square <= limit {
+            return Ok(sum(&q));
+        }
+        let failure = (iterations, (square / limit).sqrt() * FLAT_PUNCH_TOLERANCE);
+        iterations += 1;
+        image.copy_from_slice(&residual);
+        preconditioner.apply(&mut image, 1.0);
+        restrict(&mut image);
+        let energy = sum_of_pairs(&residual, &image, |a, b| a * b);
+        let beta = if last > 0.0 { energy / last } else { 0.0 };
+        direction.iter_mut().zip(&image).for_each(|(d, z)| *d = z + beta * *d);
+        kernel.apply(&direction, &mut image, &mut work);
+        restrict(&mut image);
+        let curvature = sum_of_pairs(&direction, &image, |a, b| a * b);
+        let length = energy / curvature;
+        if !length.is_finite() || curvature <= 0.0 || iterations > MOST_ITERATIONS {
+            return Err(failure);
+        }
+        q.iter_mut().zip(&direction).for_each(|(q, d)| *q += length * d);
+        residual.iter_mut().zip(&image).for_each(|(r, kd)| *r -= length * kd);
+        last = energy;
+    }
+}
