@@ -40,6 +40,53 @@ fn steps_allocate_nothing() {
         }
     }
 
+    // nor do steps over the bodies, on any kernel, with several relaxation times
+    let body = || {
+        let terms = [(1.0e6, 0.1), (1.0e6, 1.0), (1.0e6, 10.0)];
+        Material::incompressible(GeneralizedMaxwell::new(1.0e6, &terms).unwrap())
+    };
+    let (line, plane) = (Grid::new([256, 1], [8.0e-3, 1.0]).unwrap(), Grid::square(48, 8.0e-3).unwrap());
+    let kernels = [
+        (InfluenceKernel::line(&line, 1.0), 100.0),
+        (InfluenceKernel::half_space(&plane), 0.5),
+        (InfluenceKernel::periodic(&plane), 0.5),
+        (InfluenceKernel::periodic_along(&plane, 0, 1.0), 0.5),
+    ];
+    for (kernel, force) in kernels {
+        let kernel = std::sync::Arc::new(kernel.unwrap());
+        let mut contact = ViscoelasticContact::builder(kernel.grid().clone())
+            .geometry(&Ellipsoid::new(10.0e-3, 10.0e-3).unwrap())
+            .material(body())
+            .kernel(kernel)
+            .settings(Settings { frame: Frame::Indenter, symmetry: false, ..Settings::default() })
+            .build()
+            .unwrap();
+        let region = Region::new(ALLOCATOR);
+        contact.step(0.0, Load::force(force)).unwrap();
+        for _ in 0..40 {
+            contact.step_over([1, 0], 0.02, Load::force(force)).unwrap();
+        }
+        let change = region.change();
+        assert_eq!((change.allocations, change.reallocations), (0, 0), "{:?}: {change:?}", contact.kernel());
+    }
+
+    // a line contact takes what its cells do, and the tables of its transforms, which are as long as the line
+    let region = Region::new(ALLOCATOR);
+    let contact = ViscoelasticContact::builder(Grid::new([16384, 1], [8.0e-3, 1.0]).unwrap())
+        .geometry(&Cylinder::new(10.0e-3).unwrap())
+        .material(scene.material.clone())
+        .kernel(std::sync::Arc::new(
+            InfluenceKernel::line(&Grid::new([16384, 1], [8.0e-3, 1.0]).unwrap(), 1.0).unwrap(),
+        ))
+        .settings(Settings { symmetry: false, ..Settings::default() })
+        .build()
+        .unwrap();
+    let change = region.change();
+    let line = (change.bytes_allocated - change.bytes_deallocated) as f64 / 16384.0;
+    drop(contact);
+    println!("{line:.1} bytes a cell of a line");
+    assert!(line < 400.0, "{line} bytes a cell");
+
     // memory of a built contact: a constant a cell, and one field of 8 bytes for each relaxation time
     let bytes = |terms: &[(f64, f64)], symmetry: bool| {
         let body = Material::incompressible(GeneralizedMaxwell::new(1.0e6, terms).unwrap());

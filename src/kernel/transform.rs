@@ -10,6 +10,7 @@
 //!   pieces of memory; a column is transformed, multiplied and transformed back while it is in cache.
 //! * Rows and columns are independent of each other: threads share them, and the answer is the same bit by bit.
 
+mod column;
 mod tasks;
 
 use std::fmt;
@@ -19,6 +20,7 @@ use num_complex::Complex;
 use super::lanes::{for_each_share, lanes};
 use super::layout::Layout;
 use super::lines::{Line, Scalar};
+use column::{Column, ColumnWorkspace};
 use tasks::{Columns, ColumnsInPlace, RowsForward, RowsInverse, multiply_apart};
 
 /// Sides of a tile: 8 complex numbers fill two cache lines.
@@ -33,6 +35,8 @@ pub(crate) struct SpectralOperator<T: Scalar> {
     columns: Line<T>,
     /// For each coefficient of a row, its column's independent values, divided by what the transforms multiply by.
     spectrum: Vec<T>,
+    /// Where there is but one column.
+    column: Option<Column<T>>,
 }
 
 /// Buffers that a [`SpectralOperator`] works in; made once, used by every application.
@@ -44,6 +48,8 @@ pub(crate) struct TransformWorkspace<T: Scalar> {
     /// The same after the columns, those of 8 columns below each other; empty for a single thread, which works in place.
     result: Vec<Complex<T>>,
     lanes: Vec<Lane<T>>,
+    /// Instead of all this, where there is but one column.
+    column: ColumnWorkspace<T>,
 }
 
 /// What one thread needs of its own.
@@ -87,7 +93,9 @@ impl<T: Scalar> SpectralOperator<T> {
         for k2 in 0..rows.independent() {
             spectrum.extend((0..columns.independent()).map(|k1| T::new(scale * symbol(k1, k2))));
         }
-        SpectralOperator { layout, rows, columns, spectrum }
+        let single = layout.cells[1] == 1 && rows.len() == 1 && !rows.is_folded();
+        let column = single.then(|| Column::new(&columns));
+        SpectralOperator { layout, rows, columns, spectrum, column }
     }
 
     /// Buffers for [`SpectralOperator::apply`], for as many threads as the size is worth.
@@ -97,6 +105,16 @@ impl<T: Scalar> SpectralOperator<T> {
 
     /// Buffers for so many threads.
     pub(crate) fn workspace_for(&self, lanes: usize) -> TransformWorkspace<T> {
+        if let Some(column) = &self.column {
+            let column = column.workspace(&self.columns);
+            return TransformWorkspace {
+                layout: self.layout,
+                tiles: Vec::new(),
+                result: Vec::new(),
+                lanes: Vec::new(),
+                column,
+            };
+        }
         let zeros = |count| vec![Complex::default(); count];
         let lane = Lane {
             line: Buffer::zeros(self.rows.len()),
@@ -105,7 +123,13 @@ impl<T: Scalar> SpectralOperator<T> {
         };
         let tiles = self.across() * self.down() * AREA;
         let result = zeros(if lanes > 1 { tiles } else { 0 });
-        TransformWorkspace { layout: self.layout, tiles: zeros(tiles), result, lanes: vec![lane; lanes.max(1)] }
+        TransformWorkspace {
+            layout: self.layout,
+            tiles: zeros(tiles),
+            result,
+            lanes: vec![lane; lanes.max(1)],
+            column: ColumnWorkspace::default(),
+        }
     }
 
     /// Whether `work` was made for an operator of this size.
@@ -141,6 +165,10 @@ impl<T: Scalar> SpectralOperator<T> {
         [before, after]: [f64; 2],
         work: &mut TransformWorkspace<T>,
     ) {
+        if let Some(column) = &self.column {
+            self.convolve_column(column, input, before, &mut work.column);
+            return self.read_column(column, &work.column, after, output);
+        }
         self.rows_forward(input, before, work);
         self.columns(work);
         self.rows_inverse(output, after, work);
@@ -153,6 +181,10 @@ impl<T: Scalar> SpectralOperator<T> {
         [before, after]: [f64; 2],
         work: &mut TransformWorkspace<T>,
     ) {
+        if let Some(column) = &self.column {
+            self.convolve_column(column, field, before, &mut work.column);
+            return self.read_column(column, &work.column, after, field);
+        }
         self.rows_forward(field, before, work);
         self.columns(work);
         self.rows_inverse(field, after, work);
@@ -296,7 +328,7 @@ impl<T: Scalar> fmt::Debug for TransformWorkspace<T> {
 impl<T: Scalar> TransformWorkspace<T> {
     /// Numbers held by the buffers between the passes: tells workspaces of different sizes apart.
     pub(crate) fn len(&self) -> usize {
-        2 * self.tiles.len()
+        2 * self.tiles.len() + self.column.len()
     }
 }
 
@@ -319,7 +351,8 @@ mod tests {
     }
 
     const FOLDS: [[bool; 2]; 4] = [[false, false], [false, true], [true, false], [true, true]];
-    const SIZES: [[usize; 2]; 8] = [[1, 1], [9, 9], [4, 3], [3, 5], [6, 6], [5, 9], [2, 40], [33, 14]];
+    const SIZES: [[usize; 2]; 10] =
+        [[1, 1], [7, 1], [12, 1], [9, 9], [4, 3], [3, 5], [6, 6], [5, 9], [2, 40], [33, 14]];
 
     fn signal(cells: [usize; 2]) -> Vec<f64> {
         (0..cells[0] * cells[1]).map(|k| ((k * k + 3) as f64).sin()).collect()
