@@ -1,0 +1,221 @@
+//! A cylinder rolling over a standard linear solid, in plane strain: how the pressure skews, and the friction that comes of it,
+//! over four decades of speed: the bell curve.
+//!
+//! Each speed is computed step by step to its steady state, on a grid that follows the cylinder, and compared with a
+//! formulation that has no steps: exponential integrals in a dense system for the steady state itself
+//! (`tests/common/rolling.rs`).
+//!
+//! `cargo run --release --example rolling_cylinder`
+
+#[path = "../tests/common/rolling.rs"]
+mod reference;
+mod support;
+
+use std::error::Error;
+use std::fs;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use clap::Parser;
+use indicatif::ProgressBar;
+use reference::RollingCylinder;
+use support::plot::{COLORS, Chart, Scale, SeriesLabelPosition, Style};
+use viscocontact::prelude::*;
+
+/// A cylinder rolling over a standard solid: pressure and friction at many speeds.
+#[derive(Parser)]
+struct Args {
+    /// Glassy shear modulus [Pa].
+    #[arg(long, default_value_t = 1.0e6)]
+    modulus: f64,
+    /// Shear modulus of the Kelvin-Voigt element [Pa].
+    #[arg(long, default_value_t = 0.5e6)]
+    kelvin_modulus: f64,
+    /// Retardation time [s].
+    #[arg(long, default_value_t = 0.01)]
+    tau: f64,
+    /// Radius of the cylinder [m].
+    #[arg(long, default_value_t = 0.02)]
+    radius: f64,
+    /// Force on a metre of the cylinder [N/m].
+    #[arg(long, default_value_t = 500.0)]
+    load: f64,
+    /// Cells on half the width of the contact with the glassy body.
+    #[arg(long, default_value_t = 32)]
+    cells: usize,
+    /// Speeds, evenly spaced on a logarithmic scale.
+    #[arg(long, default_value_t = 17)]
+    speeds: usize,
+    /// Coarse and fast: 12 cells, 7 speeds.
+    #[arg(long)]
+    quick: bool,
+    /// Folder for tables and pictures.
+    #[arg(long, default_value = "out/rolling_cylinder")]
+    output: PathBuf,
+}
+
+fn main() {
+    support::finish(run(&Args::parse()));
+}
+
+/// The steady state at one speed.
+struct Rolled {
+    /// Positions from the axis of the cylinder [m], and the pressure there [Pa].
+    profile: Vec<(f64, f64)>,
+    peak: f64,
+    width: f64,
+    /// Lateral force over normal force.
+    friction: f64,
+    /// How far it rolled [m], in how many steps, with how many convolutions.
+    distance: f64,
+    steps: usize,
+    convolutions: usize,
+}
+
+fn roll(scene: &RollingCylinder, material: &Material, velocity: f64, cells: usize) -> Result<Rolled> {
+    let glassy = scene.hertz(scene.glassy).0;
+    let relaxed = scene.hertz(scene.glassy + scene.delayed).0;
+    let side = glassy / cells as f64;
+    // behind the contact the body recovers over v τ; ahead nothing happened yet
+    let behind = (5.0 * scene.reach).clamp(4.0 * relaxed, 300.0 * glassy);
+    let count = ((behind + 3.0 * relaxed) / side) as usize;
+    let grid = Grid::new([count, 1], [count as f64 * side, 1.0])?;
+    let axis = 0.5 * grid.lengths()[0] - 2.0 * relaxed;
+    let cylinder = Shifted::new(Cylinder::new(scene.radius)?, [axis, 0.0])?;
+    let mut contact = ViscoelasticContact::builder(grid.clone())
+        .geometry(&cylinder)
+        .material(material.clone())
+        .kernel(Arc::new(InfluenceKernel::line(&grid, 10.0 * grid.lengths()[0])?))
+        .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
+        .build()?;
+    let motion = SteadyMotion { axis: 0, velocity, load: Load::force(scene.per_length), tolerance: 2e-4 };
+    let mut run = contact.toward_steady(motion)?;
+    let (mut steps, mut convolutions) = (0, 0);
+    while let Some(report) = run.next_step()? {
+        steps += 1;
+        convolutions += report.convolutions;
+    }
+    let distance = run.distance();
+    let near = |x: f64| (x - axis).abs() < 1.5 * relaxed;
+    let points = contact.pressure().iter().enumerate().map(|(i, &p)| (grid.center(i, 0)[0], p));
+    Ok(Rolled {
+        profile: points.filter(|(x, _)| near(*x)).map(|(x, p)| (x - axis, p)).collect(),
+        peak: contact.greatest_pressure(),
+        width: contact.contact_area() / grid.lengths()[1],
+        friction: contact.lateral_force(&cylinder)[0] / contact.force(),
+        distance,
+        steps,
+        convolutions,
+    })
+}
+
+fn run(args: &Args) -> Result<(), Box<dyn Error>> {
+    fs::create_dir_all(&args.output)?;
+    let (cells, speeds) = if args.quick { (12, 7) } else { (args.cells, args.speeds) };
+    let body = Zener::new(args.modulus, args.kelvin_modulus, args.kelvin_modulus * args.tau)?;
+    let material = Material::incompressible(body);
+    let mut scene = RollingCylinder {
+        radius: args.radius,
+        per_length: args.load,
+        glassy: 0.25 / args.modulus,
+        delayed: 0.25 / args.kelvin_modulus,
+        reach: 1.0,
+    };
+    let (glassy, glassy_peak) = scene.hertz(scene.glassy);
+    let (relaxed, relaxed_peak) = scene.hertz(scene.glassy + scene.delayed);
+    println!("glassy contact {:.3} mm wide, relaxed {:.3} mm", 2e3 * glassy, 2e3 * relaxed);
+    println!(
+        "      v [m/s]  v τ/a0   peak [kPa]  error    width [mm]  cells off  friction   error    steps  conv/step"
+    );
+
+    let mut table = csv::Writer::from_path(args.output.join("speeds.csv"))?;
+    table.write_record([
+        "velocity_m_s",
+        "reach_over_glassy_half_width",
+        "peak_pressure_pa",
+        "reference_peak_pressure_pa",
+        "width_m",
+        "reference_width_m",
+        "friction",
+        "reference_friction",
+        "steps",
+        "convolutions",
+        "distance_m",
+    ])?;
+    let mut computed = Vec::new();
+    let mut profiles = Vec::new();
+    let progress = ProgressBar::new(speeds as u64);
+    for k in 0..speeds {
+        let ratio = 10f64.powf(-2.0 + 4.0 * k as f64 / (speeds - 1) as f64);
+        scene.reach = ratio * glassy;
+        let velocity = scene.reach / args.tau;
+        let rolled = roll(&scene, &material, velocity, cells)?;
+        let steady = scene.steady(500);
+        let [behind, ahead] = steady.ends();
+        let friction = steady.friction(args.radius);
+        progress.suspend(|| {
+            println!(
+                "{velocity:13.4} {ratio:8.2} {:11.2} {:8.1e} {:12.4} {:9.2} {:10.5} {:8.1e} {:7} {:9.2}",
+                rolled.peak * 1e-3,
+                rolled.peak / steady.peak() - 1.0,
+                rolled.width * 1e3,
+                (rolled.width - (ahead - behind)) * cells as f64 / glassy,
+                rolled.friction,
+                rolled.friction / friction - 1.0,
+                rolled.steps,
+                rolled.convolutions as f64 / rolled.steps as f64,
+            );
+        });
+        table.serialize((
+            velocity,
+            ratio,
+            rolled.peak,
+            steady.peak(),
+            rolled.width,
+            ahead - behind,
+            rolled.friction,
+            friction,
+            rolled.steps,
+            rolled.convolutions,
+            rolled.distance,
+        ))?;
+        computed.push((ratio, rolled.friction));
+        if k % (speeds - 1).div_ceil(4).max(1) == 0 {
+            let points = rolled.profile.iter().map(|(x, p)| (x * 1e3, p * 1e-3)).collect::<Vec<_>>();
+            profiles.push((ratio, points));
+        }
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    table.flush()?;
+    println!("Hertz: relaxed {:.2} kPa, glassy {:.2} kPa", relaxed_peak * 1e-3, glassy_peak * 1e-3);
+
+    let finely = (0..=80).map(|k| 10f64.powf(-2.0 + 0.05 * f64::from(k)));
+    let exact = finely.map(|ratio| {
+        let scene = RollingCylinder { reach: ratio * glassy, ..scene };
+        (ratio, scene.steady(200).friction(args.radius))
+    });
+    let exact = exact.collect();
+    let mut chart = Chart::new(
+        "Hysteretic friction of a rolling cylinder",
+        "v τ / half the width of the glassy contact",
+        "lateral over normal force",
+        SeriesLabelPosition::UpperLeft,
+    );
+    chart.scale = Scale::LogX;
+    chart.add("steady state, without steps", COLORS[0], Style::Line, exact);
+    chart.add("computed", COLORS[1], Style::Dots, computed);
+    chart.save(&args.output.join("friction.png"))?;
+    let mut chart = Chart::new(
+        "Pressure under a cylinder that rolls to the right",
+        "distance from the axis [mm]",
+        "pressure [kPa]",
+        SeriesLabelPosition::UpperLeft,
+    );
+    for ((ratio, points), color) in profiles.into_iter().zip(COLORS) {
+        chart.add(format!("v τ/a0 = {ratio}"), color, Style::Line, points);
+    }
+    chart.save(&args.output.join("pressure.png"))?;
+    println!("tables and pictures are in {}", args.output.display());
+    Ok(())
+}
