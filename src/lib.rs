@@ -17,7 +17,10 @@
 //! $$ u(t) = \int_{0^-}^t C(t-s)\, d\left[K p(s)\right], \qquad
 //!    (K p)(x) = \iint \frac{p(x')}{\pi\,|x-x'|}\,dx' $$
 //!
-//! Both are unknown, and both change even when the force does not. The discretisation follows S. Spinu,
+//! Bodies that are periodic, line contacts in plane strain, and bodies of the user's own have another $K$
+//! ([`InfluenceKernel`]).
+//!
+//! Pressure and contact area are unknown, and both change even when the force does not. The discretisation follows S. Spinu,
 //! *The surface contact of viscoelastic materials, Part I*; time rule and solver go beyond it.
 //!
 //! # A simulation
@@ -44,6 +47,9 @@
 //! [`geometry::Geometry`], [`rheology::Rheology`] and [`load::LoadHistory`]. [`analytic`] has reference
 //! solutions.
 //!
+//! Real surfaces are read from files ([`geometry::HeightMap`]) or made at random ([`geometry::Rough`]). Indenters slide and
+//! roll: [`motion`]. What a state tells is in [`observe`], and [`output`] writes it to files that NumPy and ParaView open.
+//!
 //! # Conventions
 //!
 //! * **Units**: SI throughout: m, Pa, N, s. The same scene in other units gives the same answer.
@@ -57,32 +63,44 @@
 //!   for an elastic body: J/4 if incompressible, (1 − ν) J/2 at a constant Poisson's ratio,
 //!   more with an elastic bulk ([`rheology::Material`]); two bodies add up.
 //! * **Kernel**: [`InfluenceKernel::convolve`] returns K p in Pa·m; no factor of the transform is left over.
+//! * **Datum**: on a half-space the approach is measured from the surface far away. On bodies periodic along both axes it is measured
+//!   from the mean of the surface, in line contacts from the surface at a distance that is given with the kernel.
+//! * **Heights** of maps and rough surfaces are positive out of the body that has them; the gap is the highest less each.
+//! * **Motion**: displacements are those of the creeping bodies, which an indenter moves over with positive velocity along x1 or x2;
+//!   the lateral force is the one that moves it.
 //! * **Time**: bodies are undisturbed before t = 0. A step of length 0 is a jump of the load.
 //!
 //! # What costs what
 //!
 //! A convolution of N cells is one forward and one inverse real transform of the zero-padded grid,
-//! O(N log N). A step of the default solver takes 3 to 5 of them on the scenes of the README at 256² cells, and
+//! O(N log N). Periodic bodies are not padded, and cost a quarter; a line of N × 1 cells is transformed as the line it is. A step of the default solver takes 3 to 5 of them on the scenes of the README at 256² cells, and
 //! a scene without tilt does no work for it. Where gap and load are even in x1, x2 or both, half or a quarter of the cells is
 //! computed ([`contact::Settings::symmetry`]); where contact cannot reach, nothing is ([`contact::Settings::window`]); what a step
 //! takes, in every way there is, stands in `docs/performance.md`. Its history costs no transform: one field a relaxation time, however many
 //! steps came before; thirty of them make a step of 256² cells 1.05 to 1.15 times as long as one. A rheology without an exact
 //! exponential series has one fitted ([`rheology::Rheology::series`]), about two relaxation times a decade for an error
 //! of 1e-4, in a tenth of a second. Memory: about 175 bytes a computed cell, and 8 for each
-//! further relaxation time (an elastic bulk doubles their number); a step allocates nothing, save the first one
+//! further relaxation time, which a grid that follows an indenter pays, too (an elastic bulk doubles their number); a step allocates nothing, save the first one
 //! that takes time, if it has to fit a series, and those in which a window grows.
 //!
 //! # Features
 //!
 //! `csv` (on by default): tables of measured data from CSV files.
 //!
+//! `npy`: fields to NPZ and NPY files, height maps from and to NPY files.
+//!
+//! `vtk`: fields to VTK image data, a time series that ParaView opens.
+//!
+//! `x3p`: height maps from X3P files (ISO 25178-72).
+//!
 //! `rayon` (on by default): grids of 2¹⁵ computed cells or more are shared between the threads of the
 //! pool a contact is built in. The answer does not depend on their number, bit by bit.
 //!
 //! # Not here
 //!
-//! Friction, adhesion, finite deformation, and layers of finite thickness are outside the model: small
-//! strains, smooth normal contact, half-spaces.
+//! Friction, adhesion, plasticity and finite deformation are outside the model: small strains and slopes, smooth normal contact.
+//! Layers are bodies of the user's own: what a pressure does to them is given, not computed
+//! ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).
 
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
