@@ -164,12 +164,12 @@ impl Search<'_> {
 }
 
 impl ViscoelasticContact {
-    /// The patches of the contact; along axes that are `periodic` the first and the last cells are neighbours.
+    /// The patches of the contact; where the bodies are periodic the first and the last cells are neighbours.
     ///
     /// # Errors
-    /// None that a contact can raise; as [`Patches::new`].
-    pub fn patches(&self, periodic: [bool; 2]) -> Result<Patches> {
-        Patches::new(self.grid(), self.pressure(), periodic)
+    /// If the force of a patch is beyond the range of `f64`.
+    pub fn patches(&self) -> Result<Patches> {
+        Patches::new(self.grid(), self.pressure(), self.kernel().periodic_axes())
     }
 }
 
@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn a_sphere_has_one_patch_that_carries_all() {
         let contact = sphere([64, 48], [2.0e-3, 1.5e-3], [0.1e-3, -0.05e-3], 0.1);
-        let found = contact.patches([false; 2]).unwrap();
+        let found = contact.patches().unwrap();
         assert_eq!(found.count(), 1);
         let patch = found.all()[0];
         assert_eq!(patch.cells, contact.contact_cells());
