@@ -264,13 +264,18 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 /// The published polymer, at another temperature where it is known how it shifts.
 fn polymer(args: &Args) -> Result<Material, Box<dyn Error>> {
     let published = library::find(&args.material)?;
-    println!("{}: {}", published.name(), published.description());
+    println!("{}: {}\n({})", published.name(), published.description(), published.reference());
     let nu = published.poisson().unwrap_or(args.poisson);
     let rheology = published.rheology(nu)?;
     Ok(match published.time_temperature() {
         Some(law) => {
-            println!("at {} K", args.temperature);
-            Material::constant_poisson(law.at(rheology, args.temperature)?, nu)?
+            let warm = law.at(rheology, args.temperature)?;
+            println!(
+                "at {} K everything takes {:.1e} times as long as published",
+                args.temperature,
+                warm.shift_factor()
+            );
+            Material::constant_poisson(warm, nu)?
         }
         None => Material::constant_poisson(rheology, nu)?,
     })
