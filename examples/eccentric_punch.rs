@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use indicatif::ProgressBar;
-use support::plot::{COLORS, Chart, Map, SeriesLabelPosition, Style};
+use support::plot::{COLORS, Chart, Map, SeriesLabelPosition, Style, WHITE};
 use viscocontact::analytic::RigidPunch;
 use viscocontact::prelude::*;
 
@@ -149,12 +149,14 @@ fn save_map(contact: &ViscoelasticContact, args: &Args, e: f64, path: &Path) -> 
     let mean = args.load / (std::f64::consts::PI * args.radius * args.radius);
     Map {
         title: format!("Load at e = {e:.1} R"),
-        unit: "p / mean pressure",
+        unit: "p / mean pressure".into(),
+        axes: ["x1 / R".into(), "x2 / R".into()],
         cells: contact.grid().cells(),
         lengths: contact.grid().lengths().map(|length| length / args.radius),
         // the rim is singular: the scale ends where the map is still legible
-        most: 4.0,
-        values: contact.pressure().iter().map(|p| p / mean).collect(),
+        range: [0.0, 4.0],
+        values: contact.pressure().iter().map(|&p| if p > 0.0 { p / mean } else { f64::NAN }).collect(),
+        blank: WHITE,
     }
     .save(path)
 }

@@ -5,9 +5,10 @@ use std::error::Error;
 use std::path::Path;
 use std::sync::Once;
 
+use plotters::coord::Shift;
 use plotters::coord::ranged1d::ValueFormatter;
-pub use plotters::prelude::SeriesLabelPosition;
 use plotters::prelude::*;
+pub use plotters::prelude::{SeriesLabelPosition, WHITE};
 use plotters::style::register_font;
 
 /// Okabe & Ito's palette, told apart by colour-blind readers.
@@ -81,7 +82,6 @@ impl Chart {
         let log_x = self.scale != Scale::Linear;
         let [x0, x1] = self.range(log_x, |point| point.0);
         let [y0, y1] = self.range(self.scale == Scale::LogLog, |point| point.1);
-        let plain = |v: &f64| format!("{}", (v * 1e6).round() / 1e6 + 0.0); // no minus before a zero
         let power = |v: &f64| if (0.01..1e4).contains(v) { plain(v) } else { format!("{v:.0e}") };
         match self.scale {
             Scale::Linear => self.draw(&mut builder.build_cartesian_2d(x0..x1, y0..y1)?, &plain, &plain)?,
@@ -158,6 +158,11 @@ impl Chart {
     }
 }
 
+/// A number as short as it is.
+fn plain(v: &f64) -> String {
+    format!("{}", (v * 1e6).round() / 1e6 + 0.0) // no minus before a zero
+}
+
 /// Makes the font known to plotters, once.
 fn register() {
     static ONCE: Once = Once::new();
@@ -171,56 +176,122 @@ fn register() {
 pub struct Map {
     pub title: String,
     /// What the colour bar shows.
-    pub unit: &'static str,
+    pub unit: String,
+    /// The axes, with their unit.
+    pub axes: [String; 2],
     pub cells: [usize; 2],
     /// Sides of the grid, in the unit of the axes.
     pub lengths: [f64; 2],
-    /// End of the colour scale.
-    pub most: f64,
+    /// Ends of the colour scale.
+    pub range: [f64; 2],
+    /// One value a cell, x2 fastest; NaN for cells that stay blank.
     pub values: Vec<f64>,
+    /// The colour of those.
+    pub blank: RGBColor,
 }
+
+/// For cells where nothing is known.
+pub const GREY: RGBColor = RGBColor(190, 190, 190);
+/// Width of the space for the numbers beside a map, and of its colour bar with its numbers, in pixels.
+const SIDE: u32 = 110;
+const BAR: u32 = 170;
+/// Height of the space for the title above a map and the numbers below.
+const ENDS: u32 = 130;
 
 impl Map {
     /// Writes the map to a PNG file.
     pub fn save(&self, path: &Path) -> Result<(), Box<dyn Error>> {
+        Map::save_row(std::slice::from_ref(self), path)
+    }
+
+    /// Writes maps of like sides next to each other to a PNG file: with one colour bar if their scales are the same, else
+    /// with one each.
+    pub fn save_row(maps: &[Map], path: &Path) -> Result<(), Box<dyn Error>> {
         register();
-        let root = BitMapBackend::new(path, (1000, 880)).into_drawing_area();
+        let last = maps.last().ok_or("no map to draw")?;
+        // a map as large as legible; several are smaller
+        let side = if maps.len() == 1 { 730.0 } else { 460.0 };
+        let scale = side / last.lengths[0].max(last.lengths[1]);
+        let [wide, high] = last.lengths.map(|length| (length * scale).round() as u32);
+        let shared = maps.iter().all(|map| map.range == last.range);
+        let bars = if shared { 1 } else { maps.len() as u32 };
+        let width = maps.len() as u32 * (wide + SIDE) + bars * BAR;
+        let root = BitMapBackend::new(path, (width, high + ENDS)).into_drawing_area();
         root.fill(&WHITE)?;
-        let (left, right) = root.split_horizontally(860);
+        let mut rest = root.clone();
+        for (k, map) in maps.iter().enumerate() {
+            let (area, right) = rest.split_horizontally(wide + SIDE);
+            map.draw(&area, if maps.len() == 1 { 28 } else { 24 })?;
+            rest = right;
+            if !shared || k + 1 == maps.len() {
+                let (area, right) = rest.split_horizontally(BAR);
+                map.draw_bar(&area)?;
+                rest = right;
+            }
+        }
+        root.present()?;
+        Ok(())
+    }
+
+    fn draw(&self, area: &DrawingArea<BitMapBackend, Shift>, font: u32) -> Result<(), Box<dyn Error>> {
         let [h1, h2] = self.lengths.map(|length| 0.5 * length);
-        let mut chart = ChartBuilder::on(&left)
-            .caption(format!("{}: {}", self.title, self.unit), (FONT, 28))
-            .margin(20)
+        let mut chart = ChartBuilder::on(area)
+            .caption(&self.title, (FONT, font))
+            .margin(15)
             .x_label_area_size(60)
-            .y_label_area_size(70)
+            .y_label_area_size(80)
             .build_cartesian_2d(-h1..h1, -h2..h2)?;
-        let mesh_style = (FONT, 22);
+        // numbers would run into each other on a small map
+        let labels = if font > 24 { 10 } else { 5 };
         chart
             .configure_mesh()
             .disable_mesh()
-            .x_desc("x1 / R")
-            .y_desc("x2 / R")
-            .label_style(mesh_style)
+            .x_labels(labels)
+            .y_labels(labels)
+            .x_desc(&self.axes[0])
+            .y_desc(&self.axes[1])
+            .x_label_formatter(&plain)
+            .y_label_formatter(&plain)
+            .label_style((FONT, 22))
             .axis_desc_style((FONT, 26))
             .draw()?;
+        if self.blank != WHITE {
+            chart.draw_series([Rectangle::new([(-h1, -h2), (h1, h2)], self.blank.filled())])?;
+        }
         let [n1, n2] = self.cells;
         let [d1, d2] = [self.lengths[0] / n1 as f64, self.lengths[1] / n2 as f64];
-        chart.draw_series(self.values.iter().enumerate().filter(|(_, v)| **v > 0.0).map(|(k, &v)| {
+        let [least, most] = self.range;
+        chart.draw_series(self.values.iter().enumerate().filter(|(_, v)| !v.is_nan()).map(|(k, &v)| {
             let (x, y) = (-h1 + (k / n2) as f64 * d1, -h2 + (k % n2) as f64 * d2);
-            Rectangle::new([(x, y), (x + d1, y + d2)], color(v / self.most).filled())
+            Rectangle::new([(x, y), (x + d1, y + d2)], color((v - least) / (most - least)).filled())
         }))?;
-        let mut bar = ChartBuilder::on(&right)
-            .margin(20)
-            .margin_top(70)
+        chart.draw_series([Rectangle::new([(-h1, -h2), (h1, h2)], BLACK.stroke_width(1))])?;
+        Ok(())
+    }
+
+    fn draw_bar(&self, area: &DrawingArea<BitMapBackend, Shift>) -> Result<(), Box<dyn Error>> {
+        let [least, most] = self.range;
+        let step = 0.01 * (most - least);
+        let mut bar = ChartBuilder::on(area)
+            .margin(15)
+            .margin_top(50)
+            .margin_right(20)
             .x_label_area_size(60)
-            .y_label_area_size(50)
-            .build_cartesian_2d(0.0..1.0, 0.0..self.most)?;
-        bar.configure_mesh().disable_mesh().x_labels(0).y_labels(5).label_style(mesh_style).draw()?;
+            .y_label_area_size(85)
+            .build_cartesian_2d(0.0..1.0, least..most)?;
+        bar.configure_mesh()
+            .disable_mesh()
+            .x_labels(0)
+            .y_labels(6)
+            .y_desc(&self.unit)
+            .axis_desc_style((FONT, 24))
+            .label_style((FONT, 22))
+            .y_label_formatter(&plain)
+            .draw()?;
         bar.draw_series((0..100).map(|k| {
-            let low = f64::from(k) / 100.0;
-            Rectangle::new([(0.0, low * self.most), (1.0, (low + 0.01) * self.most)], color(low).filled())
+            let low = least + f64::from(k) * step;
+            Rectangle::new([(0.0, low), (1.0, low + step)], color(0.01 * f64::from(k)).filled())
         }))?;
-        root.present()?;
         Ok(())
     }
 }
