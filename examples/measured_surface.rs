@@ -173,7 +173,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
     while let Some(report) = run.next_step()? {
         let contact = run.contact();
         (steps, work) = (steps + 1, work + report.convolution_equivalents());
-        let patches = contact.patches([false; 2])?;
+        let patches = contact.patches()?;
         let smooth = Hertz::new(args.radius, 1.0 / rubber.contact_compliance(report.time), args.load)?;
         let hertz = std::f64::consts::PI * smooth.contact_radius().powi(2);
         history.write(contact, &report, &[patches.count() as f64, hertz])?;

@@ -288,7 +288,7 @@ fn persson(load: f64) -> f64 {
 
 fn observe(contact: &ViscoelasticContact) -> Result<Moment> {
     let nominal = contact.grid().cell_area() * contact.grid().len() as f64;
-    let patches = contact.patches([true; 2])?;
+    let patches = contact.patches()?;
     let mut gap = vec![0.0; contact.grid().len()];
     contact.gap_into(&mut gap)?;
     Ok(Moment {

@@ -425,6 +425,13 @@ pub enum Error {
         tolerance: f64,
     },
 
+    /// A steady motion needs contact, and its load makes none.
+    #[error("at t = {time} s the load does not make the bodies touch: a steady motion needs contact")]
+    NoContact {
+        /// Time of the contact \[s\].
+        time: f64,
+    },
+
     /// A steady motion does not become steady: where contact comes and goes, as on a rough surface that moves with the
     /// bodies, it has no steady state; else allow a greater change.
     #[error(

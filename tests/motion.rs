@@ -249,3 +249,109 @@ fn sliding_steps_are_warm() {
     println!("{} convolutions a step", f64::from(work as u32) / 60.0);
     assert!(work < 60 * 9, "{work}");
 }
+
+/// A step of no length under the same load changes nothing, however stiff it is beside the hold before it: what the solver
+/// left over in the hold is laid on the rigid body, in both frames.
+#[test]
+fn holds_leave_nothing_over() {
+    let grid = Grid::square(48, 4.0e-3).unwrap();
+    for stiff in [1e2, 1e4] {
+        for frame in [Frame::Bodies, Frame::Indenter] {
+            let mut contact = ViscoelasticContact::builder(grid.clone())
+                .geometry(&Sphere::new(10.0e-3).unwrap())
+                .material(Material::incompressible(Zener::new(1.0e5 * stiff, 1.0e5, 1.0e3).unwrap()))
+                .settings(Settings { frame, ..Settings::default() })
+                .build()
+                .unwrap();
+            contact.step(1.0e6, Load::force(0.02)).unwrap();
+            let before = contact.pressure().to_vec();
+            contact.step(0.0, Load::force(0.02)).unwrap();
+            let pairs = contact.pressure().iter().zip(&before);
+            let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / contact.greatest_pressure();
+            assert!(apart < 1e-4, "{frame:?} {stiff}: {apart}");
+        }
+    }
+}
+
+/// What presses on the rim of a face has no slope, but does work all the same.
+#[test]
+fn power_counts_the_rim_of_a_punch() {
+    let grid = Grid::new([256, 1], [16.0e-3, 1.0]).unwrap();
+    let punch = || FlatPunch::rectangular([3.0e-3, 3.0]).unwrap();
+    let travel = Travel::new(punch(), Straight::new([-3.0e-3, 0.0], [0.05, 0.0]).unwrap());
+    let mut contact = builder(&grid, &travel.shape_at(0.0).unwrap(), Frame::Bodies)
+        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+        .build()
+        .unwrap();
+    contact.step(0.0, Load::force(100.0)).unwrap();
+    let (mut along, mut inside, start) = (0.0, 0.0, contact.approach());
+    for _ in 0..40 {
+        let (p, u) = (contact.pressure().to_vec(), contact.displacement().to_vec());
+        let dt = grid.spacing()[0] / 0.05;
+        let report = contact.step_along(&travel, dt, Load::force(100.0)).unwrap();
+        along += report.power * dt;
+        let ends = p.iter().zip(contact.pressure()).zip(u.iter().zip(contact.displacement()));
+        inside += ends.map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum::<f64>() * grid.cell_area();
+        assert_eq!(report.lateral_force[0], 0.0);
+    }
+    let pressed = 100.0 * (contact.approach() - start);
+    assert!(along > 0.05 * inside && ((along + pressed) / inside - 1.0).abs() < 1e-9, "{along} {pressed} {inside}");
+}
+
+/// Steps that are refused cost nothing afterwards, and change not a bit: neither symmetry nor window is lost.
+#[test]
+fn refused_steps_along_a_path_leave_every_bit() {
+    let grid = Grid::square(32, 4.0e-3).unwrap();
+    let travel = Travel::new(Sphere::new(5.0e-3).unwrap(), Straight::new([0.0; 2], [0.01, 0.0]).unwrap());
+    for window in [true, false] {
+        let mut contact = builder(&grid, &Sphere::new(5.0e-3).unwrap(), Frame::Bodies)
+            .settings(Settings { window, ..Settings::default() })
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(0.1)).unwrap();
+        contact.step(0.01, Load::force(0.1)).unwrap();
+        let mut twin = contact.clone();
+        assert!(contact.step_along(&travel, -1.0, Load::force(0.1)).is_err());
+        assert!(matches!(contact.step_along(&travel, 0.2, Load::force(0.1)), Err(Error::ContactAtEdge { .. })));
+        assert!(contact.step_along(&travel, 0.01, Load::force(f64::NAN)).is_err());
+        let (report, same) = (contact.step(0.02, Load::force(0.12)), twin.step(0.02, Load::force(0.12)));
+        assert_eq!(report, same);
+        assert_eq!((contact.pressure(), contact.displacement()), (twin.pressure(), twin.displacement()));
+    }
+}
+
+#[test]
+fn motions_without_contact_end_in_words() {
+    let grid = Grid::new([64, 1], [4.0e-3, 1.0]).unwrap();
+    let cylinder = Cylinder::new(5.0e-3).unwrap();
+    let motion = |load| SteadyMotion { axis: 0, velocity: 0.1, load, tolerance: 1e-3 };
+    for load in [Load::force(0.0), Load::approach(-1.0e-6)] {
+        for pressed in [false, true] {
+            let mut contact = builder(&grid, &cylinder, Frame::Indenter)
+                .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+                .build()
+                .unwrap();
+            if pressed {
+                contact.step(0.0, Load::force(20.0)).unwrap();
+            }
+            let ended = contact.toward_steady(motion(load)).unwrap().run();
+            assert!(matches!(ended, Err(Error::NoContact { .. })), "{load:?}: {ended:?}");
+        }
+    }
+    let mut fixed = builder(&grid, &cylinder, Frame::Bodies).build().unwrap();
+    assert!(matches!(fixed.toward_steady(motion(Load::force(1.0))), Err(Error::WrongFrame { .. })));
+    // several bodies move together
+    let grid = Grid::new([128, 1], [8.0e-3, 1.0]).unwrap();
+    let at = |x: f64| Shifted::new(Cylinder::new(5.0e-3).unwrap(), [x, 0.0]).unwrap();
+    let mut two = builder(&grid, &at(-1.0e-3), Frame::Indenter)
+        .another_body(&at(2.0e-3))
+        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+        .build()
+        .unwrap();
+    let loads = [Load::force(15.0), Load::force(10.0)];
+    for _ in 0..40 {
+        two.step_each_over([1, 0], 1.0e-3, &loads).unwrap();
+    }
+    assert!((two.body(1).unwrap().force / 10.0 - 1.0).abs() < 1e-9);
+    assert!(matches!(two.step_over([1, 0], 1.0e-3, loads[0]), Err(Error::WrongNumberOfLoads { .. })));
+}

@@ -108,3 +108,55 @@ fn cylinder_in_line_contact() {
         assert!((contact.force() / (per_length * length) - 1.0).abs() < 1e-3);
     }
 }
+
+/// A uniform pressure displaces nothing on bodies whose mean is held: flat on flat is solved all the same, and let go.
+#[test]
+fn flat_on_flat() {
+    for cells in [[16, 16], [15, 9], [64, 1], [7, 1]] {
+        for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
+            for ripple in [0.0, 1e-15] {
+                let grid = Grid::new(cells, [1.0, 1.0]).unwrap();
+                let shape = FnGeometry::new(move |x1, _| ripple * (2.0 * PI * x1).cos());
+                let settings = Settings { solver, ..Settings::default() };
+                let mut contact = contact(&grid, InfluenceKernel::periodic(&grid).unwrap(), &shape, settings);
+                contact.step(0.0, Load::force(1.0)).unwrap();
+                assert!(contact.pressure().iter().all(|p| (p - 1.0).abs() < 0.05), "{cells:?} {solver:?}");
+                contact.step(0.0, Load::approach(-1.0e-6)).unwrap();
+                assert_eq!(contact.contact_cells(), 0);
+            }
+        }
+    }
+    let grid = Grid::square(16, 1.0).unwrap();
+    let mut two = ViscoelasticContact::builder(grid.clone())
+        .geometry(&FnGeometry::new(|x1, _| if x1 < 0.0 { 0.0 } else { f64::INFINITY }))
+        .another_body(&FnGeometry::new(|x1, _| if x1 < 0.0 { f64::INFINITY } else { 0.0 }))
+        .material(elastic())
+        .kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()))
+        .build()
+        .unwrap();
+    let error = two.step_each(0.0, &[Load::approach(1.0); 2]).unwrap_err();
+    assert!(matches!(error, Error::BeyondFullContact { .. }), "{error}");
+}
+
+/// The estimate of the mesh's error falls with the mesh, and is zero where there is no rim.
+#[test]
+fn errors_of_the_mesh_are_estimated_on_lines() {
+    let estimates = [64, 256, 1024].map(|cells| {
+        let grid = Grid::new([cells, 1], [0.04, 1.0]).unwrap();
+        let kernel = InfluenceKernel::line(&grid, 1.0).unwrap();
+        let shape = Cylinder::new(0.02).unwrap();
+        let mut contact = contact(&grid, kernel, &shape, Settings { tolerance: 1e-9, ..Settings::default() });
+        contact.step(0.0, Load::force(2.0e4)).unwrap();
+        let half_width = (4.0 * 2.0e4 * 0.02 / (PI * E_STAR)).sqrt();
+        let error = (contact.greatest_pressure() / (2.0 * 2.0e4 / (PI * half_width)) - 1.0).abs();
+        let estimate = contact.spatial_error().peak_pressure;
+        assert!((0.2 * error..20.0 * error).contains(&estimate), "{cells}: {estimate} {error}");
+        estimate
+    });
+    assert!(estimates[1] < 0.1 * estimates[0] && estimates[2] < 0.1 * estimates[1], "{estimates:?}");
+    let grid = Grid::square(8, 1.0).unwrap();
+    let flat = FnGeometry::new(|_, _| 0.0);
+    let mut full = contact(&grid, InfluenceKernel::periodic(&grid).unwrap(), &flat, Settings::default());
+    full.step(0.0, Load::force(1.0)).unwrap();
+    assert_eq!(full.spatial_error(), Default::default());
+}

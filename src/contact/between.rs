@@ -35,14 +35,18 @@ impl ViscoelasticContact {
     /// The state at a time within the last step, its ends included.
     ///
     /// # Errors
-    /// If the time does not lie within the last step, or a step has failed since: the state before it is then no longer
-    /// kept.
+    /// If the time does not lie within the last step; after a step that failed, or one over the bodies
+    /// ([`ViscoelasticContact::step_over`]), the state before it is not kept, and its end is all that is left of it.
     pub fn within_step(&self, time: f64) -> Result<Between<'_>> {
         let start = if self.before_is_kept { self.time - self.interval } else { self.time };
         // by rounding the start may come out a little off
         let inside = time >= start - 1e-12 * self.interval && time <= self.time;
         within("time within the last step", time, inside, "between its start and its end")?;
-        let share = if time == self.time { 1.0 } else { ((time - start) / self.interval).clamp(0.0, 1.0) };
+        let share = if time == self.time || !self.before_is_kept {
+            1.0
+        } else {
+            ((time - start) / self.interval).clamp(0.0, 1.0)
+        };
         Ok(Between { contact: self, share, time })
     }
 }

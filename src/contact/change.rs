@@ -32,24 +32,35 @@ impl ViscoelasticContact {
             return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.loads.len() });
         }
         let gaps: Vec<_> = geometries.iter().map(|geometry| evaluate(*geometry, &self.grid)).collect();
-        self.replace_gap(Gap::new(&gaps, &self.grid)?);
+        self.move_back();
+        self.initial_gap = Gap::new(&gaps, &self.grid)?;
+        self.gap_here = self.region.cut_gap(&self.initial_gap);
+        self.take_in_the_gap();
         self.last_dt = 0.0; // the last change of the pressure says nothing about the next
         Ok(())
     }
 
-    /// Puts another gap in the place of the one at hand, which is returned.
-    pub(super) fn replace_gap(&mut self, gap: Gap) -> Gap {
-        self.move_back();
-        let before = std::mem::replace(&mut self.initial_gap, gap);
-        self.gap_here = self.region.cut_gap(&self.initial_gap);
+    /// Brings what hangs on the gap up to date with a new one.
+    pub(super) fn take_in_the_gap(&mut self) {
+        if let Some(here) = &mut self.gap_here {
+            self.region.cut_into(&self.initial_gap.above, &mut here.above);
+            here.datum = self.initial_gap.datum;
+        }
         self.survey();
-        let folded = self.region.folded();
-        let even = symmetry(&self.initial_gap, self.grid.cells());
-        let still = [0, 1].map(|axis| folded[axis] && even[axis]);
-        if still != folded {
+        let still = self.still_even();
+        if still != self.region.folded() {
             self.unfold(still);
         }
         self.hulls.fill(None);
-        before
+    }
+
+    /// Folded axes about which the gap is even.
+    pub(super) fn still_even(&self) -> [bool; 2] {
+        let folded = self.region.folded();
+        if folded == [false; 2] {
+            return folded;
+        }
+        let even = symmetry(&self.initial_gap, self.grid.cells());
+        [0, 1].map(|axis| folded[axis] && even[axis])
     }
 }

@@ -37,11 +37,19 @@ impl ViscoelasticContact {
     /// # Errors
     /// As [`ViscoelasticContact::step`], or if the grid is fixed to the bodies.
     pub fn step_over(&mut self, cells: [isize; 2], dt: f64, load: Load) -> Result<StepReport> {
+        self.step_each_over(cells, dt, &[load])
+    }
+
+    /// [`ViscoelasticContact::step_over`] with a load for each rigid body, all of which move alike.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::step_over`], or if there is not one load a body.
+    pub fn step_each_over(&mut self, cells: [isize; 2], dt: f64, loads: &[Load]) -> Result<StepReport> {
         if self.settings.frame != Frame::Indenter {
             return Err(Error::WrongFrame { what: "a step over the bodies" });
         }
         self.stride = cells;
-        let result = self.step(dt, load);
+        let result = self.step_each(dt, loads);
         self.stride = [0; 2];
         if result.is_ok() && cells != [0; 2] {
             // cell by cell, the field before the step belongs to other places
@@ -57,7 +65,9 @@ impl ViscoelasticContact {
         };
         let c = history.predict(time, dt, self.stride)?;
         if history.remembers() {
-            self.kernel_here.apply(history.old(), &mut self.trial_displacement, &mut self.work);
+            let [caused, laid] = history.old();
+            self.kernel_here.apply(caused, &mut self.trial_displacement, &mut self.work);
+            self.trial_displacement.iter_mut().zip(laid).for_each(|(u_old, &e)| *u_old += e);
             self.convolutions_of_the_past = 1;
         } else {
             self.trial_displacement.fill(0.0);

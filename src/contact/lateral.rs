@@ -10,8 +10,11 @@ impl ViscoelasticContact {
     /// that the bodies dissipate, or store: over its slope, p does the work p (∂u/∂t − dω/dt). Over the normal force it is
     /// the coefficient of hysteretic friction.
     ///
-    /// The pressure being constant on a cell, the slope counts by what the gap rises by from side to side; where that is not
-    /// finite, beside the rim of a face, there is no slope to press against.
+    /// The pressure being constant on a cell, the slope counts by what the gap rises by from side to side, as
+    /// [`Geometry::initial_gap`](crate::geometry::Geometry::initial_gap) has it: of a map that is interpolated, as well as that is, so that
+    /// a rough slider with waves of 2 cells shows 3e-4 of the normal force on an elastic body, and with waves of 8 cells 2e-5. Where the rise is not
+    /// finite, beside the rim of a face, there is no slope to press against: what a rim carries is in
+    /// [`TravelReport::power`](crate::motion::TravelReport) alone.
     ///
     /// ```
     /// use viscocontact::prelude::*;

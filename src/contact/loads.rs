@@ -6,6 +6,7 @@ use crate::contact::reside::upright;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::geometry::Gap;
+use crate::hereditary::History;
 use crate::load::{Load, Tilt};
 use crate::solver::{Freedom, Modes};
 
@@ -71,10 +72,10 @@ impl ViscoelasticContact {
 
     /// Refuses an approach beyond that which closes every gap, where the mean displacement is held: Σ h = Σ gap ≥ 0.
     pub(super) fn stay_below_full_contact(&self, time: f64, loads: &[Load]) -> Result<()> {
-        let [Load::Approach { approach, .. }] = *loads else { return Ok(()) };
-        if !self.kernel.mean_is_held() {
+        let held = loads.iter().all(|load| matches!(load, Load::Approach { .. }));
+        let (true, true, &[Load::Approach { approach, .. }, ..]) = (held, self.kernel.mean_is_held(), loads) else {
             return Ok(());
-        }
+        };
         let left = self.gap.iter().sum::<f64>() / self.gap.len() as f64;
         if left > 0.0 { Ok(()) } else { Err(Error::BeyondFullContact { time, approach, greatest: approach + left }) }
     }
@@ -83,6 +84,16 @@ impl ViscoelasticContact {
     /// residual of this step would otherwise stay in u, and count many times over when a later step is
     /// much stiffer than this one, as a jump after a long hold is.
     pub(super) fn displace(&mut self, c: f64) {
+        if let History::Sources(history) = &mut self.history {
+            history.lay_from(&self.trial_displacement, c, &self.trial.potential);
+        }
+        self.lay(c);
+        if let History::Sources(history) = &mut self.history {
+            history.lay_to(&self.trial_displacement);
+        }
+    }
+
+    fn lay(&mut self, c: f64) {
         let keeps = self.history.keeps_displacement();
         if let (true, &[Freedom { tilt: [false, false], .. }]) = (keeps, &self.freedoms[..]) {
             let motion = self.trial.motions[0][0];

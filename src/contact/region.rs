@@ -128,8 +128,17 @@ impl Region {
 
     /// Takes its share out of a field on the whole grid.
     pub(crate) fn cut<V: Copy>(&self, whole: &[V]) -> Vec<V> {
+        self.share(whole).collect()
+    }
+
+    /// Writes its share of a field on the whole grid into `own`.
+    pub(crate) fn cut_into(&self, whole: &[f64], own: &mut [f64]) {
+        own.iter_mut().zip(self.share(whole)).for_each(|(own, value)| *own = value);
+    }
+
+    fn share<V: Copy>(&self, whole: &[V]) -> impl Iterator<Item = V> {
         let n2 = self.whole.cells()[1];
-        (0..self.len()).map(|k| self.cell(k)).map(|[i, j]| whole[i * n2 + j]).collect()
+        (0..self.len()).map(|k| self.cell(k)).map(move |[i, j]| whole[i * n2 + j])
     }
 
     /// Its share of a gap; nothing if that is all of it.

@@ -55,7 +55,7 @@ pub enum Frame {
     Bodies,
     /// The indenter: the bodies move under the grid, by whole cells
     /// ([`ViscoelasticContact::step_over`](crate::ViscoelasticContact::step_over)), endlessly. A step costs one convolution
-    /// more, and a further relaxation time nothing but its recursion. Computed on the whole grid, and by the
+    /// more, and a further relaxation time nothing but two fields and their recursion. Computed on the whole grid, and by the
     /// exponential rule: a rheology without an exact series needs [`Builder::times`](crate::contact::Builder::times).
     Indenter,
 }

@@ -35,7 +35,8 @@ pub(crate) const AREA_ORDER: f64 = 1.2;
 impl ViscoelasticContact {
     /// Estimates what the mesh costs in accuracy, from the cells on the rim of the contact: from how many they are among
     /// all, δ, and from the share s of the force that they carry. s √δ is of second order in the cell width where the
-    /// pressure falls to zero at the edge, and of first order where it is singular there. All zero without contact.
+    /// pressure falls to zero at the edge, and of first order where it is singular there. All zero without contact, and in
+    /// full contact of periodic bodies.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -53,22 +54,19 @@ impl ViscoelasticContact {
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     pub fn spatial_error(&self) -> SpatialError {
-        let [n1, n2] = self.grid.cells();
+        let n2 = self.grid.cells()[1];
         let pressure = self.pressure();
         let (mut rim_cells, mut rim, mut total) = (0_usize, 0.0, 0.0);
         for (k, &p) in pressure.iter().enumerate().filter(|(_, p)| **p > 0.0) {
             total += p;
-            let (i, j) = (k / n2, k % n2);
-            let apart = (i == 0 || pressure[k - n2] == 0.0)
-                || (i + 1 == n1 || pressure[k + n2] == 0.0)
-                || (j == 0 || pressure[k - 1] == 0.0)
-                || (j + 1 == n2 || pressure[k + 1] == 0.0);
-            if apart {
+            let (i, j) = ((k / n2) as isize, (k % n2) as isize);
+            let neighbours = [[i - 1, j], [i + 1, j], [i, j - 1], [i, j + 1]];
+            if neighbours.into_iter().any(|cell| self.pressure_at(cell) == 0.0) {
                 rim_cells += 1;
                 rim += p;
             }
         }
-        if total == 0.0 {
+        if total == 0.0 || rim_cells == 0 {
             return SpatialError::default();
         }
         let (share, delta) = (rim / total, rim_cells as f64 / (2 * self.contact_cells) as f64);

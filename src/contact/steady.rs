@@ -1,6 +1,7 @@
 //! Moving on until nothing changes any more.
 
 use crate::contact::report::StepReport;
+use crate::contact::settings::Frame;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result, finite, within};
 use crate::load::Load;
@@ -42,6 +43,8 @@ pub struct TowardSteady<'a> {
     /// The pressure one length of contact ago.
     before: Vec<f64>,
     change: f64,
+    /// Whether a step was made in place, for the indenter to touch.
+    tried_to_touch: bool,
     arrived: bool,
 }
 
@@ -72,11 +75,14 @@ impl ViscoelasticContact {
     /// ```
     ///
     /// # Errors
-    /// If the axis is neither 0 nor 1, the velocity zero or not finite, or the tolerance not in (0, 1).
+    /// If the grid is fixed to the bodies, the axis is neither 0 nor 1, the velocity zero or not finite, or the tolerance not in (0, 1).
     pub fn toward_steady(&mut self, motion: SteadyMotion) -> Result<TowardSteady<'_>> {
         if motion.axis > 1 {
             let allowed = "0 (x1) or 1 (x2)";
             return Err(Error::CountOutOfRange { field: "axis of the motion", value: motion.axis, allowed });
+        }
+        if self.settings().frame != Frame::Indenter {
+            return Err(Error::WrongFrame { what: "a motion to its steady state" });
         }
         let velocity = finite("velocity", motion.velocity)?;
         within("velocity", velocity, velocity != 0.0, "finite and not 0")?;
@@ -84,7 +90,17 @@ impl ViscoelasticContact {
         within("tolerance of a steady motion", tolerance, tolerance > 0.0 && tolerance < 1.0, "in (0, 1)")?;
         let before = self.pressure().to_vec();
         let change = f64::INFINITY;
-        Ok(TowardSteady { contact: self, motion, stride: 0, left: 0, travelled: 0, before, change, arrived: false })
+        Ok(TowardSteady {
+            contact: self,
+            motion,
+            stride: 0,
+            left: 0,
+            travelled: 0,
+            before,
+            change,
+            tried_to_touch: false,
+            arrived: false,
+        })
     }
 }
 
@@ -92,13 +108,16 @@ impl TowardSteady<'_> {
     /// Makes one step, or says that the motion is steady.
     ///
     /// # Errors
-    /// As [`ViscoelasticContact::step_over`], or if the motion is not steady after ten times the length of the grid.
+    /// As [`ViscoelasticContact::step_over`], or if the load does not keep the bodies in touch, or the motion is not steady after ten times the length of the grid.
     pub fn next_step(&mut self) -> Result<Option<StepReport>> {
         if self.arrived {
             return Ok(None);
         }
-        if self.stride == 0 && self.contact.contact_cells() == 0 {
-            // the first touch
+        if self.contact.contact_cells() == 0 {
+            if self.tried_to_touch {
+                return Err(Error::NoContact { time: self.contact.time() });
+            }
+            self.tried_to_touch = true;
             let motion = self.motion;
             let dt = self.contact.grid().spacing()[motion.axis] / motion.velocity.abs();
             return self.contact.step_over([0; 2], dt, motion.load).map(Some);
@@ -151,7 +170,7 @@ impl TowardSteady<'_> {
                 let pairs = self.contact.pressure().iter().zip(&self.before);
                 let change: f64 = pairs.map(|(now, before)| (now - before).abs()).sum();
                 self.change = change / self.contact.pressure().iter().sum::<f64>();
-                self.arrived = self.change <= limit || self.change.is_nan();
+                self.arrived = self.change <= limit;
                 if self.arrived {
                     return Ok(false);
                 }

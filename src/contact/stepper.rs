@@ -67,6 +67,9 @@ pub struct ViscoelasticContact {
     pub(super) placed: bool,
     /// What it was before the step being tried moved it to another region.
     pub(super) before_move: Option<Box<ViscoelasticContact>>,
+    /// Room for the gap of a step along a path, and of what the path lies over; made by the first.
+    pub(super) spare_gap: Vec<f64>,
+    pub(super) spare_track: Vec<f64>,
     /// How far the indenter moves over the bodies in the step being tried \[cells\].
     pub(super) stride: [isize; 2],
     /// Convolutions that its past took.
@@ -187,6 +190,8 @@ impl ViscoelasticContact {
             beyond,
             placed: false,
             before_move: None,
+            spare_gap: Vec::new(),
+            spare_track: Vec::new(),
             stride: [0; 2],
             convolutions_of_the_past: 0,
             shown: Vec::new(),

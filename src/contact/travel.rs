@@ -2,8 +2,7 @@
 
 use crate::contact::settings::Frame;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result};
-use crate::geometry::Gap;
+use crate::error::{Error, Result, non_negative};
 use crate::load::Load;
 use crate::motion::{Travel, TravelReport};
 
@@ -12,7 +11,7 @@ impl ViscoelasticContact {
     /// at its start the indenter should be at the path's position there.
     ///
     /// The sharper the shape, the shorter the steps: an indenter should not move by more than a part of the contact's
-    /// length in each. With [`Settings::window`](crate::contact::Settings::window) what is computed grows with the track.
+    /// length in each. A step off the middle gives up the symmetry of the scene for good. With [`Settings::window`](crate::contact::Settings::window) what is computed grows with the track.
     ///
     /// # Errors
     /// As [`ViscoelasticContact::step`], or if the path or a gap is not finite, there are several rigid bodies, or the grid is
@@ -24,22 +23,51 @@ impl ViscoelasticContact {
         if self.loads.len() != 1 {
             return Err(Error::WrongNumberOfBodies { given: 1, bodies: self.loads.len() });
         }
-        let (start, end) = (self.time, self.time + dt);
-        let from = travel.position(start)?;
-        let mut gap = vec![f64::INFINITY; self.grid.len()];
-        travel.fill_gap(end, &self.grid, &mut gap, &mut Vec::new())?;
-        let before = self.replace_gap(Gap::new(&[gap], &self.grid)?);
-        match self.step(dt, load) {
-            Ok(step) => {
-                let position = travel.position(self.time)?;
-                let lateral_force = self.lateral_force(&travel.shape_at(self.time)?);
-                let work: f64 = (0..2).map(|axis| lateral_force[axis] * (position[axis] - from[axis])).sum();
-                Ok(TravelReport { step, position, lateral_force, power: if dt > 0.0 { work / dt } else { 0.0 } })
-            }
-            Err(error) => {
-                self.replace_gap(before);
-                Err(error)
+        non_negative("time step", dt)?;
+        let from = travel.position(self.time)?;
+        self.move_back();
+        let mut gap = std::mem::take(&mut self.spare_gap);
+        gap.resize(self.grid.len(), f64::INFINITY);
+        let filled = travel.fill_gap(self.time + dt, &self.grid, &mut gap, &mut self.spare_track);
+        let exchanged = filled.and_then(|()| self.initial_gap.exchange(&mut gap, &self.grid));
+        let datum = exchanged.inspect_err(|_| self.spare_gap = std::mem::take(&mut gap))?;
+        // what is lost with the symmetry does not come back
+        let whole = (self.still_even() != self.region.folded()).then(|| {
+            let mut whole = Box::new(self.clone());
+            whole.initial_gap.put_back(&mut gap.clone(), datum);
+            whole
+        });
+        self.take_in_the_gap();
+        let before = (self.force(), self.moment(), self.motions[0]);
+        let result = self.step(dt, load);
+        if result.is_err() {
+            match whole {
+                Some(whole) => *self = *whole,
+                None => {
+                    self.initial_gap.put_back(&mut gap, datum);
+                    self.take_in_the_gap();
+                }
             }
         }
+        self.spare_gap = gap;
+        let step = result?;
+        let position = travel.position(self.time)?;
+        let lateral_force = self.lateral_force(&travel.shape_at(self.time)?);
+        let power = if dt > 0.0 { self.work_along(before) / dt } else { 0.0 };
+        Ok(TravelReport { step, position, from, lateral_force, power })
+    }
+
+    /// The work of the last step \[J\] that went along the surface: what the pressure did there, Σ p Δu, less the part of force
+    /// and moments.
+    fn work_along(&self, (force, moment, motion): (f64, [f64; 2], [f64; 3])) -> f64 {
+        let pressures = self.previous.pressure.iter().zip(&self.current.pressure);
+        let displacements = self.trial_displacement.iter().zip(&self.displacement);
+        let work: f64 = pressures.zip(displacements).map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum();
+        let ends = [[force, moment[0], moment[1]], {
+            let [m1, m2] = self.moment();
+            [self.force(), m1, m2]
+        }];
+        let pressed = (0..3).map(|k| 0.5 * (ends[0][k] + ends[1][k]) * (self.motions[0][k] - motion[k]));
+        work * self.grid.cell_area() * self.region.images() as f64 - pressed.sum::<f64>()
     }
 }

@@ -150,16 +150,24 @@ pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Vec<f64> {
     gap
 }
 
+/// Refuses what is no gap.
+fn check(gap: &[f64], grid: &Grid) -> Result<()> {
+    match gap.iter().position(|h| h.is_nan() || *h == f64::NEG_INFINITY) {
+        Some(k) => {
+            let cell = [k / grid.cells()[1], k % grid.cells()[1]];
+            Err(Error::InvalidGap { cell, position: grid.center(cell[0], cell[1]), value: gap[k] })
+        }
+        None => Ok(()),
+    }
+}
+
 impl Gap {
     /// Joins the gap fields of the bodies and checks them: no NaN, no −∞, and something to touch.
     pub(crate) fn new(bodies: &[Vec<f64>], grid: &Grid) -> Result<Gap> {
         let mut above = vec![f64::INFINITY; grid.len()];
         let mut owner = (bodies.len() > 1).then(|| vec![0_u16; grid.len()]);
         for (body, own) in bodies.iter().enumerate() {
-            if let Some(k) = own.iter().position(|h| h.is_nan() || *h == f64::NEG_INFINITY) {
-                let cell = [k / grid.cells()[1], k % grid.cells()[1]];
-                return Err(Error::InvalidGap { cell, position: grid.center(cell[0], cell[1]), value: own[k] });
-            }
+            check(own, grid)?;
             for (k, &h) in own.iter().enumerate() {
                 if h < above[k] {
                     above[k] = h;
@@ -179,6 +187,23 @@ impl Gap {
         let datum = above.iter().copied().fold(f64::INFINITY, f64::min);
         above.iter_mut().for_each(|h| *h -= datum);
         Ok(Gap { datum, above, owner })
+    }
+
+    /// Takes the heights of a single body, checked, and leaves those it had in their place; returns the datum it had.
+    pub(crate) fn exchange(&mut self, heights: &mut Vec<f64>, grid: &Grid) -> Result<f64> {
+        check(heights, grid)?;
+        let datum = heights.iter().copied().fold(f64::INFINITY, f64::min);
+        if datum == f64::INFINITY {
+            return Err(Error::NothingToTouch { body: 0, cells: grid.len() });
+        }
+        heights.iter_mut().for_each(|h| *h -= datum);
+        Ok(self.put_back(heights, datum))
+    }
+
+    /// Takes heights above a datum, and leaves those it had in their place; returns the datum it had.
+    pub(crate) fn put_back(&mut self, above: &mut Vec<f64>, datum: f64) -> f64 {
+        std::mem::swap(&mut self.above, above);
+        std::mem::replace(&mut self.datum, datum)
     }
 
     /// The body that cell `k` belongs to.

@@ -47,6 +47,7 @@ impl History {
             History::Exponential(history) => history.predict(time, dt, displacement, u_old),
             History::Direct(history) => history.predict(time, dt, u_old),
             History::Unfitted(history) => history.predict(time, dt, displacement, u_old),
+            // u_old is a convolution away
             History::Sources(history) => history.predict(time, dt, [0; 2]),
         }
     }
@@ -55,7 +56,8 @@ impl History {
     pub(crate) fn keeps_displacement(&self) -> bool {
         match self {
             History::Exponential(history) => history.remembers(),
-            History::Direct(_) | History::Sources(_) => false,
+            History::Direct(_) => false,
+            History::Sources(history) => history.remembers(),
             History::Unfitted(_) => true,
         }
     }

@@ -8,80 +8,114 @@ use crate::rheology::CreepSpectrum;
 /// the memory of the bodies being linear. U vanishes wherever there never was contact: what enters the grid from beyond its
 /// edge is known, and so the grid can follow an indenter over endless bodies, or around periodic ones. The displacement
 /// costs one convolution a step, however many relaxation times there are.
+///
+/// The surface in contact is laid on the rigid body after each step; what that changes no pressure has caused. It follows the same
+/// recursion, as a displacement: u = K U + e.
 #[derive(Debug, Clone)]
 pub(crate) struct Sources {
-    history: Exponential,
     cells: [usize; 2],
     periodic: [bool; 2],
-    /// U.
-    strength: Vec<f64>,
-    /// U of the step being tried; between steps that before the last one.
-    trial: Vec<f64>,
+    /// U and e.
+    caused: Carried,
+    laid: Carried,
     /// How far the bodies move in the step being tried.
     by: [isize; 2],
     scratch: Vec<f64>,
 }
 
+/// A field that follows the recursion of the displacement.
+#[derive(Debug, Clone)]
+struct Carried {
+    history: Exponential,
+    now: Vec<f64>,
+    /// At the end of the step being tried; between steps before the last one.
+    trial: Vec<f64>,
+}
+
 impl Sources {
     /// The undisturbed past of a body with contact compliance `creep`, on no cells yet.
     pub(crate) fn new(creep: &CreepSpectrum, periodic: [bool; 2]) -> Sources {
-        let history = Exponential::new(creep, 0);
-        let (strength, trial, scratch) = (Vec::new(), Vec::new(), Vec::new());
-        Sources { history, cells: [0; 2], periodic, strength, trial, by: [0; 2], scratch }
+        let caused = Carried { history: Exponential::new(creep, 0), now: Vec::new(), trial: Vec::new() };
+        Sources { cells: [0; 2], periodic, laid: caused.clone(), caused, by: [0; 2], scratch: Vec::new() }
     }
 
     /// An undisturbed past on so many cells.
     pub(crate) fn undisturbed_on(&mut self, cells: [usize; 2]) {
         let count = cells[0] * cells[1];
-        self.history.undisturbed_on(count);
-        self.cells = cells;
-        (self.strength, self.trial, self.scratch) = (vec![0.0; count], vec![0.0; count], vec![0.0; count]);
+        (self.cells, self.scratch) = (cells, vec![0.0; count]);
+        for field in [&mut self.caused, &mut self.laid] {
+            field.history.undisturbed_on(count);
+            (field.now, field.trial) = (vec![0.0; count], vec![0.0; count]);
+        }
     }
 
     /// Whether there is a past at all.
     pub(crate) fn remembers(&self) -> bool {
-        self.history.remembers()
+        self.caused.history.remembers()
     }
 
-    /// Finds U_old at the end of a step in which the cell `[i, j]` comes over what was the cell `[i, j] + by`; returns c.
+    /// Finds U_old and e_old at the end of a step in which the cell `[i, j]` comes over what was the cell `[i, j] + by`;
+    /// returns c.
     pub(crate) fn predict(&mut self, time: f64, dt: f64, by: [isize; 2]) -> Result<f64> {
-        let c = self.history.predict(time, dt, &self.strength, &mut self.trial)?;
-        shift(&mut self.trial, self.cells, by, self.periodic);
         self.by = by;
-        Ok(c)
+        self.laid.predict(time, dt, self.cells, by, self.periodic)?;
+        self.caused.predict(time, dt, self.cells, by, self.periodic)
     }
 
-    /// What was predicted: u_old = K U_old.
-    pub(crate) fn old(&self) -> &[f64] {
-        &self.trial
+    /// What was predicted, U_old and e_old: u_old = K U_old + e_old.
+    pub(crate) fn old(&self) -> [&[f64]; 2] {
+        [&self.caused.trial, &self.laid.trial]
     }
 
     /// U = U_old + c p.
     pub(crate) fn advance(&mut self, c: f64, pressure: &[f64]) {
-        self.trial.iter_mut().zip(pressure).for_each(|(strength, &p)| *strength += c * p);
+        self.caused.trial.iter_mut().zip(pressure).for_each(|(strength, &p)| *strength += c * p);
+    }
+
+    /// Says from where the surface is about to be laid: e = e_old − (u_old + c v) so far.
+    pub(crate) fn lay_from(&mut self, u_old: &[f64], c: f64, potential: &[f64]) {
+        let fields = self.laid.trial.iter_mut().zip(u_old.iter().zip(potential));
+        fields.for_each(|(e, (&u_old, &v))| *e -= u_old + c * v);
+    }
+
+    /// Says to where it was laid.
+    pub(crate) fn lay_to(&mut self, u: &[f64]) {
+        self.laid.trial.iter_mut().zip(u).for_each(|(e, &u)| *e += u);
     }
 
     /// Takes the step that was predicted last into the past.
     pub(crate) fn commit(&mut self) {
-        std::mem::swap(&mut self.strength, &mut self.trial);
-        if self.by != [0; 2] {
-            shift(&mut self.trial, self.cells, self.by, self.periodic);
-            for branch in 0..self.history.branches() {
-                self.history.read_branch(branch, &mut self.scratch);
-                shift(&mut self.scratch, self.cells, self.by, self.periodic);
-                self.history.write_branch(branch, &self.scratch);
+        for field in [&mut self.caused, &mut self.laid] {
+            std::mem::swap(&mut field.now, &mut field.trial);
+            if self.by != [0; 2] {
+                shift(&mut field.trial, self.cells, self.by, self.periodic);
+                for branch in 0..field.history.branches() {
+                    field.history.read_branch(branch, &mut self.scratch);
+                    shift(&mut self.scratch, self.cells, self.by, self.periodic);
+                    field.history.write_branch(branch, &self.scratch);
+                }
             }
+            field.history.commit();
         }
-        self.history.commit();
     }
 
     /// The same past on other cells, `carry` saying what a field becomes there.
     pub(crate) fn carry(&mut self, cells: [usize; 2], carry: impl Fn(&[f64]) -> Vec<f64>) {
-        self.history.settle(&self.trial, &self.strength);
-        let (from, to) = (self.strength.len(), cells[0] * cells[1]);
-        self.history.carry(from, to, |_, own| carry(&own));
-        (self.strength, self.trial) = (carry(&self.strength), carry(&self.trial));
+        let to = cells[0] * cells[1];
+        for field in [&mut self.caused, &mut self.laid] {
+            field.history.settle(&field.trial, &field.now);
+            field.history.carry(field.now.len(), to, |_, own| carry(&own));
+            (field.now, field.trial) = (carry(&field.now), carry(&field.trial));
+        }
         (self.cells, self.scratch) = (cells, vec![0.0; to]);
+    }
+}
+
+impl Carried {
+    fn predict(&mut self, time: f64, dt: f64, cells: [usize; 2], by: [isize; 2], periodic: [bool; 2]) -> Result<f64> {
+        let c = self.history.predict(time, dt, &self.now, &mut self.trial)?;
+        shift(&mut self.trial, cells, by, periodic);
+        Ok(c)
     }
 }
 
@@ -90,7 +124,7 @@ impl Sources {
 fn shift(field: &mut [f64], [n1, n2]: [usize; 2], by: [isize; 2], periodic: [bool; 2]) {
     let line = |line: &mut [f64], by: isize, unit: usize, periodic: bool| {
         let steps = if periodic { by.unsigned_abs() % (line.len() / unit) } else { by.unsigned_abs() };
-        let far = (steps * unit).min(line.len());
+        let far = steps.saturating_mul(unit).min(line.len());
         let end = line.len() - far;
         match (periodic, by > 0) {
             (true, true) => line.rotate_left(far),

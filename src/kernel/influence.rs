@@ -1,5 +1,7 @@
 //! What a unit of pressure does to the surface, for each kind of body.
 
+use std::f64::consts::PI;
+use std::fmt;
 use std::sync::Arc;
 
 use super::layout::{Ends, Layout};
@@ -112,6 +114,19 @@ impl Influence {
         (layout, symbol)
     }
 
+    /// The greatest compliance of a wave, where that of the mean is zero.
+    pub(super) fn softest_wave_if_mean_is_held(&self, grid: &Grid) -> Option<f64> {
+        match self {
+            // the longest wave: 2/q = L/π
+            Influence::Periodic => {
+                let lengths = (0..2).filter(|&axis| grid.cells()[axis] > 1).map(|axis| grid.lengths()[axis]);
+                Some(lengths.fold(0.0, f64::max) / PI)
+            }
+            Influence::Waves { values, .. } if values[0] == 0.0 => Some(values.iter().copied().fold(0.0, f64::max)),
+            _ => None,
+        }
+    }
+
     /// The coefficient of a cell on itself \[m\], where cells are what is known.
     pub(super) fn on_itself(&self) -> Option<f64> {
         match self {
@@ -127,4 +142,20 @@ fn magnitude(grid: &Grid, layout: Layout) -> impl Fn(usize, usize) -> f64 + 'sta
     let (spacing, period) = (grid.spacing(), [layout.period(0), layout.period(1)]);
     let q = move |axis: usize, k: usize| wave_number(k, period[axis], spacing[axis]);
     move |k1, k2| q(0, k1).hypot(q(1, k2))
+}
+
+impl fmt::Display for Influence {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Influence::HalfSpace(_) => write!(f, "half-space"),
+            Influence::Periodic => {
+                write!(f, "half-space, periodic along x1 and x2, the mean of the surface being the datum")
+            }
+            Influence::Strip { periodic, strip } => {
+                write!(f, "half-space, periodic along x{}, datum {:e} m", periodic + 1, strip.datum())
+            }
+            Influence::Coefficients { .. } => write!(f, "coefficients of the user's"),
+            Influence::Waves { .. } => write!(f, "waves of the user's, periodic along x1 and x2"),
+        }
+    }
 }

@@ -30,6 +30,7 @@ pub(crate) use lanes::{join, lanes};
 pub(crate) use layout::images;
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
+use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
@@ -67,6 +68,8 @@ pub struct InfluenceKernel {
     operators: [OnceLock<Arc<SpectralOperator<f64>>>; 4],
     /// The same in single precision.
     singles: [OnceLock<Arc<SpectralOperator<f32>>>; 4],
+    /// The influence of a cell on itself, where it is no coefficient.
+    on_itself: OnceLock<f64>,
 }
 
 /// Buffers of [`InfluenceKernel::convolve`], made by [`InfluenceKernel::workspace`].
@@ -86,6 +89,7 @@ pub(crate) struct LocalKernel {
     influence: Influence,
     folded: [bool; 2],
     self_influence: f64,
+    softest: Option<f64>,
 }
 
 impl InfluenceKernel {
@@ -138,8 +142,7 @@ impl InfluenceKernel {
     pub(crate) fn on(&self, part: &Grid, folded: [bool; 2], single: bool) -> LocalKernel {
         let layout = Layout { cells: part.cells(), ..self.layout(folded) };
         let unit = self.influence.on_itself().unwrap_or_else(|| {
-            let symbol = self.influence.symbol(&self.grid, layout);
-            layout.average(symbol)
+            *self.on_itself.get_or_init(|| layout.average(self.influence.symbol(&self.grid, layout)))
         });
         let (operator, single) = if layout == self.layout(folded) {
             let kept = &self.singles[index(folded)];
@@ -148,8 +151,9 @@ impl InfluenceKernel {
         } else {
             (Arc::new(self.make(layout, 1.0)), single.then(|| Arc::new(self.make(layout, unit))))
         };
+        let softest = self.influence.softest_wave_if_mean_is_held(&self.grid);
         let influence = self.influence.clone();
-        LocalKernel { grid: part.clone(), operator, single, influence, folded, self_influence: unit }
+        LocalKernel { grid: part.clone(), operator, single, influence, folded, self_influence: unit, softest }
     }
 
     /// Axes along which the bodies are periodic, the grid being one period.
@@ -164,11 +168,14 @@ impl InfluenceKernel {
 
     /// Whether a uniform pressure displaces nothing: then the approach cannot exceed that at which the gap is closed.
     pub(crate) fn mean_is_held(&self) -> bool {
-        match &self.influence {
-            Influence::Periodic => true,
-            Influence::Waves { values, .. } => values[0] == 0.0,
-            _ => false,
-        }
+        self.influence.softest_wave_if_mean_is_held(&self.grid).is_some()
+    }
+}
+
+/// Says which body it is of: "half-space, periodic along x2, datum 1e0 m".
+impl fmt::Display for InfluenceKernel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.influence.fmt(f)
     }
 }
 
@@ -179,6 +186,11 @@ fn index(folded: [bool; 2]) -> usize {
 impl LocalKernel {
     pub(crate) fn grid(&self) -> &Grid {
         &self.grid
+    }
+
+    /// The greatest compliance of a wave \[m\], where that of the mean is zero.
+    pub(crate) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
+        self.softest
     }
 
     /// What an approximate inverse, in the order of 1/`unit`, multiplies the waves of a layout without padding by.

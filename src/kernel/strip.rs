@@ -33,6 +33,10 @@ impl Strip {
         Strip { side, datum }
     }
 
+    pub(crate) fn datum(&self) -> f64 {
+        self.datum
+    }
+
     /// The coefficient of the cell `i` cells away for the wave number `kappa` \[1/m\].
     pub(crate) fn coefficient(&self, i: usize, kappa: f64) -> f64 {
         if kappa == 0.0 { self.line(i) } else { self.wave(i, kappa) }

@@ -41,10 +41,13 @@ pub struct TravelReport {
     pub step: StepReport,
     /// Where the shape is at its end \[m\].
     pub position: [f64; 2],
+    /// Where it was at its start \[m\].
+    pub from: [f64; 2],
     /// The force that moves it \[N\], see
     /// [`ViscoelasticContact::lateral_force`](crate::ViscoelasticContact::lateral_force).
     pub lateral_force: [f64; 2],
-    /// The power that it feeds into the bodies \[W\]: force at the end of the step times mean velocity, 0 for a jump.
+    /// The power that the motion along the surface feeds into the bodies \[W\], a mean over the step: what the pressure does there,
+    /// less what force and moments do. Lateral force times velocity, but also where it acts on the rim of a face. 0 for a jump.
     pub power: f64,
 }
 

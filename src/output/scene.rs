@@ -69,7 +69,7 @@ impl Scene {
     }
 
     /// The whole description as JSON on a single line: `title`, `notes`, `crate` and `version`, `grid` (`cells`,
-    /// `spacing` and `lengths` \[m\]), `bodies`, `settings` and `material` (as Rust prints them), `units` of all
+    /// `spacing` and `lengths` \[m\]), `bodies`, `kernel`, `settings` and `material` (as Rust prints them), `units` of all
     /// that is written, and `conventions`.
     pub fn json(&self, contact: &ViscoelasticContact) -> String {
         let notes = self.notes.iter().fold(Object::default(), |notes, (key, value)| notes.text(key, value));
@@ -87,6 +87,7 @@ impl Scene {
             .text("version", env!("CARGO_PKG_VERSION"))
             .value("grid", &grid.finish())
             .value("bodies", &contact.bodies().to_string())
+            .text("kernel", &contact.kernel().to_string())
             .text("settings", &format!("{:?}", contact.settings()))
             .text("material", &format!("{:?}", contact.material()))
             .value("units", &units.finish())

@@ -147,6 +147,7 @@ impl ActiveSet {
                 self.evict(problem, solution, work);
                 (state, penetration) = self.advance(problem, solution, 0.0);
             }
+            state.rounding = problem.rounding(&solution.pressure);
             solution.residual = relative_residual(&state, penetration);
             let admissible = !self.pending() && state.negative == 0.0;
             let solved = admissible && solution.residual <= stop.tolerance;

@@ -35,6 +35,7 @@ impl PolonskyKeer {
                 problem.measure(body, patch, solution, &mut self.residual, &mut state);
             }
             let penetration = problem.penetration(solution, |k| solution.pressure[k] == 0.0);
+            state.rounding = problem.rounding(&solution.pressure);
             solution.residual = relative_residual(&state, penetration);
             let solved = solution.residual <= stop.tolerance && self.carries_the_forces(problem, solution);
             if solved || solution.counts.iterations >= stop.max_iterations || solution.residual.is_nan() {

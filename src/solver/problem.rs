@@ -2,6 +2,7 @@
 
 use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::rigid::{Freedom, Gram, Modes, Motion};
+use crate::sum::greatest;
 
 /// Find p ≥ 0 and the free motions of the bodies with h = c K p + gap − motion ≥ 0, p h = 0, and the balance
 /// of force and moments that each freedom asks for.
@@ -68,6 +69,8 @@ pub(crate) struct Measure {
     pub(crate) negative: f64,
     /// The greatest |gap|, prior to any pressure.
     pub(crate) height: f64,
+    /// What c K p is rounded by, where it may be much less than its parts.
+    pub(crate) rounding: f64,
     pub(crate) cells: usize,
 }
 
@@ -78,7 +81,8 @@ pub(crate) const PENETRATION_SLACK: f64 = 10.0;
 /// rms |h| in contact and a tenth of the deepest penetration outside. What the gap itself is rounded by does
 /// not count.
 pub(crate) fn relative_residual(state: &Measure, penetration: f64) -> f64 {
-    let error = state.rms().max(penetration / PENETRATION_SLACK) - 4.0 * f64::EPSILON * state.height;
+    let error = state.rms().max(penetration / PENETRATION_SLACK);
+    let error = error - 4.0 * f64::EPSILON * state.height - state.rounding;
     if error <= 0.0 { 0.0 } else { error / state.yielding() }
 }
 
@@ -97,6 +101,13 @@ impl Measure {
 impl<'a> Problem<'a> {
     pub(crate) fn modes(&self, body: usize) -> Modes<'a> {
         Modes::new(self.kernel.grid(), self.bodies[body])
+    }
+
+    /// What c K p is rounded by on bodies whose mean displacement is held: a pressure that is nearly uniform displaces nearly
+    /// nothing.
+    pub(crate) fn rounding(&self, pressure: &[f64]) -> f64 {
+        let Some(softest) = self.kernel.softest_wave_if_mean_is_held() else { return 0.0 };
+        4.0 * f64::EPSILON * self.compliance * softest * greatest(pressure)
     }
 
     /// The body that cell `k` belongs to.
