@@ -1,0 +1,33 @@
+//! Checks of what users give.
+
+use super::{Error, Result};
+
+/// Accepts finite values above zero.
+pub(crate) fn positive(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, value > 0.0, "finite and > 0")
+}
+
+/// Accepts finite values of zero or more.
+pub(crate) fn non_negative(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, value >= 0.0, "finite and >= 0")
+}
+
+/// Accepts any finite value.
+pub(crate) fn finite(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, true, "finite")
+}
+
+/// Accepts finite values for which `inside` holds.
+pub(crate) fn within(field: &'static str, value: f64, inside: bool, allowed: &'static str) -> Result<f64> {
+    if value.is_finite() && inside { Ok(value) } else { Err(Error::OutOfRange { field, value, allowed }) }
+}
+
+/// Accepts a slice of exactly `expected` values.
+pub(crate) fn exact_length(field: &'static str, len: usize, expected: usize) -> Result<()> {
+    if len == expected { Ok(()) } else { Err(Error::WrongLength { field, len, expected, exact: true }) }
+}
+
+/// Accepts a table of `least` entries or more.
+pub(crate) fn least_length(field: &'static str, len: usize, least: usize) -> Result<()> {
+    if len >= least { Ok(()) } else { Err(Error::WrongLength { field, len, expected: least, exact: false }) }
+}
