@@ -70,6 +70,27 @@ fn steps_allocate_nothing() {
         assert_eq!((change.allocations, change.reallocations), (0, 0), "{:?}: {change:?}", contact.kernel());
     }
 
+    // nor, after the first, do steps along a path, with and without something that stays in place
+    let plane = Grid::square(48, 8.0e-3).unwrap();
+    let path = || Straight::new([-1.0e-3, 0.0], [0.01, 0.0]).unwrap();
+    let sphere = || Sphere::new(10.0e-3).unwrap();
+    let ways = [Travel::new(sphere(), path()), Travel::new(sphere(), path()).over(Wavy::new(1.0e-6, 1.0e-3).unwrap())];
+    for travel in ways {
+        let mut contact = ViscoelasticContact::builder(plane.clone())
+            .geometry(&sphere())
+            .material(body())
+            .settings(Settings { window: false, ..Settings::default() })
+            .build()
+            .unwrap();
+        contact.step_along(&travel, 0.0, Load::force(0.5)).unwrap();
+        let region = Region::new(ALLOCATOR);
+        for _ in 0..40 {
+            contact.step_along(&travel, 5.0e-3, Load::force(0.5)).unwrap();
+        }
+        let change = region.change();
+        assert_eq!((change.allocations, change.reallocations), (0, 0), "{change:?}");
+    }
+
     // a line contact takes what its cells do, and the tables of its transforms, which are as long as the line
     let region = Region::new(ALLOCATOR);
     let contact = ViscoelasticContact::builder(Grid::new([16384, 1], [8.0e-3, 1.0]).unwrap())

@@ -25,8 +25,13 @@ impl Shifted {
     /// # Errors
     /// If a component of the shift is not finite.
     pub fn new(shape: impl Geometry + 'static, by: [f64; 2]) -> Result<Shifted> {
+        Shifted::of(Arc::new(shape), by)
+    }
+
+    /// The same of a shape that is shared.
+    pub(crate) fn of(shape: Arc<dyn Geometry>, by: [f64; 2]) -> Result<Shifted> {
         let by = [finite("shift along x1", by[0])?, finite("shift along x2", by[1])?];
-        Ok(Shifted { shape: Arc::new(shape), by })
+        Ok(Shifted { shape, by })
     }
 }
 

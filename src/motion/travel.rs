@@ -79,7 +79,7 @@ impl Travel {
     /// # Errors
     /// As [`Travel::position`].
     pub fn shape_at(&self, t: f64) -> Result<Shifted> {
-        Shifted::new(Arc::clone(&self.shape), self.position(t)?)
+        Shifted::of(Arc::clone(&self.shape), self.position(t)?)
     }
 
     /// The gap \[m\] at time `t` \[s\] on every cell, of the moving shape and what it moves over.

@@ -24,7 +24,8 @@ impl Asymmetry {
 
 impl ViscoelasticContact {
     /// How the contact lies about the point `about` \[m\], as the point of a roller that is lowest; `None` without
-    /// contact. Of several patches, all together; contact across the edge of a periodic grid is not put together.
+    /// contact. Of several patches, all together; where the bodies are periodic each cell counts where it is nearest to the
+    /// point, and the centre of pressure may lie beyond the grid.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -53,21 +54,25 @@ impl ViscoelasticContact {
         }
         // relative to the greatest, no sum leaves the range of f64
         let (mut weight, mut moment) = (0.0, [0.0; 2]);
-        let mut bounds = [[usize::MAX, 0]; 2];
+        let (lengths, periodic) = (grid.lengths(), self.kernel().periodic_axes());
+        let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for (k, p) in touched() {
             let (cell, share) = ([k / n2, k % n2], p / greatest);
             weight += share;
             for axis in 0..2 {
-                moment[axis] += share * grid.coordinate(axis, cell[axis]);
-                bounds[axis] = [bounds[axis][0].min(cell[axis]), bounds[axis][1].max(cell[axis])];
+                let distance = grid.coordinate(axis, cell[axis]) - about[axis];
+                let turns = if periodic[axis] { (distance / lengths[axis]).round() } else { 0.0 };
+                let distance = distance - turns * lengths[axis];
+                moment[axis] += share * distance;
+                bounds[axis] = [bounds[axis][0].min(distance), bounds[axis][1].max(distance)];
             }
         }
         let reach = [0, 1].map(|axis| {
-            let ([first, last], half) = (bounds[axis], 0.5 * grid.spacing()[axis]);
-            let [lower, upper] = [grid.coordinate(axis, first) - half, grid.coordinate(axis, last) + half];
-            [about[axis] - lower, upper - about[axis]]
+            let half = 0.5 * grid.spacing()[axis];
+            [half - bounds[axis][0], half + bounds[axis][1]]
         });
-        Ok(Some(Asymmetry { center_of_pressure: moment.map(|sum| sum / weight), reach }))
+        let center_of_pressure = [0, 1].map(|axis| about[axis] + moment[axis] / weight);
+        Ok(Some(Asymmetry { center_of_pressure, reach }))
     }
 }
 
@@ -94,5 +99,24 @@ mod tests {
         let beyond = contact.asymmetry([1.1e-3, 0.0]).unwrap().unwrap();
         assert!(beyond.reach[0][1] < 0.0 && beyond.skewness()[0] < -1.0);
         assert!(contact.asymmetry([f64::NAN, 0.0]).is_err());
+    }
+
+    #[test]
+    fn a_contact_across_the_seam_of_a_period() {
+        use crate::prelude::*;
+
+        let grid = Grid::new([64, 1], [4.0e-3, 1.0]).unwrap();
+        let cylinder = Repeated::new(Cylinder::new(5.0e-3).unwrap(), [4.0e-3, f64::INFINITY]).unwrap();
+        let at = 1.9e-3;
+        let mut contact = ViscoelasticContact::builder(grid.clone())
+            .geometry(&Shifted::new(cylinder, [at, 0.0]).unwrap())
+            .material(Material::incompressible(Elastic::new(1.0e6).unwrap()))
+            .kernel(std::sync::Arc::new(InfluenceKernel::periodic(&grid).unwrap()))
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(50.0)).unwrap();
+        let found = contact.asymmetry([at, 0.0]).unwrap().unwrap();
+        assert!((found.center_of_pressure[0] - at).abs() < 1e-6, "{found:?}");
+        assert!(found.reach[0].iter().all(|reach| (0.1e-3..1.0e-3).contains(reach)), "{found:?}");
     }
 }
