@@ -165,8 +165,12 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     #[cfg(feature = "vtk")]
     {
         use viscocontact::output::{Field, Scene, VtkSeries};
+        let folder = output.join("vtk");
+        if folder.exists() {
+            fs::remove_dir_all(&folder)?; // a series is never written over
+        }
         let scene = Scene::new("Sphere sliding steadily").note("friction", friction.to_string());
-        VtkSeries::create(output.join("vtk"), scene, &Field::ALL)?.write(&contact)?;
+        VtkSeries::create(folder, scene, &Field::ALL)?.write(&contact)?;
     }
     Ok(())
 }

@@ -79,8 +79,9 @@
 //! takes, in every way there is, stands in `docs/performance.md`. Its history costs no transform: one field a relaxation time, however many
 //! steps came before; thirty of them make a step of 256² cells 1.05 to 1.15 times as long as one. A rheology without an exact
 //! exponential series has one fitted ([`rheology::Rheology::series`]), about two relaxation times a decade for an error
-//! of 1e-4, in a tenth of a second. Memory: about 175 bytes a computed cell, and 8 for each
-//! further relaxation time, which a grid that follows an indenter pays, too (an elastic bulk doubles their number); a step allocates nothing, save the first one
+//! of 1e-4, in a tenth of a second. Memory: about 175 bytes a computed cell (360 of a line
+//! contact, whose transforms' tables are as long as itself), and 8 for each further relaxation time, 16 where the grid follows the indenter
+//! (an elastic bulk doubles their number); a step allocates nothing, save the first one
 //! that takes time, if it has to fit a series, and those in which a window grows.
 //!
 //! # Features

@@ -147,6 +147,9 @@ impl Chart {
                 }
             }
         }
+        if self.series.iter().all(|series| series.label.is_empty()) {
+            return Ok(());
+        }
         chart
             .configure_series_labels()
             .position(self.legend.clone())
