@@ -42,6 +42,30 @@ fn convolution(c: &mut Criterion) {
     group.finish();
 }
 
+/// Bodies that are not half-spaces, on one thread: periodic ones are not padded, a line is transformed as a line.
+fn other_bodies(c: &mut Criterion) {
+    let mut group = c.benchmark_group("other bodies");
+    group.sample_size(20);
+    let (plane, line) = (Grid::square(256, 1.0).unwrap(), |cells| Grid::new([cells, 1], [1.0, 1.0]).unwrap());
+    let kernels = [
+        ("half-space 256²", InfluenceKernel::half_space(&plane)),
+        ("periodic along one axis 256²", InfluenceKernel::periodic_along(&plane, 0, 1.0)),
+        ("periodic 256²", InfluenceKernel::periodic(&plane)),
+        ("half-space 64²", InfluenceKernel::half_space(&Grid::square(64, 1.0).unwrap())),
+        ("line of 4096", InfluenceKernel::line(&line(4096), 1.0)),
+        ("line of 512", InfluenceKernel::line(&line(512), 1.0)),
+    ];
+    for (name, kernel) in kernels {
+        let kernel = kernel.unwrap();
+        let (pressure, mut out) = (vec![1.0; kernel.grid().len()], vec![0.0; kernel.grid().len()]);
+        let mut work = pool(1).install(|| kernel.workspace());
+        group.bench_function(name, |b| {
+            b.iter(|| kernel.convolve(black_box(&pressure), &mut out, &mut work).unwrap());
+        });
+    }
+    group.finish();
+}
+
 /// The textbook convolution: every row and column of the padded grid, forth and back.
 struct Plain {
     cells: usize,
@@ -101,5 +125,5 @@ impl Plain {
     }
 }
 
-criterion_group!(benches, convolution);
+criterion_group!(benches, convolution, other_bodies);
 criterion_main!(benches);

@@ -73,7 +73,7 @@
 //! # What costs what
 //!
 //! A convolution of N cells is one forward and one inverse real transform of the zero-padded grid,
-//! O(N log N). Periodic bodies are not padded, and cost a quarter; a line of N × 1 cells is transformed as the line it is. A step of the default solver takes 3 to 5 of them on the scenes of the README at 256² cells, and
+//! O(N log N). Periodic bodies are not padded, and cost a third; a line of N × 1 cells is transformed as the line it is. A step of the default solver takes 3 to 5 of them on the scenes of the README at 256² cells, and
 //! a scene without tilt does no work for it. Where gap and load are even in x1, x2 or both, half or a quarter of the cells is
 //! computed ([`contact::Settings::symmetry`]); where contact cannot reach, nothing is ([`contact::Settings::window`]); what a step
 //! takes, in every way there is, stands in `docs/performance.md`. Its history costs no transform: one field a relaxation time, however many

@@ -43,7 +43,7 @@ impl InfluenceKernel {
     ///
     /// The mean of the displacement has no meaning on an endless surface; it is the datum, and zero: the approach is
     /// measured from where a rigid plane rests on the mean of the undeformed surface. It cannot exceed that of full contact.
-    /// Nothing is padded: a convolution costs a quarter of the half-space's. On a grid of N × 1 cells this is the periodic
+    /// Nothing is padded: a convolution costs a third of the half-space's. On a grid of N × 1 cells this is the periodic
     /// contact in plane strain.
     ///
     /// ```
