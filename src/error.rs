@@ -357,6 +357,11 @@ pub enum Error {
         what: String,
     },
 
+    /// A checkpoint cannot be continued from.
+    #[cfg(feature = "checkpoint")]
+    #[error(transparent)]
+    Checkpoint(#[from] crate::contact::CheckpointError),
+
     /// Isotherms of a master curve measure different things.
     #[error("the {first} isotherms cannot be joined to {second} isotherms")]
     MixedIsotherms {

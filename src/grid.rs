@@ -109,6 +109,23 @@ impl Grid {
     }
 }
 
+/// How a grid is kept in a file of the crate's own, which is checked as a whole; users' grids are made by [`Grid::new`].
+#[cfg(feature = "checkpoint")]
+pub(crate) mod saved {
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::Grid;
+
+    pub(crate) fn serialize<S: Serializer>(grid: &Grid, serializer: S) -> Result<S::Ok, S::Error> {
+        (grid.cells, grid.spacing, grid.start).serialize(serializer)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Grid, D::Error> {
+        let (cells, spacing, start) = Deserialize::deserialize(deserializer)?;
+        Ok(Grid { cells, spacing, start })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

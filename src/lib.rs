@@ -110,6 +110,8 @@
 pub mod analytic;
 pub mod contact;
 mod error;
+#[cfg(any(feature = "checkpoint", feature = "csv", feature = "npy", feature = "vtk"))]
+mod file;
 pub mod geometry;
 mod grid;
 mod hereditary;

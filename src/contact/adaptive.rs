@@ -11,7 +11,8 @@ use crate::load::LoadHistory;
 ///
 /// weighted by the pressure: the greatest error over all cells is that of the kink of u at a moving edge, which
 /// carries no force. A load that is not linear in time within the step adds its own deviation.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Controller {
     pub(super) tolerance: f64,
     /// Length of the next step; `None` where the past says nothing about it.

@@ -1,6 +1,8 @@
 //! Drives a contact along a load history.
 
 use crate::contact::adaptive::Controller;
+#[cfg(feature = "checkpoint")]
+use crate::contact::checkpoint::Keeping;
 use crate::contact::report::StepReport;
 use crate::contact::spatial::SpatialError;
 use crate::contact::stepper::ViscoelasticContact;
@@ -87,18 +89,38 @@ impl Stepping {
 #[derive(Debug)]
 #[must_use = "a run takes no step until next_step is called"]
 pub struct Follow<'a> {
-    contact: &'a mut ViscoelasticContact,
+    pub(super) contact: &'a mut ViscoelasticContact,
     history: &'a dyn LoadHistory,
     stepping: Stepping,
     until: f64,
-    start: f64,
-    /// Steps of the fixed raster already behind.
-    behind: u64,
-    controller: Option<Controller>,
+    pub(super) progress: Progress,
     /// Times to end steps on, ascending.
     landings: Vec<f64>,
+    #[cfg(feature = "checkpoint")]
+    pub(super) keeping: Option<Keeping>,
+}
+
+/// How far a run has come, and what it knows of the steps to come.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct Progress {
+    start: f64,
+    /// Where the contact was when this was true.
+    pub(super) now: f64,
+    /// Steps of the fixed raster already behind, and their length, 0 for steps chosen by their error.
+    behind: u64,
+    raster: f64,
+    controller: Option<Controller>,
     /// Greatest estimated error in time of a step, and greatest residual.
     worst: [f64; 2],
+}
+
+impl Progress {
+    /// Whether it is that of a run that begins like this one.
+    fn goes_on(&self, begun: &Progress) -> bool {
+        let tolerance = |progress: &Progress| progress.controller.as_ref().map(|controller| controller.tolerance);
+        self.now == begun.now && self.raster == begun.raster && tolerance(self) == tolerance(begun)
+    }
 }
 
 /// Where the error of a run comes from, made by [`Follow::error_budget`]. All relative.
@@ -123,21 +145,24 @@ impl<'a> Follow<'a> {
         stepping: Stepping,
         until: f64,
     ) -> Follow<'a> {
-        let controller = match stepping {
-            Stepping::Fixed { .. } => None,
-            Stepping::Adaptive { tolerance } => Some(Controller::new(tolerance)),
+        let now = contact.time();
+        let (controller, raster) = match stepping {
+            Stepping::Fixed { dt } => (None, dt),
+            Stepping::Adaptive { tolerance } => (Some(Controller::new(tolerance)), 0.0),
         };
-        let start = contact.time();
+        let begun = Progress { start: now, now, behind: 0, raster, controller, worst: [0.0; 2] };
+        // a run that was saved goes on, if this is the one
+        let saved = contact.progress.take().filter(|saved| saved.goes_on(&begun));
+        let progress = saved.map_or(begun, |saved| *saved);
         Follow {
-            start,
             contact,
             history,
             stepping,
             until,
-            behind: 0,
-            controller,
+            progress,
             landings: Vec::new(),
-            worst: [0.0; 2],
+            #[cfg(feature = "checkpoint")]
+            keeping: None,
         }
     }
 
@@ -163,8 +188,15 @@ impl<'a> Follow<'a> {
     /// If the end is not finite or lies before the contact's time, the fixed step is not finite and
     /// positive or too short to change the time, the tolerance is out of range or asks for steps too short to change
     /// the time, or a step fails; the contact is then as it was after the last good step, and the call may be
-    /// repeated.
+    /// repeated. Or if the file of [`Follow::keeping`] cannot be written: the step is then taken all the same.
     pub fn next_step(&mut self) -> Result<Option<StepReport>> {
+        let report = self.take_step()?;
+        #[cfg(feature = "checkpoint")]
+        self.keep(report.is_none())?;
+        Ok(report)
+    }
+
+    fn take_step(&mut self) -> Result<Option<StepReport>> {
         match self.stepping {
             Stepping::Fixed { dt } => positive("fixed step", dt)?,
             Stepping::Adaptive { tolerance } => {
@@ -173,14 +205,14 @@ impl<'a> Follow<'a> {
             }
         };
         finite("end of the run", self.until)?;
-        within("end of the run", self.until, self.until >= self.start, "at or after the time of the contact")?;
+        within("end of the run", self.until, self.until >= self.progress.start, "at or after the time of the contact")?;
 
         self.contact.history.expect(self.until - self.contact.undisturbed_until);
 
         let now = self.contact.time();
         let load = self.history.at(now);
         if load != self.contact.load() {
-            if let Some(controller) = &mut self.controller {
+            if let Some(controller) = &mut self.progress.controller {
                 controller.restart();
             }
             let tolerance = self.solver_tolerance();
@@ -195,9 +227,9 @@ impl<'a> Follow<'a> {
         if corner <= now || corner.is_nan() {
             return Err(Error::InvalidBreakpoint { after: now, breakpoint: corner });
         }
-        if let Some(mut controller) = self.controller.take() {
+        if let Some(mut controller) = self.progress.controller.take() {
             let report = self.adaptive_step(&mut controller, corner);
-            self.controller = Some(controller);
+            self.progress.controller = Some(controller);
             return report.map(|report| Some(self.note(report)));
         }
         let Stepping::Fixed { dt } = self.stepping else { return Ok(None) };
@@ -271,7 +303,7 @@ impl<'a> Follow<'a> {
 
     fn solver_tolerance(&self) -> f64 {
         let wanted = self.contact.settings().tolerance;
-        self.controller.as_ref().map_or(wanted, |controller| controller.solver_tolerance(wanted))
+        self.progress.controller.as_ref().map_or(wanted, |controller| controller.solver_tolerance(wanted))
     }
 
     /// The first time after `now` to land on.
@@ -283,8 +315,10 @@ impl<'a> Follow<'a> {
     fn next_time(&mut self, now: f64, dt: f64, corner: f64) -> Result<f64> {
         let same = SAME_TIME * dt;
         while self.raster(dt) <= now + same {
-            self.behind += 1;
-            if self.start + (self.behind + 1) as f64 * dt <= self.start + self.behind as f64 * dt {
+            self.progress.behind += 1;
+            if self.progress.start + (self.progress.behind + 1) as f64 * dt
+                <= self.progress.start + self.progress.behind as f64 * dt
+            {
                 return Err(Error::OutOfRange {
                     field: "fixed step",
                     value: dt,
@@ -298,22 +332,27 @@ impl<'a> Follow<'a> {
 
     /// The end of the step of the fixed raster that is under way.
     fn raster(&self, dt: f64) -> f64 {
-        self.start + (self.behind + 1) as f64 * dt
+        self.progress.start + (self.progress.behind + 1) as f64 * dt
     }
 
     /// What the answer errs by, so far, as far as it can be told.
     pub fn error_budget(&self) -> ErrorBudget {
-        ErrorBudget { time: self.worst[0], space: self.contact.spatial_error(), solver: self.worst[1] }
+        ErrorBudget {
+            time: self.progress.worst[0],
+            space: self.contact.spatial_error(),
+            solver: self.progress.worst[1],
+        }
     }
 
     fn note(&mut self, report: StepReport) -> StepReport {
-        self.worst = [self.worst[0].max(report.time_error), self.worst[1].max(report.residual)];
+        self.progress.worst =
+            [self.progress.worst[0].max(report.time_error), self.progress.worst[1].max(report.residual)];
         report
     }
 
     /// Steps that were tried and found too long, with [`Stepping::adaptive`].
     pub fn rejected_steps(&self) -> u64 {
-        self.controller.as_ref().map_or(0, |controller| controller.rejected)
+        self.progress.controller.as_ref().map_or(0, |controller| controller.rejected)
     }
 
     /// The contact as the last step left it.

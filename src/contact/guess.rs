@@ -27,6 +27,7 @@ const GROWTH_WITHOUT_REFRESH: f64 = 1e3;
 
 /// When K p was last computed afresh.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Refresh {
     /// Steps still to compute it afresh.
     due: usize,

@@ -6,6 +6,8 @@ mod area;
 mod between;
 mod builder;
 mod change;
+#[cfg(feature = "checkpoint")]
+mod checkpoint;
 mod follow;
 mod frame;
 mod guess;
@@ -24,6 +26,8 @@ mod travel;
 
 pub use between::Between;
 pub use builder::Builder;
+#[cfg(feature = "checkpoint")]
+pub use checkpoint::CheckpointError;
 pub use follow::{ErrorBudget, Follow, Stepping};
 pub use report::{BodyState, StepReport};
 pub use settings::{Edge, Frame, Precision, Settings, Solver, TimeRule};

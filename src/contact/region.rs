@@ -7,9 +7,12 @@ use crate::kernel::images;
 /// A rectangle of cells, by symmetry perhaps the half or the quarter of one: what happens elsewhere is its mirror image, or
 /// out of reach.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Region {
+    #[cfg_attr(feature = "checkpoint", serde(with = "crate::grid::saved"))]
     whole: Grid,
     /// Its cells, with the coordinates of the whole.
+    #[cfg_attr(feature = "checkpoint", serde(with = "crate::grid::saved"))]
     grid: Grid,
     /// Its first cell.
     first: [usize; 2],
@@ -71,6 +74,19 @@ impl Region {
             }
         }
         (low, high)
+    }
+
+    /// Whether it is one of `grid`.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn is_of(&self, grid: &Grid) -> bool {
+        let all = grid.cells();
+        let inside = |axis: usize| {
+            let (first, cells) = (self.first[axis], self.grid.cells()[axis]);
+            cells > 0
+                && first.checked_add(cells).is_some_and(|end| end <= all[axis])
+                && (!self.folded[axis] || (all[axis].is_multiple_of(2) && first == all[axis] / 2))
+        };
+        self.whole == *grid && inside(0) && inside(1) && self.grid == grid.part(self.first, self.grid.cells())
     }
 
     pub(crate) fn grid(&self) -> &Grid {

@@ -21,6 +21,7 @@ const HALVINGS: usize = 24;
 /// What the displacement beyond the region, should it ever be asked for, is made of: u = K U, where U follows u's own
 /// recursion, K and the memory of the bodies being linear. U ≥ 0, and zero wherever there never was contact.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Beyond {
     history: Exponential,
     /// U.
@@ -36,6 +37,12 @@ impl Beyond {
         let mut history = history.clone();
         history.undisturbed_on(cells);
         Beyond { history, strength: vec![0.0; cells], trial: vec![0.0; cells], lowest: f64::NEG_INFINITY }
+    }
+
+    /// Whether its fields are of so many cells.
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn fits(&self, cells: usize) -> bool {
+        self.history.fits(cells) && [self.strength.len(), self.trial.len()] == [cells; 2]
     }
 
     /// U at the end of a step of compliance `c` under `pressure`; the same rule was found fit for u.
@@ -226,13 +233,9 @@ impl ViscoelasticContact {
 
     /// Moves to another region: what is new there of displacement and history is computed from U.
     pub(super) fn reside(&mut self, region: Region) {
-        let old = std::mem::replace(&mut self.region, region);
         self.history.settle(&self.trial_displacement, &self.displacement);
-        let (cells, bodies) = (self.region.len(), self.loads.len());
-        self.kernel_here = self.kernel.on(self.region.grid(), self.region.folded(), self.settings.is_mixed());
-        self.work = self.kernel_here.workspace();
-        self.gap_here = self.region.cut_gap(&self.initial_gap);
-        self.solver = ContactSolver::new(self.settings.solver, &self.kernel_here, bodies);
+        let old = self.occupy(region);
+        let cells = self.region.len();
 
         // a field of its own on all cells of the new region: known on the old one, elsewhere K of a source
         let region = self.region.clone();
@@ -266,8 +269,6 @@ impl ViscoelasticContact {
             let pressure = old.carry(&state.pressure, &region, |_| 0.0);
             *state = Solution { pressure, potential, motions: std::mem::take(&mut state.motions), ..*state };
         }
-        self.trial = Solution::zero(cells, bodies);
-        self.gap = vec![0.0; cells];
         self.beyond = beyond.filter(|_| !region.covers()).map(|mut beyond| {
             let plain = |own: &[f64]| old.carry(own, &region, |_| 0.0);
             beyond.history.carry(old.len(), cells, |_, own| plain(&own));
@@ -276,6 +277,19 @@ impl ViscoelasticContact {
         });
         self.survey();
         self.show();
+    }
+
+    /// Makes all that belongs to a region, but for the state there; returns the one before.
+    pub(super) fn occupy(&mut self, region: Region) -> Region {
+        let old = std::mem::replace(&mut self.region, region);
+        let (cells, bodies) = (self.region.len(), self.loads.len());
+        self.kernel_here = self.kernel.on(self.region.grid(), self.region.folded(), self.settings.is_mixed());
+        self.work = self.kernel_here.workspace();
+        self.gap_here = self.region.cut_gap(&self.initial_gap);
+        self.solver = ContactSolver::new(self.settings.solver, &self.kernel_here, bodies);
+        self.trial = Solution::zero(cells, bodies);
+        self.gap = vec![0.0; cells];
+        old
     }
 
     /// Looks up the lowest gap beyond the region.

@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
 use crate::contact::builder::Builder;
+use crate::contact::follow::Progress;
 use crate::contact::guess::Refresh;
 use crate::contact::hull::Hull;
 use crate::contact::loads::{first_touch, lowered};
@@ -82,6 +83,13 @@ pub struct ViscoelasticContact {
     pub(super) undisturbed_until: f64,
     /// Steps may not be shorter: the first step chose the times that the material's series was fitted over.
     pub(super) shortest: f64,
+    /// The times that the first step fitted the material's series over, if it did.
+    pub(super) fitted_over: Option<[f64; 2]>,
+    /// C of the material it was built with, at some times: what tells scenes apart.
+    #[cfg(feature = "checkpoint")]
+    pub(super) built_compliance: Vec<u64>,
+    /// How far the run had come that was saved and resumed, for the next to go on.
+    pub(super) progress: Option<Box<Progress>>,
     /// On the whole grid.
     pub(super) initial_gap: Gap,
     /// The part of it that is computed, if that is not all.
@@ -163,6 +171,8 @@ impl ViscoelasticContact {
 
     pub(crate) fn new(parts: Parts) -> ViscoelasticContact {
         let Parts { grid, bodies, kernel, settings, initial_gap, material, mut history } = parts;
+        #[cfg(feature = "checkpoint")]
+        let built_compliance = crate::contact::checkpoint::compliance_of(&material);
         let folded = if settings.symmetry { symmetry(&initial_gap, grid.cells()) } else { [false; 2] };
         // without load, each body is above the cell that it would touch first
         // elsewhere than on a half-space nothing is known of the displacement beyond a window
@@ -220,6 +230,10 @@ impl ViscoelasticContact {
             history,
             undisturbed_until: 0.0,
             shortest: 0.0,
+            fitted_over: None,
+            #[cfg(feature = "checkpoint")]
+            built_compliance,
+            progress: None,
             initial_gap,
         };
         contact.survey();
@@ -356,8 +370,8 @@ impl ViscoelasticContact {
         self.refresh.count(sum(&self.current.pressure));
         self.contact_cells = self.region.images() * self.current.pressure.iter().filter(|&&p| p > 0.0).count();
         self.show();
-        if let Some((material, shortest)) = fitted {
-            (self.material, self.shortest) = (material, shortest);
+        if let Some((material, times)) = fitted {
+            (self.material, self.shortest, self.fitted_over) = (material, times[0], Some(times));
         }
         self.report(dt)
     }

@@ -134,6 +134,7 @@ forward_geometry!(Box<T>, std::sync::Arc<T>);
 /// The gap field of the rigid bodies above their lowest point, so that heights far larger than the contact
 /// is deep cost no digits.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Gap {
     /// The lowest gap \[m\].
     pub(crate) datum: f64,

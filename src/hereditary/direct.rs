@@ -35,6 +35,18 @@ impl Direct {
         Direct { material, weighting, increments: Vec::new(), weights: Vec::new(), limit }
     }
 
+    /// The past: when each increment happened, and the increment.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn increments(&self) -> &[(f64, Vec<f64>)] {
+        &self.increments
+    }
+
+    /// The same with another past.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn with(&self, increments: Vec<(f64, Vec<f64>)>) -> Direct {
+        Direct { material: self.material.clone(), increments, weights: Vec::new(), ..*self }
+    }
+
     pub(crate) fn predict(&mut self, time: f64, dt: f64, u_old: &mut [f64]) -> Result<f64> {
         let bytes = (self.increments.len() + 1).saturating_mul(std::mem::size_of_val(u_old));
         if bytes > self.limit {

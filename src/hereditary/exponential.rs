@@ -20,6 +20,7 @@ use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 /// The last line waits until the next step is predicted, so that every q_i passes through the processor once
 /// a step: with many relaxation times this is what a step costs beyond its contact problem.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Exponential {
     relaxation: RelaxationSpectrum,
     /// The fields q_i by blocks of cells, within a block one branch after the other: one stream through memory.
@@ -84,6 +85,14 @@ impl Exponential {
     /// An undisturbed past on so many cells.
     pub(crate) fn undisturbed_on(&mut self, cells: usize) {
         self.fields = vec![0.0; cells * self.branches()];
+    }
+
+    /// Whether its fields are of so many cells, and as many as it has relaxation times.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn fits(&self, cells: usize) -> bool {
+        let branches = self.relaxation.terms().len();
+        [self.factors.len(), self.committed.len()] == [branches; 2]
+            && Some(self.fields.len()) == cells.checked_mul(branches)
     }
 
     /// Number of relaxation times.

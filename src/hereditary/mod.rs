@@ -63,8 +63,8 @@ impl History {
     }
 
     /// Takes the step that was predicted last into the past; `touched` tells whether anything has ever been displaced.
-    /// Returns the material whose series was fitted for it, and the shortest time of the fit.
-    pub(crate) fn commit(&mut self, change: &Change<'_>, touched: bool) -> Option<(Material, f64)> {
+    /// Returns the material whose series was fitted for it, and the times of the fit.
+    pub(crate) fn commit(&mut self, change: &Change<'_>, touched: bool) -> Option<(Material, [f64; 2])> {
         match self {
             History::Exponential(history) => history.commit(),
             History::Direct(history) if touched => history.commit(change),
@@ -73,7 +73,7 @@ impl History {
             History::Unfitted(history) => {
                 let fitted = history.commit(touched)?;
                 *self = History::Exponential(fitted.history);
-                return Some((fitted.material, fitted.times[0]));
+                return Some((fitted.material, fitted.times));
             }
         }
         None

@@ -12,6 +12,7 @@ use crate::rheology::CreepSpectrum;
 /// The surface in contact is laid on the rigid body after each step; what that changes no pressure has caused. It follows the same
 /// recursion, as a displacement: u = K U + e.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Sources {
     cells: [usize; 2],
     periodic: [bool; 2],
@@ -25,6 +26,7 @@ pub(crate) struct Sources {
 
 /// A field that follows the recursion of the displacement.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 struct Carried {
     history: Exponential,
     now: Vec<f64>,
@@ -47,6 +49,18 @@ impl Sources {
             field.history.undisturbed_on(count);
             (field.now, field.trial) = (vec![0.0; count], vec![0.0; count]);
         }
+    }
+
+    /// Whether its fields are of such cells.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn fits(&self, cells: [usize; 2]) -> bool {
+        let count = cells[0] * cells[1];
+        let fields = [&self.caused, &self.laid];
+        self.cells == cells
+            && self.scratch.len() == count
+            && fields
+                .iter()
+                .all(|field| field.history.fits(count) && [field.now.len(), field.trial.len()] == [count; 2])
     }
 
     /// Whether there is a past at all.

@@ -141,9 +141,7 @@ impl InfluenceKernel {
     /// precision, too. Parts of periodic bodies are whole.
     pub(crate) fn on(&self, part: &Grid, folded: [bool; 2], single: bool) -> LocalKernel {
         let layout = Layout { cells: part.cells(), ..self.layout(folded) };
-        let unit = self.influence.on_itself().unwrap_or_else(|| {
-            *self.on_itself.get_or_init(|| layout.average(self.influence.symbol(&self.grid, layout)))
-        });
+        let unit = self.self_influence();
         let (operator, single) = if layout == self.layout(folded) {
             let kept = &self.singles[index(folded)];
             let single = single.then(|| Arc::clone(kept.get_or_init(|| Arc::new(self.make(layout, unit)))));
@@ -154,6 +152,13 @@ impl InfluenceKernel {
         let softest = self.influence.softest_wave_if_mean_is_held(&self.grid);
         let influence = self.influence.clone();
         LocalKernel { grid: part.clone(), operator, single, influence, folded, self_influence: unit, softest }
+    }
+
+    /// The influence of a cell on itself \[m\].
+    pub(crate) fn self_influence(&self) -> f64 {
+        let layout = self.layout([false; 2]);
+        let average = || layout.average(self.influence.symbol(&self.grid, layout));
+        self.influence.on_itself().unwrap_or_else(|| *self.on_itself.get_or_init(average))
     }
 
     /// Axes along which the bodies are periodic, the grid being one period.

@@ -42,6 +42,7 @@ use crate::error::{Error, Result, finite, non_negative};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub enum Load {
     /// The normal force is given, the approach follows.
     Force {
@@ -62,6 +63,7 @@ pub enum Load {
 
 /// What is known of the tilt along one axis: the rotation by which the body lowers the surface by α x.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub enum Tilt {
     /// The angle is given \[rad\].
     Fixed(f64),

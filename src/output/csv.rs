@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use crate::ViscoelasticContact;
 use crate::contact::StepReport;
 use crate::error::{Result, exact_length};
+use crate::file::failed;
 use crate::output::Scene;
-use crate::output::file::failed;
 
 /// The columns of every history.
 const COLUMNS: [&str; 17] = [

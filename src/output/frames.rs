@@ -4,8 +4,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::error::Result;
+use crate::file::failed;
 use crate::output::Field;
-use crate::output::file::failed;
 
 /// A folder of frames `frame_000000`, `frame_000001`, ...
 #[derive(Debug)]

@@ -7,7 +7,7 @@ use npyz::WriterBuilder;
 
 use crate::Grid;
 use crate::error::{Result, exact_length};
-use crate::output::file::replace;
+use crate::file::replace;
 
 /// Writes a field, one value a cell of `grid`, as an NPY file: an array of `float64` of the shape of the grid,
 /// so that `numpy.load(path)[i, j]` is the value of the cell `[i, j]`. A file of this name is replaced.

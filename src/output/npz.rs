@@ -8,7 +8,7 @@ use zip::write::SimpleFileOptions;
 
 use crate::ViscoelasticContact;
 use crate::error::Result;
-use crate::output::file::replace;
+use crate::file::replace;
 use crate::output::frames::Frames;
 use crate::output::{Field, Scene, npy};
 

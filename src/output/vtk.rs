@@ -4,7 +4,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::error::Result;
-use crate::output::file::replace;
+use crate::file::replace;
 use crate::output::frames::Frames;
 use crate::output::{Field, Scene};
 use crate::{Grid, ViscoelasticContact};

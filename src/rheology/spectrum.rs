@@ -35,6 +35,7 @@ pub struct CreepSpectrum {
 /// with equilibrium modulus G_∞, relaxation times τ_k and, for bodies without elastic response, the
 /// viscosity η of an immediate dashpot. Every coefficient is ≥ 0.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct RelaxationSpectrum {
     equilibrium: f64,
     viscosity: f64,

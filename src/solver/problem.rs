@@ -29,6 +29,7 @@ pub(crate) struct Stop {
 
 /// A guess on entry, the answer on return.
 #[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Solution {
     /// p \[Pa\].
     pub(crate) pressure: Vec<f64>,
@@ -43,6 +44,7 @@ pub(crate) struct Solution {
 
 /// Work done, in units that do not depend on the machine.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Counts {
     pub(crate) iterations: usize,
     pub(crate) convolutions: usize,

@@ -1,0 +1,390 @@
+//! Runs that go on from a file as if nothing had happened; files that are refused; fifty runs that were killed.
+#![cfg(feature = "checkpoint")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use viscocontact::contact::CheckpointError;
+use viscocontact::prelude::*;
+
+/// A file of this test's own.
+fn file(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("viscocontact-{name}-{}", std::process::id()))
+}
+
+type Build = Box<dyn Fn() -> ViscoelasticContact>;
+type Step = Box<dyn Fn(&mut ViscoelasticContact, u32) -> StepReport>;
+
+fn sphere_on(grid: Grid, material: Material, settings: Settings) -> ViscoelasticContact {
+    ViscoelasticContact::builder(grid)
+        .geometry(&Sphere::new(10.0e-3).unwrap())
+        .material(material)
+        .settings(settings)
+        .build()
+        .unwrap()
+}
+
+fn three_times() -> Material {
+    let terms = [(1.0e6, 0.03), (0.5e6, 0.3), (0.5e6, 3.0)];
+    Material::incompressible(GeneralizedMaxwell::new(0.1e6, &terms).unwrap())
+}
+
+fn power_law() -> Material {
+    Material::constant_poisson(PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap(), 0.3).unwrap()
+}
+
+/// A load that rises, falls and rises, with a jump now and then.
+fn wandering(contact: &mut ViscoelasticContact, k: u32) -> StepReport {
+    let force = 0.3 + 0.2 * f64::from(k * k % 7) / 7.0;
+    contact.step(if k % 5 == 0 { 0.0 } else { 0.02 * f64::from(1 + k % 3) }, Load::force(force)).unwrap()
+}
+
+fn scenes() -> Vec<(&'static str, Build, Step)> {
+    let grid = || Grid::square(48, 4.0e-3).unwrap();
+    let wide = || Grid::square(96, 8.0e-3).unwrap();
+    let with = |settings: Settings| move || sphere_on(Grid::square(48, 4.0e-3).unwrap(), three_times(), settings);
+    let whole = Settings { window: false, symmetry: false, ..Settings::default() };
+    let line = || {
+        let grid = Grid::new([200, 1], [10.0e-3, 1.0]).unwrap();
+        ViscoelasticContact::builder(grid.clone())
+            .geometry(&Cylinder::new(10.0e-3).unwrap())
+            .material(three_times())
+            .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+            .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
+            .build()
+            .unwrap()
+    };
+    let rolling = |contact: &mut ViscoelasticContact, k: u32| {
+        contact.step_over([1 + (k % 2) as isize, 0], 0.01, Load::force(60.0 + f64::from(k))).unwrap()
+    };
+    let strip = || {
+        let grid = Grid::new([64, 24], [8.0e-3, 3.0e-3]).unwrap();
+        ViscoelasticContact::builder(grid.clone())
+            .geometry(&Sphere::new(10.0e-3).unwrap())
+            .material(three_times())
+            .kernel(Arc::new(InfluenceKernel::periodic_along(&grid, 1, 1.0).unwrap()))
+            .build()
+            .unwrap()
+    };
+    let sliding = |contact: &mut ViscoelasticContact, k: u32| {
+        let path = Straight::new([0.0; 2], [0.004, 0.003]).unwrap();
+        let travel = Travel::new(Repeated::new(Sphere::new(10.0e-3).unwrap(), [f64::INFINITY, 3.0e-3]).unwrap(), path);
+        contact.step_along(&travel, if k == 0 { 0.0 } else { 5.0e-3 }, Load::force(0.1)).unwrap().step
+    };
+    let tilting = |contact: &mut ViscoelasticContact, k: u32| {
+        let at = [1.0e-4 * f64::from(k % 3), -0.5e-4 * f64::from(k % 4)];
+        contact.step(0.02, Load::eccentric_force(0.3, at)).unwrap()
+    };
+    let two = || {
+        let at = |x: f64| Shifted::new(Sphere::new(10.0e-3).unwrap(), [x, 0.0]).unwrap();
+        ViscoelasticContact::builder(Grid::new([96, 48], [8.0e-3, 4.0e-3]).unwrap())
+            .geometry(&at(-2.0e-3))
+            .another_body(&at(2.0e-3))
+            .material(three_times())
+            .build()
+            .unwrap()
+    };
+    let in_turn = |contact: &mut ViscoelasticContact, k: u32| {
+        contact.step_each(0.02, &[Load::force(0.2), Load::force(0.1 + 0.01 * f64::from(k % 4))]).unwrap()
+    };
+    let direct = Settings { time_rule: TimeRule::Backward, ..whole };
+    vec![
+        ("window", Box::new(move || sphere_on(wide(), three_times(), Settings::default())), Box::new(wandering)),
+        ("folded", Box::new(with(Settings { window: false, ..Settings::default() })), Box::new(wandering)),
+        ("whole", Box::new(with(whole)), Box::new(wandering)),
+        ("mixed", Box::new(with(Settings { precision: Precision::Mixed, ..whole })), Box::new(wandering)),
+        ("Polonsky-Keer", Box::new(with(Settings { solver: Solver::PolonskyKeer, ..whole })), Box::new(wandering)),
+        (
+            "direct sum",
+            Box::new(with(direct)),
+            Box::new(|c, k| c.step(0.02, Load::force(0.3 + 0.01 * f64::from(k))).unwrap()),
+        ),
+        (
+            "fitted",
+            Box::new(move || sphere_on(grid(), power_law(), Settings::default())),
+            Box::new(|c, k| c.step(0.02, Load::force(0.1 + 0.01 * f64::from(k % 9))).unwrap()),
+        ),
+        ("line, rolling", Box::new(line), Box::new(rolling)),
+        ("strip, sliding", Box::new(strip), Box::new(sliding)),
+        ("tilting", Box::new(with(Settings::default())), Box::new(tilting)),
+        ("two bodies", Box::new(two), Box::new(in_turn)),
+    ]
+}
+
+/// Every scene, saved after each of several numbers of steps, none included: the steps after it are the same to the last bit.
+#[test]
+fn the_same_continuation() {
+    for (name, build, step) in scenes() {
+        let path = file("continuation");
+        for steps in [0, 1, 2, 9, 70] {
+            let mut contact = build();
+            (0..steps).for_each(|k| _ = step(&mut contact, k));
+            contact.save(&path).unwrap();
+            let mut resumed = build();
+            resumed.resume(&path).unwrap();
+            assert_eq!((contact.time(), contact.load()), (resumed.time(), resumed.load()));
+            assert_eq!((contact.pressure(), contact.displacement()), (resumed.pressure(), resumed.displacement()));
+            assert_eq!((contact.approach(), contact.tilt()), (resumed.approach(), resumed.tilt()));
+            for k in steps..steps + 8 {
+                let (one, other) = (step(&mut contact, k), step(&mut resumed, k));
+                assert_eq!(one, other, "{name}, saved after {steps}, step {k}");
+                assert_eq!(contact.pressure(), resumed.pressure(), "{name}, saved after {steps}, step {k}");
+                assert_eq!(contact.displacement(), resumed.displacement(), "{name}, saved after {steps}, step {k}");
+            }
+        }
+        fs::remove_file(path).unwrap();
+    }
+}
+
+/// Runs along histories, equal steps and steps chosen by their error, saved and resumed in the middle: the same steps.
+#[test]
+fn runs_go_on() {
+    let path = file("runs");
+    let corners = [(0.0, 0.0), (1.0, 0.5), (1.5, 0.1), (3.0, 0.4)];
+    let load = PiecewiseLinear::new(&corners.map(|(t, f)| (t, Load::force(f)))).unwrap();
+    for material in [three_times(), power_law()] {
+        for stepping in [Stepping::fixed(0.07), Stepping::adaptive(1e-2)] {
+            let build = || sphere_on(Grid::square(32, 4.0e-3).unwrap(), material.clone(), Settings::default());
+            for saved_after in [1, 5, 13] {
+                let mut contact = build();
+                let mut run = contact.follow(&load, stepping, 3.0);
+                for _ in 0..saved_after {
+                    run.next_step().unwrap();
+                }
+                run.save(&path).unwrap();
+                let mut rest = Vec::new();
+                rest.extend(std::iter::from_fn(|| run.next_step().unwrap()));
+                let budget = run.error_budget();
+
+                let mut resumed = build();
+                resumed.resume(&path).unwrap();
+                let mut run = resumed.follow(&load, stepping, 3.0);
+                let again: Vec<_> = std::iter::from_fn(|| run.next_step().unwrap()).collect();
+                assert_eq!(again, rest, "{stepping:?}");
+                assert_eq!(run.error_budget(), budget);
+                assert_eq!(contact.pressure(), resumed.pressure());
+            }
+        }
+    }
+    fs::remove_file(path).unwrap();
+}
+
+/// Written by one number of threads, continued by another.
+#[test]
+fn any_number_of_threads() {
+    let path = file("threads");
+    let whole = Settings { window: false, symmetry: false, ..Settings::default() };
+    let build = || sphere_on(Grid::square(192, 4.0e-3).unwrap(), three_times(), whole);
+    let in_pool = |threads: usize, f: &(dyn Fn() -> Vec<f64> + Sync)| {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(f)
+    };
+    let written = in_pool(2, &|| {
+        let mut contact = build();
+        (0..6).for_each(|k| _ = wandering(&mut contact, k));
+        contact.save(&path).unwrap();
+        (6..12).for_each(|k| _ = wandering(&mut contact, k));
+        contact.pressure().to_vec()
+    });
+    for threads in [1, 3] {
+        let again = in_pool(threads, &|| {
+            let mut contact = build();
+            contact.resume(&path).unwrap();
+            (6..12).for_each(|k| _ = wandering(&mut contact, k));
+            contact.pressure().to_vec()
+        });
+        assert!(again == written, "{threads} threads");
+    }
+    fs::remove_file(path).unwrap();
+}
+
+fn refused(contact: &mut ViscoelasticContact, path: &Path) -> CheckpointError {
+    match contact.resume(path).unwrap_err() {
+        Error::Checkpoint(error) => error,
+        other => panic!("unexpected {other}"),
+    }
+}
+
+/// Cut short anywhere, a bit turned anywhere, from the future, from elsewhere: refused, and the contact is as it was.
+#[test]
+fn damaged_files_are_refused() {
+    let (path, damaged) = (file("whole"), file("damaged"));
+    let build = || sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), Settings::default());
+    let mut contact = build();
+    (0..3).for_each(|k| _ = wandering(&mut contact, k));
+    contact.save(&path).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    let before = contact.pressure().to_vec();
+    let mut refuse = |bytes: &[u8]| {
+        fs::write(&damaged, bytes).unwrap();
+        let error = refused(&mut contact, &damaged);
+        assert_eq!(contact.pressure(), before);
+        error
+    };
+    for length in (0..bytes.len()).step_by(7).chain(0..30).chain([bytes.len() - 1]) {
+        let error = refuse(&bytes[..length]);
+        assert!(matches!(error, CheckpointError::Size { .. } | CheckpointError::Foreign), "{length}: {error}");
+    }
+    for k in (0..bytes.len()).step_by(11).chain(0..24) {
+        let mut turned = bytes.clone();
+        turned[k] ^= 1 << (k % 8);
+        let error = refuse(&turned);
+        assert!(!matches!(error, CheckpointError::Malformed { .. }), "the checksum guards byte {k}: {error}");
+    }
+    let mut newer = bytes.clone();
+    newer[8] = 99;
+    assert_eq!(refuse(&newer), CheckpointError::Newer { found: 99, known: 1 });
+    assert_eq!(refuse(b"PK\x03\x04 an archive of something else"), CheckpointError::Foreign);
+    let longer = [&bytes[..], &[0]].concat();
+    assert!(matches!(refuse(&longer), CheckpointError::Size { .. }));
+    assert!(matches!(contact.resume(file("nowhere")), Err(Error::Output { .. })));
+    fs::remove_file(path).unwrap();
+    fs::remove_file(damaged).unwrap();
+}
+
+#[test]
+fn other_scenes_are_refused_by_what_differs() {
+    let path = file("scene");
+    let grid = || Grid::square(16, 4.0e-3).unwrap();
+    let mut contact = sphere_on(grid(), three_times(), Settings::default());
+    wandering(&mut contact, 1);
+    contact.save(&path).unwrap();
+    let what = |mut other: ViscoelasticContact| match refused(&mut other, &path) {
+        CheckpointError::OtherScene { what, .. } => what,
+        error => panic!("unexpected {error}"),
+    };
+    let larger = Grid::square(16, 4.1e-3).unwrap();
+    assert_eq!(what(sphere_on(larger, three_times(), Settings::default())), "grid");
+    let tighter = Settings { tolerance: 1e-7, ..Settings::default() };
+    assert_eq!(what(sphere_on(grid(), three_times(), tighter)), "settings");
+    assert_eq!(what(sphere_on(grid(), power_law(), Settings::default())), "contact compliance");
+    let builder =
+        || ViscoelasticContact::builder(grid()).geometry(&Sphere::new(10.0e-3).unwrap()).material(three_times());
+    let periodic = builder().kernel(Arc::new(InfluenceKernel::periodic(&grid()).unwrap()));
+    assert_eq!(what(periodic.build().unwrap()), "kernel");
+    let own = |scale: f64| {
+        let kernel = InfluenceKernel::from_spectrum(&grid(), move |_, _| scale).unwrap();
+        builder().kernel(Arc::new(kernel)).build().unwrap()
+    };
+    own(1.0e-4).save(&path).unwrap();
+    let mut other = own(2.0e-4);
+    assert!(matches!(refused(&mut other, &path), CheckpointError::OtherScene { what: "influence", .. }));
+    fs::remove_file(path).unwrap();
+}
+
+const STEPS: f64 = 400.0;
+const EVERY: Duration = Duration::from_millis(5);
+
+/// The run that is killed: it goes on from its file, notes when it took each step, and leaves the last state when it is over.
+#[test]
+#[ignore = "started by fifty_killed_runs"]
+fn child() {
+    let folder = PathBuf::from(std::env::var("CHECKPOINT_FOLDER").unwrap());
+    let (saved, done) = (folder.join("run.checkpoint"), folder.join("done"));
+    let mut contact = sphere_on(Grid::square(64, 6.0e-3).unwrap(), three_times(), Settings::default());
+    if saved.exists() {
+        contact.resume(&saved).unwrap();
+    }
+    let mut log = fs::OpenOptions::new().create(true).append(true).open(folder.join("log")).unwrap();
+    use std::io::Write;
+    let begun = Instant::now();
+    writeln!(log, "resumed {:e}", contact.time()).unwrap();
+    let load = Sinusoid::new(Load::force(0.3), Load::force(0.2), 1.0).unwrap();
+    let mut run = contact.follow(&load, Stepping::fixed(0.01), 0.01 * STEPS).keeping(&saved, EVERY);
+    while let Some(report) = run.next_step().unwrap() {
+        writeln!(log, "{:e} {}", report.time, begun.elapsed().as_micros()).unwrap();
+    }
+    let bits: Vec<u8> = contact.pressure().iter().chain(contact.displacement()).flat_map(|x| x.to_le_bytes()).collect();
+    fs::write(folder.join("part"), bits).unwrap();
+    fs::rename(folder.join("part"), done).unwrap();
+}
+
+/// Starts the run in a folder; kills it after a while, if told so. Whether it came to its end.
+fn start(folder: &Path, kill_after: Option<Duration>) -> bool {
+    let mut child = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "child", "--ignored"])
+        .env("CHECKPOINT_FOLDER", folder)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    if let Some(after) = kill_after {
+        // counted from the first sign of life, so that there is something to kill
+        let (log, begun, patience) = (folder.join("log"), Instant::now(), Duration::from_secs(20));
+        let length = || fs::metadata(&log).map_or(0, |log| log.len());
+        let before = length();
+        while length() == before && begun.elapsed() < patience && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        std::thread::sleep(after);
+        child.kill().unwrap();
+    }
+    child.wait().unwrap();
+    folder.join("done").exists()
+}
+
+/// For each resumption: where it was, how much of the work of the run before it was lost, and the longest time that a step
+/// of that run and what was saved with it took.
+fn losses(log: &str) -> Vec<(f64, Duration, Duration)> {
+    let (mut losses, mut steps) = (Vec::new(), Vec::<(f64, u64)>::new());
+    for line in log.lines() {
+        let Some(time) = line.strip_prefix("resumed ") else {
+            // the last line of a run that was killed may be cut
+            if let Some((time, at)) = line.split_once(' ') {
+                steps.extend(time.parse().ok().zip(at.parse().ok()));
+            }
+            continue;
+        };
+        let resumed: f64 = time.parse().unwrap();
+        let lost: Vec<_> = steps.iter().filter(|(time, _)| *time > resumed).map(|(_, at)| *at).collect();
+        if let (Some(first), Some(last)) = (lost.first(), lost.last()) {
+            let gaps = steps.windows(2).map(|pair| pair[1].1.saturating_sub(pair[0].1));
+            let slowest = gaps.max().unwrap_or(0).max(steps[0].1);
+            losses.push((resumed, Duration::from_micros(last - first), Duration::from_micros(slowest)));
+        }
+        steps.clear();
+    }
+    losses
+}
+
+/// Killed at fifty random moments, run after run to its end: not a bit differs, and no more is lost than the interval.
+#[test]
+fn fifty_killed_runs() {
+    let folder = |name: &str| {
+        let folder = file(name);
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        folder
+    };
+    let undisturbed = folder("undisturbed");
+    assert!(start(&undisturbed, None));
+    let exact = fs::read(undisturbed.join("done")).unwrap();
+    let (mut kills, mut runs, mut state, mut differing, mut longest) = (0, 0, 1_u64, 0, Duration::ZERO);
+    while kills < 50 {
+        let killed = folder("killed");
+        loop {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let after = Duration::from_micros(500 + (state >> 33) % 30_000);
+            if start(&killed, (kills < 50).then_some(after)) {
+                break;
+            }
+            kills += 1;
+        }
+        runs += 1;
+        differing += usize::from(fs::read(killed.join("done")).unwrap() != exact);
+        let log = fs::read_to_string(killed.join("log")).unwrap();
+        for (at, lost, slowest) in losses(&log) {
+            longest = longest.max(lost);
+            assert!(
+                lost <= EVERY + slowest,
+                "at {at}: {lost:?} of work lost, no step and save took more than {slowest:?}"
+            );
+        }
+        fs::remove_dir_all(killed).unwrap();
+    }
+    fs::remove_dir_all(undisturbed).unwrap();
+    println!("{kills} kills in {runs} runs, {differing} answers differ, {longest:?} of work lost at most");
+    assert_eq!(differing, 0);
+}
