@@ -434,6 +434,10 @@ pub enum Error {
         tolerance: f64,
     },
 
+    /// A [`Snapshot`](crate::contact::Snapshot) is of another contact than the one to be restored: not of it, nor of a clone.
+    #[error("the snapshot is of another contact: only a contact's own, or a clone's, can be restored")]
+    OtherContact,
+
     /// A steady motion needs contact, and its load makes none.
     #[error("at t = {time} s the load does not make the bodies touch: a steady motion needs contact")]
     NoContact {

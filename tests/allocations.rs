@@ -91,6 +91,27 @@ fn steps_allocate_nothing() {
         assert_eq!((change.allocations, change.reallocations), (0, 0), "{change:?}");
     }
 
+    // nor do snapshots, taken into the memory of one before, and restored
+    for frame in [Frame::Bodies, Frame::Indenter] {
+        let mut contact = ViscoelasticContact::builder(plane.clone())
+            .geometry(&sphere())
+            .material(body())
+            .settings(Settings { window: false, frame, ..Settings::default() })
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(0.5)).unwrap();
+        let mut snapshot = contact.snapshot();
+        let region = Region::new(ALLOCATOR);
+        for _ in 0..20 {
+            contact.step(0.01, Load::force(0.5)).unwrap();
+            contact.snapshot_into(&mut snapshot);
+            contact.step(0.01, Load::force(0.4)).unwrap();
+            contact.restore(&snapshot).unwrap();
+        }
+        let change = region.change();
+        assert_eq!((change.allocations, change.reallocations), (0, 0), "{frame:?}: {change:?}");
+    }
+
     // a line contact takes what its cells do, and the tables of its transforms, which are as long as the line
     let region = Region::new(ALLOCATOR);
     let contact = ViscoelasticContact::builder(Grid::new([16384, 1], [8.0e-3, 1.0]).unwrap())

@@ -1,117 +1,22 @@
 //! Runs that go on from a file as if nothing had happened; files that are refused; fifty runs that were killed.
 #![cfg(feature = "checkpoint")]
 
+#[path = "common/runs.rs"]
+mod runs;
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use runs::{power_law, scenes, sphere_on, three_times, wandering};
 use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
 
 /// A file of this test's own.
 fn file(name: &str) -> PathBuf {
     std::env::temp_dir().join(format!("viscocontact-{name}-{}", std::process::id()))
-}
-
-type Build = Box<dyn Fn() -> ViscoelasticContact>;
-type Step = Box<dyn Fn(&mut ViscoelasticContact, u32) -> StepReport>;
-
-fn sphere_on(grid: Grid, material: Material, settings: Settings) -> ViscoelasticContact {
-    ViscoelasticContact::builder(grid)
-        .geometry(&Sphere::new(10.0e-3).unwrap())
-        .material(material)
-        .settings(settings)
-        .build()
-        .unwrap()
-}
-
-fn three_times() -> Material {
-    let terms = [(1.0e6, 0.03), (0.5e6, 0.3), (0.5e6, 3.0)];
-    Material::incompressible(GeneralizedMaxwell::new(0.1e6, &terms).unwrap())
-}
-
-fn power_law() -> Material {
-    Material::constant_poisson(PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap(), 0.3).unwrap()
-}
-
-/// A load that rises, falls and rises, with a jump now and then.
-fn wandering(contact: &mut ViscoelasticContact, k: u32) -> StepReport {
-    let force = 0.3 + 0.2 * f64::from(k * k % 7) / 7.0;
-    contact.step(if k % 5 == 0 { 0.0 } else { 0.02 * f64::from(1 + k % 3) }, Load::force(force)).unwrap()
-}
-
-fn scenes() -> Vec<(&'static str, Build, Step)> {
-    let grid = || Grid::square(48, 4.0e-3).unwrap();
-    let wide = || Grid::square(96, 8.0e-3).unwrap();
-    let with = |settings: Settings| move || sphere_on(Grid::square(48, 4.0e-3).unwrap(), three_times(), settings);
-    let whole = Settings { window: false, symmetry: false, ..Settings::default() };
-    let line = || {
-        let grid = Grid::new([200, 1], [10.0e-3, 1.0]).unwrap();
-        ViscoelasticContact::builder(grid.clone())
-            .geometry(&Cylinder::new(10.0e-3).unwrap())
-            .material(three_times())
-            .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
-            .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
-            .build()
-            .unwrap()
-    };
-    let rolling = |contact: &mut ViscoelasticContact, k: u32| {
-        contact.step_over([1 + (k % 2) as isize, 0], 0.01, Load::force(60.0 + f64::from(k))).unwrap()
-    };
-    let strip = || {
-        let grid = Grid::new([64, 24], [8.0e-3, 3.0e-3]).unwrap();
-        ViscoelasticContact::builder(grid.clone())
-            .geometry(&Sphere::new(10.0e-3).unwrap())
-            .material(three_times())
-            .kernel(Arc::new(InfluenceKernel::periodic_along(&grid, 1, 1.0).unwrap()))
-            .build()
-            .unwrap()
-    };
-    let sliding = |contact: &mut ViscoelasticContact, k: u32| {
-        let path = Straight::new([0.0; 2], [0.004, 0.003]).unwrap();
-        let travel = Travel::new(Repeated::new(Sphere::new(10.0e-3).unwrap(), [f64::INFINITY, 3.0e-3]).unwrap(), path);
-        contact.step_along(&travel, if k == 0 { 0.0 } else { 5.0e-3 }, Load::force(0.1)).unwrap().step
-    };
-    let tilting = |contact: &mut ViscoelasticContact, k: u32| {
-        let at = [1.0e-4 * f64::from(k % 3), -0.5e-4 * f64::from(k % 4)];
-        contact.step(0.02, Load::eccentric_force(0.3, at)).unwrap()
-    };
-    let two = || {
-        let at = |x: f64| Shifted::new(Sphere::new(10.0e-3).unwrap(), [x, 0.0]).unwrap();
-        ViscoelasticContact::builder(Grid::new([96, 48], [8.0e-3, 4.0e-3]).unwrap())
-            .geometry(&at(-2.0e-3))
-            .another_body(&at(2.0e-3))
-            .material(three_times())
-            .build()
-            .unwrap()
-    };
-    let in_turn = |contact: &mut ViscoelasticContact, k: u32| {
-        contact.step_each(0.02, &[Load::force(0.2), Load::force(0.1 + 0.01 * f64::from(k % 4))]).unwrap()
-    };
-    let direct = Settings { time_rule: TimeRule::Backward, ..whole };
-    vec![
-        ("window", Box::new(move || sphere_on(wide(), three_times(), Settings::default())), Box::new(wandering)),
-        ("folded", Box::new(with(Settings { window: false, ..Settings::default() })), Box::new(wandering)),
-        ("whole", Box::new(with(whole)), Box::new(wandering)),
-        ("mixed", Box::new(with(Settings { precision: Precision::Mixed, ..whole })), Box::new(wandering)),
-        ("Polonsky-Keer", Box::new(with(Settings { solver: Solver::PolonskyKeer, ..whole })), Box::new(wandering)),
-        (
-            "direct sum",
-            Box::new(with(direct)),
-            Box::new(|c, k| c.step(0.02, Load::force(0.3 + 0.01 * f64::from(k))).unwrap()),
-        ),
-        (
-            "fitted",
-            Box::new(move || sphere_on(grid(), power_law(), Settings::default())),
-            Box::new(|c, k| c.step(0.02, Load::force(0.1 + 0.01 * f64::from(k % 9))).unwrap()),
-        ),
-        ("line, rolling", Box::new(line), Box::new(rolling)),
-        ("strip, sliding", Box::new(strip), Box::new(sliding)),
-        ("tilting", Box::new(with(Settings::default())), Box::new(tilting)),
-        ("two bodies", Box::new(two), Box::new(in_turn)),
-    ]
 }
 
 /// Every scene, saved after each of several numbers of steps, none included: the steps after it are the same to the last bit.

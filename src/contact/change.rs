@@ -2,7 +2,7 @@
 
 use crate::contact::follow::{Follow, Stepping};
 use crate::contact::reside::symmetry;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::stepper::{ViscoelasticContact, next_id};
 use crate::error::{Error, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
 use crate::load::LoadHistory;
@@ -42,6 +42,7 @@ impl ViscoelasticContact {
 
     /// Brings what hangs on the gap up to date with a new one.
     pub(super) fn take_in_the_gap(&mut self) {
+        self.gap_id = next_id();
         if let Some(here) = &mut self.gap_here {
             self.region.cut_into(&self.initial_gap.above, &mut here.above);
             here.datum = self.initial_gap.datum;

@@ -39,6 +39,14 @@ impl Beyond {
         Beyond { history, strength: vec![0.0; cells], trial: vec![0.0; cells], lowest: f64::NEG_INFINITY }
     }
 
+    /// Takes over another's values, in its own memory.
+    pub(super) fn copy_from(&mut self, other: &Beyond) {
+        self.history.copy_from(&other.history);
+        self.strength.clone_from(&other.strength);
+        self.trial.clone_from(&other.trial);
+        self.lowest = other.lowest;
+    }
+
     /// Whether its fields are of so many cells.
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self, cells: usize) -> bool {

@@ -1,5 +1,6 @@
 //! One contact, advanced one step at a time.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
@@ -90,6 +91,9 @@ pub struct ViscoelasticContact {
     pub(super) built_compliance: Vec<u64>,
     /// How far the run had come that was saved and resumed, for the next to go on.
     pub(super) progress: Option<Box<Progress>>,
+    /// Which contact it is, clones included, and which gap it has.
+    pub(super) id: u64,
+    pub(super) gap_id: u64,
     /// On the whole grid.
     pub(super) initial_gap: Gap,
     /// The part of it that is computed, if that is not all.
@@ -140,6 +144,12 @@ pub(crate) enum ContactSolver {
 pub(super) struct Attempt {
     time: f64,
     dt: f64,
+}
+
+/// A number that nothing else has in this process.
+pub(super) fn next_id() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 /// What a builder puts together.
@@ -234,6 +244,8 @@ impl ViscoelasticContact {
             #[cfg(feature = "checkpoint")]
             built_compliance,
             progress: None,
+            id: next_id(),
+            gap_id: next_id(),
             initial_gap,
         };
         contact.survey();

@@ -87,6 +87,18 @@ impl Exponential {
         self.fields = vec![0.0; cells * self.branches()];
     }
 
+    /// Takes over another's values, in its own memory.
+    pub(crate) fn copy_from(&mut self, other: &Exponential) {
+        if self.relaxation != other.relaxation {
+            *self = other.clone();
+            return;
+        }
+        self.fields.clone_from(&other.fields);
+        self.factors.clone_from(&other.factors);
+        self.committed.clone_from(&other.committed);
+        self.waiting = other.waiting;
+    }
+
     /// Whether its fields are of so many cells, and as many as it has relaxation times.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, cells: usize) -> bool {

@@ -79,6 +79,15 @@ impl History {
         None
     }
 
+    /// Takes over another's values, in its own memory where there is a field for each relaxation time.
+    pub(crate) fn copy_from(&mut self, other: &History) {
+        match (self, other) {
+            (History::Exponential(own), History::Exponential(other)) => own.copy_from(other),
+            (History::Sources(own), History::Sources(other)) => own.copy_from(other),
+            (own, other) => *own = other.clone(),
+        }
+    }
+
     /// An undisturbed past on so many cells.
     pub(crate) fn undisturbed_on(&mut self, cells: [usize; 2]) {
         match self {

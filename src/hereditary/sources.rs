@@ -51,6 +51,17 @@ impl Sources {
         }
     }
 
+    /// Takes over another's values, in its own memory.
+    pub(crate) fn copy_from(&mut self, other: &Sources) {
+        for (own, field) in [(&mut self.caused, &other.caused), (&mut self.laid, &other.laid)] {
+            own.history.copy_from(&field.history);
+            own.now.clone_from(&field.now);
+            own.trial.clone_from(&field.trial);
+        }
+        (self.cells, self.periodic, self.by) = (other.cells, other.periodic, other.by);
+        self.scratch.resize(other.scratch.len(), 0.0);
+    }
+
     /// Whether its fields are of such cells.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, cells: [usize; 2]) -> bool {

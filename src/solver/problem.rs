@@ -192,6 +192,14 @@ impl Solution {
         }
     }
 
+    /// Takes over another's values, in its own memory.
+    pub(crate) fn copy_from(&mut self, other: &Solution) {
+        self.pressure.clone_from(&other.pressure);
+        self.potential.clone_from(&other.potential);
+        self.motions.clone_from(&other.motions);
+        (self.counts, self.residual) = (other.counts, other.residual);
+    }
+
     /// No pressure at all.
     pub(crate) fn release(&mut self) {
         self.pressure.fill(0.0);

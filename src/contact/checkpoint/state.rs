@@ -10,7 +10,7 @@ use crate::contact::follow::Progress;
 use crate::contact::guess::Refresh;
 use crate::contact::region::Region;
 use crate::contact::reside::Beyond;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::stepper::{ViscoelasticContact, next_id};
 use crate::error::{Error, Result};
 use crate::geometry::Gap;
 use crate::hereditary::{Exponential, History, Sources};
@@ -52,7 +52,7 @@ enum Past<'a> {
     Exponential(Cow<'a, Exponential>),
     Direct(Cow<'a, [(f64, Vec<f64>)]>),
     Unfitted { expected: f64 },
-    Sources(Cow<'a, Sources>),
+    Sources(Cow<'a, Box<Sources>>),
 }
 
 impl<'a> State<'a> {
@@ -101,7 +101,7 @@ impl<'a> State<'a> {
             (Past::Exponential(history), History::Exponential(_) | History::Unfitted(_)) => {
                 History::Exponential(history.into_owned())
             }
-            (Past::Sources(history), History::Sources(_)) => History::Sources(Box::new(history.into_owned())),
+            (Past::Sources(history), History::Sources(_)) => History::Sources(history.into_owned()),
             (Past::Direct(increments), History::Direct(history)) => {
                 History::Direct(history.with(increments.into_owned()))
             }
@@ -111,9 +111,9 @@ impl<'a> State<'a> {
                 history.carry(self.region.len());
                 History::Unfitted(history)
             }
-            _ => return Err(malformed("another kind of past").into()),
+            _ => return Err(malformed("another kind of past")),
         };
-        contact.initial_gap = self.gap.into_owned();
+        (contact.initial_gap, contact.gap_id) = (self.gap.into_owned(), next_id());
         contact.loads.copy_from_slice(&self.loads);
         contact.occupy(self.region.into_owned());
         contact.beyond = self.beyond.map(Cow::into_owned);
@@ -144,7 +144,7 @@ impl<'a> State<'a> {
     fn check(&self, contact: &ViscoelasticContact) -> Result<()> {
         let (whole, bodies) = (contact.grid.len(), contact.loads.len());
         if !self.region.is_of(&contact.grid) {
-            return Err(malformed("its region is none of the grid").into());
+            return Err(malformed("its region is none of the grid"));
         }
         let cells = self.region.len();
         let solution = |solution: &Solution| {
@@ -165,7 +165,7 @@ impl<'a> State<'a> {
             && owners
             && past
             && self.beyond.as_ref().is_none_or(|beyond| beyond.fits(cells));
-        if fits { Ok(()) } else { Err(malformed("fields that do not fit its region").into()) }
+        if fits { Ok(()) } else { Err(malformed("fields that do not fit its region")) }
     }
 }
 
