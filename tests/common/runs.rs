@@ -29,7 +29,7 @@ pub fn power_law() -> Material {
 /// A load that rises, falls and rises, with a jump now and then.
 pub fn wandering(contact: &mut ViscoelasticContact, k: u32) -> StepReport {
     let force = 0.3 + 0.2 * f64::from(k * k % 7) / 7.0;
-    contact.step(if k % 5 == 0 { 0.0 } else { 0.02 * f64::from(1 + k % 3) }, Load::force(force)).unwrap()
+    contact.step(if k.is_multiple_of(5) { 0.0 } else { 0.02 * f64::from(1 + k % 3) }, Load::force(force)).unwrap()
 }
 
 /// Scenes of all kinds, how they are built, and their k-th step.
