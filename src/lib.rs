@@ -84,7 +84,15 @@
 //! (an elastic bulk doubles their number); a step allocates nothing, save the first one
 //! that takes time, if it has to fit a series, and those in which a window grows.
 //!
+//! # Co-simulation, and runs that last
+//!
+//! A step that fails leaves no trace, and may be tried again, shorter or under another load. A caller that iterates takes a
+//! [`contact::Snapshot`], tries steps and restores it, without allocating. With the feature `checkpoint` the whole state goes to a file
+//! and back; the steps that follow are the same to the last bit.
+//!
 //! # Features
+//!
+//! `checkpoint`: the state to a file and back ([`contact::Follow`]`::keeping`, `ViscoelasticContact::save` and `resume`).
 //!
 //! `csv` (on by default): tables of measured data from CSV files.
 //!
@@ -102,6 +110,17 @@
 //! Friction, adhesion, plasticity and finite deformation are outside the model: small strains and slopes, smooth normal contact.
 //! Layers are bodies of the user's own: what a pressure does to them is given, not computed
 //! ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).
+
+//!
+//! # Beside other programs
+//!
+//! [Tamaas](https://gitlab.com/tamaas/tamaas) (C++ and Python) computes periodic rough contacts with plasticity, adhesion and friction;
+//! [ContactMechanics](https://github.com/ContactEngineering/ContactMechanics) (Python) elastic half-spaces, periodic or not, with
+//! contact plasticity, and adhesion in a package of its own; [CONTACT](https://www.kalkersoftware.org) (Fortran) rolling and sliding with
+//! friction, conformal and transient, also of viscoelastic bodies. What they have of friction, adhesion and plasticity is not here. What
+//! is here: any linear rheology, measured or fitted, in a recursion of second order whose cost does not grow with the number of steps;
+//! eccentric loads that tilt; steps chosen by their error; all of it as a typed library that another program drives step by step.
+//! How well it does is in `docs/validation.md` and `docs/accuracy.md`, claim by claim.
 
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
