@@ -195,7 +195,7 @@ fn child() {
     let mut log = fs::OpenOptions::new().create(true).append(true).open(folder.join("log")).unwrap();
     use std::io::Write;
     let begun = Instant::now();
-    writeln!(log, "resumed {:e}", contact.time()).unwrap();
+    writeln!(log, "\nresumed {:e}", contact.time()).unwrap(); // the line before may be cut
     let load = Sinusoid::new(Load::force(0.3), Load::force(0.2), 1.0).unwrap();
     let mut run = contact.follow(&load, Stepping::fixed(0.01), 0.01 * STEPS).keeping(&saved, EVERY);
     while let Some(report) = run.next_step().unwrap() {
@@ -236,10 +236,10 @@ fn losses(log: &str) -> Vec<(f64, Duration, Duration)> {
     let (mut losses, mut steps) = (Vec::new(), Vec::<(f64, u64)>::new());
     for line in log.lines() {
         let Some(time) = line.strip_prefix("resumed ") else {
-            // the last line of a run that was killed may be cut
-            if let Some((time, at)) = line.split_once(' ') {
-                steps.extend(time.parse().ok().zip(at.parse().ok()));
-            }
+            // the last line of a run that was killed may be cut, and its numbers too small
+            let step = line.split_once(' ').and_then(|(time, at)| time.parse().ok().zip(at.parse().ok()));
+            let last = steps.last().copied().unwrap_or_default();
+            steps.extend(step.filter(|&(time, at)| time > last.0 && at >= last.1));
             continue;
         };
         let resumed: f64 = time.parse().unwrap();
@@ -292,4 +292,60 @@ fn fifty_killed_runs() {
     fs::remove_dir_all(undisturbed).unwrap();
     println!("{kills} kills in {runs} runs, {differing} answers differ, {longest:?} of work lost at most");
     assert_eq!(differing, 0);
+}
+
+/// The checksum of the format: CRC-32 of IEEE 802.3, bit by bit.
+fn crc(bytes: impl Iterator<Item = u8>) -> u32 {
+    !bytes.fold(!0, |crc: u32, byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg()))
+    })
+}
+
+/// Files whose checksum is right and whose content is not: refused, or resumed to a contact that steps or says why not.
+#[test]
+fn forged_files_do_no_harm() {
+    let path = file("forged");
+    let whole = Settings { window: false, ..Settings::default() };
+    let scenes: [(Settings, Material); 3] = [
+        (Settings::default(), three_times()),
+        (Settings { time_rule: TimeRule::Backward, ..whole }, three_times()),
+        (Settings { frame: Frame::Indenter, ..whole }, three_times()),
+    ];
+    let (mut state, mut refused) = (7_u64, 0);
+    let mut random = move |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    for (settings, material) in scenes {
+        let build = || sphere_on(Grid::square(8, 4.0e-3).unwrap(), material.clone(), settings);
+        let mut contact = build();
+        (0..3).for_each(|k| _ = wandering(&mut contact, k + 1));
+        contact.save(&path).unwrap();
+        let bytes = fs::read(&path).unwrap();
+        for _ in 0..1500 {
+            let mut forged = bytes.clone();
+            for _ in 0..=random(3) {
+                let at = 24 + random(forged.len() - 24);
+                match random(3) {
+                    0 => forged[at] = random(256) as u8,
+                    1 => forged[at] ^= 1 << random(8),
+                    _ => forged[at..].iter_mut().take(8).for_each(|byte| *byte = 0xff),
+                }
+            }
+            let checksum = crc(forged[..20].iter().chain(&forged[24..]).copied());
+            forged[20..24].copy_from_slice(&checksum.to_le_bytes());
+            fs::write(&path, &forged).unwrap();
+            let mut contact = build();
+            if contact.resume(&path).is_err() {
+                refused += 1;
+                continue;
+            }
+            for k in 1..3 {
+                let _ = contact.step(0.01 * f64::from(k), Load::force(0.3));
+            }
+            let _ = (contact.contact_area(), contact.displacement().len(), contact.moment());
+        }
+    }
+    println!("{refused} of 4500 refused");
+    fs::remove_file(path).unwrap();
 }

@@ -54,7 +54,7 @@ impl Refresh {
             *self = Refresh { due: self.due - 1, greatest: sum, ..Refresh::default() };
             return;
         }
-        self.stale += 1;
+        self.stale = self.stale.saturating_add(1);
         self.greatest = self.greatest.max(sum);
         self.growth *= self.ahead.max(1.0);
         if self.growth > GROWTH_WITHOUT_REFRESH

@@ -165,7 +165,19 @@ impl<'a> State<'a> {
             && owners
             && past
             && self.beyond.as_ref().is_none_or(|beyond| beyond.fits(cells));
-        if fits { Ok(()) } else { Err(malformed("fields that do not fit its region")) }
+        if !fits {
+            return Err(malformed("fields that do not fit its region"));
+        }
+        let finite = |fields: &[&[f64]]| fields.iter().all(|field| field.iter().all(|value| value.is_finite()));
+        let numbers = [self.time, self.undisturbed_until, self.shortest, self.interval, self.last_dt, self.gap.datum];
+        let solutions = [&*self.current, &*self.previous];
+        let sane = finite(&[&numbers, &self.displacement, &self.before])
+            && solutions.iter().all(|solution| finite(&[&solution.pressure, &solution.potential]))
+            && self.current.pressure.iter().all(|&p| p >= 0.0)
+            && finite(&[self.motions.as_flattened(), self.previous_motions.as_flattened()])
+            && self.gap.above.iter().all(|&gap| gap >= 0.0)
+            && numbers[..5].iter().all(|&number| number >= 0.0);
+        if sane { Ok(()) } else { Err(malformed("numbers that no contact has")) }
     }
 }
 
