@@ -4,7 +4,7 @@ mod related;
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use related::{assert_same, difference, tight};
+use related::{assert_ends_like, assert_same, difference, end, tight};
 use viscocontact::laws::Scene;
 use viscocontact::laws::strategies::scenes;
 use viscocontact::motion::{Straight, Travel};
@@ -55,13 +55,12 @@ proptest! {
     /// What is done later happens later.
     #[test]
     fn waiting_changes_nothing(scene in scenes(), wait in 0.01..10.0_f64) {
-        let one = scene.run(tight()).unwrap();
+        let one = end(&scene, tight());
         let mut late = scene.clone();
         late.steps.insert(0, (wait * time(&scene), Load::force(0.0)));
         let other = late.run(tight()).unwrap();
-        assert_same("pressure", one.pressure(), other.pressure(), 1e-7)?;
-        assert_same("displacement", one.displacement(), other.displacement(), 1e-7)?;
-        prop_assert!((other.time() - one.time() - late.steps[0].0).abs() <= 1e-12 * other.time());
+        assert_ends_like(&one, other.pressure(), other.displacement(), other.approach())?;
+        prop_assert!((other.time() - one.contact.time() - late.steps[0].0).abs() <= 1e-12 * other.time());
     }
 
     /// Followed along a table of its loads, a scene is the one that is stepped.
@@ -84,7 +83,7 @@ proptest! {
         }
         prop_assert!(steps >= table.len() - 1);
         prop_assert_eq!(followed.time(), stepped.time());
-        assert_same("pressure", stepped.pressure(), followed.pressure(), 1e-6)?;
+        assert_same("pressure", stepped.pressure(), followed.pressure(), end(&scene, tight()).pressure, 1e-6)?;
     }
 
     /// The bodies take more than they give back: at no time have they returned more than was done to them, and over a closed
@@ -114,7 +113,7 @@ proptest! {
         let side = scene.grid.lengths().into_iter().fold(f64::INFINITY, f64::min);
         let punch = std::sync::Arc::new(FlatPunch::circular(0.3 * side).unwrap());
         // steps that resolve the fastest time
-        let fastest = scene.creep.terms().iter().map(|term| term.1).fold(f64::INFINITY, f64::min);
+        let fastest = scene.creep.relaxation().terms().iter().map(|term| term.1).fold(f64::INFINITY, f64::min);
         let dt = dt * if fastest.is_finite() { fastest } else { time(&scene) };
         let run = |cuts: usize| {
             let (mut steps, mut force) = (vec![(0.0, Load::force(1.0))], 1.0);
@@ -126,7 +125,7 @@ proptest! {
         };
         let [one, two, four] = [1, 2, 4].map(run);
         let (coarse, fine) = (difference(two.displacement(), one.displacement()), difference(four.displacement(), two.displacement()));
-        prop_assert!(coarse < 0.02, "{coarse:e}");
+        prop_assert!(coarse < 0.05, "{coarse:e}");
         prop_assert!(fine <= coarse / 3.5 + 1e-10, "order {:.2}: {coarse:e} {fine:e}", (coarse / fine).log2());
     }
 }
@@ -164,8 +163,8 @@ mod frames {
                     cell[axis] = (cell[axis] + step * cells).rem_euclid(counts[axis] as i32);
                     still.pressure()[cell[0] as usize * counts[1] + cell[1] as usize]
                 });
-                assert_same("pressure", moving.pressure(), &moved.collect::<Vec<_>>(), 1e-6)?;
-                assert_same("approach", &[moving.approach()], &[along.step.approach], 1e-7)?;
+                assert_same("pressure", moving.pressure(), &moved.collect::<Vec<_>>(), 0.0, 1e-6)?;
+                assert_same("approach", &[moving.approach()], &[along.step.approach], 0.0, 1e-7)?;
             }
         }
     }
