@@ -96,6 +96,8 @@
 //!
 //! `csv` (on by default): tables of measured data from CSV files.
 //!
+//! `laws`: strategies of `proptest` for the tests of those who write a rheology, a geometry or a load history (`laws`).
+//!
 //! `npy`: fields to NPZ and NPY files, height maps from and to NPY files.
 //!
 //! `vtk`: fields to VTK image data, a time series that ParaView opens.
@@ -135,6 +137,8 @@ pub mod geometry;
 mod grid;
 mod hereditary;
 mod kernel;
+#[cfg(feature = "laws")]
+pub mod laws;
 pub mod load;
 pub mod motion;
 pub mod observe;

@@ -21,6 +21,7 @@ mod ellipsoid;
 mod flat_punch;
 mod function;
 mod height_map;
+pub mod laws;
 mod repeated;
 mod rough;
 mod shifted;

@@ -12,6 +12,7 @@
 //! | [`FnHistory`] | any closure of time |
 
 mod function;
+pub mod laws;
 mod piecewise_linear;
 mod ramp;
 mod sinusoid;

@@ -1,0 +1,70 @@
+//! Loads and histories at random.
+
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use proptest::strategy::Union;
+
+use super::strategies::built;
+use crate::error::Result;
+use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
+
+/// A load history of any kind.
+type AnyHistory = Arc<dyn LoadHistory>;
+
+/// Loads of every kind: forces up to `force` \[N\], approaches within `depth` \[m\], tilts within `tilt` \[rad\], load
+/// points within `reach` of the origin \[m\].
+pub fn loads(force: f64, depth: f64, tilt: f64, reach: f64) -> impl Strategy<Value = Load> {
+    let part = || -1.0..1.0_f64;
+    let one = move || {
+        prop_oneof![
+            Just(Tilt::Fixed(0.0)),
+            part().prop_map(move |part| Tilt::Fixed(part * tilt)),
+            part().prop_map(move |part| Tilt::Free { at: part * reach }),
+        ]
+    };
+    let tilts = move || [one(), one()];
+    prop_oneof![
+        (0.0..1.0_f64).prop_map(move |part| Load::force(part * force)),
+        part().prop_map(move |part| Load::approach(part * depth)),
+        (0.0..1.0_f64, tilts()).prop_map(move |(part, tilt)| Load::Force { normal: part * force, tilt }),
+        (part(), tilts()).prop_map(move |(part, tilt)| Load::Approach { approach: part * depth, tilt }),
+    ]
+}
+
+fn history<I: std::fmt::Debug + 'static, H: LoadHistory + 'static>(
+    numbers: impl Strategy<Value = I> + 'static,
+    build: impl Fn(I) -> Result<H> + 'static,
+) -> BoxedStrategy<AnyHistory> {
+    built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as AnyHistory))
+}
+
+/// Histories of a force on an upright body, up to `force` \[N\], in which things happen over `duration` \[s\]: held, ramped,
+/// tables with corners and jumps, oscillating, closures with and without corners.
+pub fn histories(force: f64, duration: f64) -> impl Strategy<Value = AnyHistory> {
+    let load = move || (0.0..1.0_f64).prop_map(move |part| Load::force(part * force));
+    let time = move || (0.05..1.0_f64).prop_map(move |part| part * duration);
+    let entries = prop::collection::vec((0.02..0.3_f64, load(), prop::option::of(load())), 2..8);
+    Union::new([
+        history(load(), StepLoad::new),
+        history((load(), load(), time()), |(from, to, time)| Ramp::new(from, to, time)),
+        history(entries, move |entries| {
+            let (mut table, mut time) = (Vec::new(), 0.0);
+            for (pause, load, jump) in entries {
+                table.push((time, load));
+                table.extend(jump.map(|after| (time, after)));
+                time += pause * duration;
+            }
+            PiecewiseLinear::new(&table)
+        }),
+        history((load(), load(), 0.5..3.0_f64), move |(low, high, cycles)| Sinusoid::new(low, high, cycles / duration)),
+        history((0.1..0.5_f64, 0.1..0.5_f64, time()), move |(mean, swing, time)| {
+            let smooth = move |t: f64| Load::force(force * (mean + 0.1 * swing * (-t / time).exp()));
+            Ok(FnHistory::new(smooth))
+        }),
+        history((0.1..1.0_f64, time()), move |(part, corner)| {
+            let load = move |t: f64| Load::force(part * force * (t - corner).abs() / duration);
+            FnHistory::new(load).with_breakpoints(&[corner])
+        }),
+    ])
+}

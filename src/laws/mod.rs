@@ -1,0 +1,43 @@
+//! For the tests of those who write a rheology, a geometry or a load history: what each must obey, and random ones to
+//! try against it. Feature `laws`.
+//!
+//! | what | its laws | valid ones at random |
+//! |---|---|---|
+//! | [`Rheology`](crate::rheology::Rheology) | [`rheology`] | [`strategies::rheologies`], [`strategies::spectra`] |
+//! | [`Geometry`](crate::geometry::Geometry) | [`geometry`] | [`strategies::geometries`], [`strategies::height_maps`] |
+//! | [`LoadHistory`](crate::load::LoadHistory) | [`load`] | [`strategies::histories`], [`strategies::loads`] |
+//! | a whole contact | | [`strategies::scenes`] |
+//!
+//! The laws themselves need no feature; the strategies are [`proptest`]'s. The models of the crate pass through the very
+//! same functions.
+//!
+//! ```
+//! use proptest::prelude::*;
+//! use viscocontact::Grid;
+//! use viscocontact::geometry::Geometry;
+//! use viscocontact::laws;
+//!
+//! /// A groove along x2.
+//! #[derive(Debug)]
+//! struct Groove { width: f64 }
+//!
+//! impl Geometry for Groove {
+//!     fn initial_gap(&self, x1: f64, _: f64) -> f64 {
+//!         if x1.abs() < self.width { 1.0e-6 } else { 0.0 }
+//!     }
+//! }
+//!
+//! proptest!(|(width in 0.1..0.4_f64, cells in 8_usize..24)| {
+//!     let grid = Grid::square(cells, 1.0).unwrap();
+//!     laws::geometry::all(&Groove { width }, &grid).map_err(|broken| TestCaseError::fail(broken.to_string()))?;
+//! });
+//! ```
+
+mod histories;
+mod scenes;
+pub mod strategies;
+
+pub use crate::geometry::laws as geometry;
+pub use crate::load::laws as load;
+pub use crate::rheology::laws as rheology;
+pub use scenes::Scene;

@@ -1,0 +1,118 @@
+//! Whole small contacts at random.
+
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use proptest::strategy::Union;
+
+use super::strategies::{AnyGeometry, around, built, spectra};
+use crate::contact::{Builder, Settings};
+use crate::error::Result;
+use crate::geometry::{Cone, Ellipsoid, FlatPunch, Shifted, Sphere, Sum, Wavy};
+use crate::load::Load;
+use crate::rheology::{CreepSpectrum, Material};
+use crate::{Grid, ViscoelasticContact};
+
+/// A small contact and what is done to it, in parts that a test may change: scale, mirror, move, split.
+///
+/// ```
+/// use proptest::prelude::*;
+/// use viscocontact::laws::strategies::scenes;
+/// use viscocontact::prelude::*;
+///
+/// proptest!(ProptestConfig::with_cases(8), |(scene in scenes())| {
+///     let contact = scene.run(Settings::default())?;
+///     let Load::Force { normal, .. } = contact.load() else { unreachable!() };
+///     prop_assert!((contact.force() - normal).abs() <= 1e-12 * normal);
+/// });
+/// ```
+#[derive(Debug, Clone)]
+#[expect(clippy::exhaustive_structs, reason = "tests make their own from parts of others")]
+pub struct Scene {
+    /// Where it is computed.
+    pub grid: Grid,
+    /// The indenter.
+    pub shape: AnyGeometry,
+    /// J(t) of an incompressible body.
+    pub creep: CreepSpectrum,
+    /// The length of each step \[s\], and the load at its end.
+    pub steps: Vec<(f64, Load)>,
+}
+
+impl Scene {
+    /// The parts, for a test to add its own to.
+    pub fn builder(&self) -> Builder {
+        ViscoelasticContact::builder(self.grid.clone())
+            .geometry(&self.shape)
+            .material(Material::incompressible(self.creep.clone()))
+    }
+
+    /// All of its steps.
+    ///
+    /// # Errors
+    /// If the contact cannot be built or a step fails.
+    pub fn run(&self, settings: Settings) -> Result<ViscoelasticContact> {
+        let mut contact = self.builder().settings(settings).build()?;
+        for &(dt, load) in &self.steps {
+            contact.step(dt, load)?;
+        }
+        Ok(contact)
+    }
+
+    /// The time at the end \[s\].
+    pub fn duration(&self) -> f64 {
+        self.steps.iter().map(|step| step.0).sum()
+    }
+}
+
+/// How far contact may reach from the axis of the indenter, of half the shorter side.
+const REACH: f64 = 0.35;
+
+/// Indenters that reach no farther than they should under the force that brings a sphere of radius `radius` to a contact of
+/// radius `reach` \[m\].
+fn indenters(radius: f64, reach: f64) -> BoxedStrategy<AnyGeometry> {
+    let share = 0.4..1.0_f64;
+    let any = |geometry: Result<AnyGeometry>| geometry;
+    Union::new([
+        built(share.clone(), move |part| any(Ok(Arc::new(Sphere::new(part * radius)?)))),
+        built([share.clone(), share.clone()], move |[a, b]| any(Ok(Arc::new(Ellipsoid::new(a * radius, b * radius)?)))),
+        built(1.0..2.5_f64, move |part| any(Ok(Arc::new(Cone::new(part * reach / radius)?)))),
+        // large enough to hold the centre of a cell
+        built(0.8..1.0_f64, move |part| any(Ok(Arc::new(FlatPunch::circular(part * reach)?)))),
+        built((share, 0.02..0.3_f64, 0.5..2.0_f64), move |(part, height, wave)| {
+            // waves low enough for the troughs not to spread the contact beyond its bounds
+            let wavy = Wavy::new(0.1 * height * reach * reach / radius, wave * reach)?;
+            any(Ok(Arc::new(Sum::new(Sphere::new(part * radius)?, wavy))))
+        }),
+    ])
+    .boxed()
+}
+
+/// Scenes of 8 to 24 cells a side, not square in general, 1 mm to 10 cm long; single indenters off the middle by up to two
+/// cells, or not at all; creep spectra with an elastic response, of 10 kPa to 10 GPa and 1 ms to 1000 s; a jump, then 2 to 7
+/// steps of time or jumps, under forces that may vanish. Contact stays off the edge of the grid.
+pub fn scenes() -> impl Strategy<Value = Scene> {
+    let scales = (around(1e-2), -2.0..2.0_f64, -2.0..2.0_f64);
+    let cells = [10_usize..=24, 10_usize..=24];
+    (scales, cells, 0.8..1.25_f64).prop_flat_map(|((length, modulus, time), cells, aspect)| {
+        let (modulus, time) = (1e7 * 10f64.powf(modulus), 10f64.powf(time));
+        let reach = 0.5 * REACH * length * aspect.min(1.0);
+        let radius = around(10.0 * length)
+            .prop_flat_map(move |radius| indenters(radius, reach).prop_map(move |shape| (radius, shape)));
+        let off = prop_oneof![Just([0.0; 2]), [-1.0..1.0_f64, -1.0..1.0_f64]];
+        let step = (prop_oneof![1 => Just(0.0), 4 => 0.02..1.0_f64], prop_oneof![1 => Just(0.0), 5 => 0.05..1.0_f64]);
+        let steps = prop::collection::vec(step, 2..=7);
+        built((radius, off, spectra(modulus, time), 0.1..1.0_f64, steps), move |parts| {
+            let ((radius, shape), off, creep, first, steps) = parts;
+            let grid = Grid::new(cells, [length, aspect * length])?;
+            let by = [0, 1].map(|axis| off[axis] * grid.spacing()[axis].min(0.1 * length));
+            let until = time * steps.iter().map(|step| step.0).sum::<f64>();
+            // a sphere of this radius reaches so far: F = 4 a³ E*/3 R
+            let most = 4.0 * reach.powi(3) / (3.0 * radius * 0.25 * creep.compliance(until));
+            let load = |part: f64| Load::force(part * most);
+            let rest = steps.into_iter().map(|(dt, part)| (dt * time, load(part)));
+            let steps = std::iter::once((0.0, load(first))).chain(rest).collect();
+            Ok(Scene { grid, shape: Arc::new(Shifted::new(shape, by)?), creep, steps })
+        })
+    })
+}

@@ -1,0 +1,145 @@
+//! Valid models at random, as strategies of [`proptest`].
+//!
+//! Each takes the scales of what it makes, so that its models suit the scene of a test. The simplest ones come first, and
+//! that is where failures shrink to.
+
+use std::f64::consts::FRAC_PI_4;
+use std::sync::Arc;
+
+use proptest::prelude::*;
+use proptest::strategy::Union;
+
+use crate::error::Result;
+use crate::geometry::{
+    Cone, Cylinder, Ellipsoid, FlatPunch, Geometry, HeightMap, Repeated, Shifted, Sphere, Sum, Wavy,
+};
+use crate::rheology::{
+    Burgers, CreepSpectrum, Elastic, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
+    KelvinVoigt, Kww, LogCreep, Maxwell, PowerLaw, Rheology, SlowCreep, Zener,
+};
+
+pub use super::histories::{histories, loads};
+pub use super::scenes::scenes;
+
+/// A rheology of any kind.
+pub type AnyRheology = Arc<dyn Rheology>;
+/// A geometry of any kind.
+pub type AnyGeometry = Arc<dyn Geometry>;
+
+/// Up to a decade around `scale`, in its unit.
+pub fn around(scale: f64) -> impl Strategy<Value = f64> + Clone {
+    (-1.0..1.0_f64).prop_map(move |exponent| scale * 10f64.powf(exponent))
+}
+
+/// Leaves out what a constructor refuses: scales too far apart for it.
+pub(super) fn built<I, T>(
+    numbers: impl Strategy<Value = I> + 'static,
+    build: impl Fn(I) -> Result<T> + 'static,
+) -> BoxedStrategy<T>
+where
+    I: std::fmt::Debug + 'static,
+    T: std::fmt::Debug + 'static,
+{
+    numbers.prop_filter_map("refused by its constructor", move |numbers| build(numbers).ok()).boxed()
+}
+
+fn body<I: std::fmt::Debug + 'static, R: Rheology + 'static>(
+    numbers: impl Strategy<Value = I> + 'static,
+    build: impl Fn(I) -> Result<R> + 'static,
+) -> BoxedStrategy<AnyRheology> {
+    built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as AnyRheology))
+}
+
+fn shape<I: std::fmt::Debug + 'static, G: Geometry + 'static>(
+    numbers: impl Strategy<Value = I> + 'static,
+    build: impl Fn(I) -> Result<G> + 'static,
+) -> BoxedStrategy<AnyGeometry> {
+    built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as AnyGeometry))
+}
+
+/// Every rheology of the crate that has a formula, its moduli around `modulus` \[Pa\], its times around `time` \[s\].
+pub fn rheologies(modulus: f64, time: f64) -> impl Strategy<Value = AnyRheology> {
+    let (g, t, exponent) = (around(modulus), around(time), 0.05..0.95_f64);
+    let eta = around(modulus * time);
+    let compliance = around(1.0 / modulus);
+    let kelvin = prop::collection::vec((compliance.clone(), t.clone()), 1..5);
+    let maxwell = prop::collection::vec((g.clone(), t.clone()), 1..5);
+    let none_or = |some: f64| prop_oneof![Just(0.0), around(some)];
+    Union::new([
+        body(g.clone(), Elastic::new),
+        body((g.clone(), eta.clone()), |(g, eta)| Maxwell::new(g, eta)),
+        body((g.clone(), eta.clone()), |(g, eta)| KelvinVoigt::new(g, eta)),
+        body((g.clone(), g.clone(), eta.clone()), |(g, slow, eta)| Zener::new(g, slow, eta)),
+        body((g.clone(), eta.clone(), g.clone(), eta), |(g, eta, slow, own)| Burgers::new(g, eta, slow, own)),
+        body((none_or(1.0 / modulus), none_or(1.0 / (modulus * time)), kelvin), |(glassy, flow, terms)| {
+            GeneralizedKelvin::new(glassy, flow, &terms)
+        }),
+        body((none_or(modulus), maxwell), |(rest, terms)| GeneralizedMaxwell::new(rest, &terms)),
+        body((compliance.clone(), t.clone(), exponent.clone()), |(j, t, n)| PowerLaw::new(j, t, n)),
+        body((g.clone(), around(modulus * time.powf(0.5)), exponent.clone()), |(g, v, n)| {
+            FractionalMaxwell::new(g, v, n)
+        }),
+        body((g, 0.001..0.9_f64, t.clone(), exponent.clone()), |(g, rest, t, n)| {
+            FractionalZener::new(g, rest * g, t, n)
+        }),
+        body((compliance.clone(), compliance.clone(), t.clone(), exponent.clone()), |(j, rise, t, n)| {
+            Kww::new(j, rise, t, n)
+        }),
+        body((compliance.clone(), compliance.clone(), t.clone()), |(j, rise, t)| LogCreep::new(j, rise, t)),
+        body((compliance.clone(), compliance, t, exponent), |(j, rise, t, n)| SlowCreep::new(j, rise, t, n)),
+    ])
+}
+
+/// Creep spectra of solids and fluids, with an elastic response, of up to five terms around 1/`modulus` \[1/Pa\] and
+/// `time` \[s\].
+pub fn spectra(modulus: f64, time: f64) -> impl Strategy<Value = CreepSpectrum> {
+    let fluidity = prop_oneof![Just(0.0), around(0.3 / (modulus * time))];
+    let terms = prop::collection::vec((around(1.0 / modulus), around(time)), 0..5);
+    built((around(1.0 / modulus), fluidity, terms), |(glassy, fluidity, terms)| {
+        CreepSpectrum::new(glassy, fluidity, &terms)
+    })
+}
+
+/// Indenters with a formula, alone, on top of each other, moved and repeated, that touch within `length` \[m\] of the
+/// origin, and as high as a tenth of it or so at that distance.
+pub fn geometries(length: f64) -> impl Strategy<Value = AnyGeometry> {
+    let radius = around(5.0 * length);
+    let wave = (around(1e-3 * length), (0.3..3.0_f64).prop_map(move |part| part * length));
+    let face = (0.4..1.0_f64).prop_map(move |part| part * length);
+    let single = Union::new([
+        shape(radius.clone(), Sphere::new),
+        shape((radius.clone(), radius.clone()), |(r1, r2)| Ellipsoid::new(r1, r2)),
+        shape(radius.clone(), Cylinder::new),
+        shape((0.01..0.5_f64).prop_map(|part| (part * FRAC_PI_4).tan()), Cone::new),
+        shape(face.clone(), FlatPunch::circular),
+        shape((face.clone(), face), |(a, b)| FlatPunch::rectangular([2.0 * a, 2.0 * b])),
+        shape(wave.clone(), |(height, wavelength)| Wavy::new(height, wavelength)),
+        shape((wave.clone(), wave.clone()), |(first, second)| {
+            Wavy::in_two_directions([first.0, second.0], [first.1, second.1])
+        }),
+        shape((radius, wave), |(r, (height, wavelength))| {
+            Ok(Sum::new(Sphere::new(r)?, Wavy::new(height, wavelength)?))
+        }),
+    ])
+    .boxed();
+    let moved = shape((single.clone(), [-0.2..0.2_f64, -0.2..0.2_f64]), move |(shape, by)| {
+        Shifted::new(shape, by.map(|part| part * length))
+    });
+    let periods = [1.5..3.0_f64, 1.5..3.0_f64];
+    let repeated = shape((single.clone(), periods), move |(shape, periods)| {
+        Repeated::new(shape, periods.map(|part| part * length))
+    });
+    prop_oneof![4 => single, 1 => moved, 1 => repeated]
+}
+
+/// Maps of random heights up to `height` \[m\] on the points of a grid of 1 to 24 points a side, a square of `length`
+/// \[m\], half of them periodic.
+pub fn height_maps(length: f64, height: f64) -> impl Strategy<Value = HeightMap> {
+    ([1_usize..24, 1_usize..24], any::<bool>()).prop_flat_map(move |(cells, periodic)| {
+        let heights = prop::collection::vec((-1.0..1.0_f64).prop_map(move |part| part * height), cells[0] * cells[1]);
+        built(heights, move |heights| {
+            let map = HeightMap::new(cells, [length; 2], heights)?;
+            Ok(if periodic { map.periodic() } else { map })
+        })
+    })
+}

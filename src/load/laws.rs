@@ -1,0 +1,296 @@
+//! What every [`LoadHistory`] must obey: one function for each law, for the tests of those who write one.
+//!
+//! Each takes the history and ascending times \[s\] at which to look, two or more, and says where a law is broken, and by
+//! what; the breakpoints between the times are looked at as well. [`all`] asks for every one.
+//!
+//! ```
+//! use viscocontact::load::{Load, LoadHistory, laws};
+//!
+//! #[derive(Debug)]
+//! struct Knock; // a jump that nobody is told of
+//!
+//! impl LoadHistory for Knock {
+//!     fn at(&self, t: f64) -> Load {
+//!         Load::force(if t < 0.7 { 1.0 } else { 0.0 })
+//!     }
+//! }
+//! let violation = laws::all(&Knock, &laws::even_times(0.0, 2.0, 10)).unwrap_err();
+//! assert_eq!((violation.law, violation.quantity), ("jumps lie on breakpoints", "normal force"));
+//! assert!((violation.t - 0.7).abs() < 1e-6);
+//! println!("{violation}");
+//! ```
+
+use crate::load::{Load, LoadHistory, Tilt};
+
+/// A law that does not hold.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{law}: {quantity} at t = {t:e} s found {found:e}, expected {expected:e}")]
+#[non_exhaustive]
+pub struct Violation {
+    /// Which law.
+    pub law: &'static str,
+    /// Of what: force \[N\], approach \[m\], a tilt \[rad\], a load point \[m\], or a breakpoint \[s\].
+    pub quantity: &'static str,
+    /// When \[s\].
+    pub t: f64,
+    /// What was found.
+    pub found: f64,
+    /// What the law asks for; where it is an inequality, its bound.
+    pub expected: f64,
+}
+
+/// The law holds, or where it does not.
+pub type Verdict = Result<(), Violation>;
+
+/// Agreement of formulas that are the same but for rounding, of the greatest value.
+const SAME: f64 = 1e-10;
+/// More breakpoints than that between the times are not looked at.
+const MOST_BREAKPOINTS: usize = 10_000;
+/// What bends less, of the greatest value, bends by rounding.
+const STRAIGHT: f64 = 1e-12;
+
+/// So many times and one, evenly from `first` to `last` \[s\].
+pub fn even_times(first: f64, last: f64, count: usize) -> Vec<f64> {
+    let count = count.max(1);
+    (0..=count).map(|k| first + (last - first) * (k as f64 / count as f64)).collect()
+}
+
+/// Every law, at ascending `times` \[s\].
+///
+/// # Errors
+/// The first law that is broken.
+pub fn all(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+    breakpoints_increase(history, times)?;
+    is_a_load(history, times)?;
+    repeats_itself(history, times)?;
+    right_continuous(history, times)?;
+    before_is_the_left_limit(history, times)?;
+    smooth_between_breakpoints(history, times)
+}
+
+/// Force or approach, and what is known of the tilts.
+fn values(load: &Load) -> [f64; 3] {
+    let main = match *load {
+        Load::Force { normal, .. } => normal,
+        Load::Approach { approach, .. } => approach,
+    };
+    let [first, second] = load.tilt().map(|tilt| match tilt {
+        Tilt::Fixed(angle) => angle,
+        Tilt::Free { at } => at,
+    });
+    [main, first, second]
+}
+
+/// What the values are called.
+fn names(load: &Load) -> [&'static str; 3] {
+    let main = if matches!(load, Load::Force { .. }) { "normal force" } else { "approach" };
+    let tilt = load.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
+    let first = if tilt[0] { "load point along x1" } else { "tilt along x1" };
+    [main, first, if tilt[1] { "load point along x2" } else { "tilt along x2" }]
+}
+
+/// The times and the breakpoints between them.
+fn moments(history: &dyn LoadHistory, times: &[f64]) -> Vec<f64> {
+    let mut moments = times.to_vec();
+    if let (Some(&first), Some(&last)) = (times.first(), times.last()) {
+        let mut after = first;
+        for _ in 0..MOST_BREAKPOINTS {
+            match history.next_breakpoint(after) {
+                Some(next) if next > after && next < last => {
+                    moments.push(next);
+                    after = next;
+                }
+                _ => break,
+            }
+        }
+    }
+    moments.sort_by(f64::total_cmp);
+    moments.dedup();
+    moments
+}
+
+/// The greatest of each value at the moments.
+fn scales(history: &dyn LoadHistory, moments: &[f64]) -> [f64; 3] {
+    moments.iter().fold([0.0; 3], |most, &t| {
+        let (at, before) = (values(&history.at(t)), values(&history.before(t)));
+        [0, 1, 2].map(|k| f64::max(most[k], f64::max(at[k].abs(), before[k].abs())))
+    })
+}
+
+/// The first value in which two loads differ by more than `within` allows: its name, and both.
+fn difference(found: &Load, expected: &Load, within: [f64; 3]) -> Option<(&'static str, f64, f64)> {
+    let (a, b, named) = (values(found), values(expected), names(found));
+    if found.kind() != expected.kind() {
+        return Some(("kind of load", a[0], b[0]));
+    }
+    (0..3).find(|&k| !((a[k] - b[k]).abs() <= within[k])).map(|k| (named[k], a[k], b[k]))
+}
+
+fn verdict(law: &'static str, t: f64, difference: Option<(&'static str, f64, f64)>) -> Verdict {
+    match difference {
+        Some((quantity, found, expected)) => Err(Violation { law, quantity, t, found, expected }),
+        None => Ok(()),
+    }
+}
+
+/// Breakpoints are later than the time asked after, and finite; asked after any time before it, the next one is the same.
+///
+/// # Errors
+/// Where they are not.
+pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+    let quantity = "breakpoint";
+    let last = times.last().copied().unwrap_or(0.0);
+    for (k, &t) in times.iter().enumerate() {
+        let mut after = t;
+        for _ in 0..MOST_BREAKPOINTS {
+            let Some(next) = history.next_breakpoint(after) else { break };
+            let later = next > after && next.is_finite();
+            verdict("breakpoints increase", after, (!later).then_some((quantity, next, after)))?;
+            let between = times[k..].iter().copied().chain([after + 0.5 * (next - after)]);
+            for s in between.filter(|s| *s > after && *s < next) {
+                let again = history.next_breakpoint(s).unwrap_or(f64::INFINITY);
+                let law = "the next breakpoint is the same until it is reached";
+                verdict(law, s, (again != next).then_some((quantity, again, next)))?;
+            }
+            // those beyond the next time are met from there
+            if next > times.get(k + 1).copied().unwrap_or(last) {
+                break;
+            }
+            after = next;
+        }
+    }
+    Ok(())
+}
+
+/// The loads are ones that a step can be given: finite, forces not negative, before jumps and after them.
+///
+/// # Errors
+/// Where they are not.
+pub fn is_a_load(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+    for &t in &moments(history, times) {
+        for load in [history.at(t), history.before(t)].iter().filter(|load| load.validate().is_err()) {
+            let (named, found) = (names(load), values(load));
+            let k = (0..3).find(|&k| !found[k].is_finite()).unwrap_or(0);
+            verdict("every load is one that a step accepts", t, Some((named[k], found[k], 0.0)))?;
+        }
+    }
+    Ok(())
+}
+
+/// Asked again, in another order, it answers the same, bit by bit.
+///
+/// # Errors
+/// Where it does not.
+pub fn repeats_itself(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+    let moments = moments(history, times);
+    let first: Vec<[Load; 2]> = moments.iter().map(|&t| [history.at(t), history.before(t)]).collect();
+    for (&t, loads) in moments.iter().zip(&first).rev() {
+        let again = [history.before(t), history.at(t)];
+        for (found, expected) in [(&again[1], &loads[0]), (&again[0], &loads[1])] {
+            verdict("asked again, it answers the same", t, difference(found, expected, [0.0; 3]))?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether the load tends to `limit` towards `t` from a `side`, from as far as `room`: ever nearer, it must differ less.
+fn tends(history: &dyn LoadHistory, t: f64, side: f64, room: f64, limit: &Load, scale: [f64; 3]) -> Verdict {
+    let far = (1e-6 * room).max(1e-9 * t.abs());
+    if far >= 0.5 * room {
+        return Ok(()); // too close for f64 to tell
+    }
+    let (here, near) = (history.at(t + side * far), history.at(t + side * 1e-3 * far));
+    let (a, b) = (values(&here), values(limit));
+    let within = [0, 1, 2].map(|k| 0.5 * (a[k] - b[k]).abs() + SAME * scale[k]);
+    let law = if side > 0.0 { "at a time it is the load after it" } else { "before a time it is the left limit" };
+    verdict(law, t, difference(limit, &near, within))
+}
+
+/// At each time [`LoadHistory::at`] is the limit from later times.
+///
+/// # Errors
+/// Where it is not.
+pub fn right_continuous(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+    let moments = moments(history, times);
+    let scale = scales(history, &moments);
+    for pair in moments.windows(2) {
+        tends(history, pair[0], 1.0, pair[1] - pair[0], &history.at(pair[0]), scale)?;
+    }
+    Ok(())
+}
+
+/// At each time but the first [`LoadHistory::before`] is the limit from earlier times.
+///
+/// # Errors
+/// Where it is not.
+pub fn before_is_the_left_limit(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+    let moments = moments(history, times);
+    let scale = scales(history, &moments);
+    for pair in moments.windows(2) {
+        tends(history, pair[1], -1.0, pair[1] - pair[0], &history.before(pair[1]), scale)?;
+    }
+    Ok(())
+}
+
+/// Between breakpoints the load neither jumps nor has a corner, nor changes its kind. Looked for where it bends most.
+///
+/// # Errors
+/// Where it does.
+pub fn smooth_between_breakpoints(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+    let moments = moments(history, times);
+    let scale = scales(history, &moments);
+    for pair in moments.windows(2) {
+        let (start, end) = (pair[0], pair[1]);
+        // at a time that is no breakpoint nothing jumps
+        let is_breakpoint = history.next_breakpoint(start).is_some_and(|next| next <= end);
+        if !is_breakpoint {
+            let jump = difference(&history.before(end), &history.at(end), scale.map(|scale| SAME * scale));
+            verdict("jumps lie on breakpoints", end, jump)?;
+        }
+        let first = history.at(start);
+        let load = |t: f64| if t == end { history.before(end) } else { history.at(t) };
+        let (middle, last) = (load(0.5 * (start + end)), load(end));
+        for other in [&middle, &last].into_iter().filter(|other| other.kind() != first.kind()) {
+            let kind = Some(("kind of load", values(other)[0], values(&first)[0]));
+            verdict("jumps lie on breakpoints", end, kind)?;
+        }
+        for k in 0..3 {
+            let value = |t: f64| values(&load(t))[k];
+            if let Some((law, t)) = roughest(&value, start, end, STRAIGHT * scale[k]) {
+                let near = 1e-9 * (end - start);
+                let (found, expected) = (value((t + near).min(end)), value((t - near).max(start)));
+                verdict(law, t, Some((names(&first)[k], found, expected)))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Halves what bends most, again and again: what is smooth then bends by a quarter, a corner by half, a jump as much as
+/// before. Returns the law that is broken, and where.
+fn roughest(value: &dyn Fn(f64) -> f64, start: f64, end: f64, straight: f64) -> Option<(&'static str, f64)> {
+    let bend = |[a, b]: [f64; 2]| (value(0.5 * (a + b)) - 0.5 * (value(a) + value(b))).abs();
+    let mut window = [start, end];
+    let mut bends = vec![bend(window)];
+    for _ in 0..40 {
+        let [a, b] = window;
+        let width = b - a;
+        // what the rounding of the times makes of a slope
+        let rounding = 1e-15 * (value(b) - value(a)).abs() / width * b.abs().max(a.abs());
+        if width <= 1e-10 * b.abs().max(a.abs()) || bends.last().is_none_or(|last| *last <= straight + rounding) {
+            break;
+        }
+        let halves = [[a, a + 0.5 * width], [a + 0.25 * width, a + 0.75 * width], [a + 0.5 * width, b]];
+        let most = halves.into_iter().map(|half| (bend(half), half)).max_by(|x, y| x.0.total_cmp(&y.0))?;
+        window = most.1;
+        bends.push(most.0);
+    }
+    // six halvings, the last above rounding: 2⁻¹² where it is smooth, 2⁻⁶ at a corner, within a factor of 2
+    let [.., early, _, _, _, _, _, late, _] = bends[..] else { return None };
+    let at = 0.5 * (window[0] + window[1]);
+    match late / early {
+        ratio if ratio > 0.125 => Some(("jumps lie on breakpoints", at)),
+        ratio if ratio > 0.0055 => Some(("corners lie on breakpoints", at)),
+        _ => None,
+    }
+}
