@@ -6,14 +6,14 @@ use std::path::Path;
 use crate::error::Error;
 
 /// The error of a file.
-pub(super) fn failed(path: &Path, what: impl Display) -> Error {
+pub(crate) fn failed(path: &Path, what: impl Display) -> Error {
     Error::Output { path: path.display().to_string(), what: what.to_string() }
 }
 
 /// Writes a file under another name and gives it its own when it is complete and on the medium. What was of this
 /// name before is replaced then, and not touched if anything fails.
-#[cfg(any(feature = "npy", feature = "vtk"))]
-pub(super) fn replace(
+#[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
+pub(crate) fn replace(
     path: &Path,
     write: impl FnOnce(&mut std::io::BufWriter<std::fs::File>) -> std::io::Result<()>,
 ) -> crate::Result<()> {
@@ -36,7 +36,7 @@ pub(super) fn replace(
     })
 }
 
-#[cfg(all(test, any(feature = "npy", feature = "vtk")))]
+#[cfg(all(test, any(feature = "npy", feature = "plot", feature = "vtk")))]
 mod tests {
     use std::fs;
     use std::io::{self, Write};

@@ -17,8 +17,8 @@
 #[cfg(feature = "csv")]
 mod csv;
 mod field;
-#[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
-mod file;
+#[cfg(any(feature = "csv", feature = "npy", feature = "plot", feature = "vtk"))]
+pub(crate) mod file;
 #[cfg(any(feature = "npy", feature = "vtk"))]
 mod frames;
 mod json;
