@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use indicatif::ProgressBar;
 use noise::noise;
-use support::plot::{COLORS, Chart, Scale, SeriesLabelPosition, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{Isotherm, MasterCurve, Quantity, library};
 
@@ -115,8 +115,7 @@ fn contact_at(
     temperatures: &[f64],
 ) -> Result<(), Box<dyn Error>> {
     let (first, last, steps) = (1e-2_f64, 3.6e3_f64, 60);
-    let mut chart =
-        Chart::new("Contact radius of a ball", "time [s]", "contact radius [µm]", SeriesLabelPosition::UpperLeft);
+    let mut chart = Chart::new("Contact radius of a ball", "time [s]", "contact radius [µm]", Legend::UpperLeft);
     chart.scale = Scale::LogX;
     let progress = ProgressBar::new((temperatures.len() * steps) as u64);
     let mut lines = Vec::new();
@@ -148,7 +147,7 @@ fn contact_at(
     for line in lines {
         println!("{line}");
     }
-    chart.save(&args.output.join("contact_radius.png"))
+    Ok(chart.save(args.output.join("contact_radius.png"))?)
 }
 
 fn plot_master(
@@ -160,7 +159,7 @@ fn plot_master(
     let [low, high] = body.report().range().ok_or("the master curve is empty")?;
     let omega: Vec<f64> = (0..=200).map(|k| low * (high / low).powf(f64::from(k) / 200.0)).collect();
     let title = format!("Master curve at {} K", master.reference());
-    let mut chart = Chart::new(&title, "angular frequency [rad/s]", "modulus [Pa]", SeriesLabelPosition::UpperLeft);
+    let mut chart = Chart::new(&title, "angular frequency [rad/s]", "modulus [Pa]", Legend::UpperLeft);
     chart.scale = Scale::LogLog;
     for (quantity, name, color) in [(Quantity::Storage, "G'", 0), (Quantity::Loss, "G''", 1)] {
         let points = master.points();
@@ -172,13 +171,13 @@ fn plot_master(
         };
         chart.add(format!("{name}, fit"), COLORS[color], Style::Line, omega.iter().map(|&w| (w, value(w))).collect());
     }
-    chart.save(&args.output.join("master_curve.png"))?;
+    chart.save(args.output.join("master_curve.png"))?;
 
-    let mut chart = Chart::new("Loss factor", "angular frequency [rad/s]", "tan δ", SeriesLabelPosition::UpperRight);
+    let mut chart = Chart::new("Loss factor", "angular frequency [rad/s]", "tan δ", Legend::UpperRight);
     chart.scale = Scale::LogX;
     let published = omega.iter().map(|&w| (w, exact(w).im / exact(w).re)).collect();
     chart.add("published", COLORS[0], Style::Line, published);
     let fit = omega.iter().step_by(4).map(|&w| (w, body.spectrum().loss_tangent(w))).collect();
     chart.add("from the master curve", COLORS[1], Style::Dots, fit);
-    chart.save(&args.output.join("loss_factor.png"))
+    Ok(chart.save(args.output.join("loss_factor.png"))?)
 }

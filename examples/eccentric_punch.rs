@@ -12,8 +12,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use indicatif::ProgressBar;
-use support::plot::{COLORS, Chart, Map, SeriesLabelPosition, Style, WHITE};
 use viscocontact::analytic::RigidPunch;
+use viscocontact::plot::{COLORS, Chart, Legend, Map, Style};
 use viscocontact::prelude::*;
 
 /// A flat circular punch under an eccentric force.
@@ -72,7 +72,7 @@ fn against_lure(args: &Args) -> Result<(), Box<dyn Error>> {
         "Flat punch under an eccentric force, whole face in contact",
         "x1 / R",
         "p / mean pressure",
-        SeriesLabelPosition::UpperMiddle,
+        Legend::UpperMiddle,
     );
     let mean = args.load / (std::f64::consts::PI * args.radius * args.radius);
     for (e, color) in [0.0, 0.1, 0.2, 0.3].into_iter().zip(COLORS) {
@@ -101,7 +101,7 @@ fn against_lure(args: &Args) -> Result<(), Box<dyn Error>> {
         let dots = cells.filter(|(x, _)| x.abs() < 0.98 * args.radius).map(|(x, p)| (x / args.radius, p / mean));
         chart.add(if e == 0.0 { "computed (dots)" } else { "" }, color, Style::Dots, dots.collect());
     }
-    chart.save(&args.output.join("pressure_closed.png"))
+    Ok(chart.save(args.output.join("pressure_closed.png"))?)
 }
 
 /// Contact fraction and tilt over the eccentricity, and maps of the pressure.
@@ -134,31 +134,25 @@ fn opening(args: &Args) -> Result<(), Box<dyn Error>> {
     }
     progress.finish_and_clear();
     table.flush()?;
-    let mut chart =
-        Chart::new("The contact opens beyond R/3", "e / R", "fraction of the face", SeriesLabelPosition::LowerLeft);
+    let mut chart = Chart::new("The contact opens beyond R/3", "e / R", "fraction of the face", Legend::LowerLeft);
     chart.add("contact area / area of the face", COLORS[0], Style::LineAndDots, fraction);
-    chart.save(&args.output.join("contact_fraction.png"))?;
-    let mut chart =
-        Chart::new("Tilt over eccentricity", "e / R", "tilt / (3W / 4R²E*)", SeriesLabelPosition::UpperLeft);
+    chart.save(args.output.join("contact_fraction.png"))?;
+    let mut chart = Chart::new("Tilt over eccentricity", "e / R", "tilt / (3W / 4R²E*)", Legend::UpperLeft);
     chart.add("computed", COLORS[0], Style::LineAndDots, tilt);
     chart.add("Lur'e, e < R/3", COLORS[1], Style::Line, lure);
-    chart.save(&args.output.join("tilt.png"))
+    Ok(chart.save(args.output.join("tilt.png"))?)
 }
 
 fn save_map(contact: &ViscoelasticContact, args: &Args, e: f64, path: &Path) -> Result<(), Box<dyn Error>> {
     let mean = args.load / (std::f64::consts::PI * args.radius * args.radius);
-    Map {
-        title: format!("Load at e = {e:.1} R"),
-        unit: "p / mean pressure".into(),
-        axes: ["x1 / R".into(), "x2 / R".into()],
-        cells: contact.grid().cells(),
-        lengths: contact.grid().lengths().map(|length| length / args.radius),
-        // the rim is singular: the scale ends where the map is still legible
-        range: [0.0, 4.0],
-        values: contact.pressure().iter().map(|&p| if p > 0.0 { p / mean } else { f64::NAN }).collect(),
-        blank: WHITE,
-    }
-    .save(path)
+    let grid = Grid::new(contact.grid().cells(), contact.grid().lengths().map(|length| length / args.radius))?;
+    let values = contact.pressure().iter().map(|&p| if p > 0.0 { p / mean } else { f64::NAN }).collect();
+    let mut map = Map::new(&grid, values, "p / mean pressure")?;
+    map.title = format!("Load at e = {e:.1} R");
+    map.axes = ["x1 / R".into(), "x2 / R".into()];
+    // the rim is singular: the scale ends where the map is still legible
+    map.range = [0.0, 4.0];
+    Ok(map.save(path)?)
 }
 
 /// A steady eccentric force on a Maxwell body. Face and load set no length in the depth, so that the pressure does
@@ -168,7 +162,7 @@ fn creeping(args: &Args) -> Result<(), Box<dyn Error>> {
         "Tilt under a steady eccentric force, Maxwell body",
         "t / τ",
         "tilt / tilt at t = 0",
-        SeriesLabelPosition::UpperLeft,
+        Legend::UpperLeft,
     );
     let mut table = csv::Writer::from_path(args.output.join("creep.csv"))?;
     table.write_record(["eccentricity_over_radius", "time_s", "tilt_rad", "approach_m", "contact_cells"])?;
@@ -194,5 +188,5 @@ fn creeping(args: &Args) -> Result<(), Box<dyn Error>> {
     }
     tilts.add("J(t) / J(0)", COLORS[6], Style::Line, vec![(0.0, 1.0), (4.0, 5.0)]);
     table.flush()?;
-    tilts.save(&args.output.join("tilt_creep.png"))
+    Ok(tilts.save(args.output.join("tilt_creep.png"))?)
 }

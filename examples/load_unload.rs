@@ -12,8 +12,8 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use indicatif::ProgressBar;
-use support::plot::{COLORS, Chart, SeriesLabelPosition, Style};
 use viscocontact::analytic::{AxisymmetricContact, Profile};
+use viscocontact::plot::{COLORS, Chart, Legend, Style};
 use viscocontact::prelude::*;
 
 /// A sphere loaded, unloaded and loaded again on a Zener half-space.
@@ -120,20 +120,16 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     println!("greatest error of the approach {:.1e}, of the contact radius {:.1e}", worst[0], worst[1]);
 
     let [computed, exact] = loop_points;
-    let mut chart = Chart::new(
-        "Force over approach: load, unload, wait, load",
-        "approach [µm]",
-        "force [N]",
-        SeriesLabelPosition::UpperLeft,
-    );
+    let mut chart =
+        Chart::new("Force over approach: load, unload, wait, load", "approach [µm]", "force [N]", Legend::UpperLeft);
     chart.add("one-dimensional foundation", COLORS[0], Style::Line, exact);
     chart.add("computed", COLORS[1], Style::Dots, computed.into_iter().step_by(2).collect());
-    chart.save(&args.output.join("loop.png"))?;
+    chart.save(args.output.join("loop.png"))?;
     let [computed, exact] = radii;
-    let mut chart = Chart::new("Contact radius", "t / τ", "contact radius [mm]", SeriesLabelPosition::LowerLeft);
+    let mut chart = Chart::new("Contact radius", "t / τ", "contact radius [mm]", Legend::LowerLeft);
     chart.add("one-dimensional foundation", COLORS[0], Style::Line, exact);
     chart.add("computed", COLORS[1], Style::Dots, computed.into_iter().step_by(2).collect());
-    chart.save(&args.output.join("contact_radius.png"))?;
+    chart.save(args.output.join("contact_radius.png"))?;
     println!("tables and pictures are in {}", args.output.display());
     Ok(())
 }

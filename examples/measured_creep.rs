@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use indicatif::ProgressBar;
 use noise::noise;
-use support::plot::{COLORS, Chart, Scale, SeriesLabelPosition, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::Units;
 
@@ -101,11 +101,11 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     println!("contact radius against the exact material: {:.2} % rms, {:.2} % at most", 100.0 * rms, 100.0 * worst);
 
     let title = "Contact radius under a step load";
-    let mut chart = Chart::new(title, "time [s]", "contact radius [mm]", SeriesLabelPosition::UpperLeft);
+    let mut chart = Chart::new(title, "time [s]", "contact radius [mm]", Legend::UpperLeft);
     chart.scale = Scale::LogX;
     chart.add("the material behind the data, exactly", COLORS[0], Style::Line, curve);
     chart.add("computed from the table", COLORS[1], Style::Dots, computed.into_iter().step_by(4).collect());
-    chart.save(&args.output.join("contact_radius.png"))?;
+    chart.save(args.output.join("contact_radius.png"))?;
     println!("tables and pictures are in {}", args.output.display());
     Ok(())
 }
@@ -131,14 +131,14 @@ fn measure(args: &Args, seed: u64) -> Result<(), Box<dyn Error>> {
 fn plot_fit(args: &Args, body: &TabulatedCreep) -> Result<(), Box<dyn Error>> {
     let truth = truth()?;
     let samples = body.report().samples();
-    let mut chart = Chart::new("Creep compliance", "time [s]", "J [1/Pa]", SeriesLabelPosition::UpperLeft);
+    let mut chart = Chart::new("Creep compliance", "time [s]", "J [1/Pa]", Legend::UpperLeft);
     chart.scale = Scale::LogLog;
     chart.add("data, 2 % noise", COLORS[5], Style::Dots, samples.iter().map(|s| (s.x, s.given)).collect());
     let fit = format!("fit, {} retardation times", body.report().terms());
     chart.add(fit, COLORS[1], Style::Line, samples.iter().map(|s| (s.x, s.fitted)).collect());
-    chart.save(&args.output.join("creep.png"))?;
+    chart.save(args.output.join("creep.png"))?;
 
-    let mut chart = Chart::new("Relative misfit", "time [s]", "misfit [%]", SeriesLabelPosition::UpperRight);
+    let mut chart = Chart::new("Relative misfit", "time [s]", "misfit [%]", Legend::UpperRight);
     chart.scale = Scale::LogX;
     let percent = |of: f64, to: f64| 100.0 * (of / to - 1.0);
     chart.add(
@@ -149,6 +149,6 @@ fn plot_fit(args: &Args, body: &TabulatedCreep) -> Result<(), Box<dyn Error>> {
     );
     let error = samples.iter().map(|s| (s.x, percent(truth.creep_compliance(s.x), s.fitted))).collect();
     chart.add("the material behind the data / fit", COLORS[0], Style::Line, error);
-    chart.save(&args.output.join("misfit.png"))?;
+    chart.save(args.output.join("misfit.png"))?;
     Ok(())
 }

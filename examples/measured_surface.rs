@@ -14,10 +14,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use indicatif::ProgressBar;
-use support::plot::{COLORS, Chart, GREY, Map, SeriesLabelPosition, Style, WHITE};
 use viscocontact::analytic::Hertz;
 use viscocontact::observe::Axis;
 use viscocontact::output::{CsvHistory, Scene};
+use viscocontact::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
 
@@ -79,11 +79,11 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         raw.missing()
     );
     let prepared = prepare(&raw, args.margin)?;
-    let maps = [picture(&raw, "as measured"), picture(&prepared, "prepared")];
+    let maps = [picture(&raw, "as measured")?, picture(&prepared, "prepared")?];
     for (map, name) in maps.iter().zip(["measured.png", "prepared.png"]) {
-        map.save(&args.output.join(name))?;
+        map.save(args.output.join(name))?;
     }
-    Map::save_row(&maps, &args.output.join("surface.png"))?;
+    Map::save_row(&maps, args.output.join("surface.png"))?;
     press(args, &prepared)?;
     println!("tables and pictures are in {}", args.output.display());
     Ok(())
@@ -160,12 +160,8 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
     );
     let shown: Vec<f64> = (0..).map(|k| 1e-2 * 10f64.powi(k)).take_while(|t| *t < 1.001 * args.to).collect();
     let (first, last) = (shown[0], shown[shown.len() - 1]);
-    let mut chart = Chart::new(
-        "Rough ball on polyisobutylene: pressure along x1",
-        "x1 [mm]",
-        "pressure [kPa]",
-        SeriesLabelPosition::UpperRight,
-    );
+    let mut chart =
+        Chart::new("Rough ball on polyisobutylene: pressure along x1", "x1 [mm]", "pressure [kPa]", Legend::UpperRight);
     let (mut steps, mut work, mut maps) = (0, 0.0, Vec::new());
     let load = StepLoad::new(Load::force(args.load))?;
     let progress = ProgressBar::new(shown.len() as u64);
@@ -200,43 +196,25 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
             chart.add(format!("{} s, rough", report.time), COLORS[color], Style::Line, points);
             let points = line.positions.iter().map(|&x| (x * 1e3, smooth.pressure(x.abs()) * 1e-3)).collect();
             chart.add(format!("{} s, smooth ball (Hertz)", report.time), COLORS[5 - color], Style::Line, points);
-            maps.push(Map {
-                title: format!("after {} s", report.time),
-                unit: "pressure [kPa]".into(),
-                axes: ["x1 [mm]".into(), "x2 [mm]".into()],
-                cells: [cells; 2],
-                lengths: [side * 1e3; 2],
-                range: [0.0, 0.0],
-                values: contact.pressure().iter().map(|&p| if p > 0.0 { p * 1e-3 } else { f64::NAN }).collect(),
-                blank: WHITE,
-            });
+            maps.push(Map::pressure(contact)?);
         }
     }
     progress.finish_and_clear();
     println!("{steps} steps of {:.2} convolutions", work / f64::from(steps));
-    chart.save(&args.output.join("profile.png"))?;
+    chart.save(args.output.join("profile.png"))?;
     // one scale for all, on which the later pressures, which are smaller, are seen as well
-    let most = 0.5 * maps.iter().flat_map(|map| &map.values).fold(0.0_f64, |most, &p| most.max(p));
+    let most = 0.5 * maps.iter().map(|map| map.range[1]).fold(0.0, f64::max);
     maps.iter_mut().for_each(|map| map.range = [0.0, most]);
-    Map::save_row(&maps, &args.output.join("pressure.png"))
+    Ok(Map::save_row(&maps, args.output.join("pressure.png"))?)
 }
 
-/// A map of heights as a picture, in µm, from the lowest to the highest.
-fn picture(map: &HeightMap, title: &str) -> Map {
-    let values: Vec<f64> = map.heights().iter().map(|z| z * 1e6).collect();
-    Map {
-        title: title.into(),
-        unit: "height [µm]".into(),
-        axes: ["x1 [mm]".into(), "x2 [mm]".into()],
-        cells: map.cells(),
-        lengths: map.lengths().map(|length| length * 1e3),
-        range: [
-            values.iter().copied().fold(f64::INFINITY, f64::min),
-            values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        ],
-        values,
-        blank: GREY,
-    }
+/// A map of heights as a picture, from the lowest to the highest.
+fn picture(map: &HeightMap, title: &str) -> Result<Map> {
+    let grid = Grid::new(map.cells(), map.lengths())?;
+    let mut picture = Map::new(&grid, map.heights().to_vec(), Quantity::of("height", "m"))?;
+    picture.title = title.into();
+    picture.blank = Color::GREY;
+    Ok(picture)
 }
 
 /// Makes up the map that is shipped, and writes it in both formats.

@@ -13,8 +13,8 @@ use std::time::Instant;
 
 use clap::Parser;
 use indicatif::ProgressBar;
-use support::plot::{COLORS, Chart, Scale, SeriesLabelPosition, Style};
 use viscocontact::InfluenceKernel;
+use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
 
 /// Measures what a step costs.
@@ -117,13 +117,13 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     table.flush()?;
 
     let (x, y) = ("cells along each axis", "milliseconds");
-    let mut chart = Chart::new("Time of a step", x, y, SeriesLabelPosition::UpperLeft);
+    let mut chart = Chart::new("Time of a step", x, y, Legend::UpperLeft);
     chart.scale = Scale::LogLog;
     for ((way, points), color) in ways.iter().zip(series).zip(COLORS.iter().cycle()) {
         let style = if way.0 == "paper" { Style::Dots } else { Style::LineAndDots };
         chart.add(way.0, *color, style, points);
     }
-    chart.save(&args.output.join("performance.png"))?;
+    chart.save(args.output.join("performance.png"))?;
     println!("{} holds performance.csv and performance.png", args.output.display());
     Ok(())
 }

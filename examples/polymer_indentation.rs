@@ -11,7 +11,7 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use indicatif::ProgressBar;
-use support::plot::{COLORS, Chart, Scale, SeriesLabelPosition, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
 
@@ -118,7 +118,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     }
 
     let title = format!("{}: contact radius under a force that is held", published.name());
-    let mut chart = Chart::new(&title, "time [s]", "contact radius [mm]", SeriesLabelPosition::UpperLeft);
+    let mut chart = Chart::new(&title, "time [s]", "contact radius [mm]", Legend::UpperLeft);
     chart.scale = Scale::LogLog;
     for (run, (material, name, color)) in
         runs.iter().zip([(&constant, "constant Poisson's ratio", 0), (&elastic_bulk, "elastic bulk", 1)])
@@ -128,15 +128,15 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let dots = run.history.iter().step_by(4).map(|&[t, a, _]| (t, 1e3 * a)).collect();
         chart.add(format!("{name}, computed"), COLORS[color], Style::Dots, dots);
     }
-    chart.save(&args.output.join("contact_radius.png"))?;
+    chart.save(args.output.join("contact_radius.png"))?;
 
     let title = format!("{}: pressure across the contact", published.name());
-    let mut chart = Chart::new(&title, "x1 [mm]", "pressure [MPa]", SeriesLabelPosition::UpperRight);
+    let mut chart = Chart::new(&title, "x1 [mm]", "pressure [MPa]", Legend::UpperRight);
     let profiles = &runs[0].profiles;
     for (k, (time, profile)) in profiles.iter().step_by(2).take(COLORS.len()).enumerate() {
         chart.add(format!("{time:.0e} s"), COLORS[k], Style::Line, profile.clone());
     }
-    chart.save(&args.output.join("profiles.png"))?;
+    chart.save(args.output.join("profiles.png"))?;
     println!("tables and pictures are in {}", args.output.display());
     Ok(())
 }

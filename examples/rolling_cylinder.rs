@@ -19,7 +19,7 @@ use std::sync::Arc;
 use clap::Parser;
 use indicatif::ProgressBar;
 use reference::RollingCylinder;
-use support::plot::{COLORS, Chart, Scale, SeriesLabelPosition, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
 
 /// A cylinder rolling over a standard solid: pressure and friction at many speeds.
@@ -200,22 +200,22 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         "Hysteretic friction of a rolling cylinder",
         "v τ / half the width of the glassy contact",
         "lateral over normal force",
-        SeriesLabelPosition::UpperLeft,
+        Legend::UpperLeft,
     );
     chart.scale = Scale::LogX;
     chart.add("steady state, without steps", COLORS[0], Style::Line, exact);
     chart.add("computed", COLORS[1], Style::Dots, computed);
-    chart.save(&args.output.join("friction.png"))?;
+    chart.save(args.output.join("friction.png"))?;
     let mut chart = Chart::new(
         "Pressure under a cylinder that rolls to the right",
         "distance from the axis [mm]",
         "pressure [kPa]",
-        SeriesLabelPosition::UpperLeft,
+        Legend::UpperLeft,
     );
     for ((ratio, points), color) in profiles.into_iter().zip(COLORS) {
         chart.add(format!("v τ/a0 = {ratio}"), color, Style::Line, points);
     }
-    chart.save(&args.output.join("pressure.png"))?;
+    chart.save(args.output.join("pressure.png"))?;
     println!("tables and pictures are in {}", args.output.display());
     Ok(())
 }

@@ -25,8 +25,8 @@ use std::time::Instant;
 
 use clap::Parser;
 use indicatif::ProgressBar;
-use support::plot::{COLORS, Chart, Map, Scale, SeriesLabelPosition, Style, WHITE};
 use viscocontact::output::{CsvHistory, Scene};
+use viscocontact::plot::{COLORS, Chart, Legend, Map, Scale, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
 
@@ -193,7 +193,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             files.frame(contact)?;
         }
         if pictured.contains(&report.time) {
-            maps.push(map(contact, args, mean, report.time, moment.cells));
+            maps.push(map(contact, mean, report.time, moment.cells)?);
         }
         growth.push(moment);
         progress.inc(1);
@@ -237,7 +237,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let kappa = growth[0].cells / args.pressure;
     println!("κ at {:.0e} s: {kappa:.3}", args.from);
     let title = format!("Real contact area of a rough surface under {:.2} MPa, on {}", mean * 1e-6, args.material);
-    let mut chart = Chart::new(&title, "time [s]", "cells in contact / all cells", SeriesLabelPosition::UpperLeft);
+    let mut chart = Chart::new(&title, "time [s]", "cells in contact / all cells", Legend::UpperLeft);
     chart.scale = Scale::LogX;
     let small = shown.iter().map(|&t| (t, kappa * mean * compliance(t) / args.slope));
     let small = small.filter(|(_, share)| *share < 1.05 * last.cells).collect();
@@ -249,14 +249,14 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     chart.add("elastic body of compliance C(t), same surface", COLORS[6], Style::Dots, elastic);
     let points = hold[1..].iter().map(|m| (m.time, m.cells)).collect();
     chart.add("creeping, time since half of the load was taken off", COLORS[2], Style::Line, points);
-    chart.save(&args.output.join("area.png"))?;
+    chart.save(args.output.join("area.png"))?;
 
-    let mut chart = Chart::new("Patches of contact", "time [s]", "number of patches", SeriesLabelPosition::UpperRight);
+    let mut chart = Chart::new("Patches of contact", "time [s]", "number of patches", Legend::UpperRight);
     chart.scale = Scale::LogX;
     let points = growth.iter().map(|m| (m.time, m.patches as f64)).collect();
     chart.add("patches", COLORS[0], Style::LineAndDots, points);
-    chart.save(&args.output.join("patches.png"))?;
-    Map::save_row(&maps, &args.output.join("maps.png"))?;
+    chart.save(args.output.join("patches.png"))?;
+    Map::save_row(&maps, args.output.join("maps.png"))?;
     println!("{:.1} s; tables and pictures are in {}", began.elapsed().as_secs_f64(), args.output.display());
     Ok(())
 }
@@ -302,17 +302,12 @@ fn observe(contact: &ViscoelasticContact) -> Result<Moment> {
 }
 
 /// Where it touches, and how hard.
-fn map(contact: &ViscoelasticContact, args: &Args, mean: f64, time: f64, share: f64) -> Map {
-    Map {
-        title: format!("{time:.0e} s: {:.0} % in contact", 100.0 * share),
-        unit: "p / mean pressure".into(),
-        axes: ["x1 [mm]".into(), "x2 [mm]".into()],
-        cells: contact.grid().cells(),
-        lengths: [args.length * 1e3; 2],
-        range: [0.0, 20.0],
-        values: contact.pressure().iter().map(|&p| if p > 0.0 { p / mean } else { f64::NAN }).collect(),
-        blank: WHITE,
-    }
+fn map(contact: &ViscoelasticContact, mean: f64, time: f64, share: f64) -> Result<Map> {
+    let values = contact.pressure().iter().map(|&p| if p > 0.0 { p / mean } else { f64::NAN }).collect();
+    let mut map = Map::new(contact.grid(), values, "p / mean pressure")?;
+    map.title = format!("{time:.0e} s: {:.0} % in contact", 100.0 * share);
+    map.range = [0.0, 20.0];
+    Ok(map)
 }
 
 /// The run as files: a row a step, and the whole state once a decade where the crate is built to write it.

@@ -15,7 +15,7 @@ use std::path::{Path as File, PathBuf};
 
 use clap::Parser;
 use indicatif::ProgressBar;
-use support::plot::{COLORS, Chart, Map, Scale, SeriesLabelPosition, Style, WHITE};
+use viscocontact::plot::{COLORS, Chart, Legend, Map, Scale, Style};
 use viscocontact::prelude::*;
 
 /// A sphere sliding over a standard solid.
@@ -141,27 +141,17 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
         "Hysteretic friction of a sliding sphere",
         "v τ / radius of the glassy contact",
         "lateral over normal force",
-        SeriesLabelPosition::UpperLeft,
+        Legend::UpperLeft,
     );
     chart.scale = Scale::LogX;
     chart.add(format!("{cells} cells on a radius"), COLORS[0], Style::LineAndDots, fine);
     chart.add(format!("{} cells", cells / 2), COLORS[1], Style::Dots, coarse);
-    chart.save(&output.join("friction.png"))?;
+    chart.save(output.join("friction.png"))?;
 
     let Some((friction, contact, _)) = greatest else { return Ok(()) };
-    let grid = contact.grid();
-    let values = contact.pressure().iter().map(|&p| if p > 0.0 { p * 1e-3 } else { f64::NAN });
-    Map {
-        title: format!("Pressure of a sphere that slides to the right, friction {friction:.3}"),
-        unit: "kPa".into(),
-        axes: ["x1 [mm]".into(), "x2 [mm]".into()],
-        cells: grid.cells(),
-        lengths: grid.lengths().map(|length| length * 1e3),
-        range: [0.0, contact.greatest_pressure() * 1e-3],
-        values: values.collect(),
-        blank: WHITE,
-    }
-    .save(&output.join("pressure.png"))?;
+    let mut map = Map::pressure(&contact)?;
+    map.title = format!("Pressure of a sphere that slides to the right, friction {friction:.3}");
+    map.save(output.join("pressure.png"))?;
     #[cfg(feature = "vtk")]
     {
         use viscocontact::output::{Field, Scene, VtkSeries};
@@ -229,17 +219,12 @@ fn there_and_back(bodies: &Bodies, cells: usize, output: &File) -> Result<(), Bo
         steady(0.8 * moving, moving),
         steady(1.8 * moving + resting, 2.0 * moving + resting)
     );
-    let mut chart = Chart::new(
-        "Start, stop and the way back: friction",
-        "t / τ",
-        "lateral over normal force",
-        SeriesLabelPosition::UpperRight,
-    );
-    chart.add("", COLORS[0], Style::Line, friction);
-    chart.save(&output.join("start_and_stop.png"))?;
     let mut chart =
-        Chart::new("Start, stop and the way back: approach", "t / τ", "approach [µm]", SeriesLabelPosition::UpperRight);
+        Chart::new("Start, stop and the way back: friction", "t / τ", "lateral over normal force", Legend::UpperRight);
+    chart.add("", COLORS[0], Style::Line, friction);
+    chart.save(output.join("start_and_stop.png"))?;
+    let mut chart = Chart::new("Start, stop and the way back: approach", "t / τ", "approach [µm]", Legend::UpperRight);
     chart.add("", COLORS[1], Style::Line, sinking);
-    chart.save(&output.join("sinking.png"))?;
+    chart.save(output.join("sinking.png"))?;
     Ok(())
 }

@@ -15,8 +15,8 @@ use std::time::Instant;
 use clap::{Parser, ValueEnum};
 use common::{Errors, StepLoadedSphere, errors};
 use indicatif::{ProgressBar, ProgressStyle};
-use support::plot::{COLORS, Chart, Scale, SeriesLabelPosition, Style};
 use viscocontact::analytic::{GrowingSphere, Hertz};
+use viscocontact::plot::{COLORS, Chart, Color, Legend, Scale, Style};
 use viscocontact::prelude::*;
 
 /// Profiles are taken at these times, in units of τ.
@@ -132,11 +132,11 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         "Contact radius under a step load",
         "t / τ",
         "contact radius / Hertz radius at t = 0",
-        SeriesLabelPosition::UpperLeft,
+        Legend::UpperLeft,
     );
     let title = format!("Error in time at t = 2τ, {}² cells", args.cells / 2);
     let y = "central pressure: |computed / exact − 1|";
-    let mut convergence = Chart::new(&title, "steps", y, SeriesLabelPosition::LowerLeft);
+    let mut convergence = Chart::new(&title, "steps", y, Legend::LowerLeft);
     convergence.scale = Scale::LogLog;
     for (index, scene) in args.scenes()?.iter().enumerate() {
         let colors = [COLORS[2 * index], COLORS[2 * index + 1]];
@@ -148,8 +148,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         add_convergence(scene, args, &mut convergence, colors)?;
         compare_with_the_paper(scene, args, &run)?;
     }
-    growth.save(&args.output.join("contact_radius.png"))?;
-    convergence.save(&args.output.join("convergence.png"))?;
+    growth.save(args.output.join("contact_radius.png"))?;
+    convergence.save(args.output.join("convergence.png"))?;
     println!("tables and pictures are in {} ({:.1} s in all)", args.output.display(), started.elapsed().as_secs_f64());
     Ok(())
 }
@@ -298,7 +298,7 @@ impl Run {
     fn plot_profiles(&self, scene: &StepLoadedSphere) -> Result<Chart, Box<dyn Error>> {
         let title = format!("Pressure under a step-loaded sphere, {} half-space", scene.name);
         let [x, y] = ["r / Hertz radius at t = 0", "p / Hertz pressure at t = 0"];
-        let mut chart = Chart::new(&title, x, y, SeriesLabelPosition::UpperRight);
+        let mut chart = Chart::new(&title, x, y, Legend::UpperRight);
         let (a, p) = (self.hertz.contact_radius(), self.hertz.peak_pressure());
         for (profile, color) in self.profiles.iter().zip(COLORS) {
             let edge = self.exact.contact_radius(profile.time);
@@ -314,7 +314,7 @@ impl Run {
         Ok(chart)
     }
 
-    fn add_growth(&self, scene: &StepLoadedSphere, chart: &mut Chart, color: plotters::style::RGBColor) {
+    fn add_growth(&self, scene: &StepLoadedSphere, chart: &mut Chart, color: Color) {
         let unit = self.hertz.contact_radius();
         let times = (0..=200).map(|k| scene.duration * k as f64 / 200.0);
         let line = times.map(|t| (t / scene.tau, self.exact.contact_radius(t) / unit)).collect();
@@ -330,7 +330,7 @@ fn add_convergence(
     scene: &StepLoadedSphere,
     args: &Args,
     chart: &mut Chart,
-    colors: [plotters::style::RGBColor; 2],
+    colors: [Color; 2],
 ) -> Result<(), Box<dyn Error>> {
     let mut table = csv::Writer::from_path(file(&args.output, "convergence", scene, "csv"))?;
     table.write_record(["rule", "steps", "central_pressure_error", "l1_error", "approach_error"])?;

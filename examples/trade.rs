@@ -12,9 +12,9 @@ use std::time::Instant;
 
 use clap::Parser;
 use indicatif::ProgressBar;
-use support::plot::{COLORS, Chart, Scale, SeriesLabelPosition, Style};
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};
 use viscocontact::contact::Builder;
+use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
 
 /// Measures what accuracy costs.
@@ -333,7 +333,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 
 fn plot(args: &Args, scene: &str, cells: usize, rows: &[Row]) -> Result<(), Box<dyn Error>> {
     let title = format!("{scene}, {cells}² cells");
-    let mut chart = Chart::new(&title, "convolution equivalents", "relative error", SeriesLabelPosition::UpperRight);
+    let mut chart = Chart::new(&title, "convolution equivalents", "relative error", Legend::UpperRight);
     chart.scale = Scale::LogLog;
     for (k, method) in METHODS.into_iter().enumerate() {
         let of = |row: &&Row| row.scene == scene && row.cells == cells && row.method == method;
@@ -343,7 +343,7 @@ fn plot(args: &Args, scene: &str, cells: usize, rows: &[Row]) -> Result<(), Box<
         }
     }
     let name: String = scene.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
-    chart.save(&args.output.join(format!("{name}.png")))
+    Ok(chart.save(args.output.join(format!("{name}.png")))?)
 }
 
 /// For every scene and method the least work that reaches an error.

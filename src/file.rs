@@ -12,7 +12,7 @@ pub(crate) fn failed(path: &Path, what: impl Display) -> Error {
 
 /// Writes a file under another name and gives it its own when it is complete and on the medium. What was of this
 /// name before is replaced then, and not touched if anything fails.
-#[cfg(any(feature = "checkpoint", feature = "npy", feature = "vtk"))]
+#[cfg(any(feature = "checkpoint", feature = "npy", feature = "plot", feature = "vtk"))]
 pub(crate) fn replace(
     path: &Path,
     write: impl FnOnce(&mut std::io::BufWriter<std::fs::File>) -> std::io::Result<()>,
@@ -36,7 +36,7 @@ pub(crate) fn replace(
     })
 }
 
-#[cfg(all(test, any(feature = "checkpoint", feature = "npy", feature = "vtk")))]
+#[cfg(all(test, any(feature = "checkpoint", feature = "npy", feature = "plot", feature = "vtk")))]
 mod tests {
     use std::fs;
     use std::io::{self, Write};

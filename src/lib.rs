@@ -100,6 +100,8 @@
 //!
 //! `npy`: fields to NPZ and NPY files, height maps from and to NPY files.
 //!
+//! `plot`: pictures of contacts and runs as PNG files and animated GIFs, with a font of their own.
+//!
 //! `vtk`: fields to VTK image data, a time series that ParaView opens.
 //!
 //! `x3p`: height maps from X3P files (ISO 25178-72).
@@ -131,7 +133,7 @@
 pub mod analytic;
 pub mod contact;
 mod error;
-#[cfg(any(feature = "checkpoint", feature = "csv", feature = "npy", feature = "vtk"))]
+#[cfg(any(feature = "checkpoint", feature = "csv", feature = "npy", feature = "plot", feature = "vtk"))]
 mod file;
 pub mod geometry;
 mod grid;
@@ -144,6 +146,8 @@ pub mod motion;
 pub mod observe;
 pub mod output;
 pub mod plan;
+#[cfg(feature = "plot")]
+pub mod plot;
 mod quadrature;
 pub mod rheology;
 mod solver;

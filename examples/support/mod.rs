@@ -2,8 +2,6 @@
 
 use std::error::Error;
 
-pub mod plot;
-
 /// Ends an example: an error is told in a line, and in the exit status.
 pub fn finish(result: Result<(), Box<dyn Error>>) {
     if let Err(error) = result {

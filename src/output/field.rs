@@ -1,6 +1,6 @@
 //! The fields of a contact.
 
-#[cfg(any(feature = "npy", feature = "vtk"))]
+#[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
 use crate::{Result, ViscoelasticContact};
 
 /// A field that can be written: one value a cell.
@@ -45,8 +45,8 @@ impl Field {
     }
 
     /// The values in the state the contact is in; `buffer` holds those that the contact does not keep.
-    #[cfg(any(feature = "npy", feature = "vtk"))]
-    pub(super) fn values<'a>(self, contact: &'a ViscoelasticContact, buffer: &'a mut Vec<f64>) -> Result<&'a [f64]> {
+    #[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
+    pub(crate) fn values<'a>(self, contact: &'a ViscoelasticContact, buffer: &'a mut Vec<f64>) -> Result<&'a [f64]> {
         match self {
             Field::Pressure => Ok(contact.pressure()),
             Field::Displacement => Ok(contact.displacement()),

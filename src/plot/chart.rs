@@ -1,0 +1,270 @@
+//! Line charts.
+
+use std::path::Path;
+
+use plotters::coord::ranged1d::ValueFormatter;
+use plotters::prelude::*;
+use plotters::style::Color as _;
+
+use crate::error::{Error, Result};
+use crate::plot::picture::{Drawing, FONT};
+use crate::plot::quantity::{drawable, drawable_as_power, numbers, powers};
+use crate::plot::{Color, Picture, Quantity};
+
+/// Pixels of a chart.
+const SIZE: [u32; 2] = [1200, 800];
+
+/// Which axes of a chart are logarithmic.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[expect(clippy::exhaustive_enums, reason = "there are two axes")]
+pub enum Scale {
+    /// None.
+    #[default]
+    Linear,
+    /// The horizontal one.
+    LogX,
+    /// The vertical one.
+    LogY,
+    /// Both.
+    LogLog,
+}
+
+impl Scale {
+    /// Whether the horizontal and the vertical axis are logarithmic.
+    fn is_logarithmic(self) -> [bool; 2] {
+        [matches!(self, Scale::LogX | Scale::LogLog), matches!(self, Scale::LogY | Scale::LogLog)]
+    }
+}
+
+/// How a series is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Style {
+    /// A line through its points.
+    Line,
+    /// A dot at each point.
+    Dots,
+    /// Both.
+    LineAndDots,
+}
+
+/// Where the legend of a chart stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the names say it")]
+#[expect(clippy::exhaustive_enums, reason = "there are no other places")]
+pub enum Legend {
+    UpperLeft,
+    UpperMiddle,
+    UpperRight,
+    MiddleLeft,
+    MiddleMiddle,
+    MiddleRight,
+    LowerLeft,
+    LowerMiddle,
+    LowerRight,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Series {
+    label: String,
+    points: Vec<(f64, f64)>,
+    color: Color,
+    style: Style,
+}
+
+/// A chart of lines and dots over two axes.
+///
+/// Points with a coordinate that is not finite, or not above zero on a logarithmic axis, have no place: they are left
+/// out, and break the line.
+///
+/// ```
+/// use viscocontact::plot::{COLORS, Chart, Legend, Quantity, Style};
+///
+/// let mut chart =
+///     Chart::new("Creep", Quantity::of("time", "s"), Quantity::of("approach", "m"), Legend::LowerRight);
+/// chart.add("ball", COLORS[0], Style::Line, (0..50).map(|k| (f64::from(k), 1e-5 * f64::from(k).sqrt())).collect());
+/// # let path = std::env::temp_dir().join(format!("viscocontact-doc-chart-{}.png", std::process::id()));
+/// chart.save(&path)?; // the vertical axis is in µm
+/// # std::fs::remove_file(&path).unwrap();
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Chart {
+    /// Above it.
+    pub title: String,
+    /// The horizontal axis.
+    pub x: Quantity,
+    /// The vertical axis.
+    pub y: Quantity,
+    /// Which axes are logarithmic (at first: none).
+    pub scale: Scale,
+    /// Where the legend leaves the curves free.
+    pub legend: Legend,
+    series: Vec<Series>,
+}
+
+/// An axis as it is drawn: its label, what values are multiplied by, and its ends after that.
+struct Scaled {
+    label: String,
+    factor: f64,
+    ends: [f64; 2],
+}
+
+impl Chart {
+    /// A chart without series.
+    pub fn new(title: impl Into<String>, x: impl Into<Quantity>, y: impl Into<Quantity>, legend: Legend) -> Chart {
+        let (title, x, y) = (title.into(), x.into(), y.into());
+        Chart { title, x, y, scale: Scale::Linear, legend, series: Vec::new() }
+    }
+
+    /// Adds a series, in the units of the axes' quantities; without a label it is not in the legend.
+    pub fn add(&mut self, label: impl Into<String>, color: Color, style: Style, points: Vec<(f64, f64)>) {
+        self.series.push(Series { label: label.into(), points, color, style });
+    }
+
+    /// Draws the chart and writes it to a PNG file, which is replaced if it is there.
+    ///
+    /// # Errors
+    /// As [`Chart::draw`], or if the file cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        self.draw()?.save(path)
+    }
+
+    /// Draws the chart.
+    ///
+    /// # Errors
+    /// If no point has a place on it, or a coordinate is beyond 1e100 (or on a logarithmic axis below 1e-100).
+    pub fn draw(&self) -> Result<Picture> {
+        let [x, y] = [self.scaled(0)?, self.scaled(1)?];
+        Picture::new(SIZE, |root| {
+            let mut builder = ChartBuilder::on(root);
+            builder
+                .caption(&self.title, (FONT, 30))
+                .margin(20)
+                .margin_right(40)
+                .x_label_area_size(65)
+                .y_label_area_size(95);
+            let [across, up] = [&x, &y].map(|axis| axis.ends[0]..axis.ends[1]);
+            match self.scale {
+                Scale::Linear => self.fill(&mut builder.build_cartesian_2d(across, up)?, &x, &y),
+                Scale::LogX => self.fill(&mut builder.build_cartesian_2d(across.log_scale(), up)?, &x, &y),
+                Scale::LogY => self.fill(&mut builder.build_cartesian_2d(across, up.log_scale())?, &x, &y),
+                Scale::LogLog => {
+                    self.fill(&mut builder.build_cartesian_2d(across.log_scale(), up.log_scale())?, &x, &y)
+                }
+            }
+        })
+    }
+
+    /// The points that have a place, in unbroken pieces.
+    fn pieces<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = &'a [(f64, f64)]> {
+        let logarithmic = self.scale.is_logarithmic();
+        let has_place = move |value: f64, log: bool| value.is_finite() && (!log || value > 0.0);
+        let both = move |&(x, y): &(f64, f64)| has_place(x, logarithmic[0]) && has_place(y, logarithmic[1]);
+        series.points.split(move |point| !both(point)).filter(|piece| !piece.is_empty())
+    }
+
+    /// An axis that holds all points, with some room.
+    fn scaled(&self, axis: usize) -> Result<Scaled> {
+        let (field, quantity) = [("x of a point in a chart", &self.x), ("y of a point in a chart", &self.y)][axis];
+        let logarithmic = self.scale.is_logarithmic()[axis];
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        for point in self.series.iter().flat_map(|series| self.pieces(series)).flatten() {
+            let value = [point.0, point.1][axis];
+            let value = if logarithmic { drawable_as_power(field, value) } else { drawable(field, value) }?;
+            (low, high) = (low.min(value), high.max(value));
+        }
+        if low > high {
+            let field = "points with a place in the chart";
+            return Err(Error::WrongLength { field, len: 0, expected: 1, exact: false });
+        }
+        let (label, factor) = quantity.shown(low.abs().max(high.abs()));
+        let [low, high] = [low * factor, high * factor];
+        let ends = if logarithmic {
+            [low / 1.5, high * 1.5]
+        } else {
+            // what is all the same gets a scale about it
+            let span = (high - low).max(1e-9 * high.abs().max(low.abs()));
+            let room = 0.04 * if span > 0.0 { span } else { 1.0 };
+            [if low == 0.0 { 0.0 } else { low - room }, high + room]
+        };
+        Ok(Scaled { label, factor, ends })
+    }
+
+    fn fill<'a, X, Y>(
+        &self,
+        chart: &mut ChartContext<'a, BitMapBackend<'a>, Cartesian2d<X, Y>>,
+        x: &Scaled,
+        y: &Scaled,
+    ) -> Result<(), Drawing>
+    where
+        X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+        Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    {
+        let format = |axis: &Scaled, logarithmic: bool| -> Box<dyn Fn(&f64) -> String> {
+            if logarithmic { Box::new(powers) } else { Box::new(numbers(axis.ends)) }
+        };
+        let [log_x, log_y] = self.scale.is_logarithmic();
+        chart
+            .configure_mesh()
+            .x_desc(&x.label)
+            .y_desc(&y.label)
+            .axis_desc_style((FONT, 26))
+            .label_style((FONT, 22))
+            .x_label_formatter(&*format(x, log_x))
+            .y_label_formatter(&*format(y, log_y))
+            .light_line_style(RGBColor(240, 240, 240))
+            .bold_line_style(RGBColor(215, 215, 215))
+            .draw()?;
+        for series in &self.series {
+            let color = series.color.rgb();
+            let at = |point: &(f64, f64)| (point.0 * x.factor, point.1 * y.factor);
+            let mut label = Some(&series.label).filter(|label| !label.is_empty());
+            for piece in self.pieces(series) {
+                if series.style != Style::Dots {
+                    let drawn = chart.draw_series(LineSeries::new(piece.iter().map(at), color.stroke_width(3)))?;
+                    if let Some(label) = label.take() {
+                        drawn
+                            .label(label)
+                            .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 28, y)], color.stroke_width(3)));
+                    }
+                }
+                if series.style != Style::Line {
+                    let dots = piece.iter().map(|point| Circle::new(at(point), 5, color.filled()));
+                    let drawn = chart.draw_series(dots)?;
+                    if let Some(label) = label.take() {
+                        drawn.label(label).legend(move |(x, y)| Circle::new((x + 14, y), 5, color.filled()));
+                    }
+                }
+            }
+        }
+        if self.series.iter().all(|series| series.label.is_empty()) {
+            return Ok(());
+        }
+        chart
+            .configure_series_labels()
+            .position(self.legend.position())
+            .label_font((FONT, 22))
+            .background_style(WHITE.mix(0.85))
+            .border_style(RGBColor(180, 180, 180))
+            .draw()?;
+        Ok(())
+    }
+}
+
+impl Legend {
+    fn position(self) -> SeriesLabelPosition {
+        match self {
+            Legend::UpperLeft => SeriesLabelPosition::UpperLeft,
+            Legend::UpperMiddle => SeriesLabelPosition::UpperMiddle,
+            Legend::UpperRight => SeriesLabelPosition::UpperRight,
+            Legend::MiddleLeft => SeriesLabelPosition::MiddleLeft,
+            Legend::MiddleMiddle => SeriesLabelPosition::MiddleMiddle,
+            Legend::MiddleRight => SeriesLabelPosition::MiddleRight,
+            Legend::LowerLeft => SeriesLabelPosition::LowerLeft,
+            Legend::LowerMiddle => SeriesLabelPosition::LowerMiddle,
+            Legend::LowerRight => SeriesLabelPosition::LowerRight,
+        }
+    }
+}

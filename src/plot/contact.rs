@@ -1,0 +1,89 @@
+//! The state of a contact as pictures.
+
+use crate::ViscoelasticContact;
+use crate::error::Result;
+use crate::observe::Axis;
+use crate::output::Field;
+use crate::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Style};
+
+impl Map {
+    /// The pressure of a contact, white where nothing touches; the scale begins at zero.
+    ///
+    /// # Errors
+    /// If a pressure is beyond 1e100 Pa.
+    pub fn pressure(contact: &ViscoelasticContact) -> Result<Map> {
+        Map::field(contact, Field::Pressure)
+    }
+
+    /// The gap of a contact, grey where there is nothing to touch, with a line around the cells in contact; the scale begins at zero.
+    ///
+    /// # Errors
+    /// If a finite gap is beyond 1e100 m.
+    pub fn gap(contact: &ViscoelasticContact) -> Result<Map> {
+        Map::field(contact, Field::Gap)?.outline_contact(contact)
+    }
+
+    /// The displacement of a contact, with a line around the cells in contact.
+    ///
+    /// # Errors
+    /// If a displacement is beyond 1e100 m.
+    pub fn displacement(contact: &ViscoelasticContact) -> Result<Map> {
+        Map::field(contact, Field::Displacement)?.outline_contact(contact)
+    }
+
+    /// Draws a line around the cells of `contact` that are in contact.
+    ///
+    /// # Errors
+    /// If the map has not the cells of the contact.
+    pub fn outline_contact(self, contact: &ViscoelasticContact) -> Result<Map> {
+        self.outline(contact.pressure().iter().map(|&p| p > 0.0).collect())
+    }
+
+    /// A field of a contact, with its time as title.
+    pub(super) fn field(contact: &ViscoelasticContact, field: Field) -> Result<Map> {
+        let mut buffer = Vec::new();
+        let mut values = field.values(contact, &mut buffer)?.to_vec();
+        if field == Field::Pressure {
+            // what does not touch stays blank
+            values.iter_mut().filter(|p| **p <= 0.0).for_each(|p| *p = f64::NAN);
+        }
+        let mut map = Map::new(contact.grid(), values, Quantity::of(field.name(), field.unit()))?;
+        if field != Field::Displacement && map.range[1] > 0.0 {
+            map.range[0] = 0.0;
+        }
+        if field == Field::Gap {
+            map.blank = Color::GREY;
+        }
+        map.title = time_of(contact);
+        Ok(map)
+    }
+}
+
+impl Chart {
+    /// The pressure of a contact along the line of cells in the direction of `along` at the other coordinate `at` \[m\], as
+    /// [`ViscoelasticContact::profile`] gives it.
+    ///
+    /// # Errors
+    /// If `at` lies outside the grid.
+    pub fn profile(contact: &ViscoelasticContact, along: Axis, at: f64) -> Result<Chart> {
+        let profile = contact.profile(along, at)?;
+        let name = match along {
+            Axis::X1 => "x1",
+            Axis::X2 => "x2",
+        };
+        let (x, y) = (Quantity::of(name, "m"), Quantity::of("pressure", "Pa"));
+        let mut chart = Chart::new(time_of(contact), x, y, Legend::UpperRight);
+        let points = profile.positions.into_iter().zip(profile.pressure).collect();
+        chart.add("", COLORS[0], Style::LineAndDots, points);
+        Ok(chart)
+    }
+}
+
+/// The time of a state, as a title.
+pub(super) fn time_of(contact: &ViscoelasticContact) -> String {
+    let (label, factor) = Quantity::of("", "s").shown(contact.time());
+    let unit = label.trim_matches([' ', '[', ']']);
+    let time = format!("{:.4}", contact.time() * factor);
+    let time = if time.contains('.') { time.trim_end_matches('0').trim_end_matches('.') } else { &time };
+    format!("t = {time} {unit}")
+}

@@ -1,0 +1,137 @@
+//! Runs over time.
+
+use crate::ViscoelasticContact;
+use crate::error::{Result, exact_length};
+use crate::plot::{COLORS, Chart, Legend, Quantity, Style};
+
+/// What a [`History`] keeps of each state.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Observed {
+    /// [`ViscoelasticContact::force`] \[N\].
+    Force,
+    /// [`ViscoelasticContact::approach`] \[m\].
+    Approach,
+    /// [`ViscoelasticContact::contact_area`] \[m²\].
+    ContactArea,
+    /// [`ViscoelasticContact::mean_pressure`] \[Pa\].
+    MeanPressure,
+    /// [`ViscoelasticContact::greatest_pressure`] \[Pa\].
+    GreatestPressure,
+}
+
+impl Observed {
+    /// All of them.
+    pub const ALL: [Observed; 5] = [
+        Observed::Force,
+        Observed::Approach,
+        Observed::ContactArea,
+        Observed::MeanPressure,
+        Observed::GreatestPressure,
+    ];
+
+    /// Its name and SI unit.
+    pub fn quantity(self) -> Quantity {
+        match self {
+            Observed::Force => Quantity::of("force", "N"),
+            Observed::Approach => Quantity::of("approach", "m"),
+            Observed::ContactArea => Quantity::of("contact area", "m²"),
+            Observed::MeanPressure => Quantity::of("mean pressure", "Pa"),
+            Observed::GreatestPressure => Quantity::of("greatest pressure", "Pa"),
+        }
+    }
+
+    fn of(self, contact: &ViscoelasticContact) -> f64 {
+        match self {
+            Observed::Force => contact.force(),
+            Observed::Approach => contact.approach(),
+            Observed::ContactArea => contact.contact_area(),
+            Observed::MeanPressure => contact.mean_pressure(),
+            Observed::GreatestPressure => contact.greatest_pressure(),
+        }
+    }
+}
+
+/// A run, state by state, to be drawn over time.
+///
+/// ```
+/// use viscocontact::plot::{History, Observed, Scale};
+/// use viscocontact::prelude::*;
+///
+/// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .build()?;
+/// let mut history = History::new();
+/// for dt in [0.0, 0.1, 0.2] {
+///     contact.step(dt, Load::force(0.5))?;
+///     history.add(&contact);
+/// }
+/// assert_eq!(history.column(Observed::Approach)[2], contact.approach());
+/// let mut chart = history.chart(Observed::Approach)?;
+/// chart.scale = Scale::LogX;
+/// # let path = std::env::temp_dir().join(format!("viscocontact-doc-history-{}.png", std::process::id()));
+/// chart.save(&path)?;
+/// # std::fs::remove_file(&path).unwrap();
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct History {
+    times: Vec<f64>,
+    columns: [Vec<f64>; Observed::ALL.len()],
+}
+
+impl History {
+    /// Without a state.
+    pub fn new() -> History {
+        History::default()
+    }
+
+    /// Adds the state a contact is in.
+    pub fn add(&mut self, contact: &ViscoelasticContact) {
+        self.times.push(contact.time());
+        for (column, observed) in self.columns.iter_mut().zip(Observed::ALL) {
+            column.push(observed.of(contact));
+        }
+    }
+
+    /// The times of the states \[s\].
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// One value a state.
+    pub fn column(&self, observed: Observed) -> &[f64] {
+        &self.columns[observed as usize]
+    }
+
+    /// One of its columns over time.
+    ///
+    /// # Errors
+    /// Never, as it is: as [`Chart::history`].
+    pub fn chart(&self, observed: Observed) -> Result<Chart> {
+        Chart::history("", &self.times, observed.quantity(), &[("", self.column(observed))])
+    }
+}
+
+impl Chart {
+    /// Columns of one quantity, each with its label, over time \[s\]. [`Chart::scale`] makes axes logarithmic; the time 0 has no place on
+    /// those.
+    ///
+    /// # Errors
+    /// If a column does not hold one value a time.
+    pub fn history(
+        title: impl Into<String>,
+        times: &[f64],
+        quantity: impl Into<Quantity>,
+        columns: &[(&str, &[f64])],
+    ) -> Result<Chart> {
+        let mut chart = Chart::new(title, Quantity::of("time", "s"), quantity, Legend::LowerRight);
+        for (k, (label, values)) in columns.iter().enumerate() {
+            exact_length("column of a history", values.len(), times.len())?;
+            let points = times.iter().copied().zip(values.iter().copied()).collect();
+            chart.add(*label, COLORS[k % COLORS.len()], Style::LineAndDots, points);
+        }
+        Ok(chart)
+    }
+}

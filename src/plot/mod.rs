@@ -1,0 +1,58 @@
+//! Pictures of contacts and runs: a line of code each.
+//!
+//! | picture | call |
+//! |---|---|
+//! | pressure, gap or displacement as a map | [`Map::pressure`], [`Map::gap`], [`Map::displacement`] |
+//! | a field of your own as a map | [`Map::new`] |
+//! | where it touches, on any map | [`Map::outline_contact`] |
+//! | maps, charts, or both side by side | [`Map::save_row`], [`Picture::beside`] |
+//! | a profile along a line | [`Chart::profile`] |
+//! | a run over time | [`History`] |
+//! | columns of your own over time | [`Chart::history`] |
+//! | any curves | [`Chart`] |
+//! | a run that moves | [`Animation`] |
+//!
+//! ```
+//! use viscocontact::plot::{Animation, History, Map, Observed};
+//! use viscocontact::{output::Field, prelude::*};
+//!
+//! let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+//!     .geometry(&Sphere::new(10.0e-3)?)
+//!     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+//!     .build()?;
+//! # let folder = std::env::temp_dir().join(format!("viscocontact-doc-plot-{}", std::process::id()));
+//! # std::fs::create_dir_all(&folder).unwrap();
+//! let mut history = History::new();
+//! let mut animation = Animation::create(folder.join("run.gif"), Field::Pressure, [0.0, 0.5e6], 0.2)?;
+//! for dt in [0.0, 0.5, 0.5] {
+//!     contact.step(dt, Load::force(1.0))?;
+//!     history.add(&contact);
+//!     animation.add(&contact)?;
+//! }
+//! animation.finish()?;
+//! Map::pressure(&contact)?.save(folder.join("pressure.png"))?;
+//! history.chart(Observed::ContactArea)?.save(folder.join("area.png"))?;
+//! # std::fs::remove_dir_all(&folder).unwrap();
+//! # Ok::<(), Error>(())
+//! ```
+//!
+//! Values are given in SI; axes and colour bars choose the prefix that keeps numbers short ([`Quantity`]). Colours are told apart without
+//! colour vision. The font is compiled in: nothing of the system is needed.
+
+mod animation;
+mod chart;
+mod color;
+mod contact;
+mod history;
+mod map;
+mod palette;
+mod picture;
+mod quantity;
+
+pub use animation::Animation;
+pub use chart::{Chart, Legend, Scale, Style};
+pub use color::{COLORS, Color};
+pub use history::{History, Observed};
+pub use map::Map;
+pub use picture::Picture;
+pub use quantity::Quantity;

@@ -1,0 +1,157 @@
+//! What is drawn, before it is a file.
+
+use std::fmt;
+use std::io;
+use std::path::Path;
+use std::sync::OnceLock;
+
+use plotters::coord::Shift;
+use plotters::prelude::{BitMapBackend, DrawingArea, IntoDrawingArea};
+use plotters::style::{FontStyle, WHITE, register_font};
+
+use crate::error::{Error, Result, least_length};
+use crate::file::{failed, replace};
+
+/// The font of every text.
+pub(super) const FONT: &str = "viscocontact";
+/// Most pixels of a picture along a side.
+const MOST_PIXELS: usize = 16_384;
+
+/// The area that a picture is drawn on.
+pub(super) type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
+
+/// A picture in memory, three bytes a pixel: red, green and blue, row by row from above.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Picture {
+    size: [u32; 2],
+    rgb: Vec<u8>,
+}
+
+impl Picture {
+    /// A white picture of `width` × `height` pixels, drawn on by `draw`.
+    pub(super) fn new(size: [u32; 2], draw: impl FnOnce(&Area) -> Result<(), Drawing>) -> Result<Picture> {
+        register()?;
+        for value in size.map(|side| side as usize) {
+            if !(1..=MOST_PIXELS).contains(&value) {
+                let field = "pixels along a side of a picture";
+                return Err(Error::CountOutOfRange { field, value, allowed: "1 to 16384" });
+            }
+        }
+        let mut rgb = vec![255; 3 * size[0] as usize * size[1] as usize];
+        let area = BitMapBackend::with_buffer(&mut rgb, (size[0], size[1])).into_drawing_area();
+        let drawn = area.fill(&WHITE).map_err(Drawing::from).and_then(|()| draw(&area));
+        drawn.and_then(|()| area.present().map_err(Drawing::from)).map_err(|Drawing(what)| undrawn(what))?;
+        drop(area);
+        Ok(Picture { size, rgb })
+    }
+
+    /// Pictures next to each other, from left to right, on white where one is lower than others.
+    ///
+    /// # Errors
+    /// If there are none, or they are wider than 16384 pixels together.
+    pub fn beside(pictures: &[Picture]) -> Result<Picture> {
+        least_length("pictures", pictures.len(), 1)?;
+        let width = pictures.iter().map(|picture| picture.size[0] as usize).sum();
+        if width > MOST_PIXELS {
+            let field = "pixels along a side of a picture";
+            return Err(Error::CountOutOfRange { field, value: width, allowed: "1 to 16384" });
+        }
+        let height = pictures.iter().map(|picture| picture.size[1]).max().unwrap_or(1);
+        let mut rgb = vec![255; 3 * width * height as usize];
+        let mut left = 0;
+        for picture in pictures {
+            let row = 3 * picture.size[0] as usize;
+            for (to, from) in rgb.chunks_exact_mut(3 * width).zip(picture.rgb.chunks_exact(row)) {
+                to[left..left + row].copy_from_slice(from);
+            }
+            left += row;
+        }
+        Ok(Picture { size: [width as u32, height], rgb })
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// The pixels, row by row from above: red, green and blue of each.
+    pub fn rgb(&self) -> &[u8] {
+        &self.rgb
+    }
+
+    /// Writes the picture to a PNG file. A file of this name is replaced, when the new one is complete.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
+        replace(path.as_ref(), |out| {
+            let mut encoder = png::Encoder::new(out, self.size[0], self.size[1]);
+            encoder.set_color(png::ColorType::Rgb);
+            encoder.set_compression(png::Compression::High);
+            let mut writer = encoder.write_header().map_err(io::Error::other)?;
+            writer.write_image_data(&self.rgb).map_err(io::Error::other)?;
+            writer.finish().map_err(io::Error::other)
+        })
+    }
+}
+
+impl fmt::Debug for Picture {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Picture").field("size", &self.size).finish_non_exhaustive()
+    }
+}
+
+/// What went wrong while drawing, in words.
+#[derive(Debug)]
+pub(super) struct Drawing(String);
+
+impl<E: std::error::Error> From<E> for Drawing {
+    fn from(error: E) -> Drawing {
+        Drawing(error.to_string())
+    }
+}
+
+fn undrawn(what: impl fmt::Display) -> Error {
+    failed(Path::new("a picture"), what)
+}
+
+/// Makes the font known, once: no font of the system is needed.
+fn register() -> Result<()> {
+    static KNOWN: OnceLock<bool> = OnceLock::new();
+    let known =
+        KNOWN.get_or_init(|| register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok());
+    if *known { Ok(()) } else { Err(undrawn("its font is not one")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_lie_beside_each_other() {
+        let plain = |size: [u32; 2], value: u8| Picture { size, rgb: vec![value; 3 * (size[0] * size[1]) as usize] };
+        let both = Picture::beside(&[plain([2, 1], 7), plain([1, 2], 9)]).unwrap();
+        assert_eq!(both.size(), [3, 2]);
+        let red: Vec<u8> = both.rgb().iter().step_by(3).copied().collect();
+        assert_eq!(red, [7, 7, 9, 255, 255, 9]);
+        assert!(matches!(Picture::beside(&[]), Err(Error::WrongLength { field: "pictures", .. })));
+        let wide = plain([10_000, 1], 0);
+        assert!(matches!(Picture::beside(&[wide.clone(), wide]), Err(Error::CountOutOfRange { value: 20_000, .. })));
+    }
+
+    #[test]
+    fn files_hold_the_pixels() {
+        let picture = Picture::new([31, 17], |area| Ok(area.fill(&plotters::style::RED)?)).unwrap();
+        let path = std::env::temp_dir().join(format!("viscocontact-picture-{}.png", std::process::id()));
+        picture.save(&path).unwrap();
+        let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
+        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        let mut read = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut read).unwrap();
+        assert_eq!(read, picture.rgb());
+        assert_eq!(read[..3], [255, 0, 0]);
+        std::fs::remove_file(&path).unwrap();
+        assert!(matches!(picture.save("/no/such/folder/a.png"), Err(Error::Output { .. })));
+        assert!(Picture::new([0, 5], |_| Ok(())).is_err());
+    }
+}

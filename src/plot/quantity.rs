@@ -1,0 +1,195 @@
+//! Labels of axes, with units that keep the numbers short.
+
+use crate::error::{Result, within};
+
+/// What an axis or a colour bar shows.
+///
+/// A quantity with a unit is given in SI, and shown with the prefix that makes its greatest value lie between 1 and 1000:
+/// `approach [µm]`, `contact area [mm²]`. Lengths of a picture never get a prefix above one (`km`, `ks`), and units that have a
+/// prefix already, or no symbol to put it before (`kg`, `%`, `1/Pa`, `°C`), are left as they are. A plain text is a quantity too, shown as it is.
+///
+/// ```
+/// use viscocontact::plot::Quantity;
+///
+/// assert_eq!(Quantity::of("pressure", "Pa").shown(2.5e4), ("pressure [kPa]".to_string(), 1e-3));
+/// assert_eq!(Quantity::of("contact area", "m²").shown(3.0e-6), ("contact area [mm²]".to_string(), 1e6));
+/// assert_eq!(Quantity::from("t / τ").shown(1e4), ("t / τ".to_string(), 1.0));
+/// ```
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Quantity {
+    name: String,
+    unit: Option<String>,
+}
+
+/// Prefixes and their powers of ten.
+const PREFIXES: [(&str, i32); 15] = [
+    ("f", -15),
+    ("p", -12),
+    ("n", -9),
+    ("µ", -6),
+    ("m", -3),
+    ("", 0),
+    ("k", 3),
+    ("M", 6),
+    ("G", 9),
+    ("T", 12),
+    ("P", 15),
+    ("a", -18),
+    ("z", -21),
+    ("y", -24),
+    ("E", 18),
+];
+
+/// Symbols that take a prefix, and whether they take one above 1.
+const SYMBOLS: [(&str, bool); 10] = [
+    ("m", false),
+    ("s", false),
+    ("rad", false),
+    ("Pa", true),
+    ("N", true),
+    ("J", true),
+    ("W", true),
+    ("Hz", true),
+    ("V", true),
+    ("A", true),
+];
+
+impl Quantity {
+    /// A quantity named `name`, whose values are in `unit`, an SI unit.
+    pub fn of(name: impl Into<String>, unit: impl Into<String>) -> Quantity {
+        Quantity { name: name.into(), unit: Some(unit.into()) }
+    }
+
+    /// The label where the greatest absolute value is `greatest`, in SI, and what values are multiplied by to be in the unit of
+    /// the label. A value that is not finite, or zero, leaves the unit as it is.
+    pub fn shown(&self, greatest: f64) -> (String, f64) {
+        let Some(unit) = &self.unit else { return (self.name.clone(), 1.0) };
+        let (prefix, factor) = prefix(unit, greatest.abs()).unwrap_or(("", 1.0));
+        (format!("{} [{prefix}{unit}]", self.name), factor)
+    }
+
+    /// Its name, without the unit.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+impl From<&str> for Quantity {
+    fn from(name: &str) -> Quantity {
+        Quantity { name: name.into(), unit: None }
+    }
+}
+
+impl From<String> for Quantity {
+    fn from(name: String) -> Quantity {
+        Quantity { name, unit: None }
+    }
+}
+
+/// The prefix of a unit and what the values are multiplied by; nothing if the unit takes none.
+fn prefix(unit: &str, greatest: f64) -> Option<(&'static str, f64)> {
+    if !(greatest > 0.0 && greatest.is_finite()) {
+        return None;
+    }
+    let letters = unit.find(|c: char| !c.is_alphabetic()).unwrap_or(unit.len());
+    let (symbol, rest) = unit.split_at(letters);
+    let &(_, above) = SYMBOLS.iter().find(|(known, _)| *known == symbol)?;
+    // the prefix is raised with its unit
+    let power = match rest.chars().next() {
+        Some('²') => 2,
+        Some('³') => 3,
+        Some('2' | '3' | '^' | '⁴' | '⁻') => return None,
+        _ => 1,
+    };
+    // not 1000 by rounding: 999.99999 is as good as 1000
+    let tens = (greatest.log10() + 1e-9).floor() as i32;
+    let step = 3 * power;
+    let wanted = tens.div_euclid(step) * 3;
+    let wanted = if above { wanted } else { wanted.min(0) };
+    let &(prefix, tens) = PREFIXES.iter().find(|(_, tens)| *tens == wanted)?;
+    Some((prefix, 10f64.powi(-tens * power)))
+}
+
+/// Greatest absolute value that a picture can show.
+const GREATEST: f64 = 1e100;
+
+/// Accepts values that a picture can show.
+pub(super) fn drawable(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, value.abs() <= GREATEST, "finite and 1e100 in absolute value at most")
+}
+
+/// Accepts values that a logarithmic axis can show.
+pub(super) fn drawable_as_power(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, (1.0 / GREATEST..=GREATEST).contains(&value), "in [1e-100, 1e100] on a logarithmic axis")
+}
+
+/// How the numbers along an axis from `low` to `high` are written: with the digits that tell them apart.
+pub(super) fn numbers([low, high]: [f64; 2]) -> impl Fn(&f64) -> String {
+    let (span, greatest) = (high - low, low.abs().max(high.abs()));
+    // two more than the greatest digit of the span
+    let decimals = (2.0 - span.log10().floor()).clamp(0.0, 15.0) as usize;
+    let powers = greatest >= 1e6 || (greatest < 1e-3 && greatest > 0.0);
+    move |v: &f64| {
+        if powers {
+            let digits = (greatest / span).log10().max(0.0).ceil() as usize + 1;
+            let text = format!("{v:.*e}", digits.min(15));
+            let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+            return if *v == 0.0 { "0".into() } else { format!("{}e{exponent}", shortened(mantissa)) };
+        }
+        shortened(&format!("{v:.decimals$}"))
+    }
+}
+
+/// How the numbers along a logarithmic axis are written.
+pub(super) fn powers(v: &f64) -> String {
+    if (0.01..1e4).contains(v) { shortened(&format!("{v:.6}")) } else { format!("{v:.0e}") }
+}
+
+/// A number without the zeros at its end, and no minus before a zero.
+fn shortened(text: &str) -> String {
+    let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text };
+    if short == "-0" { "0".into() } else { short.into() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prefixes_keep_numbers_short() {
+        for (unit, greatest, label, factor) in [
+            ("m", 2.0e-3, "q [mm]", 1e3),
+            ("m", 0.99e-3, "q [µm]", 1e6),
+            ("m", 5.0e3, "q [m]", 1.0),
+            ("Pa", 1.0e6, "q [MPa]", 1e-6),
+            ("Pa", 999.0e3, "q [kPa]", 1e-3),
+            ("m²", 0.4e-6, "q [µm²]", 1e12),
+            ("m³", 2.0e-9, "q [mm³]", 1e9),
+            ("m/s", 0.02, "q [mm/s]", 1e3),
+            ("N m", -2.0e-5, "q [µN m]", 1e6),
+            ("1/Pa", 1e-6, "q [1/Pa]", 1.0),
+            ("kg", 1e-6, "q [kg]", 1.0),
+            ("m^2", 1e-6, "q [m^2]", 1.0),
+            ("J", 0.0, "q [J]", 1.0),
+            ("J", f64::INFINITY, "q [J]", 1.0),
+            ("J", 1e-90, "q [J]", 1.0),
+        ] {
+            let (text, by) = Quantity::of("q", unit).shown(greatest);
+            assert_eq!(text, label, "{greatest} {unit}");
+            assert!((by / factor - 1.0).abs() < 1e-12, "{greatest} {unit}");
+        }
+    }
+
+    #[test]
+    fn numbers_are_as_short_as_tells_them_apart() {
+        assert_eq!(numbers([0.0, 10.0])(&2.0), "2");
+        assert_eq!(numbers([0.0, 10.0])(&-1e-17), "0");
+        assert_eq!(numbers([0.0, 0.1])(&0.025), "0.025");
+        assert_eq!(numbers([1.0, 1.0001])(&1.00005), "1.00005");
+        assert_eq!(numbers([0.0, 2.0e7])(&5.0e6), "5e6");
+        assert_eq!(numbers([0.0, 2.0e-7])(&5.0e-8), "5e-8");
+        assert_eq!(numbers([0.0, 2.0e-7])(&0.0), "0");
+        assert_eq!(powers(&1000.0), "1000");
+        assert_eq!(powers(&1e-5), "1e-5");
+    }
+}
