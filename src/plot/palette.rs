@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use crate::plot::{COLORS, Color};
 
-/// One set of colours for all frames, so that none flickers: the scale of maps, greys, and series with their edges towards white.
+/// One set of colours for all frames, so that none flickers: the scale of maps, greys, and series with their edges
+/// towards white.
 #[derive(Debug)]
 pub(super) struct Palette {
     colors: Vec<Color>,
