@@ -296,7 +296,7 @@ fn energy(args: &Args, all: &[Moment]) -> Result<(), Box<dyn Error>> {
         "Energy of a ball that strikes a Maxwell body, T/τ = 1",
         Quantity::of("time", "s"),
         Quantity::of("energy", "J"),
-        Legend::MiddleRight,
+        Legend::MiddleLeft,
     );
     let kinetic = |now: &Moment| 0.5 * args.mass * now.velocity.powi(2);
     let curve = |of: &dyn Fn(&Moment) -> f64| all.iter().map(|now| (now.time, of(now))).collect::<Vec<_>>();
