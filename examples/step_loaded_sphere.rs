@@ -143,7 +143,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let run = follow(scene, args)?;
         run.print(scene, args);
         run.write_tables(scene, &args.output)?;
-        run.plot_profiles(scene)?.save(&file(&args.output, "profiles", scene, "png"))?;
+        run.plot_profiles(scene)?.save(file(&args.output, "profiles", scene, "png"))?;
         run.add_growth(scene, &mut growth, colors[0]);
         add_convergence(scene, args, &mut convergence, colors)?;
         compare_with_the_paper(scene, args, &run)?;

@@ -61,7 +61,8 @@ mod tests {
         // every colour of a scale is met to within a step of it
         for k in 0..1000 {
             let color = Color::of_share(f64::from(k) / 999.0);
-            let Color(r, g, b) = palette.colors[palette.indexed(&[color.0, color.1, color.2])[0] as usize];
+            let index = palette.indexed(&[color.0, color.1, color.2])[0];
+            let Color(r, g, b) = palette.colors[usize::from(index)];
             assert!(r.abs_diff(color.0) <= 2 && g.abs_diff(color.1) <= 2 && b.abs_diff(color.2) <= 2);
         }
     }
