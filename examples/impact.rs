@@ -1,13 +1,14 @@
 //! A ball strikes a creeping half-space: the contact is a part of an equation of motion that another crate integrates.
 //!
-//! Mass and contact are coupled step by step. The integrator (Runge–Kutta of fourth order, `ode_solvers`) asks for the force at times
-//! and approaches within a step, and gets it from a copy of the contact that is advanced to there; when the step is done, the
-//! contact itself follows. Since the displacement is taken to be linear in a step, the whole is of second order, which is measured.
+//! Mass and contact are coupled step by step. The integrator (Runge–Kutta of fourth order, `ode_solvers`) asks for the
+//! force at times and approaches within a step, and gets it from a copy of the contact that is advanced to there; when
+//! the step is done, the contact itself follows. Since the displacement is taken to be linear in a step, the whole is
+//! of second order, which is measured.
 //!
-//! Compared are: the duration of an elastic impact, 2.943 δ/v with δ = (15 m v²/16 E* √R)^(2/5) (Johnson, *Contact Mechanics*, 1985,
-//! §11.4), and its restitution, 1; the restitution of a slowly relaxing Maxwell body, 1 − (4/9) T/τ (Hunter, *J. Mech. Phys.
-//! Solids* 8, 1960), T being the elastic duration; and for any T/τ the same equation of motion on a one-dimensional foundation (method of
-//! dimensionality reduction; Popov & Heß, 2015).
+//! Compared are: the duration of an elastic impact, 2.943 δ/v with δ = (15 m v²/16 E* √R)^(2/5) (Johnson, *Contact
+//! Mechanics*, 1985, §11.4), and its restitution, 1; the restitution of a slowly relaxing Maxwell body, 1 − (4/9) T/τ
+//! (Hunter, *J. Mech. Phys. Solids* 8, 1960), T being the elastic duration; and for any T/τ the same equation of motion
+//! on a one-dimensional foundation (method of dimensionality reduction; Popov & Heß, 2015).
 //!
 //! `cargo run --release --example impact`
 
@@ -224,7 +225,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             Ok(())
         })?;
         let shown = body == "Maxwell" && ratio == 1.0;
-        let peak = 1.2 * args.modulus * widest / args.radius;
+        // Hertz's at the greatest depth of the elastic impact
+        let peak = 8.0 / std::f64::consts::PI * args.modulus * (depth / args.radius).sqrt();
         let mut animation = if shown {
             Some(Animation::create(args.output.join("impact.gif"), Field::Pressure, [0.0, peak], 0.08)?)
         } else {
@@ -294,7 +296,7 @@ fn energy(args: &Args, all: &[Moment]) -> Result<(), Box<dyn Error>> {
         "Energy of a ball that strikes a Maxwell body, T/τ = 1",
         Quantity::of("time", "s"),
         Quantity::of("energy", "J"),
-        Legend::MiddleRight,
+        Legend::MiddleLeft,
     );
     let kinetic = |now: &Moment| 0.5 * args.mass * now.velocity.powi(2);
     let curve = |of: &dyn Fn(&Moment) -> f64| all.iter().map(|now| (now.time, of(now))).collect::<Vec<_>>();

@@ -185,7 +185,7 @@ fn animations_play_back() {
         let mut map = Map::pressure(&contact).unwrap().outline_contact(&contact).unwrap();
         map.range = [0.0, 0.4e6];
         last = Some(map.draw().unwrap());
-        contact.step(0.4, Load::force(0.3)).unwrap();
+        contact.step(0.2, Load::force(0.3)).unwrap();
     }
     let other = Map::draw_row(&[Map::pressure(&contact).unwrap(), Map::gap(&contact).unwrap()]).unwrap();
     let refused = animation.add_picture(&other).unwrap_err();

@@ -15,8 +15,8 @@ use crate::plot::{Map, Picture};
 
 /// A run as an animated GIF, frame by frame, played over and over.
 ///
-/// Frames are written as they are added, to a file with `.part` behind its name, which browsers show as far as it goes; it gets its own name
-/// by [`Animation::finish`]. An animation that is dropped before leaves the part.
+/// Frames are written as they are added, to a file with `.part` behind its name, which browsers show as far as it goes;
+/// it gets its own name by [`Animation::finish`]. An animation that is dropped before leaves the part.
 ///
 /// ```
 /// use viscocontact::plot::Animation;
@@ -53,8 +53,9 @@ pub struct Animation {
 }
 
 impl Animation {
-    /// An animation of `field`, whose colours go from `range[0]` to `range[1]` in SI units, the same in all frames; each frame is shown
-    /// for `seconds`, to a hundredth. A file of this name is replaced when the animation is finished.
+    /// An animation of `field`, whose colours go from `range[0]` to `range[1]` in SI units, the same in all frames;
+    /// each frame is shown for `seconds`, to a hundredth. A file of this name is replaced when the animation is
+    /// finished.
     ///
     /// # Errors
     /// If the range is not in order, `seconds` is not in \[0.02, 600\], or the file cannot be written.

@@ -26,9 +26,9 @@ impl Color {
     /// For text and frames.
     pub const BLACK: Color = Color(0, 0, 0);
 
-    /// The colour of the share `value` of a scale, of 0 at its lower and 1 at its upper end; those beyond have the colour of
-    /// the end. Light to dark, even in brightness and legible without colour vision: straight lines through points of the viridis
-    /// scale (van der Walt & Smith, 2015), reversed.
+    /// The colour of the share `value` of a scale, of 0 at its lower and 1 at its upper end; those beyond have the
+    /// colour of the end. Light to dark, even in brightness and legible without colour vision: straight lines through
+    /// points of the viridis scale (van der Walt & Smith, 2015), reversed.
     pub(super) fn of_share(value: f64) -> Color {
         const POINTS: [[f64; 3]; 5] =
             [[253.0, 231.0, 37.0], [94.0, 201.0, 98.0], [33.0, 145.0, 140.0], [59.0, 82.0, 139.0], [68.0, 1.0, 84.0]];

@@ -15,7 +15,8 @@ impl Map {
         Map::field(contact, Field::Pressure)
     }
 
-    /// The gap of a contact, grey where there is nothing to touch, with a line around the cells in contact; the scale begins at zero.
+    /// The gap of a contact, grey where there is nothing to touch, with a line around the cells in contact; the scale
+    /// begins at zero.
     ///
     /// # Errors
     /// If a finite gap is beyond 1e100 m.
@@ -60,8 +61,8 @@ impl Map {
 }
 
 impl Chart {
-    /// The pressure of a contact along the line of cells in the direction of `along` at the other coordinate `at` \[m\], as
-    /// [`ViscoelasticContact::profile`] gives it.
+    /// The pressure of a contact along the line of cells in the direction of `along` at the other coordinate `at`
+    /// \[m\], as [`ViscoelasticContact::profile`] gives it.
     ///
     /// # Errors
     /// If `at` lies outside the grid.

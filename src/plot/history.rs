@@ -115,8 +115,8 @@ impl History {
 }
 
 impl Chart {
-    /// Columns of one quantity, each with its label, over time \[s\]. [`Chart::scale`] makes axes logarithmic; the time 0 has no place on
-    /// those.
+    /// Columns of one quantity, each with its label, over time \[s\]. [`Chart::scale`] makes axes logarithmic; the time
+    /// 0 has no place on those.
     ///
     /// # Errors
     /// If a column does not hold one value a time.

@@ -44,8 +44,8 @@ pub struct Map {
     pub quantity: Quantity,
     /// The axes; at first x1 and x2 in metres, shown with the prefix that suits them.
     pub axes: [Quantity; 2],
-    /// Ends of the colour scale, in the unit of the values; at first the least and the greatest finite value. What lies beyond has
-    /// the colour of the end.
+    /// Ends of the colour scale, in the unit of the values; at first the least and the greatest finite value. What lies
+    /// beyond has the colour of the end.
     pub range: [f64; 2],
     /// The colour of cells without a value (at first: white).
     pub blank: Color,
@@ -118,8 +118,8 @@ impl Map {
         Map::draw_row(std::slice::from_ref(self))
     }
 
-    /// Draws maps next to each other, with one colour bar if they have the same quantity and scale, else with one each, and
-    /// writes them to a PNG file.
+    /// Draws maps next to each other, with one colour bar if they have the same quantity and scale, else with one each,
+    /// and writes them to a PNG file.
     ///
     /// # Errors
     /// As [`Map::draw_row`], or if the file cannot be written.
@@ -130,7 +130,8 @@ impl Map {
     /// Draws maps next to each other, with one colour bar if they have the same quantity and scale, else with one each.
     ///
     /// # Errors
-    /// If there are none, the ends of a colour scale are not in order or beyond ±1e100, or the row is wider than 16384 pixels.
+    /// If there are none, the ends of a colour scale are not in order or beyond ±1e100, or the row is wider than 16384
+    /// pixels.
     pub fn draw_row(maps: &[Map]) -> Result<Picture> {
         least_length("maps of a row", maps.len(), 1)?;
         for map in maps {
@@ -231,7 +232,8 @@ impl Map {
         rgb
     }
 
-    /// The sides between cells that are outlined and those that are not, on axes that reach from −`half` to `half`; sides in line are joined.
+    /// The sides between cells that are outlined and those that are not, on axes that reach from −`half` to `half`;
+    /// sides in line are joined.
     fn edges(&self, half: [f64; 2]) -> Vec<[(f64, f64); 2]> {
         if self.outlined.is_empty() {
             return Vec::new();

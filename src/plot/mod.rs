@@ -36,8 +36,8 @@
 //! # Ok::<(), Error>(())
 //! ```
 //!
-//! Values are given in SI; axes and colour bars choose the prefix that keeps numbers short ([`Quantity`]). Colours are told apart without
-//! colour vision. The font is compiled in: nothing of the system is needed.
+//! Values are given in SI; axes and colour bars choose the prefix that keeps numbers short ([`Quantity`]). Colours are
+//! told apart without colour vision. The font is compiled in: nothing of the system is needed.
 
 mod animation;
 mod chart;

@@ -4,7 +4,8 @@ use std::collections::HashMap;
 
 use crate::plot::{COLORS, Color};
 
-/// One set of colours for all frames, so that none flickers: the scale of maps, greys, and series with their edges towards white.
+/// One set of colours for all frames, so that none flickers: the scale of maps, greys, and series with their edges
+/// towards white.
 #[derive(Debug)]
 pub(super) struct Palette {
     colors: Vec<Color>,
@@ -60,7 +61,8 @@ mod tests {
         // every colour of a scale is met to within a step of it
         for k in 0..1000 {
             let color = Color::of_share(f64::from(k) / 999.0);
-            let Color(r, g, b) = palette.colors[palette.indexed(&[color.0, color.1, color.2])[0] as usize];
+            let index = palette.indexed(&[color.0, color.1, color.2])[0];
+            let Color(r, g, b) = palette.colors[usize::from(index)];
             assert!(r.abs_diff(color.0) <= 2 && g.abs_diff(color.1) <= 2 && b.abs_diff(color.2) <= 2);
         }
     }

@@ -4,9 +4,10 @@ use crate::error::{Result, within};
 
 /// What an axis or a colour bar shows.
 ///
-/// A quantity with a unit is given in SI, and shown with the prefix that makes its greatest value lie between 1 and 1000:
-/// `approach [µm]`, `contact area [mm²]`. Lengths of a picture never get a prefix above one (`km`, `ks`), and units that have a
-/// prefix already, or no symbol to put it before (`kg`, `%`, `1/Pa`, `°C`), are left as they are. A plain text is a quantity too, shown as it is.
+/// A quantity with a unit is given in SI, and shown with the prefix that makes its greatest value lie between 1 and
+/// 1000: `approach [µm]`, `contact area [mm²]`. Lengths of a picture never get a prefix above one (`km`, `ks`), and
+/// units that have a prefix already, or no symbol to put it before (`kg`, `%`, `1/Pa`, `°C`), are left as they are. A
+/// plain text is a quantity too, shown as it is.
 ///
 /// ```
 /// use viscocontact::plot::Quantity;
@@ -60,8 +61,8 @@ impl Quantity {
         Quantity { name: name.into(), unit: Some(unit.into()) }
     }
 
-    /// The label where the greatest absolute value is `greatest`, in SI, and what values are multiplied by to be in the unit of
-    /// the label. A value that is not finite, or zero, leaves the unit as it is.
+    /// The label where the greatest absolute value is `greatest`, in SI, and what values are multiplied by to be in the
+    /// unit of the label. A value that is not finite, or zero, leaves the unit as it is.
     pub fn shown(&self, greatest: f64) -> (String, f64) {
         let Some(unit) = &self.unit else { return (self.name.clone(), 1.0) };
         let (prefix, factor) = prefix(unit, greatest.abs()).unwrap_or(("", 1.0));
