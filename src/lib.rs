@@ -125,7 +125,7 @@ mod solver;
 mod sum;
 
 pub use contact::ViscoelasticContact;
-pub use error::{Error, Result};
+pub use error::{Convergence, Error, Result, Trend};
 pub use grid::Grid;
 pub use kernel::{InfluenceKernel, Workspace};
 

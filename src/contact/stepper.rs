@@ -11,7 +11,7 @@ use crate::contact::region::Region;
 use crate::contact::report::StepReport;
 use crate::contact::reside::{Beyond, symmetry};
 use crate::contact::settings::{Edge, Settings, Solver, TimeRule};
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Convergence, Error, Result, non_negative};
 use crate::geometry::Gap;
 use crate::hereditary::{Change, History};
 use crate::kernel::{InfluenceKernel, LocalKernel, Workspace};
@@ -374,7 +374,7 @@ impl ViscoelasticContact {
 
     /// Whether the trial may be accepted.
     fn check(&self, time: f64, dt: f64, tolerance: f64) -> Result<()> {
-        let Solution { residual, counts, ref motions, .. } = self.trial;
+        let Solution { residual, counts, ref motions, ref trace, .. } = self.trial;
         if !motions.iter().flatten().all(|motion| motion.is_finite()) {
             return Err(Error::Overflow { time, what: "the approach" });
         }
@@ -382,7 +382,9 @@ impl ViscoelasticContact {
             return Err(Error::Overflow { time, what: "the residual of the contact problem" });
         }
         if residual > tolerance {
-            return Err(Error::NotConverged { time, dt, iterations: counts.iterations, residual, tolerance });
+            let convergence = Convergence::new(trace.samples(), tolerance, self.settings.solver).into();
+            let iterations = counts.iterations;
+            return Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence });
         }
         if self.settings.edge == Edge::Refuse {
             let cells = self.region.positive_on_edge(&self.trial.pressure, self.kernel.periodic_axes());
@@ -395,6 +397,8 @@ impl ViscoelasticContact {
 
     fn report(&self, dt: f64) -> StepReport {
         let Counts { iterations, convolutions, preconditioner_applications, fallback_iterations } = self.current.counts;
+        let rings = self.settings.time_rule == TimeRule::Rectangle
+            && self.material.contact_compliance(dt) > 2.0 * self.material.contact_compliance(0.0);
         StepReport {
             time: self.time,
             dt,
@@ -404,8 +408,8 @@ impl ViscoelasticContact {
             preconditioner_applications,
             residual: self.current.residual,
             time_error: 0.0,
-            rings: self.settings.time_rule == TimeRule::Rectangle
-                && self.material.contact_compliance(dt) > 2.0 * self.material.contact_compliance(0.0),
+            rings,
+            warnings: self.doubts(dt, rings),
             contact_cells: self.contact_cells,
             approach: self.approach(),
             tilt: self.tilt(),

@@ -149,6 +149,7 @@ impl ActiveSet {
             }
             state.rounding = problem.rounding(&solution.pressure);
             solution.residual = relative_residual(&state, penetration);
+            solution.trace.note(solution.counts.iterations, solution.residual);
             let admissible = !self.pending() && state.negative == 0.0;
             let solved = admissible && solution.residual <= stop.tolerance;
             if solved {
