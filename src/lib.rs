@@ -94,6 +94,8 @@
 //!
 //! `x3p`: height maps from X3P files (ISO 25178-72).
 //!
+//! `tracing`: events of the `tracing` crate: steps accepted, rejected and failed, regions moved, series fitted.
+//!
 //! `rayon` (on by default): grids of 2¹⁵ computed cells or more are shared between the threads of the
 //! pool a contact is built in. The answer does not depend on their number, bit by bit.
 //!
@@ -110,6 +112,7 @@
 pub mod analytic;
 pub mod contact;
 mod error;
+mod events;
 pub mod geometry;
 mod grid;
 mod hereditary;

@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 use crate::contact::loads::lowered;
 use crate::contact::region::Region;
 use crate::contact::stepper::{ContactSolver, ViscoelasticContact};
+use crate::events;
 use crate::geometry::Gap;
 use crate::hereditary::{Exponential, History};
 use crate::load::{Load, Tilt};
@@ -227,6 +228,7 @@ impl ViscoelasticContact {
     /// Moves to another region: what is new there of displacement and history is computed from U.
     pub(super) fn reside(&mut self, region: Region) {
         let old = std::mem::replace(&mut self.region, region);
+        events::moved(old.cells(), self.region.cells());
         self.history.settle(&self.trial_displacement, &self.displacement);
         let (cells, bodies) = (self.region.len(), self.loads.len());
         self.kernel_here = self.kernel.on(self.region.grid(), self.region.folded(), self.settings.is_mixed());

@@ -12,6 +12,7 @@ use crate::contact::report::StepReport;
 use crate::contact::reside::{Beyond, symmetry};
 use crate::contact::settings::{Edge, Settings, Solver, TimeRule};
 use crate::error::{Convergence, Error, Result, non_negative};
+use crate::events;
 use crate::geometry::Gap;
 use crate::hereditary::{Change, History};
 use crate::kernel::{InfluenceKernel, LocalKernel, Workspace};
@@ -264,8 +265,9 @@ impl ViscoelasticContact {
         non_negative("time", time)?;
         self.move_back();
         let attempt = self.attempt_where_it_fits(time, dt, loads, tolerance);
-        if attempt.is_err() {
+        if let Err(error) = &attempt {
             self.move_back();
+            events::failed(time, dt, error);
         }
         attempt
     }
@@ -280,6 +282,9 @@ impl ViscoelasticContact {
             let Some(region) = self.outgrown(loads) else {
                 self.check(time, dt, tolerance)?;
                 self.displace(c);
+                if !sum(&self.trial_displacement).is_finite() {
+                    return Err(Error::Overflow { time, what: "the displacement" });
+                }
                 return Ok(Attempt { time, dt });
             };
             self.keep_for_failure();
@@ -359,7 +364,9 @@ impl ViscoelasticContact {
         if let Some((material, shortest)) = fitted {
             (self.material, self.shortest) = (material, shortest);
         }
-        self.report(dt)
+        let report = self.report(dt);
+        events::accepted(&report);
+        report
     }
 
     /// Refuses a step whose past is longer than the material is known.
@@ -378,8 +385,12 @@ impl ViscoelasticContact {
         if !motions.iter().flatten().all(|motion| motion.is_finite()) {
             return Err(Error::Overflow { time, what: "the approach" });
         }
-        if !residual.is_finite() {
+        // no finite residual: of numbers that left their range, or of pressures that are none
+        if residual.is_nan() || residual.is_infinite() && !trace.is_finite() {
             return Err(Error::Overflow { time, what: "the residual of the contact problem" });
+        }
+        if !(self.grid.cell_area() * self.region.images() as f64 * sum(&self.trial.pressure)).is_finite() {
+            return Err(Error::Overflow { time, what: "the force" });
         }
         if residual > tolerance {
             let convergence = Convergence::new(trace.samples(), tolerance, self.settings.solver).into();

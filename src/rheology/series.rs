@@ -73,6 +73,7 @@ impl CreepSeries {
             _ => {
                 let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
                 let known_until = last.min(rheology.known_until());
+                crate::events::fitted([first, last], series.terms.len(), report.max_misfit());
                 let measured = [first, known_until.min(rheology.measured()[1])];
                 Ok(CreepSeries { spectrum, report, known_until, measured })
             }

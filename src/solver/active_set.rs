@@ -156,6 +156,10 @@ impl ActiveSet {
                 return self.close(problem, solution);
             }
             if solution.counts.iterations >= stop.max_iterations || solution.residual.is_nan() {
+                if !admissible && solution.residual <= stop.tolerance {
+                    // pressures that are negative, or not in balance, solve nothing, however small the residual
+                    solution.residual = f64::INFINITY;
+                }
                 return;
             }
             since = if solution.residual < lowest { 0 } else { since + 1 };
