@@ -53,7 +53,7 @@ fn contact_near_the_edge_is_told_before_it_touches() {
 }
 
 #[test]
-fn few_cells_are_told_with_what_they_cost() {
+fn few_cells_are_told() {
     let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 0.1).unwrap();
     for (cells, few) in [(8, true), (16, true), (64, false)] {
         let mut contact = contact(cells, maxwell(), Settings::default());

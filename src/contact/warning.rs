@@ -10,10 +10,8 @@ pub enum Warning {
     /// fails with [`Error::ContactAtEdge`](crate::Error::ContactAtEdge). Enlarge the grid. Only with
     /// [`Edge::Refuse`](crate::contact::Edge::Refuse).
     NearEdge,
-    /// The contact is fewer than 8 cells across, or, unless it is a line, has fewer than 50. On a sphere the approach then
-    /// errs by 2 % and more, the greatest pressure and the area by 5 % and more, and it gets worse with the square of the
-    /// width: at 4 cells across by 5 % and 25 %. Refine the mesh; what is due to it, tells
-    /// [`ViscoelasticContact::spatial_error`](crate::ViscoelasticContact::spatial_error).
+    /// The contact is fewer than 8 cells across, or, unless it is a line, has fewer than 50. Refine the mesh; what is due to
+    /// it, tells [`ViscoelasticContact::spatial_error`](crate::ViscoelasticContact::spatial_error).
     FewCells,
     /// The bodies remember for longer than their material was measured: a table was told to go on beyond its data
     /// ([`TabulatedCreep::extrapolated`](crate::rheology::TabulatedCreep::extrapolated)).
@@ -51,9 +49,7 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Warning::NearEdge => "contact is within two cells of the edge of the grid: enlarge the grid",
-            Warning::FewCells => {
-                "contact is fewer than 8 cells across, or fewer than 50 in all: the approach errs by 2 % and more, refine the mesh"
-            }
+            Warning::FewCells => "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh",
             Warning::Extrapolated => "the material is extrapolated beyond its data",
             Warning::FasterThanMaterial => "the step is shorter than the material is known for: that counts as elastic",
             Warning::NearEndOfMaterial => "one more such step would look beyond what is known of the material",
