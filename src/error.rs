@@ -1,8 +1,10 @@
 //! The one error type of the crate, and the checks that raise it.
 
 mod checks;
+mod convergence;
 
 pub(crate) use checks::{exact_length, finite, least_length, non_negative, positive, within};
+pub use convergence::{Convergence, Trend};
 
 /// What went wrong, with the numbers needed to mend it.
 ///
@@ -416,10 +418,9 @@ pub enum Error {
     },
 
     /// The contact problem of a step was not solved within
-    /// [`Settings::max_iterations`](crate::contact::Settings::max_iterations). Try a smaller step, a larger
-    /// tolerance or more iterations.
+    /// [`Settings::max_iterations`](crate::contact::Settings::max_iterations): what to do, the history of the residual says.
     #[error(
-        "at t = {time} s (step of {dt} s): residual {residual:e} after {iterations} iterations, above the tolerance {tolerance:e}"
+        "at t = {time} s (step of {dt} s): residual {residual:e} after {iterations} iterations, above the tolerance {tolerance:e}; {convergence}"
     )]
     NotConverged {
         /// End of the step \[s\].
@@ -432,6 +433,8 @@ pub enum Error {
         residual: f64,
         /// Residual asked for.
         tolerance: f64,
+        /// The residual over the iterations.
+        convergence: Box<Convergence>,
     },
 
     /// A [`Snapshot`](crate::contact::Snapshot) is of another contact than the one to be restored: not of it, nor of a clone.

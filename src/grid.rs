@@ -50,6 +50,9 @@ impl Grid {
             positive("cell side along x2", lengths[1] / cells[1] as f64)?,
         ];
         positive("cell area", spacing[0] * spacing[1])?;
+        // as they are told, cell side times count, which may round beyond the range
+        positive("length along x1", spacing[0] * cells[0] as f64)?;
+        positive("length along x2", spacing[1] * cells[1] as f64)?;
         Ok(Grid { cells, spacing, start: cells.map(|count| 1 - count as i64) })
     }
 

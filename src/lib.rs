@@ -106,6 +106,8 @@
 //!
 //! `x3p`: height maps from X3P files (ISO 25178-72).
 //!
+//! `tracing`: events of the `tracing` crate: steps accepted, rejected and failed, regions moved, series fitted.
+//!
 //! `rayon` (on by default): grids of 2¹⁵ computed cells or more are shared between the threads of the
 //! pool a contact is built in. The answer does not depend on their number, bit by bit.
 //!
@@ -133,6 +135,7 @@
 pub mod analytic;
 pub mod contact;
 mod error;
+mod events;
 #[cfg(any(feature = "checkpoint", feature = "csv", feature = "npy", feature = "plot", feature = "vtk"))]
 mod file;
 pub mod geometry;
@@ -154,7 +157,7 @@ mod solver;
 mod sum;
 
 pub use contact::ViscoelasticContact;
-pub use error::{Error, Result};
+pub use error::{Convergence, Error, Result, Trend};
 pub use grid::Grid;
 pub use kernel::{InfluenceKernel, Workspace};
 

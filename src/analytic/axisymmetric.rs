@@ -189,6 +189,10 @@ impl AxisymmetricContact {
         if !(approach.is_finite() && c.is_finite()) {
             return Err(Error::Overflow { time: self.time + dt, what: "the approach" });
         }
+        let force = self.trial_touch.iter().map(|touch| (approach - touch).max(0.0) / c).sum::<f64>() * self.width;
+        if !(force.is_finite() && self.trial_displacement.iter().sum::<f64>().is_finite()) {
+            return Err(Error::Overflow { time: self.time + dt, what: "the force" });
+        }
         for ((q, u), &touch) in self.load.iter_mut().zip(&mut self.trial_displacement).zip(&self.trial_touch) {
             *q = (approach - touch).max(0.0) / c;
             *u += c * *q;

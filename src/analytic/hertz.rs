@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use crate::error::{Result, non_negative, positive};
+use crate::error::{Result, finite, non_negative, positive};
 
 /// A sphere on an elastic half-space (Hertz 1882; Johnson, *Contact Mechanics*, 1985, §4.2):
 /// a³ = 3WR/4E*, p0 = 2aE*/πR, ω = a²/R.
@@ -30,7 +30,9 @@ impl Hertz {
         positive("contact modulus", modulus)?;
         non_negative("force", force)?;
         let contact_radius = (0.75 * force * radius / modulus).cbrt();
-        Ok(Hertz { radius, contact_radius, peak_pressure: 2.0 * contact_radius * modulus / (PI * radius) })
+        let peak_pressure = finite("peak pressure", 2.0 * contact_radius * modulus / (PI * radius))?;
+        finite("approach", contact_radius * contact_radius / radius)?;
+        Ok(Hertz { radius, contact_radius, peak_pressure })
     }
 
     /// Contact radius a \[m\].

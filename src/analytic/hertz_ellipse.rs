@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 
 use ellip::{elliprd, elliprf};
 
-use crate::error::{Error, Result, non_negative, positive};
+use crate::error::{Error, Result, finite, non_negative, positive};
 
 /// A paraboloid with two radii of curvature on an elastic half-space (Hertz 1882; Johnson, *Contact
 /// Mechanics*, 1985, §4.2): the contact is an ellipse.
@@ -62,6 +62,9 @@ impl HertzEllipse {
         let b = (3.0 * force * short * flattening * (k - d) / (PI * modulus)).cbrt();
         let a = b / flattening;
         let peak_pressure = if force > 0.0 { 1.5 * force / (PI * a * b) } else { 0.0 };
+        finite("semi-axis", a)?;
+        finite("peak pressure", peak_pressure)?;
+        finite("approach", peak_pressure / modulus * b * k)?;
         let semi_axes = if radii[0] >= radii[1] { [a, b] } else { [b, a] };
         Ok(HertzEllipse { semi_axes, peak_pressure, approach: peak_pressure / modulus * b * k })
     }

@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use crate::error::{Result, non_negative, positive, within};
+use crate::error::{Result, finite, non_negative, positive, within};
 
 /// A rigid flat circular punch on an elastic half-space, loaded at a distance e ≤ R/3 from its axis, so
 /// that its whole face stays in contact (Boussinesq for e = 0, Lur'e 1964 for e > 0):
@@ -40,9 +40,9 @@ impl RigidPunch {
         Ok(RigidPunch {
             radius,
             eccentricity,
-            mean_pressure: force / (PI * radius * radius),
-            approach: force / (2.0 * radius * modulus),
-            tilt: 0.75 * (force / (radius * modulus)) * (eccentricity / radius) / radius,
+            mean_pressure: finite("mean pressure", force / (PI * radius * radius))?,
+            approach: finite("approach", force / (2.0 * radius * modulus))?,
+            tilt: finite("tilt", 0.75 * (force / (radius * modulus)) * (eccentricity / radius) / radius)?,
         })
     }
 

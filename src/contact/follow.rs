@@ -7,6 +7,7 @@ use crate::contact::report::StepReport;
 use crate::contact::spatial::SpatialError;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result, finite, positive, within};
+use crate::events;
 use crate::load::LoadHistory;
 
 /// Two times closer than this fraction of a step are the same time.
@@ -281,6 +282,7 @@ impl<'a> Follow<'a> {
                 report.preconditioner_applications += wasted[1];
                 return Ok(report);
             }
+            events::rejected(time, dt, error, controller.tolerance);
             wasted = self.wasted(wasted);
             self.contact.move_back();
             self.may_shorten(time, dt)?;

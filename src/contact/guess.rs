@@ -70,6 +70,7 @@ impl ViscoelasticContact {
     /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike.
     pub(super) fn guess(&mut self, dt: f64) {
         self.trial.counts = Counts::default();
+        self.trial.trace.clear();
         for (body, motion) in self.trial.motions.iter_mut().enumerate() {
             let [omega, alpha1, alpha2] = self.motions[body];
             let modes = Modes::new(self.region.grid(), self.freedoms[body]);

@@ -8,6 +8,7 @@ mod builder;
 mod change;
 #[cfg(feature = "checkpoint")]
 mod checkpoint;
+mod doubts;
 mod follow;
 mod frame;
 mod guess;
@@ -24,6 +25,7 @@ mod steady;
 mod stepper;
 mod stiffness;
 mod travel;
+mod warning;
 
 pub use between::Between;
 pub use builder::Builder;
@@ -37,3 +39,4 @@ pub(crate) use spatial::AREA_ORDER;
 pub use spatial::SpatialError;
 pub use steady::{SteadyMotion, TowardSteady};
 pub use stepper::ViscoelasticContact;
+pub use warning::{IntoIter as WarningsIter, Warning, Warnings};

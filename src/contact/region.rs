@@ -189,6 +189,27 @@ impl Region {
         (0..other.len()).map(|k| self.find(other.cell(k)).map_or_else(|| elsewhere(k), |own_k| own[own_k])).collect()
     }
 
+    /// The least rectangle of the whole grid that holds the cells, and the images of cells, whose value in `own` is positive;
+    /// `None` if there is none.
+    pub(crate) fn reach(&self, own: &[f64]) -> Option<([usize; 2], [usize; 2])> {
+        let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
+        for (i, row) in own.chunks_exact(self.cells()[1]).enumerate() {
+            let Some(first) = row.iter().position(|&value| value > 0.0) else { continue };
+            let last = row.iter().rposition(|&value| value > 0.0).unwrap_or(first);
+            (low, high) = ([low[0].min(i), low[1].min(first)], [high[0].max(i), high[1].max(last)]);
+        }
+        if low[0] > high[0] {
+            return None;
+        }
+        for axis in 0..2 {
+            (low[axis], high[axis]) = (low[axis] + self.first[axis], high[axis] + self.first[axis]);
+            if self.folded[axis] {
+                low[axis] = low[axis].min(self.whole.cells()[axis] - 1 - high[axis]);
+            }
+        }
+        Some((low, high))
+    }
+
     /// Number of cells on the edge of the whole grid whose value in `own` is positive; periodic axes have no edge.
     pub(crate) fn positive_on_edge(&self, own: &[f64], periodic: [bool; 2]) -> usize {
         let [m1, m2] = self.cells();
@@ -277,6 +298,21 @@ mod tests {
                     assert!(if region.find(cell).is_some() { spread[k] == field[k] } else { spread[k].is_nan() });
                 }
                 assert_eq!(region.covers(), spread.iter().all(|x| !x.is_nan()));
+                let cell = [region.cell(0), region.cell(region.len() - 1)];
+                for k in [0, region.len() - 1] {
+                    let mut one = vec![0.0; region.len()];
+                    one[k] = 1.0;
+                    let mut images = vec![0.0; 600];
+                    region.spread(&one, &mut images);
+                    let of = |axis: usize| {
+                        let along = |k: usize| [k / 30, k % 30][axis];
+                        let touched = || (0..600).filter(|&k| images[k] > 0.0).map(along);
+                        (touched().min().unwrap(), touched().max().unwrap())
+                    };
+                    let (low, high) = region.reach(&one).unwrap();
+                    assert_eq!([(low[0], high[0]), (low[1], high[1])], [of(0), of(1)], "{cell:?} {folded:?}");
+                }
+                assert_eq!(region.reach(&vec![0.0; region.len()]), None);
                 let carried = region.carry(&own, &Region::whole(&whole, [false; 2]), |_| f64::NAN);
                 assert!(carried.iter().zip(&spread).all(|(a, b)| a == b || (a.is_nan() && b.is_nan())));
             }

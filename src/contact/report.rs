@@ -1,5 +1,7 @@
 //! What one step did.
 
+use crate::contact::warning::Warnings;
+
 /// The outcome and the cost of one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -24,6 +26,8 @@ pub struct StepReport {
     /// Whether the time rule rings at steps of this length: the rectangle rule does where a step lets the bodies creep by
     /// more than they gave way at once, C(Δ) > 2 C(0), which is Δ > τ on a Maxwell body; on fluids it diverges further on.
     pub rings: bool,
+    /// What the step should be looked at for, though it succeeded; mostly nothing.
+    pub warnings: Warnings,
     /// Cells in contact.
     pub contact_cells: usize,
     /// Rigid-body approach ω of the first body, at the origin \[m\].

@@ -6,6 +6,7 @@ use std::f64::consts::PI;
 use crate::contact::loads::lowered;
 use crate::contact::region::Region;
 use crate::contact::stepper::{ContactSolver, ViscoelasticContact};
+use crate::events;
 use crate::geometry::Gap;
 use crate::hereditary::{Exponential, History};
 use crate::load::{Load, Tilt};
@@ -243,6 +244,7 @@ impl ViscoelasticContact {
     pub(super) fn reside(&mut self, region: Region) {
         self.history.settle(&self.trial_displacement, &self.displacement);
         let old = self.occupy(region);
+        events::moved(old.cells(), self.region.cells());
         let cells = self.region.len();
 
         // a field of its own on all cells of the new region: known on the old one, elsewhere K of a source

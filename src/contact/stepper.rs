@@ -13,7 +13,8 @@ use crate::contact::region::Region;
 use crate::contact::report::StepReport;
 use crate::contact::reside::{Beyond, symmetry};
 use crate::contact::settings::{Edge, Settings, Solver, TimeRule};
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Convergence, Error, Result, non_negative};
+use crate::events;
 use crate::geometry::Gap;
 use crate::hereditary::{Change, History};
 use crate::kernel::{InfluenceKernel, LocalKernel, Workspace};
@@ -290,8 +291,9 @@ impl ViscoelasticContact {
         non_negative("time", time)?;
         self.move_back();
         let attempt = self.attempt_where_it_fits(time, dt, loads, tolerance);
-        if attempt.is_err() {
+        if let Err(error) = &attempt {
             self.move_back();
+            events::failed(time, dt, error);
         }
         attempt
     }
@@ -306,6 +308,9 @@ impl ViscoelasticContact {
             let Some(region) = self.outgrown(loads) else {
                 self.check(time, dt, tolerance)?;
                 self.displace(c);
+                if !sum(&self.trial_displacement).is_finite() {
+                    return Err(Error::Overflow { time, what: "the displacement" });
+                }
                 return Ok(Attempt { time, dt });
             };
             self.keep_for_failure();
@@ -385,7 +390,9 @@ impl ViscoelasticContact {
         if let Some((material, times)) = fitted {
             (self.material, self.shortest, self.fitted_over) = (material, times[0], Some(times));
         }
-        self.report(dt)
+        let report = self.report(dt);
+        events::accepted(&report);
+        report
     }
 
     /// Refuses a step whose past is longer than the material is known.
@@ -400,15 +407,21 @@ impl ViscoelasticContact {
 
     /// Whether the trial may be accepted.
     fn check(&self, time: f64, dt: f64, tolerance: f64) -> Result<()> {
-        let Solution { residual, counts, ref motions, .. } = self.trial;
+        let Solution { residual, counts, ref motions, ref trace, .. } = self.trial;
         if !motions.iter().flatten().all(|motion| motion.is_finite()) {
             return Err(Error::Overflow { time, what: "the approach" });
         }
-        if !residual.is_finite() {
+        // no finite residual: of numbers that left their range, or of pressures that are none
+        if residual.is_nan() || residual.is_infinite() && !trace.is_finite() {
             return Err(Error::Overflow { time, what: "the residual of the contact problem" });
         }
+        if !(self.grid.cell_area() * self.region.images() as f64 * sum(&self.trial.pressure)).is_finite() {
+            return Err(Error::Overflow { time, what: "the force" });
+        }
         if residual > tolerance {
-            return Err(Error::NotConverged { time, dt, iterations: counts.iterations, residual, tolerance });
+            let convergence = Convergence::new(trace.samples(), tolerance, self.settings.solver).into();
+            let iterations = counts.iterations;
+            return Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence });
         }
         if self.settings.edge == Edge::Refuse {
             let cells = self.region.positive_on_edge(&self.trial.pressure, self.kernel.periodic_axes());
@@ -421,6 +434,8 @@ impl ViscoelasticContact {
 
     fn report(&self, dt: f64) -> StepReport {
         let Counts { iterations, convolutions, preconditioner_applications, fallback_iterations } = self.current.counts;
+        let rings = self.settings.time_rule == TimeRule::Rectangle
+            && self.material.contact_compliance(dt) > 2.0 * self.material.contact_compliance(0.0);
         StepReport {
             time: self.time,
             dt,
@@ -430,8 +445,8 @@ impl ViscoelasticContact {
             preconditioner_applications,
             residual: self.current.residual,
             time_error: 0.0,
-            rings: self.settings.time_rule == TimeRule::Rectangle
-                && self.material.contact_compliance(dt) > 2.0 * self.material.contact_compliance(0.0),
+            rings,
+            warnings: self.doubts(dt, rings),
             contact_cells: self.contact_cells,
             approach: self.approach(),
             tilt: self.tilt(),

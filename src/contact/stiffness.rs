@@ -1,7 +1,7 @@
 //! How stiff the contact is.
 
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result};
+use crate::error::{Convergence, Error, Result};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
 
 impl ViscoelasticContact {
@@ -38,7 +38,8 @@ impl ViscoelasticContact {
             Ok(sum) => Ok(sum * self.grid.cell_area() * self.region.images() as f64),
             Err((iterations, residual)) => {
                 let (time, dt, tolerance) = (self.time, self.interval, FLAT_PUNCH_TOLERANCE);
-                Err(Error::NotConverged { time, dt, iterations, residual, tolerance })
+                let convergence = Convergence::new(Vec::new(), tolerance, self.settings.solver).into();
+                Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
             }
         }
     }

@@ -47,6 +47,8 @@ impl Geometry for Wavy {
         // 1 − cos 2a = 2 sin² a, which keeps its digits near the crest.
         let wave = |axis: usize, x: f64| {
             let periods = x / self.wavelength[axis];
+            // more waves than there are numbers for: any height of the wave is as good
+            let periods = if periods.is_finite() { periods } else { x % self.wavelength[axis] / self.wavelength[axis] };
             2.0 * self.amplitude[axis] * (PI * (periods - periods.round())).sin().powi(2)
         };
         wave(0, x1) + wave(1, x2)

@@ -35,6 +35,8 @@ impl FractionalZener {
     pub fn new(g: f64, g_k: f64, time: f64, exponent: f64) -> Result<FractionalZener> {
         positive("shear modulus", g)?;
         positive("Kelvin–Voigt modulus", g_k)?;
+        positive("compliance 1/G", 1.0 / g)?;
+        positive("compliance 1/G_K", 1.0 / g_k)?;
         positive("retardation time", time)?;
         fractional_order(exponent)?;
         Ok(FractionalZener { glassy: 1.0 / g, retarded: 1.0 / g_k, time, exponent })

@@ -116,6 +116,12 @@ impl Material {
         self.bodies.iter().map(|body| body.rheology.known_until()).fold(f64::INFINITY, f64::min)
     }
 
+    /// The times \[s\] over which all the rheologies were measured or fitted, (0, +∞) for formulas: [`Rheology::measured`].
+    pub fn measured(&self) -> [f64; 2] {
+        let all = self.bodies.iter().map(|body| body.rheology.measured());
+        all.fold([0.0, f64::INFINITY], |[from, until], [first, last]| [from.max(first), until.min(last)])
+    }
+
     /// The exact exponential series of C(t), if every rheology has one.
     ///
     /// # Errors

@@ -17,6 +17,9 @@ pub(crate) fn mittag_leffler_rise(alpha: f64, x: f64) -> f64 {
         }
         return sum;
     }
+    if x == f64::INFINITY {
+        return 1.0;
+    }
     // defined for every α in (0, 1); NaN would be refused as a compliance
     (-x).mittag_leffler(alpha, 1.0).map_or(f64::NAN, |value| 1.0 - value.re)
 }

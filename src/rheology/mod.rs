@@ -127,6 +127,13 @@ pub trait Rheology: Debug + Send + Sync {
         f64::INFINITY
     }
 
+    /// The shortest and the longest time \[s\] that J was measured, or fitted, over: (0, +∞) for a formula. It goes on below
+    /// and, where it was told to, above: there it is a guess, and a step says so
+    /// ([`Warning::Extrapolated`](crate::contact::Warning::Extrapolated)).
+    fn measured(&self) -> [f64; 2] {
+        [0.0, self.known_until()]
+    }
+
     /// How well the series stands for what it was fitted to, if it was: a table, or another function.
     fn fit_report(&self) -> Option<&FitReport> {
         None
@@ -172,6 +179,10 @@ macro_rules! forward_rheology {
 
             fn known_until(&self) -> f64 {
                 (**self).known_until()
+            }
+
+            fn measured(&self) -> [f64; 2] {
+                (**self).measured()
             }
 
             fn fit_report(&self) -> Option<&FitReport> {

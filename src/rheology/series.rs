@@ -25,6 +25,7 @@ pub struct CreepSeries {
     spectrum: CreepSpectrum,
     report: FitReport,
     known_until: f64,
+    measured: [f64; 2],
 }
 
 /// Samples a decade that a series is fitted to, and at which it is checked.
@@ -51,7 +52,8 @@ impl CreepSeries {
         within("tolerance of a series", tolerance, (1e-8..=0.1).contains(&tolerance), "in [1e-8, 0.1]")?;
         if let Some(spectrum) = rheology.creep_spectrum() {
             let report = FitReport::exact(spectrum.terms().len());
-            return Ok(CreepSeries { spectrum, report, known_until: rheology.known_until() });
+            let (known_until, measured) = (rheology.known_until(), rheology.measured());
+            return Ok(CreepSeries { spectrum, report, known_until, measured });
         }
 
         let glassy = checked(rheology, 0.0, 0.0)?;
@@ -70,7 +72,10 @@ impl CreepSeries {
             }
             _ => {
                 let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
-                Ok(CreepSeries { spectrum, report, known_until: last.min(rheology.known_until()) })
+                let known_until = last.min(rheology.known_until());
+                crate::events::fitted([first, last], series.terms.len(), report.max_misfit());
+                let measured = [first, known_until.min(rheology.measured()[1])];
+                Ok(CreepSeries { spectrum, report, known_until, measured })
             }
         }
     }
@@ -86,7 +91,7 @@ impl CreepSeries {
     }
 }
 
-/// [`Rheology`] for what holds a `spectrum`, its `report`, and the time it is `known_until`.
+/// [`Rheology`] for what holds a `spectrum`, its `report`, the time it is `known_until`, and the times it was `measured` over.
 macro_rules! known_series {
     ($series:ty) => {
         impl $crate::rheology::Rheology for $series {
@@ -100,6 +105,10 @@ macro_rules! known_series {
 
             fn known_until(&self) -> f64 {
                 self.known_until
+            }
+
+            fn measured(&self) -> [f64; 2] {
+                self.measured
             }
 
             fn fit_report(&self) -> Option<&$crate::rheology::FitReport> {

@@ -136,6 +136,10 @@ impl<R: Rheology> Rheology for AtTemperature<R> {
         self.rheology.known_until() * self.factor
     }
 
+    fn measured(&self) -> [f64; 2] {
+        self.rheology.measured().map(|time| time * self.factor)
+    }
+
     /// That of the rheology at its own temperature.
     fn fit_report(&self) -> Option<&FitReport> {
         self.rheology.fit_report()

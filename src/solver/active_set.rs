@@ -149,12 +149,17 @@ impl ActiveSet {
             }
             state.rounding = problem.rounding(&solution.pressure);
             solution.residual = relative_residual(&state, penetration);
+            solution.trace.note(solution.counts.iterations, solution.residual);
             let admissible = !self.pending() && state.negative == 0.0;
             let solved = admissible && solution.residual <= stop.tolerance;
             if solved {
                 return self.close(problem, solution);
             }
             if solution.counts.iterations >= stop.max_iterations || solution.residual.is_nan() {
+                if !admissible && solution.residual <= stop.tolerance {
+                    // pressures that are negative, or not in balance, solve nothing, however small the residual
+                    solution.residual = f64::INFINITY;
+                }
                 return;
             }
             since = if solution.residual < lowest { 0 } else { since + 1 };

@@ -10,6 +10,7 @@ mod projected_gradient;
 mod rest;
 mod rigid;
 mod stiffness;
+mod trace;
 
 pub(crate) use active_set::ActiveSet;
 pub(crate) use polonsky_keer::PolonskyKeer;

@@ -37,6 +37,7 @@ impl PolonskyKeer {
             let penetration = problem.penetration(solution, |k| solution.pressure[k] == 0.0);
             state.rounding = problem.rounding(&solution.pressure);
             solution.residual = relative_residual(&state, penetration);
+            solution.trace.note(solution.counts.iterations, solution.residual);
             let solved = solution.residual <= stop.tolerance && self.carries_the_forces(problem, solution);
             if solved || solution.counts.iterations >= stop.max_iterations || solution.residual.is_nan() {
                 return;

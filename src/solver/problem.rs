@@ -2,6 +2,7 @@
 
 use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::rigid::{Freedom, Gram, Modes, Motion};
+use crate::solver::trace::Trace;
 use crate::sum::greatest;
 
 /// Find p ≥ 0 and the free motions of the bodies with h = c K p + gap − motion ≥ 0, p h = 0, and the balance
@@ -40,6 +41,9 @@ pub(crate) struct Solution {
     pub(crate) counts: Counts,
     /// The residual on return, see `relative_residual`.
     pub(crate) residual: f64,
+    /// How it went.
+    #[cfg_attr(feature = "checkpoint", serde(skip, default = "Trace::new"))]
+    pub(crate) trace: Trace,
 }
 
 /// Work done, in units that do not depend on the machine.
@@ -189,6 +193,7 @@ impl Solution {
             motions: vec![[0.0; 3]; bodies],
             counts: Counts::default(),
             residual: 0.0,
+            trace: Trace::new(),
         }
     }
 

@@ -78,8 +78,12 @@ impl HeightMap {
             return Err(crate::Error::Map(super::MapError::NothingKnown));
         }
         let mean = pairs().map(|(z, _)| z / count).sum::<f64>();
-        let rms_height = (pairs().map(|(z, _)| (z - mean).powi(2)).sum::<f64>() / count).sqrt();
-        let rms = (pairs().map(|(z, back)| (back - z).powi(2)).sum::<f64>() / count).sqrt();
+        // in units of a power of two near the greatest height, squares stay in the range of f64, and digits as they are
+        let highest = pairs().fold(f64::MIN_POSITIVE, |highest, (z, back)| highest.max(z.abs()).max(back.abs()));
+        let unit = 2_f64.powi(highest.log2().clamp(-1000.0, 1000.0) as i32);
+        let rms_of = |sum: f64| (sum / count).sqrt() * unit;
+        let rms_height = rms_of(pairs().map(|(z, _)| (z / unit - mean / unit).powi(2)).sum());
+        let rms = rms_of(pairs().map(|(z, back)| (back / unit - z / unit).powi(2)).sum());
         let greatest = pairs().fold(0.0, |greatest: f64, (z, back)| greatest.max((back - z).abs()));
         let of_rms_height = if rms_height > FLAT * mean.abs() { rms / rms_height } else { 0.0 };
         Ok(ResamplingError { rms, greatest, of_rms_height })

@@ -81,6 +81,7 @@ pub struct TabulatedCreep {
     spectrum: CreepSpectrum,
     report: FitReport,
     known_until: f64,
+    measured: [f64; 2],
 }
 
 impl TabulatedCreep {
@@ -97,8 +98,9 @@ impl TabulatedCreep {
     pub(crate) fn from_rows(rows: Vec<Row>) -> Result<TabulatedCreep> {
         let (series, report) = fitted(CREEP, rows, true)?;
         let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
-        let known_until = report.range().map_or(0.0, |[_, last]| last);
-        Ok(TabulatedCreep { spectrum, report, known_until })
+        let measured = report.range().unwrap_or_default();
+        let known_until = measured[1];
+        Ok(TabulatedCreep { spectrum, report, known_until, measured })
     }
 }
 
@@ -123,6 +125,7 @@ pub struct TabulatedRelaxation {
     spectrum: CreepSpectrum,
     report: FitReport,
     known_until: f64,
+    measured: [f64; 2],
 }
 
 impl TabulatedRelaxation {
@@ -137,8 +140,9 @@ impl TabulatedRelaxation {
     pub(crate) fn from_rows(rows: Vec<Row>) -> Result<TabulatedRelaxation> {
         let (series, report) = fitted(RELAXATION, rows, false)?;
         let spectrum = RelaxationSpectrum::new(series.constant, 0.0, &series.terms)?.creep();
-        let known_until = report.range().map_or(0.0, |[_, last]| last);
-        Ok(TabulatedRelaxation { spectrum, report, known_until })
+        let measured = report.range().unwrap_or_default();
+        let known_until = measured[1];
+        Ok(TabulatedRelaxation { spectrum, report, known_until, measured })
     }
 }
 
@@ -167,6 +171,7 @@ pub struct TabulatedDynamic {
     spectrum: CreepSpectrum,
     report: FitReport,
     known_until: f64,
+    measured: [f64; 2],
 }
 
 impl TabulatedDynamic {
@@ -182,8 +187,9 @@ impl TabulatedDynamic {
     pub(crate) fn from_rows(rows: Vec<Row>) -> Result<TabulatedDynamic> {
         let (series, report) = fitted(DYNAMIC, rows, false)?;
         let spectrum = RelaxationSpectrum::new(series.constant, 0.0, &series.terms)?.creep();
-        let known_until = report.range().map_or(0.0, |[lowest, _]| 1.0 / lowest);
-        Ok(TabulatedDynamic { spectrum, report, known_until })
+        let measured = report.range().map_or([0.0; 2], |[lowest, highest]| [1.0 / highest, 1.0 / lowest]);
+        let known_until = measured[1];
+        Ok(TabulatedDynamic { spectrum, report, known_until, measured })
     }
 }
 

@@ -1,0 +1,181 @@
+//! What a step that succeeded should nevertheless be looked at for.
+
+use std::fmt;
+
+/// Something about a step that its answer may suffer from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Warning {
+    /// Contact has come within two cells of an edge of the grid beyond which the bodies go on: a little more load and a step
+    /// fails with [`Error::ContactAtEdge`](crate::Error::ContactAtEdge). Enlarge the grid. Only with
+    /// [`Edge::Refuse`](crate::contact::Edge::Refuse).
+    NearEdge,
+    /// The contact is fewer than 8 cells across, or, unless it is a line, has fewer than 50. Refine the mesh; what is due to
+    /// it, tells [`ViscoelasticContact::spatial_error`](crate::ViscoelasticContact::spatial_error).
+    FewCells,
+    /// The bodies remember for longer than their material was measured: a table was told to go on beyond its data
+    /// ([`TabulatedCreep::extrapolated`](crate::rheology::TabulatedCreep::extrapolated)).
+    Extrapolated,
+    /// The step is shorter than the material is known for: what it creeps within counts as elastic.
+    FasterThanMaterial,
+    /// One more step of this length would look beyond what is known of the material, and fail with
+    /// [`Error::BeyondMaterial`](crate::Error::BeyondMaterial).
+    NearEndOfMaterial,
+    /// The time rule rings at steps of this length: [`StepReport::rings`](crate::contact::StepReport::rings).
+    Rings,
+    /// The solver did not get on, and its slow fall-back took over for a while:
+    /// [`StepReport::fallback_iterations`](crate::contact::StepReport::fallback_iterations). The answer is as good as any; if it
+    /// happens often, take smaller steps, or a larger tolerance.
+    FallBack,
+}
+
+impl Warning {
+    const ALL: [Warning; 7] = [
+        Warning::NearEdge,
+        Warning::FewCells,
+        Warning::Extrapolated,
+        Warning::FasterThanMaterial,
+        Warning::NearEndOfMaterial,
+        Warning::Rings,
+        Warning::FallBack,
+    ];
+
+    fn bit(self) -> u16 {
+        1 << self as u16
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Warning::NearEdge => "contact is within two cells of the edge of the grid: enlarge the grid",
+            Warning::FewCells => "contact is fewer than 8 cells across, or fewer than 50 in all: refine the mesh",
+            Warning::Extrapolated => "the material is extrapolated beyond its data",
+            Warning::FasterThanMaterial => "the step is shorter than the material is known for: that counts as elastic",
+            Warning::NearEndOfMaterial => "one more such step would look beyond what is known of the material",
+            Warning::Rings => "the time rule rings at steps of this length: take shorter ones, or another rule",
+            Warning::FallBack => "the solver needed its slow fall-back: take smaller steps if this happens often",
+        })
+    }
+}
+
+/// The warnings of a step, none, one or several; it takes no memory of its own.
+///
+/// ```
+/// use viscocontact::contact::Warning;
+/// use viscocontact::prelude::*;
+///
+/// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .build()?;
+/// let report = contact.step(0.0, Load::force(0.1))?;
+/// assert!(report.warnings.contains(Warning::FewCells));
+/// for warning in report.warnings {
+///     println!("{warning}");
+/// }
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Warnings {
+    bits: u16,
+}
+
+impl Warnings {
+    /// This set with `warning`, if it `applies`.
+    #[must_use]
+    pub(crate) fn with(self, warning: Warning, applies: bool) -> Warnings {
+        Warnings { bits: self.bits | if applies { warning.bit() } else { 0 } }
+    }
+
+    /// Whether there is nothing to warn of.
+    pub fn is_empty(self) -> bool {
+        self.bits == 0
+    }
+
+    /// How many there are.
+    pub fn len(self) -> usize {
+        self.bits.count_ones() as usize
+    }
+
+    /// Whether `warning` is one of them.
+    pub fn contains(self, warning: Warning) -> bool {
+        self.bits & warning.bit() != 0
+    }
+
+    /// Each of them, in the order of [`Warning`].
+    pub fn iter(self) -> impl Iterator<Item = Warning> {
+        Warning::ALL.into_iter().filter(move |&warning| self.contains(warning))
+    }
+
+    /// What is in either set: the warnings of a run, from those of its steps.
+    #[must_use]
+    pub fn union(self, other: Warnings) -> Warnings {
+        Warnings { bits: self.bits | other.bits }
+    }
+}
+
+/// The warnings of a set, one after the other; made by iterating over [`Warnings`].
+#[derive(Debug, Clone)]
+pub struct IntoIter {
+    left: Warnings,
+}
+
+impl Iterator for IntoIter {
+    type Item = Warning;
+
+    fn next(&mut self) -> Option<Warning> {
+        let next = self.left.iter().next()?;
+        self.left.bits &= !next.bit();
+        Some(next)
+    }
+}
+
+impl IntoIterator for Warnings {
+    type Item = Warning;
+    type IntoIter = IntoIter;
+
+    fn into_iter(self) -> IntoIter {
+        IntoIter { left: self }
+    }
+}
+
+impl fmt::Debug for Warnings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_set().entries(self.iter()).finish()
+    }
+}
+
+/// The warnings, separated by semicolons; nothing if there are none.
+impl fmt::Display for Warnings {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, warning) in self.iter().enumerate() {
+            if k > 0 {
+                f.write_str("; ")?;
+            }
+            warning.fmt(f)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_set_holds_what_was_put_into_it() {
+        let none = Warnings::default();
+        assert!(none.is_empty() && none.to_string().is_empty() && format!("{none:?}") == "{}");
+        let mut all = none;
+        for (k, warning) in Warning::ALL.into_iter().enumerate() {
+            assert!(!all.contains(warning) && !warning.to_string().is_empty());
+            all = all.with(warning, false).with(warning, true).with(warning, true);
+            assert!(all.contains(warning) && all.len() == k + 1);
+        }
+        assert_eq!(all.into_iter().collect::<Vec<_>>(), Warning::ALL);
+        assert_eq!(all.to_string().split("; ").count(), Warning::ALL.len());
+        let two = none.with(Warning::Rings, true).union(none.with(Warning::NearEdge, true));
+        assert_eq!(format!("{two:?}"), "{NearEdge, Rings}");
+    }
+}

@@ -1,0 +1,55 @@
+//! What is told to `tracing`, with the feature of that name; nothing without it.
+
+#[cfg(feature = "tracing")]
+use tracing::{debug, warn};
+
+use crate::Error;
+use crate::contact::StepReport;
+
+/// A step was accepted.
+#[inline]
+pub(crate) fn accepted(report: &StepReport) {
+    #[cfg(feature = "tracing")]
+    {
+        let StepReport { time, dt, iterations, residual, contact_cells, approach, force, warnings, .. } = *report;
+        debug!(time, dt, iterations, residual, contact_cells, approach, force, %warnings, "step accepted");
+    }
+    #[cfg(not(feature = "tracing"))]
+    let _ = report;
+}
+
+/// A step was found too long, and is tried again, shorter.
+#[inline]
+pub(crate) fn rejected(time: f64, dt: f64, error: f64, tolerance: f64) {
+    #[cfg(feature = "tracing")]
+    warn!(time, dt, error, tolerance, "step rejected");
+    #[cfg(not(feature = "tracing"))]
+    let _ = (time, dt, error, tolerance);
+}
+
+/// A step failed.
+#[inline]
+pub(crate) fn failed(time: f64, dt: f64, error: &Error) {
+    #[cfg(feature = "tracing")]
+    warn!(time, dt, %error, "step failed");
+    #[cfg(not(feature = "tracing"))]
+    let _ = (time, dt, error);
+}
+
+/// Another part of the grid is computed.
+#[inline]
+pub(crate) fn moved(from: [usize; 2], to: [usize; 2]) {
+    #[cfg(feature = "tracing")]
+    debug!(from = ?from, to = ?to, "region moved");
+    #[cfg(not(feature = "tracing"))]
+    let _ = (from, to);
+}
+
+/// A series was fitted to a material.
+#[inline]
+pub(crate) fn fitted(times: [f64; 2], terms: usize, misfit: f64) {
+    #[cfg(feature = "tracing")]
+    debug!(first = times[0], last = times[1], terms, misfit, "series fitted");
+    #[cfg(not(feature = "tracing"))]
+    let _ = (times, terms, misfit);
+}

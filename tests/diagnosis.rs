@@ -1,0 +1,138 @@
+//! What a step tells of its own quality, and a failed one of why.
+
+use viscocontact::contact::Warning;
+use viscocontact::prelude::*;
+use viscocontact::{Error, Trend};
+
+fn contact(cells: usize, material: Material, settings: Settings) -> ViscoelasticContact {
+    ViscoelasticContact::builder(Grid::square(cells, 4.0e-3).unwrap())
+        .geometry(&Sphere::new(10.0e-3).unwrap())
+        .material(material)
+        .settings(settings)
+        .build()
+        .unwrap()
+}
+
+fn maxwell() -> Material {
+    Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap())
+}
+
+#[test]
+fn a_good_step_has_no_warnings() {
+    for (symmetry, window) in [(true, true), (false, true), (true, false), (false, false)] {
+        let settings = Settings { symmetry, window, ..Settings::default() };
+        let mut contact = contact(64, maxwell(), settings);
+        let report = contact.step(0.0, Load::force(0.5)).unwrap();
+        assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+        assert!(contact.step(0.1, Load::force(0.5)).unwrap().warnings.is_empty());
+    }
+}
+
+#[test]
+fn contact_near_the_edge_is_told_before_it_touches() {
+    for (symmetry, window) in [(true, true), (false, true), (false, false)] {
+        let settings = Settings { symmetry, window, ..Settings::default() };
+        let mut contact = contact(32, maxwell(), settings);
+        let (mut near, mut clear, mut force) = (0, 0, 0.1);
+        loop {
+            match contact.step(0.0, Load::force(force)) {
+                Ok(report) if report.warnings.contains(Warning::NearEdge) => near += 1,
+                Ok(_) => {
+                    assert_eq!(near, 0, "{force} N");
+                    clear += 1;
+                }
+                Err(error) => {
+                    assert!(matches!(error, Error::ContactAtEdge { .. }), "{error}");
+                    break;
+                }
+            }
+            force *= 1.1;
+        }
+        assert!(near > 0 && clear > 0, "{near} {clear}");
+    }
+}
+
+#[test]
+fn few_cells_are_told() {
+    let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 0.1).unwrap();
+    for (cells, few) in [(8, true), (16, true), (64, false)] {
+        let mut contact = contact(cells, maxwell(), Settings::default());
+        let report = contact.step(0.0, Load::force(0.1)).unwrap();
+        assert_eq!(report.warnings.contains(Warning::FewCells), few, "{cells}");
+        let approach = (report.approach / hertz.approach() - 1.0).abs();
+        let peak = (contact.greatest_pressure() / hertz.peak_pressure() - 1.0).abs();
+        println!("{} cells in contact: approach {approach:.1e}, peak {peak:.1e}", report.contact_cells);
+    }
+}
+
+#[test]
+fn material_beyond_its_data_is_told() {
+    let times = [0.1, 0.3, 1.0, 3.0, 10.0];
+    let table = TabulatedCreep::new(&times, &times.map(|t: f64| 1.0e-6 * (1.0 + 0.1 * t.ln_1p()))).unwrap();
+    assert_eq!(table.measured(), [0.1, 10.0]);
+    let mut honest = contact(48, Material::incompressible(table.clone()), Settings::default());
+    honest.step(0.0, Load::force(0.1)).unwrap();
+    let warnings = |contact: &mut ViscoelasticContact, dt: f64| contact.step(dt, Load::force(0.1)).unwrap().warnings;
+    assert!(warnings(&mut honest, 0.01).contains(Warning::FasterThanMaterial));
+    assert!(!warnings(&mut honest, 1.0).contains(Warning::NearEndOfMaterial));
+    assert!(warnings(&mut honest, 5.0).contains(Warning::NearEndOfMaterial));
+    assert!(matches!(honest.step(5.0, Load::force(0.1)), Err(Error::BeyondMaterial { .. })));
+
+    let mut bold = contact(48, Material::incompressible(table.extrapolated()), Settings::default());
+    bold.step(0.0, Load::force(0.1)).unwrap();
+    assert!(!warnings(&mut bold, 9.0).contains(Warning::Extrapolated));
+    let later = warnings(&mut bold, 5.0);
+    assert!(later.contains(Warning::Extrapolated) && !later.contains(Warning::NearEndOfMaterial));
+}
+
+#[test]
+fn ringing_is_mirrored() {
+    let mut contact = contact(48, maxwell(), Settings { time_rule: TimeRule::Rectangle, ..Settings::default() });
+    contact.step(0.0, Load::force(0.1)).unwrap();
+    for (dt, rings) in [(0.5, false), (1.5, true)] {
+        let report = contact.step(dt, Load::force(0.1)).unwrap();
+        assert_eq!((report.rings, report.warnings.contains(Warning::Rings)), (rings, rings));
+    }
+}
+
+#[test]
+fn a_failed_solve_says_what_to_do() {
+    let failure = |settings: Settings| {
+        let error = contact(48, maxwell(), settings).step(0.0, Load::force(0.5)).unwrap_err();
+        let text = error.to_string();
+        let Error::NotConverged { iterations, residual, convergence, .. } = error else { panic!("{error}") };
+        let (first, last) = (convergence.residuals()[0], *convergence.residuals().last().unwrap());
+        assert!(convergence.residuals().len() <= 33 && first.0 == 0 && last == (iterations, residual));
+        (convergence, text)
+    };
+    for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
+        let settings = Settings { tolerance: 1e-12, max_iterations: 8, solver, ..Settings::default() };
+        let (convergence, text) = failure(settings);
+        assert_eq!(convergence.trend(), Trend::Falling, "{convergence:?}");
+        assert!(text.contains("raise Settings::max_iterations"), "{text}");
+        let (convergence, _) = failure(Settings { max_iterations: 1, ..settings });
+        assert_eq!(convergence.trend(), Trend::TooFew);
+    }
+}
+
+/// A state that is not admissible is no solution, however small its residual.
+#[test]
+fn no_pressure_is_negative_when_iterations_run_out() {
+    let wavy = Wavy::new(2.0e-6, 0.4e-3).unwrap();
+    for max_iterations in 1..12 {
+        for tolerance in [1e-1, 1e-2, 1e-3] {
+            let mut contact = ViscoelasticContact::builder(Grid::square(24, 4.0e-3).unwrap())
+                .geometry(&Sum::new(Sphere::new(10.0e-3).unwrap(), wavy))
+                .material(maxwell())
+                .settings(Settings { max_iterations, tolerance, ..Settings::default() })
+                .build()
+                .unwrap();
+            for force in [0.5, 0.2, 0.05, 0.01, 0.3] {
+                if contact.step(0.05, Load::force(force)).is_ok() {
+                    assert!(contact.pressure().iter().all(|&p| p >= 0.0), "{max_iterations} {tolerance}");
+                    assert!((contact.force() / force - 1.0).abs() < 1e-9, "{max_iterations} {tolerance}");
+                }
+            }
+        }
+    }
+}

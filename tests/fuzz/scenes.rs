@@ -1,0 +1,277 @@
+//! Whole scenes through the public interface, on few cells.
+
+use std::sync::Arc;
+
+use viscocontact::contact::{Precision, SteadyMotion, Stepping};
+use viscocontact::motion::{Straight, Travel};
+use viscocontact::observe::Axis;
+use viscocontact::output::Scene;
+use viscocontact::prelude::*;
+
+use crate::engine::{Outcome, Target, Verdict, finite, known};
+use crate::models;
+use crate::source::Source;
+
+pub fn targets() -> Vec<Target> {
+    vec![
+        Target { name: "scene_steps", short: 1200, run: |source| steps(source, false) },
+        Target { name: "scene_fitted", short: 10, run: |source| steps(source, true) },
+        Target { name: "scene_follow", short: 200, run: follow },
+        Target { name: "scene_moving", short: 200, run: moving },
+    ]
+}
+
+/// A contact with what its scales are.
+struct Scale {
+    contact: ViscoelasticContact,
+    length: f64,
+    softness: f64,
+}
+
+fn settings(source: &mut Source) -> Settings {
+    let frame = if source.chance(0.2) { Frame::Indenter } else { Frame::Bodies };
+    let rules =
+        [TimeRule::Automatic, TimeRule::Automatic, TimeRule::Exponential, TimeRule::Rectangle, TimeRule::Backward];
+    Settings {
+        tolerance: source.scale(1e-10, 1e-2),
+        max_iterations: source.choose(&[1, 3, 30, 200, 200, 200, 0]),
+        solver: source.choose(&[Solver::ActiveSet, Solver::ActiveSet, Solver::PolonskyKeer]),
+        time_rule: if frame == Frame::Indenter { TimeRule::Automatic } else { source.choose(&rules) },
+        edge: source.choose(&[Edge::Allow, Edge::Allow, Edge::Refuse]),
+        series_tolerance: source.scale(1e-4, 1e-1),
+        history_limit: source.choose(&[2 << 30, 2 << 30, 2 << 30, 4000]),
+        symmetry: source.chance(0.7),
+        window: source.chance(0.7),
+        precision: source.choose(&[Precision::Double, Precision::Double, Precision::Mixed]),
+        frame,
+    }
+}
+
+fn build(source: &mut Source, fitted: bool, settings: Settings) -> viscocontact::Result<Scale> {
+    let length = source.scale(1e-6, 1.0);
+    let cells = [source.count(1, 12), if source.chance(0.2) { 1 } else { source.count(1, 12) }];
+    let grid = Grid::new(cells, [length, length * source.scale(0.3, 3.0)])?;
+    let material = models::material(source, fitted)?;
+    let softness = material.contact_compliance(source.scale(1e-2, 1e2)).abs().max(1e-300);
+    let mut builder = ViscoelasticContact::builder(grid.clone())
+        .geometry(&models::geometry(source, length)?)
+        .material(material)
+        .settings(settings);
+    if source.chance(0.1) {
+        builder = builder.another_body(&models::geometry(source, length)?);
+    }
+    if source.chance(0.6) {
+        builder = builder.kernel(Arc::new(models::kernel(source, &grid)?));
+    }
+    if fitted && source.chance(0.5) {
+        let first = source.scale(1e-4, 1.0);
+        builder = builder.times(first..=first * source.scale(1.0, 1e6));
+    }
+    Ok(Scale { contact: builder.build()?, length, softness })
+}
+
+/// What can be seen of a contact, bit by bit.
+fn state(contact: &ViscoelasticContact) -> Vec<u64> {
+    let numbers = [contact.time(), contact.approach(), contact.tilt()[0], contact.tilt()[1], contact.force()];
+    numbers.into_iter().chain(contact.pressure().iter().copied()).map(f64::to_bits).collect()
+}
+
+/// Everything that a contact shows.
+fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Source) -> Result<(), String> {
+    let StepReport { time, dt, residual, time_error, approach, tilt, force, .. } = *report;
+    finite("report", [time, dt, residual, time_error, approach, tilt[0], tilt[1], force])?;
+    if report.contact_cells != contact.contact_cells() {
+        return Err("cells in contact differ between report and contact".to_owned());
+    }
+    finite("pressure", contact.pressure().iter().copied())?;
+    if contact.pressure().iter().any(|&p| p < 0.0) {
+        return Err("a negative pressure".to_owned());
+    }
+    finite("displacement", contact.displacement().iter().copied())?;
+    let len = contact.grid().len();
+    let mut field = vec![0.0; len];
+    contact.gap_into(&mut field).map_err(|error| error.to_string())?;
+    known("gap", field.iter().copied())?;
+    finite("sums", [contact.force(), contact.contact_area()])?;
+    // of a finite force on a long arm a moment may be beyond the greatest number
+    known("moment", contact.moment())?;
+    for body in (0..contact.bodies()).filter_map(|body| contact.body(body)) {
+        finite("body", [body.approach, body.force].into_iter().chain(body.tilt))?;
+        known("moment of a body", body.moment)?;
+    }
+    let space = contact.spatial_error();
+    known("error of the mesh", [space.approach, space.peak_pressure, space.area, space.singular])?;
+    known("pressures", [contact.mean_pressure(), contact.greatest_pressure()])?;
+    if let Ok(patches) = contact.patches() {
+        let all = patches.all().iter();
+        let of = |patch: &viscocontact::observe::Patch| [patch.area, patch.force, patch.centroid[0], patch.centroid[1]];
+        known("patches", all.flat_map(of))?;
+    }
+    for distribution in [contact.gap_distribution(5), contact.pressure_distribution(5)].into_iter().flatten() {
+        known("distribution", distribution.density().iter().copied())?;
+        known("distribution", distribution.centers().chain([distribution.width(), distribution.share_at_zero()]))?;
+    }
+    if let Ok(profile) = contact.profile(source.choose(&[Axis::X1, Axis::X2]), 0.0) {
+        known("profile", profile.positions.into_iter().chain(profile.gap))?;
+    }
+    if let Ok(Some(asymmetry)) = contact.asymmetry([0.0; 2]) {
+        known("asymmetry", asymmetry.center_of_pressure.into_iter().chain(asymmetry.skewness()))?;
+    }
+    if let Ok(between) = contact.within_step(time - 0.3 * dt) {
+        finite("between", [between.time(), between.approach(), between.force()].into_iter().chain(between.tilt()))?;
+        between.pressure_into(&mut field).map_err(|error| error.to_string())?;
+        finite("pressure between", field.iter().copied())?;
+        between.displacement_into(&mut field).map_err(|error| error.to_string())?;
+        finite("displacement between", field.iter().copied())?;
+    }
+    if source.chance(0.1) {
+        if let Ok(stiffness) = contact.stiffness_over_modulus() {
+            known("stiffness", [stiffness])?;
+        }
+        let text = Scene::new("fuzz").json(contact);
+        if text.contains("NaN") || !text.ends_with('}') {
+            return Err("a description that is no JSON".to_owned());
+        }
+    }
+    Ok(())
+}
+
+/// After an error nothing has changed.
+fn unchanged(before: &[u64], contact: &ViscoelasticContact, error: &Error) -> Result<(), String> {
+    if error.to_string().is_empty() {
+        return Err("an error without words".to_owned());
+    }
+    if before == state(contact) { Ok(()) } else { Err(format!("a failed step left its mark: {error}")) }
+}
+
+fn length_of_step(source: &mut Source) -> f64 {
+    match source.below(5) {
+        0 => 0.0,
+        1 => source.scale(1e-9, 1e9),
+        _ => source.scale(1e-3, 1e2),
+    }
+}
+
+fn steps(source: &mut Source, fitted: bool) -> Verdict {
+    let settings = settings(source);
+    let Ok(Scale { mut contact, length, softness }) = build(source, fitted, settings) else {
+        return Ok(Outcome::Refused);
+    };
+    let mut accepted = false;
+    for _ in 0..source.count(1, 6) {
+        let loads: Vec<Load> = (0..contact.bodies()).map(|_| models::load(source, length, softness)).collect();
+        let (dt, before) = (length_of_step(source), state(&contact));
+        if source.chance(0.05)
+            && let Ok(shape) = models::geometry(source, length)
+            && let Err(error) = contact.set_geometry(&shape)
+        {
+            unchanged(&before, &contact, &error)?;
+        }
+        let before = state(&contact);
+        match contact.step_each(dt, &loads) {
+            Ok(report) => {
+                accepted = true;
+                look(&contact, &report, source)?;
+            }
+            Err(error) => unchanged(&before, &contact, &error)?,
+        }
+    }
+    Ok(if accepted { Outcome::Accepted } else { Outcome::Refused })
+}
+
+fn follow(source: &mut Source) -> Verdict {
+    let settings = settings(source);
+    let Ok(Scale { mut contact, length, softness }) = build(source, false, settings) else {
+        return Ok(Outcome::Refused);
+    };
+    let Ok(history) = models::history(source, length, softness) else { return Ok(Outcome::Refused) };
+    let until = source.scale(1e-3, 1e4);
+    let stepping = if source.chance(0.7) {
+        Stepping::adaptive(source.scale(1e-5, 0.1))
+    } else {
+        Stepping::fixed(until * source.scale(1e-2, 1.0))
+    };
+    let landings = [source.between(0.0, 1.0) * until, source.between(0.0, 1.0) * until];
+    let mut reports = Vec::new();
+    {
+        let Ok(mut run) = contact.follow(&*history, stepping, until).landing_on(&landings) else {
+            return Ok(Outcome::Refused);
+        };
+        // no more than these, or the slowest scenes take for ever
+        for _ in 0..12 {
+            match run.next_step() {
+                Ok(Some(report)) => {
+                    look(run.contact(), &report, source)?;
+                    reports.push(report);
+                }
+                Ok(None) => break,
+                Err(error) if error.to_string().is_empty() => return Err("an error without words".to_owned()),
+                Err(_) => break,
+            }
+        }
+        let budget = run.error_budget();
+        known("error budget", [budget.time, budget.space.approach, budget.solver])?;
+    }
+    if reports.windows(2).any(|pair| pair[1].time < pair[0].time) {
+        return Err("time runs backwards".to_owned());
+    }
+    Ok(if reports.is_empty() { Outcome::Refused } else { Outcome::Accepted })
+}
+
+fn moving(source: &mut Source) -> Verdict {
+    let frame = source.choose(&[Frame::Bodies, Frame::Indenter, Frame::Indenter]);
+    let settings = Settings { frame, time_rule: TimeRule::Automatic, ..settings(source) };
+    let Ok(Scale { mut contact, length, softness }) = build(source, false, settings) else {
+        return Ok(Outcome::Refused);
+    };
+    let mut accepted = false;
+    let rolling = frame == Frame::Indenter && source.chance(0.3);
+    if rolling {
+        let motion = SteadyMotion {
+            axis: source.below(2),
+            velocity: length * source.scale(1e-2, 1e2),
+            load: models::load(source, length, softness),
+            tolerance: source.scale(1e-4, 0.5),
+        };
+        let Ok(mut toward) = contact.toward_steady(motion) else { return Ok(Outcome::Refused) };
+        for _ in 0..20 {
+            match toward.next_step() {
+                Ok(Some(report)) => {
+                    accepted = true;
+                    look(toward.contact(), &report, source)?;
+                    known("distance and change", [toward.distance(), toward.change()])?;
+                }
+                _ => break,
+            }
+        }
+        return Ok(if accepted { Outcome::Accepted } else { Outcome::Refused });
+    }
+    for _ in 0..source.count(1, 6) {
+        let (dt, load, before) = (length_of_step(source), models::load(source, length, softness), state(&contact));
+        let result = if frame == Frame::Indenter {
+            let cells = [source.below(9) as isize - 4, source.below(9) as isize - 4];
+            let far = source.chance(0.02);
+            contact.step_over(if far { [isize::MAX, isize::MIN] } else { cells }, dt, load)
+        } else {
+            let Ok(shape) = models::geometry(source, length) else { continue };
+            let start = [length * source.between(-0.3, 0.3), length * source.between(-0.3, 0.3)];
+            let velocity = [length * source.between(-1.0, 1.0), length * source.between(-1.0, 1.0)];
+            let Ok(path) = Straight::new(start, velocity) else { continue };
+            let mut travel = Travel::new(shape, path);
+            if source.chance(0.2)
+                && let Ok(track) = models::geometry(source, length)
+            {
+                travel = travel.over(track);
+            }
+            contact.step_along(&travel, dt, load).map(|report| report.step)
+        };
+        match result {
+            Ok(report) => {
+                accepted = true;
+                look(&contact, &report, source)?;
+            }
+            Err(error) => unchanged(&before, &contact, &error)?,
+        }
+    }
+    Ok(if accepted { Outcome::Accepted } else { Outcome::Refused })
+}

@@ -1,0 +1,161 @@
+//! Random values, good and bad, from a seed.
+
+/// Numbers that programs stumble over.
+const WILD: [f64; 24] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    f64::NAN,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    f64::MAX,
+    f64::MIN,
+    f64::MIN_POSITIVE,
+    5e-324,
+    -5e-324,
+    f64::EPSILON,
+    1e-200,
+    1e200,
+    1e-90,
+    1e90,
+    1e-30,
+    1e30,
+    1e16,
+    9007199254740993.0,
+    4294967296.0,
+    0.5,
+    -1e-9,
+];
+
+/// Splitmix64, and what is drawn from it.
+#[derive(Debug, Clone)]
+pub struct Source {
+    state: u64,
+    /// The share of numbers that may be anything.
+    wildness: f64,
+}
+
+/// The next state and output of splitmix64.
+pub fn split_mix(state: &mut u64) -> u64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+impl Source {
+    /// Half of the cases are sane, so that they get far; the others more or less wild.
+    pub fn new(seed: u64) -> Source {
+        let mut source = Source { state: seed, wildness: 0.0 };
+        source.wildness = source.choose(&[0.0, 0.0, 0.0, 0.02, 0.1, 0.5]);
+        source
+    }
+
+    pub fn u64(&mut self) -> u64 {
+        split_mix(&mut self.state)
+    }
+
+    pub fn below(&mut self, n: usize) -> usize {
+        (self.u64() % n.max(1) as u64) as usize
+    }
+
+    /// From `low` to `high`, both included.
+    pub fn count(&mut self, low: usize, high: usize) -> usize {
+        low + self.below(high - low + 1)
+    }
+
+    /// In [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        (self.u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn chance(&mut self, share: f64) -> bool {
+        self.unit() < share
+    }
+
+    pub fn choose<T: Copy>(&mut self, of: &[T]) -> T {
+        of[self.below(of.len())]
+    }
+
+    /// Anything at all.
+    pub fn anything(&mut self) -> f64 {
+        match self.below(3) {
+            0 => f64::from_bits(self.u64()),
+            1 => self.choose(&WILD),
+            _ => {
+                let size = 10f64.powf(-320.0 + 640.0 * self.unit());
+                if self.chance(0.3) { -size } else { size }
+            }
+        }
+    }
+
+    /// Log-uniform between two positive numbers, or now and then anything.
+    pub fn scale(&mut self, low: f64, high: f64) -> f64 {
+        if self.chance(self.wildness) { self.anything() } else { low * (high / low).powf(self.unit()) }
+    }
+
+    /// Uniform between two numbers, or now and then anything.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        if self.chance(self.wildness) { self.anything() } else { low + (high - low) * self.unit() }
+    }
+
+    pub fn bytes(&mut self, count: usize) -> Vec<u8> {
+        (0..count).map(|_| self.u64() as u8).collect()
+    }
+
+    /// Damages a file: a few bytes cut, turned, repeated, or replaced by what stands in files.
+    pub fn damage(&mut self, file: &[u8]) -> Vec<u8> {
+        const TOKENS: [&[u8]; 18] = [
+            b"nan",
+            b"inf",
+            b"-1",
+            b"0",
+            b"1e308",
+            b"-1e-320",
+            b"18446744073709551615",
+            b"4294967296",
+            b"65536",
+            b"2147483647",
+            b"-0",
+            b"1e999",
+            b",",
+            b"\n",
+            b"\0",
+            b"<",
+            b"\xff\xff\xff\xff",
+            b"0.1",
+        ];
+        let mut file = file.to_vec();
+        for _ in 0..=self.below(4) {
+            if file.is_empty() {
+                break;
+            }
+            let at = self.below(file.len());
+            match self.below(8) {
+                0 => file.truncate(at),
+                1 => file.insert(at, self.u64() as u8),
+                2 => drop(file.remove(at)),
+                3 => file[at] = self.u64() as u8,
+                4 => file[at] ^= 1 << self.below(8),
+                5 => {
+                    let end = (at + self.count(1, 12)).min(file.len());
+                    let piece = file[at..end].to_vec();
+                    let to = self.below(file.len());
+                    file.splice(to..to, piece);
+                }
+                6 => {
+                    let token = self.choose(&TOKENS);
+                    let end = (at + self.below(token.len() + 1)).min(file.len());
+                    file.splice(at..end, token.iter().copied());
+                }
+                _ => {
+                    let end = (at + self.count(1, 9)).min(file.len());
+                    file.drain(at..end);
+                }
+            }
+        }
+        file
+    }
+}

@@ -1,0 +1,68 @@
+//! Events for subscribers of `tracing`.
+#![cfg(feature = "tracing")]
+
+use std::sync::{Arc, Mutex};
+
+use tracing::field::{Field, Visit};
+use tracing::span::{Attributes, Id, Record};
+use tracing::{Event, Level, Metadata, Subscriber};
+use viscocontact::prelude::*;
+
+/// Keeps the level and message of each event.
+#[derive(Clone, Default)]
+struct Kept(Arc<Mutex<Vec<(Level, String)>>>);
+
+impl Visit for Kept {
+    fn record_debug(&mut self, field: &Field, value: &dyn std::fmt::Debug) {
+        if field.name() == "message" {
+            self.0.lock().unwrap().last_mut().unwrap().1 = format!("{value:?}");
+        }
+    }
+}
+
+impl Subscriber for Kept {
+    fn enabled(&self, _: &Metadata<'_>) -> bool {
+        true
+    }
+    fn new_span(&self, _: &Attributes<'_>) -> Id {
+        Id::from_u64(1)
+    }
+    fn record(&self, _: &Id, _: &Record<'_>) {}
+    fn record_follows_from(&self, _: &Id, _: &Id) {}
+    fn event(&self, event: &Event<'_>) {
+        self.0.lock().unwrap().push((*event.metadata().level(), String::new()));
+        event.record(&mut self.clone());
+    }
+    fn enter(&self, _: &Id) {}
+    fn exit(&self, _: &Id) {}
+}
+
+#[test]
+fn steps_regions_and_series_are_told() {
+    let kept = Kept::default();
+    tracing::subscriber::set_global_default(kept.clone()).unwrap();
+    {
+        let mut contact = ViscoelasticContact::builder(Grid::square(48, 4.0e-3).unwrap())
+            .geometry(&Sphere::new(10.0e-3).unwrap())
+            .material(Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt()))))
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(0.1)).unwrap();
+        contact.step(0.1, Load::force(0.5)).unwrap();
+        contact.step(0.1, Load::force(500.0)).unwrap_err();
+        let ramp = Ramp::new(Load::force(0.5), Load::force(0.1), 0.3).unwrap();
+        let mut run = contact.follow(&ramp, Stepping::adaptive(1e-5), 3.0);
+        while run.next_step().unwrap().is_some() {}
+        assert!(run.rejected_steps() > 0);
+    }
+    let kept = kept.0.lock().unwrap();
+    for (level, message) in [
+        (Level::DEBUG, "step accepted"),
+        (Level::DEBUG, "region moved"),
+        (Level::DEBUG, "series fitted"),
+        (Level::WARN, "step failed"),
+        (Level::WARN, "step rejected"),
+    ] {
+        assert!(kept.iter().any(|event| *event == (level, message.to_owned())), "{message}: {kept:?}");
+    }
+}
