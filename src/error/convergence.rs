@@ -105,7 +105,7 @@ impl Convergence {
         let last = self.samples.last()?;
         let rate = (middle.1 / last.1).ln() / (last.0 - middle.0) as f64;
         let more = (last.1 / self.tolerance).ln() / rate;
-        (rate > 0.0 && more.is_finite() && more >= 0.0 && more < 1e9).then(|| last.0 + more.ceil() as usize)
+        (rate > 0.0 && (0.0..1e9).contains(&more)).then(|| last.0 + more.ceil() as usize)
     }
 
     /// The solver to try in its place.
