@@ -211,7 +211,8 @@ fn every_law_of_geometry_can_be_broken() {
         let violation = geometry::laws::all(&wrong, &grid).unwrap_err();
         (violation.law, violation.cell)
     };
-    let (nothing, stay): (fn(&Grid, &mut [f64]), fn([f64; 2]) -> [f64; 2]) = (|_, _| (), |by| by);
+    let nothing: fn(&Grid, &mut [f64]) = |_, _| ();
+    let stay: fn([f64; 2]) -> [f64; 2] = |by| by;
     assert!(geometry::laws::all(&Wrong(bowl, nothing, stay), &grid).is_ok());
     let hole: fn(f64, f64) -> f64 = |x1, x2| if x1 > 3.0 && x2 > 2.0 { f64::NAN } else { 0.0 };
     assert_eq!(broken(Wrong(hole, nothing, stay)), ("a gap is a number or +∞", [7, 5]));
@@ -300,7 +301,8 @@ fn every_law_of_histories_can_be_broken() {
     }
     let times = load::laws::even_times(0.0, 2.0, 8);
     let broken = |parts: Parts| load::laws::all(&Wrong(parts), &times).unwrap_err();
-    let (one, none): (fn(f64) -> f64, fn(f64) -> Option<f64>) = (|_| 1.0, |_| None);
+    let one: fn(f64) -> f64 = |_| 1.0;
+    let none: fn(f64) -> Option<f64> = |_| None;
     assert!(load::laws::all(&Wrong((one, one, none)), &times).is_ok());
     assert_eq!(broken((|_| -1.0, one, none)).law, "every load is one that a step accepts");
     let nan = broken((one, |t| if t == 0.5 { f64::NAN } else { 1.0 }, none));

@@ -124,7 +124,8 @@ fn difference(found: &Load, expected: &Load, within: [f64; 3]) -> Option<(&'stat
     if found.kind() != expected.kind() {
         return Some(("kind of load", a[0], b[0]));
     }
-    (0..3).find(|&k| !((a[k] - b[k]).abs() <= within[k])).map(|k| (named[k], a[k], b[k]))
+    let same = |k: usize| (a[k] - b[k]).abs() <= within[k];
+    (0..3).find(|&k| !same(k)).map(|k| (named[k], a[k], b[k]))
 }
 
 fn verdict(law: &'static str, t: f64, difference: Option<(&'static str, f64, f64)>) -> Verdict {
@@ -255,9 +256,9 @@ pub fn smooth_between_breakpoints(history: &dyn LoadHistory, times: &[f64]) -> V
             let kind = Some(("kind of load", values(other)[0], values(&first)[0]));
             verdict("jumps lie on breakpoints", end, kind)?;
         }
-        for k in 0..3 {
+        for (k, scale) in scale.into_iter().enumerate() {
             let value = |t: f64| values(&load(t))[k];
-            if let Some((law, t)) = roughest(&value, start, end, STRAIGHT * scale[k]) {
+            if let Some((law, t)) = roughest(&value, start, end, STRAIGHT * scale) {
                 let near = 1e-9 * (end - start);
                 let (found, expected) = (value((t + near).min(end)), value((t - near).max(start)));
                 verdict(law, t, Some((names(&first)[k], found, expected)))?;
