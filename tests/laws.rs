@@ -263,6 +263,14 @@ fn every_history_obeys_every_law() {
             "FnHistory with a corner",
             Box::new(FnHistory::new(|t: f64| Load::force((t - 0.77).abs())).with_breakpoints(&[0.77]).unwrap()),
         ),
+        (
+            "arches, nothing at their feet",
+            Box::new(
+                FnHistory::new(|t: f64| Load::force((std::f64::consts::PI * t.fract()).sin().abs()))
+                    .with_breakpoints(&(-1..=1000).map(f64::from).collect::<Vec<_>>())
+                    .unwrap(),
+            ),
+        ),
         ("Arc", Box::new(std::sync::Arc::new(table(&[(1.0, 0.0), (2.0, 1.0)])))),
     ];
     for (name, history) in histories {

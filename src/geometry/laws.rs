@@ -186,14 +186,12 @@ pub fn moved_by_nothing_it_stays(geometry: &dyn Geometry, grid: &Grid) -> Verdic
     let within = SAME * greatest(&gap);
     field("moved by nothing, it stays", grid, &moved(geometry, grid, [0.0; 2], 0.0), |[i, j], found| {
         let expected = gap[i * n2 + j];
-        // also NaN differs
         let same = found == expected || (found - expected).abs() <= within;
         (!same).then_some(expected)
     })
 }
 
-/// Moved by whole cells it has the gap of the cells it came from, where those are on the grid, and that of the points
-/// it came from everywhere else where the points are as good as the field.
+/// Moved by whole cells it has the gap of the cells it came from, where those are on the grid.
 ///
 /// # Errors
 /// Where it has not, to 1e-10 of the greatest gap.

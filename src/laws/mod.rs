@@ -8,7 +8,7 @@
 //! | [`LoadHistory`](crate::load::LoadHistory) | [`load`] | [`strategies::histories`], [`strategies::loads`] |
 //! | a whole contact | | [`strategies::scenes`] |
 //!
-//! The laws themselves need no feature; the strategies are [`proptest`]'s. The models of the crate pass through the very
+//! The laws themselves need no feature; the strategies are [`proptest`](mod@proptest)'s. The models of the crate pass through the very
 //! same functions.
 //!
 //! ```

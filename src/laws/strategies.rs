@@ -1,4 +1,4 @@
-//! Valid models at random, as strategies of [`mod@proptest`].
+//! Valid models at random, as strategies of [`proptest`](mod@proptest).
 //!
 //! Each takes the scales of what it makes, so that its models suit the scene of a test. The simplest ones come first, and
 //! that is where failures shrink to.

@@ -109,9 +109,10 @@ fn moments(history: &dyn LoadHistory, times: &[f64]) -> Vec<f64> {
     moments
 }
 
-/// The greatest of each value at the moments.
+/// The greatest of each value at the moments and between them: at its own corners a load may vanish.
 fn scales(history: &dyn LoadHistory, moments: &[f64]) -> [f64; 3] {
-    moments.iter().fold([0.0; 3], |most, &t| {
+    let between = moments.windows(2).flat_map(|pair| [0.3, 0.5, 0.7].map(|part| pair[0] + part * (pair[1] - pair[0])));
+    moments.iter().copied().chain(between).fold([0.0; 3], |most, t| {
         let (at, before) = (values(&history.at(t)), values(&history.before(t)));
         [0, 1, 2].map(|k| f64::max(most[k], f64::max(at[k].abs(), before[k].abs())))
     })
@@ -277,7 +278,8 @@ fn roughest(value: &dyn Fn(f64) -> f64, start: f64, end: f64, straight: f64) -> 
         let [a, b] = window;
         let width = b - a;
         // what the rounding of the times makes of a slope
-        let rounding = 1e-15 * (value(b) - value(a)).abs() / width * b.abs().max(a.abs());
+        let local = value(a).abs().max(value(b).abs());
+        let rounding = STRAIGHT * local + 1e-15 * (value(b) - value(a)).abs() / width * b.abs().max(a.abs());
         if width <= 1e-10 * b.abs().max(a.abs()) || bends.last().is_none_or(|last| *last <= straight + rounding) {
             break;
         }
