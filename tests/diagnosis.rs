@@ -106,7 +106,7 @@ fn a_failed_solve_says_what_to_do() {
         (convergence, text)
     };
     for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
-        let settings = Settings { tolerance: 1e-12, max_iterations: 8, solver, ..Settings::default() };
+        let settings = Settings { tolerance: 1e-13, max_iterations: 5, solver, ..Settings::default() };
         let (convergence, text) = failure(settings);
         assert_eq!(convergence.trend(), Trend::Falling, "{convergence:?}");
         assert!(text.contains("raise Settings::max_iterations"), "{text}");

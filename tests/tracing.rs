@@ -50,8 +50,13 @@ fn steps_regions_and_series_are_told() {
         contact.step(0.0, Load::force(0.1)).unwrap();
         contact.step(0.1, Load::force(0.5)).unwrap();
         contact.step(0.1, Load::force(500.0)).unwrap_err();
-        let ramp = Ramp::new(Load::force(0.5), Load::force(0.1), 0.3).unwrap();
-        let mut run = contact.follow(&ramp, Stepping::adaptive(1e-5), 3.0);
+        let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3).unwrap())
+            .geometry(&Sphere::new(10.0e-3).unwrap())
+            .material(Material::incompressible(Zener::new(1.0e6, 1.0e5, 1.0e3).unwrap()))
+            .build()
+            .unwrap();
+        let wave = Sinusoid::new(Load::force(0.02), Load::force(0.1), 10.0).unwrap();
+        let mut run = contact.follow(&wave, Stepping::adaptive(1e-3), 0.5);
         while run.next_step().unwrap().is_some() {}
         assert!(run.rejected_steps() > 0);
     }
