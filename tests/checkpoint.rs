@@ -1,6 +1,9 @@
 //! Runs that go on from a file as if nothing had happened; files that are refused; fifty runs that were killed.
 #![cfg(feature = "checkpoint")]
 
+#[allow(dead_code, reason = "other tests want its normal deviates")]
+#[path = "common/noise.rs"]
+mod noise;
 #[path = "common/runs.rs"]
 mod runs;
 
@@ -10,6 +13,7 @@ use std::process::{Command, Stdio};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
+use noise::uniform;
 use runs::{power_law, scenes, sphere_on, three_times, wandering};
 use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
@@ -179,6 +183,24 @@ fn other_scenes_are_refused_by_what_differs() {
     fs::remove_file(path).unwrap();
 }
 
+/// A contact whose own first step fitted its material over other times cannot go on from the file: its series is another.
+#[test]
+fn materials_fitted_otherwise_are_refused() {
+    let path = file("fitted");
+    let stepped = |dt: f64| {
+        let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), power_law(), Settings::default());
+        contact.step(dt, Load::force(0.1)).unwrap();
+        contact
+    };
+    stepped(0.1).save(&path).unwrap();
+    stepped(0.1).resume(&path).unwrap();
+    let (mut other, twin) = (stepped(1.0e-6), stepped(1.0e-6));
+    let error = refused(&mut other, &path);
+    assert!(matches!(error, CheckpointError::OtherScene { what: "series of the material", .. }), "{error}");
+    assert_eq!((other.time(), other.pressure()), (twin.time(), twin.pressure()));
+    fs::remove_file(path).unwrap();
+}
+
 const STEPS: f64 = 400.0;
 const EVERY: Duration = Duration::from_millis(5);
 
@@ -266,12 +288,12 @@ fn fifty_killed_runs() {
     let undisturbed = folder("undisturbed");
     assert!(start(&undisturbed, None));
     let exact = fs::read(undisturbed.join("done")).unwrap();
-    let (mut kills, mut runs, mut state, mut differing, mut longest) = (0, 0, 1_u64, 0, Duration::ZERO);
+    let (mut kills, mut runs, mut differing, mut longest) = (0, 0, 0, Duration::ZERO);
+    let mut random = uniform(1);
     while kills < 50 {
         let killed = folder("killed");
         loop {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            let after = Duration::from_micros(500 + (state >> 33) % 30_000);
+            let after = Duration::from_secs_f64(0.5e-3 + 30.0e-3 * random());
             if start(&killed, (kills < 50).then_some(after)) {
                 break;
             }
@@ -311,11 +333,8 @@ fn forged_files_do_no_harm() {
         (Settings { time_rule: TimeRule::Backward, ..whole }, three_times()),
         (Settings { frame: Frame::Indenter, ..whole }, three_times()),
     ];
-    let (mut state, mut refused) = (7_u64, 0);
-    let mut random = move |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize % below
-    };
+    let (mut number, mut refused) = (uniform(7), 0);
+    let mut random = move |below: usize| (number() * below as f64) as usize;
     for (settings, material) in scenes {
         let build = || sphere_on(Grid::square(8, 4.0e-3).unwrap(), material.clone(), settings);
         let mut contact = build();

@@ -1,7 +1,11 @@
 //! Indenters that move: two frames that must agree, energy, what is rough where, and steps that fail.
 
+#[path = "common/rough.rs"]
+mod surface;
+
 use std::sync::Arc;
 
+use surface::self_affine;
 use viscocontact::prelude::*;
 
 fn zener() -> Material {
@@ -124,15 +128,7 @@ fn work_is_done_on_the_bodies() {
 #[test]
 fn elastic_bodies_dissipate_nothing() {
     let grid = Grid::square(48, 1.0e-3).unwrap();
-    let spec = RoughSpec {
-        hurst: 0.8,
-        longest: 0.5e-3,
-        roll_off: 0.5e-3,
-        shortest: 0.1e-3,
-        anisotropy: Anisotropy::default(),
-        roughness: Roughness::RmsSlope(0.05),
-        seed: 3,
-    };
+    let spec = self_affine(0.5e-3, 0.1e-3, 3);
     let slider = Rough::new(&grid, spec).unwrap();
     let travel = Travel::new(slider.clone(), Straight::new([0.0; 2], [1.0e-3, 0.0]).unwrap());
     let track = Rough::new(&grid, RoughSpec { seed: 4, ..spec }).unwrap();

@@ -1,7 +1,11 @@
 //! Rough surfaces on periodic bodies: what they cost, and what is known of them.
 
+#[path = "common/rough.rs"]
+mod surface;
+
 use std::sync::Arc;
 
+use surface::self_affine;
 use viscocontact::prelude::*;
 
 const G: f64 = 1.0e6;
@@ -11,15 +15,7 @@ const SLOPE: f64 = 0.05;
 
 fn rough(cells: usize, shortest: f64, seed: u64) -> (Grid, Rough) {
     let grid = Grid::square(cells, LENGTH).unwrap();
-    let spec = RoughSpec {
-        hurst: 0.8,
-        longest: LENGTH / 4.0,
-        roll_off: LENGTH / 4.0,
-        shortest: shortest * LENGTH / cells as f64,
-        anisotropy: Anisotropy::default(),
-        roughness: Roughness::RmsSlope(SLOPE),
-        seed,
-    };
+    let spec = self_affine(LENGTH / 4.0, shortest * LENGTH / cells as f64, seed);
     let shape = Rough::new(&grid, spec).unwrap();
     (grid, shape)
 }

@@ -1,7 +1,11 @@
 //! Contact stiffness against closed forms, and against the slope of force over approach.
 
+#[path = "common/rough.rs"]
+mod surface;
+
 use std::sync::Arc;
 
+use surface::self_affine;
 use viscocontact::prelude::*;
 
 const G: f64 = 1.0e6;
@@ -32,15 +36,7 @@ fn circles() {
 #[test]
 fn slope_of_the_force() {
     let grid = Grid::square(64, 1.0e-3).unwrap();
-    let spec = RoughSpec {
-        hurst: 0.8,
-        longest: 0.5e-3,
-        roll_off: 0.5e-3,
-        shortest: 0.1e-3,
-        anisotropy: Anisotropy::default(),
-        roughness: Roughness::RmsSlope(0.05),
-        seed: 3,
-    };
+    let spec = self_affine(0.5e-3, 0.1e-3, 3);
     for kernel in [InfluenceKernel::periodic(&grid), InfluenceKernel::half_space(&grid)] {
         let mut contact = ViscoelasticContact::builder(grid.clone())
             .geometry(&Rough::new(&grid, spec).unwrap())

@@ -17,7 +17,7 @@ use crate::sum::sum;
 impl ViscoelasticContact {
     /// Time \[s\], 0 at first.
     pub fn time(&self) -> f64 {
-        self.time
+        self.state.time
     }
 
     /// The grid of every field.
@@ -44,12 +44,12 @@ impl ViscoelasticContact {
 
     /// The load of the last step, on the first body.
     pub fn load(&self) -> Load {
-        self.loads[0]
+        self.state.loads[0]
     }
 
     /// Contact pressure \[Pa\], one value a cell, ≥ 0.
     pub fn pressure(&self) -> &[f64] {
-        if self.region.is_whole() { &self.current.pressure } else { &self.shown }
+        if self.region.is_whole() { &self.state.current.pressure } else { &self.shown }
     }
 
     /// Composite normal surface displacement, positive into the bodies \[m\], one value a cell.
@@ -58,15 +58,15 @@ impl ViscoelasticContact {
     /// result.
     pub fn displacement(&self) -> &[f64] {
         if self.region.is_whole() {
-            return &self.displacement;
+            return &self.state.displacement;
         }
         let source = self.beyond.as_ref().map(|beyond| &beyond.strength[..]);
-        self.whole_displacement.get_or_init(|| self.on_the_whole_grid(&self.displacement, source).into_owned())
+        self.whole_displacement.get_or_init(|| self.on_the_whole_grid(&self.state.displacement, source).into_owned())
     }
 
     /// The part of the grid that is computed, and the displacement there.
     pub(super) fn computed(&self) -> (&Region, &[f64]) {
-        (&self.region, &self.displacement)
+        (&self.region, &self.state.displacement)
     }
 
     /// Writes the gap between the deformed bodies into `out` \[m\]: zero in contact to within the
@@ -78,7 +78,7 @@ impl ViscoelasticContact {
         exact_length("gap", out.len(), self.grid.len())?;
         let (n2, displacement) = (self.grid.cells()[1], self.displacement());
         for (k, h) in out.iter_mut().enumerate() {
-            let [omega, alpha1, alpha2] = self.motions[self.initial_gap.owner(k)];
+            let [omega, alpha1, alpha2] = self.state.motions[self.initial_gap.owner(k)];
             let [x1, x2] = self.grid.center(k / n2, k % n2);
             let lowered = (omega - self.initial_gap.datum) + alpha1 * x1 + alpha2 * x2;
             *h = self.initial_gap.above[k] + displacement[k] - lowered;
@@ -88,16 +88,16 @@ impl ViscoelasticContact {
 
     /// Length of the last step and the displacement before it.
     pub(super) fn displacement_before(&self) -> (f64, &[f64]) {
-        (if self.before_is_kept { self.interval } else { 0.0 }, &self.trial_displacement)
+        (if self.state.before_is_kept { self.state.interval } else { 0.0 }, &self.trial_displacement)
     }
 
     /// Time since the bodies were undisturbed \[s\].
     pub(super) fn age(&self) -> f64 {
-        self.time - self.undisturbed_until
+        self.state.time - self.state.undisturbed_until
     }
 
     pub(super) fn last_step_was_a_jump(&self) -> bool {
-        self.interval == 0.0
+        self.state.interval == 0.0
     }
 
     /// Pressure and displacement at the end of a step that was tried.
@@ -113,18 +113,18 @@ impl ViscoelasticContact {
     /// Rigid-body approach ω of the (first) body, at the origin of the grid \[m\]. Without load, the approach
     /// at which it just touches.
     pub fn approach(&self) -> f64 {
-        self.motions[0][0]
+        self.state.motions[0][0]
     }
 
     /// Tilt (α1, α2) of the (first) body \[rad\]: it lowers the surface by ω + α1 x1 + α2 x2.
     pub fn tilt(&self) -> [f64; 2] {
-        [self.motions[0][1], self.motions[0][2]]
+        [self.state.motions[0][1], self.state.motions[0][2]]
     }
 
     /// Normal force Σ p ΔA on all bodies together \[N\].
     pub fn force(&self) -> f64 {
         // row by row, so that rounding does not grow with the number of cells
-        let rows = self.current.pressure.chunks_exact(self.region.cells()[1]);
+        let rows = self.state.current.pressure.chunks_exact(self.region.cells()[1]);
         rows.map(sum).sum::<f64>() * self.grid.cell_area() * self.region.images() as f64
     }
 
@@ -135,7 +135,7 @@ impl ViscoelasticContact {
 
     /// Number of cells in contact (p > 0).
     pub fn contact_cells(&self) -> usize {
-        self.contact_cells
+        self.state.contact_cells
     }
 
     /// How far the cells in contact reach from the origin along x1 and x2, outer sides included \[m\].
@@ -151,13 +151,13 @@ impl ViscoelasticContact {
 
     /// Number of rigid bodies.
     pub fn bodies(&self) -> usize {
-        self.loads.len()
+        self.state.loads.len()
     }
 
     /// The state of one rigid body, in the order in which the builder was given them; `None` if there are
     /// not as many.
     pub fn body(&self, body: usize) -> Option<BodyState> {
-        let [approach, alpha1, alpha2] = *self.motions.get(body)?;
+        let [approach, alpha1, alpha2] = *self.state.motions.get(body)?;
         let (force, moment, contact_cells) = self.sums(|k| self.initial_gap.owner(k) == body);
         Some(BodyState { approach, tilt: [alpha1, alpha2], force, moment, contact_cells })
     }
@@ -186,10 +186,10 @@ impl fmt::Debug for ViscoelasticContact {
         f.debug_struct("ViscoelasticContact")
             .field("grid", &self.grid)
             .field("settings", &self.settings)
-            .field("time", &self.time)
-            .field("loads", &self.loads)
-            .field("motions", &self.motions)
-            .field("contact_cells", &self.contact_cells)
+            .field("time", &self.state.time)
+            .field("loads", &self.state.loads)
+            .field("motions", &self.state.motions)
+            .field("contact_cells", &self.state.contact_cells)
             .finish_non_exhaustive()
     }
 }

@@ -99,7 +99,7 @@ impl Controller {
 
     /// The length to try next, at most `left`.
     pub(super) fn length(&self, contact: &ViscoelasticContact, history: &dyn LoadHistory, left: f64) -> f64 {
-        self.next.unwrap_or_else(|| self.first(contact, history, left)).max(contact.shortest).min(left)
+        self.next.unwrap_or_else(|| self.first(contact, history, left)).max(contact.state.shortest).min(left)
     }
 
     /// The length of a step that the past says nothing about: the longest over which the creep after a jump, or after

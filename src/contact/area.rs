@@ -26,7 +26,7 @@ impl ViscoelasticContact {
     /// few per cent at 128² cells.
     pub fn contact_area(&self) -> f64 {
         let [n1, n2] = self.grid.cells();
-        if self.contact_cells == 0 {
+        if self.state.contact_cells == 0 {
             return 0.0;
         }
         // squares of four cell centres, one row and column beyond the grid on every side, or across the seam of a period

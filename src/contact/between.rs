@@ -38,14 +38,14 @@ impl ViscoelasticContact {
     /// If the time does not lie within the last step; after a step that failed, or one over the bodies
     /// ([`ViscoelasticContact::step_over`]), the state before it is not kept, and its end is all that is left of it.
     pub fn within_step(&self, time: f64) -> Result<Between<'_>> {
-        let start = if self.before_is_kept { self.time - self.interval } else { self.time };
+        let start = if self.state.before_is_kept { self.state.time - self.state.interval } else { self.state.time };
         // by rounding the start may come out a little off
-        let inside = time >= start - 1e-12 * self.interval && time <= self.time;
+        let inside = time >= start - 1e-12 * self.state.interval && time <= self.state.time;
         within("time within the last step", time, inside, "between its start and its end")?;
-        let share = if time == self.time || !self.before_is_kept {
+        let share = if time == self.state.time || !self.state.before_is_kept {
             1.0
         } else {
-            ((time - start) / self.interval).clamp(0.0, 1.0)
+            ((time - start) / self.state.interval).clamp(0.0, 1.0)
         };
         Ok(Between { contact: self, share, time })
     }
@@ -68,14 +68,14 @@ impl Between<'_> {
     }
 
     fn motion(&self, component: usize) -> f64 {
-        self.mix(self.contact.previous_motions[0][component], self.contact.motions[0][component])
+        self.mix(self.contact.state.previous_motions[0][component], self.contact.state.motions[0][component])
     }
 
     /// Normal force on all bodies together \[N\].
     pub fn force(&self) -> f64 {
         let area = self.contact.grid.cell_area() * self.contact.region.images() as f64;
         let sum = |pressure: &[f64]| pressure.iter().sum::<f64>() * area;
-        self.mix(sum(&self.contact.previous.pressure), sum(&self.contact.current.pressure))
+        self.mix(sum(&self.contact.state.previous.pressure), sum(&self.contact.state.current.pressure))
     }
 
     /// Writes the contact pressure \[Pa\] into `out`.
@@ -84,7 +84,7 @@ impl Between<'_> {
     /// If `out` does not hold one value a cell.
     pub fn pressure_into(&self, out: &mut [f64]) -> Result<()> {
         let contact = self.contact;
-        let before = contact.on_the_whole_grid(&contact.previous.pressure, None);
+        let before = contact.on_the_whole_grid(&contact.state.previous.pressure, None);
         self.mix_into(out, "pressure", &before, contact.pressure())
     }
 

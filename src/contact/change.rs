@@ -28,27 +28,26 @@ impl ViscoelasticContact {
     /// # Errors
     /// As [`ViscoelasticContact::set_geometry`], or if there is not one geometry a body.
     pub fn set_geometries(&mut self, geometries: &[&dyn Geometry]) -> Result<()> {
-        if geometries.len() != self.loads.len() {
-            return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.loads.len() });
+        if geometries.len() != self.state.loads.len() {
+            return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.state.loads.len() });
         }
         let gaps: Vec<_> = geometries.iter().map(|geometry| evaluate(*geometry, &self.grid)).collect();
         self.move_back();
         self.initial_gap = Gap::new(&gaps, &self.grid)?;
         self.gap_here = self.region.cut_gap(&self.initial_gap);
-        self.take_in_the_gap();
-        self.last_dt = 0.0; // the last change of the pressure says nothing about the next
+        self.take_in_the_gap(self.still_even());
+        self.state.last_dt = 0.0; // the last change of the pressure says nothing about the next
         Ok(())
     }
 
-    /// Brings what hangs on the gap up to date with a new one.
-    pub(super) fn take_in_the_gap(&mut self) {
+    /// Brings what hangs on the gap up to date with a new one, which is even about the axes `still` folded.
+    pub(super) fn take_in_the_gap(&mut self, still: [bool; 2]) {
         self.gap_id = next_id();
         if let Some(here) = &mut self.gap_here {
             self.region.cut_into(&self.initial_gap.above, &mut here.above);
             here.datum = self.initial_gap.datum;
         }
         self.survey();
-        let still = self.still_even();
         if still != self.region.folded() {
             self.unfold(still);
         }

@@ -1,5 +1,6 @@
 //! Finds what a step should be looked at for, from what it has at hand.
 
+use crate::contact::extent::Extent;
 use crate::contact::settings::Edge;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::warning::{Warning, Warnings};
@@ -16,8 +17,8 @@ impl ViscoelasticContact {
     pub(super) fn doubts(&self, dt: f64, rings: bool) -> Warnings {
         let (axes, periodic) = (self.grid.cells(), self.kernel.periodic_axes());
         let (mut near, mut few) = (false, false);
-        if let Some((low, high)) = self.region.reach(&self.current.pressure) {
-            let all_in_touch = self.contact_cells == self.grid.len();
+        if let Some(Extent { low, high }) = self.region.reach(&self.state.current.pressure) {
+            let all_in_touch = self.state.contact_cells == self.grid.len();
             let mut line = false;
             for axis in 0..2 {
                 // across a line, or around a period, contact has no end that a mesh could miss
@@ -28,7 +29,7 @@ impl ViscoelasticContact {
                 few |= high[axis] + 1 - low[axis] < ACROSS && !(periodic[axis] && all_in_touch);
                 near |= !periodic[axis] && (low[axis] < MARGIN + 1 || high[axis] + MARGIN + 1 >= axes[axis]);
             }
-            few |= !line && self.contact_cells < IN_ALL && !(periodic == [true; 2] && all_in_touch);
+            few |= !line && self.state.contact_cells < IN_ALL && !(periodic == [true; 2] && all_in_touch);
         }
         let (age, [from, until]) = (self.age(), self.material.measured());
         let remembers = !self.is_undisturbed();
@@ -39,6 +40,6 @@ impl ViscoelasticContact {
             .with(Warning::FasterThanMaterial, remembers && dt > 0.0 && dt < from)
             .with(Warning::NearEndOfMaterial, remembers && dt > 0.0 && !is_known(age + dt, self.material.known_until()))
             .with(Warning::Rings, rings)
-            .with(Warning::FallBack, self.current.counts.fallback_iterations > 0)
+            .with(Warning::FallBack, self.state.current.counts.fallback_iterations > 0)
     }
 }

@@ -208,7 +208,7 @@ impl<'a> Follow<'a> {
         finite("end of the run", self.until)?;
         within("end of the run", self.until, self.until >= self.progress.start, "at or after the time of the contact")?;
 
-        self.contact.history.expect(self.until - self.contact.undisturbed_until);
+        self.contact.history.expect(self.until - self.contact.state.undisturbed_until);
 
         let now = self.contact.time();
         let load = self.history.at(now);
@@ -298,7 +298,7 @@ impl<'a> Follow<'a> {
     /// Whether a step that was found too long may be tried again, shorter: not below what the material resolves, or it
     /// would be tried for ever.
     fn may_shorten(&self, time: f64, dt: f64) -> Result<()> {
-        let known_from = self.contact.shortest;
+        let known_from = self.contact.state.shortest;
         // what is left of a length after it was added to a time is a little off
         if dt > 1.01 * known_from { Ok(()) } else { Err(Error::BelowMaterial { time, dt, known_from }) }
     }

@@ -53,26 +53,26 @@ impl ViscoelasticContact {
         self.stride = [0; 2];
         if result.is_ok() && cells != [0; 2] {
             // cell by cell, the field before the step belongs to other places
-            self.before_is_kept = false;
+            self.state.before_is_kept = false;
         }
         result
     }
 
-    /// What the past makes of the end of a step, u = u_old + c K p: u_old is written to the trial, c returned.
-    pub(super) fn predict(&mut self, time: f64, dt: f64) -> Result<f64> {
+    /// What the past makes of the end of a step, u = u_old + c K p: u_old is written to the trial; returned are c, and how many
+    /// convolutions that took.
+    pub(super) fn predict(&mut self, time: f64, dt: f64) -> Result<(f64, usize)> {
         let History::Sources(history) = &mut self.history else {
-            return self.history.predict(time, dt, &self.displacement, &mut self.trial_displacement);
+            let c = self.history.predict(time, dt, &self.state.displacement, &mut self.trial_displacement)?;
+            return Ok((c, 0));
         };
         let c = history.predict(time, dt, self.stride)?;
-        if history.remembers() {
-            let [caused, laid] = history.old();
-            self.kernel_here.apply(caused, &mut self.trial_displacement, &mut self.work);
-            self.trial_displacement.iter_mut().zip(laid).for_each(|(u_old, &e)| *u_old += e);
-            self.convolutions_of_the_past = 1;
-        } else {
+        if !history.remembers() {
             self.trial_displacement.fill(0.0);
-            self.convolutions_of_the_past = 0;
+            return Ok((c, 0));
         }
-        Ok(c)
+        let [caused, laid] = history.old();
+        self.kernel_here.apply(caused, &mut self.trial_displacement, &mut self.work);
+        self.trial_displacement.iter_mut().zip(laid).for_each(|(u_old, &e)| *u_old += e);
+        Ok((c, 1))
     }
 }

@@ -72,31 +72,31 @@ impl ViscoelasticContact {
         self.trial.counts = Counts::default();
         self.trial.trace.clear();
         for (body, motion) in self.trial.motions.iter_mut().enumerate() {
-            let [omega, alpha1, alpha2] = self.motions[body];
+            let [omega, alpha1, alpha2] = self.state.motions[body];
             let modes = Modes::new(self.region.grid(), self.freedoms[body]);
             *motion = modes.motion([omega - self.initial_gap.datum, alpha1, alpha2]);
         }
-        let mut ahead = if self.last_dt > 0.0 { (dt / self.last_dt).min(FARTHEST_GUESS) } else { 0.0 };
+        let mut ahead = if self.state.last_dt > 0.0 { (dt / self.state.last_dt).min(FARTHEST_GUESS) } else { 0.0 };
         let positive = |p: f64| if p > 0.0 { p } else { 0.0 };
         let guess = |p: f64, before: f64| positive(p + ahead * (p - before));
-        let guessed = sum_of_pairs(&self.current.pressure, &self.previous.pressure, guess);
+        let guessed = sum_of_pairs(&self.state.current.pressure, &self.state.previous.pressure, guess);
         // a single force says what the guess must carry; else it should not stray far from the last state
         let wanted = if self.freedoms.len() == 1 && self.freedoms[0].translation {
             self.freedoms[0].total
         } else {
-            sum(&self.current.pressure)
+            sum(&self.state.current.pressure)
         };
         let near = |sum: f64| (wanted / FARTHEST_FORCE..=wanted * FARTHEST_FORCE).contains(&sum);
         if !near(guessed) {
             ahead = 0.0;
         }
-        self.refresh.ahead = ahead;
+        self.state.refresh.ahead = ahead;
         // full contact of bodies whose mean is held does not tell how hard a given approach presses
         let held = self.freedoms.iter().all(|freedom| !freedom.translation);
-        if held && self.contact_cells == self.grid.len() && self.kernel.mean_is_held() {
+        if held && self.state.contact_cells == self.grid.len() && self.kernel_here.mean_is_held() {
             return self.trial.release();
         }
-        if ahead == 0.0 && wanted > 0.0 && !near(sum(&self.current.pressure)) {
+        if ahead == 0.0 && wanted > 0.0 && !near(sum(&self.state.current.pressure)) {
             // another load altogether: the last contact is no guide, the solver starts afresh
             return self.trial.release();
         }
@@ -105,9 +105,9 @@ impl ViscoelasticContact {
                 *guess = now + ahead * (now - before);
             }
         };
-        extrapolate(&mut self.trial.pressure, &self.current.pressure, &self.previous.pressure);
-        if self.refresh.due == 0 {
-            extrapolate(&mut self.trial.potential, &self.current.potential, &self.previous.potential);
+        extrapolate(&mut self.trial.pressure, &self.state.current.pressure, &self.state.previous.pressure);
+        if self.state.refresh.due == 0 {
+            extrapolate(&mut self.trial.potential, &self.state.current.potential, &self.state.previous.potential);
         } else if matches!(self.solver, ContactSolver::ActiveSet(_)) {
             self.kernel_here.apply(&self.trial.pressure, &mut self.trial.potential, &mut self.work);
             self.trial.counts.convolutions += 1;

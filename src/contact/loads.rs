@@ -13,8 +13,8 @@ use crate::solver::{Freedom, Modes};
 impl ViscoelasticContact {
     /// Refuses loads that no pressure can balance.
     pub(super) fn admit(&mut self, time: f64, loads: &[Load]) -> Result<()> {
-        if loads.len() != self.loads.len() {
-            return Err(Error::WrongNumberOfLoads { loads: loads.len(), bodies: self.loads.len() });
+        if loads.len() != self.state.loads.len() {
+            return Err(Error::WrongNumberOfLoads { loads: loads.len(), bodies: self.state.loads.len() });
         }
         for (body, load) in loads.iter().enumerate() {
             load.validate()?;
@@ -73,7 +73,8 @@ impl ViscoelasticContact {
     /// Refuses an approach beyond that which closes every gap, where the mean displacement is held: Σ h = Σ gap ≥ 0.
     pub(super) fn stay_below_full_contact(&self, time: f64, loads: &[Load]) -> Result<()> {
         let held = loads.iter().all(|load| matches!(load, Load::Approach { .. }));
-        let (true, true, &[Load::Approach { approach, .. }, ..]) = (held, self.kernel.mean_is_held(), loads) else {
+        let (true, true, &[Load::Approach { approach, .. }, ..]) = (held, self.kernel_here.mean_is_held(), loads)
+        else {
             return Ok(());
         };
         let left = self.gap.iter().sum::<f64>() / self.gap.len() as f64;

@@ -9,6 +9,7 @@ mod change;
 #[cfg(feature = "checkpoint")]
 mod checkpoint;
 mod doubts;
+mod extent;
 mod follow;
 mod frame;
 mod guess;
@@ -21,6 +22,7 @@ mod reside;
 mod settings;
 mod snapshot;
 mod spatial;
+mod state;
 mod steady;
 mod stepper;
 mod stiffness;

@@ -1,6 +1,7 @@
 //! The part of the grid that a contact is computed on.
 
 use crate::Grid;
+use crate::contact::extent::Extent;
 use crate::geometry::Gap;
 use crate::kernel::images;
 
@@ -32,13 +33,12 @@ impl Region {
         Region::new(grid, folded, first, [0, 1].map(|axis| all[axis] - first[axis]))
     }
 
-    /// A region of suitable size that holds the cells `low` … `high` of the whole grid, and the part `margin` of their
-    /// number more.
-    pub(crate) fn around(grid: &Grid, folded: [bool; 2], low: [usize; 2], high: [usize; 2], margin: f64) -> Region {
+    /// A region of suitable size that holds these cells of the whole grid, and the part `margin` of their number more.
+    pub(crate) fn around(grid: &Grid, folded: [bool; 2], held: Extent, margin: f64) -> Region {
         let (mut first, mut cells) = ([0; 2], [0; 2]);
         for axis in 0..2 {
             let (n, middle) = (grid.cells()[axis], grid.cells()[axis] / 2);
-            let (low, high) = (low[axis], high[axis]);
+            let (low, high) = (held.low[axis], held.high[axis]);
             let extent = if folded[axis] {
                 (high + 1).saturating_sub(middle).max(middle.saturating_sub(low))
             } else {
@@ -57,23 +57,18 @@ impl Region {
 
     /// A small one that holds the lowest cell of each body.
     pub(crate) fn first_touched(grid: &Grid, folded: [bool; 2], gap: &Gap, bodies: usize) -> Region {
-        let (low, high) = Region::lowest_cells(grid, gap, bodies);
-        Region::around(grid, folded, low, high, 0.0)
+        Region::around(grid, folded, Region::lowest_cells(grid, gap, bodies), 0.0)
     }
 
     /// The least rectangle that holds the lowest cell of each body.
-    pub(crate) fn lowest_cells(grid: &Grid, gap: &Gap, bodies: usize) -> ([usize; 2], [usize; 2]) {
+    pub(crate) fn lowest_cells(grid: &Grid, gap: &Gap, bodies: usize) -> Extent {
         let n2 = grid.cells()[1];
-        let (mut low, mut high) = (grid.cells(), [0; 2]);
-        for body in 0..bodies {
+        let lowest = (0..bodies).filter_map(|body| {
             let own = (0..gap.above.len()).filter(|&k| gap.owner(k) == body);
             // of mirror images the last is the one that is computed
-            if let Some(k) = own.rev().min_by(|&a, &b| gap.above[a].total_cmp(&gap.above[b])) {
-                let cell = [k / n2, k % n2];
-                (low, high) = ([0, 1].map(|a| low[a].min(cell[a])), [0, 1].map(|a| high[a].max(cell[a])));
-            }
-        }
-        (low, high)
+            own.rev().min_by(|&a, &b| gap.above[a].total_cmp(&gap.above[b]))
+        });
+        Extent::hull(lowest.map(|k| Extent::of([k / n2, k % n2]))).unwrap_or(Extent::of([0; 2]))
     }
 
     /// Whether it is one of `grid`.
@@ -121,8 +116,8 @@ impl Region {
     }
 
     /// The first and the last of its cells, as cells of the whole grid.
-    pub(crate) fn extent(&self) -> ([usize; 2], [usize; 2]) {
-        (self.first, [0, 1].map(|axis| self.first[axis] + self.cells()[axis] - 1))
+    pub(crate) fn extent(&self) -> Extent {
+        Extent { low: self.first, high: [0, 1].map(|axis| self.first[axis] + self.cells()[axis] - 1) }
     }
 
     /// Its cell that is, or is the image of, a cell of the whole grid.
@@ -191,23 +186,20 @@ impl Region {
 
     /// The least rectangle of the whole grid that holds the cells, and the images of cells, whose value in `own` is positive;
     /// `None` if there is none.
-    pub(crate) fn reach(&self, own: &[f64]) -> Option<([usize; 2], [usize; 2])> {
-        let (mut low, mut high) = ([usize::MAX; 2], [0; 2]);
-        for (i, row) in own.chunks_exact(self.cells()[1]).enumerate() {
-            let Some(first) = row.iter().position(|&value| value > 0.0) else { continue };
-            let last = row.iter().rposition(|&value| value > 0.0).unwrap_or(first);
-            (low, high) = ([low[0].min(i), low[1].min(first)], [high[0].max(i), high[1].max(last)]);
-        }
-        if low[0] > high[0] {
-            return None;
-        }
+    pub(crate) fn reach(&self, own: &[f64]) -> Option<Extent> {
+        let rows = own.chunks_exact(self.cells()[1]).enumerate().filter_map(|(i, row)| {
+            let first = row.iter().position(|&value| value > 0.0)?;
+            let last = row.iter().rposition(|&value| value > 0.0)?;
+            Some(Extent { low: [i, first], high: [i, last] })
+        });
+        let Extent { mut low, mut high } = Extent::hull(rows)?;
         for axis in 0..2 {
             (low[axis], high[axis]) = (low[axis] + self.first[axis], high[axis] + self.first[axis]);
             if self.folded[axis] {
                 low[axis] = low[axis].min(self.whole.cells()[axis] - 1 - high[axis]);
             }
         }
-        Some((low, high))
+        Some(Extent { low, high })
     }
 
     /// Number of cells on the edge of the whole grid whose value in `own` is positive; periodic axes have no edge.
@@ -259,9 +251,9 @@ mod tests {
                 );
             }
         }
-        let inside = Region::around(&grid([64, 64]), [false; 2], [20, 30], [25, 35], 0.1);
+        let inside = Region::around(&grid([64, 64]), [false; 2], Extent { low: [20, 30], high: [25, 35] }, 0.1);
         assert_eq!(inside.positive_on_edge(&vec![1.0; inside.len()], [false; 2]), 0);
-        let aside = Region::around(&grid([64, 64]), [false; 2], [0, 30], [5, 35], 0.1);
+        let aside = Region::around(&grid([64, 64]), [false; 2], Extent { low: [0, 30], high: [5, 35] }, 0.1);
         assert_eq!(aside.positive_on_edge(&vec![1.0; aside.len()], [false; 2]), aside.cells()[1]);
     }
 
@@ -272,8 +264,8 @@ mod tests {
         for folded in [[false, false], [true, false], [false, true], [true, true]] {
             for region in [
                 Region::whole(&whole, folded),
-                Region::around(&whole, folded, [8, 12], [11, 16], 0.2),
-                Region::around(&whole, folded, [0, 29], [19, 29], 0.2),
+                Region::around(&whole, folded, Extent { low: [8, 12], high: [11, 16] }, 0.2),
+                Region::around(&whole, folded, Extent { low: [0, 29], high: [19, 29] }, 0.2),
             ] {
                 let even = |cell: [usize; 2]| {
                     let [x, y] = [0, 1].map(|axis| whole.coordinate(axis, cell[axis]));
@@ -309,7 +301,7 @@ mod tests {
                         let touched = || (0..600).filter(|&k| images[k] > 0.0).map(along);
                         (touched().min().unwrap(), touched().max().unwrap())
                     };
-                    let (low, high) = region.reach(&one).unwrap();
+                    let Extent { low, high } = region.reach(&one).unwrap();
                     assert_eq!([(low[0], high[0]), (low[1], high[1])], [of(0), of(1)], "{cell:?} {folded:?}");
                 }
                 assert_eq!(region.reach(&vec![0.0; region.len()]), None);

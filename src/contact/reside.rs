@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::f64::consts::PI;
 
+use crate::contact::extent::Extent;
 use crate::contact::loads::lowered;
 use crate::contact::region::Region;
 use crate::contact::stepper::{ContactSolver, ViscoelasticContact};
@@ -83,7 +84,7 @@ impl ViscoelasticContact {
             self.keep_for_failure();
             self.unfold(still);
         }
-        if self.beyond.is_some() && self.is_undisturbed() && !self.placed {
+        if self.beyond.is_some() && self.is_undisturbed() && !self.state.placed {
             self.place(dt, loads);
         }
     }
@@ -93,19 +94,18 @@ impl ViscoelasticContact {
         let region = if self.region.covers() {
             Region::whole(&self.grid, still)
         } else {
-            let (mut low, high) = self.region.extent();
+            let mut held = self.region.extent();
             for axis in (0..2).filter(|&axis| self.region.folded()[axis] && !still[axis]) {
-                low[axis] = self.grid.cells()[axis] - 1 - high[axis];
+                held.low[axis] = self.grid.cells()[axis] - 1 - held.high[axis];
             }
-            Region::around(&self.grid, still, low, high, 0.0)
+            Region::around(&self.grid, still, held, 0.0)
         };
         self.reside(region);
     }
 
     /// Chooses the region of a first contact by an estimate of how deep the bodies sink in.
     fn place(&mut self, dt: f64, loads: &[Load]) {
-        let (mut low, mut high) = Region::lowest_cells(&self.grid, &self.initial_gap, loads.len());
-        let mut touched = false;
+        let mut touched: Option<Extent> = None;
         for (body, load) in loads.iter().enumerate() {
             let free_tilt = |axis: usize| matches!(load.tilt()[axis], Tilt::Free { .. }) && !self.region.folded()[axis];
             let motion = lowered(load, self.initial_gap.datum);
@@ -115,15 +115,13 @@ impl ViscoelasticContact {
                 Load::Force { normal, .. } => [self.estimate_depth(dt, body, normal), motion[1], motion[2]],
                 Load::Approach { .. } => motion,
             };
-            if let Some((l, h)) = self.cells_below(body, motion, |_| 0.0) {
-                touched = true;
-                (low, high) = ([0, 1].map(|a| low[a].min(l[a])), [0, 1].map(|a| high[a].max(h[a])));
-            }
+            touched = Extent::hull(touched.into_iter().chain(self.cells_below(body, motion, |_| 0.0)));
         }
-        if touched {
+        if let Some(touched) = touched {
+            let lowest = Region::lowest_cells(&self.grid, &self.initial_gap, loads.len());
             self.keep_for_failure();
-            self.placed = true;
-            self.reside(self.region_for(low, high));
+            self.state.placed = true;
+            self.reside(self.region_for(lowest.with(touched)));
         }
     }
 
@@ -150,33 +148,29 @@ impl ViscoelasticContact {
 
     /// The least rectangle of cells where the undeformed gap of a body lowered by `motion`, and filled by `under`, is
     /// negative; none of the region's own, if it is in use.
-    fn cells_below(
-        &self,
-        body: usize,
-        motion: [f64; 3],
-        under: impl Fn([f64; 2]) -> f64,
-    ) -> Option<([usize; 2], [usize; 2])> {
+    fn cells_below(&self, body: usize, motion: [f64; 3], under: impl Fn([f64; 2]) -> f64) -> Option<Extent> {
         let ([n1, n2], gap) = (self.grid.cells(), &self.initial_gap);
         let start = [0, 1].map(|axis| if self.region.folded()[axis] { self.grid.cells()[axis] / 2 } else { 0 });
-        let (mut low, mut high, mut any) = ([n1, n2], [0; 2], false);
+        let mut below: Option<Extent> = None;
         for i in start[0]..n1 {
             for j in start[1]..n2 {
                 let (k, x) = (i * n2 + j, self.grid.center(i, j));
                 let depth = motion[0] + motion[1] * x[0] + motion[2] * x[1] - gap.above[k];
-                if depth <= 0.0 || gap.owner(k) != body || (self.placed && self.region.find([i, j]).is_some()) {
+                if depth <= 0.0 || gap.owner(k) != body || (self.state.placed && self.region.find([i, j]).is_some()) {
                     continue;
                 }
                 if depth > under(x) {
-                    (low, high, any) = ([low[0].min(i), low[1].min(j)], [high[0].max(i), high[1].max(j)], true);
+                    let cell = Extent::of([i, j]);
+                    below = Some(below.map_or(cell, |below| below.with(cell)));
                 }
             }
         }
-        any.then_some((low, high))
+        below
     }
 
-    fn region_for(&self, low: [usize; 2], high: [usize; 2]) -> Region {
+    fn region_for(&self, held: Extent) -> Region {
         let whole = Region::whole(&self.grid, self.region.folded());
-        let region = Region::around(&self.grid, self.region.folded(), low, high, MARGIN);
+        let region = Region::around(&self.grid, self.region.folded(), held, MARGIN);
         if region.len() as f64 > WORTH_IT * whole.len() as f64 { whole } else { region }
     }
 
@@ -206,15 +200,8 @@ impl ViscoelasticContact {
         let radius = radius + 0.5 * side1.hypot(side2);
         let source = total * grid.cell_area() * self.region.images() as f64 / PI;
         let under = |x: [f64; 2]| source / (distance(x) + radius);
-        let (mut low, mut high) = self.region.extent();
-        let mut grown = false;
-        for (body, motion) in motions().enumerate() {
-            if let Some((l, h)) = self.cells_below(body, motion, under) {
-                grown = true;
-                (low, high) = ([0, 1].map(|a| low[a].min(l[a])), [0, 1].map(|a| high[a].max(h[a])));
-            }
-        }
-        grown.then(|| self.region_for(low, high))
+        let touched = motions().enumerate().filter_map(|(body, motion)| self.cells_below(body, motion, under));
+        Extent::hull(touched).map(|touched| self.region_for(self.region.extent().with(touched)))
     }
 
     /// (ω, α1, α2) of a body in the step being tried, ω from the datum.
@@ -242,7 +229,7 @@ impl ViscoelasticContact {
 
     /// Moves to another region: what is new there of displacement and history is computed from U.
     pub(super) fn reside(&mut self, region: Region) {
-        self.history.settle(&self.trial_displacement, &self.displacement);
+        self.history.settle(&self.trial_displacement, &self.state.displacement);
         let old = self.occupy(region);
         events::moved(old.cells(), self.region.cells());
         let cells = self.region.len();
@@ -264,7 +251,7 @@ impl ViscoelasticContact {
         }
         let source = beyond.as_ref();
         self.trial_displacement = induce(&self.trial_displacement, source.map(|beyond| &beyond.trial[..]));
-        self.displacement = induce(&self.displacement, source.map(|beyond| &beyond.strength[..]));
+        self.state.displacement = induce(&self.state.displacement, source.map(|beyond| &beyond.strength[..]));
         match &mut self.history {
             History::Exponential(history) => history.carry(old.len(), cells, |i, own| {
                 let source = source.map(|beyond| beyond.history.branch(i, old.len()));
@@ -274,7 +261,7 @@ impl ViscoelasticContact {
             History::Unfitted(history) => history.carry(cells),
             History::Sources(history) => history.carry(region.cells(), |own| old.carry(own, &region, |_| 0.0)),
         }
-        for state in [&mut self.current, &mut self.previous] {
+        for state in [&mut self.state.current, &mut self.state.previous] {
             let potential = induce(&state.potential, Some(&state.pressure));
             let pressure = old.carry(&state.pressure, &region, |_| 0.0);
             *state = Solution { pressure, potential, motions: std::mem::take(&mut state.motions), ..*state };
@@ -292,7 +279,7 @@ impl ViscoelasticContact {
     /// Makes all that belongs to a region, but for the state there; returns the one before.
     pub(super) fn occupy(&mut self, region: Region) -> Region {
         let old = std::mem::replace(&mut self.region, region);
-        let (cells, bodies) = (self.region.len(), self.loads.len());
+        let (cells, bodies) = (self.region.len(), self.state.loads.len());
         self.kernel_here = self.kernel.on(self.region.grid(), self.region.folded(), self.settings.is_mixed());
         self.work = self.kernel_here.workspace();
         self.gap_here = self.region.cut_gap(&self.initial_gap);
@@ -317,7 +304,7 @@ impl ViscoelasticContact {
         self.whole_displacement.take();
         if !self.region.is_whole() {
             self.shown.resize(self.grid.len(), 0.0);
-            self.region.spread(&self.current.pressure, &mut self.shown);
+            self.region.spread(&self.state.current.pressure, &mut self.shown);
         }
     }
 

@@ -1,15 +1,13 @@
 //! States kept in memory, for callers that try steps and take them back.
 
-use crate::contact::guess::Refresh;
 use crate::contact::region::Region;
 use crate::contact::reside::Beyond;
+use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::geometry::Gap;
 use crate::hereditary::History;
-use crate::load::Load;
 use crate::rheology::Material;
-use crate::solver::Solution;
 
 /// The state of a contact in memory, made by [`ViscoelasticContact::snapshot`]: what the others change from step to step, without
 /// kernel and work space. About 60 bytes a computed cell, 8 more for each relaxation time.
@@ -17,27 +15,13 @@ use crate::solver::Solution;
 pub struct Snapshot {
     region: Region,
     beyond: Option<Beyond>,
-    placed: bool,
     history: History,
     material: Material,
-    fitted_over: Option<[f64; 2]>,
-    undisturbed_until: f64,
-    shortest: f64,
     gap: Gap,
     gap_id: u64,
-    time: f64,
-    loads: Vec<Load>,
-    displacement: Vec<f64>,
+    state: State,
+    /// The displacement before the last step.
     before: Vec<f64>,
-    before_is_kept: bool,
-    current: Solution,
-    previous: Solution,
-    motions: Vec<[f64; 3]>,
-    previous_motions: Vec<[f64; 3]>,
-    contact_cells: usize,
-    interval: f64,
-    last_dt: f64,
-    refresh: Refresh,
     contact: u64,
 }
 
@@ -69,27 +53,12 @@ impl ViscoelasticContact {
         Snapshot {
             region: self.region.clone(),
             beyond: self.beyond.clone(),
-            placed: self.placed,
             history: self.history.clone(),
             material: self.material.clone(),
-            fitted_over: self.fitted_over,
-            undisturbed_until: self.undisturbed_until,
-            shortest: self.shortest,
             gap: self.initial_gap.clone(),
             gap_id: self.gap_id,
-            time: self.time,
-            loads: self.loads.clone(),
-            displacement: self.displacement.clone(),
+            state: self.state.clone(),
             before: self.trial_displacement.clone(),
-            before_is_kept: self.before_is_kept,
-            current: self.current.clone(),
-            previous: self.previous.clone(),
-            motions: self.motions.clone(),
-            previous_motions: self.previous_motions.clone(),
-            contact_cells: self.contact_cells,
-            interval: self.interval,
-            last_dt: self.last_dt,
-            refresh: self.refresh,
             contact: self.id,
         }
     }
@@ -104,30 +73,16 @@ impl ViscoelasticContact {
         if snapshot.gap_id != self.gap_id {
             (snapshot.gap, snapshot.gap_id) = (self.initial_gap.clone(), self.gap_id);
         }
-        if snapshot.fitted_over != self.fitted_over {
-            (snapshot.material, snapshot.fitted_over) = (self.material.clone(), self.fitted_over);
+        if snapshot.state.fitted_over != self.state.fitted_over {
+            snapshot.material = self.material.clone();
         }
         match (&mut snapshot.beyond, &self.beyond) {
             (Some(own), Some(beyond)) => own.copy_from(beyond),
             (own, beyond) => *own = beyond.clone(),
         }
         snapshot.history.copy_from(&self.history);
-        snapshot.loads.clone_from(&self.loads);
-        snapshot.displacement.clone_from(&self.displacement);
+        snapshot.state.copy_from(&self.state);
         snapshot.before.clone_from(&self.trial_displacement);
-        snapshot.current.copy_from(&self.current);
-        snapshot.previous.copy_from(&self.previous);
-        snapshot.motions.clone_from(&self.motions);
-        snapshot.previous_motions.clone_from(&self.previous_motions);
-        snapshot.placed = self.placed;
-        snapshot.undisturbed_until = self.undisturbed_until;
-        snapshot.shortest = self.shortest;
-        snapshot.time = self.time;
-        snapshot.before_is_kept = self.before_is_kept;
-        snapshot.contact_cells = self.contact_cells;
-        snapshot.interval = self.interval;
-        snapshot.last_dt = self.last_dt;
-        snapshot.refresh = self.refresh;
     }
 
     /// Goes back to a state, the indenter where it was then: the steps that follow are the same as they were, bit by bit.
@@ -150,30 +105,16 @@ impl ViscoelasticContact {
         } else if moved {
             self.gap_here = self.region.cut_gap(&self.initial_gap);
         }
-        if snapshot.fitted_over != self.fitted_over {
-            (self.material, self.fitted_over) = (snapshot.material.clone(), snapshot.fitted_over);
+        if snapshot.state.fitted_over != self.state.fitted_over {
+            self.material = snapshot.material.clone();
         }
         match (&mut self.beyond, &snapshot.beyond) {
             (Some(own), Some(beyond)) => own.copy_from(beyond),
             (own, beyond) => *own = beyond.clone(),
         }
         self.history.copy_from(&snapshot.history);
-        self.loads.clone_from(&snapshot.loads);
-        self.displacement.clone_from(&snapshot.displacement);
+        self.state.copy_from(&snapshot.state);
         self.trial_displacement.clone_from(&snapshot.before);
-        self.current.copy_from(&snapshot.current);
-        self.previous.copy_from(&snapshot.previous);
-        self.motions.clone_from(&snapshot.motions);
-        self.previous_motions.clone_from(&snapshot.previous_motions);
-        self.placed = snapshot.placed;
-        self.undisturbed_until = snapshot.undisturbed_until;
-        self.shortest = snapshot.shortest;
-        self.time = snapshot.time;
-        self.before_is_kept = snapshot.before_is_kept;
-        self.contact_cells = snapshot.contact_cells;
-        self.interval = snapshot.interval;
-        self.last_dt = snapshot.last_dt;
-        self.refresh = snapshot.refresh;
         self.progress = None;
         if moved {
             self.survey();

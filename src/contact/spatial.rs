@@ -69,10 +69,10 @@ impl ViscoelasticContact {
         if total == 0.0 || rim_cells == 0 {
             return SpatialError::default();
         }
-        let (share, delta) = (rim / total, rim_cells as f64 / (2 * self.contact_cells) as f64);
+        let (share, delta) = (rim / total, rim_cells as f64 / (2 * self.state.contact_cells) as f64);
         let smooth = share.min(SMOOTH_SHARE * delta.powf(1.5)) * delta.sqrt();
         // at a singular edge the pressure rises to the rim; creep raises it towards a growing rim, but lets it fall there
-        let rises = rim / rim_cells as f64 > SINGULAR * total / self.contact_cells as f64;
+        let rises = rim / rim_cells as f64 > SINGULAR * total / self.state.contact_cells as f64;
         let singular = if rises { SINGULAR_APPROACH * (share * delta.sqrt() - smooth) } else { 0.0 };
         SpatialError {
             approach: SMOOTH_APPROACH * smooth + singular,

@@ -6,13 +6,13 @@ use std::sync::{Arc, OnceLock};
 use crate::Grid;
 use crate::contact::builder::Builder;
 use crate::contact::follow::Progress;
-use crate::contact::guess::Refresh;
 use crate::contact::hull::Hull;
 use crate::contact::loads::{first_touch, lowered};
 use crate::contact::region::Region;
 use crate::contact::report::StepReport;
 use crate::contact::reside::{Beyond, symmetry};
 use crate::contact::settings::{Edge, Settings, Solver, TimeRule};
+use crate::contact::state::State;
 use crate::error::{Convergence, Error, Result, non_negative};
 use crate::events;
 use crate::geometry::Gap;
@@ -66,8 +66,6 @@ pub struct ViscoelasticContact {
     pub(super) work: Workspace,
     /// What lies beyond; nothing if the region and its mirror images are the whole grid.
     pub(super) beyond: Option<Beyond>,
-    /// Whether the region was chosen for a contact.
-    pub(super) placed: bool,
     /// What it was before the step being tried moved it to another region.
     pub(super) before_move: Option<Box<ViscoelasticContact>>,
     /// Room for the gap of a step along a path, and of what the path lies over; made by the first.
@@ -75,18 +73,10 @@ pub struct ViscoelasticContact {
     pub(super) spare_track: Vec<f64>,
     /// How far the indenter moves over the bodies in the step being tried \[cells\].
     pub(super) stride: [isize; 2],
-    /// Convolutions that its past took.
-    pub(super) convolutions_of_the_past: usize,
     pub(super) settings: Settings,
     pub(super) solver: ContactSolver,
     pub(super) material: Material,
     pub(super) history: History,
-    /// The bodies were undisturbed until then.
-    pub(super) undisturbed_until: f64,
-    /// Steps may not be shorter: the first step chose the times that the material's series was fitted over.
-    pub(super) shortest: f64,
-    /// The times that the first step fitted the material's series over, if it did.
-    pub(super) fitted_over: Option<[f64; 2]>,
     /// C of the material it was built with, at some times: what tells scenes apart.
     #[cfg(feature = "checkpoint")]
     pub(super) built_compliance: Vec<u64>,
@@ -102,29 +92,11 @@ pub struct ViscoelasticContact {
     /// Where loads may act, for each body; made when one is first free to tilt.
     pub(super) hulls: Vec<Option<Hull>>,
 
-    pub(super) time: f64,
-    pub(super) loads: Vec<Load>,
-    pub(super) displacement: Vec<f64>,
-    pub(super) current: Solution,
-    /// (ω, α1, α2) of each body, ω at the origin.
-    pub(super) motions: Vec<[f64; 3]>,
-    /// Cells in contact of the whole grid.
-    pub(super) contact_cells: usize,
+    pub(super) state: State,
     /// Pressure on the whole grid, if not all of it is computed.
     pub(super) shown: Vec<f64>,
     /// Displacement on the whole grid, once it was asked for.
     pub(super) whole_displacement: OnceLock<Vec<f64>>,
-    /// (ω, α1, α2) before the last step, and its length.
-    pub(super) previous_motions: Vec<[f64; 3]>,
-    pub(super) interval: f64,
-    /// Whether `trial_displacement` holds the displacement before the last step.
-    pub(super) before_is_kept: bool,
-
-    /// The state one step earlier, and the length of that step: what a guess extrapolates from.
-    pub(super) previous: Solution,
-    pub(super) last_dt: f64,
-    pub(super) refresh: Refresh,
-
     /// The step being tried; thrown away if it fails.
     pub(super) trial: Solution,
     /// Between steps the displacement before the last one, which the history has yet to take in.
@@ -145,6 +117,8 @@ pub(crate) enum ContactSolver {
 pub(super) struct Attempt {
     time: f64,
     dt: f64,
+    /// Σ p.
+    sum: f64,
 }
 
 /// A number that nothing else has in this process.
@@ -200,7 +174,6 @@ impl ViscoelasticContact {
             History::Exponential(history) if !region.covers() => Some(Beyond::new(history, cells)),
             _ => None,
         };
-        let at_rest = Solution::zero(cells, bodies);
         let nothing_free = Freedom { translation: false, tilt: [false; 2], point: [0.0; 2], total: 0.0 };
         let mut contact = ViscoelasticContact {
             work: kernel_here.workspace(),
@@ -209,28 +182,15 @@ impl ViscoelasticContact {
             gap_here: region.cut_gap(&initial_gap),
             region,
             beyond,
-            placed: false,
             before_move: None,
             spare_gap: Vec::new(),
             spare_track: Vec::new(),
             stride: [0; 2],
-            convolutions_of_the_past: 0,
             shown: Vec::new(),
             whole_displacement: OnceLock::new(),
             hulls: vec![None; bodies],
-            time: 0.0,
-            loads: vec![Load::force(0.0); bodies],
-            displacement: vec![0.0; cells],
-            previous_motions: vec![[0.0; 3]; bodies],
-            interval: 0.0,
-            before_is_kept: true,
-            motions: (0..bodies).map(|body| first_touch(&initial_gap, body)).collect(),
-            contact_cells: 0,
-            previous: at_rest.clone(),
-            last_dt: 0.0,
-            refresh: Refresh::default(),
-            trial: at_rest.clone(),
-            current: at_rest,
+            state: State::at_rest(cells, (0..bodies).map(|body| first_touch(&initial_gap, body)).collect()),
+            trial: Solution::zero(cells, bodies),
             trial_displacement: vec![0.0; cells],
             gap: vec![0.0; cells],
             freedoms: vec![nothing_free; bodies],
@@ -239,9 +199,6 @@ impl ViscoelasticContact {
             settings,
             material,
             history,
-            undisturbed_until: 0.0,
-            shortest: 0.0,
-            fitted_over: None,
             #[cfg(feature = "checkpoint")]
             built_compliance,
             progress: None,
@@ -274,10 +231,10 @@ impl ViscoelasticContact {
     /// As [`ViscoelasticContact::step`], or if there is not one load a body.
     pub fn step_each(&mut self, dt: f64, loads: &[Load]) -> Result<StepReport> {
         non_negative("time step", dt)?;
-        if dt > 0.0 && dt < self.shortest {
-            return Err(Error::BelowMaterial { time: self.time + dt, dt, known_from: self.shortest });
+        if dt > 0.0 && dt < self.state.shortest {
+            return Err(Error::BelowMaterial { time: self.state.time + dt, dt, known_from: self.state.shortest });
         }
-        self.step_to(self.time + dt, dt, loads)
+        self.step_to(self.state.time + dt, dt, loads)
     }
 
     /// [`ViscoelasticContact::step_each`] with the end of the step given, so that it is met exactly.
@@ -306,12 +263,13 @@ impl ViscoelasticContact {
             self.free(loads);
             let c = self.try_step(time, dt, loads, tolerance)?;
             let Some(region) = self.outgrown(loads) else {
-                self.check(time, dt, tolerance)?;
+                let sum_of_pressure = sum(&self.trial.pressure);
+                self.check(time, dt, tolerance, sum_of_pressure)?;
                 self.displace(c);
                 if !sum(&self.trial_displacement).is_finite() {
                     return Err(Error::Overflow { time, what: "the displacement" });
                 }
-                return Ok(Attempt { time, dt });
+                return Ok(Attempt { time, dt, sum: sum_of_pressure });
             };
             self.keep_for_failure();
             self.reside(region);
@@ -324,9 +282,9 @@ impl ViscoelasticContact {
         if !self.is_undisturbed() {
             self.remember(time)?;
         }
-        self.before_is_kept = false;
+        self.state.before_is_kept = false;
 
-        let c = self.predict(time, dt)?;
+        let (c, convolutions) = self.predict(time, dt)?;
         if !(c > 0.0 && c.is_finite()) {
             return Err(Error::Overflow { time, what: "the compliance of the step" });
         }
@@ -345,7 +303,7 @@ impl ViscoelasticContact {
             ContactSolver::PolonskyKeer(solver) => solver.solve(&problem, stop, &mut self.trial, &mut self.work),
         }
         self.trial.follow_surface(&problem);
-        self.trial.counts.convolutions += self.convolutions_of_the_past;
+        self.trial.counts.convolutions += convolutions;
         if let History::Sources(history) = &mut self.history {
             history.advance(c, &self.trial.pressure);
         }
@@ -359,17 +317,17 @@ impl ViscoelasticContact {
     }
 
     /// Makes the trial the state: nothing here can fail.
-    pub(super) fn accept(&mut self, Attempt { time, dt }: Attempt, loads: &[Load]) -> StepReport {
+    pub(super) fn accept(&mut self, Attempt { time, dt, sum }: Attempt, loads: &[Load]) -> StepReport {
         let touched = !self.is_undisturbed() || self.trial.pressure.iter().any(|&p| p > 0.0);
         self.before_move = None;
-        let change = Change { time, dt, potential: [&self.current.potential, &self.trial.potential] };
+        let change = Change { time, dt, potential: [&self.state.current.potential, &self.trial.potential] };
         let fitted = self.history.commit(&change, touched);
-        std::mem::swap(&mut self.displacement, &mut self.trial_displacement);
-        std::mem::swap(&mut self.previous, &mut self.current);
-        std::mem::swap(&mut self.current, &mut self.trial);
-        std::mem::swap(&mut self.previous_motions, &mut self.motions);
-        for (body, motion) in self.motions.iter_mut().enumerate() {
-            let free = Modes::new(self.region.grid(), self.freedoms[body]).physical(self.current.motions[body]);
+        std::mem::swap(&mut self.state.displacement, &mut self.trial_displacement);
+        std::mem::swap(&mut self.state.previous, &mut self.state.current);
+        std::mem::swap(&mut self.state.current, &mut self.trial);
+        std::mem::swap(&mut self.state.previous_motions, &mut self.state.motions);
+        for (body, motion) in self.state.motions.iter_mut().enumerate() {
+            let free = Modes::new(self.region.grid(), self.freedoms[body]).physical(self.state.current.motions[body]);
             let [omega, alpha1, alpha2] = lowered(&loads[body], self.initial_gap.datum);
             *motion = [self.initial_gap.datum + omega + free[0], alpha1 + free[1], alpha2 + free[2]];
         }
@@ -377,18 +335,20 @@ impl ViscoelasticContact {
             beyond.commit();
         }
         if !touched {
-            self.undisturbed_until = time;
+            self.state.undisturbed_until = time;
         }
-        self.time = time;
-        self.loads.copy_from_slice(loads);
-        self.last_dt = dt;
-        self.interval = dt;
-        self.before_is_kept = true;
-        self.refresh.count(sum(&self.current.pressure));
-        self.contact_cells = self.region.images() * self.current.pressure.iter().filter(|&&p| p > 0.0).count();
+        self.state.time = time;
+        self.state.loads.copy_from_slice(loads);
+        self.state.last_dt = dt;
+        self.state.interval = dt;
+        self.state.before_is_kept = true;
+        self.state.refresh.count(sum);
+        self.state.contact_cells =
+            self.region.images() * self.state.current.pressure.iter().filter(|&&p| p > 0.0).count();
         self.show();
         if let Some((material, times)) = fitted {
-            (self.material, self.shortest, self.fitted_over) = (material, times[0], Some(times));
+            (self.state.shortest, self.state.fitted_over) = (times[0], Some(times));
+            self.material = material;
         }
         let report = self.report(dt);
         events::accepted(&report);
@@ -397,16 +357,16 @@ impl ViscoelasticContact {
 
     /// Refuses a step whose past is longer than the material is known.
     fn remember(&self, time: f64) -> Result<()> {
-        let (age, known_until) = (time - self.undisturbed_until, self.material.known_until());
+        let (age, known_until) = (time - self.state.undisturbed_until, self.material.known_until());
         if is_known(age, known_until) { Ok(()) } else { Err(Error::BeyondMaterial { time, age, known_until }) }
     }
 
     pub(super) fn is_undisturbed(&self) -> bool {
-        self.undisturbed_until == self.time && self.contact_cells == 0
+        self.state.undisturbed_until == self.state.time && self.state.contact_cells == 0
     }
 
     /// Whether the trial may be accepted.
-    fn check(&self, time: f64, dt: f64, tolerance: f64) -> Result<()> {
+    fn check(&self, time: f64, dt: f64, tolerance: f64, sum: f64) -> Result<()> {
         let Solution { residual, counts, ref motions, ref trace, .. } = self.trial;
         if !motions.iter().flatten().all(|motion| motion.is_finite()) {
             return Err(Error::Overflow { time, what: "the approach" });
@@ -415,7 +375,7 @@ impl ViscoelasticContact {
         if residual.is_nan() || residual.is_infinite() && !trace.is_finite() {
             return Err(Error::Overflow { time, what: "the residual of the contact problem" });
         }
-        if !(self.grid.cell_area() * self.region.images() as f64 * sum(&self.trial.pressure)).is_finite() {
+        if !(self.grid.cell_area() * self.region.images() as f64 * sum).is_finite() {
             return Err(Error::Overflow { time, what: "the force" });
         }
         if residual > tolerance {
@@ -433,21 +393,22 @@ impl ViscoelasticContact {
     }
 
     fn report(&self, dt: f64) -> StepReport {
-        let Counts { iterations, convolutions, preconditioner_applications, fallback_iterations } = self.current.counts;
+        let Counts { iterations, convolutions, preconditioner_applications, fallback_iterations } =
+            self.state.current.counts;
         let rings = self.settings.time_rule == TimeRule::Rectangle
             && self.material.contact_compliance(dt) > 2.0 * self.material.contact_compliance(0.0);
         StepReport {
-            time: self.time,
+            time: self.state.time,
             dt,
             iterations,
             fallback_iterations,
             convolutions,
             preconditioner_applications,
-            residual: self.current.residual,
+            residual: self.state.current.residual,
             time_error: 0.0,
             rings,
             warnings: self.doubts(dt, rings),
-            contact_cells: self.contact_cells,
+            contact_cells: self.state.contact_cells,
             approach: self.approach(),
             tilt: self.tilt(),
             force: self.force(),

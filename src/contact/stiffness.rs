@@ -28,16 +28,16 @@ impl ViscoelasticContact {
     /// # Errors
     /// If the iteration for it does not converge.
     pub fn stiffness_over_modulus(&self) -> Result<f64> {
-        if self.contact_cells == 0 {
+        if self.state.contact_cells == 0 {
             return Ok(0.0);
         }
-        if self.kernel.mean_is_held() && self.contact_cells == self.grid.len() {
+        if self.kernel_here.mean_is_held() && self.state.contact_cells == self.grid.len() {
             return Ok(f64::INFINITY);
         }
-        match flat_punch(&self.kernel_here, |k| self.current.pressure[k] > 0.0) {
+        match flat_punch(&self.kernel_here, |k| self.state.current.pressure[k] > 0.0) {
             Ok(sum) => Ok(sum * self.grid.cell_area() * self.region.images() as f64),
             Err((iterations, residual)) => {
-                let (time, dt, tolerance) = (self.time, self.interval, FLAT_PUNCH_TOLERANCE);
+                let (time, dt, tolerance) = (self.state.time, self.state.interval, FLAT_PUNCH_TOLERANCE);
                 let convergence = Convergence::new(Vec::new(), tolerance, self.settings.solver).into();
                 Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
             }

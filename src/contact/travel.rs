@@ -20,39 +20,40 @@ impl ViscoelasticContact {
         if self.settings.frame != Frame::Bodies {
             return Err(Error::WrongFrame { what: "a step along a path" });
         }
-        if self.loads.len() != 1 {
-            return Err(Error::WrongNumberOfBodies { given: 1, bodies: self.loads.len() });
+        if self.state.loads.len() != 1 {
+            return Err(Error::WrongNumberOfBodies { given: 1, bodies: self.state.loads.len() });
         }
         non_negative("time step", dt)?;
-        let from = travel.position(self.time)?;
+        let from = travel.position(self.state.time)?;
         self.move_back();
         let mut gap = std::mem::take(&mut self.spare_gap);
         gap.resize(self.grid.len(), f64::INFINITY);
-        let filled = travel.fill_gap(self.time + dt, &self.grid, &mut gap, &mut self.spare_track);
+        let filled = travel.fill_gap(self.state.time + dt, &self.grid, &mut gap, &mut self.spare_track);
         let exchanged = filled.and_then(|()| self.initial_gap.exchange(&mut gap, &self.grid));
         let datum = exchanged.inspect_err(|_| self.spare_gap = std::mem::take(&mut gap))?;
         // what is lost with the symmetry does not come back
-        let whole = (self.still_even() != self.region.folded()).then(|| {
+        let still = self.still_even();
+        let whole = (still != self.region.folded()).then(|| {
             let mut whole = Box::new(self.clone());
             whole.initial_gap.put_back(&mut gap.clone(), datum);
             whole
         });
-        self.take_in_the_gap();
-        let before = (self.force(), self.moment(), self.motions[0]);
+        self.take_in_the_gap(still);
+        let before = (self.force(), self.moment(), self.state.motions[0]);
         let result = self.step(dt, load);
         if result.is_err() {
             match whole {
                 Some(whole) => *self = *whole,
                 None => {
                     self.initial_gap.put_back(&mut gap, datum);
-                    self.take_in_the_gap();
+                    self.take_in_the_gap(still);
                 }
             }
         }
         self.spare_gap = gap;
         let step = result?;
-        let position = travel.position(self.time)?;
-        let lateral_force = self.lateral_force(&travel.shape_at(self.time)?);
+        let position = travel.position(self.state.time)?;
+        let lateral_force = self.lateral_force(&travel.shape_at(self.state.time)?);
         let power = if dt > 0.0 { self.work_along(before) / dt } else { 0.0 };
         Ok(TravelReport { step, position, from, lateral_force, power })
     }
@@ -60,14 +61,14 @@ impl ViscoelasticContact {
     /// The work of the last step \[J\] that went along the surface: what the pressure did there, Σ p Δu, less the part of force
     /// and moments.
     fn work_along(&self, (force, moment, motion): (f64, [f64; 2], [f64; 3])) -> f64 {
-        let pressures = self.previous.pressure.iter().zip(&self.current.pressure);
-        let displacements = self.trial_displacement.iter().zip(&self.displacement);
+        let pressures = self.state.previous.pressure.iter().zip(&self.state.current.pressure);
+        let displacements = self.trial_displacement.iter().zip(&self.state.displacement);
         let work: f64 = pressures.zip(displacements).map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum();
         let ends = [[force, moment[0], moment[1]], {
             let [m1, m2] = self.moment();
             [self.force(), m1, m2]
         }];
-        let pressed = (0..3).map(|k| 0.5 * (ends[0][k] + ends[1][k]) * (self.motions[0][k] - motion[k]));
+        let pressed = (0..3).map(|k| 0.5 * (ends[0][k] + ends[1][k]) * (self.state.motions[0][k] - motion[k]));
         work * self.grid.cell_area() * self.region.images() as f64 - pressed.sum::<f64>()
     }
 }

@@ -170,11 +170,6 @@ impl InfluenceKernel {
     pub(crate) fn is_half_space(&self) -> bool {
         matches!(self.influence, Influence::HalfSpace(_))
     }
-
-    /// Whether a uniform pressure displaces nothing: then the approach cannot exceed that at which the gap is closed.
-    pub(crate) fn mean_is_held(&self) -> bool {
-        self.influence.softest_wave_if_mean_is_held(&self.grid).is_some()
-    }
 }
 
 /// Says which body it is of: "half-space, periodic along x2, datum 1e0 m".
@@ -196,6 +191,11 @@ impl LocalKernel {
     /// The greatest compliance of a wave \[m\], where that of the mean is zero.
     pub(crate) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
         self.softest
+    }
+
+    /// Whether a uniform pressure displaces nothing: then the approach cannot exceed that at which the gap is closed.
+    pub(crate) fn mean_is_held(&self) -> bool {
+        self.softest.is_some()
     }
 
     /// What an approximate inverse, in the order of 1/`unit`, multiplies the waves of a layout without padding by.

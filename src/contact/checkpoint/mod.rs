@@ -3,8 +3,8 @@
 mod error;
 mod format;
 mod keep;
+mod saved;
 mod scene;
-mod state;
 
 pub use error::CheckpointError;
 
@@ -14,7 +14,7 @@ use crate::contact::follow::Progress;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::Result;
 use crate::file::{failed, replace};
-use state::State;
+use saved::Saved;
 
 pub(crate) use keep::Keeping;
 pub(crate) use scene::compliance_of;
@@ -57,7 +57,7 @@ impl ViscoelasticContact {
 
     /// [`ViscoelasticContact::save`] with how far a run along a history has come.
     pub(super) fn save_with(&self, path: &Path, progress: Option<&Progress>) -> Result<()> {
-        let bytes = format::encode(&State::of(self, progress))?;
+        let bytes = format::encode(&Saved::of(self, progress))?;
         replace(path, |file| std::io::Write::write_all(file, &bytes))
     }
 
@@ -72,9 +72,9 @@ impl ViscoelasticContact {
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(|error| failed(path, error))?;
-        let state: State<'_> = format::decode(&bytes)?;
+        let saved: Saved<'_> = format::decode(&bytes)?;
         let mut resumed = self.clone();
-        state.restore(&mut resumed)?;
+        saved.restore(&mut resumed)?;
         *self = resumed;
         Ok(())
     }

@@ -10,7 +10,7 @@ use crate::rheology::Material;
 const DECADES: std::ops::RangeInclusive<i32> = -9..=9;
 
 /// A scene, as far as it does not change. The gap is part of the state: indenters move.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Serialize, Deserialize)]
 pub(super) struct SceneMark {
     cells: [usize; 2],
     /// Bits of the numbers, so that NaN is itself.
@@ -29,7 +29,7 @@ impl SceneMark {
         SceneMark {
             cells: contact.grid.cells(),
             spacing: contact.grid.spacing().map(f64::to_bits),
-            bodies: contact.loads.len(),
+            bodies: contact.bodies(),
             kernel: contact.kernel.to_string(),
             influence: contact.kernel.self_influence().to_bits(),
             settings: format!("{:?}", contact.settings),

@@ -1,4 +1,4 @@
-//! What changes from step to step, as it is saved.
+//! What a checkpoint holds.
 
 use std::borrow::Cow;
 
@@ -7,42 +7,26 @@ use serde::{Deserialize, Serialize};
 use super::CheckpointError;
 use super::scene::SceneMark;
 use crate::contact::follow::Progress;
-use crate::contact::guess::Refresh;
 use crate::contact::region::Region;
 use crate::contact::reside::Beyond;
+use crate::contact::state::State;
 use crate::contact::stepper::{ViscoelasticContact, next_id};
 use crate::error::{Error, Result};
 use crate::geometry::Gap;
 use crate::hereditary::{Exponential, History, Sources};
-use crate::load::Load;
 use crate::solver::Solution;
 
-/// The state of a contact, borrowed from one or read from a file.
+/// A contact without what its scene says again, borrowed from one or read from a file.
 #[derive(Serialize, Deserialize)]
-pub(super) struct State<'a> {
+pub(super) struct Saved<'a> {
     scene: SceneMark,
-    /// The times over which the first step fitted the material's series, if it did.
-    fitted_over: Option<[f64; 2]>,
     region: Cow<'a, Region>,
     beyond: Option<Cow<'a, Beyond>>,
-    placed: bool,
     past: Past<'a>,
-    undisturbed_until: f64,
-    shortest: f64,
     gap: Cow<'a, Gap>,
-    time: f64,
-    loads: Cow<'a, [Load]>,
-    displacement: Cow<'a, [f64]>,
+    state: Cow<'a, State>,
+    /// The displacement before the last step.
     before: Cow<'a, [f64]>,
-    before_is_kept: bool,
-    current: Cow<'a, Solution>,
-    previous: Cow<'a, Solution>,
-    motions: Cow<'a, [[f64; 3]]>,
-    previous_motions: Cow<'a, [[f64; 3]]>,
-    contact_cells: usize,
-    interval: f64,
-    last_dt: f64,
-    refresh: Cow<'a, Refresh>,
     progress: Option<Cow<'a, Progress>>,
 }
 
@@ -55,36 +39,21 @@ enum Past<'a> {
     Sources(Cow<'a, Box<Sources>>),
 }
 
-impl<'a> State<'a> {
-    pub(super) fn of(contact: &'a ViscoelasticContact, progress: Option<&'a Progress>) -> State<'a> {
-        State {
+impl<'a> Saved<'a> {
+    pub(super) fn of(contact: &'a ViscoelasticContact, progress: Option<&'a Progress>) -> Saved<'a> {
+        Saved {
             scene: SceneMark::of(contact),
-            fitted_over: contact.fitted_over,
             region: Cow::Borrowed(&contact.region),
             beyond: contact.beyond.as_ref().map(Cow::Borrowed),
-            placed: contact.placed,
             past: match &contact.history {
                 History::Exponential(history) => Past::Exponential(Cow::Borrowed(history)),
                 History::Direct(history) => Past::Direct(Cow::Borrowed(history.increments())),
                 History::Unfitted(history) => Past::Unfitted { expected: history.expected },
                 History::Sources(history) => Past::Sources(Cow::Borrowed(history)),
             },
-            undisturbed_until: contact.undisturbed_until,
-            shortest: contact.shortest,
             gap: Cow::Borrowed(&contact.initial_gap),
-            time: contact.time,
-            loads: Cow::Borrowed(&contact.loads),
-            displacement: Cow::Borrowed(&contact.displacement),
+            state: Cow::Borrowed(&contact.state),
             before: Cow::Borrowed(&contact.trial_displacement),
-            before_is_kept: contact.before_is_kept,
-            current: Cow::Borrowed(&contact.current),
-            previous: Cow::Borrowed(&contact.previous),
-            motions: Cow::Borrowed(&contact.motions),
-            previous_motions: Cow::Borrowed(&contact.previous_motions),
-            contact_cells: contact.contact_cells,
-            interval: contact.interval,
-            last_dt: contact.last_dt,
-            refresh: Cow::Borrowed(&contact.refresh),
             progress: progress.map(Cow::Borrowed),
         }
     }
@@ -93,9 +62,18 @@ impl<'a> State<'a> {
     pub(super) fn restore(self, contact: &mut ViscoelasticContact) -> Result<()> {
         self.scene.require(&SceneMark::of(contact))?;
         self.check(contact)?;
-        if let (Some(times), None) = (self.fitted_over, contact.fitted_over) {
-            contact.material = contact.material.fitted(times[0]..=times[1], contact.settings.series_tolerance)?;
-            contact.fitted_over = Some(times);
+        match (self.state.fitted_over, contact.state.fitted_over) {
+            (saved, own) if saved == own => {}
+            (Some(times), None) => {
+                contact.material = contact.material.fitted(times[0]..=times[1], contact.settings.series_tolerance)?;
+            }
+            (saved, own) => {
+                let [saved, built] = [saved, own].map(|times| match times {
+                    Some([first, last]) => format!("that from {first:e} s to {last:e} s"),
+                    None => "not fitted yet".into(),
+                });
+                return Err(CheckpointError::OtherScene { what: "series of the material", saved, built }.into());
+            }
         }
         contact.history = match (self.past, &contact.history) {
             (Past::Exponential(history), History::Exponential(_) | History::Unfitted(_)) => {
@@ -114,24 +92,10 @@ impl<'a> State<'a> {
             _ => return Err(malformed("another kind of past")),
         };
         (contact.initial_gap, contact.gap_id) = (self.gap.into_owned(), next_id());
-        contact.loads.copy_from_slice(&self.loads);
         contact.occupy(self.region.into_owned());
         contact.beyond = self.beyond.map(Cow::into_owned);
-        contact.placed = self.placed;
-        contact.undisturbed_until = self.undisturbed_until;
-        contact.shortest = self.shortest;
-        contact.time = self.time;
-        contact.displacement = self.displacement.into_owned();
+        contact.state = self.state.into_owned();
         contact.trial_displacement = self.before.into_owned();
-        contact.before_is_kept = self.before_is_kept;
-        contact.current = self.current.into_owned();
-        contact.previous = self.previous.into_owned();
-        contact.motions = self.motions.into_owned();
-        contact.previous_motions = self.previous_motions.into_owned();
-        contact.contact_cells = self.contact_cells;
-        contact.interval = self.interval;
-        contact.last_dt = self.last_dt;
-        contact.refresh = self.refresh.into_owned();
         contact.progress = self.progress.map(|progress| Box::new(progress.into_owned()));
         contact.before_move = None;
         contact.hulls.fill(None);
@@ -142,11 +106,11 @@ impl<'a> State<'a> {
 
     /// Refuses fields that do not fit: a file may have a right checksum and be made by others all the same.
     fn check(&self, contact: &ViscoelasticContact) -> Result<()> {
-        let (whole, bodies) = (contact.grid.len(), contact.loads.len());
+        let (whole, bodies) = (contact.grid.len(), contact.bodies());
         if !self.region.is_of(&contact.grid) {
             return Err(malformed("its region is none of the grid"));
         }
-        let cells = self.region.len();
+        let (cells, state) = (self.region.len(), &*self.state);
         let solution = |solution: &Solution| {
             [solution.pressure.len(), solution.potential.len()] == [cells; 2] && solution.motions.len() == bodies
         };
@@ -157,10 +121,10 @@ impl<'a> State<'a> {
             Past::Unfitted { .. } => true,
             Past::Sources(history) => history.fits(self.region.cells()),
         };
-        let fits = [self.displacement.len(), self.before.len()] == [cells; 2]
-            && [self.loads.len(), self.motions.len(), self.previous_motions.len()] == [bodies; 3]
-            && solution(&self.current)
-            && solution(&self.previous)
+        let fits = [state.displacement.len(), self.before.len()] == [cells; 2]
+            && [state.loads.len(), state.motions.len(), state.previous_motions.len()] == [bodies; 3]
+            && solution(&state.current)
+            && solution(&state.previous)
             && self.gap.above.len() == whole
             && owners
             && past
@@ -169,12 +133,13 @@ impl<'a> State<'a> {
             return Err(malformed("fields that do not fit its region"));
         }
         let finite = |fields: &[&[f64]]| fields.iter().all(|field| field.iter().all(|value| value.is_finite()));
-        let numbers = [self.time, self.undisturbed_until, self.shortest, self.interval, self.last_dt, self.gap.datum];
-        let solutions = [&*self.current, &*self.previous];
-        let sane = finite(&[&numbers, &self.displacement, &self.before])
+        let State { time, undisturbed_until, shortest, interval, last_dt, .. } = *state;
+        let numbers = [time, undisturbed_until, shortest, interval, last_dt, self.gap.datum];
+        let solutions = [&state.current, &state.previous];
+        let sane = finite(&[&numbers, &state.displacement, &self.before])
             && solutions.iter().all(|solution| finite(&[&solution.pressure, &solution.potential]))
-            && self.current.pressure.iter().all(|&p| p >= 0.0)
-            && finite(&[self.motions.as_flattened(), self.previous_motions.as_flattened()])
+            && state.current.pressure.iter().all(|&p| p >= 0.0)
+            && finite(&[state.motions.as_flattened(), state.previous_motions.as_flattened()])
             && self.gap.above.iter().all(|&gap| gap >= 0.0)
             && numbers[..5].iter().all(|&number| number >= 0.0);
         if sane { Ok(()) } else { Err(malformed("numbers that no contact has")) }
