@@ -116,7 +116,6 @@
 //! Friction, adhesion, plasticity and finite deformation are outside the model: small strains and slopes, smooth normal contact.
 //! Layers are bodies of the user's own: what a pressure does to them is given, not computed
 //! ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]).
-
 //!
 //! # Beside other programs
 //!

@@ -1,0 +1,209 @@
+//! Creeping bodies against closed forms and other formulations.
+
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+use viscocontact::analytic::{AxisymmetricContact, Hertz, Profile};
+use viscocontact::plot::Legend;
+use viscocontact::prelude::*;
+
+use crate::claim::{Checked, Outcome};
+use crate::common::{StepLoadedSphere, errors};
+use crate::elastic::{G, along_x1, between};
+use crate::rolling::RollingCylinder;
+
+pub fn step_loaded(scene: &StepLoadedSphere, name: &'static str) -> Outcome {
+    let reference = scene.reference()?;
+    let (contact, _) = scene.run(256, 100, Settings::default())?;
+    let errors = errors(&contact, &reference);
+    let t = contact.time();
+    let half = 0.5 * contact.grid().lengths()[0];
+    let line = between(-half, half).map(|x| (1e3 * x, 1e-3 * reference.pressure(x.abs(), t))).collect();
+    let rows = [
+        ("central pressure", 1.0 + errors.central_pressure, 1.0, 1e-4),
+        ("approach", contact.approach(), reference.approach(t), 1e-4),
+        ("contact radius", (contact.contact_area() / PI).sqrt(), reference.contact_radius(t), 3e-3),
+    ];
+    Ok(Checked::new(name, "Ting 1966; the source paper's Table 1", &rows).drawn(
+        ["x1 [mm]", "pressure [kPa]"],
+        Legend::LowerMiddle,
+        line,
+        along_x1(&contact),
+    ))
+}
+
+/// By what power of the step the error falls from 8 to 16 to 32 steps.
+pub fn order() -> Outcome {
+    let scene = StepLoadedSphere::maxwell();
+    let settings = Settings { tolerance: 1e-9, ..Settings::default() };
+    let middle = |steps: usize| -> Result<f64> {
+        let (contact, _) = scene.run(96, steps, settings)?;
+        let [n1, n2] = contact.grid().cells();
+        Ok(contact.pressure()[n1 / 2 * n2 + n2 / 2])
+    };
+    let [coarse, middle, fine] = [middle(8)?, middle(16)?, middle(32)?];
+    let order = ((coarse - middle) / (middle - fine)).abs().log2();
+    let rows = [("order in time, of the central pressure", order, 2.0, 0.05)];
+    Ok(Checked::new("step-loaded sphere on a Maxwell body, 8, 16, 32 steps", "the order of the rule", &rows))
+}
+
+/// A body that creeps by the power law t^0.3 for five decades.
+pub fn power_law() -> Outcome {
+    let material = Material::constant_poisson(PowerLaw::new(1.0 / G, 1.0, 0.3)?, 0.4)?;
+    // Hertz with the compliance of the time: a³ = ¾ R W C(t)
+    let exact = Hertz::new(10.0e-3, 1.0 / material.contact_compliance(1.0e4), 1.0)?;
+    let grid = Grid::square(128, 2.3 * exact.contact_radius())?;
+    let mut contact = ViscoelasticContact::builder(grid)
+        .geometry(&Sphere::new(10.0e-3)?)
+        .material(material)
+        .times(1.0e-3..=1.0e4)
+        .build()?;
+    // a step of the load, twenty steps a decade from two decades before the first time that counts
+    for k in 0..=140 {
+        let t = 10_f64.powf(-3.0 + f64::from(k) / 20.0);
+        contact.step(t - contact.time(), Load::force(1.0))?;
+    }
+    let rows = [("approach", contact.approach(), exact.approach(), 2e-3)];
+    Ok(Checked::new("sphere on a power law t^0.3, seven decades, 128² cells", "Lee & Radok 1960", &rows))
+}
+
+/// A polymer that softens a thousandfold in shear while its bulk stays elastic, at once and in the end.
+pub fn elastic_bulk() -> Outcome {
+    let (glassy, relaxed, bulk) = (1.0e9, 1.0e6, 3.0e9);
+    let material = Material::elastic_bulk(GeneralizedMaxwell::new(relaxed, &[(glassy - relaxed, 1.0)])?, bulk)?;
+    let hertz = |g: f64| (0.5 / g) * (1.0 - (3.0 * bulk - 2.0 * g) / (2.0 * (3.0 * bulk + g)));
+    let approach = |g: f64| ((0.75 * hertz(g)).powi(2) / 10.0e-3).cbrt();
+    let sphere = |g: f64| -> Result<ViscoelasticContact> {
+        let grid = Grid::square(128, 2.3 * (0.75 * 10.0e-3 * hertz(g)).cbrt())?;
+        ViscoelasticContact::builder(grid).geometry(&Sphere::new(10.0e-3)?).material(material.clone()).build()
+    };
+    let (mut at_once, mut at_last) = (sphere(glassy)?, sphere(relaxed)?);
+    at_once.step(0.0, Load::force(1.0))?;
+    at_last.step(1.0e9, Load::force(1.0))?;
+    let rows = [
+        ("approach at once", at_once.approach(), approach(glassy), 1e-3),
+        ("approach in the end", at_last.approach(), approach(relaxed), 1e-3),
+    ];
+    Ok(Checked::new("sphere, shear relaxing from 1 GPa to 1 MPa, bulk elastic", "Hertz 1882, ν of G and B", &rows))
+}
+
+/// A punch that oscillates: the loss tangent of its force is that of the body.
+pub fn oscillating() -> Outcome {
+    let (body, omega, steps) = (Zener::new(G, 0.5 * G, 0.5 * G)?, 2.0, 128);
+    let spectrum = body.creep_spectrum().ok_or("a Zener body has a spectrum")?;
+    let complex = spectrum.complex_modulus(omega);
+    let mut contact = ViscoelasticContact::builder(Grid::square(64, 2.1e-3)?)
+        .geometry(&FlatPunch::circular(1.0e-3)?)
+        .material(Material::incompressible(body))
+        .build()?;
+    let dt = TAU / omega / f64::from(steps);
+    let (mut storage, mut loss, mut curve) = (0.0, 0.0, Vec::new());
+    for k in 1..=12 * steps {
+        let phase = TAU * f64::from(k) / f64::from(steps);
+        contact.step(dt, Load::approach(1.0e-5 + 0.2e-5 * phase.sin()))?;
+        if k > 11 * steps {
+            storage += contact.force() * phase.sin();
+            loss += contact.force() * phase.cos();
+            curve.push((1e6 * contact.approach(), 1e3 * contact.force()));
+        }
+    }
+    let mean = curve.iter().map(|(_, force)| force).sum::<f64>() / curve.len() as f64;
+    let stiffness = 2.0 * 1e3 * storage.hypot(loss) / f64::from(steps);
+    let (sine, cosine) = (complex.re / complex.norm(), complex.im / complex.norm());
+    let exact =
+        between(0.0, TAU).map(|x| (10.0 + 2.0 * x.sin(), mean + stiffness * (sine * x.sin() + cosine * x.cos())));
+    let rows = [
+        ("loss tangent", loss / storage, complex.im / complex.re, 2e-3),
+        ("amplitude of the force", 1e-3 * stiffness, 2.0 * 1.0e-3 * 4.0 * complex.norm() * 0.2e-5, 1e-2),
+    ];
+    Ok(Checked::new("flat punch that oscillates on a Zener body, ω τ = 1", "complex modulus", &rows).drawn(
+        ["approach [µm]", "force [mN]"],
+        Legend::UpperLeft,
+        exact.collect(),
+        curve,
+    ))
+}
+
+pub fn loaded_and_unloaded() -> Outcome {
+    let material = Material::constant_poisson(Zener::new(G, 0.5 * G, 0.5 * G)?, 0.3)?;
+    let corners = [(0.0, 0.0), (1.0, 1.0), (1.6, 0.4)].map(|(t, force)| (t, Load::force(force)));
+    let history = PiecewiseLinear::new(&corners)?;
+    let widest = (0.75 * 10.0e-3 * material.contact_compliance(1e3)).cbrt();
+    let mut contact = ViscoelasticContact::builder(Grid::square(128, 2.1 * widest)?)
+        .geometry(&Sphere::new(10.0e-3)?)
+        .material(material.clone())
+        .build()?;
+    let mut run = contact.follow(&history, Stepping::fixed(0.02), 1.6);
+    let mut computed = Vec::new();
+    while let Some(report) = run.next_step()? {
+        computed.push((1e6 * report.approach, report.force));
+    }
+    let mut exact = AxisymmetricContact::new(&Profile::sphere(10.0e-3)?, &material, 4000, 1.1 * widest)?;
+    let mut line = Vec::new();
+    for k in 1..=1600 {
+        let t = 1e-3 * f64::from(k);
+        exact.press(1e-3, if t <= 1.0 { t } else { 1.0 - (t - 1.0) })?;
+        line.push((1e6 * exact.approach(), exact.force()));
+    }
+    let rows = [
+        ("approach", contact.approach(), exact.approach(), 1e-3),
+        ("contact radius", (contact.contact_area() / PI).sqrt(), exact.contact_radius(), 1e-2),
+    ];
+    Ok(Checked::new(
+        "sphere on a Zener body, up and down, 128² cells",
+        "method of dimensionality reduction (Popov & Heß)",
+        &rows,
+    )
+    .drawn(["approach [µm]", "force [N]"], Legend::UpperLeft, line, computed))
+}
+
+pub fn relaxing() -> Outcome {
+    // at a constant approach the force follows the relaxation modulus
+    let tau = 1.0;
+    let mut contact = ViscoelasticContact::builder(Grid::square(128, 4.0e-3)?)
+        .geometry(&Sphere::new(10.0e-3)?)
+        .material(Material::incompressible(Maxwell::new(G, G * tau)?))
+        .build()?;
+    contact.step(0.0, Load::approach(1.0e-4))?;
+    let start = contact.force();
+    for _ in 0..50 {
+        contact.step(0.04, Load::approach(1.0e-4))?;
+    }
+    let rows = [("force after 2 τ over that at once", contact.force() / start, (-2.0_f64).exp(), 1e-4)];
+    Ok(Checked::new("sphere held at its approach on a Maxwell body", "Lee & Radok 1960", &rows))
+}
+
+pub fn rolling() -> Outcome {
+    let mut scene = RollingCylinder { radius: 0.02, per_length: 500.0, glassy: 0.25 / G, delayed: 0.5 / G, reach: 1.0 };
+    let (glassy, relaxed) = (scene.hertz(scene.glassy).0, scene.hertz(scene.glassy + scene.delayed).0);
+    scene.reach = 2.0 * glassy;
+    let (side, exact) = (glassy / 32.0, scene.steady(500));
+    let cells = ((5.0 * scene.reach + 3.0 * relaxed) / side) as usize;
+    let grid = Grid::new([cells, 1], [cells as f64 * side, 1.0])?;
+    let cylinder = Shifted::new(Cylinder::new(scene.radius)?, [0.5 * grid.lengths()[0] - 2.0 * relaxed, 0.0])?;
+    let mut contact = ViscoelasticContact::builder(grid.clone())
+        .geometry(&cylinder)
+        .material(Material::incompressible(Zener::new(G, 0.5 * G, 0.5 * G)?))
+        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0e3)?))
+        .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
+        .build()?;
+    let load = Load::force(scene.per_length);
+    contact.toward_steady(SteadyMotion { axis: 0, velocity: scene.reach, load, tolerance: 2e-4 })?.run()?;
+    let [behind, ahead] = exact.ends();
+    let friction = contact.lateral_force(&cylinder)[0] / contact.force();
+    let axis = 1e3 * (0.5 * grid.lengths()[0] - 2.0 * relaxed);
+    let line = exact.positions.iter().zip(&exact.pressure).map(|(x, p)| (1e3 * x, 1e-3 * p)).collect();
+    let dots = along_x1(&contact).into_iter().map(|(x, p)| (x - axis, p));
+    let dots = dots.filter(|(x, _)| x.abs() < 1e3 * 1.5 * relaxed).collect();
+    let rows = [
+        ("greatest pressure", contact.greatest_pressure(), exact.peak(), 1e-2),
+        ("contact width", contact.contact_area(), ahead - behind, 1e-2),
+        ("hysteretic friction", friction, exact.friction(scene.radius), 2e-2),
+    ];
+    Ok(Checked::new(
+        "cylinder rolling on a Zener body, v τ = 2 a",
+        "steady state without steps (exponential integrals)",
+        &rows,
+    )
+    .drawn(["x1 [mm]", "pressure [kPa]"], Legend::UpperLeft, line, dots))
+}

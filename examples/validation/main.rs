@@ -1,0 +1,155 @@
+//! Every claim against its reference: closed forms, the method of dimensionality reduction, formulations of another kind. Computes
+//! all of them, and writes `validation.md` and its pictures, of which copies are kept in `docs`; fails if one errs by more than it may.
+//!
+//! `cargo run --release --example validation`
+
+mod claim;
+#[path = "../../tests/common/mod.rs"]
+mod common;
+mod creep;
+mod elastic;
+#[path = "../../tests/common/rolling.rs"]
+mod rolling;
+#[path = "../support/mod.rs"]
+mod support;
+
+use std::error::Error;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use claim::{Checked, Claim, Outcome};
+use clap::Parser;
+use common::StepLoadedSphere;
+use indicatif::ProgressBar;
+use viscocontact::plot::{COLORS, Chart, Legend, Picture, Scale, Style};
+
+/// Computes every claim against its reference.
+#[derive(Parser)]
+struct Args {
+    /// Folder for the table and the pictures.
+    #[arg(long, default_value = "out/validation")]
+    output: PathBuf,
+}
+
+fn main() {
+    support::finish(run(&Args::parse()));
+}
+
+fn maxwell() -> Outcome {
+    creep::step_loaded(
+        &StepLoadedSphere::maxwell(),
+        "step-loaded sphere on a Maxwell body, 256² cells, 100 steps to 2 τ",
+    )
+}
+
+fn zener() -> Outcome {
+    let mut checked = creep::step_loaded(
+        &StepLoadedSphere::zener(),
+        "step-loaded sphere on a Zener body, 256² cells, 100 steps to 2 τ",
+    )?;
+    checked.curve = None; // it looks like the other
+    Ok(checked)
+}
+
+const SCENES: [fn() -> Outcome; 15] = [
+    elastic::convolution,
+    elastic::hertz,
+    elastic::hertz_ellipse,
+    elastic::punch,
+    elastic::wavy,
+    elastic::line,
+    maxwell,
+    zener,
+    creep::order,
+    creep::loaded_and_unloaded,
+    creep::relaxing,
+    creep::oscillating,
+    creep::power_law,
+    creep::elastic_bulk,
+    creep::rolling,
+];
+
+/// The table, in Markdown.
+fn table(claims: &[&Claim]) -> Result<String, std::fmt::Error> {
+    let mut table = String::from(
+        "| | scene | quantity | reference | computed | exact | error | allowed |\n|---|---|---|---|---|---|---|---|\n",
+    );
+    for (number, claim) in (1..).zip(claims) {
+        let Claim { scene, quantity, reference, computed, exact, allowed } = claim;
+        writeln!(
+            table,
+            "| {number} | {scene} | {quantity} | {reference} | {computed:.6e} | {exact:.6e} | {:.1e} | {allowed:.0e} |",
+            claim.error()
+        )?;
+    }
+    Ok(table)
+}
+
+/// Errors beside what is allowed, claim by claim.
+fn errors(claims: &[&Claim]) -> Chart {
+    let numbered =
+        |value: fn(&Claim) -> f64| (1..).map(f64::from).zip(claims.iter().map(|&claim| value(claim))).collect();
+    let mut chart =
+        Chart::new("Every claim against its reference", "number of the claim", "relative error", Legend::LowerRight);
+    chart.scale = Scale::LogY;
+    chart.add("allowed", COLORS[0], Style::LineAndDots, numbered(|claim| claim.allowed));
+    // what agrees to the last bit has no place on a logarithmic axis
+    chart.add("error", COLORS[1], Style::Dots, numbered(|claim| claim.error().max(f64::EPSILON)));
+    chart
+}
+
+/// Curves beside theirs, two in a row.
+fn save_rows(checked: &[Checked], folder: &Path) -> Result<usize, Box<dyn Error>> {
+    let charts: Vec<Chart> = checked.iter().filter_map(Checked::chart).collect();
+    for (row, charts) in (1..).zip(charts.chunks(2)) {
+        let pictures = charts.iter().map(Chart::draw).collect::<Result<Vec<Picture>, _>>()?;
+        Picture::beside(&pictures)?.save(folder.join(format!("validation_{row}.png")))?;
+    }
+    Ok(charts.len().div_ceil(2))
+}
+
+fn run(args: &Args) -> Result<(), Box<dyn Error>> {
+    fs::create_dir_all(&args.output)?;
+    let progress = ProgressBar::new(SCENES.len() as u64);
+    let mut checked = Vec::new();
+    for scene in SCENES {
+        checked.push(scene()?);
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    let claims: Vec<&Claim> = checked.iter().flat_map(|checked| &checked.claims).collect();
+    let table = table(&claims)?;
+    print!("{table}");
+    errors(&claims).save(args.output.join("validation_errors.png"))?;
+    let rows = save_rows(&checked, &args.output)?;
+    let mut text = format!(
+        "# Validation\n\nWritten by `cargo run --release --example validation`, pictures included; it fails if an error is greater than \
+         allowed.\n\n{table}\n![Errors of all claims beside what is allowed](pictures/validation_errors.png)\n"
+    );
+    for row in 1..=rows {
+        write!(text, "\n![Computed values on their references](pictures/validation_{row}.png)\n")?;
+    }
+    let path = args.output.join("validation.md");
+    fs::write(&path, text)?;
+    let failed: Vec<String> = claims
+        .iter()
+        .filter(|claim| !claim.holds())
+        .map(|claim| {
+            format!(
+                "{}: {} errs by {:.1e}, {:.0e} is allowed",
+                claim.scene,
+                claim.quantity,
+                claim.error(),
+                claim.allowed
+            )
+        })
+        .collect();
+    println!(
+        "\n{} claims, {} of them fail; table and pictures are in {}",
+        claims.len(),
+        failed.len(),
+        args.output.display()
+    );
+    if failed.is_empty() { Ok(()) } else { Err(failed.join("\n").into()) }
+}
