@@ -145,6 +145,34 @@ fn charts_draw_series_in_their_colours() {
     assert_eq!(crossing.count(), 0);
 }
 
+/// A thick line that turns back sharply has no spike out of the axes.
+#[test]
+fn lines_that_turn_back_stay_where_they_are() {
+    let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
+    chart.add("", COLORS[0], Style::Line, vec![(0.0, 0.0), (0.2, 0.5), (1.0, 0.50), (0.1, 0.503), (1.0, 1.0)]);
+    let picture = chart.draw().unwrap();
+    let width = picture.size()[0] as usize;
+    let left = picture.rgb().chunks_exact(3).enumerate().filter(|(_, p)| *p == [0, 114, 178]).map(|(k, _)| k % width);
+    assert!(left.min().unwrap() >= 110, "a pixel of the line stands left of the axis");
+}
+
+/// A logarithmic axis has numbers, however little its values differ: the strip left of it is not empty.
+#[test]
+fn narrow_logarithmic_axes_have_numbers() {
+    for y in [2.8e-3, 1.0, 0.97e5] {
+        let mut chart = Chart::new("", "x", "", Legend::UpperLeft);
+        chart.scale = Scale::LogY;
+        chart.add("", COLORS[0], Style::Line, vec![(0.0, y), (1.0, 1.01 * y)]);
+        let picture = chart.draw().unwrap();
+        let width = picture.size()[0] as usize;
+        let dark =
+            picture.rgb().chunks_exact(3).enumerate().filter(|(k, p)| k % width < 105 && p.iter().all(|&c| c < 100));
+        let rows: std::collections::BTreeSet<usize> = dark.map(|(k, _)| k / width).collect();
+        let [low, high] = [*rows.first().unwrap(), *rows.last().unwrap()];
+        assert!(high - low > 300, "{y}: numbers from row {low} to row {high}");
+    }
+}
+
 #[test]
 fn bad_pictures_are_refused_by_name() {
     let field = |result: Result<Picture>| match result.unwrap_err() {

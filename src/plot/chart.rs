@@ -181,7 +181,10 @@ impl Chart {
         }
         let (label, factor) = quantity.shown(low.abs().max(high.abs()));
         let [low, high] = [low * factor, high * factor];
-        let ends = if logarithmic {
+        let ends = if logarithmic && high < 10.0 * low {
+            // whole decades and a little more, or there would be no number along the axis
+            [0.99 * 10_f64.powf((low / 1.1).log10().floor()), 1.01 * 10_f64.powf((high * 1.1).log10().ceil())]
+        } else if logarithmic {
             [low / 1.5, high * 1.5]
         } else {
             // what is all the same gets a scale about it
@@ -223,7 +226,11 @@ impl Chart {
             let mut label = Some(&series.label).filter(|label| !label.is_empty());
             for piece in self.pieces(series) {
                 if series.style != Style::Dots {
-                    let drawn = chart.draw_series(LineSeries::new(piece.iter().map(at), color.stroke_width(3)))?;
+                    // piece by piece: plotters draws spikes where a thick line turns back
+                    let pieces = piece
+                        .windows(2)
+                        .map(|ends| PathElement::new(ends.iter().map(at).collect::<Vec<_>>(), color.stroke_width(3)));
+                    let drawn = chart.draw_series(pieces)?;
                     if let Some(label) = label.take() {
                         drawn
                             .label(label)

@@ -84,7 +84,10 @@ impl Chart {
 pub(super) fn time_of(contact: &ViscoelasticContact) -> String {
     let (label, factor) = Quantity::of("", "s").shown(contact.time());
     let unit = label.trim_matches([' ', '[', ']']);
-    let time = format!("{:.4}", contact.time() * factor);
+    let time = contact.time() * factor;
+    // four digits, and all of those before the point
+    let decimals = if time > 0.0 { (3.0 - time.log10().floor()).clamp(0.0, 12.0) as usize } else { 0 };
+    let time = format!("{time:.decimals$}");
     let time = if time.contains('.') { time.trim_end_matches('0').trim_end_matches('.') } else { &time };
     format!("t = {time} {unit}")
 }
