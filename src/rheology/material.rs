@@ -175,8 +175,10 @@ impl Material {
 
     /// The error for what needs a series that a rheology does not have.
     pub(crate) fn no_series(&self, what: &'static str) -> Error {
-        let lacking = self.bodies.iter().find(|body| body.rheology.creep_spectrum().is_none());
-        no_series(what, &lacking.map(|body| &body.rheology))
+        match self.bodies.iter().find(|body| body.rheology.creep_spectrum().is_none()) {
+            Some(lacking) => no_series(what, &lacking.rheology),
+            None => no_series(what, &self.bodies),
+        }
     }
 }
 
