@@ -143,6 +143,25 @@ mod tests {
         assert_eq!(grid.center(0, 3), [-0.4, 0.75]);
     }
 
+    /// The side of a cell may round up, and the sum of all of them beyond the range.
+    #[test]
+    fn lengths_are_numbers_however_they_round() {
+        let (mut made, mut refused) = (0, 0);
+        for cells in 1..200 {
+            match Grid::new([cells, 1], [f64::MAX, 1e-10]) {
+                Ok(grid) => {
+                    assert!(grid.lengths()[0].is_finite(), "{cells} cells");
+                    made += 1;
+                }
+                Err(error) => {
+                    assert!(matches!(error, Error::OutOfRange { field: "length along x1", .. }), "{error}");
+                    refused += 1;
+                }
+            }
+        }
+        assert!(made > 0 && refused > 0, "{made} {refused}");
+    }
+
     #[test]
     fn bad_grids_are_refused_by_name() {
         let field = |result: Result<Grid>| match result.unwrap_err() {

@@ -250,3 +250,40 @@ fn areas_are_known_to_a_part_of_a_cell() {
     let exact = contact.contact_cells() as f64 * contact.grid().cell_area();
     assert!((contact.contact_area() / exact - 1.0).abs() < 2e-3, "{}", contact.contact_area() / exact);
 }
+
+/// A load that jumps where it names no corner, by little more than the tolerance: the step before it is shortened to the last
+/// digit of the time, where it rounds to itself, and must not be tried for ever.
+#[test]
+fn steps_of_the_last_digit_come_to_an_end() {
+    use std::sync::atomic::{AtomicU32, Ordering};
+    let sphere = Sphere::new(10.0e-3).unwrap();
+    let body = Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap());
+    let mut stopped = 0;
+    for jump in [1.006, 1.008, 1.01, 1.012, 1.015, 1.02, 1.04, 1.2] {
+        for at in [0.3, 0.0123, 0.77, 3.3e-5] {
+            let asked = AtomicU32::new(0);
+            let history = FnHistory::new(move |t| {
+                assert!(asked.fetch_add(1, Ordering::Relaxed) < 1_000_000, "it is tried for ever");
+                Load::force(if t < at { 0.5 } else { 0.5 * jump })
+            });
+            let mut contact = ViscoelasticContact::builder(Grid::square(8, 4.0e-3).unwrap())
+                .geometry(&sphere)
+                .material(body.clone())
+                .build()
+                .unwrap();
+            let mut run = contact.follow(&history, Stepping::adaptive(5e-3), 1.0);
+            let end = loop {
+                match run.next_step() {
+                    Ok(Some(_)) => {}
+                    other => break other,
+                }
+            };
+            match end {
+                Ok(_) => {}
+                Err(Error::StepTooShort { time, .. }) if (time / at - 1.0).abs() < 1e-9 => stopped += 1,
+                Err(error) => panic!("{jump} at {at} s: {error}"),
+            }
+        }
+    }
+    assert!(stopped > 0);
+}

@@ -181,3 +181,53 @@ fn punch_carries_force_and_moment() {
         Err(Error::OutOfRange { field: "eccentricity", .. })
     ));
 }
+
+/// Radii, moduli and forces at the ends of the range: numbers, or refused.
+#[test]
+fn references_at_the_ends_are_numbers_or_refused() {
+    let ends = [5e-324, 1e-310, 1e-200, 1e-100, 1e-3, 1.0, 1e6, 1e100, 1e200, 1e300, 1.7e308];
+    let all = |numbers: &[f64], what: &dyn std::fmt::Debug| {
+        assert!(numbers.iter().all(|value| value.is_finite()), "{numbers:?} of {what:?}");
+    };
+    let (mut made, mut refused) = ([0; 4], [0; 4]);
+    let mut count = |which: usize, ok: bool| if ok { made[which] += 1 } else { refused[which] += 1 };
+    for radius in ends {
+        for modulus in ends {
+            for force in ends {
+                let hertz = Hertz::new(radius, modulus, force);
+                count(0, hertz.is_ok());
+                if let Ok(hertz) = hertz {
+                    all(
+                        &[hertz.contact_radius(), hertz.peak_pressure(), hertz.approach(), hertz.pressure(0.0)],
+                        &hertz,
+                    );
+                }
+                let ellipse = HertzEllipse::new([radius, 3.0 * radius.min(5e307)], modulus, force);
+                count(1, ellipse.is_ok());
+                if let Ok(ellipse) = ellipse {
+                    let [a, b] = ellipse.semi_axes();
+                    all(&[a, b, ellipse.peak_pressure(), ellipse.approach(), ellipse.pressure(0.0, 0.0)], &ellipse);
+                }
+                let punch = RigidPunch::new(radius, modulus, force, 0.3 * radius);
+                count(2, punch.is_ok());
+                if let Ok(punch) = punch {
+                    all(&[punch.approach(), punch.tilt(), punch.pressure(0.0, 0.0)], &punch);
+                }
+            }
+        }
+        // a foundation of a stiff and of a soft body
+        for modulus in [1e-95, 1e6, 1e95] {
+            let body = Material::incompressible(Maxwell::new(modulus, modulus).unwrap());
+            let Ok(profile) = Profile::sphere(radius) else { continue };
+            let Ok(mut foundation) = AxisymmetricContact::new(&profile, &body, 20, radius) else { continue };
+            for (dt, force) in [(0.0, 1e300), (1.0, 1e-300), (1e300, 1.0), (1e-300, 1e200), (0.0, 1.0)] {
+                count(3, foundation.press(dt, force).is_ok());
+                count(3, foundation.indent(dt, 1e-3 * force).is_ok());
+                all(&[foundation.force(), foundation.approach(), foundation.contact_radius()], &foundation);
+            }
+        }
+    }
+    for which in 0..4 {
+        assert!(made[which] > 5 && refused[which] > 5, "{made:?} made, {refused:?} refused");
+    }
+}

@@ -285,3 +285,58 @@ fn from_one_cell_to_all() {
     let error = contact.step(0.0, Load::force(1e-323)).and_then(|_| contact.step(0.0, Load::force(1e308))).unwrap_err();
     assert!(matches!(error, Error::Overflow { .. }), "{error}");
 }
+
+/// Loads and steps at the ends of the range: whatever a step accepts is a number.
+#[test]
+fn steps_at_the_ends_are_numbers_or_refused() {
+    let materials = [
+        Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap()),
+        Material::incompressible(GeneralizedKelvin::new(1.0e-90, 1.0e90, &[(1.0e90, 1.0e-90)]).unwrap()),
+        Material::incompressible(Elastic::new(1.0e-95).unwrap()),
+    ];
+    let (mut accepted, mut refused) = (0, 0);
+    for material in &materials {
+        for width in [1.0e-90, 1.0e-3, 1.0e90] {
+            for (time_rule, size) in
+                [(TimeRule::Automatic, 1e200), (TimeRule::Backward, 1e300), (TimeRule::Automatic, 1e307)]
+            {
+                for load in
+                    [Load::force(size), Load::force(1.0 / size), Load::approach(size), Load::approach(1e-3 * width)]
+                {
+                    let settings = Settings { edge: Edge::Allow, time_rule, ..Settings::default() };
+                    let mut contact = ViscoelasticContact::builder(Grid::square(4, width).unwrap())
+                        .geometry(&Sphere::new(width).unwrap())
+                        .material(material.clone())
+                        .settings(settings)
+                        .build()
+                        .unwrap();
+                    for dt in [0.0, 1e-300, 1e3, 1e90, 1e300] {
+                        match contact.step(dt, load) {
+                            Ok(_) => accepted += 1,
+                            Err(_) => refused += 1,
+                        }
+                        let numbers = [contact.force(), contact.approach(), contact.moment()[0], contact.moment()[1]];
+                        let fields = contact.pressure().iter().chain(contact.displacement());
+                        let finite = numbers.iter().chain(fields).all(|value| value.is_finite());
+                        assert!(finite, "{dt:e} s, {load:?}, {width:e} m: {contact:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(accepted > 50 && refused > 50, "{accepted} {refused}");
+}
+
+/// A force that is a number on an arm that makes its moment none.
+#[test]
+fn moments_beyond_numbers_are_refused() {
+    let mut contact = ViscoelasticContact::builder(Grid::square(8, 1.0e90).unwrap())
+        .geometry(&Shifted::new(Sphere::new(1.0e90).unwrap(), [0.3e90, 0.0]).unwrap())
+        .material(Material::incompressible(Elastic::new(1.0e50).unwrap()))
+        .build()
+        .unwrap();
+    let error = contact.step(0.0, Load::force(1.0e220)).unwrap_err();
+    assert!(matches!(error, Error::Overflow { what: "the moment of the force", .. }), "{error}");
+    contact.step(0.0, Load::force(1.0e215)).unwrap();
+    assert!((contact.moment()[0] / 0.3e305 - 1.0).abs() < 0.1, "{:e}", contact.moment()[0]);
+}

@@ -177,3 +177,88 @@ fn impossible_bodies_are_refused() {
     assert_eq!(field(InfluenceKernel::periodic_along(&grid, 2, 2.0)), "periodic axis");
     assert_eq!(field(InfluenceKernel::periodic(&Grid::square(1, 1.0).unwrap())), "cells of a periodic grid");
 }
+
+/// Cells whose coefficients `f64` cannot represent are refused by what is wrong with them; up to there K p is a number.
+#[test]
+fn cells_beyond_numbers_are_refused() {
+    let field = |result: Result<InfluenceKernel, Error>| match result.unwrap_err() {
+        Error::OutOfRange { field, .. } => field,
+        other => panic!("unexpected {other}"),
+    };
+    type Make = fn(&Grid) -> Result<InfluenceKernel, Error>;
+    let kernels: [Make; 4] = [
+        InfluenceKernel::half_space,
+        InfluenceKernel::periodic,
+        |grid| InfluenceKernel::periodic_along(grid, 0, grid.lengths()[1]),
+        |grid| InfluenceKernel::periodic_along(grid, 1, 1.0e120),
+    ];
+    let sides = |d1: f64, d2: f64| Grid::new([4, 3], [4.0 * d1, 3.0 * d2]).unwrap();
+    for make in kernels {
+        assert_eq!(field(make(&sides(1.0e-101, 1.0))), "cell side along x1");
+        assert_eq!(field(make(&sides(1.0, 1.0e110))), "cell side along x2");
+        assert_eq!(field(make(&sides(1.0e-60, 1.0e60))), "aspect ratio of the cells");
+        for (d1, d2) in [(1.0e-99, 1.0), (1.0, 1.0e-99), (1.0e-40, 1.0e40), (1.0e99, 1.0e99), (1.0e-99, 1.0e-99)] {
+            let grid = sides(d1, d2);
+            let Ok(kernel) = make(&grid) else { continue };
+            let found = convolve(&kernel, &noise(12));
+            assert!(found.iter().all(|value| value.is_finite()), "{d1:e} {d2:e} {kernel}: {found:?}");
+        }
+    }
+    let line = Grid::new([4, 1], [1.0, 1.0]).unwrap();
+    assert_eq!(field(InfluenceKernel::line(&line, 1.0e121)), "datum of a line load");
+    let grid = sides(1.0, 1.0);
+    let beyond = |result: Result<InfluenceKernel, Error>| matches!(result, Err(Error::InvalidInfluence { .. }));
+    assert!(beyond(InfluenceKernel::from_coefficients(&grid, |i, j| if i == 0 && j == 0 { 1e101 } else { 0.0 })));
+    assert!(beyond(InfluenceKernel::from_spectrum(&grid, |_, _| 1e101)));
+}
+
+/// Slender cells far beyond those that the coefficients are proved for: of a unit pressure everywhere, K p on a row of cells
+/// is that of one cell of the same outline.
+#[test]
+fn slender_cells_add_up_to_one() {
+    for aspect in [1e3, 1e6, 1e20, 1e90] {
+        let grid = Grid::new([1, 3], [aspect, 3.0]).unwrap();
+        let row = convolve(&InfluenceKernel::half_space(&grid).unwrap(), &[1.0; 3]);
+        let one = Grid::new([1, 1], [aspect, 3.0]).unwrap();
+        let whole = convolve(&InfluenceKernel::half_space(&one).unwrap(), &[1.0]);
+        assert!((row[1] / whole[0] - 1.0).abs() < 1e-12, "{aspect:e}: {:e} {:e}", row[1], whole[0]);
+    }
+}
+
+/// What cannot be told as a number is not told.
+#[test]
+fn products_beyond_numbers_are_refused() {
+    let field = |kernel: &InfluenceKernel, pressure: &[f64]| {
+        let mut out = vec![0.0; pressure.len()];
+        match kernel.convolve(pressure, &mut out, &mut kernel.workspace()).unwrap_err() {
+            Error::OutOfRange { field, .. } => field,
+            other => panic!("unexpected {other}"),
+        }
+    };
+    for cells in [[4, 3], [12, 1], [1, 12]] {
+        let grid = Grid::new(cells, [1.0e3, 1.0e3]).unwrap();
+        for kernel in [InfluenceKernel::half_space(&grid), InfluenceKernel::periodic_along(&grid, 1, 1.0e9)] {
+            let kernel = kernel.unwrap();
+            assert_eq!(field(&kernel, &[1e308; 12]), "K p");
+            for bad in [f64::NAN, f64::INFINITY] {
+                let mut pressure = [1.0; 12];
+                pressure[7] = bad;
+                assert_eq!(field(&kernel, &pressure), "pressure");
+            }
+        }
+    }
+}
+
+/// The transform of a line meets numbers that are none before anyone else does, and must not be what stops the program.
+#[test]
+fn a_line_leaves_it_to_the_caller_to_say_what_is_no_number() {
+    for cells in [2, 12, 17] {
+        let grid = Grid::new([cells, 1], [1.0, 1.0]).unwrap();
+        let kernel = InfluenceKernel::line(&grid, 10.0).unwrap();
+        let mut out = vec![0.0; cells];
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let refused = kernel.convolve(&vec![bad; cells], &mut out, &mut kernel.workspace()).unwrap_err();
+            assert!(matches!(refused, Error::OutOfRange { field: "pressure", .. }), "{refused}");
+        }
+    }
+}

@@ -291,3 +291,13 @@ fn bodies_and_loads_are_counted() {
     let mixed = Ramp::new(Load::force(1.0), Load::approach(1.0), 1.0).unwrap_err();
     assert!(matches!(mixed, Error::MixedLoads { .. }), "{mixed}");
 }
+
+/// More cycles than there are numbers for are a load all the same.
+#[test]
+fn a_sinusoid_of_endless_cycles_stays_between_its_ends() {
+    for (frequency, t) in [(1e300, 1e10), (f64::MAX, f64::MAX), (1e200, 1e200), (1e-300, f64::MAX)] {
+        let swing = Sinusoid::new(Load::force(1.0), Load::force(3.0), frequency).unwrap();
+        let Load::Force { normal, .. } = swing.at(t) else { panic!("a force") };
+        assert!((1.0..=3.0).contains(&normal), "{normal} at {t:e} s, {frequency:e} Hz");
+    }
+}

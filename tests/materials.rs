@@ -335,3 +335,39 @@ fn thirty_relaxation_times_cost_little_more_than_one() {
     assert!((work / same - 1.0).abs() < 0.05, "the contact problems are the same");
     assert!(thirty < 1.3 * one, "{}", thirty / one);
 }
+
+/// Ends of the range of the fractional Zener body: its limits, or refused by name.
+#[test]
+fn a_fractional_zener_body_knows_its_limits() {
+    let relaxed = 1.0e-9 + 1.0e-6;
+    for (time, exponent) in [(1e-300, 0.99), (5e-324, 0.5), (1e-200, 0.999)] {
+        let body = FractionalZener::new(1.0e9, 1.0e6, time, exponent).unwrap();
+        for t in [1e200, 1e300, f64::MAX] {
+            let value = body.creep_compliance(t);
+            assert!((value / relaxed - 1.0).abs() < 1e-12, "J({t:e} s) = {value:e} of {body:?}");
+        }
+    }
+    let field = |g: f64, g_k: f64| match FractionalZener::new(g, g_k, 1.0, 0.5).unwrap_err() {
+        Error::OutOfRange { field, .. } => field,
+        other => panic!("unexpected {other}"),
+    };
+    assert_eq!(field(5e-324, 1.0), "compliance 1/G");
+    assert_eq!(field(1.0, 1e-310), "compliance 1/G_K");
+}
+
+/// A fit costs the fourth power of its decades: too many are refused, by their number, and not begun.
+#[test]
+fn series_over_too_many_decades_are_refused() {
+    let body = PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap();
+    for times in [1e-90..=1e90, 1e-26..=1e25, 1e-10..=1.1e40] {
+        let error = body.series(times.clone(), 1e-2).unwrap_err();
+        assert!(
+            matches!(error, Error::OutOfRange { field: "decades of a series", value, .. } if value > 50.0),
+            "{times:?}: {error}"
+        );
+    }
+    assert!(body.series(1e-10..=1e30, 0.1).unwrap().report().max_misfit() <= 0.1);
+    // what has an exact series needs no fit
+    let exact = Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap();
+    assert!(exact.series(1e-90..=1e90, 1e-4).unwrap().report().is_exact());
+}

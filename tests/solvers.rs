@@ -360,3 +360,32 @@ fn warm_steps_hardly_grow_with_the_mesh() {
     println!("{coarse} → {fine} iterations a step");
     assert!(fine <= 2.0 * coarse, "{coarse} → {fine}");
 }
+
+/// A state that still pulls somewhere is no solution, however small its residual is when the iterations run out.
+#[test]
+fn pressures_are_never_negative_when_iterations_run_out() {
+    let wavy = Sum::new(Sphere::new(5.0e-3).unwrap(), Wavy::new(2.0e-5, 0.7e-3).unwrap());
+    let (mut solved, mut given_up) = (0, 0);
+    for max_iterations in 1..6 {
+        for tolerance in [1e-3, 1e-2, 0.1] {
+            let settings = Settings { max_iterations, tolerance, edge: Edge::Allow, ..Settings::default() };
+            let mut contact = ViscoelasticContact::builder(Grid::square(16, 2.0e-3).unwrap())
+                .geometry(&wavy)
+                .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap()))
+                .settings(settings)
+                .build()
+                .unwrap();
+            for (dt, force) in [(0.0, 0.5), (0.1, 0.3), (0.1, 0.05), (1.0, 0.4), (0.3, 0.01), (0.0, 0.2)] {
+                match contact.step(dt, Load::force(force)) {
+                    Ok(_) => {
+                        assert!(contact.pressure().iter().all(|&p| p >= 0.0), "{max_iterations} {tolerance:e}");
+                        solved += 1;
+                    }
+                    Err(Error::NotConverged { .. }) => given_up += 1,
+                    Err(error) => panic!("unexpected {error}"),
+                }
+            }
+        }
+    }
+    assert!(solved > 20 && given_up > 20, "{solved} solved, {given_up} given up");
+}

@@ -245,13 +245,15 @@ impl<'a> Follow<'a> {
         controller.remember(self.contact);
         let stop = corner.min(self.until).min(self.landing(now));
         let tolerance = controller.solver_tolerance(self.contact.settings().tolerance);
-        let (mut wasted, mut failures) = ([0; 2], 0);
+        let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
         loop {
             let wanted = controller.length(self.contact, self.history, self.until - now);
             let (time, dt) = towards(now, stop, wanted);
-            if time <= now {
+            // a step of the last digit of the time, shortened, may round to itself again, and again
+            if time <= now || time >= tried {
                 return Err(Error::StepTooShort { time: now, dt, tolerance: controller.tolerance });
             }
+            tried = time;
             let load = self.history.before(time);
             let straying = controller.watch(self.history, self.contact, time);
             if straying > controller.tolerance {

@@ -375,8 +375,15 @@ impl ViscoelasticContact {
         if residual.is_nan() || residual.is_infinite() && !trace.is_finite() {
             return Err(Error::Overflow { time, what: "the residual of the contact problem" });
         }
-        if !(self.grid.cell_area() * self.region.images() as f64 * sum).is_finite() {
+        let pressures = self.region.images() as f64 * sum;
+        let force = self.grid.cell_area() * pressures;
+        if !force.is_finite() {
             return Err(Error::Overflow { time, what: "the force" });
+        }
+        // no moment is greater than that of the whole force at the end of the longer side
+        let arm = self.grid.lengths().into_iter().fold(0.0, f64::max);
+        if !(arm * pressures.max(force)).is_finite() {
+            return Err(Error::Overflow { time, what: "the moment of the force" });
         }
         if residual > tolerance {
             let convergence = Convergence::new(trace.samples(), tolerance, self.settings.solver).into();

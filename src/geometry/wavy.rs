@@ -74,6 +74,14 @@ mod tests {
     }
 
     #[test]
+    fn more_waves_than_numbers_are_waves_all_the_same() {
+        for (wavelength, x) in [(5e-324, 1.0), (1e-310, 1e10), (1e-200, f64::MAX), (5e-324, f64::MAX)] {
+            let gap = Wavy::new(2.0, wavelength).unwrap().initial_gap(x, 0.0);
+            assert!((0.0..=4.0).contains(&gap), "{gap} at {x:e} m of {wavelength:e} m");
+        }
+    }
+
+    #[test]
     fn bad_waves_are_refused_by_name() {
         let field = |result: Result<Wavy>| match result.unwrap_err() {
             Error::OutOfRange { field, .. } => field,

@@ -14,6 +14,12 @@ use crate::error::{Error, Result, within};
 const UNEQUAL: f64 = 1e-12;
 /// Energy that a pressure may gain by rounding, of the most that any spends.
 const ROUNDING: f64 = 1e-10;
+/// Lengths of a half-space \[m\], and aspect ratios of its cells: with these, coefficients and their sums are numbers.
+const RANGE: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
+/// Greatest influence of a user's kernel \[m\].
+const GREATEST: f64 = 1e100;
+/// Greatest datum of a line load \[m\]: no grid with such cells is longer.
+const FARTHEST_DATUM: f64 = 1e120;
 
 impl InfluenceKernel {
     fn new(grid: &Grid, influence: Influence) -> InfluenceKernel {
@@ -33,8 +39,9 @@ impl InfluenceKernel {
     /// Cost, at the first use: one Love integral a cell and one transform.
     ///
     /// # Errors
-    /// None today; the signature leaves room for grids too large to pad.
+    /// If a side of a cell, or their ratio, is not in \[1e-100, 1e100\] (m): the coefficients would leave the range of `f64`.
     pub fn half_space(grid: &Grid) -> Result<InfluenceKernel> {
+        representable(grid)?;
         Ok(InfluenceKernel::new(grid, Influence::HalfSpace(Love::new(grid.spacing()))))
     }
 
@@ -60,12 +67,14 @@ impl InfluenceKernel {
     /// ```
     ///
     /// # Errors
-    /// If the grid has one cell: nothing on it can be displaced.
+    /// If the grid has one cell: nothing on it can be displaced. If a side of a cell, or their ratio, is not in
+    /// \[1e-100, 1e100\] (m).
     pub fn periodic(grid: &Grid) -> Result<InfluenceKernel> {
         if grid.len() == 1 {
             let allowed = "2 or more: the mean of a periodic surface is not displaced";
             return Err(Error::CountOutOfRange { field: "cells of a periodic grid", value: 1, allowed });
         }
+        representable(grid)?;
         Ok(InfluenceKernel::new(grid, Influence::Periodic))
     }
 
@@ -77,7 +86,8 @@ impl InfluenceKernel {
     /// greater by (2 ln 2/π) C times the force on a unit of length.
     ///
     /// # Errors
-    /// If `axis` is neither 0 nor 1, or `datum` is not finite, or less than the length of the grid along the other axis.
+    /// If `axis` is neither 0 nor 1, or `datum` is not finite, or less than the length of the grid along the other axis, or more
+    /// than 1e120 m; if a side of a cell, or their ratio, is not in \[1e-100, 1e100\] (m).
     pub fn periodic_along(grid: &Grid, axis: usize, datum: f64) -> Result<InfluenceKernel> {
         if axis > 1 {
             return Err(Error::CountOutOfRange { field: "periodic axis", value: axis, allowed: "0 (x1) or 1 (x2)" });
@@ -95,7 +105,8 @@ impl InfluenceKernel {
     ///
     /// # Errors
     /// If the grid has more than one cell along x2, or `datum` is not finite, or less than the length of the grid along x1: a
-    /// pressure would pull the surface up.
+    /// pressure would pull the surface up. If it is more than 1e120 m, or a side of a cell, or their ratio, is not in
+    /// \[1e-100, 1e100\] (m).
     pub fn line(grid: &Grid, datum: f64) -> Result<InfluenceKernel> {
         if grid.cells()[1] != 1 {
             let field = "cells along x2 of a line contact";
@@ -111,7 +122,7 @@ impl InfluenceKernel {
     /// alike, and mirrored when the load is.
     ///
     /// # Errors
-    /// If a coefficient is not finite, or not that of its mirror images, or if a pressure is found that would gain energy: the
+    /// If a coefficient is not finite, or beyond ±1e100 m, or not that of its mirror images, or if a pressure is found that would gain energy: the
     /// spectrum of K is positive, or else its least eigenvalue is sought by Lanczos' method, which finds any that is
     /// far below zero.
     pub fn from_coefficients(grid: &Grid, coefficient: impl Fn(isize, isize) -> f64) -> Result<InfluenceKernel> {
@@ -120,8 +131,10 @@ impl InfluenceKernel {
         for i in 0..n1 as isize {
             for j in 0..n2 as isize {
                 let value = coefficient(i, j);
-                if !value.is_finite() {
-                    return Err(Error::InvalidInfluence { of: "coefficient", at: [i, j], value, allowed: "finite" });
+                // NaN is neither
+                if !(-GREATEST..=GREATEST).contains(&value) {
+                    let allowed = "finite, and 1e100 m in absolute value at most";
+                    return Err(Error::InvalidInfluence { of: "coefficient", at: [i, j], value, allowed });
                 }
                 values.push(value);
             }
@@ -178,7 +191,7 @@ impl InfluenceKernel {
     /// ```
     ///
     /// # Errors
-    /// If the compliance of a wave is not finite and positive, or that of the mean not finite and ≥ 0.
+    /// If the compliance of a wave is not positive, or that of the mean negative, or either is more than 1e100 m.
     pub fn from_spectrum(grid: &Grid, compliance: impl Fn(f64, f64) -> f64) -> Result<InfluenceKernel> {
         let [half1, half2] = grid.cells().map(|cells| cells / 2);
         let q = |axis: usize, k: usize| wave_number(k, grid.cells()[axis], grid.spacing()[axis]);
@@ -187,8 +200,8 @@ impl InfluenceKernel {
             for k2 in 0..=half2 {
                 let value = compliance(q(0, k1), q(1, k2));
                 let mean = (k1, k2) == (0, 0);
-                if !(value.is_finite() && (value > 0.0 || (mean && value == 0.0))) {
-                    let allowed = if mean { "finite and >= 0" } else { "finite and > 0" };
+                if !(value <= GREATEST && (value > 0.0 || (mean && value == 0.0))) {
+                    let allowed = if mean { "in [0, 1e100] m" } else { "> 0, and 1e100 m at most" };
                     let at = [k1 as isize, k2 as isize];
                     return Err(Error::InvalidInfluence { of: "wave", at, value, allowed });
                 }
@@ -203,8 +216,21 @@ impl InfluenceKernel {
     }
 }
 
+/// Refuses cells whose influence coefficients `f64` cannot represent.
+fn representable(grid: &Grid) -> Result<()> {
+    let [d1, d2] = grid.spacing();
+    for (field, side) in [("cell side along x1", d1), ("cell side along x2", d2)] {
+        within(field, side, RANGE.contains(&side), "in [1e-100, 1e100] m for the kernel of a half-space")?;
+    }
+    let field = "aspect ratio of the cells";
+    within(field, d1 / d2, RANGE.contains(&(d1 / d2)), "in [1e-100, 1e100] for the kernel of a half-space")?;
+    Ok(())
+}
+
 fn strip(grid: &Grid, axis: usize, datum: f64) -> Result<Strip> {
+    representable(grid)?;
     let reaches = datum >= grid.lengths()[axis];
     within("datum of a line load", datum, reaches, "finite, and no less than the length of the grid across the lines")?;
+    within("datum of a line load", datum, datum <= FARTHEST_DATUM, "1e120 m at most")?;
     Ok(Strip::new(grid.spacing()[axis], datum))
 }

@@ -34,7 +34,7 @@ use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
-use crate::error::{Result, exact_length};
+use crate::error::{Error, Result, exact_length, finite};
 use influence::Influence;
 use layout::{Ends, Layout};
 use lines::Scalar;
@@ -107,17 +107,24 @@ impl InfluenceKernel {
     /// a body of contact compliance 1 Pa⁻¹.
     ///
     /// # Errors
-    /// If a field does not hold one value a cell, or `work` was made by a kernel of another size.
+    /// If a field does not hold one value a cell, `work` was made by a kernel of another size, a pressure is not finite, or
+    /// K p leaves the range of `f64`; what `displacement` holds then is of no use.
     pub fn convolve(&self, pressure: &[f64], displacement: &mut [f64], work: &mut Workspace) -> Result<()> {
         exact_length("pressure", pressure.len(), self.grid.len())?;
         exact_length("displacement", displacement.len(), self.grid.len())?;
         let operator = self.operator([false; 2]);
         if !operator.fits(&work.transform) {
             let (len, expected) = (work.transform.len(), self.workspace().transform.len());
-            return Err(crate::Error::WrongLength { field: "workspace", len, expected, exact: true });
+            return Err(Error::WrongLength { field: "workspace", len, expected, exact: true });
         }
         operator.apply(pressure, displacement, [1.0; 2], &mut work.transform);
-        Ok(())
+        if displacement.iter().all(|value| value.is_finite()) {
+            return Ok(());
+        }
+        // one look at the result is enough until something is wrong
+        pressure.iter().try_for_each(|&p| finite("pressure", p).map(drop))?;
+        let value = displacement.iter().copied().find(|value| !value.is_finite()).unwrap_or(f64::NAN);
+        Err(Error::OutOfRange { field: "K p", value, allowed: "finite: the pressure is too great for this kernel" })
     }
 
     /// The operator on the whole grid.

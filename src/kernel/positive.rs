@@ -34,6 +34,10 @@ pub(super) fn least_eigenvalue(operator: &SpectralOperator<f64>, cells: usize) -
         std::mem::swap(&mut previous, &mut vector);
         vector.iter_mut().zip(&image).for_each(|(vector, image)| *vector = image / next);
     }
+    // of numbers that are none the eigenvalues are sought in vain, and for long
+    if !diagonal.iter().chain(&beside).all(|value| value.is_finite()) {
+        return (f64::NAN, f64::NAN);
+    }
     let entry = |i: usize, j: usize| match i.abs_diff(j) {
         0 => diagonal[i],
         1 => beside[i.min(j)],

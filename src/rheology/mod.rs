@@ -144,8 +144,8 @@ pub trait Rheology: Debug + Send + Sync {
     /// went before.
     ///
     /// # Errors
-    /// If the times are not positive, finite and in order, the tolerance is outside \[1e-8, 0.1\], J is not a creep
-    /// compliance there, or no series found reaches the tolerance ([`Error::PoorFit`](crate::Error::PoorFit)): J is
+    /// If the times are not in \[1e-90, 1e90\] and in order, a series must be fitted over more than 50 decades of them, the
+    /// tolerance is outside \[1e-8, 0.1\], J is not a creep compliance there, or no series found reaches the tolerance ([`Error::PoorFit`](crate::Error::PoorFit)): J is
     /// then not that of a body of springs and dashpots, or the tolerance is too small (below 1e-6).
     fn series(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<CreepSeries> {
         CreepSeries::new(self, times, tolerance)

@@ -33,6 +33,10 @@ const FITTED: f64 = 16.0;
 const CHECKED: f64 = 67.0;
 /// Part of the tolerance that the fit may use, so that the check, which looks more closely, passes.
 const FITTED_SHARE: f64 = 0.9;
+/// Decades that a series may be fitted over. The time a fit takes grows with their fourth power: terms grow with the decades,
+/// each merger of two of them polishes all the others by least squares, which takes the square of their number for each
+/// sample. Fifty decades take three seconds with a tolerance of 1e-4, and seventeen with 1e-6.
+const MOST_DECADES: f64 = 50.0;
 /// How far terms reach beyond the range, as a factor.
 const BEYOND: f64 = 10.0;
 
@@ -55,6 +59,13 @@ impl CreepSeries {
             let (known_until, measured) = (rheology.known_until(), rheology.measured());
             return Ok(CreepSeries { spectrum, report, known_until, measured });
         }
+        let decades = (last / first).log10();
+        within(
+            "decades of a series",
+            decades,
+            decades <= MOST_DECADES,
+            "50 at most (Builder::times says which matter)",
+        )?;
 
         let glassy = checked(rheology, 0.0, 0.0)?;
         let samples = sampled(rheology, [first, last], FITTED, glassy)?;

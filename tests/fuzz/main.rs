@@ -8,10 +8,16 @@
 //! with `FUZZ_TARGET=scene` for targets whose names begin so. What it finds is told with its case; `FUZZ_TARGET=scene
 //! FUZZ_CASE=123` runs that alone. The record of long runs is docs/fuzzing.md.
 
+#[cfg(feature = "checkpoint")]
+mod checkpoints;
 mod constructors;
 mod engine;
+mod files;
 mod maps;
 mod models;
+#[cfg(feature = "plot")]
+mod pictures;
+mod plans;
 mod scenes;
 mod source;
 mod tables;
@@ -20,13 +26,19 @@ use std::time::{Duration, Instant};
 
 use engine::{Tally, Target};
 
-/// All targets. A new one, as the files of checkpoints, is one line here and a function from a [`source::Source`].
+/// All targets. A new one is one line here and a function from a [`source::Source`].
 fn targets() -> Vec<Target> {
     let mut targets = Vec::new();
     targets.extend(maps::targets());
     targets.extend(tables::targets());
     targets.extend(constructors::targets());
     targets.extend(scenes::targets());
+    targets.extend(plans::targets());
+    targets.extend(files::targets());
+    #[cfg(feature = "plot")]
+    targets.extend(pictures::targets());
+    #[cfg(feature = "checkpoint")]
+    targets.extend(checkpoints::targets());
     targets
 }
 
@@ -44,6 +56,7 @@ fn nothing_panics_hangs_or_returns_nan() {
     if let Some(case) = from_environment("FUZZ_CASE") {
         let start = Instant::now();
         let verdict = engine::execute(&targets[0], case);
+        files::Folder::leave();
         println!("{} {case}: {verdict:?} in {:.3} s", targets[0].name, start.elapsed().as_secs_f64());
         assert!(verdict.is_ok(), "{verdict:?}");
         return;
@@ -70,9 +83,12 @@ fn nothing_panics_hangs_or_returns_nan() {
                 let total: u64 = tallies.iter().map(|tally| tally.executions).sum();
                 let found: u64 = tallies.iter().map(|tally| tally.found).sum();
                 println!("{total} executions, {found} findings");
+                // all of it, so that what hangs later costs no record
+                targets.iter().zip(&tallies).for_each(|(target, tally)| println!("  {}", tally.line(target)));
             }
         }
     }
+    files::Folder::leave();
     let mut told = Vec::new();
     for (target, tally) in targets.iter().zip(&tallies) {
         println!("{}", tally.line(target));

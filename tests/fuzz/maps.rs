@@ -51,15 +51,28 @@ fn look(map: HeightMap) -> Result<(), String> {
     finite("centre", map.center())
 }
 
-fn read(file: &[u8], source: &mut Source, read: impl Fn(&[u8]) -> viscocontact::Result<HeightMap>) -> Verdict {
-    let file = if source.chance(0.05) { file.to_vec() } else { source.damage(file) };
+/// Reads a file whose numbers begin after `head` bytes, damaged; a text begins with them.
+fn read(
+    file: &[u8],
+    head: Option<usize>,
+    source: &mut Source,
+    read: impl Fn(&[u8]) -> viscocontact::Result<HeightMap>,
+) -> Verdict {
+    let file = match head {
+        _ if source.chance(0.05) => file.to_vec(),
+        Some(head) => source.damage_behind(file, head),
+        None if source.chance(0.6) => source.damage_text(file),
+        None => source.damage(file),
+    };
     judged(read(&file), look)
 }
 
 fn gsf(source: &mut Source) -> Verdict {
     let mut file = Vec::new();
     map(source).write_gsf(&mut file).map_err(|error| error.to_string())?;
-    read(&file, source, |file| HeightMap::from_gsf(file))
+    // the head ends with zeros
+    let head = file.iter().position(|&byte| byte == 0).unwrap_or(0) + 4;
+    read(&file, Some(head), source, |file| HeightMap::from_gsf(file))
 }
 
 fn sdf(source: &mut Source) -> Verdict {
@@ -79,28 +92,31 @@ fn sdf(source: &mut Source) -> Verdict {
         file.extend([0, kind, 0]);
         file.extend(source.bytes(width * usize::from(columns) * usize::from(rows)));
     }
-    read(&file, source, |file| HeightMap::from_sdf(file))
+    let head = if file.starts_with(b"b") { Some(81) } else { None };
+    read(&file, head, source, |file| HeightMap::from_sdf(file))
 }
 
 fn text(source: &mut Source) -> Verdict {
     const FILES: [&str; 3] =
         ["# a\n1, 2, 3\n4, bad, 6\n", "# Channel: Height\n# Width: 2 um\n1.5e-3\t2\n3\tnan\n", "1 2\n3 4\n"];
     let (file, lengths) = (source.choose(&FILES), [source.scale(1e-6, 1e-2), source.scale(1e-6, 1e-2)]);
-    read(file.as_bytes(), source, |file| HeightMap::from_text(file, lengths, LengthUnit::Micrometre))
+    read(file.as_bytes(), None, source, |file| HeightMap::from_text(file, lengths, LengthUnit::Micrometre))
 }
 
 fn xyz(source: &mut Source) -> Verdict {
     const FILES: [&str; 2] =
         ["0 0 1\n1 0 2\n2 0 nan\n0 1 4\n1 1 5\n2 1 6\n", "# x y z\n0.5;0;1\n0;0;1\n0;0.25;1\n0.5;0.25;-3e2\n"];
     let file = source.choose(&FILES);
-    read(file.as_bytes(), source, |file| HeightMap::from_xyz(file, LengthUnit::Millimetre, LengthUnit::Micrometre))
+    read(file.as_bytes(), None, source, |file| {
+        HeightMap::from_xyz(file, LengthUnit::Millimetre, LengthUnit::Micrometre)
+    })
 }
 
 #[cfg(feature = "npy")]
 fn npy(source: &mut Source) -> Verdict {
     let mut file = Vec::new();
     map(source).write_npy(&mut file).map_err(|error| error.to_string())?;
-    read(&file, source, |file| HeightMap::from_npy(file, [1e-3; 2], LengthUnit::Metre))
+    read(&file, Some(128), source, |file| HeightMap::from_npy(file, [1e-3; 2], LengthUnit::Metre))
 }
 
 #[cfg(not(feature = "npy"))]
@@ -137,7 +153,11 @@ mod packed {
     }
 
     fn archive(xml: &[u8], source: &mut Source) -> Vec<u8> {
-        let width = source.choose(&[8, 8, 4, 2]);
+        // mostly the width that the description says
+        let widths = [("D</DataType></CZ>", 8), ("F</DataType></CZ>", 4), ("Increment>0.5", 2)];
+        let text = String::from_utf8_lossy(xml);
+        let said = widths.iter().find(|(mark, _)| text.contains(mark)).map_or(8, |&(_, width)| width);
+        let width = if source.chance(0.9) { said } else { source.choose(&[8, 4, 2]) };
         let data: Vec<u8> = source.bytes(6 * width);
         let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
         for (name, content) in [("main.xml", xml), ("bindata/data.bin", &data), ("bindata/valid.bin", &[0b10_1111])] {
@@ -151,13 +171,18 @@ mod packed {
     pub fn x3p(source: &mut Source) -> Verdict {
         let xml = xml(source);
         let file = archive(xml.as_bytes(), source);
-        read(&file, source, |file| HeightMap::from_x3p(file))
+        // of an archive anything that is turned is found, but a sound one of any numbers is not refused for them
+        if source.chance(0.4) {
+            return judged(HeightMap::from_x3p(&file[..]), look);
+        }
+        read(&file, Some(file.len()), source, |file| HeightMap::from_x3p(file))
     }
 
     /// A sound archive of a damaged description, which no check sum catches.
     pub fn x3p_xml(source: &mut Source) -> Verdict {
         let xml = xml(source);
-        let damaged = source.damage(xml.as_bytes());
+        let damaged =
+            if source.chance(0.8) { source.damage_text(xml.as_bytes()) } else { source.damage(xml.as_bytes()) };
         let file = archive(&damaged, source);
         judged(HeightMap::from_x3p(&file[..]), look)
     }

@@ -76,6 +76,11 @@ pub fn creeps(rheology: &dyn Rheology, until: f64) -> Result<(), String> {
     Ok(())
 }
 
+/// Whether a fit over these times would take longer than an execution may, and yet not be refused.
+pub fn is_long_fit(times: &std::ops::RangeInclusive<f64>) -> bool {
+    (1e12..1.01e50).contains(&(times.end() / times.start()))
+}
+
 /// A body of the contact.
 pub fn material(source: &mut Source, fitted: bool) -> viscocontact::Result<Material> {
     let body = rheology(source, fitted)?;
@@ -185,6 +190,16 @@ pub fn history(source: &mut Source, length: f64, softness: f64) -> viscocontact:
                 FnHistory::new(move |t| Load::force(normal * (1.0 + (rate * t).sin()))).with_breakpoints(&[corner])?,
             )
         }
+    })
+}
+
+/// A history that turns a few times in a second or so.
+pub fn few_turns(source: &mut Source, length: f64, softness: f64) -> viscocontact::Result<Box<dyn LoadHistory>> {
+    let (first, second) = (load(source, length, softness), load(source, length, softness));
+    Ok(match source.below(4) {
+        0 | 1 => Box::new(StepLoad::new(first)?),
+        2 => Box::new(Ramp::new(first, second, source.scale(0.1, 10.0))?),
+        _ => Box::new(PiecewiseLinear::new(&[(0.0, first), (source.scale(0.1, 1.0), second)])?),
     })
 }
 

@@ -105,6 +105,68 @@ impl Source {
         (0..count).map(|_| self.u64() as u8).collect()
     }
 
+    /// Damages a text as slips of hand and odd programs do, so that much of it is still accepted: digits, numbers and whole
+    /// lines are changed, exchanged, repeated or lost.
+    pub fn damage_text(&mut self, file: &[u8]) -> Vec<u8> {
+        const NUMBERS: [&[u8]; 14] =
+            [b"0", b"-0", b"1", b"-1", b"2", b"3", b"1e-9", b"0.5", b"1e300", b"5e-324", b"1e9", b"7", b".5", b"+4"];
+        let mut file = file.to_vec();
+        let slips = self.choose(&[1, 1, 1, 2, 4]);
+        for _ in 0..slips {
+            let digits: Vec<usize> = (0..file.len()).filter(|&k| file[k].is_ascii_digit()).collect();
+            let ends: Vec<usize> = (0..file.len()).filter(|&k| file[k] == b'\n').map(|k| k + 1).collect();
+            if file.is_empty() || digits.is_empty() {
+                break;
+            }
+            let at = self.choose(&digits);
+            // lines from one of their beginnings to the next
+            let line = |start: usize| start..ends.iter().copied().find(|&end| end > start).unwrap_or(file.len());
+            let begin = |at: usize| ends.iter().copied().filter(|&end| end <= at).max().unwrap_or(0);
+            match self.below(10) {
+                0..=4 => file[at] = b"0123456789"[self.below(10)],
+                5 | 6 => {
+                    let is_part = |byte: u8| byte.is_ascii_digit() || b"+-.eE".contains(&byte);
+                    let first = (0..at).rev().take_while(|&k| is_part(file[k])).last().unwrap_or(at);
+                    let last = (at..file.len()).take_while(|&k| is_part(file[k])).last().unwrap_or(at);
+                    let number = self.choose(&NUMBERS);
+                    file.splice(first..=last, number.iter().copied());
+                }
+                7 => {
+                    let piece = file[line(begin(at))].to_vec();
+                    let to = begin(self.below(file.len()));
+                    file.splice(to..to, piece);
+                }
+                8 => drop(file.drain(line(begin(at)))),
+                _ => {
+                    let blank = self.choose(&[b" ", b"\t", b"\r", b"\n"]);
+                    file.insert(at, blank[0]);
+                }
+            }
+        }
+        file
+    }
+
+    /// Damages a file whose head is text or numbers of `head` bytes: mostly what comes after it, so that it is accepted as
+    /// often as not; now and then anything.
+    pub fn damage_behind(&mut self, file: &[u8], head: usize) -> Vec<u8> {
+        if head >= file.len() || self.chance(0.4) {
+            return self.damage(file);
+        }
+        let mut file = file.to_vec();
+        for _ in 0..=self.below(6) {
+            let at = self.count(head, file.len() - 1);
+            match self.below(3) {
+                0 => file[at] = self.u64() as u8,
+                1 => file[at] ^= 1 << self.below(8),
+                _ => {
+                    let number = self.anything().to_le_bytes();
+                    file[at..].iter_mut().zip(number).for_each(|(byte, new)| *byte = new);
+                }
+            }
+        }
+        file
+    }
+
     /// Damages a file: a few bytes cut, turned, repeated, or replaced by what stands in files.
     pub fn damage(&mut self, file: &[u8]) -> Vec<u8> {
         const TOKENS: [&[u8]; 18] = [

@@ -31,33 +31,40 @@ fn look(table: &dyn Rheology) -> Result<(), String> {
     }
 }
 
-/// Abscissae, and two columns that rise and fall, or are anything.
+/// Abscissae, and two columns that rise, or are anything.
 fn columns(source: &mut Source) -> [Vec<f64>; 3] {
-    let count = source.count(0, 24);
+    let count = if source.chance(0.9) { source.count(4, 24) } else { source.count(0, 4) };
     let first = source.scale(1e-4, 1e4);
     let factor = source.scale(1.05, 10.0);
-    let noise = source.choose(&[0.0, 0.0, 0.01, 0.2]);
-    let (size, slope) = (source.scale(1e-9, 1e9), source.between(-0.2, 0.6));
+    let noise = source.choose(&[0.0, 0.0, 0.0, 0.01, 0.2]);
+    let (size, slope) = (source.scale(1e-9, 1e9), source.between(-0.02, 0.6));
     let mut columns = [Vec::new(), Vec::new(), Vec::new()];
+    // half of the tables have no slip
+    let slips = source.choose(&[0.0, 0.01]);
     for k in 0..count {
         let x = first * factor.powi(k as i32);
-        columns[0].push(if source.chance(0.01) { source.anything() } else { x });
+        columns[0].push(if source.chance(slips) { source.anything() } else { x });
         for column in [1, 2] {
             let value = size * factor.powf(slope * k as f64) * (1.0 + noise * (source.unit() - 0.5));
-            columns[column].push(if source.chance(0.005) { source.anything() } else { value });
+            columns[column].push(if source.chance(0.5 * slips) { source.anything() } else { value });
         }
     }
-    if source.chance(0.05) {
+    if source.chance(0.02) {
         columns[1].pop();
     }
     columns
+}
+
+/// The same as a relaxation test would give it, which falls.
+fn falling(values: &[f64]) -> Vec<f64> {
+    values.iter().map(|value| 1.0 / value).collect()
 }
 
 fn slices(source: &mut Source) -> Verdict {
     let [x, first, second] = columns(source);
     match source.below(3) {
         0 => judged(TabulatedCreep::new(&x, &first), |table| look(&table)),
-        1 => judged(TabulatedRelaxation::new(&x, &first), |table| look(&table)),
+        1 => judged(TabulatedRelaxation::new(&x, &falling(&first)), |table| look(&table)),
         _ => judged(TabulatedDynamic::new(&x, &first, &second), |table| look(&table)),
     }
 }
@@ -66,23 +73,26 @@ fn master(source: &mut Source) -> Verdict {
     let kind = source.below(3);
     let mut isotherms = Vec::new();
     let [x, first, second] = columns(source);
-    for _ in 0..source.count(0, 4) {
+    let mut temperatures = Vec::new();
+    for _ in 0..source.count(1, 4) {
         let temperature = source.between(250.0, 450.0);
         // the same curve at another place, or another one
-        let shift = source.scale(1e-3, 1e3);
-        let other = source.chance(0.1).then(|| columns(source));
+        let shift = source.scale(0.03, 30.0);
+        let other = source.chance(0.05).then(|| columns(source));
         let [x, first, second] = other.unwrap_or_else(|| {
             let x = x.iter().map(|x| x * shift).collect();
             [x, first.clone(), second.clone()]
         });
-        let isotherm = match if source.chance(0.05) { source.below(3) } else { kind } {
+        let isotherm = match if source.chance(0.03) { source.below(3) } else { kind } {
             0 => Isotherm::creep(temperature, &x, &first),
-            1 => Isotherm::relaxation(temperature, &x, &first),
+            1 => Isotherm::relaxation(temperature, &x, &falling(&first)),
             _ => Isotherm::dynamic(temperature, &x, &first, &second),
         };
+        temperatures.push(temperature);
         isotherms.extend(isotherm);
     }
-    judged(MasterCurve::new(source.between(250.0, 450.0), isotherms), |curve| {
+    let reference = if source.chance(0.95) { source.choose(&temperatures) } else { source.between(250.0, 450.0) };
+    judged(MasterCurve::new(reference, isotherms), |curve| {
         known("shift factors", curve.shift_factors().into_iter().flat_map(|(a, b)| [a, b]))?;
         known("points", curve.points().into_iter().flat_map(|(a, _, b)| [a, b]))?;
         for law in [curve.wlf(), curve.arrhenius()].into_iter().flatten() {
@@ -99,16 +109,23 @@ fn csv(source: &mut Source) -> Verdict {
     use viscocontact::rheology::Units;
 
     const FILES: [&str; 5] = [
-        "# PMMA, 23 C\ntime [s], J [1/Pa]\n10, 1.2e-9\n1, 1.0e-9\n100, 1.3e-9\n3, 1.1e-9\n",
-        "1; 4.0e6\n3; 3.1e6\n10; 2.4e6\n30; 2.1e6\n",
-        "omega,G',G''\n0.1,1.0e6,2e5\n1,1.5e6,4e5\n10,2.2e6,4e5\n100,2.5e6,1e5\n",
+        "# PMMA, 23 C\ntime [s], J [1/Pa]\n10, 1.2e-9\n1, 1.0e-9\n100, 1.3e-9\n3, 1.1e-9\n30, 1.25e-9\n300, 1.4e-9\n",
+        "1; 4.0e6\n3; 3.1e6\n10; 2.4e6\n30; 2.1e6\n100; 1.9e6\n300; 1.8e6\n",
+        "omega,G',G''\n0.1,1.0e6,2e5\n1,1.5e6,4e5\n10,2.2e6,4e5\n100,2.5e6,1e5\n30,2.3e6,3e5\n",
         "t\tE\n0.1\t\"3e6\"\n1\t2e6\n10\t1e6\n100\t0.5e6\n\n",
         "1,5 2,5\n2,5 2,6\n1 2\n",
     ];
-    let file = source.choose(&FILES);
-    let file = if source.chance(0.05) { file.as_bytes().to_vec() } else { source.damage(file.as_bytes()) };
+    const KINDS: [usize; 5] = [0, 1, 2, 1, 0];
+    let few = source.chance(0.9);
+    let which = source.below(if few { 4 } else { 5 });
+    let file = FILES[which].as_bytes();
+    let file = match source.below(8) {
+        0 => file.to_vec(),
+        1 => source.damage(file),
+        _ => source.damage_text(file),
+    };
     let units = Units { abscissa: source.scale(1e-3, 1e3), value: source.scale(1e-3, 1e3) };
-    match source.below(3) {
+    match if source.chance(0.9) { KINDS[which] } else { source.below(3) } {
         0 => judged(TabulatedCreep::from_csv_reader(&file[..], units), |table| look(&table)),
         1 => judged(TabulatedRelaxation::from_csv_reader(&file[..], units), |table| look(&table)),
         _ => judged(TabulatedDynamic::from_csv_reader(&file[..], units), |table| look(&table)),

@@ -122,6 +122,20 @@ mod tests {
         assert!(errors.is_sorted() && errors[1] < 0.01 && errors[3] > 0.03, "{errors:?}");
     }
 
+    /// Squares of these heights leave the range of f64, the error does not.
+    #[test]
+    fn errors_of_the_greatest_and_least_heights_are_numbers() {
+        let map = map_of([32, 8], waves);
+        let coarse = |map: &HeightMap| map.resampled(&Grid::new([8, 8], [1.0, 1.0]).unwrap()).unwrap().error;
+        let usual = coarse(&map);
+        for scale in [1e200, 1e300, 1e-200, 1e-290] {
+            let error = coarse(&map.clone().scaled(scale).unwrap());
+            for (found, expected) in [(error.rms / scale, usual.rms), (error.of_rms_height, usual.of_rms_height)] {
+                assert!((found / expected - 1.0).abs() < 1e-9, "{scale:e}: {found:e} {expected:e}");
+            }
+        }
+    }
+
     #[test]
     fn beyond_the_map_there_is_nothing_to_touch() {
         let map = map_of([8, 8], waves).centered_at([0.5, 0.0]).unwrap();

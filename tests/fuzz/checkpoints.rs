@@ -1,0 +1,140 @@
+//! Files of checkpoints, damaged, and forged with a right checksum.
+
+use std::sync::OnceLock;
+
+use viscocontact::prelude::*;
+
+use crate::engine::{Outcome, Target, Verdict, finite, known};
+use crate::files::Folder;
+use crate::scenes::{look, state, unchanged};
+use crate::source::Source;
+
+pub fn targets() -> Vec<Target> {
+    vec![Target { name: "checkpoint", short: 400, run: checkpoint }]
+}
+
+/// How many scenes there are to save.
+const SCENES: usize = 7;
+/// Mark, version and length; then the checksum; then the state.
+const CHECKSUM: std::ops::Range<usize> = 20..24;
+
+fn build(scene: usize) -> viscocontact::Result<ViscoelasticContact> {
+    let whole = Settings { window: false, symmetry: false, ..Settings::default() };
+    let terms = [(1.0e6, 0.03), (0.5e6, 0.3), (0.5e6, 3.0)];
+    let polymer = Material::incompressible(GeneralizedMaxwell::new(0.1e6, &terms)?);
+    let grid = Grid::square(8, 4.0e-3)?;
+    let ball = Sphere::new(5.0e-3)?;
+    let builder = || ViscoelasticContact::builder(grid.clone()).geometry(&ball);
+    match scene {
+        0 => builder().material(polymer).build(),
+        1 => builder().material(polymer).settings(whole).build(),
+        2 => builder().material(polymer).settings(Settings { time_rule: TimeRule::Backward, ..whole }).build(),
+        3 => builder().material(polymer).settings(Settings { frame: Frame::Indenter, ..whole }).build(),
+        // a past that is not fitted yet, and one that is
+        4 | 5 => builder().material(Material::incompressible(FractionalMaxwell::findley(1e-6, 1e-6, 0.3)?)).build(),
+        _ => {
+            let beside = Shifted::new(ball, [1.0e-3, 0.0])?;
+            builder().material(polymer).another_body(&beside).settings(whole).build()
+        }
+    }
+}
+
+fn step(contact: &mut ViscoelasticContact, dt: f64, force: f64) -> viscocontact::Result<StepReport> {
+    let loads = vec![Load::force(force); contact.bodies()];
+    contact.step_each(dt, &loads)
+}
+
+/// A sound file of each scene, and one of a run along a history.
+fn sound_files() -> &'static [(usize, Vec<u8>)] {
+    static FILES: OnceLock<Vec<(usize, Vec<u8>)>> = OnceLock::new();
+    FILES.get_or_init(|| {
+        let folder = Folder::new("sound");
+        let path = folder.path("file");
+        let mut files = Vec::new();
+        for scene in 0..SCENES {
+            let mut contact = build(scene).expect("a good scene");
+            for dt in if scene == 4 { &[0.0, 0.0][..] } else { &[0.0, 0.02, 0.01] } {
+                step(&mut contact, *dt, 0.1).expect("a good step");
+            }
+            contact.save(&path).expect("a file");
+            files.push((scene, std::fs::read(&path).expect("a file")));
+            let load = StepLoad::new(Load::force(0.1)).expect("a good load");
+            if scene == 0 {
+                let mut run = contact.follow(&load, Stepping::adaptive(1e-2), 3.0);
+                (0..3).for_each(|_| _ = run.next_step());
+                run.save(&path).expect("a file");
+                files.push((scene, std::fs::read(&path).expect("a file")));
+            }
+        }
+        files
+    })
+}
+
+/// The checksum of the format: CRC-32 of IEEE 802.3, bit by bit.
+fn crc(bytes: impl Iterator<Item = u8>) -> u32 {
+    !bytes.fold(!0, |crc: u32, byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg()))
+    })
+}
+
+/// A file whose state is damaged, and whose length and checksum fit it.
+fn forged(file: &[u8], source: &mut Source) -> Vec<u8> {
+    let mut file = if source.chance(0.2) {
+        [&file[..CHECKSUM.end], &source.damage(&file[CHECKSUM.end..])].concat()
+    } else {
+        source.damage_behind(file, CHECKSUM.end)
+    };
+    if file.len() >= CHECKSUM.end {
+        let length = (file.len() - CHECKSUM.end) as u64;
+        file[12..20].copy_from_slice(&length.to_le_bytes());
+        let right = crc(file[..CHECKSUM.start].iter().chain(&file[CHECKSUM.end..]).copied());
+        file[CHECKSUM].copy_from_slice(&right.to_le_bytes());
+    }
+    file
+}
+
+/// A damaged file is refused and leaves no mark, or it gives a contact whose next steps are numbers.
+fn checkpoint(source: &mut Source) -> Verdict {
+    let files = sound_files();
+    let (scene, ref file) = files[source.below(files.len())];
+    let damaged = match source.below(10) {
+        0 => file.clone(),
+        1 | 2 => source.damage(file),
+        _ => forged(file, source),
+    };
+    // another scene now and then
+    let scene = if source.chance(0.02) { source.below(SCENES) } else { scene };
+    let mut contact = build(scene).map_err(|error| error.to_string())?;
+    let path = Folder::shared().path("checkpoint");
+    std::fs::write(&path, &damaged).map_err(|error| error.to_string())?;
+    let before = state(&contact);
+    if let Err(error) = contact.resume(&path) {
+        return unchanged(&before, &contact, &error).map(|()| Outcome::Refused);
+    }
+    known("resumed pressure", contact.pressure().iter().copied())?;
+    finite("resumed displacement", contact.displacement().iter().copied())?;
+    finite("resumed numbers", [contact.time(), contact.approach(), contact.force()])?;
+    if source.chance(0.2) {
+        let load = StepLoad::new(Load::force(0.1)).map_err(|error| error.to_string())?;
+        let mut run = contact.follow(&load, Stepping::adaptive(1e-2), 3.0);
+        for _ in 0..2 {
+            match run.next_step() {
+                Ok(Some(report)) => look(run.contact(), &report, source)?,
+                Ok(None) => break,
+                Err(error) if error.to_string().is_empty() => return Err("an error without words".to_owned()),
+                Err(_) => break,
+            }
+        }
+        let budget = run.error_budget();
+        known("error budget", [budget.time, budget.space.approach, budget.solver])?;
+        return Ok(Outcome::Accepted);
+    }
+    for dt in [source.choose(&[0.0, 0.01]), 0.02] {
+        let before = state(&contact);
+        match step(&mut contact, dt, 0.08) {
+            Ok(report) => look(&contact, &report, source)?,
+            Err(error) => unchanged(&before, &contact, &error)?,
+        }
+    }
+    Ok(Outcome::Accepted)
+}
