@@ -136,3 +136,35 @@ fn no_pressure_is_negative_when_iterations_run_out() {
         }
     }
 }
+
+/// What the warning of few cells stands for: below it, errors of per cents; from 8 cells across on, less.
+#[test]
+fn few_cells_are_warned_of_where_errors_are_large() {
+    let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 1.0).unwrap();
+    let a = hertz.contact_radius();
+    // the greatest errors of approach, peak and area over places of the sphere within a cell; whether each was warned of
+    let worst = |across: f64| {
+        let side = 2.0 * a / across;
+        let (mut errors, mut warned) = ([0.0_f64; 3], 0);
+        for k in 0..10 {
+            let off = [0.137, 0.311].map(|part| (f64::from(k) * part).fract() * side);
+            let mut contact = ViscoelasticContact::builder(Grid::square(24, 24.0 * side).unwrap())
+                .geometry(&Shifted::new(Sphere::new(10.0e-3).unwrap(), off).unwrap())
+                .material(Material::incompressible(Elastic::new(1.0e6).unwrap()))
+                .build()
+                .unwrap();
+            let report = contact.step(0.0, Load::force(1.0)).unwrap();
+            warned += u32::from(report.warnings.contains(Warning::FewCells));
+            let found = [contact.approach(), contact.greatest_pressure(), contact.contact_area()];
+            let exact = [hertz.approach(), hertz.peak_pressure(), std::f64::consts::PI * a * a];
+            errors = [0, 1, 2].map(|i| errors[i].max((found[i] / exact[i] - 1.0).abs()));
+        }
+        (errors, warned)
+    };
+    let ([approach, peak, area], warned) = worst(4.0);
+    println!("4 cells across: {approach:.1e} {peak:.1e} {area:.1e}");
+    assert!(warned == 10 && approach > 5e-3 && peak > 2e-2 && area > 5e-2);
+    let ([approach, peak, area], warned) = worst(8.2);
+    println!("8 cells across: {approach:.1e} {peak:.1e} {area:.1e}");
+    assert!(warned == 0 && approach < 5e-3 && peak < 2e-2 && area < 3e-2);
+}
