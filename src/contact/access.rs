@@ -7,7 +7,7 @@ use crate::Grid;
 use crate::contact::region::Region;
 use crate::contact::report::BodyState;
 use crate::contact::settings::Settings;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Result, exact_length};
 use crate::kernel::InfluenceKernel;
 use crate::load::Load;

@@ -1,7 +1,7 @@
 //! The length of steps chosen by an estimate of their error.
 
 use crate::contact::region::Region;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::load::LoadHistory;
 
 /// The rule takes u to be linear within a step, which errs by u″ Δ²/8 in its middle. With u″ from the change of

@@ -1,6 +1,6 @@
 //! The area of contact, to a part of a cell.
 
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 
 /// Weights of the two estimates of where the contact ends between a cell in contact and one that is not: the straight
 /// line through p² of the last two cells, which the coarse pressure of the last one pulls inwards, and the parabola

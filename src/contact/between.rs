@@ -1,6 +1,6 @@
 //! The state inside the last step.
 
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Result, exact_length, within};
 
 /// The state at a time inside the last step, made by [`ViscoelasticContact::within_step`]: linear in time between its

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::Grid;
 use crate::contact::settings::{Frame, Settings, TimeRule};
-use crate::contact::stepper::{Parts, ViscoelasticContact};
+use crate::contact::viscoelastic::{Parts, ViscoelasticContact};
 use crate::error::{Error, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
 use crate::hereditary::{Direct, Exponential, History, Sources, Unfitted, Weighting};

@@ -2,7 +2,7 @@
 
 use crate::contact::follow::{Follow, Stepping};
 use crate::contact::reside::symmetry;
-use crate::contact::stepper::{ViscoelasticContact, next_id};
+use crate::contact::viscoelastic::{ViscoelasticContact, next_id};
 use crate::error::{Error, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
 use crate::load::LoadHistory;

@@ -2,7 +2,7 @@
 
 use crate::contact::extent::Extent;
 use crate::contact::settings::Edge;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::contact::warning::{Warning, Warnings};
 use crate::rheology::is_known;
 

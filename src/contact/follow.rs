@@ -5,7 +5,7 @@ use crate::contact::adaptive::Controller;
 use crate::contact::checkpoint::Keeping;
 use crate::contact::report::StepReport;
 use crate::contact::spatial::SpatialError;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result, finite, positive, within};
 use crate::events;
 use crate::load::LoadHistory;

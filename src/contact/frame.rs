@@ -2,7 +2,7 @@
 
 use crate::contact::report::StepReport;
 use crate::contact::settings::Frame;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::hereditary::History;
 use crate::load::Load;

@@ -1,6 +1,6 @@
 //! The first guess of a step.
 
-use crate::contact::stepper::{ContactSolver, ViscoelasticContact};
+use crate::contact::viscoelastic::{ContactSolver, ViscoelasticContact};
 use crate::solver::{Counts, Modes};
 use crate::sum::{sum, sum_of_pairs};
 

@@ -1,6 +1,6 @@
 //! What it takes to move an indenter along the surface.
 
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 
 impl ViscoelasticContact {
     /// The force \[N\] along x1 and x2 that moves `shape` along the surface without friction: ∬ p ∇h, less the tilt times the

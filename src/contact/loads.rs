@@ -3,7 +3,7 @@
 use crate::Grid;
 use crate::contact::hull::Hull;
 use crate::contact::reside::upright;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::geometry::Gap;
 use crate::hereditary::History;

@@ -27,6 +27,7 @@ mod steady;
 mod stepper;
 mod stiffness;
 mod travel;
+mod viscoelastic;
 mod warning;
 
 pub use between::Between;
@@ -40,5 +41,5 @@ pub use snapshot::Snapshot;
 pub(crate) use spatial::AREA_ORDER;
 pub use spatial::SpatialError;
 pub use steady::{SteadyMotion, TowardSteady};
-pub use stepper::ViscoelasticContact;
+pub use viscoelastic::ViscoelasticContact;
 pub use warning::{IntoIter as WarningsIter, Warning, Warnings};

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use crate::contact::extent::Extent;
 use crate::contact::loads::lowered;
 use crate::contact::region::Region;
-use crate::contact::stepper::{ContactSolver, ViscoelasticContact};
+use crate::contact::viscoelastic::{ContactSolver, ViscoelasticContact};
 use crate::events;
 use crate::geometry::Gap;
 use crate::hereditary::{Exponential, History};

@@ -3,7 +3,7 @@
 use crate::contact::region::Region;
 use crate::contact::reside::Beyond;
 use crate::contact::state::State;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::geometry::Gap;
 use crate::hereditary::History;

@@ -1,6 +1,6 @@
 //! How much of the error is the mesh's.
 
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 
 /// Estimated relative errors of a state due to the width of its cells, made by
 /// [`ViscoelasticContact::spatial_error`]. Typical sizes, not bounds.

@@ -1,6 +1,6 @@
 //! How stiff the contact is.
 
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Convergence, Error, Result};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
 

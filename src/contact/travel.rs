@@ -1,7 +1,7 @@
 //! Steps in which the indenter moves over the grid.
 
 use crate::contact::settings::Frame;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result, non_negative};
 use crate::load::Load;
 use crate::motion::{Travel, TravelReport};

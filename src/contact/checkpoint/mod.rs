@@ -11,7 +11,7 @@ pub use error::CheckpointError;
 use std::path::Path;
 
 use crate::contact::follow::Progress;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::Result;
 use crate::file::{failed, replace};
 use saved::Saved;

@@ -10,7 +10,7 @@ use crate::contact::follow::Progress;
 use crate::contact::region::Region;
 use crate::contact::reside::Beyond;
 use crate::contact::state::State;
-use crate::contact::stepper::{ViscoelasticContact, next_id};
+use crate::contact::viscoelastic::{ViscoelasticContact, next_id};
 use crate::error::{Error, Result};
 use crate::geometry::Gap;
 use crate::hereditary::{Exponential, History, Sources};

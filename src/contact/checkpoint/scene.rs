@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::CheckpointError;
-use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::rheology::Material;
 
 /// Times \[s\] at which materials are compared: decades about a second.
