@@ -171,8 +171,8 @@ pub use kernel::{InfluenceKernel, Workspace};
 /// ```
 pub mod prelude {
     pub use crate::contact::{
-        BodyState, Builder, Edge, Follow, Frame, Precision, Settings, Solver, SteadyMotion, StepReport, Stepping,
-        TimeRule, ViscoelasticContact,
+        BodyState, Builder, Edge, Follow, Frame, Precision, Settings, Snapshot, Solver, SteadyMotion, StepReport,
+        Stepping, TimeRule, ViscoelasticContact, Warning,
     };
     pub use crate::geometry::{
         Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Form, Geometry, HeightMap, LengthUnit, Repeated,
