@@ -33,6 +33,8 @@ const COLUMNS: [&str; 17] = [
 
 /// A run as a CSV file of one row a step, each on its way to the disk when its `write` returns.
 ///
+/// Needs the feature `csv`.
+///
 /// The first line is a `#` and the [`Scene`] as JSON, the second the names of the columns with their units, separated
 /// by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
 /// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`,

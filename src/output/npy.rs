@@ -12,6 +12,8 @@ use crate::file::replace;
 /// Writes a field, one value a cell of `grid`, as an NPY file: an array of `float64` of the shape of the grid,
 /// so that `numpy.load(path)[i, j]` is the value of the cell `[i, j]`. A file of this name is replaced.
 ///
+/// Needs the feature `npy`.
+///
 /// ```
 /// use viscocontact::{Grid, output::write_npy};
 ///

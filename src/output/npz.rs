@@ -14,6 +14,8 @@ use crate::output::{Field, Scene, npy};
 
 /// A run as a folder of NPZ archives, one a frame: `frame_000000.npz` and so on.
 ///
+/// Needs the feature `npy`.
+///
 /// An archive holds `time` \[s\], the cell centres `x1` and `x2` \[m\], the fields chosen as arrays of shape
 /// (n1, n2), `approach` \[m\], `force` \[N\], `tilt` \[rad\], `contact_area` \[m²\], all in double precision and
 /// uncompressed, and the [`Scene`] as the JSON text `scene`. In Python, without pickle:

@@ -15,6 +15,8 @@ const COLLECTION: &str = "series.pvd";
 /// A run as a folder of VTK images, one a frame, `frame_000000.vti` and so on, and a `series.pvd` that lists them
 /// with their times: open this in ParaView, also while the run goes on.
 ///
+/// Needs the feature `vtk`.
+///
 /// An image is a flat sheet of n1 × n2 cells with x1 along its x, where the grid lies in the plane of contact. The
 /// fields chosen are cell data in double precision, named with their units, as `pressure [Pa]`. `TimeValue` \[s\],
 /// `approach [m]`, `force [N]`, `tilt [rad]`, `contact area [m2]` and the [`Scene`] as the JSON text `scene` are field

@@ -1,4 +1,4 @@
-//! Pictures of contacts and runs: a line of code each.
+//! Pictures of contacts and runs: a line of code each. Feature `plot`.
 //!
 //! | picture | call |
 //! |---|---|

@@ -1,4 +1,6 @@
 /// Why a checkpoint cannot be continued from.
+///
+/// Needs the feature `checkpoint`.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {

@@ -19,6 +19,8 @@ impl Follow<'_> {
     /// the process. A contact that is built alike and resumes from the file ([`ViscoelasticContact::resume`]) goes on
     /// with the next run of the same stepping as if nothing had happened, bit by bit.
     ///
+    /// Needs the feature `checkpoint`.
+    ///
     /// ```
     /// use std::time::Duration;
     /// use viscocontact::prelude::*;
@@ -45,6 +47,8 @@ impl Follow<'_> {
     }
 
     /// Saves the run to a file now.
+    ///
+    /// Needs the feature `checkpoint`.
     ///
     /// # Errors
     /// If the file cannot be written.

@@ -23,6 +23,8 @@ impl ViscoelasticContact {
     /// Saves the whole state to a file: a contact that is built like this one and continues from it
     /// ([`ViscoelasticContact::resume`]) takes the same steps, bit by bit, on any number of threads.
     ///
+    /// Needs the feature `checkpoint`.
+    ///
     /// The file is complete and on the medium when this returns; until then, what was there before is not touched. It carries the version
     /// of its format, its length and a checksum. About 50 bytes a computed cell, 8 more for each relaxation time.
     ///
@@ -65,6 +67,8 @@ impl ViscoelasticContact {
     /// settings, bodies; where an indenter has moved, it is where it was. A run along a history that saved it
     /// ([`Follow::keeping`](crate::contact::Follow::keeping)) goes on where it was with the next
     /// [`ViscoelasticContact::follow`].
+    ///
+    /// Needs the feature `checkpoint`.
     ///
     /// # Errors
     /// If the file cannot be read, is no checkpoint, is newer than this version, cut short, damaged, or of another scene

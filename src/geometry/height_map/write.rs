@@ -79,6 +79,8 @@ impl HeightMap {
     /// Writes the heights in m as an array of NumPy, double precision, little endian, the first axis x1 and the second
     /// x2. Its lengths are not in the file.
     ///
+    /// Needs the feature `npy`.
+    ///
     /// ```
     /// use viscocontact::geometry::{HeightMap, LengthUnit};
     ///

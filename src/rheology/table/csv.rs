@@ -11,6 +11,8 @@ use crate::rheology::table::data::{CREEP, DYNAMIC, Layout, RELAXATION, Row};
 use crate::rheology::table::{Place, TableError, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
 
 /// What one unit of a file is in SI.
+///
+/// Needs the feature `csv`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::exhaustive_structs, reason = "users write it out")]
 pub struct Units {
@@ -31,6 +33,8 @@ macro_rules! from_csv {
         impl $table {
             #[doc = concat!("Reads a CSV file and fits it: columns ", $columns, ".")]
             ///
+            /// Needs the feature `csv`.
+            ///
             /// Rows may stand in any order. Columns too, where a first line names them (headings are recognised by
             /// their first word or symbol, whatever the case and the unit behind it); without headings, or with
             /// headings that say nothing, they are taken in the order above. Values are separated by commas,
@@ -49,6 +53,8 @@ macro_rules! from_csv {
             }
 
             #[doc = concat!("[`", stringify!($table), "::from_csv`] from anything that can be read.")]
+            ///
+            /// Needs the feature `csv`.
             ///
             /// ```
             #[doc = concat!("use viscocontact::rheology::{", stringify!($table), ", Units};")]

@@ -17,6 +17,8 @@ impl HeightMap {
     /// Reads an array of two dimensions as `numpy.save` writes it, the map in `unit` of a rectangle of `lengths`
     /// \[m\]. Its first axis is x1, its second x2: `heights[i, j]` is that of the cell `[i, j]`.
     ///
+    /// Needs the feature `npy`.
+    ///
     /// Floats of single and double precision and integers are read, in either byte order and in the order of C or of
     /// Fortran; NaN is what was not measured. An image, whose first axis points down, is turned by
     /// `numpy.flipud(image).T`.

@@ -31,6 +31,8 @@ impl HeightMap {
     /// Reads an X3P archive of ISO 25178-72, in m: a surface (`SUR`) whose points are a matrix, equally spaced along x
     /// and y.
     ///
+    /// Needs the feature `x3p`.
+    ///
     /// Heights are integers of 16 or 32 bits with sign (`I`, `L`) or of single or double precision (`F`, `D`), in a
     /// binary file or in the XML itself, times `Increment` plus `Offset` of their axis. What was not measured is NaN,
     /// empty in the XML, or marked in the file of valid points. The first row is that of smallest x2; the offsets of x
