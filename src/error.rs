@@ -3,7 +3,7 @@
 mod checks;
 mod convergence;
 
-pub(crate) use checks::{exact_length, finite, least_length, non_negative, positive, within};
+pub(crate) use checks::{LONGEST, exact_length, finite, least_length, length, non_negative, positive, within};
 pub use convergence::{Convergence, Trend};
 
 /// What went wrong, with the numbers needed to mend it.

@@ -231,3 +231,40 @@ fn references_at_the_ends_are_numbers_or_refused() {
         assert!(made[which] > 5 && refused[which] > 5, "{made:?} made, {refused:?} refused");
     }
 }
+
+/// A growing contact between the ends of the range, at times to the last: its radius is a number or infinite, and where it is a
+/// number, so is the pressure.
+#[test]
+fn growing_spheres_stay_numbers() {
+    let bodies = [
+        Material::incompressible(Maxwell::new(1e95, 1e-95).unwrap()),
+        Material::incompressible(Maxwell::new(1e-95, 1e95).unwrap()),
+        Material::incompressible(GeneralizedKelvin::new(1e-95, 1e95, &[(1e95, 1e-95), (1e-95, 1e95)]).unwrap()),
+    ];
+    let mut endless = 0;
+    for body in &bodies {
+        for radius in [1e-100, 1e-3, 1e100] {
+            for force in [5e-324, 1e-100, 1.0, 1e100] {
+                let sphere = GrowingSphere::step(radius, body, force).unwrap();
+                for t in [0.0, 1e-300, 1.0, 1e100, 1e308] {
+                    let a = sphere.contact_radius(t);
+                    assert!(a >= 0.0 && sphere.approach(t) >= 0.0, "{a} {sphere:?}");
+                    if a == f64::INFINITY {
+                        endless += 1;
+                        continue;
+                    }
+                    for r in [0.0, 1e-300, 0.5 * a, 1e300] {
+                        let pressure = sphere.pressure(r, t);
+                        assert!(!pressure.is_nan(), "{r:e} m, {t:e} s: {pressure} of {sphere:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(endless > 0);
+    let refused = |radius: f64, force: f64| GrowingSphere::step(radius, &bodies[0], force).unwrap_err();
+    assert!(matches!(refused(1e101, 1.0), Error::OutOfRange { field: "sphere radius", .. }));
+    assert!(matches!(refused(1.0, 1e200), Error::OutOfRange { field: "force", .. }));
+    let long = AxisymmetricContact::new(&Profile::punch(1.0).unwrap(), &bodies[1], 1, 1.7e308).unwrap_err();
+    assert!(matches!(long, Error::OutOfRange { field: "reach of the foundation", .. }), "{long}");
+}

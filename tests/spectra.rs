@@ -154,3 +154,24 @@ proptest! {
         prop_assert!(creep.rate(t * more) <= creep.rate(t));
     }
 }
+
+/// Coefficients and times from one end of their range to the other: what comes out are numbers.
+#[test]
+fn spectra_between_the_ends_of_their_range_have_numbers_for_reciprocals() {
+    let sizes = [1e-100, 1e-95, 1.0, 1e95, 1e100];
+    for glassy in [0.0, 1e-100, 1.0, 1e100] {
+        for fluidity in [0.0, 1e-100, 1.0, 1e100] {
+            for one in sizes {
+                for other in sizes {
+                    for (short, long) in [(1e-100, 1e100), (1e-95, 1e95), (1.0, 1e100), (1e-100, 1.0)] {
+                        let creep = CreepSpectrum::new(glassy, fluidity, &[(one, short), (other, long)]).unwrap();
+                        let relaxation = creep.relaxation();
+                        let terms = relaxation.terms().iter().flat_map(|&(g, tau)| [g, tau]);
+                        let numbers = terms.chain([relaxation.equilibrium(), relaxation.viscosity()]);
+                        assert!(numbers.clone().all(|x| x.is_finite() && x >= 0.0), "{relaxation:?} of {creep:?}");
+                    }
+                }
+            }
+        }
+    }
+}

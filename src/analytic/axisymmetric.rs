@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::error::{Error, Result, finite, non_negative, positive};
+use crate::error::{Error, Result, finite, length, non_negative, positive};
 use crate::hereditary::Exponential;
 use crate::rheology::{Material, is_known};
 
@@ -100,13 +100,13 @@ impl AxisymmetricContact {
     /// A foundation of `elements` elements from the axis to `reach` \[m\], undisturbed and without load.
     ///
     /// # Errors
-    /// If there are no elements, the reach is not finite and positive, no value of the profile is finite or one is NaN or
+    /// If there are no elements, the reach is not positive or more than 1e300 m, no value of the profile is finite or one is NaN or
     /// −∞, or the material has no exponential series.
     pub fn new(profile: &Profile, material: &Material, elements: usize, reach: f64) -> Result<AxisymmetricContact> {
         if elements == 0 {
             return Err(Error::CountOutOfRange { field: "elements", value: 0, allowed: "1 or more" });
         }
-        positive("reach of the foundation", reach)?;
+        length("reach of the foundation", reach)?;
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("the one-dimensional foundation"))?;
         let width = reach / elements as f64;
         let depths: Vec<f64> = (0..elements).map(|k| (profile.depth)((k as f64 + 0.5) * width)).collect();

@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, positive, within};
 use crate::load::{Load, LoadHistory, StepLoad};
 use crate::quadrature::GaussLegendre;
 use crate::rheology::{CreepSpectrum, Material, RelaxationSpectrum};
@@ -45,14 +45,18 @@ const GRADES: i32 = 12;
 /// Decay times after which an exponential kernel is spent: e^(−45) < 3e-20.
 const SPENT: f64 = 45.0;
 
+/// With radii and forces up to this, and spectra as they are, what is multiplied stays a number.
+const MOST: f64 = 1e100;
+
 impl GrowingSphere {
     /// A sphere of `radius` \[m\] under `force` \[N\] applied at t = 0 and held.
     ///
     /// # Errors
-    /// If the radius or the force is not finite and positive, the material has no exponential series, or
+    /// If the radius is not in \[1e-100, 1e100\] m, the force not in (0, 1e100] N, the material has no exponential series, or
     /// no elastic response.
     pub fn step(radius: f64, material: &Material, force: f64) -> Result<GrowingSphere> {
         positive("force", force)?;
+        within("force", force, force <= MOST, "1e100 N at most")?;
         let load = StepLoad::new(Load::force(force))?;
         Ok(GrowingSphere { step: Some(force), ..GrowingSphere::new(radius, material, load)? })
     }
@@ -61,10 +65,10 @@ impl GrowingSphere {
     /// right at the times up to which the contact radius has never decreased.
     ///
     /// # Errors
-    /// If the radius is not finite and positive, the material has no exponential series or no elastic
+    /// If the radius is not in \[1e-100, 1e100\] m, the material has no exponential series or no elastic
     /// response, or the load is an approach.
     pub fn new(radius: f64, material: &Material, load: impl LoadHistory + 'static) -> Result<GrowingSphere> {
-        positive("sphere radius", radius)?;
+        within("sphere radius", radius, (1.0 / MOST..=MOST).contains(&radius), "in [1e-100, 1e100] m")?;
         let creep =
             material.contact_spectrum()?.ok_or_else(|| material.no_series("the solution for a growing contact"))?;
         if creep.glassy() == 0.0 {
@@ -77,7 +81,8 @@ impl GrowingSphere {
         Ok(GrowingSphere { radius, creep, relaxation, load: Arc::new(load), step: None, rule: GaussLegendre::new(20) })
     }
 
-    /// Contact radius a \[m\] at time `t` \[s\], 0 before t = 0; NaN where the history gives no finite force.
+    /// Contact radius a \[m\] at time `t` \[s\], 0 before t = 0; NaN where the history gives no finite force, +∞ where it has
+    /// crept beyond the range of `f64`.
     pub fn contact_radius(&self, t: f64) -> f64 {
         if t < 0.0 {
             return 0.0;
@@ -104,10 +109,11 @@ impl GrowingSphere {
         self.contact_radius(t).powi(2) / self.radius
     }
 
-    /// Pressure \[Pa\] at the distance `r` ≥ 0 from the centre \[m\] and time `t` \[s\].
+    /// Pressure \[Pa\] at the distance `r` ≥ 0 from the centre \[m\] and time `t` \[s\]; NaN where the contact
+    /// radius is no finite number.
     pub fn pressure(&self, r: f64, t: f64) -> f64 {
         let now = self.contact_radius(t);
-        if now.is_nan() {
+        if !now.is_finite() {
             return f64::NAN;
         }
         if r >= now {
@@ -123,7 +129,8 @@ impl GrowingSphere {
             .relaxation
             .terms()
             .iter()
-            .map(|&(e, tau)| e / tau * self.integrate(entry, t, tau, &|s| depth(s) * ((s - t) / tau).exp()))
+            // the quotient of a modulus and a time may be no number, that of the integral and the time is a depth
+            .map(|&(e, tau)| e * (self.integrate(entry, t, tau, &|s| depth(s) * ((s - t) / tau).exp()) / tau))
             .sum();
         2.0 / (PI * self.radius) * (glassy * depth(t) - relaxed)
     }

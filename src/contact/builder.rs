@@ -114,8 +114,8 @@ impl Builder {
     ///
     /// # Errors
     /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a setting is out of
-    /// range, the kernel was made for another grid, no series of the material over [`Builder::times`] is
-    /// within the tolerance, or the rectangle rule was chosen for a rheology without elastic response.
+    /// range, the kernel was made for another grid, or there is none for its cells ([`InfluenceKernel::half_space`]), no series
+    /// of the material over [`Builder::times`] is within the tolerance, or these are more than 50 decades, or the rectangle rule was chosen for a rheology without elastic response.
     pub fn build(self) -> Result<ViscoelasticContact> {
         let Builder { grid, gaps, material, counter_body, times, kernel, settings } = self;
         settings.validate()?;

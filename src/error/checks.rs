@@ -12,6 +12,14 @@ pub(crate) fn non_negative(field: &'static str, value: f64) -> Result<f64> {
     within(field, value, value >= 0.0, "finite and >= 0")
 }
 
+/// Accepts lengths above zero whose doubles, and sums of which, are numbers.
+pub(crate) fn length(field: &'static str, value: f64) -> Result<f64> {
+    within(field, value, value > 0.0 && value <= LONGEST, "finite, > 0 and 1e300 m at most")
+}
+
+/// The greatest length of a shape, and height of a map \[m\].
+pub(crate) const LONGEST: f64 = 1e300;
+
 /// Accepts any finite value.
 pub(crate) fn finite(field: &'static str, value: f64) -> Result<f64> {
     within(field, value, true, "finite")

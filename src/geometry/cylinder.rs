@@ -1,4 +1,4 @@
-use crate::error::{Result, positive};
+use crate::error::{Result, length};
 use crate::geometry::Geometry;
 
 /// A cylinder lying on the plane with its axis along x2, as a parabola: h = x1² / 2R.
@@ -14,9 +14,9 @@ impl Cylinder {
     /// A cylinder of `radius` \[m\].
     ///
     /// # Errors
-    /// If the radius is not finite and positive.
+    /// If the radius is not positive, or more than 1e300 m.
     pub fn new(radius: f64) -> Result<Cylinder> {
-        Ok(Cylinder { radius: positive("cylinder radius", radius)? })
+        Ok(Cylinder { radius: length("cylinder radius", radius)? })
     }
 }
 

@@ -1,4 +1,4 @@
-use crate::error::{Result, positive};
+use crate::error::{Result, length};
 use crate::geometry::Geometry;
 
 /// An ellipsoid touching the plane at the origin, as the paraboloid of its two principal radii of
@@ -12,9 +12,9 @@ impl Ellipsoid {
     /// Radii of curvature `r1` in the plane of x1 and `r2` in the plane of x2 \[m\].
     ///
     /// # Errors
-    /// If a radius is not finite and positive.
+    /// If a radius is not positive, or more than 1e300 m.
     pub fn new(r1: f64, r2: f64) -> Result<Ellipsoid> {
-        let radii = [positive("radius of curvature along x1", r1)?, positive("radius of curvature along x2", r2)?];
+        let radii = [length("radius of curvature along x1", r1)?, length("radius of curvature along x2", r2)?];
         Ok(Ellipsoid { radii })
     }
 }

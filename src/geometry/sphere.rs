@@ -1,4 +1,4 @@
-use crate::error::{Result, positive};
+use crate::error::{Result, length};
 use crate::geometry::Geometry;
 
 /// A sphere touching the plane at the origin, as the paraboloid of its radius of curvature:
@@ -14,9 +14,9 @@ impl Sphere {
     /// A sphere of `radius` \[m\].
     ///
     /// # Errors
-    /// If the radius is not finite and positive.
+    /// If the radius is not positive, or more than 1e300 m.
     pub fn new(radius: f64) -> Result<Sphere> {
-        Ok(Sphere { radius: positive("sphere radius", radius)? })
+        Ok(Sphere { radius: length("sphere radius", radius)? })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::error::{Error, Result, positive};
+use crate::error::{Error, Result, finite, positive};
 use crate::geometry::spectrum::{Spectrum, wave_numbers};
 use crate::geometry::{HeightMap, MapError};
 
@@ -46,7 +46,8 @@ impl SurfaceStatistics {
     /// The statistics of a map.
     ///
     /// # Errors
-    /// If no height is known, or all of them are equal, so that there is no distribution.
+    /// If no height is known, or all of them are equal, so that there is no distribution, or a statistic leaves the range of
+    /// `f64`.
     pub fn of(map: &HeightMap) -> Result<SurfaceStatistics> {
         map.some_known()?;
         let count = map.known().count() as f64;
@@ -60,15 +61,16 @@ impl SurfaceStatistics {
         // In units of the rms height, whose fourth power may be too small to be represented.
         let scaled = |power: i32| map.known().map(|z| ((z - mean) / rms_height).powi(power) / count).sum::<f64>();
         let squares = if map.is_periodic() && map.missing() == 0 { of_waves(map) } else { of_differences(map) };
-        let rms_slopes = [squares[0].sqrt(), squares[1].sqrt()];
+        let rms_slopes =
+            [finite("rms slope along x1", squares[0].sqrt())?, finite("rms slope along x2", squares[1].sqrt())?];
         Ok(SurfaceStatistics {
             mean,
             rms_height,
-            skewness: scaled(3),
-            kurtosis: scaled(4),
+            skewness: finite("skewness of the heights", scaled(3))?,
+            kurtosis: finite("kurtosis of the heights", scaled(4))?,
             rms_slope: rms_slopes[0].hypot(rms_slopes[1]),
             rms_slopes,
-            rms_curvature: squares[2].sqrt(),
+            rms_curvature: finite("rms curvature", squares[2].sqrt())?,
         })
     }
 }
@@ -306,6 +308,21 @@ mod tests {
         let normal = |z: f64| (-0.5 * (z / 3e-3).powi(2)).exp() / (3e-3 * TAU.sqrt());
         for (z, p) in distribution {
             assert!((p - normal(z)).abs() < 0.1 * normal(0.0), "{z}: {p} for {}", normal(z));
+        }
+    }
+
+    /// Slopes of points that lie as close as numbers allow are none: told by name, and not as NaN.
+    #[test]
+    fn statistics_beyond_numbers_are_refused() {
+        let heights = || vec![1.0, 3.0, -2.0, 7.0, 0.5, 4.0, 1.5, 2.0, 9.0];
+        for lengths in [[1e-200, 1.0], [1.0, 1e-200], [1e-160, 1e-120]] {
+            for map in [
+                HeightMap::new([3, 3], lengths, heights()).unwrap(),
+                HeightMap::new([3, 3], lengths, heights()).unwrap().periodic(),
+            ] {
+                let refused = SurfaceStatistics::of(&map).unwrap_err();
+                assert!(matches!(refused, Error::OutOfRange { field, .. } if field.starts_with("rms ")), "{refused}");
+            }
         }
     }
 

@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-use crate::error::{Result, positive};
+use crate::error::{Result, length, positive};
 use crate::geometry::Geometry;
 
 /// A wavy surface, A (1 − cos 2πx1/λ), or the sum of one wave along x1 and one along x2. A crest lies on the origin.
@@ -23,19 +23,18 @@ impl Wavy {
     /// A wave along x1 of `amplitude` A \[m\], half its height from trough to crest, and `wavelength` λ \[m\].
     ///
     /// # Errors
-    /// If amplitude or wavelength is not finite and positive.
+    /// If amplitude or wavelength is not finite and positive, or the amplitude more than 1e300 m.
     pub fn new(amplitude: f64, wavelength: f64) -> Result<Wavy> {
-        let amplitude = [positive("amplitude along x1", amplitude)?, 0.0];
+        let amplitude = [length("amplitude along x1", amplitude)?, 0.0];
         Ok(Wavy { amplitude, wavelength: [positive("wavelength along x1", wavelength)?, f64::INFINITY] })
     }
 
     /// The sum of a wave along x1 and one along x2, with their amplitudes \[m\] and wavelengths \[m\].
     ///
     /// # Errors
-    /// If an amplitude or wavelength is not finite and positive.
+    /// If an amplitude or wavelength is not finite and positive, or an amplitude more than 1e300 m.
     pub fn in_two_directions(amplitudes: [f64; 2], wavelengths: [f64; 2]) -> Result<Wavy> {
-        let amplitude =
-            [positive("amplitude along x1", amplitudes[0])?, positive("amplitude along x2", amplitudes[1])?];
+        let amplitude = [length("amplitude along x1", amplitudes[0])?, length("amplitude along x2", amplitudes[1])?];
         let wavelength =
             [positive("wavelength along x1", wavelengths[0])?, positive("wavelength along x2", wavelengths[1])?];
         Ok(Wavy { amplitude, wavelength })
@@ -88,6 +87,8 @@ mod tests {
             other => panic!("unexpected {other}"),
         };
         assert_eq!(field(Wavy::new(0.0, 1.0)), "amplitude along x1");
+        // twice as high from trough to crest, which would be no number
+        assert_eq!(field(Wavy::new(1e308, 1.0)), "amplitude along x1");
         assert_eq!(field(Wavy::new(1.0, f64::INFINITY)), "wavelength along x1");
         assert_eq!(field(Wavy::in_two_directions([1.0, f64::NAN], [1.0, 1.0])), "amplitude along x2");
         assert_eq!(field(Wavy::in_two_directions([1.0, 1.0], [1.0, -1.0])), "wavelength along x2");

@@ -132,8 +132,9 @@ pub(super) fn numbers([low, high]: [f64; 2]) -> impl Fn(&f64) -> String {
     let powers = greatest >= 1e6 || (greatest < 1e-3 && greatest > 0.0);
     move |v: &f64| {
         if powers {
-            let digits = (greatest / span).log10().max(0.0).ceil() as usize + 1;
-            let text = format!("{v:.*e}", digits.min(15));
+            // of a span of nothing, endlessly many
+            let digits = (greatest / span).log10().clamp(0.0, 14.0).ceil() as usize + 1;
+            let text = format!("{v:.*e}", digits);
             let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
             return if *v == 0.0 { "0".into() } else { format!("{}e{exponent}", shortened(mantissa)) };
         }
@@ -190,6 +191,7 @@ mod tests {
         assert_eq!(numbers([0.0, 2.0e7])(&5.0e6), "5e6");
         assert_eq!(numbers([0.0, 2.0e-7])(&5.0e-8), "5e-8");
         assert_eq!(numbers([0.0, 2.0e-7])(&0.0), "0");
+        assert_eq!(numbers([1.0e9, 1.0e9])(&1.0e9), "1e9");
         assert_eq!(powers(&1000.0), "1000");
         assert_eq!(powers(&1e-5), "1e-5");
     }

@@ -42,7 +42,8 @@ pub(crate) fn reciprocal(series: &Series) -> Series {
     let function = Secular { constant, poles };
 
     let mut zeros: Vec<(f64, f64)> = Vec::with_capacity(terms.len() + 1);
-    for zero in function.zeros() {
+    // a zero that is nearer to its pole than numbers tell belongs to a term too weak to count
+    for zero in function.zeros().filter(|zero| zero.offset != 0.0) {
         let (strength, at) = (function.residue(zero), function.position(zero));
         match zeros.last_mut() {
             // zeros on either side of a very weak term may round to the same number

@@ -175,7 +175,9 @@ fn analytic(source: &mut Source) -> Verdict {
                 if ![r, s].iter().all(|x| x.is_finite() && *x >= 0.0) {
                     return Ok(());
                 }
-                known("growing sphere", [sphere.contact_radius(r), sphere.approach(s), sphere.pressure(r, s)])
+                known("growing sphere", [sphere.contact_radius(r), sphere.approach(s)])?;
+                // the pressure of what has crept beyond all numbers is none, as documented
+                if sphere.contact_radius(s).is_finite() { known("pressure", [sphere.pressure(r, s)]) } else { Ok(()) }
             })
         }
         _ => {

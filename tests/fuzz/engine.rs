@@ -109,6 +109,7 @@ impl Tally {
                 let alike = |other: &str| other.chars().take(60).eq(what.chars().take(60));
                 let told = self.findings.iter().filter(|(_, other)| alike(other)).count();
                 if told < 3 && self.findings.len() < TOLD {
+                    println!("FUZZ_TARGET={} FUZZ_CASE={case}: {what}", target.name);
                     self.findings.push((case, what));
                 }
             }

@@ -90,7 +90,7 @@ fn fields(source: &mut Source) -> Verdict {
     }
     let file = std::fs::read(&path).map_err(|error| error.to_string())?;
     let bits: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
-    if !file.ends_with(&bits) || (file.len() - bits.len()) % 64 != 0 {
+    if !file.ends_with(&bits) || !(file.len() - bits.len()).is_multiple_of(64) {
         return Err("the file does not hold the field".to_owned());
     }
     Ok(Outcome::Accepted)

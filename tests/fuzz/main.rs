@@ -89,14 +89,8 @@ fn nothing_panics_hangs_or_returns_nan() {
         }
     }
     files::Folder::leave();
-    let mut told = Vec::new();
-    for (target, tally) in targets.iter().zip(&tallies) {
-        println!("{}", tally.line(target));
-        for (case, what) in &tally.findings {
-            told.push(format!("FUZZ_TARGET={} FUZZ_CASE={case}: {what}", target.name));
-        }
-    }
-    // the hook that keeps panics quiet keeps this one quiet too
-    told.iter().for_each(|finding| println!("{finding}"));
-    assert!(told.is_empty(), "{} findings", told.len());
+    targets.iter().zip(&tallies).for_each(|(target, tally)| println!("{}", tally.line(target)));
+    // told as they were found: the hook that keeps panics quiet keeps this one quiet too
+    let found: u64 = tallies.iter().map(|tally| tally.found).sum();
+    assert!(found == 0, "{found} findings");
 }

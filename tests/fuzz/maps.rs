@@ -243,7 +243,7 @@ fn operations(source: &mut Source) -> Verdict {
         let whole = map.missing() == 0;
         map.fill_gap(&grid, &mut gap);
         if whole {
-            known("gap of a whole map", gap)?;
+            known("gap of a whole map", gap).map_err(|what| format!("{what}, of {map:?} on {grid:?}"))?;
         }
     }
     let at = [source.between(-1e-3, 1e-3), source.between(-1e-3, 1e-3)];

@@ -2,8 +2,10 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MapError {
-    /// A height is infinite.
-    #[error("height {entry} of the map is {value}: heights must be finite, or NaN where nothing was measured")]
+    /// A height is infinite, or beyond ±1e300 m.
+    #[error(
+        "height {entry} of the map is {value}: heights must be finite and within ±1e300 m, or NaN where nothing was measured"
+    )]
     NotFinite {
         /// Index of the height.
         entry: usize,

@@ -34,7 +34,7 @@ impl HeightMap {
     /// The map less the form that fits the known heights best, in the least squares.
     ///
     /// # Errors
-    /// If no height is known.
+    /// If no height is known, or one comes to lie beyond ±1e300 m.
     pub fn leveled(self, form: Form) -> Result<HeightMap> {
         self.some_known()?;
         let terms = form.terms();
@@ -56,6 +56,7 @@ impl HeightMap {
                 *height -= self.basis(k).iter().zip(&factors).map(|(b, f)| b * f).sum::<f64>();
             }
         }
+        let heights = super::representable(heights)?;
         Ok(self.with_heights(heights))
     }
 
@@ -102,6 +103,14 @@ mod tests {
 
     fn greatest(map: &HeightMap) -> f64 {
         map.known().fold(0.0, |greatest, z| greatest.max(z.abs()))
+    }
+
+    #[test]
+    fn what_is_left_of_the_greatest_heights_is_a_number() {
+        let steep = map_of([3, 3], |x1, x2| 2.9e300 * x1 + 1e299 * x2);
+        for form in [Form::Mean, Form::Tilt, Form::Curvature] {
+            assert!(greatest(&steep.clone().leveled(form).unwrap()) <= 1e300);
+        }
     }
 
     #[test]

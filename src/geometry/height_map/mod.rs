@@ -16,7 +16,7 @@ pub use resample::{Resampled, ResamplingError};
 pub use unit::LengthUnit;
 
 use crate::Grid;
-use crate::error::{Error, Result, exact_length};
+use crate::error::{Error, LONGEST, Result, exact_length};
 use crate::geometry::Geometry;
 use crate::geometry::spectrum::Spectrum;
 
@@ -76,14 +76,11 @@ impl HeightMap {
     ///
     /// # Errors
     /// If a count or a length is not one a [`Grid`] may have, there are not `cells[0] * cells[1]` heights,
-    /// or one is infinite.
+    /// or one is infinite or beyond ±1e300 m.
     pub fn new(cells: [usize; 2], lengths: [f64; 2], heights: Vec<f64>) -> Result<HeightMap> {
         let grid = Grid::new(cells, lengths)?;
         exact_length("heights", heights.len(), grid.len())?;
-        if let Some(k) = heights.iter().position(|h| h.is_infinite()) {
-            return Err(Error::Map(MapError::NotFinite { entry: k, value: heights[k] }));
-        }
-        Ok(HeightMap::on(&grid, heights))
+        Ok(HeightMap::on(&grid, representable(heights)?))
     }
 
     /// A map on a grid, of heights known to be finite or missing and as many as cells.
@@ -195,6 +192,14 @@ impl HeightMap {
     }
 }
 
+/// Refuses heights whose differences and sums are no numbers.
+fn representable(heights: Vec<f64>) -> Result<Vec<f64>> {
+    match heights.iter().position(|height| height.abs() > LONGEST) {
+        Some(entry) => Err(Error::Map(MapError::NotFinite { entry, value: heights[entry] })),
+        None => Ok(heights),
+    }
+}
+
 impl Geometry for HeightMap {
     fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
         match self.height_at(x1, x2) {
@@ -245,6 +250,8 @@ mod tests {
             panic!()
         };
         assert_eq!(entry, 2);
+        // a difference of two such would be no number, nor would a sum
+        assert!(matches!(refused(vec![1e305, 0.0, -1e308, 0.0]), Error::Map(MapError::NotFinite { entry: 0, .. })));
         assert!(HeightMap::new([0, 2], [1.0, 1.0], vec![]).is_err());
     }
 

@@ -1,6 +1,6 @@
 //! Maps cut, turned and placed.
 
-use super::{HeightMap, MapError};
+use super::HeightMap;
 use crate::Grid;
 use crate::error::{Error, Result, finite};
 
@@ -70,13 +70,10 @@ impl HeightMap {
     /// The map with all heights times `factor`.
     ///
     /// # Errors
-    /// If the factor is not finite, or a height no longer is.
+    /// If the factor is not finite, or a height no longer within ±1e300 m.
     pub fn scaled(self, factor: f64) -> Result<HeightMap> {
         finite("factor of the heights", factor)?;
-        let heights: Vec<f64> = self.heights.iter().map(|z| factor * z).collect();
-        if let Some(entry) = heights.iter().position(|z| z.is_infinite()) {
-            return Err(Error::Map(MapError::NotFinite { entry, value: heights[entry] }));
-        }
+        let heights = super::representable(self.heights.iter().map(|z| factor * z).collect())?;
         Ok(self.with_heights(heights))
     }
 
@@ -105,6 +102,7 @@ impl HeightMap {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::MapError;
 
     fn map() -> HeightMap {
         HeightMap::new([2, 3], [2.0, 6.0], vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap()
@@ -146,6 +144,6 @@ mod tests {
         assert_eq!(field(map().cropped([0, 1], [0, 1])), "points along x1");
         assert_eq!(field(map().scaled(f64::NAN)), "factor of the heights");
         assert_eq!(field(map().centered_at([0.0, f64::INFINITY])), "middle of the map along x2");
-        assert!(matches!(map().scaled(1e308), Err(Error::Map(MapError::NotFinite { entry: 1, .. }))));
+        assert!(matches!(map().scaled(3e299), Err(Error::Map(MapError::NotFinite { entry: 3, .. }))));
     }
 }

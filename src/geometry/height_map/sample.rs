@@ -67,7 +67,14 @@ impl Stencil {
 impl HeightMap {
     /// Coordinate as an index among the points along `axis`, with its fraction.
     pub(super) fn index(&self, axis: usize, x: f64) -> f64 {
-        (x - self.center[axis]) / self.spacing[axis] + 0.5 * (self.cells[axis] as f64 - 1.0)
+        let (distance, spacing, middle) =
+            (x - self.center[axis], self.spacing[axis], 0.5 * (self.cells[axis] as f64 - 1.0));
+        let index = distance / spacing + middle;
+        if index.is_finite() || !self.periodic {
+            return index;
+        }
+        // more periods away than there are numbers for: any place in the period is as good
+        distance.clamp(f64::MIN, f64::MAX) % self.lengths()[axis] / spacing + middle
     }
 
     /// Whether the point lies in the cell of one of the points.
@@ -208,6 +215,24 @@ mod tests {
         // Between (0.2, 0), known, and the middle, unknown: what is known counts.
         assert!((map.initial_gap(0.15, 0.0) - (0.8 - 0.2)).abs() < 1e-14);
         assert!((map.height_at(0.2, 0.1).unwrap() - 0.3).abs() < 1e-14);
+    }
+
+    #[test]
+    fn periodic_maps_reach_as_far_as_numbers_do() {
+        let map = HeightMap::new([3, 2], [3e-150, 2e-150], vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap().periodic();
+        let far = map.clone().centered_at([-f64::MAX, 1e150]).unwrap();
+        for (x1, x2) in [(1e200, 0.0), (f64::MAX, -1e300), (-1e120, 1e130)] {
+            for map in [&map, &far] {
+                let gap = map.initial_gap(x1, x2);
+                assert!((-3.0..=8.0).contains(&gap), "{gap} at {x1:e}, {x2:e}");
+            }
+        }
+        let mut gap = [f64::NAN; 4];
+        let grid = crate::Grid::square(2, 1.0).unwrap();
+        for map in [map, HeightMap::new([1, 1], [1.0, 1e-200], vec![2.0]).unwrap().periodic()] {
+            map.fill_gap_at(&grid, [0.0, 1e200], &mut gap);
+            assert!(gap.iter().all(|gap| gap.is_finite()), "{gap:?}");
+        }
     }
 
     #[test]
