@@ -88,7 +88,7 @@ pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Sou
     }
     finite("pressure", contact.pressure().iter().copied())?;
     if contact.pressure().iter().any(|&p| p < 0.0) {
-        return Err("a negative pressure".to_owned());
+        return Err(format!("a negative pressure in {report:?} of {contact:?}: {:?}", contact.pressure()));
     }
     finite("displacement", contact.displacement().iter().copied())?;
     let len = contact.grid().len();
