@@ -368,3 +368,43 @@ fn forged_files_do_no_harm() {
     println!("{refused} of 4500 refused");
     fs::remove_file(path).unwrap();
 }
+
+/// Of several bodies a file says which one each cell belongs to: a body that there is none of is refused.
+#[test]
+fn forged_bodies_do_no_harm() {
+    let path = file("forged-bodies");
+    let build = || {
+        let at = |x: f64| Shifted::new(Sphere::new(10.0e-3).unwrap(), [x, 0.0]).unwrap();
+        ViscoelasticContact::builder(Grid::square(8, 4.0e-3).unwrap())
+            .geometry(&at(-1.0e-3))
+            .another_body(&at(1.0e-3))
+            .material(three_times())
+            .settings(Settings { window: false, edge: Edge::Allow, ..Settings::default() })
+            .build()
+            .unwrap()
+    };
+    let loads = [Load::force(0.02), Load::force(0.03)];
+    let mut contact = build();
+    contact.step_each(0.1, &loads).unwrap();
+    contact.save(&path).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    let (mut refused, mut resumed) = (0, 0);
+    for at in (24..bytes.len()).step_by(5) {
+        let mut forged = bytes.clone();
+        forged[at] = 0x42;
+        let checksum = crc(forged[..20].iter().chain(&forged[24..]).copied());
+        forged[20..24].copy_from_slice(&checksum.to_le_bytes());
+        fs::write(&path, &forged).unwrap();
+        let mut contact = build();
+        match contact.resume(&path) {
+            Ok(()) => {
+                let _ = contact.step_each(0.1, &loads);
+                let _ = (contact.body(1), contact.contact_area());
+                resumed += 1;
+            }
+            Err(_) => refused += 1,
+        }
+    }
+    fs::remove_file(path).unwrap();
+    assert!(refused > 10 && resumed > 10, "{refused} refused, {resumed} resumed");
+}

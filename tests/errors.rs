@@ -301,3 +301,18 @@ fn shapes_bodies_and_histories_chosen_at_run_time() {
         ViscoelasticContact::builder(grid()).geometry(&shape).material(Material::incompressible(body)).build().unwrap();
     assert!(contact.follow(&history, Stepping::fixed(0.1), 0.1).next_step().unwrap().is_some());
 }
+
+/// Twice the length of a shape is told, too: what would be no number then is refused, or its gap would be none far away.
+#[test]
+fn shapes_beyond_numbers_are_refused() {
+    let field = |error: Error| match error {
+        Error::OutOfRange { field, .. } => field,
+        other => panic!("unexpected {other}"),
+    };
+    assert_eq!(field(Sphere::new(1.2e308).unwrap_err()), "sphere radius");
+    assert_eq!(field(Cylinder::new(1.2e308).unwrap_err()), "cylinder radius");
+    assert_eq!(field(Ellipsoid::new(1.0, 1.2e308).unwrap_err()), "radius of curvature along x2");
+    assert_eq!(field(Wavy::new(1.2e308, 1.0).unwrap_err()), "amplitude along x1");
+    let far = Shifted::new(Sphere::new(1e300).unwrap(), [1e271, 1e300]).unwrap();
+    assert!(!far.initial_gap(0.1, 0.1).is_nan());
+}

@@ -340,3 +340,34 @@ fn moments_beyond_numbers_are_refused() {
     contact.step(0.0, Load::force(1.0e215)).unwrap();
     assert!((contact.moment()[0] / 0.3e305 - 1.0).abs() < 0.1, "{:e}", contact.moment()[0]);
 }
+
+/// Pressures so small that their squares vanish: a pull among them is still a pull.
+#[test]
+fn the_least_pressures_do_not_pull() {
+    let (mut accepted, mut refused) = (0, 0);
+    for dt in [f64::MAX, 1e300, 1e250, 1e200] {
+        for k in 0..40 {
+            let tilt = [Tilt::Fixed(0.0), Tilt::Fixed(2.4e-4 * f64::from(k))];
+            for (cells, load) in [
+                ([12, 1], Load::Approach { approach: 2.0e-8, tilt }),
+                ([6, 5], Load::Approach { approach: 5.0e-8, tilt }),
+            ] {
+                let grid = Grid::new(cells, [3.1e-6, 3.9e-6]).unwrap();
+                let wavy = Wavy::new(1.0e-8 * (1.0 + 0.1 * f64::from(k)), 1.1e-6).unwrap();
+                let mut contact = ViscoelasticContact::builder(grid)
+                    .geometry(&Sum::new(Sphere::new(1.0e-4).unwrap(), wavy))
+                    .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap()))
+                    .settings(Settings { edge: Edge::Allow, tolerance: 4.5e-8, ..Settings::default() })
+                    .build()
+                    .unwrap();
+                match contact.step(dt, load) {
+                    Ok(_) => accepted += 1,
+                    Err(_) => refused += 1,
+                }
+                let pulls = contact.pressure().iter().filter(|&&p| p < 0.0).count();
+                assert_eq!(pulls, 0, "{dt:e} s, {k}, {cells:?}: {:?}", contact.pressure());
+            }
+        }
+    }
+    assert!(accepted > 50, "{accepted} accepted, {refused} refused");
+}

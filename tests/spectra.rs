@@ -175,3 +175,21 @@ fn spectra_between_the_ends_of_their_range_have_numbers_for_reciprocals() {
         }
     }
 }
+
+/// A term too weak to count, at the very time at which the others have a zero: the reciprocal must not notice it.
+#[test]
+fn a_hair_on_a_zero_changes_nothing() {
+    for weak in [1e-10, 1e-15, 1e-17, 1e-20, 1e-28, 1e-34, 1e-60, 1e-100] {
+        // 1 + 1/(1 + s) vanishes at s = −2
+        let creep = CreepSpectrum::new(1.0, 0.0, &[(1.0, 1.0), (weak, 0.5)]).unwrap();
+        let relaxation = creep.relaxation();
+        assert!((relaxation.modulus(0.0) - 1.0).abs() < 1e-7, "{weak:e}: {relaxation:?}");
+        for s in [1e-3, 0.3, 1.0, 2.0, 30.0, 1e4] {
+            let defect = carson_defect(&creep, &relaxation, s);
+            assert!(defect.abs() < 1e-7, "{weak:e}, s = {s}: {defect:e}");
+        }
+    }
+    // as between the ends of the range
+    let creep = CreepSpectrum::new(1.0, 0.0, &[(1e-100, 1.0), (1e100, 1e100)]).unwrap();
+    assert!((creep.relaxation().modulus(0.0) - 1.0).abs() < 1e-12, "{:?}", creep.relaxation());
+}

@@ -113,9 +113,10 @@ impl Builder {
     /// Makes the contact: undisturbed bodies at time 0, without load.
     ///
     /// # Errors
-    /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a setting is out of
-    /// range, the kernel was made for another grid, or there is none for its cells ([`InfluenceKernel::half_space`]), no series
-    /// of the material over [`Builder::times`] is within the tolerance, or these are more than 50 decades, or the rectangle rule was chosen for a rheology without elastic response.
+    /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a setting is out of range, the kernel was made
+    /// for another grid, there is none for its cells ([`InfluenceKernel::half_space`]), no series of the material over
+    /// [`Builder::times`] is within the tolerance, these are more than 50 decades, or the rectangle rule was chosen for a
+    /// rheology without elastic response.
     pub fn build(self) -> Result<ViscoelasticContact> {
         let Builder { grid, gaps, material, counter_body, times, kernel, settings } = self;
         settings.validate()?;

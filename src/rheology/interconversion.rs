@@ -30,7 +30,7 @@ const SAME_POLE: f64 = 1e-6;
 /// The coefficients c′, f′ and (b_k, z_k) of the reciprocal c′ + f′ s + Σ b s/(s + z), zeros ascending.
 pub(crate) fn reciprocal(series: &Series) -> Series {
     let Series { constant, slope, .. } = *series;
-    let terms = merged(&series.terms);
+    let terms = counting(&merged(&series.terms), constant, slope);
     let total: f64 = terms.iter().map(|&(a, _)| a).sum();
     let rate: f64 = terms.iter().map(|&(a, p)| a * p).sum();
 
@@ -75,6 +75,29 @@ fn merged(terms: &[(f64, f64)]) -> Vec<(f64, f64)> {
         }
     }
     merged
+}
+
+/// A part of the function below this is rounding wherever it is.
+const ROUNDING: f64 = 0.5 * f64::EPSILON;
+
+/// The terms without those that are rounding beside the constant, the slope, or a stronger term of a higher or lower pole. Where
+/// the pole of such a term lies on a zero of the others, the zeros on its two sides cannot be told apart by numbers,
+/// and their strengths, which share that of the zero, would be anything.
+fn counting(terms: &[(f64, f64)], constant: f64, slope: f64) -> Vec<(f64, f64)> {
+    // for p ≤ q, a p/(p + s) is at most a/b of b q/(q + s); for p ≥ q, a p/(b q) of it
+    let mut highest = vec![constant; terms.len()];
+    for k in (0..terms.len().saturating_sub(1)).rev() {
+        highest[k] = highest[k + 1].max(terms[k + 1].0);
+    }
+    let mut lowest = slope;
+    let mut counting = Vec::with_capacity(terms.len());
+    for (&(a, p), highest) in terms.iter().zip(highest) {
+        if a > ROUNDING * highest && a * p > ROUNDING * lowest {
+            counting.push((a, p));
+        }
+        lowest = lowest.max(a * p);
+    }
+    counting
 }
 
 #[derive(Debug, Clone, Copy)]

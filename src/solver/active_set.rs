@@ -150,10 +150,15 @@ impl ActiveSet {
             state.rounding = problem.rounding(&solution.pressure);
             solution.residual = relative_residual(&state, penetration);
             solution.trace.note(solution.counts.iterations, solution.residual);
-            let admissible = !self.pending() && state.negative == 0.0;
-            let solved = admissible && solution.residual <= stop.tolerance;
-            if solved {
-                return self.close(problem, solution);
+            let mut admissible = !self.pending() && state.negative == 0.0;
+            if admissible && solution.residual <= stop.tolerance {
+                if solution.pressure.iter().all(|&p| p >= 0.0) {
+                    return self.close(problem, solution);
+                }
+                // pulls so small that their squares vanish are pulls all the same
+                self.evict(problem, solution, work);
+                (state, penetration) = self.advance(problem, solution, 0.0);
+                admissible = false;
             }
             if solution.counts.iterations >= stop.max_iterations || solution.residual.is_nan() {
                 if !admissible && solution.residual <= stop.tolerance {

@@ -125,7 +125,8 @@ impl PolonskyKeer {
             } else if problem.possible(k) {
                 let depth = problem.depth(solution, k);
                 if depth > 0.0 {
-                    solution.pressure[k] = step * depth;
+                    // a step backwards, of gradients that have lost their way, lets none in that pulls
+                    solution.pressure[k] = step.max(0.0) * depth;
                     entered = true;
                 }
             }

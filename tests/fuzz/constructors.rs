@@ -13,11 +13,11 @@ use crate::source::Source;
 pub fn targets() -> Vec<Target> {
     vec![
         Target { name: "rheology", short: 4000, run: rheology },
-        Target { name: "series", short: 20, run: series },
+        Target { name: "series", short: 50, run: series },
         Target { name: "geometry", short: 3000, run: geometry },
         Target { name: "rough", short: 500, run: rough },
         Target { name: "history", short: 3000, run: history },
-        Target { name: "kernel", short: 200, run: kernel },
+        Target { name: "kernel", short: 1000, run: kernel },
         Target { name: "analytic", short: 500, run: analytic },
     ]
 }

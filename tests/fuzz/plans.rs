@@ -7,7 +7,7 @@ use crate::models;
 use crate::source::Source;
 
 pub fn targets() -> Vec<Target> {
-    vec![Target { name: "plan", short: 4, run: plan }]
+    vec![Target { name: "plan", short: 20, run: plan }]
 }
 
 fn plan(source: &mut Source) -> Verdict {

@@ -15,9 +15,9 @@ use crate::source::Source;
 pub fn targets() -> Vec<Target> {
     vec![
         Target { name: "scene_steps", short: 1200, run: |source| steps(source, false) },
-        Target { name: "scene_fitted", short: 10, run: |source| steps(source, true) },
-        Target { name: "scene_follow", short: 200, run: follow },
-        Target { name: "scene_moving", short: 200, run: moving },
+        Target { name: "scene_fitted", short: 30, run: |source| steps(source, true) },
+        Target { name: "scene_follow", short: 600, run: follow },
+        Target { name: "scene_moving", short: 600, run: moving },
     ]
 }
 
@@ -88,7 +88,7 @@ pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Sou
     }
     finite("pressure", contact.pressure().iter().copied())?;
     if contact.pressure().iter().any(|&p| p < 0.0) {
-        return Err("a negative pressure".to_owned());
+        return Err(format!("a negative pressure in {report:?} of {contact:?}: {:?}", contact.pressure()));
     }
     finite("displacement", contact.displacement().iter().copied())?;
     let len = contact.grid().len();

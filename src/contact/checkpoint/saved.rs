@@ -114,7 +114,8 @@ impl<'a> Saved<'a> {
         let solution = |solution: &Solution| {
             [solution.pressure.len(), solution.potential.len()] == [cells; 2] && solution.motions.len() == bodies
         };
-        let owners = self.gap.owner.as_ref().is_none_or(|owner| owner.len() == whole);
+        let of_a_body = |&owner: &_| usize::from(owner) < bodies;
+        let owners = self.gap.owner.as_ref().is_none_or(|owner| owner.len() == whole && owner.iter().all(of_a_body));
         let past = match &self.past {
             Past::Exponential(history) => history.fits(cells),
             Past::Direct(increments) => increments.iter().all(|(_, field)| field.len() == cells),
