@@ -33,7 +33,11 @@ pub(crate) fn replace(
         // it may not even exist; the error that matters is the first
         let _ = fs::remove_file(&part);
         failed(path, error)
-    })
+    })?;
+    // the new name is on the medium when its folder is, on systems that can say so; the file is complete in any case
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    Ok(())
 }
 
 #[cfg(all(test, any(feature = "checkpoint", feature = "npy", feature = "plot", feature = "vtk")))]

@@ -111,7 +111,7 @@ fn any_number_of_threads() {
 
 fn refused(contact: &mut ViscoelasticContact, path: &Path) -> CheckpointError {
     match contact.resume(path).unwrap_err() {
-        Error::Checkpoint(error) => error,
+        Error::Checkpoint { source, .. } => source,
         other => panic!("unexpected {other}"),
     }
 }
@@ -148,7 +148,9 @@ fn damaged_files_are_refused() {
     assert_eq!(refuse(b"PK\x03\x04 an archive of something else"), CheckpointError::Foreign);
     let longer = [&bytes[..], &[0]].concat();
     assert!(matches!(refuse(&longer), CheckpointError::Size { .. }));
-    assert!(matches!(contact.resume(file("nowhere")), Err(Error::Output { .. })));
+    let error = contact.resume(file("nowhere")).unwrap_err();
+    assert!(matches!(error, Error::Checkpoint { source: CheckpointError::Unreadable { .. }, .. }), "{error}");
+    assert!(error.to_string().contains("nowhere") && error.to_string().contains("cannot be read"), "{error}");
     fs::remove_file(path).unwrap();
     fs::remove_file(damaged).unwrap();
 }
@@ -166,13 +168,20 @@ fn other_scenes_are_refused_by_what_differs() {
     };
     let larger = Grid::square(16, 4.1e-3).unwrap();
     assert_eq!(what(sphere_on(larger, three_times(), Settings::default())), "grid");
-    let tighter = Settings { tolerance: 1e-7, ..Settings::default() };
-    assert_eq!(what(sphere_on(grid(), three_times(), tighter)), "settings");
+    let whole = Settings { window: false, ..Settings::default() };
+    assert_eq!(what(sphere_on(grid(), three_times(), whole)), "Settings::window");
+    let summed = Settings { time_rule: TimeRule::Backward, ..Settings::default() };
+    assert_eq!(what(sphere_on(grid(), three_times(), summed)), "Settings::time_rule");
     assert_eq!(what(sphere_on(grid(), power_law(), Settings::default())), "contact compliance");
     let builder =
         || ViscoelasticContact::builder(grid()).geometry(&Sphere::new(10.0e-3).unwrap()).material(three_times());
     let periodic = builder().kernel(Arc::new(InfluenceKernel::periodic(&grid()).unwrap()));
     assert_eq!(what(periodic.build().unwrap()), "kernel");
+    let cone = ViscoelasticContact::builder(grid()).geometry(&Cone::new(0.1).unwrap()).material(three_times());
+    assert_eq!(what(cone.build().unwrap()), "geometry");
+    let aside = Shifted::new(Sphere::new(10.0e-3).unwrap(), [1.0e-4, 0.0]).unwrap();
+    let aside = ViscoelasticContact::builder(grid()).geometry(&aside).material(three_times());
+    assert_eq!(what(aside.build().unwrap()), "geometry");
     let own = |scale: f64| {
         let kernel = InfluenceKernel::from_spectrum(&grid(), move |_, _| scale).unwrap();
         builder().kernel(Arc::new(kernel)).build().unwrap()
@@ -180,24 +189,123 @@ fn other_scenes_are_refused_by_what_differs() {
     own(1.0e-4).save(&path).unwrap();
     let mut other = own(2.0e-4);
     assert!(matches!(refused(&mut other, &path), CheckpointError::OtherScene { what: "influence", .. }));
+    // the same on the diagonal is not the same
+    let layered = |reach: f64| {
+        let coefficient = move |i: isize, j: isize| match i * i + j * j {
+            0 => 1.0e-4,
+            square => 0.3e-4 / (square as f64).sqrt() * (-(square as f64).sqrt() / reach).exp(),
+        };
+        builder().kernel(Arc::new(InfluenceKernel::from_coefficients(&grid(), coefficient).unwrap())).build().unwrap()
+    };
+    layered(3.0).save(&path).unwrap();
+    layered(3.0).resume(&path).unwrap();
+    assert!(matches!(refused(&mut layered(1.0), &path), CheckpointError::OtherScene { what: "influence", .. }));
+    // closures that differ between the powers of ten
+    let closure = |bump: f64| {
+        let creep = move |t: f64| 1.0e-6 * (1.0 + t.max(0.0).powf(0.3) + bump * (t > 3.0 && t < 7.0) as u32 as f64);
+        let material = Material::incompressible(FnRheology::new(creep));
+        sphere_on(grid(), material, Settings { time_rule: TimeRule::Backward, ..Settings::default() })
+    };
+    closure(0.0).save(&path).unwrap();
+    closure(0.0).resume(&path).unwrap();
+    assert!(matches!(
+        refused(&mut closure(0.1), &path),
+        CheckpointError::OtherScene { what: "contact compliance", .. }
+    ));
     fs::remove_file(path).unwrap();
 }
 
-/// A contact whose own first step fitted its material over other times cannot go on from the file: its series is another.
+/// What only says how steps are solved may be another one: a run that did not converge goes on with more iterations.
 #[test]
-fn materials_fitted_otherwise_are_refused() {
+fn other_ways_to_solve_are_taken() {
+    let path = file("solve");
+    let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), Settings::default());
+    wandering(&mut contact, 1);
+    contact.save(&path).unwrap();
+    for settings in [
+        Settings { tolerance: 1e-9, max_iterations: 5000, ..Settings::default() },
+        Settings { solver: Solver::PolonskyKeer, ..Settings::default() },
+        Settings { edge: Edge::Allow, time_rule: TimeRule::Exponential, ..Settings::default() },
+    ] {
+        let mut other = sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), settings);
+        other.resume(&path).unwrap();
+        let (one, two) = (wandering(&mut contact.clone(), 2), wandering(&mut other, 2));
+        assert!((one.approach / two.approach - 1.0).abs() < 1e-5, "{} {}", one.approach, two.approach);
+    }
+    fs::remove_file(path).unwrap();
+}
+
+/// A material that is known for ten seconds, and says so by a panic.
+#[derive(Debug)]
+struct Known;
+
+impl Rheology for Known {
+    fn creep_compliance(&self, t: f64) -> f64 {
+        assert!(t <= 10.0, "evaluated at {t} s");
+        1.0e-6 * (1.0 + t)
+    }
+
+    fn known_until(&self) -> f64 {
+        10.0
+    }
+}
+
+#[test]
+fn materials_are_not_asked_for_what_they_do_not_know() {
+    let path = file("known");
+    let build = || {
+        let settings = Settings { time_rule: TimeRule::Backward, ..Settings::default() };
+        sphere_on(Grid::square(16, 4.0e-3).unwrap(), Material::incompressible(Known), settings)
+    };
+    let mut contact = build();
+    contact.step(1.0, Load::force(0.1)).unwrap();
+    contact.save(&path).unwrap();
+    build().resume(&path).unwrap();
+    fs::remove_file(path).unwrap();
+}
+
+/// A contact that has stepped goes back to a file as a new one does: its material is fitted again over the times of the file, or
+/// waits for its first step again.
+#[test]
+fn materials_are_fitted_as_they_were() {
     let path = file("fitted");
     let stepped = |dt: f64| {
         let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), power_law(), Settings::default());
         contact.step(dt, Load::force(0.1)).unwrap();
         contact
     };
-    stepped(0.1).save(&path).unwrap();
-    stepped(0.1).resume(&path).unwrap();
-    let (mut other, twin) = (stepped(1.0e-6), stepped(1.0e-6));
-    let error = refused(&mut other, &path);
-    assert!(matches!(error, CheckpointError::OtherScene { what: "series of the material", .. }), "{error}");
-    assert_eq!((other.time(), other.pressure()), (twin.time(), twin.pressure()));
+    let mut contact = stepped(0.1);
+    contact.save(&path).unwrap();
+    let mut other = stepped(1.0e-6);
+    other.resume(&path).unwrap();
+    for _ in 0..3 {
+        assert_eq!(contact.step(0.2, Load::force(0.2)), other.step(0.2, Load::force(0.2)));
+    }
+    assert_eq!(contact.pressure(), other.pressure());
+
+    let fresh = || sphere_on(Grid::square(16, 4.0e-3).unwrap(), power_law(), Settings::default());
+    fresh().save(&path).unwrap();
+    let (mut one, mut other) = (fresh(), stepped(0.1));
+    other.resume(&path).unwrap();
+    assert_eq!(other.time(), 0.0);
+    for _ in 0..3 {
+        assert_eq!(one.step(1.0e-3, Load::force(0.2)), other.step(1.0e-3, Load::force(0.2)));
+    }
+    assert_eq!(one.pressure(), other.pressure());
+    fs::remove_file(path).unwrap();
+}
+
+/// A contact whose region has grown goes back to a file of a smaller one: nothing of the larger is left to be seen.
+#[test]
+fn nothing_is_left_of_a_larger_contact() {
+    let path = file("larger");
+    let mut contact = sphere_on(Grid::square(64, 4.0e-3).unwrap(), three_times(), Settings::default());
+    contact.step(0.0, Load::force(0.01)).unwrap();
+    contact.save(&path).unwrap();
+    let (pressure, area) = (contact.pressure().to_vec(), contact.contact_area());
+    contact.step(0.0, Load::force(1.0)).unwrap();
+    contact.resume(&path).unwrap();
+    assert_eq!((contact.pressure(), contact.contact_area()), (&pressure[..], area));
     fs::remove_file(path).unwrap();
 }
 

@@ -51,3 +51,35 @@ fn snapshots_of_other_contacts_are_refused() {
     assert_eq!(other.restore(&snapshot), Err(Error::OtherContact));
     one.restore(&snapshot).unwrap();
 }
+
+/// What is seen after going back to a smaller contact is what was seen then, and stays so.
+#[test]
+fn nothing_is_left_of_a_larger_contact() {
+    let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3).unwrap())
+        .geometry(&Sphere::new(10.0e-3).unwrap())
+        .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap()))
+        .build()
+        .unwrap();
+    contact.step(0.0, Load::force(0.01)).unwrap();
+    let (snapshot, twin) = (contact.snapshot(), contact.clone());
+    contact.step(0.0, Load::force(1.0)).unwrap();
+    contact.restore(&snapshot).unwrap();
+    let seen = |contact: &ViscoelasticContact| {
+        let (body, patches) = (contact.body(0).unwrap(), contact.patches().unwrap());
+        let fields = (contact.pressure().to_vec(), contact.displacement().to_vec());
+        (
+            fields,
+            format!("{body:?}"),
+            patches.count(),
+            contact.contact_area(),
+            contact.moment(),
+            contact.greatest_pressure(),
+        )
+    };
+    assert_eq!(seen(&contact), seen(&twin));
+    let mut twin = twin;
+    for contact in [&mut contact, &mut twin] {
+        contact.step(0.1, Load::force(0.01)).unwrap();
+    }
+    assert_eq!(seen(&contact), seen(&twin));
+}

@@ -5,6 +5,8 @@ use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
 use crate::contact::builder::Builder;
+#[cfg(feature = "checkpoint")]
+use crate::contact::checkpoint::Built;
 use crate::contact::follow::Progress;
 use crate::contact::hull::Hull;
 use crate::contact::loads::first_touch;
@@ -72,9 +74,9 @@ pub struct ViscoelasticContact {
     pub(super) solver: ContactSolver,
     pub(super) material: Material,
     pub(super) history: History,
-    /// C of the material it was built with, at some times: what tells scenes apart.
+    /// What it was built of: what tells scenes apart.
     #[cfg(feature = "checkpoint")]
-    pub(super) built_compliance: Vec<u64>,
+    pub(super) built: Arc<Built>,
     /// How far the run had come that was saved and resumed, for the next to go on.
     pub(super) progress: Option<Box<Progress>>,
     /// Which contact it is, clones included, and which gap it has.
@@ -142,7 +144,7 @@ impl ViscoelasticContact {
     pub(crate) fn new(parts: Parts) -> ViscoelasticContact {
         let Parts { grid, bodies, kernel, settings, initial_gap, material, mut history } = parts;
         #[cfg(feature = "checkpoint")]
-        let built_compliance = crate::contact::checkpoint::compliance_of(&material);
+        let built = Arc::new(Built::new(&material, &initial_gap, grid.cells()));
         let folded = if settings.symmetry { symmetry(&initial_gap, grid.cells()) } else { [false; 2] };
         // without load, each body is above the cell that it would touch first
         // elsewhere than on a half-space nothing is known of the displacement beyond a window
@@ -185,7 +187,7 @@ impl ViscoelasticContact {
             material,
             history,
             #[cfg(feature = "checkpoint")]
-            built_compliance,
+            built,
             progress: None,
             id: next_id(),
             gap_id: next_id(),

@@ -168,6 +168,16 @@ impl InfluenceKernel {
         self.influence.on_itself().unwrap_or_else(|| *self.on_itself.get_or_init(average))
     }
 
+    /// Numbers that tell it from others of the same kind.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn mark(&self) -> Vec<f64> {
+        let mut mark = vec![self.self_influence()];
+        if let Influence::Coefficients { values, columns } | Influence::Waves { values, columns } = &self.influence {
+            mark.extend(crate::contact::moments(values.iter().copied(), *columns));
+        }
+        mark
+    }
+
     /// Axes along which the bodies are periodic, the grid being one period.
     pub fn periodic_axes(&self) -> [bool; 2] {
         self.influence.ends().map(|end| end == Ends::Periodic)

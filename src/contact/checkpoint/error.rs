@@ -4,6 +4,13 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CheckpointError {
+    /// The file cannot be read.
+    #[error("it cannot be read: {what}")]
+    Unreadable {
+        /// What stood in the way.
+        what: String,
+    },
+
     /// It does not begin as a checkpoint does.
     #[error("not a checkpoint: it does not begin with the mark of one")]
     Foreign,

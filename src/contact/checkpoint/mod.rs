@@ -12,12 +12,12 @@ use std::path::Path;
 
 use crate::contact::follow::Progress;
 use crate::contact::viscoelastic::ViscoelasticContact;
-use crate::error::Result;
-use crate::file::{failed, replace};
+use crate::error::{Error, Result};
+use crate::file::replace;
 use saved::Saved;
 
 pub(crate) use keep::Keeping;
-pub(crate) use scene::compliance_of;
+pub(crate) use scene::{Built, moments};
 
 impl ViscoelasticContact {
     /// Saves the whole state to a file: a contact that is built like this one and continues from it
@@ -59,12 +59,16 @@ impl ViscoelasticContact {
 
     /// [`ViscoelasticContact::save`] with how far a run along a history has come.
     pub(super) fn save_with(&self, path: &Path, progress: Option<&Progress>) -> Result<()> {
-        let bytes = format::encode(&Saved::of(self, progress))?;
+        let bytes = format::encode(&Saved::of(self, progress)).map_err(|source| of_file(path, source))?;
         replace(path, |file| std::io::Write::write_all(file, &bytes))
     }
 
-    /// Puts a saved state in the place of this one. The contact must be built as the one was that was saved: same grid, kernel,
-    /// settings, bodies; where an indenter has moved, it is where it was. A run along a history that saved it
+    /// Puts a saved state in the place of this one. The contact must be built as the one was that was saved: same grid, bodies,
+    /// kernel, geometry and material. Settings may differ in how steps are solved (solver, precision, tolerance, iterations, edge,
+    /// memory), not in the rest. Where an indenter has moved, it is where it was.
+    ///
+    /// Scenes are compared by sums over gap and influence, and materials by their series, or by their compliance at eight times a decade
+    /// where they have none: of closures that agree there, nothing can tell. A run along a history that saved it
     /// ([`Follow::keeping`](crate::contact::Follow::keeping)) goes on where it was with the next
     /// [`ViscoelasticContact::follow`].
     ///
@@ -72,14 +76,20 @@ impl ViscoelasticContact {
     ///
     /// # Errors
     /// If the file cannot be read, is no checkpoint, is newer than this version, cut short, damaged, or of another scene
-    /// ([`CheckpointError`]); the contact is then as it was.
+    /// ([`Error::Checkpoint`]); the contact is then as it was.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path).map_err(|error| failed(path, error))?;
-        let saved: Saved<'_> = format::decode(&bytes)?;
         let mut resumed = self.clone();
-        saved.restore(&mut resumed)?;
+        let mut attempt = || {
+            let bytes = std::fs::read(path).map_err(|error| CheckpointError::Unreadable { what: error.to_string() })?;
+            format::decode::<Saved<'_>>(&bytes)?.restore(&mut resumed)
+        };
+        attempt().map_err(|source| of_file(path, source))?;
         *self = resumed;
         Ok(())
     }
+}
+
+fn of_file(path: &Path, source: CheckpointError) -> Error {
+    Error::Checkpoint { path: path.display().to_string(), source }
 }

@@ -11,9 +11,8 @@ use crate::contact::region::Region;
 use crate::contact::reside::Beyond;
 use crate::contact::state::State;
 use crate::contact::viscoelastic::{ViscoelasticContact, next_id};
-use crate::error::{Error, Result};
 use crate::geometry::Gap;
-use crate::hereditary::{Exponential, History, Sources};
+use crate::hereditary::{Exponential, History, Sources, Unfitted};
 use crate::solver::Solution;
 
 /// A contact without what its scene says again, borrowed from one or read from a file.
@@ -59,21 +58,18 @@ impl<'a> Saved<'a> {
     }
 
     /// Puts the state into a contact of the same scene.
-    pub(super) fn restore(self, contact: &mut ViscoelasticContact) -> Result<()> {
+    pub(super) fn restore(self, contact: &mut ViscoelasticContact) -> Result<(), CheckpointError> {
         self.scene.require(&SceneMark::of(contact))?;
         self.check(contact)?;
-        match (self.state.fitted_over, contact.state.fitted_over) {
-            (saved, own) if saved == own => {}
-            (Some(times), None) => {
-                contact.material = contact.material.fitted(times[0]..=times[1], contact.settings.series_tolerance)?;
-            }
-            (saved, own) => {
-                let [saved, built] = [saved, own].map(|times| match times {
-                    Some([first, last]) => format!("that from {first:e} s to {last:e} s"),
-                    None => "not fitted yet".into(),
-                });
-                return Err(CheckpointError::OtherScene { what: "series of the material", saved, built }.into());
-            }
+        if self.state.fitted_over != contact.state.fitted_over {
+            let built = &contact.built.material;
+            contact.material = match self.state.fitted_over {
+                // over the same times it is the same, bit by bit
+                Some([first, last]) => built
+                    .fitted(first..=last, contact.settings.series_tolerance)
+                    .map_err(|error| malformed(&error.to_string()))?,
+                None => built.clone(),
+            };
         }
         contact.history = match (self.past, &contact.history) {
             (Past::Exponential(history), History::Exponential(_) | History::Unfitted(_)) => {
@@ -83,11 +79,13 @@ impl<'a> Saved<'a> {
             (Past::Direct(increments), History::Direct(history)) => {
                 History::Direct(history.with(increments.into_owned()))
             }
-            (Past::Unfitted { expected }, History::Unfitted(history)) => {
-                let mut history = history.clone();
+            (Past::Unfitted { expected }, own)
+                if matches!(own, History::Unfitted(_)) || contact.state.fitted_over.is_some() =>
+            {
+                let mut history = Unfitted::new(contact.built.material.clone(), contact.settings.series_tolerance);
                 history.expected = expected;
                 history.carry(self.region.len());
-                History::Unfitted(history)
+                History::Unfitted(Box::new(history))
             }
             _ => return Err(malformed("another kind of past")),
         };
@@ -105,7 +103,7 @@ impl<'a> Saved<'a> {
     }
 
     /// Refuses fields that do not fit: a file may have a right checksum and be made by others all the same.
-    fn check(&self, contact: &ViscoelasticContact) -> Result<()> {
+    fn check(&self, contact: &ViscoelasticContact) -> Result<(), CheckpointError> {
         let (whole, bodies) = (contact.grid.len(), contact.bodies());
         if !self.region.is_of(&contact.grid) {
             return Err(malformed("its region is none of the grid"));
@@ -147,6 +145,6 @@ impl<'a> Saved<'a> {
     }
 }
 
-fn malformed(what: &str) -> Error {
-    Error::Checkpoint(CheckpointError::Malformed { what: what.into() })
+fn malformed(what: &str) -> CheckpointError {
+    CheckpointError::Malformed { what: what.into() }
 }

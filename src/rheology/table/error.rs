@@ -186,4 +186,34 @@ pub enum TableError {
         /// What is there.
         text: String,
     },
+
+    /// Isotherms of a master curve measure different things.
+    #[error("the {first} isotherms cannot be joined to {second} isotherms")]
+    MixedIsotherms {
+        /// What the first measures, or what is asked for.
+        first: &'static str,
+        /// What the other measures.
+        second: &'static str,
+    },
+
+    /// An isotherm is flat: nothing tells by how much it is shifted. Use a law
+    /// ([`MasterCurve::with_law`](crate::rheology::MasterCurve::with_law)).
+    #[error("of the isotherms at {} K and {} K one does not change with time: nothing tells by how much it is shifted; use MasterCurve::with_law", .temperatures[0], .temperatures[1])]
+    NothingToShift {
+        /// The temperatures \[K\].
+        temperatures: [f64; 2],
+    },
+
+    /// Two isotherms have no values in common, so that no shift brings them together: measure at a temperature in
+    /// between, or shift by a law ([`MasterCurve::with_law`](crate::rheology::MasterCurve::with_law)).
+    #[error(
+        "the isotherms at {} K and {} K do not overlap in their values: at the best shift they are {:.0} % apart; measure at a temperature in between, or use MasterCurve::with_law",
+        .temperatures[0], .temperatures[1], 100.0 * .apart
+    )]
+    NoOverlap {
+        /// The temperatures \[K\].
+        temperatures: [f64; 2],
+        /// Root mean square of the logarithmic distance at the best shift.
+        apart: f64,
+    },
 }

@@ -1,6 +1,6 @@
 use crate::error::{Error, Result, least_length, within};
 use crate::rheology::table::data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
-use crate::rheology::table::{Place, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
+use crate::rheology::table::{Place, TableError, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
 use crate::rheology::{Quantity, TimeTemperature};
 
 /// What was measured at one temperature.
@@ -122,7 +122,7 @@ impl MasterCurve {
     /// # Errors
     /// If there is no isotherm, two have the same temperature, they measure different things, none is at the
     /// reference temperature, or neighbours do not overlap in their values
-    /// ([`Error::NoOverlap`]).
+    /// ([`TableError::NoOverlap`]).
     pub fn new(reference: f64, isotherms: Vec<Isotherm>) -> Result<MasterCurve> {
         let isotherms = sorted(isotherms)?;
         let Some(center) = isotherms.iter().position(|isotherm| isotherm.temperature == reference) else {
@@ -262,7 +262,11 @@ impl MasterCurve {
 
     fn measures(&self, wanted: Layout) -> Result<()> {
         let given = self.isotherms[0].layout.table;
-        if given == wanted.table { Ok(()) } else { Err(Error::MixedIsotherms { first: wanted.table, second: given }) }
+        if given == wanted.table {
+            Ok(())
+        } else {
+            Err(TableError::MixedIsotherms { first: wanted.table, second: given }.into())
+        }
     }
 }
 
@@ -273,7 +277,7 @@ fn sorted(mut isotherms: Vec<Isotherm>) -> Result<Vec<Isotherm>> {
     for (index, pair) in isotherms.windows(2).enumerate() {
         let [colder, warmer] = pair else { continue };
         if colder.layout != warmer.layout {
-            return Err(Error::MixedIsotherms { first: colder.layout.table, second: warmer.layout.table });
+            return Err(TableError::MixedIsotherms { first: colder.layout.table, second: warmer.layout.table }.into());
         }
         if colder.temperature == warmer.temperature {
             return Err(Error::OutOfOrder {
@@ -332,13 +336,13 @@ fn shift_between(colder: &Isotherm, warmer: &Isotherm) -> Result<f64> {
         logs().fold(f64::NEG_INFINITY, f64::max) - logs().fold(f64::INFINITY, f64::min)
     };
     if span(colder).min(span(warmer)) < 1e-6 {
-        return Err(Error::NothingToShift { temperatures: [colder.temperature, warmer.temperature] });
+        return Err(TableError::NothingToShift { temperatures: [colder.temperature, warmer.temperature] }.into());
     }
     // overlapping by the least that was asked for means that the values of the two hardly meet
     let apart = distance(shift).sqrt();
     let at_end = (shift - low).min(high - shift) < step;
     if at_end || apart > 0.2 {
-        return Err(Error::NoOverlap { temperatures: [colder.temperature, warmer.temperature], apart });
+        return Err(TableError::NoOverlap { temperatures: [colder.temperature, warmer.temperature], apart }.into());
     }
     Ok(shift)
 }
