@@ -185,7 +185,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
                 patches.count(),
                 patches.largest().map_or(0.0, |patch| patch.area * 1e6),
                 contact.greatest_pressure() * 1e-3,
-                smooth.peak_pressure() * 1e-3
+                smooth.greatest_pressure() * 1e-3
             );
         });
         progress.inc(1);

@@ -299,7 +299,7 @@ impl Run {
         let title = format!("Pressure under a step-loaded sphere, {} half-space", scene.name);
         let [x, y] = ["r / Hertz radius at t = 0", "p / Hertz pressure at t = 0"];
         let mut chart = Chart::new(&title, x, y, Legend::UpperRight);
-        let (a, p) = (self.hertz.contact_radius(), self.hertz.peak_pressure());
+        let (a, p) = (self.hertz.contact_radius(), self.hertz.greatest_pressure());
         for (profile, color) in self.profiles.iter().zip(COLORS) {
             let edge = self.exact.contact_radius(profile.time);
             // dense near the rim, where the profile falls like a root

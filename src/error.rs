@@ -9,7 +9,7 @@ pub use convergence::{Convergence, Trend};
 /// What went wrong, with the numbers needed to mend it.
 ///
 /// Every constructor validates its arguments, so an invalid model cannot be built; a
-/// [`step`](crate::ViscoelasticContact::step) that fails leaves the contact exactly as it was.
+/// [`step`](crate::ViscoelasticContact::step) that fails leaves the contact as it was.
 ///
 /// ```
 /// use viscocontact::{Error, rheology::Maxwell};

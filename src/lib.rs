@@ -119,7 +119,8 @@
 //!
 //! # Beside other programs
 //!
-//! [Tamaas](https://gitlab.com/tamaas/tamaas) (C++ and Python) computes periodic rough contacts with plasticity, adhesion and friction;
+//! [Tamaas](https://gitlab.com/tamaas/tamaas) (C++ and Python) computes rough contacts, most of them periodic, with plasticity, adhesion and
+//! friction, and has a solver for generalized Maxwell bodies;
 //! [ContactMechanics](https://github.com/ContactEngineering/ContactMechanics) (Python) elastic half-spaces, periodic or not, with
 //! contact plasticity, and adhesion in a package of its own; [CONTACT](https://www.kalkersoftware.org) (Fortran) rolling and sliding with
 //! friction, conformal and transient, also of viscoelastic bodies. What they have of friction, adhesion and plasticity is not here. What

@@ -140,18 +140,18 @@ fn foundation_driven_by_its_own_approach() {
 fn ellipse_limits() {
     let circle = Hertz::new(RADIUS, 4.0e6, 1.0).unwrap();
     let nearly = HertzEllipse::new([RADIUS, RADIUS * (1.0 + 1e-9)], 4.0e6, 1.0).unwrap();
-    assert!((nearly.peak_pressure() / circle.peak_pressure() - 1.0).abs() < 1e-8);
+    assert!((nearly.greatest_pressure() / circle.greatest_pressure() - 1.0).abs() < 1e-8);
     assert!(nearly.semi_axes()[1] > nearly.semi_axes()[0]);
     // Johnson 1985, eq. 4.28: for moderate ratios a/b ≈ (R_long/R_short)^(2/3)
     let moderate = HertzEllipse::new([2.0 * RADIUS, RADIUS], 4.0e6, 1.0).unwrap();
     let [a, b] = moderate.semi_axes();
     assert!(((a / b) / 2f64.powf(2.0 / 3.0) - 1.0).abs() < 2e-2);
     // W = (2π/3) p0 a b, and p(0) = p0
-    assert!((2.0 * PI / 3.0 * moderate.peak_pressure() * a * b - 1.0).abs() < 1e-12);
-    assert_eq!(moderate.pressure(0.0, 0.0), moderate.peak_pressure());
+    assert!((2.0 * PI / 3.0 * moderate.greatest_pressure() * a * b - 1.0).abs() < 1e-12);
+    assert_eq!(moderate.pressure(0.0, 0.0), moderate.greatest_pressure());
     // very slender: the short axis is that of a line contact under the peak line load, b = 2 p0 R/E*
     let slender = HertzEllipse::new([1e8 * RADIUS, RADIUS], 4.0e6, 1.0).unwrap();
-    let line = 2.0 * slender.peak_pressure() * RADIUS / 4.0e6;
+    let line = 2.0 * slender.greatest_pressure() * RADIUS / 4.0e6;
     assert!((slender.semi_axes()[1] / line - 1.0).abs() < 1e-4);
 }
 
@@ -198,7 +198,7 @@ fn references_at_the_ends_are_numbers_or_refused() {
                 count(0, hertz.is_ok());
                 if let Ok(hertz) = hertz {
                     all(
-                        &[hertz.contact_radius(), hertz.peak_pressure(), hertz.approach(), hertz.pressure(0.0)],
+                        &[hertz.contact_radius(), hertz.greatest_pressure(), hertz.approach(), hertz.pressure(0.0)],
                         &hertz,
                     );
                 }
@@ -206,7 +206,7 @@ fn references_at_the_ends_are_numbers_or_refused() {
                 count(1, ellipse.is_ok());
                 if let Ok(ellipse) = ellipse {
                     let [a, b] = ellipse.semi_axes();
-                    all(&[a, b, ellipse.peak_pressure(), ellipse.approach(), ellipse.pressure(0.0, 0.0)], &ellipse);
+                    all(&[a, b, ellipse.greatest_pressure(), ellipse.approach(), ellipse.pressure(0.0, 0.0)], &ellipse);
                 }
                 let punch = RigidPunch::new(radius, modulus, force, 0.3 * radius);
                 count(2, punch.is_ok());

@@ -309,6 +309,47 @@ fn nothing_is_left_of_a_larger_contact() {
     fs::remove_file(path).unwrap();
 }
 
+/// A step whose file cannot be written is reported by the call that writes it.
+#[test]
+fn no_step_is_lost_with_its_file() {
+    let folder = file("medium");
+    let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), Settings::default());
+    let load = StepLoad::new(Load::force(0.1)).unwrap();
+    let mut run = contact.follow(&load, Stepping::fixed(0.1), 0.2).keeping(folder.join("run"), Duration::ZERO);
+    let mut times = Vec::new();
+    loop {
+        match run.next_step() {
+            Ok(Some(report)) => times.push(report.time),
+            Ok(None) => break,
+            Err(error) => {
+                assert!(matches!(error, Error::Output { .. }), "{error}");
+                fs::create_dir_all(&folder).unwrap();
+                continue;
+            }
+        }
+        fs::remove_dir_all(&folder).unwrap();
+    }
+    assert_eq!(times, [0.0, 0.1, 0.2]);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+/// A run to before where the file is, is refused, the first time as well.
+#[test]
+fn runs_that_are_over_do_not_begin() {
+    let path = file("over");
+    let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), Settings::default());
+    let load = StepLoad::new(Load::force(0.1)).unwrap();
+    let mut run = contact.follow(&load, Stepping::fixed(0.1), 1.0).keeping(&path, Duration::ZERO);
+    while run.next_step().unwrap().is_some() {}
+    contact.resume(&path).unwrap();
+    for _ in 0..2 {
+        assert!(contact.follow(&load, Stepping::fixed(0.1), 0.5).next_step().is_err());
+    }
+    contact.resume(&path).unwrap();
+    assert_eq!(contact.follow(&load, Stepping::fixed(0.1), 1.0).next_step(), Ok(None));
+    fs::remove_file(path).unwrap();
+}
+
 const STEPS: f64 = 400.0;
 const EVERY: Duration = Duration::from_millis(5);
 

@@ -105,7 +105,8 @@ fn every_law_can_be_broken() {
     let broken = |creep: fn(f64) -> f64, spectrum| {
         laws::all(&Wrong(creep, spectrum), &laws::log_times(1e-3, 1e3)).unwrap_err().law
     };
-    assert_eq!(broken(|t| 1.0 - t, None), "creep is finite and not negative");
+    assert_eq!(broken(|t| 0.5 - t, None), "creep is finite and not negative");
+    assert_eq!(broken(|t| 1.0 - t.min(1.0), None), "creep is positive after t = 0");
     assert_eq!(broken(|_| f64::NAN, None), "creep is finite and not negative");
     assert_eq!(broken(|t| 2.0 - 1e-4 * t, None), "creep never decreases");
     assert_eq!(broken(|t| 1.0 + t * t, None), "the creep rate never increases");
@@ -390,5 +391,34 @@ mod at_random {
         fn random_loads_are_loads(load in loads(3.0, 1e-6, 1e-3, 1e-3)) {
             prop_assert!(StepLoad::new(load).is_ok(), "{:?}", load);
         }
+    }
+}
+
+/// Looking at nothing finds nothing wrong: times that say nothing are refused, and so is a body that never creeps.
+#[test]
+fn laws_want_something_to_look_at() {
+    use viscocontact::rheology::laws;
+
+    let maxwell = Maxwell::new(1.0e6, 1.0e6).unwrap();
+    for times in [vec![], vec![0.0, 1.0], vec![1.0, 1.0], vec![2.0, 1.0], vec![1.0, f64::NAN], vec![-1.0, 1.0]] {
+        let law = laws::all(&maxwell, &times).unwrap_err().law;
+        assert!(law.contains("ascend"), "{times:?}: {law}");
+    }
+    for (first, last) in [(0.0, 1.0), (1.0e3, 1.0e-3), (-1.0, 1.0), (1.0, f64::INFINITY), (f64::NAN, 1.0)] {
+        assert!(laws::log_times(first, last).is_empty(), "{first} {last}");
+    }
+    let wide = laws::log_times(1e-300, 1e300);
+    assert!(wide.len() == 4801 && wide.is_sorted() && wide.iter().all(|t| *t > 0.0 && t.is_finite()));
+    let times = laws::log_times(1e-3, 1e3);
+    let rigid = laws::all(&FnRheology::new(|_| 0.0), &times).unwrap_err();
+    assert_eq!(rigid.law, "creep is positive after t = 0");
+    // what is not known is not asked
+    let known = PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap().series(1e-3..=1e1, 1e-4).unwrap();
+    laws::all(&known, &times).unwrap();
+
+    let load = StepLoad::new(Load::force(1.0)).unwrap();
+    for times in [vec![], vec![1.0], vec![1.0, 1.0], vec![1.0, f64::NAN], vec![2.0, 1.0]] {
+        let law = viscocontact::load::laws::all(&load, &times).unwrap_err().law;
+        assert!(law.contains("ascend"), "{times:?}: {law}");
     }
 }

@@ -183,3 +183,13 @@ fn plans_find_the_domain_whatever_its_size() {
         assert!(matches!(Accuracy::target_of(target), Err(Error::OutOfRange { field: "accuracy", .. })));
     }
 }
+
+#[test]
+fn accuracies_out_of_range_are_refused() {
+    let (shape, load) = (Sphere::new(10.0e-3).unwrap(), StepLoad::new(Load::force(1.0)).unwrap());
+    let body = Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap());
+    for target in [0.0, -1.0, 5.0, f64::NAN] {
+        let error = Plan::new(&shape, &body, &load, 2.0, Accuracy::Custom(target)).unwrap_err();
+        assert!(matches!(error, viscocontact::Error::OutOfRange { field: "accuracy", .. }), "{error}");
+    }
+}

@@ -99,6 +99,9 @@ pub struct Follow<'a> {
     landings: Vec<f64>,
     #[cfg(feature = "checkpoint")]
     pub(super) keeping: Option<Keeping>,
+    /// The report of a step whose file could not be written.
+    #[cfg(feature = "checkpoint")]
+    unreported: Option<Option<StepReport>>,
 }
 
 /// How far a run has come, and what it knows of the steps to come.
@@ -153,7 +156,7 @@ impl<'a> Follow<'a> {
         };
         let begun = Progress { start: now, now, behind: 0, raster, controller, worst: [0.0; 2] };
         // a run that was saved goes on, if this is the one
-        let saved = contact.progress.take().filter(|saved| saved.goes_on(&begun));
+        let saved = contact.progress.take().filter(|saved| until >= now && saved.goes_on(&begun));
         let progress = saved.map_or(begun, |saved| *saved);
         Follow {
             contact,
@@ -164,6 +167,8 @@ impl<'a> Follow<'a> {
             landings: Vec::new(),
             #[cfg(feature = "checkpoint")]
             keeping: None,
+            #[cfg(feature = "checkpoint")]
+            unreported: None,
         }
     }
 
@@ -189,12 +194,23 @@ impl<'a> Follow<'a> {
     /// If the end is not finite or lies before the contact's time, the fixed step is not finite and
     /// positive or too short to change the time, the tolerance is out of range or asks for steps too short to change
     /// the time, or a step fails; the contact is then as it was after the last good step, and the call may be
-    /// repeated. Or if the file of [`Follow::keeping`] cannot be written: the step is then taken all the same.
+    /// repeated. Or if the file of `Follow::keeping` cannot be written: the step is then taken all the same, and the next call
+    /// tries to write again, and reports it.
     pub fn next_step(&mut self) -> Result<Option<StepReport>> {
-        let report = self.take_step()?;
         #[cfg(feature = "checkpoint")]
-        self.keep(report.is_none())?;
-        Ok(report)
+        {
+            let report = match self.unreported.take() {
+                Some(report) => report,
+                None => self.take_step()?,
+            };
+            if let Err(error) = self.keep(report.is_none()) {
+                self.unreported = Some(report);
+                return Err(error);
+            }
+            Ok(report)
+        }
+        #[cfg(not(feature = "checkpoint"))]
+        self.take_step()
     }
 
     fn take_step(&mut self) -> Result<Option<StepReport>> {

@@ -1,5 +1,7 @@
 //! States kept in memory, for callers that try steps and take them back.
 
+use std::fmt;
+
 use crate::contact::region::Region;
 use crate::contact::reside::Beyond;
 use crate::contact::state::State;
@@ -9,9 +11,9 @@ use crate::geometry::Gap;
 use crate::hereditary::History;
 use crate::rheology::Material;
 
-/// The state of a contact in memory, made by [`ViscoelasticContact::snapshot`]: what the others change from step to step, without
-/// kernel and work space. About 60 bytes a computed cell, 8 more for each relaxation time.
-#[derive(Debug, Clone)]
+/// The state of a contact in memory, made by [`ViscoelasticContact::snapshot`]: what steps change, without kernel and work
+/// space. About 60 bytes a computed cell, 8 more for each relaxation time.
+#[derive(Clone)]
 pub struct Snapshot {
     region: Region,
     beyond: Option<Beyond>,
@@ -23,6 +25,19 @@ pub struct Snapshot {
     /// The displacement before the last step.
     before: Vec<f64>,
     contact: u64,
+}
+
+impl Snapshot {
+    /// The time of the state \[s\].
+    pub fn time(&self) -> f64 {
+        self.state.time
+    }
+}
+
+impl fmt::Debug for Snapshot {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Snapshot").field("time", &self.state.time).finish_non_exhaustive()
+    }
 }
 
 impl ViscoelasticContact {
@@ -85,11 +100,11 @@ impl ViscoelasticContact {
         snapshot.before.clone_from(&self.trial_displacement);
     }
 
-    /// Goes back to a state, the indenter where it was then: the steps that follow are the same as they were, bit by bit.
-    /// Allocates nothing while the region that is computed and the indenter stay where they are.
+    /// Goes back to a state, the indenter where it was then: the steps that follow are the same as they were, bit by bit. A run of
+    /// adaptive steps ([`ViscoelasticContact::follow`]) begins anew, with steps of its own. Allocates nothing while the region that is computed and the indenter stay where they are.
     ///
     /// # Errors
-    /// If the snapshot is of another contact; of a clone it is one's own.
+    /// If the snapshot was made of another contact; a contact and its clones may exchange theirs.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<()> {
         if snapshot.contact != self.id {
             return Err(Error::OtherContact);

@@ -10,7 +10,7 @@ pub struct SpatialError {
     /// Of the approach, or of the force where the approach is given.
     pub approach: f64,
     /// Of the greatest pressure of a smooth contact; the pressure at the rim of a punch is infinite and has none.
-    pub peak_pressure: f64,
+    pub greatest_pressure: f64,
     /// Of the contact area.
     pub area: f64,
     /// The part of the approach's error that is of first order in the cell width: that of singular edges. The rest is of
@@ -76,7 +76,7 @@ impl ViscoelasticContact {
         let singular = if rises { SINGULAR_APPROACH * (share * delta.sqrt() - smooth) } else { 0.0 };
         SpatialError {
             approach: SMOOTH_APPROACH * smooth + singular,
-            peak_pressure: PEAK * smooth + singular,
+            greatest_pressure: PEAK * smooth + singular,
             area: AREA * delta.powf(AREA_ORDER),
             singular,
         }

@@ -31,7 +31,8 @@ impl ViscoelasticContact {
     /// body has no elastic response and `dt` = 0, contact reaches the edge of the grid (unless
     /// [`Edge::Allow`]), the solver does not converge, a creep closure returns an impossible value or cannot be fitted,
     /// the material is not known for so long or so short a time, a direct sum has filled its memory, or there
-    /// are several rigid bodies. The contact is then exactly as it was before.
+    /// are several rigid bodies. The contact is then exactly as it was before, but for
+    /// [`ViscoelasticContact::within_step`], which has lost the start of the last step.
     pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
         self.step_each(dt, &[load])
     }

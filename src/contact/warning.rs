@@ -132,6 +132,21 @@ impl Iterator for IntoIter {
     }
 }
 
+impl FromIterator<Warning> for Warnings {
+    fn from_iter<I: IntoIterator<Item = Warning>>(warnings: I) -> Warnings {
+        warnings.into_iter().fold(Warnings::default(), |set, warning| set.with(warning, true))
+    }
+}
+
+impl IntoIterator for &Warnings {
+    type Item = Warning;
+    type IntoIter = IntoIter;
+
+    fn into_iter(self) -> IntoIter {
+        IntoIter { left: *self }
+    }
+}
+
 impl IntoIterator for Warnings {
     type Item = Warning;
     type IntoIter = IntoIter;

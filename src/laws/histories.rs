@@ -10,7 +10,8 @@ use crate::error::Result;
 use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
 
 /// A load history of any kind.
-type AnyHistory = Arc<dyn LoadHistory>;
+/// A load history of any kind.
+pub type AnyHistory = Arc<dyn LoadHistory>;
 
 /// Loads of every kind: forces up to `force` \[N\], approaches within `depth` \[m\], tilts within `tilt` \[rad\], load
 /// points within `reach` of the origin \[m\].

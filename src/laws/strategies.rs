@@ -1,6 +1,6 @@
 //! Valid models at random, as strategies of [`proptest`](mod@proptest).
 //!
-//! Each takes the scales of what it makes, so that its models suit the scene of a test. The simplest ones come first, and
+//! Each takes the scales of what it makes, finite, positive, and not beyond 1e±50, so that its models suit the scene of a test. The simplest ones come first, and
 //! that is where failures shrink to.
 
 use std::f64::consts::FRAC_PI_4;
@@ -18,7 +18,7 @@ use crate::rheology::{
     KelvinVoigt, Kww, LogCreep, Maxwell, PowerLaw, Rheology, SlowCreep, Zener,
 };
 
-pub use super::histories::{histories, loads};
+pub use super::histories::{AnyHistory, histories, loads};
 pub use super::scenes::scenes;
 
 /// A rheology of any kind.
@@ -27,7 +27,7 @@ pub type AnyRheology = Arc<dyn Rheology>;
 pub type AnyGeometry = Arc<dyn Geometry>;
 
 /// Up to a decade around `scale`, in its unit.
-pub fn around(scale: f64) -> impl Strategy<Value = f64> + Clone {
+pub(super) fn around(scale: f64) -> impl Strategy<Value = f64> + Clone {
     (-1.0..1.0_f64).prop_map(move |exponent| scale * 10f64.powf(exponent))
 }
 

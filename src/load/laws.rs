@@ -58,8 +58,16 @@ pub fn even_times(first: f64, last: f64, count: usize) -> Vec<f64> {
 /// Every law, at ascending `times` \[s\].
 ///
 /// # Errors
-/// The first law that is broken.
+/// The first law that is broken; or if the times are fewer than two, or do not ascend.
 pub fn all(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
+    let law = "(asked for) two times to look at, or more, ascend";
+    let refused = |t: f64, found: f64, expected: f64| Err(Violation { law, quantity: "time", t, found, expected });
+    if times.len() < 2 {
+        return refused(times.first().copied().unwrap_or(0.0), times.len() as f64, 2.0);
+    }
+    if let Some(pair) = times.windows(2).find(|pair| pair[0].partial_cmp(&pair[1]) != Some(std::cmp::Ordering::Less)) {
+        return refused(pair[1], pair[1], pair[0]);
+    }
     breakpoints_increase(history, times)?;
     is_a_load(history, times)?;
     repeats_itself(history, times)?;

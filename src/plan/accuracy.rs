@@ -22,7 +22,7 @@ pub enum Accuracy {
     Standard,
     /// 1e-4: to compare with.
     Fine,
-    /// Any other target, made by [`Accuracy::target_of`].
+    /// Any other target, in \[1e-6, 0.1\], made by [`Accuracy::target_of`]; a plan refuses others.
     Custom(f64),
 }
 

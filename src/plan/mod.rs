@@ -73,13 +73,14 @@ impl Plan {
         accuracy: Accuracy,
     ) -> Result<Plan> {
         positive("end of the run", until)?;
+        Accuracy::target_of(accuracy.target())?;
         let coarse = Coarse { geometry, material, history, until, accuracy };
         let (reach, found) = coarse.domain()?;
         let lengths = reach.map(|half| 2.0 * MARGIN * half);
 
         // error(n) = second (COARSE/n)² + first COARSE/n
         let (first, target) = (found.error.singular, accuracy.space());
-        let second = (found.error.approach.max(found.error.peak_pressure) - first).max(0.0);
+        let second = (found.error.approach.max(found.error.greatest_pressure) - first).max(0.0);
         let shrink = (first + (first * first + 4.0 * second * target).sqrt()) / (2.0 * target);
         let wanted = (COARSE as f64 * shrink).ceil();
         if wanted > MOST_CELLS as f64 {
@@ -92,7 +93,7 @@ impl Plan {
         let finer = |error: f64| (error - first) * ratio * ratio + first * ratio;
         let error = SpatialError {
             approach: finer(found.error.approach),
-            peak_pressure: finer(found.error.peak_pressure),
+            greatest_pressure: finer(found.error.greatest_pressure),
             area: found.error.area * ratio.powf(AREA_ORDER),
             singular: first * ratio,
         };
@@ -163,7 +164,7 @@ impl std::fmt::Display for Plan {
             self.convolutions,
             self.bytes as f64 * 1e-6,
             self.error.approach,
-            self.error.peak_pressure,
+            self.error.greatest_pressure,
             self.error.area
         )
     }
@@ -240,7 +241,7 @@ impl Coarse<'_> {
             }
             found.error = SpatialError {
                 approach: found.error.approach.max(approach * error.approach),
-                peak_pressure: found.error.peak_pressure.max(peak * error.peak_pressure),
+                greatest_pressure: found.error.greatest_pressure.max(peak * error.greatest_pressure),
                 area: found.error.area.max(approach * error.area),
                 singular: found.error.singular.max(approach * error.singular),
             };

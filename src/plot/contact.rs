@@ -73,7 +73,18 @@ impl Chart {
             Axis::X2 => "x2",
         };
         let (x, y) = (Quantity::of(name, "m"), Quantity::of("pressure", "Pa"));
-        let mut chart = Chart::new(time_of(contact), x, y, Legend::UpperRight);
+        let (across, value) = match along {
+            Axis::X1 => ("x2", at),
+            Axis::X2 => ("x1", at),
+        };
+        let (label, factor) = Quantity::of("", "m").shown(value);
+        let title = format!(
+            "{}, {across} = {}{}",
+            time_of(contact),
+            four_digits(value * factor),
+            label.replace(['[', ']'], "")
+        );
+        let mut chart = Chart::new(title, x, y, Legend::UpperRight);
         let points = profile.positions.into_iter().zip(profile.pressure).collect();
         chart.add("", COLORS[0], Style::LineAndDots, points);
         Ok(chart)
@@ -84,10 +95,12 @@ impl Chart {
 pub(super) fn time_of(contact: &ViscoelasticContact) -> String {
     let (label, factor) = Quantity::of("", "s").shown(contact.time());
     let unit = label.trim_matches([' ', '[', ']']);
-    let time = contact.time() * factor;
-    // four digits, and all of those before the point
-    let decimals = if time > 0.0 { (3.0 - time.log10().floor()).clamp(0.0, 12.0) as usize } else { 0 };
-    let time = format!("{time:.decimals$}");
-    let time = if time.contains('.') { time.trim_end_matches('0').trim_end_matches('.') } else { &time };
-    format!("t = {time} {unit}")
+    format!("t = {} {unit}", four_digits(contact.time() * factor))
+}
+
+/// A number with four digits, and all of those before the point.
+fn four_digits(number: f64) -> String {
+    let decimals = if number == 0.0 { 0.0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) };
+    let text = format!("{number:.*}", decimals as usize);
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
 }

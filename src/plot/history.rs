@@ -108,7 +108,7 @@ impl History {
     /// One of its columns over time.
     ///
     /// # Errors
-    /// Never, as it is: as [`Chart::history`].
+    /// As [`Chart::history`]: none is expected, the columns being as long as the times.
     pub fn chart(&self, observed: Observed) -> Result<Chart> {
         Chart::history("", &self.times, observed.quantity(), &[("", self.column(observed))])
     }

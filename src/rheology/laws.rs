@@ -43,17 +43,24 @@ pub type Verdict = Result<(), Violation>;
 /// Agreement of formulas that are the same but for rounding.
 const SAME: f64 = 1e-10;
 
-/// Eight times a decade from `first` to `last` \[s\], the times most laws are worth looking at.
+/// Eight times a decade from `first` to `last` \[s\], the times most laws are worth looking at; none unless
+/// 0 < `first` ≤ `last` < ∞.
 pub fn log_times(first: f64, last: f64) -> Vec<f64> {
-    let count = ((last / first).log10() * 8.0).ceil().max(1.0) as usize;
-    (0..=count).map(|k| first * (last / first).powf(k as f64 / count as f64)).collect()
+    if !(first > 0.0 && first <= last && last.is_finite()) {
+        return Vec::new();
+    }
+    let count = ((last.log10() - first.log10()) * 8.0).ceil().max(1.0) as usize;
+    (0..=count)
+        .map(|k| 10_f64.powf(first.log10() + (last.log10() - first.log10()) * (k as f64 / count as f64)))
+        .collect()
 }
 
-/// Every law, at ascending `times` > 0 \[s\].
+/// Every law, at ascending `times` > 0 \[s\], as far as J is known ([`Rheology::known_until`]).
 ///
 /// # Errors
-/// The first law that is broken.
+/// The first law that is broken; or if there are no times, or they do not ascend from above 0.
 pub fn all(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
+    ascending(times)?;
     non_negative(rheology, times)?;
     non_decreasing(rheology, times)?;
     concave(rheology, times)?;
@@ -67,18 +74,37 @@ pub fn all(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     Ok(())
 }
 
+/// Whether there are times to look at.
+fn ascending(times: &[f64]) -> Verdict {
+    let law = "(asked for) times to look at ascend from above 0";
+    verdict(law, 0.0, 0.0, 1.0, !times.is_empty())?;
+    let mut previous = 0.0;
+    for &t in times {
+        verdict(law, t, t, previous, t > previous && t.is_finite())?;
+        previous = t;
+    }
+    Ok(())
+}
+
+/// The times at which J is known.
+fn known<'a>(rheology: &dyn Rheology, times: &'a [f64]) -> impl Iterator<Item = f64> + use<'a> {
+    let until = rheology.known_until();
+    times.iter().copied().filter(move |t| *t <= until)
+}
+
 fn verdict(law: &'static str, t: f64, found: f64, expected: f64, holds: bool) -> Verdict {
     if holds { Ok(()) } else { Err(Violation { law, t, found, expected }) }
 }
 
-/// J ≥ 0, and finite.
+/// J ≥ 0, and finite; > 0 after t = 0.
 ///
 /// # Errors
 /// Where it is not.
 pub fn non_negative(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
-    for t in std::iter::once(0.0).chain(times.iter().copied()) {
+    for t in std::iter::once(0.0).chain(known(rheology, times)) {
         let found = rheology.creep_compliance(t);
         verdict("creep is finite and not negative", t, found, 0.0, found.is_finite() && found >= 0.0)?;
+        verdict("creep is positive after t = 0", t, found, 0.0, found > 0.0 || t == 0.0)?;
     }
     Ok(())
 }
@@ -89,7 +115,7 @@ pub fn non_negative(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
 /// Where it does.
 pub fn non_decreasing(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     let mut previous = rheology.creep_compliance(0.0);
-    for &t in times {
+    for t in known(rheology, times) {
         let found = rheology.creep_compliance(t);
         verdict("creep never decreases", t, found, previous, may_follow(found, previous))?;
         previous = found;
@@ -105,7 +131,7 @@ pub fn non_decreasing(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
 pub fn concave(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     let (mut before, mut value) = (0.0, rheology.creep_compliance(0.0));
     let mut slowest = (f64::INFINITY, 0.0);
-    for &t in times {
+    for t in known(rheology, times) {
         let next = rheology.creep_compliance(t);
         let (rate, uncertain) = ((next - value) / (t - before), 1e-11 * next / (t - before));
         verdict("the creep rate never increases", t, rate, slowest.0, rate <= slowest.0 + slowest.1 + uncertain)?;

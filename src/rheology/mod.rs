@@ -96,7 +96,8 @@ use crate::error::Result;
 /// The shear creep of a linear viscoelastic body.
 ///
 /// J(t) is the shear strain at time t after a unit shear stress was applied at t = 0. It is ≥ 0 and
-/// never decreases; J(0) = 1/G is the elastic response, 0 for a body without one.
+/// never decreases; J(0) = 1/G is the elastic response, 0 for a body without one. After t = 0 it is positive, and for every body of
+/// springs and dashpots it is concave, too: others have no series, and only direct sums take them ([`laws`]).
 ///
 /// ```
 /// use viscocontact::rheology::Rheology;

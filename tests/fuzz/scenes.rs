@@ -102,7 +102,7 @@ pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Sou
         finite("moment of a body", body.moment)?;
     }
     let space = contact.spatial_error();
-    known("error of the mesh", [space.approach, space.peak_pressure, space.area, space.singular])?;
+    known("error of the mesh", [space.approach, space.greatest_pressure, space.area, space.singular])?;
     known("pressures", [contact.mean_pressure(), contact.greatest_pressure()])?;
     if let Ok(patches) = contact.patches() {
         let all = patches.all().iter();

@@ -63,8 +63,11 @@ impl Follow<'_> {
         if !over && keeping.last.elapsed() < keeping.every {
             return Ok(());
         }
-        keeping.last = Instant::now();
         let path = keeping.path.clone();
-        self.save(path)
+        self.save(path)?;
+        if let Some(keeping) = &mut self.keeping {
+            keeping.last = Instant::now();
+        }
+        Ok(())
     }
 }
