@@ -301,3 +301,10 @@ fn a_sinusoid_of_endless_cycles_stays_between_its_ends() {
         assert!((1.0..=3.0).contains(&normal), "{normal} at {t:e} s, {frequency:e} Hz");
     }
 }
+
+#[test]
+fn loads_are_told_in_words() {
+    let hinge = Load::Force { normal: 5.0, tilt: [Tilt::Free { at: 1.0e-3 }, Tilt::Fixed(0.1)] };
+    assert_eq!(hinge.to_string(), "a force of 5 N, at x1 = 0.001 m, tilt along x2 0.1 rad");
+    assert_eq!(Load::approach(2.0e-6).to_string(), "an approach of 0.000002 m");
+}

@@ -1,5 +1,7 @@
 //! What one step did.
 
+use std::fmt;
+
 use crate::contact::warning::Warnings;
 
 /// The outcome and the cost of one step.
@@ -42,6 +44,33 @@ impl StepReport {
     /// The transforms of the step in units of one convolution, a preconditioner counting a quarter.
     pub fn convolution_equivalents(&self) -> f64 {
         self.convolutions as f64 + 0.25 * self.preconditioner_applications as f64
+    }
+}
+
+/// A line for logs: what came of the step, what it cost, and its warnings.
+///
+/// ```
+/// use viscocontact::prelude::*;
+///
+/// let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .build()?;
+/// let report = contact.step(0.0, Load::force(1.0))?;
+/// assert!(report.to_string().starts_with("t = 0 s: force 1 N, approach 1.52"), "{report}");
+/// # Ok::<(), Error>(())
+/// ```
+impl fmt::Display for StepReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let StepReport { time, force, approach, contact_cells, residual, .. } = *self;
+        // forces are met to rounding: six digits are enough
+        let force = format!("{force:.5e}").parse().unwrap_or(force);
+        write!(f, "t = {time} s: force {force} N, approach {approach:.4e} m, {contact_cells} cells in contact; ")?;
+        write!(f, "{} convolutions, residual {residual:.1e}", self.convolution_equivalents())?;
+        if self.time_error > 0.0 {
+            write!(f, ", error in time {:.1e}", self.time_error)?;
+        }
+        self.warnings.iter().try_for_each(|warning| write!(f, "; {warning}"))
     }
 }
 

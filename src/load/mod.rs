@@ -24,7 +24,7 @@ pub use ramp::Ramp;
 pub use sinusoid::Sinusoid;
 pub use step::StepLoad;
 
-use std::fmt::Debug;
+use std::fmt::{self, Debug};
 
 use crate::error::{Error, Result, finite, non_negative};
 
@@ -73,6 +73,24 @@ pub enum Tilt {
         /// Coordinate along the axis \[m\].
         at: f64,
     },
+}
+
+/// "a force of 5 N, at x1 = 0.001 m, tilt along x2 0.1 rad": what is given, an upright body's tilts left out.
+impl fmt::Display for Load {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Load::Force { normal, .. } => write!(f, "a force of {normal} N")?,
+            Load::Approach { approach, .. } => write!(f, "an approach of {approach} m")?,
+        }
+        for (tilt, axis) in self.tilt().into_iter().zip(["x1", "x2"]) {
+            match tilt {
+                Tilt::Fixed(0.0) => {}
+                Tilt::Fixed(angle) => write!(f, ", tilt along {axis} {angle} rad")?,
+                Tilt::Free { at } => write!(f, ", at {axis} = {at} m")?,
+            }
+        }
+        Ok(())
+    }
 }
 
 const UPRIGHT: [Tilt; 2] = [Tilt::Fixed(0.0); 2];

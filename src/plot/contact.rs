@@ -7,7 +7,8 @@ use crate::output::Field;
 use crate::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Style};
 
 impl Map {
-    /// The pressure of a contact, white where nothing touches; the scale begins at zero.
+    /// The pressure of a contact, white where nothing touches; the scale begins at zero. Of a line contact, whose map is a strip,
+    /// [`Chart::profile`] shows more.
     ///
     /// # Errors
     /// If a pressure is beyond 1e100 Pa.

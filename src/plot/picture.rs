@@ -79,7 +79,7 @@ impl Picture {
         &self.rgb
     }
 
-    /// Writes the picture to a PNG file. A file of this name is replaced, when the new one is complete.
+    /// Writes the picture to a PNG file, whatever its name ends in. A file of this name is replaced, when the new one is complete.
     ///
     /// # Errors
     /// If the file cannot be written.
