@@ -38,6 +38,19 @@ pub(crate) fn sum_of_pairs(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) ->
     lanes.into_iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(&a, &b)| f(a, b)).sum::<f64>()
 }
 
+/// Sums over a field that tell one from another: of its absolute values, these weighted along x1 and x2, and their squares.
+#[cfg(feature = "checkpoint")]
+pub(crate) fn moments(field: impl Iterator<Item = f64>, columns: usize) -> Vec<f64> {
+    let mut sums = vec![0.0; 4];
+    for (k, value) in field.enumerate() {
+        let (size, i, j) = (value.abs(), (k / columns) as f64, (k % columns) as f64);
+        for (sum, term) in sums.iter_mut().zip([size, size * i, size * j, size * size]) {
+            *sum += term;
+        }
+    }
+    sums
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

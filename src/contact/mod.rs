@@ -34,8 +34,6 @@ pub use between::Between;
 pub use builder::Builder;
 #[cfg(feature = "checkpoint")]
 pub use checkpoint::CheckpointError;
-#[cfg(feature = "checkpoint")]
-pub(crate) use checkpoint::moments;
 pub use follow::{ErrorBudget, Follow, Stepping};
 pub use report::{BodyState, StepReport};
 pub use settings::{Edge, Frame, Precision, Settings, Solver, TimeRule};

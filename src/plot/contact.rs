@@ -4,6 +4,7 @@ use crate::ViscoelasticContact;
 use crate::error::Result;
 use crate::observe::Axis;
 use crate::output::Field;
+use crate::plot::quantity::measure;
 use crate::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Style};
 
 impl Map {
@@ -69,22 +70,12 @@ impl Chart {
     /// If `at` lies outside the grid.
     pub fn profile(contact: &ViscoelasticContact, along: Axis, at: f64) -> Result<Chart> {
         let profile = contact.profile(along, at)?;
-        let name = match along {
-            Axis::X1 => "x1",
-            Axis::X2 => "x2",
+        let [name, across] = match along {
+            Axis::X1 => ["x1", "x2"],
+            Axis::X2 => ["x2", "x1"],
         };
         let (x, y) = (Quantity::of(name, "m"), Quantity::of("pressure", "Pa"));
-        let (across, value) = match along {
-            Axis::X1 => ("x2", at),
-            Axis::X2 => ("x1", at),
-        };
-        let (label, factor) = Quantity::of("", "m").shown(value);
-        let title = format!(
-            "{}, {across} = {}{}",
-            time_of(contact),
-            four_digits(value * factor),
-            label.replace(['[', ']'], "")
-        );
+        let title = format!("{}, {across} = {}", time_of(contact), measure(at, "m"));
         let mut chart = Chart::new(title, x, y, Legend::UpperRight);
         let points = profile.positions.into_iter().zip(profile.pressure).collect();
         chart.add("", COLORS[0], Style::LineAndDots, points);
@@ -94,14 +85,5 @@ impl Chart {
 
 /// The time of a state, as a title.
 pub(super) fn time_of(contact: &ViscoelasticContact) -> String {
-    let (label, factor) = Quantity::of("", "s").shown(contact.time());
-    let unit = label.trim_matches([' ', '[', ']']);
-    format!("t = {} {unit}", four_digits(contact.time() * factor))
-}
-
-/// A number with four digits, and all of those before the point.
-fn four_digits(number: f64) -> String {
-    let decimals = if number == 0.0 { 0.0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) };
-    let text = format!("{number:.*}", decimals as usize);
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').into() } else { text }
+    format!("t = {}", measure(contact.time(), "s"))
 }

@@ -147,6 +147,14 @@ pub(super) fn powers(v: &f64) -> String {
     if (0.01..1e4).contains(v) { shortened(&format!("{v:.6}")) } else { format!("{v:.0e}") }
 }
 
+/// A value in SI with its unit, in four digits, and all of those before the point: "412.4 µs".
+pub(super) fn measure(value: f64, unit: &str) -> String {
+    let (prefix, factor) = prefix(unit, value.abs()).unwrap_or(("", 1.0));
+    let number = value * factor;
+    let decimals = if number == 0.0 { 0.0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) };
+    format!("{} {prefix}{unit}", shortened(&format!("{number:.*}", decimals as usize)))
+}
+
 /// A number without the zeros at its end, and no minus before a zero.
 fn shortened(text: &str) -> String {
     let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text };

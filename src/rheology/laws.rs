@@ -49,10 +49,9 @@ pub fn log_times(first: f64, last: f64) -> Vec<f64> {
     if !(first > 0.0 && first <= last && last.is_finite()) {
         return Vec::new();
     }
-    let count = ((last.log10() - first.log10()) * 8.0).ceil().max(1.0) as usize;
-    (0..=count)
-        .map(|k| 10_f64.powf(first.log10() + (last.log10() - first.log10()) * (k as f64 / count as f64)))
-        .collect()
+    let (from, decades) = (first.log10(), last.log10() - first.log10());
+    let count = (decades * 8.0).ceil().max(1.0) as usize;
+    (0..=count).map(|k| 10_f64.powf(from + decades * (k as f64 / count as f64))).collect()
 }
 
 /// Every law, at ascending `times` > 0 \[s\], as far as J is known ([`Rheology::known_until`]).

@@ -17,7 +17,7 @@ use crate::file::replace;
 use saved::Saved;
 
 pub(crate) use keep::Keeping;
-pub(crate) use scene::{Built, moments};
+pub(crate) use scene::Built;
 
 impl ViscoelasticContact {
     /// Saves the whole state to a file: a contact that is built like this one and continues from it

@@ -9,6 +9,7 @@ use crate::contact::settings::{Settings, TimeRule};
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::geometry::Gap;
 use crate::rheology::Material;
+use crate::sum::moments;
 
 /// Numbers of two scenes are the same if they differ by no more than this part: mathematical libraries round differently.
 const SAME: f64 = 1e-9;
@@ -80,18 +81,6 @@ impl Built {
 fn times() -> impl Iterator<Item = f64> {
     let steps = -A_DECADE * DECADES..=A_DECADE * DECADES;
     std::iter::once(0.0).chain(steps.map(|k| 10_f64.powf(f64::from(k) / f64::from(A_DECADE))))
-}
-
-/// Sums over a field that tell one from another: of its absolute values, these weighted along x1 and x2, and their squares.
-pub(crate) fn moments(field: impl Iterator<Item = f64>, columns: usize) -> Vec<f64> {
-    let mut sums = vec![0.0; 4];
-    for (k, value) in field.enumerate() {
-        let (size, i, j) = (value.abs(), (k / columns) as f64, (k % columns) as f64);
-        for (sum, term) in sums.iter_mut().zip([size, size * i, size * j, size * size]) {
-            *sum += term;
-        }
-    }
-    sums
 }
 
 /// The first entry that differs.
