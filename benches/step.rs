@@ -8,11 +8,10 @@ use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_ma
 use viscocontact::prelude::*;
 
 /// What is computed, and how.
-fn choices() -> [(&'static str, Settings); 5] {
+fn choices() -> [(&'static str, Settings); 4] {
     let settings = Settings::default();
     [
         ("default", settings),
-        ("mixed precision", Settings { precision: Precision::Mixed, ..settings }),
         ("no symmetry", Settings { symmetry: false, ..settings }),
         ("whole grid", Settings { symmetry: false, window: false, ..settings }),
         (

@@ -58,9 +58,7 @@ fn ways(tolerance: f64) -> Vec<(&'static str, Settings, f64)> {
     let wide = 4.0 * std::f64::consts::PI.sqrt() / 2.25;
     vec![
         ("default", settings, 1.0),
-        ("default, mixed precision", Settings { precision: Precision::Mixed, ..settings }, 1.0),
         ("whole grid", whole, 1.0),
-        ("whole grid, mixed precision", Settings { precision: Precision::Mixed, ..whole }, 1.0),
         ("contact on 1/16, window", Settings { symmetry: false, ..settings }, wide),
         ("contact on 1/16, whole grid", whole, wide),
         ("Polonsky–Keer, whole grid", Settings { solver: Solver::PolonskyKeer, ..whole }, 1.0),

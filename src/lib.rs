@@ -172,8 +172,8 @@ pub use kernel::{InfluenceKernel, Workspace};
 /// ```
 pub mod prelude {
     pub use crate::contact::{
-        BodyState, Builder, Edge, Follow, Frame, Precision, Settings, Snapshot, Solver, SteadyMotion, StepReport,
-        Stepping, TimeRule, ViscoelasticContact, Warning,
+        BodyState, Builder, Edge, Follow, Frame, Settings, Snapshot, Solver, SteadyMotion, StepReport, Stepping,
+        TimeRule, ViscoelasticContact, Warning,
     };
     pub use crate::geometry::{
         Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Form, Geometry, HeightMap, LengthUnit, Repeated,

@@ -1,5 +1,5 @@
-//! What is computed is a matter of speed alone: on the cells that contact can reach, on a quarter of them, in single
-//! precision inside, on any number of threads, the answer is the same.
+//! What is computed is a matter of speed alone: on the cells that contact can reach, on a quarter of them, on any number of
+//! threads, the answer is the same.
 
 mod common;
 
@@ -166,34 +166,6 @@ fn any_number_of_threads_gives_the_same_bits() {
     for threads in [2, 3, 5] {
         assert!(run(threads) == one, "{threads} threads");
     }
-}
-
-/// Single precision inside costs no accuracy: the answers differ by less than the tolerance allows.
-#[test]
-fn mixed_precision_is_as_accurate() {
-    let scene = StepLoadedSphere::maxwell();
-    let run = |tolerance, precision| {
-        let settings = Settings { tolerance, precision, symmetry: false, ..Settings::default() };
-        let (contact, work) = scene.run(96, 100, settings).unwrap();
-        (contact.approach(), contact.pressure().to_vec(), work)
-    };
-    let (approach, pressure, _) = run(1e-11, Precision::Double);
-    let total: f64 = pressure.iter().sum();
-    for tolerance in [1e-4, 1e-6, 1e-7] {
-        let error = |precision| {
-            let (a, p, work) = run(tolerance, precision);
-            let l1 = p.iter().zip(&pressure).map(|(a, b)| (a - b).abs()).sum::<f64>() / total;
-            println!(
-                "{tolerance:e} {precision:?}: approach {:.1e}, L1 {l1:.1e}, {work:.2} equivalents",
-                a / approach - 1.0
-            );
-            ((a / approach - 1.0).abs(), l1, work)
-        };
-        let (double, mixed) = (error(Precision::Double), error(Precision::Mixed));
-        assert!(mixed.0 < tolerance && mixed.1 < 1.5 * double.1 + tolerance && mixed.2 < 1.1 * double.2);
-    }
-    let refused = scene.contact(32, Settings { tolerance: 9e-8, precision: Precision::Mixed, ..Settings::default() });
-    assert!(matches!(refused, Err(Error::OutOfRange { field: "Settings::tolerance", .. })));
 }
 
 proptest! {

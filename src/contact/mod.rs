@@ -36,7 +36,7 @@ pub use builder::Builder;
 pub use checkpoint::CheckpointError;
 pub use follow::{ErrorBudget, Follow, Stepping};
 pub use report::{BodyState, StepReport};
-pub use settings::{Edge, Frame, Precision, Settings, Solver, TimeRule};
+pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use snapshot::Snapshot;
 pub(crate) use spatial::AREA_ORDER;
 pub use spatial::SpatialError;

@@ -280,7 +280,7 @@ impl ViscoelasticContact {
     pub(super) fn occupy(&mut self, region: Region) -> Region {
         let old = std::mem::replace(&mut self.region, region);
         let (cells, bodies) = (self.region.len(), self.state.loads.len());
-        self.kernel_here = self.kernel.on(self.region.grid(), self.region.folded(), self.settings.is_mixed());
+        self.kernel_here = self.kernel.on(self.region.grid(), self.region.folded());
         self.work = self.kernel_here.workspace();
         self.gap_here = self.region.cut_gap(&self.initial_gap);
         self.solver = ContactSolver::new(self.settings.solver, &self.kernel_here, bodies);
@@ -318,7 +318,7 @@ impl ViscoelasticContact {
         let mut whole = vec![0.0; self.grid.len()];
         if let Some(source) = source {
             let all = Region::whole(&self.grid, self.region.folded());
-            let kernel = self.kernel.on(all.grid(), all.folded(), false);
+            let kernel = self.kernel.on(all.grid(), all.folded());
             let mut far = vec![0.0; all.len()];
             kernel.apply(&self.region.carry(source, &all, |_| 0.0), &mut far, &mut kernel.workspace());
             all.spread(&far, &mut whole);

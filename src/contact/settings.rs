@@ -38,8 +38,6 @@ pub struct Settings {
     /// (default: true). The rectangle grows with the contact; a step in which it does takes memory. Contacts that are
     /// advanced by direct sums are computed whole.
     pub window: bool,
-    /// The precision of the solver's inner work (default: [`Precision::Double`]).
-    pub precision: Precision,
     /// What the grid is fixed to (default: [`Frame::Bodies`]).
     pub frame: Frame,
 }
@@ -58,20 +56,6 @@ pub enum Frame {
     /// more, and a further relaxation time nothing but two fields and their recursion. Computed on the whole grid, and by the
     /// exponential rule: a rheology without an exact series needs [`Builder::times`](crate::contact::Builder::times).
     Indenter,
-}
-
-/// The precision of the inner work of [`Solver::ActiveSet`]: of the preconditioner, and of the convolutions of corrections to
-/// the pressure. Pressures, displacements and residuals are double, whatever is chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[non_exhaustive]
-pub enum Precision {
-    /// All of it in double precision.
-    #[default]
-    Double,
-    /// Corrections in single precision: a step takes about three quarters of the time, and errs by no more than its
-    /// tolerance, which must be 1e-7 or more. Scenes that differ in their units alone agree to about 1e-3 of the tolerance,
-    /// not to rounding.
-    Mixed,
 }
 
 /// The solver of the contact problem of a step.
@@ -131,7 +115,6 @@ impl Default for Settings {
             history_limit: 2 << 30,
             symmetry: true,
             window: true,
-            precision: Precision::Double,
             frame: Frame::Bodies,
         }
     }
@@ -150,15 +133,9 @@ impl Settings {
         }
     }
 
-    pub(crate) fn is_mixed(&self) -> bool {
-        self.precision == Precision::Mixed && self.solver == Solver::ActiveSet
-    }
-
     pub(crate) fn validate(&self) -> Result<()> {
         let tolerance = self.tolerance;
         within("Settings::tolerance", tolerance, (1e-13..=0.1).contains(&tolerance), "in [1e-13, 0.1]")?;
-        let enough = !self.is_mixed() || tolerance >= 1e-7;
-        within("Settings::tolerance", tolerance, enough, "1e-7 or more with Precision::Mixed")?;
         let series = self.series_tolerance;
         within("Settings::series_tolerance", series, (1e-8..=0.1).contains(&series), "in [1e-8, 0.1]")?;
         if self.max_iterations == 0 {

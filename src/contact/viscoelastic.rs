@@ -156,7 +156,7 @@ impl ViscoelasticContact {
         };
         let cells = region.len();
         history.undisturbed_on(region.cells());
-        let kernel_here = kernel.on(region.grid(), folded, settings.is_mixed());
+        let kernel_here = kernel.on(region.grid(), folded);
         let beyond = match &history {
             History::Exponential(history) if !region.covers() => Some(Beyond::new(history, cells)),
             _ => None,

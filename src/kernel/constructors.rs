@@ -23,13 +23,7 @@ const FARTHEST_DATUM: f64 = 1e120;
 
 impl InfluenceKernel {
     fn new(grid: &Grid, influence: Influence) -> InfluenceKernel {
-        InfluenceKernel {
-            grid: grid.clone(),
-            influence,
-            operators: Default::default(),
-            singles: Default::default(),
-            on_itself: Default::default(),
-        }
+        InfluenceKernel { grid: grid.clone(), influence, operators: Default::default(), on_itself: Default::default() }
     }
 
     /// The kernel of an elastic half-space: Love's coefficients, right to 1e-14 at every distance

@@ -12,54 +12,28 @@ use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
 
-use num_complex::Complex;
-use rustfft::{Fft, FftNum, FftPlanner};
-
-/// The two precisions of a transform.
-pub(crate) trait Scalar: FftNum + Default {
-    fn new(value: f64) -> Self;
-    fn get(self) -> f64;
-}
-
-impl Scalar for f64 {
-    fn new(value: f64) -> f64 {
-        value
-    }
-    fn get(self) -> f64 {
-        self
-    }
-}
-
-impl Scalar for f32 {
-    fn new(value: f64) -> f32 {
-        value as f32
-    }
-    fn get(self) -> f64 {
-        self.into()
-    }
-}
+use num_complex::Complex64;
+use rustfft::{Fft, FftPlanner};
 
 /// The transform along one axis.
 #[derive(Clone)]
-pub(crate) struct Line<T: Scalar> {
+pub(crate) struct Line {
     length: usize,
-    forward: Arc<dyn Fft<T>>,
-    inverse: Arc<dyn Fft<T>>,
+    forward: Arc<dyn Fft<f64>>,
+    inverse: Arc<dyn Fft<f64>>,
     /// Of a folded axis e^(−iπk/2L) for 0 ≤ k ≤ L/2; else empty.
-    twist: Vec<Complex<T>>,
+    twist: Vec<Complex64>,
 }
 
-impl<T: Scalar> Line<T> {
-    pub(crate) fn new(length: usize, folded: bool) -> Line<T> {
+impl Line {
+    pub(crate) fn new(length: usize, folded: bool) -> Line {
         let mut planner = FftPlanner::new();
-        let root = |k: usize| Complex::from_polar(1.0, -PI * k as f64 / (2 * length) as f64);
-        let roots = (0..=if folded { length / 2 } else { 0 }).map(root);
-        let twist = roots.map(|z| Complex::new(T::new(z.re), T::new(z.im))).collect::<Vec<_>>();
+        let root = |k: usize| Complex64::from_polar(1.0, -PI * k as f64 / (2 * length) as f64);
         Line {
             length,
             forward: planner.plan_fft_forward(length),
             inverse: planner.plan_fft_inverse(length),
-            twist: if folded { twist } else { Vec::new() },
+            twist: if folded { (0..=length / 2).map(root).collect() } else { Vec::new() },
         }
     }
 
@@ -96,15 +70,15 @@ impl<T: Scalar> Line<T> {
 
     /// Puts zeros where no one of the first `cells` values belongs.
     #[inline(always)]
-    pub(crate) fn pad(&self, buffer: &mut [Complex<T>], cells: usize) {
+    pub(crate) fn pad(&self, buffer: &mut [Complex64], cells: usize) {
         let end = if self.is_folded() { self.len() - cells / 2 } else { self.len() };
         let start = if self.is_folded() { cells.div_ceil(2) } else { cells };
-        buffer[start..end].fill(Complex::default());
+        buffer[start..end].fill(Complex64::default());
     }
 
     /// Puts the values of a line where they belong.
     #[inline(always)]
-    pub(crate) fn fill(&self, buffer: &mut [Complex<T>], values: impl Iterator<Item = Complex<T>>) {
+    pub(crate) fn fill(&self, buffer: &mut [Complex64], values: impl Iterator<Item = Complex64>) {
         if !self.is_folded() {
             for (z, value) in buffer.iter_mut().zip(values) {
                 *z = value;
@@ -124,7 +98,7 @@ impl<T: Scalar> Line<T> {
 
     /// Takes the values of a line from where they are.
     #[inline(always)]
-    pub(crate) fn read(&self, buffer: &[Complex<T>], out: &mut [f64], part: impl Fn(Complex<T>) -> f64) {
+    pub(crate) fn read(&self, buffer: &[Complex64], out: &mut [f64], part: impl Fn(Complex64) -> f64) {
         if !self.is_folded() {
             for (out, &z) in out.iter_mut().zip(buffer) {
                 *out = part(z);
@@ -142,7 +116,7 @@ impl<T: Scalar> Line<T> {
 
     /// Transforms the values placed in `buffer` to coefficients.
     #[inline(always)]
-    pub(crate) fn forward(&self, buffer: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+    pub(crate) fn forward(&self, buffer: &mut [Complex64], scratch: &mut [Complex64]) {
         self.forward.process_with_scratch(buffer, scratch);
         if !self.is_folded() {
             return;
@@ -152,28 +126,28 @@ impl<T: Scalar> Line<T> {
         for ((v, mirror), w) in pairs(buffer).zip(&self.twist[1..]) {
             let (a, b) = (*v * *w, *mirror * w.conj());
             let difference = a - b;
-            (*v, *mirror) = (a + b, Complex::new(T::default() - difference.im, difference.re));
+            (*v, *mirror) = (a + b, Complex64::new(-difference.im, difference.re));
         }
         if self.len().is_multiple_of(2) {
             let middle = &mut buffer[self.len() / 2];
             let w = self.twist[self.len() / 2];
-            *middle = *middle * (w.re + w.re);
+            *middle *= w.re + w.re;
         }
     }
 
     /// Transforms coefficients to values, multiplied by [`Line::norm`].
     #[inline(always)]
-    pub(crate) fn inverse(&self, buffer: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+    pub(crate) fn inverse(&self, buffer: &mut [Complex64], scratch: &mut [Complex64]) {
         if self.is_folded() {
             for ((x, mirror), w) in pairs(buffer).zip(&self.twist[1..]) {
-                let turned = Complex::new(T::default() - mirror.im, mirror.re);
+                let turned = Complex64::new(-mirror.im, mirror.re);
                 let (a, b) = (*x - turned, *x + turned);
                 (*x, *mirror) = (a * w.conj(), b * *w);
             }
             if self.len().is_multiple_of(2) {
                 let middle = &mut buffer[self.len() / 2];
                 let w = self.twist[self.len() / 2];
-                *middle = *middle * (w.re + w.re);
+                *middle *= w.re + w.re;
             }
         }
         self.inverse.process_with_scratch(buffer, scratch);
@@ -182,11 +156,11 @@ impl<T: Scalar> Line<T> {
     /// Between transforms forth and back of a folded complex line with [`Line::bare_forward`] and [`Line::bare_inverse`]:
     /// multiplies the coefficients by the real `spectrum`, all in one pass.
     #[inline(always)]
-    pub(crate) fn multiply_folded(&self, buffer: &mut [Complex<T>], spectrum: &[T]) {
+    pub(crate) fn multiply_folded(&self, buffer: &mut [Complex64], spectrum: &[f64]) {
         // with X = a + b, a = w V_k, b = conj(w) V_(L−k), and the like for L − k, back again:
         // V_k ← (S + S') V_k + (S − S') conj(w)² V_(L−k)
         let last = buffer.len();
-        buffer[0] = buffer[0] * (spectrum[0] + spectrum[0]);
+        buffer[0] *= spectrum[0] + spectrum[0];
         let spectra = spectrum[1..].iter().zip(spectrum.iter().rev());
         for (((v, mirror), (s, other)), w) in pairs(buffer).zip(spectra).zip(&self.twist[1..]) {
             let (sum, square) = (*s + *other, *w * *w * (*s - *other));
@@ -194,39 +168,39 @@ impl<T: Scalar> Line<T> {
         }
         if last.is_multiple_of(2) {
             let s = spectrum[last / 2];
-            buffer[last / 2] = buffer[last / 2] * (s + s);
+            buffer[last / 2] *= s + s;
         }
     }
 
     /// The same of a line whose real and imaginary parts are lines of their own, with a spectrum each.
     #[inline(always)]
-    pub(crate) fn multiply_folded_apart(&self, buffer: &mut [Complex<T>], first: &[T], second: &[T]) {
+    pub(crate) fn multiply_folded_apart(&self, buffer: &mut [Complex64], first: &[f64], second: &[f64]) {
         let last = buffer.len();
         let (start, middle) = (buffer[0] + buffer[0], buffer[last / 2] + buffer[last / 2]);
-        buffer[0] = Complex::new(start.re * first[0], start.im * second[0]);
+        buffer[0] = Complex64::new(start.re * first[0], start.im * second[0]);
         let spectra = first[1..].iter().zip(&second[1..]).zip(first.iter().rev().zip(second.iter().rev()));
         for (((v, mirror), (s, other)), w) in pairs(buffer).zip(spectra).zip(&self.twist[1..]) {
             let (a, b) = (*v * *w, *mirror * w.conj());
             let (sum, difference) = (a + b, a - b);
-            let x = Complex::new(sum.re * *s.0, sum.im * *s.1);
+            let x = Complex64::new(sum.re * *s.0, sum.im * *s.1);
             // i times the coefficient at L − k, which is i (a − b)
-            let turned = Complex::new(T::default() - difference.re * *other.1, T::default() - difference.im * *other.0);
+            let turned = Complex64::new(-difference.re * *other.1, -difference.im * *other.0);
             (*v, *mirror) = ((x - turned) * w.conj(), (x + turned) * *w);
         }
         if last.is_multiple_of(2) {
-            buffer[last / 2] = Complex::new(middle.re * first[last / 2], middle.im * second[last / 2]);
+            buffer[last / 2] = Complex64::new(middle.re * first[last / 2], middle.im * second[last / 2]);
         }
     }
 
     /// The complex transform alone.
     #[inline(always)]
-    pub(crate) fn bare_forward(&self, buffer: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+    pub(crate) fn bare_forward(&self, buffer: &mut [Complex64], scratch: &mut [Complex64]) {
         self.forward.process_with_scratch(buffer, scratch);
     }
 
     /// The complex transform back alone.
     #[inline(always)]
-    pub(crate) fn bare_inverse(&self, buffer: &mut [Complex<T>], scratch: &mut [Complex<T>]) {
+    pub(crate) fn bare_inverse(&self, buffer: &mut [Complex64], scratch: &mut [Complex64]) {
         self.inverse.process_with_scratch(buffer, scratch);
     }
 
@@ -247,17 +221,11 @@ fn pairs<T>(buffer: &mut [T]) -> impl Iterator<Item = (&mut T, &mut T)> {
 /// Splits the transform of a complex line of length P into those of its real and imaginary part: the coefficients k, as
 /// many as `first` and `second` hold, but none at or beyond the end of `k`.
 #[inline(always)]
-pub(crate) fn separate<T: Scalar>(
-    both: &[Complex<T>],
-    k: Range<usize>,
-    first: &mut [Complex<T>],
-    second: &mut [Complex<T>],
-) {
-    let (zero, half) = (T::default(), T::new(0.5));
+pub(crate) fn separate(both: &[Complex64], k: Range<usize>, first: &mut [Complex64], second: &mut [Complex64]) {
     let (mut first, mut second, mut start) = (first, second, k.start);
     if start == 0 {
         let value = both[0];
-        (first[0], second[0]) = (Complex::new(value.re, zero), Complex::new(value.im, zero));
+        (first[0], second[0]) = (Complex64::from(value.re), Complex64::from(value.im));
         (first, second, start) = (&mut first[1..], &mut second[1..], 1);
     }
     let count = first.len().min(k.end.saturating_sub(start));
@@ -266,18 +234,18 @@ pub(crate) fn separate<T: Scalar>(
     let parts = first[..count].iter_mut().zip(&mut second[..count]);
     for ((a, b), (z, mirror)) in parts.zip(values.iter().zip(mirrors.iter().rev())) {
         let (sum, difference) = (*z + mirror.conj(), *z - mirror.conj());
-        (*a, *b) = (sum * half, Complex::new(difference.im, zero - difference.re) * half);
+        (*a, *b) = (0.5 * sum, 0.5 * Complex64::new(difference.im, -difference.re));
     }
-    first[count..].fill(Complex::default());
-    second[count..].fill(Complex::default());
+    first[count..].fill(Complex64::default());
+    second[count..].fill(Complex64::default());
 }
 
 /// The reverse of [`separate`]: sets the coefficients k and P − k.
 #[inline(always)]
-pub(crate) fn unite<T: Scalar>(first: &[Complex<T>], second: &[Complex<T>], k: Range<usize>, both: &mut [Complex<T>]) {
+pub(crate) fn unite(first: &[Complex64], second: &[Complex64], k: Range<usize>, both: &mut [Complex64]) {
     let (mut first, mut second, mut start) = (first, second, k.start);
     if start == 0 {
-        both[0] = Complex::new(first[0].re, second[0].re);
+        both[0] = Complex64::new(first[0].re, second[0].re);
         (first, second, start) = (&first[1..], &second[1..], 1);
     }
     let count = first.len().min(k.end.saturating_sub(start));
@@ -285,20 +253,19 @@ pub(crate) fn unite<T: Scalar>(first: &[Complex<T>], second: &[Complex<T>], k: R
     // the mirror images first: of an even length the middle is its own
     let parts = first[..count].iter().zip(&second[..count]);
     for (z, (a, b)) in both[end - count..end].iter_mut().rev().zip(parts.clone()) {
-        *z = Complex::new(a.re + b.im, b.re - a.im);
+        *z = Complex64::new(a.re + b.im, b.re - a.im);
     }
     for (z, (a, b)) in both[start..start + count].iter_mut().zip(parts) {
-        *z = Complex::new(a.re - b.im, a.im + b.re);
+        *z = Complex64::new(a.re - b.im, a.im + b.re);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use num_complex::Complex64;
 
     fn signal(cells: usize) -> Vec<Complex64> {
-        (0..cells).map(|n| Complex::new(((n * n + 3) as f64).sin(), ((5 * n * n + 1) as f64).cos())).collect()
+        (0..cells).map(|n| Complex64::new(((n * n + 3) as f64).sin(), ((5 * n * n + 1) as f64).cos())).collect()
     }
 
     /// Every coefficient against its definition, and the way back.
@@ -306,16 +273,16 @@ mod tests {
     fn lines_match_their_sums() {
         for folded in [false, true] {
             for (cells, length) in [(1, 1), (1, 2), (3, 4), (3, 5), (5, 6), (6, 6), (7, 10), (15, 15), (40, 42)] {
-                let (line, x) = (Line::<f64>::new(length, folded), signal(cells));
-                let mut buffer = vec![Complex::new(f64::NAN, f64::NAN); length];
-                let mut scratch = vec![Complex::default(); line.scratch()];
+                let (line, x) = (Line::new(length, folded), signal(cells));
+                let mut buffer = vec![Complex64::new(f64::NAN, f64::NAN); length];
+                let mut scratch = vec![Complex64::default(); line.scratch()];
                 line.pad(&mut buffer, cells);
                 x.iter().enumerate().for_each(|(n, &x)| buffer[line.place(n)] = x);
                 line.forward(&mut buffer, &mut scratch);
                 for (k, value) in buffer.iter().enumerate() {
                     let wave = |n: usize| match folded {
-                        true => Complex::from(2.0 * (PI * (k * (2 * n + 1)) as f64 / (2 * length) as f64).cos()),
-                        false => Complex::from_polar(1.0, -2.0 * PI * (k * n) as f64 / length as f64),
+                        true => Complex64::from(2.0 * (PI * (k * (2 * n + 1)) as f64 / (2 * length) as f64).cos()),
+                        false => Complex64::from_polar(1.0, -2.0 * PI * (k * n) as f64 / length as f64),
                     };
                     let exact: Complex64 = x.iter().enumerate().map(|(n, x)| x * wave(n)).sum();
                     assert!((value - exact).norm() < 1e-12, "{cells} {length} {folded} {k}: {value} {exact}");
@@ -332,16 +299,16 @@ mod tests {
     #[test]
     fn two_real_lines_are_one_complex_one() {
         for length in [1, 2, 5, 8] {
-            let line = Line::<f64>::new(length, false);
-            let mut scratch = vec![Complex::default(); line.scratch()];
+            let line = Line::new(length, false);
+            let mut scratch = vec![Complex64::default(); line.scratch()];
             let mut both = signal(length);
             let mut parts =
-                [0, 1].map(|part| both.iter().map(|z| Complex::from([z.re, z.im][part])).collect::<Vec<_>>());
+                [0, 1].map(|part| both.iter().map(|z| Complex64::from([z.re, z.im][part])).collect::<Vec<_>>());
             line.forward(&mut both, &mut scratch);
             parts.iter_mut().for_each(|part| line.forward(part, &mut scratch));
             // in pieces of three
             let half = length / 2 + 1;
-            let mut found = [vec![Complex::default(); half], vec![Complex::default(); half]];
+            let mut found = [vec![Complex64::default(); half], vec![Complex64::default(); half]];
             let [first, second] = &mut found;
             for (piece, (first, second)) in first.chunks_mut(3).zip(second.chunks_mut(3)).enumerate() {
                 separate(&both, 3 * piece..half, first, second);
@@ -349,7 +316,7 @@ mod tests {
             for (found, exact) in found.iter().zip(&parts) {
                 assert!(found.iter().zip(exact).all(|(a, b)| (a - b).norm() < 1e-13), "{length}");
             }
-            let mut united = vec![Complex::default(); length];
+            let mut united = vec![Complex64::default(); length];
             for (piece, (first, second)) in found[0].chunks(3).zip(found[1].chunks(3)).enumerate() {
                 unite(first, second, 3 * piece..half, &mut united);
             }

@@ -37,7 +37,6 @@ use crate::Grid;
 use crate::error::{Error, Result, exact_length, finite};
 use influence::Influence;
 use layout::{Ends, Layout};
-use lines::Scalar;
 
 /// The discrete influence operator K of a grid: immutable, shared by `Arc` between contacts and threads.
 ///
@@ -65,9 +64,7 @@ pub struct InfluenceKernel {
     grid: Grid,
     influence: Influence,
     /// On the whole grid, for each choice of folded axes.
-    operators: [OnceLock<Arc<SpectralOperator<f64>>>; 4],
-    /// The same in single precision.
-    singles: [OnceLock<Arc<SpectralOperator<f32>>>; 4],
+    operators: [OnceLock<Arc<SpectralOperator>>; 4],
     /// The influence of a cell on itself, where it is no coefficient.
     on_itself: OnceLock<f64>,
 }
@@ -75,17 +72,14 @@ pub struct InfluenceKernel {
 /// Buffers of [`InfluenceKernel::convolve`], made by [`InfluenceKernel::workspace`].
 #[derive(Debug, Clone)]
 pub struct Workspace {
-    transform: TransformWorkspace<f64>,
-    single: Option<TransformWorkspace<f32>>,
+    transform: TransformWorkspace,
 }
 
 /// The influence operator on a part of a grid, and on its mirror images along folded axes.
 #[derive(Debug, Clone)]
 pub(crate) struct LocalKernel {
     grid: Grid,
-    operator: Arc<SpectralOperator<f64>>,
-    /// K over the influence of a cell on itself, in single precision, where that is wanted.
-    single: Option<Arc<SpectralOperator<f32>>>,
+    operator: Arc<SpectralOperator>,
     influence: Influence,
     folded: [bool; 2],
     self_influence: f64,
@@ -100,7 +94,7 @@ impl InfluenceKernel {
 
     /// Buffers for [`InfluenceKernel::convolve`]: one for each thread that convolves.
     pub fn workspace(&self) -> Workspace {
-        Workspace { transform: self.operator([false; 2]).workspace(), single: None }
+        Workspace { transform: self.operator([false; 2]).workspace() }
     }
 
     /// Writes K p into `displacement` \[Pa·m\]: the surface displacement \[m\] under `pressure` \[Pa\] of
@@ -117,7 +111,7 @@ impl InfluenceKernel {
             let (len, expected) = (work.transform.len(), self.workspace().transform.len());
             return Err(Error::WrongLength { field: "workspace", len, expected, exact: true });
         }
-        operator.apply(pressure, displacement, [1.0; 2], &mut work.transform);
+        operator.apply(pressure, displacement, &mut work.transform);
         if displacement.iter().all(|value| value.is_finite()) {
             return Ok(());
         }
@@ -128,9 +122,9 @@ impl InfluenceKernel {
     }
 
     /// The operator on the whole grid.
-    fn operator(&self, folded: [bool; 2]) -> &Arc<SpectralOperator<f64>> {
+    fn operator(&self, folded: [bool; 2]) -> &Arc<SpectralOperator> {
         let layout = self.layout(folded);
-        self.operators[index(folded)].get_or_init(|| Arc::new(self.make(layout, 1.0)))
+        self.operators[index(folded)].get_or_init(|| Arc::new(self.make(layout)))
     }
 
     /// The whole grid, half or a quarter of it where axes are folded.
@@ -139,26 +133,23 @@ impl InfluenceKernel {
         Layout { cells, ends: self.influence.ends(), folded }
     }
 
-    fn make<T: Scalar>(&self, layout: Layout, unit: f64) -> SpectralOperator<T> {
-        let symbol = self.influence.symbol(&self.grid, layout);
-        SpectralOperator::from_symbol(layout, |k1, k2| symbol(k1, k2) / unit)
+    fn make(&self, layout: Layout) -> SpectralOperator {
+        SpectralOperator::from_symbol(layout, self.influence.symbol(&self.grid, layout))
     }
 
-    /// The kernel on a part of the grid and its mirror images along folded axes; `single` if it is wanted in single
-    /// precision, too. Parts of periodic bodies are whole.
-    pub(crate) fn on(&self, part: &Grid, folded: [bool; 2], single: bool) -> LocalKernel {
+    /// The kernel on a part of the grid and its mirror images along folded axes. Parts of periodic bodies are whole.
+    pub(crate) fn on(&self, part: &Grid, folded: [bool; 2]) -> LocalKernel {
         let layout = Layout { cells: part.cells(), ..self.layout(folded) };
-        let unit = self.self_influence();
-        let (operator, single) = if layout == self.layout(folded) {
-            let kept = &self.singles[index(folded)];
-            let single = single.then(|| Arc::clone(kept.get_or_init(|| Arc::new(self.make(layout, unit)))));
-            (Arc::clone(self.operator(folded)), single)
-        } else {
-            (Arc::new(self.make(layout, 1.0)), single.then(|| Arc::new(self.make(layout, unit))))
-        };
-        let softest = self.influence.softest_wave_if_mean_is_held(&self.grid);
-        let influence = self.influence.clone();
-        LocalKernel { grid: part.clone(), operator, single, influence, folded, self_influence: unit, softest }
+        let operator =
+            if layout == self.layout(folded) { Arc::clone(self.operator(folded)) } else { Arc::new(self.make(layout)) };
+        LocalKernel {
+            grid: part.clone(),
+            operator,
+            influence: self.influence.clone(),
+            folded,
+            self_influence: self.self_influence(),
+            softest: self.influence.softest_wave_if_mean_is_held(&self.grid),
+        }
     }
 
     /// The influence of a cell on itself \[m\].
@@ -215,10 +206,10 @@ impl LocalKernel {
         self.softest.is_some()
     }
 
-    /// What an approximate inverse, in the order of 1/`unit`, multiplies the waves of a layout without padding by.
-    pub(crate) fn inverse<T: Scalar>(&self, unit: f64) -> SpectralOperator<T> {
+    /// An approximate inverse, which multiplies the waves of a layout without padding.
+    pub(crate) fn inverse(&self) -> SpectralOperator {
         let (layout, symbol) = self.influence.inverse(&self.grid, self.grid.cells(), self.folded);
-        SpectralOperator::from_symbol(layout, |k1, k2| symbol(k1, k2) / unit)
+        SpectralOperator::from_symbol(layout, symbol)
     }
 
     /// How many cells each cell stands for.
@@ -227,8 +218,7 @@ impl LocalKernel {
     }
 
     pub(crate) fn workspace(&self) -> Workspace {
-        let single = self.single.as_ref().map(|single| single.workspace());
-        Workspace { transform: self.operator.workspace(), single }
+        Workspace { transform: self.operator.workspace() }
     }
 
     /// The coefficient of a cell on itself \[m\].
@@ -238,21 +228,6 @@ impl LocalKernel {
 
     /// [`InfluenceKernel::convolve`] for fields known to fit.
     pub(crate) fn apply(&self, pressure: &[f64], displacement: &mut [f64], work: &mut Workspace) {
-        self.operator.apply(pressure, displacement, [1.0; 2], &mut work.transform);
-    }
-
-    /// [`LocalKernel::apply`], as precisely as a correction of the pressure of the given size needs it.
-    pub(crate) fn apply_to_correction(&self, pressure: &[f64], size: f64, image: &mut [f64], work: &mut Workspace) {
-        match (&self.single, &mut work.single) {
-            (Some(single), Some(work)) if (1.0 / size).is_normal() => {
-                single.apply(pressure, image, [1.0 / size, size * self.self_influence], work);
-            }
-            _ => self.apply(pressure, image, work),
-        }
-    }
-
-    /// Whether corrections are convolved in single precision.
-    pub(crate) fn is_mixed(&self) -> bool {
-        self.single.is_some()
+        self.operator.apply(pressure, displacement, &mut work.transform);
     }
 }

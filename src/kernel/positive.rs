@@ -10,7 +10,7 @@ const STEPS: usize = 60;
 
 /// Estimates of the least and the greatest eigenvalue of a symmetric operator on fields of `cells` values, from within, by
 /// Lanczos' method.
-pub(super) fn least_eigenvalue(operator: &SpectralOperator<f64>, cells: usize) -> (f64, f64) {
+pub(super) fn least_eigenvalue(operator: &SpectralOperator, cells: usize) -> (f64, f64) {
     let mut work = operator.workspace();
     let (mut previous, mut image) = (vec![0.0; cells], vec![0.0; cells]);
     // any field that has something of every wave
@@ -19,7 +19,7 @@ pub(super) fn least_eigenvalue(operator: &SpectralOperator<f64>, cells: usize) -
     vector.iter_mut().for_each(|value| *value /= norm);
     let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
     for _ in 0..STEPS.min(cells) {
-        operator.apply(&vector, &mut image, [1.0; 2], &mut work);
+        operator.apply(&vector, &mut image, &mut work);
         let alpha = sum_of_pairs(&vector, &image, |a, b| a * b);
         let beta = beside.last().copied().unwrap_or(0.0);
         for ((image, &own), &before) in image.iter_mut().zip(&vector).zip(&previous) {

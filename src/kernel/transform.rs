@@ -15,11 +15,11 @@ mod tasks;
 
 use std::fmt;
 
-use num_complex::Complex;
+use num_complex::Complex64;
 
 use super::lanes::{for_each_share, lanes};
 use super::layout::Layout;
-use super::lines::{Line, Scalar};
+use super::lines::Line;
 use column::{Column, ColumnWorkspace};
 use tasks::{Columns, ColumnsInPlace, RowsForward, RowsInverse, multiply_apart};
 
@@ -29,69 +29,69 @@ const AREA: usize = TILE * TILE;
 
 /// A linear operator on fields, diagonal in wave-number space with a real even spectrum.
 #[derive(Clone)]
-pub(crate) struct SpectralOperator<T: Scalar> {
+pub(crate) struct SpectralOperator {
     layout: Layout,
-    rows: Line<T>,
-    columns: Line<T>,
+    rows: Line,
+    columns: Line,
     /// For each coefficient of a row, its column's independent values, divided by what the transforms multiply by.
-    spectrum: Vec<T>,
+    spectrum: Vec<f64>,
     /// Where there is but one column.
-    column: Option<Column<T>>,
+    column: Option<Column>,
 }
 
 /// Buffers that a [`SpectralOperator`] works in; made once, used by every application.
 #[derive(Clone)]
-pub(crate) struct TransformWorkspace<T: Scalar> {
+pub(crate) struct TransformWorkspace {
     layout: Layout,
     /// Coefficients of the rows, in tiles: those of 8 rows side by side. A folded row holds the (real) coefficients of two.
-    tiles: Vec<Complex<T>>,
+    tiles: Vec<Complex64>,
     /// The same after the columns, those of 8 columns below each other; empty for a single thread, which works in place.
-    result: Vec<Complex<T>>,
-    lanes: Vec<Lane<T>>,
+    result: Vec<Complex64>,
+    lanes: Vec<Lane>,
     /// Instead of all this, where there is but one column.
-    column: ColumnWorkspace<T>,
+    column: ColumnWorkspace,
 }
 
 /// What one thread needs of its own.
 #[derive(Clone)]
-struct Lane<T> {
-    line: Buffer<T>,
-    block: Buffer<T>,
-    scratch: Buffer<T>,
+struct Lane {
+    line: Buffer,
+    block: Buffer,
+    scratch: Buffer,
 }
 
 /// Numbers that begin on a cache line: a transform in buffers that do not takes up to twice as long.
 #[derive(Clone)]
-struct Buffer<T> {
-    values: Vec<Complex<T>>,
+struct Buffer {
+    values: Vec<Complex64>,
     length: usize,
 }
 
 /// Bytes of a cache line.
 const CACHE_LINE: usize = 64;
 
-impl<T: Scalar> Buffer<T> {
-    fn zeros(length: usize) -> Buffer<T> {
-        let slack = CACHE_LINE / size_of::<Complex<T>>();
-        Buffer { values: vec![Complex::default(); length + slack], length }
+impl Buffer {
+    fn zeros(length: usize) -> Buffer {
+        let slack = CACHE_LINE / size_of::<Complex64>();
+        Buffer { values: vec![Complex64::default(); length + slack], length }
     }
 
     #[inline(always)]
-    fn get(&mut self) -> &mut [Complex<T>] {
+    fn get(&mut self) -> &mut [Complex64] {
         let before = self.values.as_ptr().align_offset(CACHE_LINE).min(self.values.len() - self.length);
         &mut self.values[before..before + self.length]
     }
 }
 
-impl<T: Scalar> SpectralOperator<T> {
+impl SpectralOperator {
     /// Multiplication of the Fourier coefficients on [`Layout::period`] by `symbol(k1, k2)`, for wave numbers
     /// 0 … period/2 along each axis.
-    pub(crate) fn from_symbol(layout: Layout, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator<T> {
+    pub(crate) fn from_symbol(layout: Layout, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator {
         let [columns, rows] = [0, 1].map(|axis| Line::new(layout.line(axis), layout.folded[axis]));
         let scale = 1.0 / (rows.norm() * columns.norm());
         let mut spectrum = Vec::with_capacity(rows.independent() * columns.independent());
         for k2 in 0..rows.independent() {
-            spectrum.extend((0..columns.independent()).map(|k1| T::new(scale * symbol(k1, k2))));
+            spectrum.extend((0..columns.independent()).map(|k1| scale * symbol(k1, k2)));
         }
         let single = layout.cells[1] == 1 && rows.len() == 1 && !rows.is_folded();
         let column = single.then(|| Column::new(&columns));
@@ -99,12 +99,12 @@ impl<T: Scalar> SpectralOperator<T> {
     }
 
     /// Buffers for [`SpectralOperator::apply`], for as many threads as the size is worth.
-    pub(crate) fn workspace(&self) -> TransformWorkspace<T> {
+    pub(crate) fn workspace(&self) -> TransformWorkspace {
         self.workspace_for(lanes(self.layout.cells[0] * self.layout.cells[1]))
     }
 
     /// Buffers for so many threads.
-    pub(crate) fn workspace_for(&self, lanes: usize) -> TransformWorkspace<T> {
+    pub(crate) fn workspace_for(&self, lanes: usize) -> TransformWorkspace {
         if let Some(column) = &self.column {
             let column = column.workspace(&self.columns);
             return TransformWorkspace {
@@ -115,7 +115,7 @@ impl<T: Scalar> SpectralOperator<T> {
                 column,
             };
         }
-        let zeros = |count| vec![Complex::default(); count];
+        let zeros = |count| vec![Complex64::default(); count];
         let lane = Lane {
             line: Buffer::zeros(self.rows.len()),
             block: Buffer::zeros(TILE * self.stride()),
@@ -133,7 +133,7 @@ impl<T: Scalar> SpectralOperator<T> {
     }
 
     /// Whether `work` was made for an operator of this size.
-    pub(crate) fn fits(&self, work: &TransformWorkspace<T>) -> bool {
+    pub(crate) fn fits(&self, work: &TransformWorkspace) -> bool {
         work.layout == self.layout
     }
 
@@ -157,46 +157,35 @@ impl<T: Scalar> SpectralOperator<T> {
         if self.rows.is_folded() { 2 * TILE } else { TILE }
     }
 
-    /// Writes `after` × the operator applied to `before` × `input` into `output`; both hold one value a cell.
-    pub(crate) fn apply(
-        &self,
-        input: &[f64],
-        output: &mut [f64],
-        [before, after]: [f64; 2],
-        work: &mut TransformWorkspace<T>,
-    ) {
+    /// Writes the operator applied to `input` into `output`; both hold one value per cell.
+    pub(crate) fn apply(&self, input: &[f64], output: &mut [f64], work: &mut TransformWorkspace) {
         if let Some(column) = &self.column {
-            self.convolve_column(column, input, before, &mut work.column);
-            return self.read_column(column, &work.column, after, output);
+            self.convolve_column(column, input, &mut work.column);
+            return self.read_column(column, &work.column, output);
         }
-        self.rows_forward(input, before, work);
+        self.rows_forward(input, work);
         self.columns(work);
-        self.rows_inverse(output, after, work);
+        self.rows_inverse(output, work);
     }
 
     /// [`SpectralOperator::apply`] with one field for input and output.
-    pub(crate) fn apply_in_place(
-        &self,
-        field: &mut [f64],
-        [before, after]: [f64; 2],
-        work: &mut TransformWorkspace<T>,
-    ) {
+    pub(crate) fn apply_in_place(&self, field: &mut [f64], work: &mut TransformWorkspace) {
         if let Some(column) = &self.column {
-            self.convolve_column(column, field, before, &mut work.column);
-            return self.read_column(column, &work.column, after, field);
+            self.convolve_column(column, field, &mut work.column);
+            return self.read_column(column, &work.column, field);
         }
-        self.rows_forward(field, before, work);
+        self.rows_forward(field, work);
         self.columns(work);
-        self.rows_inverse(field, after, work);
+        self.rows_inverse(field, work);
     }
 
-    fn rows_forward(&self, input: &[f64], scale: f64, work: &mut TransformWorkspace<T>) {
+    fn rows_forward(&self, input: &[f64], work: &mut TransformWorkspace) {
         let share = self.down().div_ceil(work.lanes.len());
-        let task = RowsForward { operator: self, input, scale, share };
+        let task = RowsForward { operator: self, input, share };
         for_each_share(&task, &mut work.lanes, &mut work.tiles, share * self.across() * AREA);
     }
 
-    fn columns(&self, work: &mut TransformWorkspace<T>) {
+    fn columns(&self, work: &mut TransformWorkspace) {
         if let [lane] = &mut work.lanes[..] {
             let task = ColumnsInPlace { operator: self };
             return for_each_share(&task, std::slice::from_mut(lane), &mut work.tiles, usize::MAX);
@@ -206,18 +195,18 @@ impl<T: Scalar> SpectralOperator<T> {
         for_each_share(&task, &mut work.lanes, &mut work.result, share * self.down() * AREA);
     }
 
-    fn rows_inverse(&self, output: &mut [f64], scale: f64, work: &mut TransformWorkspace<T>) {
+    fn rows_inverse(&self, output: &mut [f64], work: &mut TransformWorkspace) {
         let share = self.down().div_ceil(work.lanes.len());
         let in_place = work.lanes.len() == 1;
         let tiles = if in_place { &work.tiles } else { &work.result };
-        let task = RowsInverse { operator: self, tiles, in_place, scale, share };
+        let task = RowsInverse { operator: self, tiles, in_place, share };
         for_each_share(&task, &mut work.lanes, output, share * self.rows_in_a_tile() * self.layout.cells[1]);
     }
 
     /// Copies the columns of a panel of tiles, which begin at `from`, one below the other into `block`. Columns of folded
     /// rows are real: two are the parts of a complex one.
     #[inline(always)]
-    fn gather(&self, tiles: &[Complex<T>], from: impl Fn(usize) -> usize, block: &mut [Complex<T>]) {
+    fn gather(&self, tiles: &[Complex64], from: impl Fn(usize) -> usize, block: &mut [Complex64]) {
         let (cells, line, stride) = (self.layout.cells[0], &self.columns, self.stride());
         for tile in 0..self.down() {
             let rows = tiles[from(tile)..][..AREA].chunks_exact(TILE).enumerate();
@@ -226,10 +215,10 @@ impl<T: Scalar> SpectralOperator<T> {
                     let n = 2 * (tile * TILE + i);
                     for (column, pair) in block.chunks_exact_mut(stride).zip(row.chunks_exact(2)) {
                         if n < cells {
-                            column[line.place(n)] = Complex::new(pair[0].re, pair[1].re);
+                            column[line.place(n)] = Complex64::new(pair[0].re, pair[1].re);
                         }
                         if n + 1 < cells {
-                            column[line.place(n + 1)] = Complex::new(pair[0].im, pair[1].im);
+                            column[line.place(n + 1)] = Complex64::new(pair[0].im, pair[1].im);
                         }
                     }
                 }
@@ -246,7 +235,7 @@ impl<T: Scalar> SpectralOperator<T> {
 
     /// The reverse of [`SpectralOperator::gather`].
     #[inline(always)]
-    fn scatter(&self, block: &[Complex<T>], tiles: &mut [Complex<T>], to: impl Fn(usize) -> usize) {
+    fn scatter(&self, block: &[Complex64], tiles: &mut [Complex64], to: impl Fn(usize) -> usize) {
         let (cells, line, stride) = (self.layout.cells[0], &self.columns, self.stride());
         for tile in 0..self.down() {
             let rows = tiles[to(tile)..][..AREA].chunks_exact_mut(TILE).enumerate();
@@ -277,7 +266,7 @@ impl<T: Scalar> SpectralOperator<T> {
 
     /// Transforms the columns of a panel, multiplies them by the spectrum, and transforms them back.
     #[inline(always)]
-    fn convolve(&self, panel: usize, lane: &mut Lane<T>) {
+    fn convolve(&self, panel: usize, lane: &mut Lane) {
         let (line, values) = (&self.columns, self.columns.independent());
         let columns = if self.rows.is_folded() { TILE / 2 } else { TILE };
         let spectra = self.spectrum[panel * TILE * values..].chunks(values * TILE / columns);
@@ -292,10 +281,10 @@ impl<T: Scalar> SpectralOperator<T> {
                     // wave numbers above P/2 mirror those below
                     let (rising, falling) = column.split_at_mut(values);
                     for (z, s) in rising.iter_mut().zip(spectrum) {
-                        *z = *z * *s;
+                        *z *= *s;
                     }
                     for (z, s) in falling.iter_mut().rev().zip(&spectrum[1..]) {
-                        *z = *z * *s;
+                        *z *= *s;
                     }
                 }
                 (true, folded) => {
@@ -313,19 +302,19 @@ impl<T: Scalar> SpectralOperator<T> {
     }
 }
 
-impl<T: Scalar> fmt::Debug for SpectralOperator<T> {
+impl fmt::Debug for SpectralOperator {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("SpectralOperator").field("layout", &self.layout).finish_non_exhaustive()
     }
 }
 
-impl<T: Scalar> fmt::Debug for TransformWorkspace<T> {
+impl fmt::Debug for TransformWorkspace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("TransformWorkspace").field("layout", &self.layout).finish_non_exhaustive()
     }
 }
 
-impl<T: Scalar> TransformWorkspace<T> {
+impl TransformWorkspace {
     /// Numbers held by the buffers between the passes: tells workspaces of different sizes apart.
     pub(crate) fn len(&self) -> usize {
         2 * self.tiles.len() + self.column.len()
@@ -338,13 +327,10 @@ mod tests {
     use crate::kernel::layout::Ends;
     use crate::kernel::spectrum::Spectrum;
 
-    impl<T: Scalar> SpectralOperator<T> {
+    impl SpectralOperator {
         /// Convolution with the even kernel whose coefficient at distance (i, j) is `coefficient(i, j)`; asked for
         /// distances below the number of cells (twice that along a folded axis), taken as zero beyond.
-        pub(crate) fn from_coefficients(
-            layout: Layout,
-            coefficient: impl Fn(usize, usize) -> f64,
-        ) -> SpectralOperator<T> {
+        pub(crate) fn from_coefficients(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> SpectralOperator {
             let spectrum = Spectrum::of(layout, coefficient);
             SpectralOperator::from_symbol(layout, |k1, k2| spectrum.at(k1, k2))
         }
@@ -391,13 +377,13 @@ mod tests {
             for cells in SIZES {
                 let layout = Layout { cells, ends: [Ends::Free; 2], folded };
                 let coefficient = |i: usize, j: usize| 1.0 / (1.0 + (i * i + 2 * j * j) as f64);
-                let operator = SpectralOperator::<f64>::from_coefficients(layout, coefficient);
+                let operator = SpectralOperator::from_coefficients(layout, coefficient);
                 let input = signal(cells);
                 let mut output = vec![f64::NAN; input.len()];
                 // many times: nothing that is left in the workspace may grow
                 let mut work = operator.workspace_for(1);
                 for _ in 0..500 {
-                    operator.apply(&input, &mut output, [4.0, 0.25], &mut work);
+                    operator.apply(&input, &mut output, &mut work);
                 }
                 for (k, value) in output.iter().enumerate() {
                     let exact = sum(layout, &input, [k / cells[1], k % cells[1]], coefficient);
@@ -405,7 +391,7 @@ mod tests {
                 }
                 let (mut threaded, mut work) = (vec![f64::NAN; input.len()], operator.workspace_for(3));
                 for _ in 0..500 {
-                    operator.apply(&input, &mut threaded, [4.0, 0.25], &mut work);
+                    operator.apply(&input, &mut threaded, &mut work);
                 }
                 assert_eq!(output, threaded, "{cells:?} {folded:?}");
             }
@@ -420,11 +406,11 @@ mod tests {
         let kernel = |i: usize, j: usize| 1.0 / (1.0 + (i * i + j * j) as f64).sqrt();
         for n in [64, 128, 256, 512, 1024] {
             let time = |layout: Layout, input: &mut [f64]| {
-                let operator = SpectralOperator::<f64>::from_coefficients(layout, kernel);
+                let operator = SpectralOperator::from_coefficients(layout, kernel);
                 let mut work = operator.workspace_for(1);
                 let best = |seconds: f64, _| {
                     let start = Instant::now();
-                    operator.apply_in_place(input, [1.0; 2], &mut work);
+                    operator.apply_in_place(input, &mut work);
                     seconds.min(start.elapsed().as_secs_f64())
                 };
                 1e3 * (0..(1 << 22) / (n * n) + 5).fold(f64::INFINITY, best)
@@ -451,14 +437,14 @@ mod tests {
             let layout = Layout { cells: [12, 16], ends: [Ends::Periodic; 2], folded };
             let period = [layout.period(0), layout.period(1)];
             for k in [[0, 0], [2, 3], [0, 5], [6, 0], [5, 4]] {
-                let operator = SpectralOperator::<f64>::from_symbol(layout, |k1, k2| (1 + k1 + 10 * k2) as f64);
+                let operator = SpectralOperator::from_symbol(layout, |k1, k2| (1 + k1 + 10 * k2) as f64);
                 let wave = |axis: usize, n: usize| {
                     let shift = if folded[axis] { 0.5 } else { 0.0 };
                     (std::f64::consts::TAU * k[axis] as f64 * (n as f64 + shift) / period[axis] as f64).cos()
                 };
                 let waves: Vec<f64> = (0..192).map(|n| wave(0, n / 16) * wave(1, n % 16)).collect();
                 let mut output = waves.clone();
-                operator.apply_in_place(&mut output, [4.0, 0.25], &mut operator.workspace());
+                operator.apply_in_place(&mut output, &mut operator.workspace());
                 for (value, wave) in output.iter().zip(&waves) {
                     assert!((value - (1 + k[0] + 10 * k[1]) as f64 * wave).abs() < 1e-11, "{folded:?} {k:?}");
                 }

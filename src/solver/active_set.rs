@@ -35,7 +35,6 @@ use crate::solver::preconditioner::Preconditioner;
 use crate::solver::problem::{Measure, PENETRATION_SLACK, Patch, Problem, Solution, Stop, relative_residual};
 use crate::solver::projected_gradient::ProjectedGradient;
 use crate::solver::rigid::Motion;
-use crate::sum::greatest;
 
 /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
 /// slack that the residual grants to penetration, or a state could neither improve nor pass.
@@ -75,8 +74,6 @@ pub(crate) struct ActiveSet {
     bodies: Vec<ActiveBody>,
     /// r on A.
     residual: Vec<f64>,
-    /// Its root mean square.
-    size: f64,
     /// What is still to be taken from it: its mean, by which the motion was corrected.
     mean: f64,
     preconditioned: Vec<f64>,
@@ -121,7 +118,6 @@ impl ActiveSet {
             passes: Passes::new(grid.len()),
             height: 0.0,
             energy: 0.0,
-            size: 1.0,
             mean: 0.0,
             bodies: (0..bodies).map(body).collect(),
             residual: field.clone(),
@@ -142,7 +138,6 @@ impl ActiveSet {
         let (mut lowest, mut since, mut step) = (f64::INFINITY, 0, 0.0);
         loop {
             let (mut state, mut penetration) = self.advance(problem, solution, step);
-            self.size = state.rms();
             if state.negative > 0.0 && self.should_evict(problem, stop, state) {
                 self.evict(problem, solution, work);
                 (state, penetration) = self.advance(problem, solution, 0.0);
@@ -182,8 +177,7 @@ impl ActiveSet {
 
             solution.counts.iterations += 1;
             self.find_direction(problem, solution);
-            let size = if problem.kernel.is_mixed() { greatest(&self.direction) } else { 1.0 };
-            problem.kernel.apply_to_correction(&self.direction, size, &mut self.image, work);
+            problem.kernel.apply(&self.direction, &mut self.image, work);
             solution.counts.convolutions += 1;
             step = self.step_length(problem, solution);
         }
@@ -216,8 +210,7 @@ impl ActiveSet {
                     let shape = &mut self.preconditioned;
                     shape.fill(0.0);
                     cells.iter().for_each(|&k| shape[k as usize] = solution.pressure[k as usize]);
-                    let size = cells.iter().map(|&k| shape[k as usize]).fold(0.0, f64::max);
-                    self.preconditioner.apply(shape, size);
+                    self.preconditioner.apply(shape);
                     solution.counts.preconditioner_applications += 1;
                     let sum = |field: &[f64]| cells.iter().map(|&k| field[k as usize].max(0.0)).sum::<f64>();
                     let scale = sum(&solution.pressure) / sum(shape);
@@ -277,7 +270,7 @@ impl ActiveSet {
                     .iter_mut()
                     .zip(&self.member)
                     .for_each(|(shape, &member)| *shape = f64::from(u8::from(member)));
-                self.preconditioner.apply(&mut self.shape, 1.0);
+                self.preconditioner.apply(&mut self.shape);
                 solution.counts.preconditioner_applications += 1;
             }
         }

@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn it_converges_on_its_own() {
         let grid = Grid::square(12, 1.2).unwrap();
-        let kernel = InfluenceKernel::half_space(&grid).unwrap().on(&grid, [false; 2], false);
+        let kernel = InfluenceKernel::half_space(&grid).unwrap().on(&grid, [false; 2]);
         let gap: Vec<f64> = (0..grid.len())
             .map(|k| {
                 let [x, y] = grid.center(k / 12, k % 12);

@@ -86,7 +86,6 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
         ("window", Box::new(move || sphere_on(wide(), three_times(), Settings::default())), Box::new(wandering)),
         ("folded", Box::new(with(Settings { window: false, ..Settings::default() })), Box::new(wandering)),
         ("whole", Box::new(with(whole)), Box::new(wandering)),
-        ("mixed", Box::new(with(Settings { precision: Precision::Mixed, ..whole })), Box::new(wandering)),
         ("Polonsky-Keer", Box::new(with(Settings { solver: Solver::PolonskyKeer, ..whole })), Box::new(wandering)),
         (
             "direct sum",

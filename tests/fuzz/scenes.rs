@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use viscocontact::contact::{Precision, SteadyMotion, Stepping};
+use viscocontact::contact::{SteadyMotion, Stepping};
 use viscocontact::motion::{Straight, Travel};
 use viscocontact::observe::Axis;
 use viscocontact::output::Scene;
@@ -42,7 +42,6 @@ fn settings(source: &mut Source) -> Settings {
         history_limit: source.choose(&[2 << 30, 2 << 30, 2 << 30, 4000]),
         symmetry: source.chance(0.7),
         window: source.chance(0.7),
-        precision: source.choose(&[Precision::Double, Precision::Double, Precision::Mixed]),
         frame,
     }
 }

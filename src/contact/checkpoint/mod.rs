@@ -64,7 +64,7 @@ impl ViscoelasticContact {
     }
 
     /// Puts a saved state in the place of this one. The contact must be built as the one was that was saved: same grid, bodies,
-    /// kernel, geometry and material. Settings may differ in how steps are solved (solver, precision, tolerance, iterations, edge,
+    /// kernel, geometry and material. Settings may differ in how steps are solved (solver, tolerance, iterations, edge,
     /// memory), not in the rest. Where an indenter has moved, it is where it was.
     ///
     /// Scenes are compared by sums over gap and influence, and materials by their series, or by their compliance at eight times a decade

@@ -3,29 +3,29 @@
 use std::fmt;
 use std::sync::Arc;
 
-use num_complex::Complex;
+use num_complex::Complex64;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 
 use super::SpectralOperator;
-use crate::kernel::lines::{Line, Scalar};
+use crate::kernel::lines::Line;
 
 /// How it is transformed: by a real transform of half the work, or if it is folded as all folded lines are.
 #[derive(Clone)]
-pub(super) enum Column<T: Scalar> {
-    Real(Arc<dyn RealToComplex<T>>, Arc<dyn ComplexToReal<T>>),
+pub(super) enum Column {
+    Real(Arc<dyn RealToComplex<f64>>, Arc<dyn ComplexToReal<f64>>),
     Folded,
 }
 
 /// What its transforms work in.
 #[derive(Clone, Default)]
-pub(super) struct ColumnWorkspace<T: Scalar> {
-    real: Vec<T>,
-    waves: Vec<Complex<T>>,
-    scratch: Vec<Complex<T>>,
+pub(super) struct ColumnWorkspace {
+    real: Vec<f64>,
+    waves: Vec<Complex64>,
+    scratch: Vec<Complex64>,
 }
 
-impl<T: Scalar> Column<T> {
-    pub(super) fn new(line: &Line<T>) -> Column<T> {
+impl Column {
+    pub(super) fn new(line: &Line) -> Column {
         if line.is_folded() {
             return Column::Folded;
         }
@@ -33,11 +33,11 @@ impl<T: Scalar> Column<T> {
         Column::Real(planner.plan_fft_forward(line.len()), planner.plan_fft_inverse(line.len()))
     }
 
-    pub(super) fn workspace(&self, line: &Line<T>) -> ColumnWorkspace<T> {
-        let zeros = |count| vec![Complex::default(); count];
+    pub(super) fn workspace(&self, line: &Line) -> ColumnWorkspace {
+        let zeros = |count| vec![Complex64::default(); count];
         match self {
             Column::Real(forward, inverse) => ColumnWorkspace {
-                real: vec![T::default(); line.len()],
+                real: vec![0.0; line.len()],
                 waves: zeros(line.independent()),
                 scratch: zeros(forward.get_scratch_len().max(inverse.get_scratch_len())),
             },
@@ -48,30 +48,24 @@ impl<T: Scalar> Column<T> {
     }
 }
 
-impl<T: Scalar> ColumnWorkspace<T> {
+impl ColumnWorkspace {
     /// Numbers held.
     pub(super) fn len(&self) -> usize {
         self.real.len() + 2 * self.waves.len()
     }
 }
 
-impl<T: Scalar> SpectralOperator<T> {
-    /// Transforms `before` × `input`, multiplies it by the spectrum and transforms it back; the result stays in the workspace.
-    pub(super) fn convolve_column(
-        &self,
-        column: &Column<T>,
-        input: &[f64],
-        before: f64,
-        work: &mut ColumnWorkspace<T>,
-    ) {
+impl SpectralOperator {
+    /// Transforms `input`, multiplies it by the spectrum and transforms it back; the result stays in the workspace.
+    pub(super) fn convolve_column(&self, column: &Column, input: &[f64], work: &mut ColumnWorkspace) {
         let ColumnWorkspace { real, waves, scratch } = work;
-        let values = input.iter().map(|&value| T::new(before * value));
+        let values = input.iter().copied();
         match column {
             Column::Real(forward, inverse) => {
-                real[input.len()..].fill(T::default());
+                real[input.len()..].fill(0.0);
                 real.iter_mut().zip(values).for_each(|(real, value)| *real = value);
                 let forth = forward.process_with_scratch(real, waves, scratch);
-                waves.iter_mut().zip(&self.spectrum).for_each(|(z, s)| *z = *z * *s);
+                waves.iter_mut().zip(&self.spectrum).for_each(|(z, s)| *z *= *s);
                 let back = inverse.process_with_scratch(waves, real, scratch);
                 // the way back complains of a mean that is not a number: so will the step that asked
                 debug_assert!(forth.is_ok());
@@ -80,7 +74,7 @@ impl<T: Scalar> SpectralOperator<T> {
             Column::Folded => {
                 let line = &self.columns;
                 line.pad(waves, input.len());
-                line.fill(waves, values.map(Complex::from));
+                line.fill(waves, values.map(Complex64::from));
                 line.bare_forward(waves, scratch);
                 line.multiply_folded(waves, &self.spectrum);
                 line.bare_inverse(waves, scratch);
@@ -88,18 +82,18 @@ impl<T: Scalar> SpectralOperator<T> {
         }
     }
 
-    /// Takes `after` × the result out of the workspace.
-    pub(super) fn read_column(&self, column: &Column<T>, work: &ColumnWorkspace<T>, after: f64, output: &mut [f64]) {
+    /// Takes the result out of the workspace.
+    pub(super) fn read_column(&self, column: &Column, work: &ColumnWorkspace, output: &mut [f64]) {
         match column {
             Column::Real(..) => {
-                output.iter_mut().zip(&work.real).for_each(|(out, value)| *out = after * value.get());
+                output.iter_mut().zip(&work.real).for_each(|(out, &value)| *out = value);
             }
-            Column::Folded => self.columns.read(&work.waves, output, |z| after * z.re.get()),
+            Column::Folded => self.columns.read(&work.waves, output, |z| z.re),
         }
     }
 }
 
-impl<T: Scalar> fmt::Debug for Column<T> {
+impl fmt::Debug for Column {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(if matches!(self, Column::Folded) { "Folded" } else { "Real" })
     }

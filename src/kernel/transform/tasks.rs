@@ -1,26 +1,25 @@
 //! The three passes of an operator, as pieces of work for threads.
 
-use num_complex::Complex;
+use num_complex::Complex64;
 
 use super::{AREA, Lane, SpectralOperator, TILE};
 use crate::kernel::lanes::Task;
-use crate::kernel::lines::{Scalar, separate, unite};
+use crate::kernel::lines::{separate, unite};
 
 /// Transforms rows of `input` into tiles.
-pub(super) struct RowsForward<'a, T: Scalar> {
-    pub(super) operator: &'a SpectralOperator<T>,
+pub(super) struct RowsForward<'a> {
+    pub(super) operator: &'a SpectralOperator,
     pub(super) input: &'a [f64],
-    pub(super) scale: f64,
     pub(super) share: usize,
 }
 
-impl<T: Scalar> Task for RowsForward<'_, T> {
-    type Lane = Lane<T>;
-    type Item = Complex<T>;
+impl Task for RowsForward<'_> {
+    type Lane = Lane;
+    type Item = Complex64;
 
     #[inline(always)]
-    fn run(&self, k: usize, lane: &mut Lane<T>, tiles: &mut [Complex<T>]) {
-        let (cells, line, scale) = (self.operator.layout.cells[1], &self.operator.rows, self.scale);
+    fn run(&self, k: usize, lane: &mut Lane, tiles: &mut [Complex64]) {
+        let (cells, line) = (self.operator.layout.cells[1], &self.operator.rows);
         let (run, high) = (self.operator.across() * AREA, self.operator.rows_in_a_tile());
         let (buffer, scratch) = (lane.line.get(), lane.scratch.get());
         for (block, tiles) in tiles.chunks_exact_mut(run).enumerate() {
@@ -30,28 +29,28 @@ impl<T: Scalar> Task for RowsForward<'_, T> {
                 let (first, second) = pair.split_at(cells);
                 line.pad(buffer, cells);
                 if second.is_empty() {
-                    line.fill(buffer, first.iter().map(|&a| Complex::from(T::new(scale * a))));
+                    line.fill(buffer, first.iter().map(|&a| Complex64::from(a)));
                 } else {
                     let both = first.iter().zip(second);
-                    line.fill(buffer, both.map(|(&a, &b)| Complex::new(T::new(scale * a), T::new(scale * b))));
+                    line.fill(buffer, both.map(|(&a, &b)| Complex64::new(a, b)));
                 }
                 line.forward(buffer, scratch);
                 if line.is_folded() {
                     if second.is_empty() {
-                        buffer.iter_mut().for_each(|z| z.im = T::default());
+                        buffer.iter_mut().for_each(|z| z.im = 0.0);
                     }
                     for (tile, piece) in tiles.chunks_exact_mut(AREA).zip(buffer.chunks(TILE)) {
                         let place = &mut tile[i * TILE..][..TILE];
                         place[..piece.len()].copy_from_slice(piece);
                         // beyond the last coefficient: half of a complex column, if the number is odd
-                        place[piece.len()..].fill(Complex::default());
+                        place[piece.len()..].fill(Complex64::default());
                     }
                 } else {
                     for (panel, tile) in tiles.chunks_exact_mut(AREA).enumerate() {
                         let (a, b) = tile[2 * i * TILE..][..2 * TILE].split_at_mut(TILE);
                         separate(buffer, panel * TILE..line.independent(), a, b);
                         if second.is_empty() {
-                            b.fill(Complex::default());
+                            b.fill(Complex64::default());
                         }
                     }
                 }
@@ -61,16 +60,16 @@ impl<T: Scalar> Task for RowsForward<'_, T> {
 }
 
 /// Convolves the columns of tiles that lie row by row.
-pub(super) struct ColumnsInPlace<'a, T: Scalar> {
-    pub(super) operator: &'a SpectralOperator<T>,
+pub(super) struct ColumnsInPlace<'a> {
+    pub(super) operator: &'a SpectralOperator,
 }
 
-impl<T: Scalar> Task for ColumnsInPlace<'_, T> {
-    type Lane = Lane<T>;
-    type Item = Complex<T>;
+impl Task for ColumnsInPlace<'_> {
+    type Lane = Lane;
+    type Item = Complex64;
 
     #[inline(always)]
-    fn run(&self, _: usize, lane: &mut Lane<T>, tiles: &mut [Complex<T>]) {
+    fn run(&self, _: usize, lane: &mut Lane, tiles: &mut [Complex64]) {
         let across = self.operator.across();
         for panel in 0..across {
             let at = |tile: usize| (tile * across + panel) * AREA;
@@ -82,18 +81,18 @@ impl<T: Scalar> Task for ColumnsInPlace<'_, T> {
 }
 
 /// Convolves the columns of `tiles`; those of the result lie column by column.
-pub(super) struct Columns<'a, T: Scalar> {
-    pub(super) operator: &'a SpectralOperator<T>,
-    pub(super) tiles: &'a [Complex<T>],
+pub(super) struct Columns<'a> {
+    pub(super) operator: &'a SpectralOperator,
+    pub(super) tiles: &'a [Complex64],
     pub(super) share: usize,
 }
 
-impl<T: Scalar> Task for Columns<'_, T> {
-    type Lane = Lane<T>;
-    type Item = Complex<T>;
+impl Task for Columns<'_> {
+    type Lane = Lane;
+    type Item = Complex64;
 
     #[inline(always)]
-    fn run(&self, k: usize, lane: &mut Lane<T>, result: &mut [Complex<T>]) {
+    fn run(&self, k: usize, lane: &mut Lane, result: &mut [Complex64]) {
         let (across, down) = (self.operator.across(), self.operator.down());
         for (panel, result) in result.chunks_exact_mut(down * AREA).enumerate() {
             let panel = k * self.share + panel;
@@ -105,21 +104,20 @@ impl<T: Scalar> Task for Columns<'_, T> {
 }
 
 /// Transforms tiles back into rows of the output.
-pub(super) struct RowsInverse<'a, T: Scalar> {
-    pub(super) operator: &'a SpectralOperator<T>,
-    pub(super) tiles: &'a [Complex<T>],
+pub(super) struct RowsInverse<'a> {
+    pub(super) operator: &'a SpectralOperator,
+    pub(super) tiles: &'a [Complex64],
     pub(super) in_place: bool,
-    pub(super) scale: f64,
     pub(super) share: usize,
 }
 
-impl<T: Scalar> Task for RowsInverse<'_, T> {
-    type Lane = Lane<T>;
+impl Task for RowsInverse<'_> {
+    type Lane = Lane;
     type Item = f64;
 
     #[inline(always)]
-    fn run(&self, k: usize, lane: &mut Lane<T>, output: &mut [f64]) {
-        let (cells, line, scale) = (self.operator.layout.cells[1], &self.operator.rows, self.scale);
+    fn run(&self, k: usize, lane: &mut Lane, output: &mut [f64]) {
+        let (cells, line) = (self.operator.layout.cells[1], &self.operator.rows);
         let (across, down, high) = (self.operator.across(), self.operator.down(), self.operator.rows_in_a_tile());
         let (buffer, scratch) = (lane.line.get(), lane.scratch.get());
         for (block, rows) in output.chunks_mut(high * cells).enumerate() {
@@ -138,8 +136,8 @@ impl<T: Scalar> Task for RowsInverse<'_, T> {
                     }
                 }
                 line.inverse(buffer, scratch);
-                line.read(buffer, first, |z| scale * z.re.get());
-                line.read(buffer, second, |z| scale * z.im.get());
+                line.read(buffer, first, |z| z.re);
+                line.read(buffer, second, |z| z.im);
             }
         }
     }
@@ -147,10 +145,9 @@ impl<T: Scalar> Task for RowsInverse<'_, T> {
 
 /// Multiplies the transforms of two real columns, together those of the complex `column`, by a real even spectrum each.
 #[inline(always)]
-pub(super) fn multiply_apart<T: Scalar>(column: &mut [Complex<T>], first: &[T], second: &[T]) {
-    let half = T::new(0.5);
-    let multiply = |z: Complex<T>, mirror: Complex<T>, k: usize| {
-        z * ((first[k] + second[k]) * half) + mirror.conj() * ((first[k] - second[k]) * half)
+pub(super) fn multiply_apart(column: &mut [Complex64], first: &[f64], second: &[f64]) {
+    let multiply = |z: Complex64, mirror: Complex64, k: usize| {
+        z * (0.5 * (first[k] + second[k])) + mirror.conj() * (0.5 * (first[k] - second[k]))
     };
     let length = column.len();
     column[0] = multiply(column[0], column[0], 0);

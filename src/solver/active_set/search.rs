@@ -70,7 +70,7 @@ impl ActiveSet {
                 z[k as usize] = -solution.pressure[k as usize] / (length * self.preconditioner.diagonal());
             }
         }
-        self.preconditioner.apply(z, self.size);
+        self.preconditioner.apply(z);
         solution.counts.preconditioner_applications += 1;
 
         let mut overlap = 0.0;
@@ -109,7 +109,7 @@ impl ActiveSet {
             let response = -solution.pressure[k as usize] / (length * self.preconditioner.diagonal());
             self.preconditioned[k as usize] = response;
         }
-        self.preconditioner.apply(&mut self.preconditioned, self.size);
+        self.preconditioner.apply(&mut self.preconditioned);
         solution.counts.preconditioner_applications += 1;
 
         let [z, z_kd, kd, d] = self.passes.overlaps(&self.preconditioned, &self.image, &self.direction);
