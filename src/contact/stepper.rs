@@ -1,15 +1,16 @@
 //! One step of a contact: tried, checked, accepted.
 
 use crate::contact::loads::lowered;
+use crate::contact::region::Region;
 use crate::contact::report::StepReport;
 use crate::contact::settings::{Edge, TimeRule};
 use crate::contact::viscoelastic::{ContactSolver, ViscoelasticContact};
 use crate::error::{Convergence, Error, Result, non_negative};
 use crate::events;
 use crate::hereditary::{Change, History};
-use crate::load::Load;
+use crate::load::{Load, Tilt};
 use crate::rheology::is_known;
-use crate::solver::{Counts, Modes, Problem, Solution, Stop};
+use crate::solver::{Counts, Modes, Outcome, Problem, Solution, Stop};
 use crate::sum::sum;
 
 /// A step that was computed and waits to be accepted.
@@ -74,10 +75,18 @@ impl ViscoelasticContact {
         self.make_room(dt, loads);
         loop {
             self.free(loads);
-            let c = self.try_step(time, dt, loads, tolerance)?;
+            let c = match self.try_step(time, dt, loads, tolerance) {
+                // perhaps nothing in the window can carry the load where it acts now
+                Err(Error::NotConverged { .. } | Error::LoadOutsideHull { .. }) if self.beyond.is_some() => {
+                    self.keep_for_failure();
+                    self.reside(Region::whole(&self.grid, self.region.folded()));
+                    continue;
+                }
+                other => other?,
+            };
             let Some(region) = self.outgrown(loads) else {
                 let sum_of_pressure = sum(&self.trial.pressure);
-                self.check(time, dt, tolerance, sum_of_pressure)?;
+                self.check(time, sum_of_pressure)?;
                 self.displace(c);
                 if !sum(&self.trial_displacement).is_finite() {
                     return Err(Error::Overflow { time, what: "the displacement" });
@@ -110,12 +119,16 @@ impl ViscoelasticContact {
         let problem =
             Problem { kernel: &self.kernel_here, compliance: c, gap: &self.gap, bodies: &self.freedoms, owner };
         let stop = Stop { tolerance, max_iterations: self.settings.max_iterations };
-        match &mut self.solver {
-            _ if problem.all_released() => self.trial.release(),
+        let outcome = match &mut self.solver {
+            _ if problem.all_released() => {
+                self.trial.release();
+                Outcome::Converged
+            }
             ContactSolver::ActiveSet(solver) => solver.solve(&problem, stop, &mut self.trial, &mut self.work),
             ContactSolver::PolonskyKeer(solver) => solver.solve(&problem, stop, &mut self.trial, &mut self.work),
-        }
+        };
         self.trial.follow_surface(&problem);
+        self.converged(outcome, time, dt, tolerance, loads)?;
         self.trial.counts.convolutions += convolutions;
         if let History::Sources(history) = &mut self.history {
             history.advance(c, &self.trial.pressure);
@@ -178,15 +191,27 @@ impl ViscoelasticContact {
         self.state.undisturbed_until == self.state.time && self.state.contact_cells == 0
     }
 
-    /// Whether the trial may be accepted.
-    fn check(&self, time: f64, dt: f64, tolerance: f64, sum: f64) -> Result<()> {
-        let Solution { residual, counts, ref motions, ref trace, .. } = self.trial;
-        if !motions.iter().flatten().all(|motion| motion.is_finite()) {
-            return Err(Error::Overflow { time, what: "the approach" });
+    /// Refuses what the solver did not solve.
+    fn converged(&self, outcome: Outcome, time: f64, dt: f64, tolerance: f64, loads: &[Load]) -> Result<()> {
+        let Solution { residual, counts: Counts { iterations, .. }, ref trace, .. } = self.trial;
+        match outcome {
+            Outcome::Converged => Ok(()),
+            Outcome::NotANumber => Err(Error::Overflow { time, what: "the residual of the contact problem" }),
+            Outcome::Unbalanced(body) => {
+                let at = loads[body].tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
+                Err(Error::LoadOutsideHull { time, body, at })
+            }
+            Outcome::OutOfIterations | Outcome::Stagnated => {
+                let convergence = Convergence::new(trace.samples(), tolerance, self.settings.solver).into();
+                Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
+            }
         }
-        // no finite residual: of numbers that left their range, or of pressures that are none
-        if residual.is_nan() || residual.is_infinite() && !trace.is_finite() {
-            return Err(Error::Overflow { time, what: "the residual of the contact problem" });
+    }
+
+    /// Whether the trial may be accepted.
+    fn check(&self, time: f64, sum: f64) -> Result<()> {
+        if !self.trial.motions.iter().flatten().all(|motion| motion.is_finite()) {
+            return Err(Error::Overflow { time, what: "the approach" });
         }
         let pressures = self.region.images() as f64 * sum;
         let force = self.grid.cell_area() * pressures;
@@ -197,11 +222,6 @@ impl ViscoelasticContact {
         let arm = self.grid.lengths().into_iter().fold(0.0, f64::max);
         if !(arm * pressures.max(force)).is_finite() {
             return Err(Error::Overflow { time, what: "the moment of the force" });
-        }
-        if residual > tolerance {
-            let convergence = Convergence::new(trace.samples(), tolerance, self.settings.solver).into();
-            let iterations = counts.iterations;
-            return Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence });
         }
         if self.settings.edge == Edge::Refuse {
             let cells = self.region.positive_on_edge(&self.trial.pressure, self.kernel.periodic_axes());

@@ -26,14 +26,14 @@
 //! [`EVICT`] too, 5.9 / 3.1 with the response to δ, 5.3 / 2.9 without conjugacy in corrections, 5.1 / 2.5
 //! when only the [`DEEP`] ones join.
 
+mod descent;
 mod search;
 
 use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::cold_start::{balance, cold_start, press_everywhere};
+use crate::solver::cold_start::{balance, cold_start};
 use crate::solver::passes::Passes;
 use crate::solver::preconditioner::Preconditioner;
-use crate::solver::problem::{Measure, PENETRATION_SLACK, Patch, Problem, Solution, Stop, relative_residual};
-use crate::solver::projected_gradient::ProjectedGradient;
+use crate::solver::problem::{Measure, Outcome, PENETRATION_SLACK, Patch, Problem, Solution, Stop, relative_residual};
 use crate::solver::rigid::Motion;
 
 /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
@@ -64,7 +64,6 @@ const PATIENCE: usize = 40;
 #[derive(Debug, Clone)]
 pub(crate) struct ActiveSet {
     preconditioner: Preconditioner,
-    fallback: ProjectedGradient,
     /// Whether a cell is in A.
     member: Vec<bool>,
     /// The pieces of rows that A consists of, and the passes over them.
@@ -113,7 +112,6 @@ impl ActiveSet {
             |_| ActiveBody { patch: Patch { cells: cells(), ..Patch::default() }, leaving: cells(), correction: None };
         ActiveSet {
             preconditioner: Preconditioner::new(kernel),
-            fallback: ProjectedGradient::default(),
             member: vec![false; grid.len()],
             passes: Passes::new(grid.len()),
             height: 0.0,
@@ -131,44 +129,64 @@ impl ActiveSet {
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent. On
     /// entry `solution.potential` is K p of the guess, whose pressure may be negative on some cells; a body
     /// without any positive pressure gets a cold start.
-    pub(crate) fn solve(&mut self, problem: &Problem<'_>, stop: Stop, solution: &mut Solution, work: &mut Workspace) {
-        // nothing of an earlier solve, perhaps of a step that failed, may reach this one
-        self.fallback.reset();
-        self.start(problem, solution, work);
+    pub(crate) fn solve(
+        &mut self,
+        problem: &Problem<'_>,
+        stop: Stop,
+        solution: &mut Solution,
+        work: &mut Workspace,
+    ) -> Outcome {
+        let outcome = match self.iterate(problem, stop, solution, work) {
+            Outcome::Stagnated => self.descend(problem, stop, solution, work),
+            outcome => outcome,
+        };
+        if outcome != Outcome::Converged || self.close(problem, solution) {
+            return outcome;
+        }
+        // what was taken for a solution does not carry the loads
+        match self.descend(problem, stop, solution, work) {
+            Outcome::Converged if !self.close(problem, solution) => Outcome::Stagnated,
+            outcome => outcome,
+        }
+    }
+
+    fn iterate(&mut self, problem: &Problem<'_>, stop: Stop, solution: &mut Solution, work: &mut Workspace) -> Outcome {
+        if let Err(body) = self.start(problem, solution, work) {
+            return Outcome::Unbalanced(body);
+        }
         let (mut lowest, mut since, mut step) = (f64::INFINITY, 0, 0.0);
         loop {
             let (mut state, mut penetration) = self.advance(problem, solution, step);
             if state.negative > 0.0 && self.should_evict(problem, stop, state) {
-                self.evict(problem, solution, work);
+                if let Err(body) = self.evict(problem, solution, work) {
+                    return Outcome::Unbalanced(body);
+                }
                 (state, penetration) = self.advance(problem, solution, 0.0);
             }
             state.rounding = problem.rounding(&solution.pressure);
             solution.residual = relative_residual(&state, penetration);
             solution.trace.note(solution.counts.iterations, solution.residual);
-            let mut admissible = !self.pending() && state.negative == 0.0;
+            let admissible = !self.pending() && state.negative == 0.0;
             if admissible && solution.residual <= stop.tolerance {
                 if solution.pressure.iter().all(|&p| p >= 0.0) {
-                    return self.close(problem, solution);
+                    return Outcome::Converged;
                 }
                 // pulls so small that their squares vanish are pulls all the same
-                self.evict(problem, solution, work);
-                (state, penetration) = self.advance(problem, solution, 0.0);
-                admissible = false;
-            }
-            if solution.counts.iterations >= stop.max_iterations || solution.residual.is_nan() {
-                if !admissible && solution.residual <= stop.tolerance {
-                    // pressures that are negative, or not in balance, solve nothing, however small the residual
-                    solution.residual = f64::INFINITY;
+                if let Err(body) = self.evict(problem, solution, work) {
+                    return Outcome::Unbalanced(body);
                 }
-                return;
+                (state, penetration) = self.advance(problem, solution, 0.0);
+            }
+            if solution.residual.is_nan() {
+                return Outcome::NotANumber;
+            }
+            if solution.counts.iterations >= stop.max_iterations {
+                return Outcome::OutOfIterations;
             }
             since = if solution.residual < lowest { 0 } else { since + 1 };
             lowest = lowest.min(solution.residual);
             if since > PATIENCE {
-                self.fallback.improve(problem, stop, solution, work);
-                self.start(problem, solution, work);
-                (since, step) = (0, 0.0);
-                continue;
+                return Outcome::Stagnated;
             }
             if penetration > JOIN * state.rms() {
                 self.join(problem, state, penetration, solution);
@@ -183,8 +201,9 @@ impl ActiveSet {
         }
     }
 
-    /// A = {p > 0}; other cells that carry pressure are to leave; the pressure on A is in balance.
-    fn start(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) {
+    /// A = {p > 0}; other cells that carry pressure are to leave; the pressure on A is in balance. Fails with the body whose
+    /// load no pressure can balance.
+    fn start(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) -> Result<(), usize> {
         self.energy = 0.0;
         let upright = self.is_upright(problem);
         if upright {
@@ -216,7 +235,9 @@ impl ActiveSet {
                     let scale = sum(&solution.pressure) / sum(shape);
                     cells.iter().for_each(|&k| solution.pressure[k as usize] = scale * shape[k as usize].max(0.0));
                 };
-                cold_start(problem, body, &mut active.patch, solution, sharpen);
+                if !cold_start(problem, body, &mut active.patch, solution, sharpen) {
+                    return Err(body);
+                }
                 adopt_pressed(problem, body, active, &mut self.member, solution);
                 fresh |= !active.patch.cells.is_empty();
             }
@@ -231,7 +252,7 @@ impl ActiveSet {
                 self.bodies[problem.owner(k)].leaving.push(k as u32);
             }
         }
-        self.balance(problem, Shape::Pressure, solution, work);
+        self.balance(problem, Shape::Pressure, solution, work)
     }
 
     /// Whether the next direction has pressures to bring to zero or into balance.
@@ -282,7 +303,13 @@ impl ActiveSet {
 
     /// Sees to it that the pressure on A carries the force and moments of each body: at once, scaling p and
     /// v, where the force of a single body is all there is; else by the next direction.
-    fn balance(&mut self, problem: &Problem<'_>, shape: Shape, solution: &mut Solution, work: &mut Workspace) {
+    fn balance(
+        &mut self,
+        problem: &Problem<'_>,
+        shape: Shape,
+        solution: &mut Solution,
+        work: &mut Workspace,
+    ) -> Result<(), usize> {
         let single = self.bodies.len() == 1;
         if !single || problem.modes(0).tilts() {
             self.fill_shape(shape, solution);
@@ -310,18 +337,21 @@ impl ActiveSet {
                     // the load acts outside the hull of what is left of A: begin again under this body
                     active.patch.cells.iter().for_each(|&k| self.member[k as usize] = false);
                     active.leaving.drain(..).for_each(|k| solution.pressure[k as usize] = 0.0);
-                    press_everywhere(problem, body, &mut active.patch, solution);
+                    if !cold_start(problem, body, &mut active.patch, solution, |_, _| ()) {
+                        return Err(body);
+                    }
                     adopt_pressed(problem, body, active, &mut self.member, solution);
                     self.find_runs(problem);
                     solution.convolve(problem, work);
                 }
             }
         }
+        Ok(())
     }
 
     /// Takes from a converged pressure what rounding has left of force and moments: too little to show in v.
-    /// More than rounding is no solution.
-    fn close(&self, problem: &Problem<'_>, solution: &mut Solution) {
+    /// False if it is more than rounding.
+    fn close(&self, problem: &Problem<'_>, solution: &mut Solution) -> bool {
         if self.is_upright(problem) {
             // scaled, not by more than rounding
             if problem.modes(0).translates() {
@@ -329,12 +359,9 @@ impl ActiveSet {
                 for run in self.passes.runs.ranges() {
                     solution.pressure[run].iter_mut().for_each(|p| *p *= scale);
                 }
-                let closed = (scale - 1.0).abs() <= CLOSED;
-                if !closed {
-                    solution.residual = f64::INFINITY;
-                }
+                return (scale - 1.0).abs() <= CLOSED;
             }
-            return;
+            return true;
         }
         for (body, active) in self.bodies.iter().enumerate().filter(|(body, _)| !problem.released(*body)) {
             let sum =
@@ -344,9 +371,10 @@ impl ActiveSet {
             // without a force to carry, what presses may be rounding itself
             let forced = problem.modes(body).translates();
             if forced && (!closed || (sum(solution) - before).abs() > CLOSED * before) {
-                solution.residual = f64::INFINITY;
+                return false;
             }
         }
+        true
     }
 
     /// Whether there is one body that does not tilt: then everything is done in a few passes ([`Passes`]).
@@ -380,7 +408,7 @@ impl ActiveSet {
     }
 
     /// Takes cells with negative pressure out of A.
-    fn evict(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) {
+    fn evict(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) -> Result<(), usize> {
         if self.is_upright(problem) {
             for k in self.passes.runs.ranges().flatten().filter(|&k| solution.pressure[k] < 0.0) {
                 self.member[k] = false;
@@ -395,7 +423,7 @@ impl ActiveSet {
             }
         }
         self.list_cells(problem);
-        self.balance(problem, Shape::Punch, solution, work);
+        self.balance(problem, Shape::Punch, solution, work)
     }
 }
 

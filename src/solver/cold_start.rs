@@ -16,26 +16,39 @@ const BLOCK: usize = 256;
 ///
 /// `sharpen` may improve the pressures where the whole face is pressed, as under a punch, whose pressure
 /// rises to its rim. What it makes is taken if no part of the face has to open for the balance.
+///
+/// False if no pressure on these cells can balance the load.
+#[must_use]
 pub(crate) fn cold_start(
     problem: &Problem<'_>,
     body: usize,
     patch: &mut Patch,
     solution: &mut Solution,
     sharpen: impl FnOnce(&[u32], &mut Solution),
-) {
+) -> bool {
     list_possible(problem, body, patch);
     let pressed = |solution: &Solution| patch.cells.iter().all(|&k| solution.pressure[k as usize] > 0.0);
     fill_hertz(problem, body, &patch.cells, solution);
     if pressed(solution) {
         sharpen(&patch.cells, solution);
         if balance(problem, body, &patch.cells, solution) && pressed(solution) {
-            return;
+            return true;
         }
         fill_hertz(problem, body, &patch.cells, solution);
     }
-    if !balance(problem, body, &patch.cells, solution) {
-        press_everywhere(problem, body, patch, solution);
+    balance(problem, body, &patch.cells, solution) || press_supports(problem, body, &patch.cells, solution)
+}
+
+/// Presses the very cells that the body would rest on if nothing yielded: they balance the load if any cells do.
+fn press_supports(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) -> bool {
+    cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
+    let freedom = problem.bodies[body];
+    if freedom.translation {
+        for (k, share) in rest(&problem.modes(body), cells, problem.gap).1 {
+            solution.pressure[k as usize] = share * freedom.total;
+        }
     }
+    balance(problem, body, cells, solution)
 }
 
 /// Fills the pressure on `cells` with p ∝ √(level − gap) where the gap is below a level: Hertz's shape for a
@@ -96,22 +109,6 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut 
     if freedom.translation {
         let scale = freedom.total / sum;
         cells.iter().for_each(|&k| solution.pressure[k as usize] *= scale);
-    }
-}
-
-/// Presses every cell that the body may touch, evenly but for the moments: the guess of last resort, which
-/// exists whenever the load acts inside the hull of these cells.
-pub(crate) fn press_everywhere(problem: &Problem<'_>, body: usize, patch: &mut Patch, solution: &mut Solution) {
-    list_possible(problem, body, patch);
-    let freedom = problem.bodies[body];
-    let mean = if freedom.translation { freedom.total / patch.cells.len() as f64 } else { 0.0 };
-    patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = mean);
-    if !balance(problem, body, &patch.cells, solution) && freedom.translation {
-        // a load so near the rim that next to no cell can carry it: then the very cells that it rests on
-        patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
-        for (k, share) in rest(&problem.modes(body), &patch.cells, problem.gap).1 {
-            solution.pressure[k as usize] = share * freedom.total;
-        }
     }
 }
 

@@ -6,7 +6,6 @@ mod passes;
 mod polonsky_keer;
 mod preconditioner;
 mod problem;
-mod projected_gradient;
 mod rest;
 mod rigid;
 mod stiffness;
@@ -14,6 +13,6 @@ mod trace;
 
 pub(crate) use active_set::ActiveSet;
 pub(crate) use polonsky_keer::PolonskyKeer;
-pub(crate) use problem::{Counts, Problem, Solution, Stop};
+pub(crate) use problem::{Counts, Outcome, Problem, Solution, Stop};
 pub(crate) use rigid::{Freedom, Modes};
 pub(crate) use stiffness::{FLAT_PUNCH_TOLERANCE, flat_punch};

@@ -1,8 +1,8 @@
 //! The reference solver of the source paper.
 
 use crate::kernel::Workspace;
-use crate::solver::cold_start::{balance, cold_start, press_everywhere};
-use crate::solver::problem::{Measure, Patch, Problem, Solution, Stop, relative_residual};
+use crate::solver::cold_start::{balance, cold_start};
+use crate::solver::problem::{Measure, Outcome, Patch, Problem, Solution, Stop, relative_residual};
 
 /// Conjugate gradients on the cells in contact, after Polonsky & Keer (Wear 231, 1999): two
 /// convolutions an iteration, one for the gap and one for the step length.
@@ -23,8 +23,16 @@ impl PolonskyKeer {
     }
 
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent.
-    pub(crate) fn solve(&mut self, problem: &Problem<'_>, stop: Stop, solution: &mut Solution, work: &mut Workspace) {
-        self.make_feasible(problem, solution);
+    pub(crate) fn solve(
+        &mut self,
+        problem: &Problem<'_>,
+        stop: Stop,
+        solution: &mut Solution,
+        work: &mut Workspace,
+    ) -> Outcome {
+        if let Err(body) = self.make_feasible(problem, solution) {
+            return Outcome::Unbalanced(body);
+        }
         self.direction.fill(0.0);
         let (mut square_old, mut conjugate) = (1.0, false);
         loop {
@@ -38,9 +46,14 @@ impl PolonskyKeer {
             state.rounding = problem.rounding(&solution.pressure);
             solution.residual = relative_residual(&state, penetration);
             solution.trace.note(solution.counts.iterations, solution.residual);
-            let solved = solution.residual <= stop.tolerance && self.carries_the_forces(problem, solution);
-            if solved || solution.counts.iterations >= stop.max_iterations || solution.residual.is_nan() {
-                return;
+            if solution.residual <= stop.tolerance && self.carries_the_forces(problem, solution) {
+                return Outcome::Converged;
+            }
+            if solution.residual.is_nan() {
+                return Outcome::NotANumber;
+            }
+            if solution.counts.iterations >= stop.max_iterations {
+                return Outcome::OutOfIterations;
             }
             solution.counts.iterations += 1;
 
@@ -56,7 +69,7 @@ impl PolonskyKeer {
     }
 
     /// Clips a guess to p ≥ 0 where there is something to touch, and brings it into balance.
-    fn make_feasible(&mut self, problem: &Problem<'_>, solution: &mut Solution) {
+    fn make_feasible(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> Result<(), usize> {
         for k in 0..problem.gap.len() {
             let p = &mut solution.pressure[k];
             *p = if problem.possible(k) { p.max(0.0) } else { 0.0 };
@@ -66,10 +79,12 @@ impl PolonskyKeer {
             if problem.released(body) {
                 continue;
             }
-            if patch.cells.is_empty() || !balance(problem, body, &patch.cells, solution) {
-                cold_start(problem, body, patch, solution, |_, _| ());
+            let balanced = !patch.cells.is_empty() && balance(problem, body, &patch.cells, solution);
+            if !balanced && !cold_start(problem, body, patch, solution, |_, _| ()) {
+                return Err(body);
             }
         }
+        Ok(())
     }
 
     /// Lists the cells in contact of each body.
@@ -84,16 +99,12 @@ impl PolonskyKeer {
     }
 
     /// Whether every force is carried: a balance that could not be found leaves it open.
-    fn carries_the_forces(&self, problem: &Problem<'_>, solution: &mut Solution) -> bool {
-        let carried = (0..problem.bodies.len()).all(|body| {
+    fn carries_the_forces(&self, problem: &Problem<'_>, solution: &Solution) -> bool {
+        (0..problem.bodies.len()).all(|body| {
             let freedom = problem.bodies[body];
             let sum: f64 = self.patches[body].cells.iter().map(|&k| solution.pressure[k as usize]).sum();
             !freedom.translation || (sum - freedom.total).abs() <= 1e-9 * freedom.total
-        });
-        if !carried {
-            solution.residual = f64::INFINITY;
-        }
-        carried
+        })
     }
 
     /// Step length from the image of the direction, less its free motion in contact.
@@ -137,9 +148,7 @@ impl PolonskyKeer {
             if problem.released(body) || balance(problem, body, &patch.cells, solution) {
                 continue;
             }
-            if modes.translates() {
-                press_everywhere(problem, body, patch, solution);
-            } else {
+            if !modes.translates() || !cold_start(problem, body, patch, solution, |_, _| ()) {
                 // held at its pivot, and touching on one side of it only: let go, and turn away
                 patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
                 for &k in &patch.cells {

@@ -28,6 +28,22 @@ pub(crate) struct Stop {
     pub(crate) max_iterations: usize,
 }
 
+/// How a solve ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[must_use]
+pub(crate) enum Outcome {
+    /// The residual is below the tolerance, with pressures ≥ 0 that balance the loads.
+    Converged,
+    /// The iterations are spent.
+    OutOfIterations,
+    /// Rounding hides any further gain.
+    Stagnated,
+    /// No pressure on the cells of the problem can balance the load of this body.
+    Unbalanced(usize),
+    /// Numbers have left their range.
+    NotANumber,
+}
+
 /// A guess on entry, the answer on return.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]

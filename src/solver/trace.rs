@@ -43,11 +43,6 @@ impl Trace {
         self.len += 1;
     }
 
-    /// Whether the last residual noted is a number.
-    pub(crate) fn is_finite(&self) -> bool {
-        self.last.1.is_finite()
-    }
-
     /// Iterations and residuals, the last one included.
     pub(crate) fn samples(&self) -> Vec<(usize, f64)> {
         let mut samples = self.kept[..self.len].to_vec();

@@ -125,7 +125,7 @@ impl ActiveSet {
     }
 
     /// β from z·Kd. A correction is no conjugate direction, and would only spread the error of its length.
-    fn conjugate(energy: f64, overlap: f64, pending: bool) -> f64 {
+    pub(super) fn conjugate(energy: f64, overlap: f64, pending: bool) -> f64 {
         if energy > 0.0 && !pending { -overlap / energy } else { 0.0 }
     }
 
