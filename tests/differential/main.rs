@@ -2,8 +2,11 @@
 
 #[path = "../common/noise.rs"]
 mod noise;
+mod quadratic;
+mod reference;
 mod scenes;
 
+use reference::Reference;
 use scenes::Scene;
 use viscocontact::prelude::*;
 
@@ -24,10 +27,6 @@ fn eccentric_loads_may_jump() {
     let mut costs = Vec::new();
     while taken < count {
         seed += 1;
-        if let Ok(only) = std::env::var("ONLY") {
-            seed = only.parse().unwrap();
-            taken = count;
-        }
         let scene = Scene::eccentric(seed, STEPS);
         let mut contact = scene.contact(settings).unwrap();
         for (step, (dt, loads)) in scene.steps.iter().enumerate() {
@@ -65,4 +64,58 @@ fn eccentric_loads_may_jump() {
         at(1.0)
     );
     assert_eq!(failed, 0);
+}
+
+/// Sums of differences over sums.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let sum: f64 = b.iter().map(|b| b.abs()).sum();
+    let difference: f64 = a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum();
+    if sum > 0.0 { difference / sum } else { difference }
+}
+
+#[test]
+fn a_dense_reference_agrees() {
+    let (count, first) = (wanted("DIFFERENTIAL_SCENES", 500), wanted("DIFFERENTIAL_SEED", 1));
+    let (mut steps, mut refused, mut unsolved, mut worst) = (0, 0, 0, [0.0_f64; 3]);
+    for seed in (first as u64 * 1_000_000..).take(count) {
+        let scene = Scene::any(seed, 6);
+        let settings = Settings { edge: Edge::Allow, tolerance: 1e-10, ..Settings::default() };
+        let mut contact = scene.contact(settings).unwrap();
+        let mut reference = Reference::new(&scene.grid, &scene.shapes, &scene.rheology);
+        for (step, (dt, loads)) in scene.steps.iter().enumerate() {
+            match contact.step_each(*dt, loads) {
+                Ok(_) => {}
+                Err(Error::LoadOutsideHull { .. }) => {
+                    refused += 1;
+                    continue;
+                }
+                Err(error) => panic!("{} step {step}: {error} {loads:?}", scene.name),
+            }
+            if !reference.step(*dt, loads) {
+                unsolved += 1;
+                break; // what follows would start from elsewhere
+            }
+            steps += 1;
+            let mut errors = [distance(contact.pressure(), &reference.pressure), 0.0, 0.0];
+            for (body, &motion) in reference.motions.iter().enumerate() {
+                let state = contact.body(body).unwrap();
+                let force = reference.force(body);
+                errors[1] += (state.force - force).abs() / force.max(1e-12);
+                if motion[0].is_finite() && force > 0.0 {
+                    let size = reference.deepest();
+                    errors[2] += (state.approach - motion[0]).abs() / size;
+                    errors[2] += 1e-3 * (state.tilt[0] - motion[1]).abs().max((state.tilt[1] - motion[2]).abs()) / size;
+                }
+            }
+            if errors.iter().any(|e| *e > 1e-6) {
+                println!("{} step {step}: {errors:?} {dt:.2e} {loads:?} {:?}", scene.name, scene.rheology);
+            }
+            (0..3).for_each(|k| worst[k] = worst[k].max(errors[k]));
+        }
+    }
+    println!(
+        "{steps} steps agree to {worst:?} in pressure, force, motion; {refused} refused, {unsolved} unsolved by the reference"
+    );
+    assert!(worst.iter().all(|worst| *worst < 1e-5), "{worst:?}");
+    assert!(unsolved * 100 < steps);
 }

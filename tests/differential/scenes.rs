@@ -30,6 +30,11 @@ impl Dice {
         ((self.0)() * count as f64) as usize
     }
 
+    /// Up to four retardation times.
+    fn terms(&mut self, j: f64) -> Vec<(f64, f64)> {
+        (0..=self.below(4)).map(|_| (self.decades(0.1, 10.0) * j, self.decades(1e-3, 1e3))).collect()
+    }
+
     pub fn chance(&mut self, share: f64) -> bool {
         (self.0)() < share
     }
@@ -57,11 +62,13 @@ pub struct Body {
 impl Body {
     pub fn random(dice: &mut Dice) -> Body {
         let j = 1.0e-6;
-        match dice.below(4) {
+        match dice.below(6) {
             0 => Body { glassy: j, fluidity: 0.0, terms: Vec::new() },
             1 => Body { glassy: 0.0, fluidity: 0.0, terms: vec![(j, 1.0)] },
             2 => Body { glassy: j, fluidity: 0.0, terms: vec![(dice.decades(0.3, 30.0) * j, 1.0)] },
-            _ => Body { glassy: j, fluidity: j, terms: Vec::new() },
+            3 => Body { glassy: j, fluidity: j, terms: Vec::new() },
+            4 => Body { glassy: j, fluidity: 0.0, terms: dice.terms(j) },
+            _ => Body { glassy: j * dice.between(0.0, 1.0), fluidity: j, terms: dice.terms(j) },
         }
     }
 
@@ -155,6 +162,58 @@ impl Scene {
                         Load::eccentric_force(force, at)
                     } else {
                         Load::Force { normal: force, tilt: [Tilt::Free { at: at[0] }, Tilt::Fixed(0.0)] }
+                    }
+                });
+                (dt, loads.collect())
+            })
+            .collect();
+        Scene { name, grid, shapes, rheology: body, steps }
+    }
+
+    /// Few cells, one to three bodies, and loads of every kind.
+    pub fn any(seed: u64, steps: usize) -> Scene {
+        let mut dice = Dice::new(seed);
+        let dice = &mut dice;
+        let cells = [5 + dice.below(8), 5 + dice.below(8)];
+        let grid = Grid::new(cells, [SIDE, SIDE * dice.decades(0.5, 2.0)]).unwrap();
+        let bodies = [1, 1, 1, 2, 3][dice.below(5)];
+        let mut name = format!("seed {seed}: {}x{}", cells[0], cells[1]);
+        let width = SIDE / bodies as f64;
+        let centres: Vec<f64> = (0..bodies).map(|body| (body as f64 + 0.5) * width - 0.5 * SIDE).collect();
+        let shapes: Vec<Box<dyn Geometry>> = centres
+            .iter()
+            .map(|&centre| {
+                let (kind, shape) = shape(dice);
+                name += &format!(" {kind}");
+                let lift = dice.between(0.0, 1.0e-6);
+                let own = FnGeometry::new(move |x1, x2| {
+                    if bodies == 1 {
+                        return shape.initial_gap(x1, x2);
+                    }
+                    let own = (x1 - centre).abs() < 0.499 * width;
+                    if own { lift + shape.initial_gap(x1 - centre, x2) } else { f64::INFINITY }
+                });
+                Box::new(own) as Box<dyn Geometry>
+            })
+            .collect();
+        let body = Body::random(dice);
+        let steps = (0..steps)
+            .map(|k| {
+                let jumps = body.is_elastic_at_first() && (k == 0 || dice.chance(0.3));
+                let dt = if jumps { 0.0 } else { dice.decades(1.0e-3, 1.0e2) };
+                let loads = centres.iter().map(|&centre| {
+                    let reach = 0.3 * width;
+                    let tilt = |dice: &mut Dice, at: f64| match dice.below(3) {
+                        0 => Tilt::Fixed(0.0),
+                        1 => Tilt::Fixed(dice.between(-2.0e-3, 2.0e-3)),
+                        _ => Tilt::Free { at },
+                    };
+                    let at = [centre + dice.between(-reach, reach), dice.between(-1.0e-3, 1.0e-3)];
+                    let tilt = at.map(|at| tilt(dice, at));
+                    match dice.below(8) {
+                        0 => Load::Force { normal: 0.0, tilt },
+                        1 | 2 => Load::Approach { approach: dice.between(-1.0e-6, 2.0e-5), tilt },
+                        _ => Load::Force { normal: dice.decades(0.001, 1.0), tilt },
                     }
                 });
                 (dt, loads.collect())
