@@ -7,8 +7,8 @@ mod protocol;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use protocol::Protocol;
-use viscocontact::motion::{Straight, Travel};
 use viscocontact::Error;
+use viscocontact::motion::{Straight, Travel};
 use viscocontact::prelude::*;
 
 const LENGTH: f64 = 4.0e-3;
@@ -24,7 +24,9 @@ fn material(body: usize, scale: [f64; 2]) -> Material {
         0 => Material::incompressible(Elastic::new(g).unwrap()),
         1 => Material::incompressible(KelvinVoigt::new(g, eta).unwrap()),
         2 => Material::incompressible(PowerLaw::new(1.0 / g, 1.0, 0.2 + 0.3 * scale[1]).unwrap()),
-        3 => Material::incompressible(GeneralizedKelvin::new(0.0, 0.2 / eta, &[(0.5 / g, 0.1), (0.5 / g, 1.0)]).unwrap()),
+        3 => {
+            Material::incompressible(GeneralizedKelvin::new(0.0, 0.2 / eta, &[(0.5 / g, 0.1), (0.5 / g, 1.0)]).unwrap())
+        }
         4 => Material::incompressible(FractionalZener::new(3.0 * g, g, scale[1], 0.5).unwrap()),
         5 => Material::incompressible(Maxwell::new(2.0 * g, 10.0 * eta).unwrap()),
         6 => Material::incompressible(Zener::new(2.0 * g, g, eta).unwrap()),
@@ -74,12 +76,11 @@ impl Scene {
 }
 
 fn scenes() -> impl Strategy<Value = Scene> {
-    let settings = (any::<[bool; 3]>(), 0..3_usize).prop_map(|([symmetry, window, polonsky], rule)| Settings {
-        tolerance: 1e-10,
+    let settings = (any::<[bool; 2]>(), 0..3_usize).prop_map(|([symmetry, window], rule)| Settings {
+        tolerance: 1e-9,
         edge: Edge::Allow,
         symmetry,
         window,
-        solver: if polonsky { Solver::PolonskyKeer } else { Solver::ActiveSet },
         time_rule: if rule == 0 { TimeRule::Backward } else { TimeRule::Automatic },
         ..Settings::default()
     });
@@ -164,7 +165,7 @@ fn difference(a: &ViscoelasticContact, b: &ViscoelasticContact) -> [f64; 2] {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7201), max_shrink_iters: 200, ..ProptestConfig::with_cases(250) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7201), max_shrink_iters: 200, ..ProptestConfig::with_cases(100) })]
 
     /// Jumps between loads that press nothing, or that the state satisfies already, change nothing: the same steps without
     /// the jumps end alike.
@@ -268,7 +269,7 @@ proptest! {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7203), max_shrink_iters: 100, ..ProptestConfig::with_cases(60) })]
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7203), max_shrink_iters: 100, ..ProptestConfig::with_cases(24) })]
 
     /// Adaptive runs of forces from whatever leaves the bodies apart agree with those that begin with no jump.
     #[test]
@@ -281,7 +282,6 @@ proptest! {
         scene.settings.tolerance = 1e-8;
         // sums over the whole past are first order: their steps are many
         scene.settings.time_rule = TimeRule::Automatic;
-        let until = 3.2;
         let protocol = |wait: &dyn Fn(usize) -> Load| {
             let mut protocol = Protocol::default();
             for (k, rise) in rises.iter().enumerate() {
@@ -294,7 +294,7 @@ proptest! {
         let (mut jumping, mut plain) = (scene.contact(), scene.contact());
         let touch = plain.approach();
         let run = |contact: &mut ViscoelasticContact, protocol: &Protocol| {
-            let mut run = contact.follow(protocol, Stepping::adaptive(1e-3), until).landing_on(&[2.7]).unwrap();
+            let mut run = contact.follow(protocol, Stepping::adaptive(1e-3), protocol.end()).landing_on(&[2.7]).unwrap();
             let mut state = Vec::new();
             while let Some(report) = run.next_step().unwrap() {
                 if report.time == 2.7 {
@@ -372,7 +372,9 @@ fn lifted_indenters_move_at_once() {
     let before = along.displacement().to_vec();
     along.step_along(&travel, 0.0, lifted).unwrap();
     over.step_over([cells(-1.0e-3), 0], 0.0, lifted).unwrap();
-    assert!(along.displacement() == before && along.contact_cells() == 0 && over.contact_cells() == 0);
+    assert!((along.contact_cells(), over.contact_cells()) == (0, 0));
+    // the symmetry is given up, and with it goes a rounding
+    assert!(along.displacement().iter().zip(&before).all(|(u, before)| (u - before).abs() < 1e-12 * DEPTH));
     for _ in 0..2 {
         along.step_along(&travel, DT, Load::force(0.1)).unwrap();
         over.step_over([0, 0], DT, Load::force(0.1)).unwrap();
@@ -383,7 +385,9 @@ fn lifted_indenters_move_at_once() {
 /// The protocol of a creep and recovery test: approach to touch, hold a force, let go.
 #[test]
 fn creep_and_recovery_of_a_springpot_and_a_voigt_body() {
-    for (body, rule) in [(1, TimeRule::Automatic), (1, TimeRule::Backward), (2, TimeRule::Automatic), (2, TimeRule::Backward)] {
+    for (body, rule) in
+        [(1, TimeRule::Automatic), (1, TimeRule::Backward), (2, TimeRule::Automatic), (2, TimeRule::Backward)]
+    {
         let mut contact = ViscoelasticContact::builder(Grid::square(20, LENGTH).unwrap())
             .geometry(&Sphere::new(10.0e-3).unwrap())
             .material(material(body, [1.0; 2]))
@@ -392,8 +396,11 @@ fn creep_and_recovery_of_a_springpot_and_a_voigt_body() {
             .unwrap();
         let [lifted, touching] = [-DEPTH, 0.0].map(Load::approach);
         let [none, full] = [0.0, FORCE].map(Load::force);
-        let protocol =
-            Protocol::default().then(0.5, lifted, touching).then(0.2, none, full).then(1.0, full, full).then(1.0, none, none);
+        let protocol = Protocol::default()
+            .then(0.5, lifted, touching)
+            .then(0.2, none, full)
+            .then(1.0, full, full)
+            .then(1.0, none, none);
         let reports = follow(&mut contact, &protocol).unwrap();
         let deepest = reports.iter().map(|report| report.approach).fold(0.0, f64::max);
         assert!(reports.iter().filter(|report| report.dt == 0.0).count() == 3);

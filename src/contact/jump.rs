@@ -64,7 +64,8 @@ impl ViscoelasticContact {
         let root_mean = |sum: f64| (sum / cells.max(1) as f64).sqrt();
         let distance = root_mean(square).max(penetration / PENETRATION_SLACK) / root_mean(displacement);
         // nothing over nothing is nothing, but numbers that left their range satisfy no load
-        let parts = imbalance.filter(|_| force > 0.0).chain([distance].into_iter().filter(|_| square + penetration > 0.0));
+        let parts =
+            imbalance.filter(|_| force > 0.0).chain([distance].into_iter().filter(|_| square + penetration > 0.0));
         parts.fold(0.0, |most, part| if part.is_nan() { f64::INFINITY } else { part.max(most) })
     }
 }
