@@ -92,6 +92,20 @@ pub enum Error {
         breakpoint: f64,
     },
 
+    /// A load history returned a load that no step can be given, at a time that a run looked at: the end of a step, or between
+    /// its ends.
+    #[error("the load history says {field} = {value:?} at t = {time} s, which is not allowed: it must be {allowed}")]
+    InvalidLoad {
+        /// The time asked for \[s\].
+        time: f64,
+        /// What the number stands for.
+        field: &'static str,
+        /// The number returned.
+        value: f64,
+        /// The range it must lie in.
+        allowed: &'static str,
+    },
+
     /// A load does not control what a reference solution needs.
     #[error("{field} needs {needed}, but is given {given}")]
     WrongLoad {
@@ -231,9 +245,9 @@ pub enum Error {
         greatest: f64,
     },
 
-    /// The body has no elastic response (J(0) = 0, as Kelvin–Voigt): it cannot follow a jump, so
-    /// a step of length zero, or the paper's rectangle rule, is impossible. Ramp the load over a
-    /// short time, or give the body a glassy compliance.
+    /// The body has no elastic response (J(0) = 0, as Kelvin–Voigt): it cannot follow a jump of the load, a step of length
+    /// zero, unless nothing presses it after the jump or the load is what the present state satisfies already; nor is the
+    /// paper's rectangle rule possible. Ramp the load over a short time, or give the body a glassy compliance.
     #[error(
         "at t = {time} s: {what} needs an elastic response, but the material has none (its compliance at t = 0 is zero); ramp the load over a short time or add a glassy compliance"
     )]

@@ -175,7 +175,10 @@ impl AxisymmetricContact {
         if !is_known(time, known_until) {
             return Err(Error::BeyondMaterial { time, age: time, known_until });
         }
-        let c = self.history.predict(self.time + dt, dt, &self.displacement, &mut self.trial_displacement)?;
+        let c = self.history.predict(dt, &self.displacement, &mut self.trial_displacement);
+        if c == 0.0 && dt == 0.0 {
+            return Err(Error::NoElasticResponse { time, what: "a jump of the foundation (ramp the load instead)" });
+        }
         for ((touch, &g), &u_old) in self.trial_touch.iter_mut().zip(&self.profile).zip(&self.trial_displacement) {
             *touch = g + u_old;
         }

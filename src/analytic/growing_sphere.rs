@@ -121,7 +121,7 @@ impl GrowingSphere {
         }
         let depth = |s: f64| {
             let a = self.contact_radius(s);
-            ((a - r) * (a + r)).max(0.0).sqrt()
+            if a < r { 0.0 } else { ((a - r) * (a + r)).sqrt() }
         };
         let entry = self.entry_time(r, t);
         let glassy: f64 = self.relaxation.modulus(0.0);

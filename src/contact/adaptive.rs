@@ -2,6 +2,7 @@
 
 use crate::contact::region::Region;
 use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::error::Result;
 use crate::load::LoadHistory;
 
 /// The rule takes u to be linear within a step, which errs by u″ Δ²/8 in its middle. With u″ from the change of
@@ -98,19 +99,20 @@ impl Controller {
     }
 
     /// The length to try next, at most `left`.
-    pub(super) fn length(&self, contact: &ViscoelasticContact, history: &dyn LoadHistory, left: f64) -> f64 {
-        self.next.unwrap_or_else(|| self.first(contact, history, left)).max(contact.state.shortest).min(left)
+    pub(super) fn length(&self, contact: &ViscoelasticContact, history: &dyn LoadHistory, left: f64) -> Result<f64> {
+        let wanted = self.next.map_or_else(|| self.first(contact, history, left), Ok)?;
+        Ok(wanted.max(contact.state.shortest).min(left))
     }
 
     /// The length of a step that the past says nothing about: the longest over which the creep after a jump, or after
     /// a corner, is linear to within the tolerance.
-    fn first(&self, contact: &ViscoelasticContact, history: &dyn LoadHistory, left: f64) -> f64 {
+    fn first(&self, contact: &ViscoelasticContact, history: &dyn LoadHistory, left: f64) -> Result<f64> {
         let (now, jumped) = (contact.time(), contact.last_step_was_a_jump());
         // a paraboloid answers with the power 2/3 of force and compliance
         let compliance = |t: f64| contact.material().contact_compliance(t).powf(2.0 / 3.0);
         let glassy = compliance(0.0);
         if glassy == 0.0 {
-            return FIRST_PART * left;
+            return Ok(FIRST_PART * left);
         }
         let held = contact.load().strength();
         for k in 0..=TRIED * DECADES {
@@ -119,26 +121,30 @@ impl Controller {
             let deviation = if jumped {
                 (compliance(0.5 * dt) - 0.5 * (glassy + creep)) / creep
             } else {
-                let change = (history.before(now + dt).strength() - held).abs();
+                let change = (history.before(now + dt).validated_at(now + dt)?.strength() - held).abs();
                 0.125 * (creep - glassy) / creep * change / (held + change).max(f64::MIN_POSITIVE)
             };
-            if deviation.abs() <= self.tolerance && self.watch(history, contact, now + dt) <= self.tolerance {
-                return dt;
+            if deviation.abs() <= self.tolerance && self.watch(history, contact, now + dt)? <= self.tolerance {
+                return Ok(dt);
             }
         }
-        left * 10f64.powi(-DECADES)
+        Ok(left * 10f64.powi(-DECADES))
     }
 
     /// How far the load strays from a straight line between now and `time`, relative to itself or to a part of the
-    /// greatest so far.
-    pub(super) fn watch(&self, history: &dyn LoadHistory, contact: &ViscoelasticContact, time: f64) -> f64 {
+    /// greatest so far. Refuses what is not a load, wherever it looks.
+    pub(super) fn watch(&self, history: &dyn LoadHistory, contact: &ViscoelasticContact, time: f64) -> Result<f64> {
         let now = contact.time();
-        let (start, end) = (history.at(now), history.before(time));
+        let (start, end) = (history.at(now).validated_at(now)?, history.before(time).validated_at(time)?);
         let scale = start.strength().max(end.strength()).max(SMALL_LOAD * self.strongest);
         // unevenly, so that no oscillation hits a zero at all of them
         let shares = [0.153, 0.381, 0.5, 0.677, 0.891];
-        let strays = shares.map(|share| start.straying(&end, share, &history.at(now + share * (time - now)), scale));
-        strays.into_iter().fold(0.0, f64::max)
+        let mut most = 0.0_f64;
+        for share in shares {
+            let between = now + share * (time - now);
+            most = most.max(start.straying(&end, share, &history.at(between).validated_at(between)?, scale));
+        }
+        Ok(most)
     }
 
     /// Keeps the slope of u in the step that lies behind, before its beginning is overwritten.
@@ -184,7 +190,9 @@ impl Controller {
             error += weight * ((new - old) / dt - rate).abs();
             size += weight * new.abs();
         }
-        if size > 0.0 { bend * error / size } else { 0.0 }
+        let error = if size > 0.0 { bend * error / size } else { 0.0 };
+        // numbers that left their range say nothing good
+        if error.is_nan() { f64::INFINITY } else { error }
     }
 
     /// What an error of u in one step comes to in the end: the next steps answer it with the stiffness of a step, the

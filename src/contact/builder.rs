@@ -76,7 +76,7 @@ impl Builder {
     ///
     /// Without it, the first step that takes time decides, here of length Δ: from Δ/100 to 10⁶ Δ, or to the end of the run if
     /// [`ViscoelasticContact::follow`] knows a later one. A body without elastic response can then not start with a
-    /// jump of the load; with it, what it has crept by the shortest time counts as immediate.
+    /// jump of the load that presses it; with it, what it has crept by the shortest time counts as immediate.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -113,7 +113,7 @@ impl Builder {
     /// Makes the contact: undisturbed bodies at time 0, without load.
     ///
     /// # Errors
-    /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a setting is out of range, the kernel was made
+    /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a rheology is known until NaN, a setting is out of range, the kernel was made
     /// for another grid, there is none for its cells ([`InfluenceKernel::half_space`]), no series of the material over
     /// [`Builder::times`] is within the tolerance, these are more than 50 decades, or the rectangle rule was chosen for a
     /// rheology without elastic response.
@@ -131,6 +131,7 @@ impl Builder {
         if let Some(other) = counter_body {
             material = material.against(other);
         }
+        material.validate()?;
         let kernel = match kernel {
             Some(kernel) if *kernel.grid() != grid => {
                 return Err(Error::KernelMismatch { kernel: kernel.grid().clone(), contact: grid });

@@ -187,13 +187,15 @@ impl<'a> Follow<'a> {
 
     /// Takes the next step and reports it; `None` when the end is reached.
     ///
-    /// At the start, and wherever the history jumps, a step of length zero brings in the new load.
+    /// At the start, and wherever the history jumps or changes its kind, a step of length zero brings in the new load; which
+    /// of these a body without elastic response can follow, tells [`ViscoelasticContact::step`].
     /// Corners and jumps of the history are met exactly.
     ///
     /// # Errors
     /// If the end is not finite or lies before the contact's time, the fixed step is not finite and
     /// positive or too short to change the time, the tolerance is out of range or asks for steps too short to change
-    /// the time, or a step fails; the contact is then as it was after the last good step, and the call may be
+    /// the time, the history returns what is not a load wherever the run looks at it ([`Error::InvalidLoad`]; adaptive steps
+    /// look between their ends, and ahead), or a step fails; the contact is then as it was after the last good step, and the call may be
     /// repeated. Or if the file of `Follow::keeping` cannot be written: the step is then taken all the same, and the next call
     /// tries to write again, and reports it.
     pub fn next_step(&mut self) -> Result<Option<StepReport>> {
@@ -227,7 +229,7 @@ impl<'a> Follow<'a> {
         self.contact.history.expect(self.until - self.contact.state.undisturbed_until);
 
         let now = self.contact.time();
-        let load = self.history.at(now);
+        let load = self.history.at(now).validated_at(now)?;
         if load != self.contact.load() {
             if let Some(controller) = &mut self.progress.controller {
                 controller.restart();
@@ -251,7 +253,8 @@ impl<'a> Follow<'a> {
         }
         let Stepping::Fixed { dt } = self.stepping else { return Ok(None) };
         let time = self.next_time(now, dt, corner)?;
-        let report = self.contact.step_to(time, time - now, &[self.history.before(time)])?;
+        let load = self.history.before(time).validated_at(time)?;
+        let report = self.contact.step_to(time, time - now, &[load])?;
         Ok(Some(self.note(report)))
     }
 
@@ -263,15 +266,15 @@ impl<'a> Follow<'a> {
         let tolerance = controller.solver_tolerance(self.contact.settings().tolerance);
         let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
         loop {
-            let wanted = controller.length(self.contact, self.history, self.until - now);
+            let wanted = controller.length(self.contact, self.history, self.until - now)?;
             let (time, dt) = towards(now, stop, wanted);
             // a step of the last digit of the time, shortened, may round to itself again, and again
             if time <= now || time >= tried {
                 return Err(Error::StepTooShort { time: now, dt, tolerance: controller.tolerance });
             }
             tried = time;
-            let load = self.history.before(time);
-            let straying = controller.watch(self.history, self.contact, time);
+            let load = self.history.before(time).validated_at(time)?;
+            let straying = controller.watch(self.history, self.contact, time)?;
             if straying > controller.tolerance {
                 controller.judge(dt, straying);
                 self.may_shorten(time, dt)?;

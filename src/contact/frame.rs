@@ -65,7 +65,7 @@ impl ViscoelasticContact {
             let c = self.history.predict(time, dt, &self.state.displacement, &mut self.trial_displacement)?;
             return Ok((c, 0));
         };
-        let c = history.predict(time, dt, self.stride)?;
+        let c = history.predict(dt, self.stride);
         if !history.remembers() {
             self.trial_displacement.fill(0.0);
             return Ok((c, 0));

@@ -69,13 +69,7 @@ impl Refresh {
 impl ViscoelasticContact {
     /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike.
     pub(super) fn guess(&mut self, dt: f64) {
-        self.trial.counts = Counts::default();
-        self.trial.trace.clear();
-        for (body, motion) in self.trial.motions.iter_mut().enumerate() {
-            let [omega, alpha1, alpha2] = self.state.motions[body];
-            let modes = Modes::new(self.region.grid(), self.freedoms[body]);
-            *motion = modes.motion([omega - self.initial_gap.datum, alpha1, alpha2]);
-        }
+        self.begin_trial();
         let mut ahead = if self.state.last_dt > 0.0 { (dt / self.state.last_dt).min(FARTHEST_GUESS) } else { 0.0 };
         let positive = |p: f64| if p > 0.0 { p } else { 0.0 };
         let guess = |p: f64, before: f64| positive(p + ahead * (p - before));
@@ -100,6 +94,23 @@ impl ViscoelasticContact {
             // another load altogether: the last contact is no guide, the solver starts afresh
             return self.trial.release();
         }
+        self.extrapolate(ahead);
+    }
+
+    /// Counts nothing yet, and leaves the bodies where they are, as far as their loads leave them free.
+    pub(super) fn begin_trial(&mut self) {
+        self.trial.counts = Counts::default();
+        self.trial.trace.clear();
+        self.state.refresh.ahead = 0.0;
+        for (body, motion) in self.trial.motions.iter_mut().enumerate() {
+            let [omega, alpha1, alpha2] = self.state.motions[body];
+            let modes = Modes::new(self.region.grid(), self.freedoms[body]);
+            *motion = modes.motion([omega - self.initial_gap.datum, alpha1, alpha2]);
+        }
+    }
+
+    /// Writes p and K p to the trial, `ahead` times the last step ahead; K p computed afresh where that is due.
+    pub(super) fn extrapolate(&mut self, ahead: f64) {
         let extrapolate = |trial: &mut [f64], current: &[f64], previous: &[f64]| {
             for ((guess, &now), &before) in trial.iter_mut().zip(current).zip(previous) {
                 *guess = now + ahead * (now - before);

@@ -14,7 +14,7 @@ impl ViscoelasticContact {
     /// [`Geometry::initial_gap`](crate::geometry::Geometry::initial_gap) has it: of a map that is interpolated, as well as that is, so that
     /// a rough slider with waves of 2 cells shows 3e-4 of the normal force on an elastic body, and with waves of 8 cells 2e-5. Where the rise is not
     /// finite, beside the rim of a face, there is no slope to press against: what a rim carries is in
-    /// [`TravelReport::power`](crate::motion::TravelReport) alone.
+    /// [`TravelReport::power`](crate::motion::TravelReport) alone. NaN where the shape's gap is.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -32,7 +32,7 @@ impl ViscoelasticContact {
         let (n2, [half1, half2]) = (self.grid.cells()[1], self.grid.spacing().map(|side| 0.5 * side));
         let rise = |ahead: f64, behind: f64| {
             let rise = ahead - behind;
-            if rise.is_finite() { rise } else { 0.0 }
+            if rise.is_finite() || ahead.is_nan() || behind.is_nan() { rise } else { 0.0 }
         };
         let (mut sums, tilt) = ([0.0; 2], self.tilt());
         for (i, row) in self.pressure().chunks_exact(n2).enumerate() {

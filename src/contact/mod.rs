@@ -14,6 +14,7 @@ mod follow;
 mod frame;
 mod guess;
 mod hull;
+mod jump;
 mod lateral;
 mod loads;
 mod region;

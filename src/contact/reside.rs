@@ -56,9 +56,8 @@ impl Beyond {
     }
 
     /// U at the end of a step of compliance `c` under `pressure`; the same rule was found fit for u.
-    pub(super) fn advance(&mut self, time: f64, dt: f64, c: f64, pressure: &[f64]) {
-        let predicted = self.history.predict(time, dt, &self.strength, &mut self.trial);
-        debug_assert!(predicted.is_ok());
+    pub(super) fn advance(&mut self, dt: f64, c: f64, pressure: &[f64]) {
+        self.history.predict(dt, &self.strength, &mut self.trial);
         self.trial.iter_mut().zip(pressure).for_each(|(strength, &p)| *strength += c * p);
     }
 

@@ -25,11 +25,14 @@ pub(super) struct Attempt {
 
 impl ViscoelasticContact {
     /// Advances by `dt` \[s\] to a state that carries `load`, taking u to be linear in between. `dt` = 0 is
-    /// a jump of the load: the bodies respond elastically.
+    /// a jump of the load: the bodies respond elastically. A body without elastic response (J(0) = 0) keeps its
+    /// displacement in a jump; it can follow those after which nothing presses it, and those to a load that the pressure
+    /// as it is satisfies to within [`Settings::tolerance`](crate::contact::Settings::tolerance), such as the present
+    /// approach in place of the force.
     ///
     /// # Errors
-    /// If `dt` or a force is negative, a number not finite, a force acts where it would topple the body, the
-    /// body has no elastic response and `dt` = 0, contact reaches the edge of the grid (unless
+    /// If `dt` or a force is negative, a number not finite, a force acts where it would topple the body, `dt` = 0 and the
+    /// body has no elastic response for the pressure that the load asks for, contact reaches the edge of the grid (unless
     /// [`Edge::Allow`]), the solver does not converge, a creep closure returns an impossible value or cannot be fitted,
     /// the material is not known for so long or so short a time, a direct sum has filled its memory, or there
     /// are several rigid bodies. The contact is then exactly as it was before, but for
@@ -107,19 +110,25 @@ impl ViscoelasticContact {
         self.state.before_is_kept = false;
 
         let (c, convolutions) = self.predict(time, dt)?;
-        if !(c > 0.0 && c.is_finite()) {
+        let unyielding = c == 0.0 && dt == 0.0;
+        if !(unyielding || c > 0.0 && c.is_finite()) {
             return Err(Error::Overflow { time, what: "the compliance of the step" });
         }
         self.fill_gap(loads);
         self.stay_below_full_contact(time, loads)?;
 
         // the contact problem of the step
-        self.guess(dt);
+        if unyielding {
+            self.jump_without_response(time, loads, tolerance)?;
+        } else {
+            self.guess(dt);
+        }
         let owner = self.gap_here.as_ref().unwrap_or(&self.initial_gap).owner.as_deref();
         let problem =
             Problem { kernel: &self.kernel_here, compliance: c, gap: &self.gap, bodies: &self.freedoms, owner };
         let stop = Stop { tolerance, max_iterations: self.settings.max_iterations };
         let outcome = match &mut self.solver {
+            _ if unyielding => Outcome::Converged,
             _ if problem.all_released() => {
                 self.trial.release();
                 Outcome::Converged
@@ -137,7 +146,7 @@ impl ViscoelasticContact {
             self.remember(time)?;
         }
         if let Some(beyond) = &mut self.beyond {
-            beyond.advance(time, dt, c, &self.trial.pressure);
+            beyond.advance(dt, c, &self.trial.pressure);
         }
         Ok(c)
     }

@@ -52,15 +52,12 @@ impl Direct {
         if bytes > self.limit {
             return Err(Error::HistoryFull { time, steps: self.increments.len(), bytes, limit: self.limit });
         }
-        let (age, what) = match self.weighting {
-            Weighting::End => (0.0, "the rectangle rule"),
-            Weighting::Start => (dt, "a step of length zero (ramp the load over a short time instead)"),
-        };
+        let age = if self.weighting == Weighting::Start { dt } else { 0.0 };
         // while nothing has happened, a step may be longer than the material is known
         let age = if self.increments.is_empty() { age.min(self.material.known_until()) } else { age };
         let newest = self.material.checked_compliance(age, (0.0, self.material.contact_compliance(0.0)))?;
-        if newest == 0.0 {
-            return Err(Error::NoElasticResponse { time, what });
+        if newest == 0.0 && age > 0.0 {
+            return Err(Error::InvalidCompliance { time: age, value: newest, previous: 0.0 });
         }
         // c acts on the whole of v, so that a past increment adds only what exceeds c
         self.weights.clear();

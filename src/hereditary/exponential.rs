@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 
-use crate::error::{Error, Result};
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 
 /// The history as one stress-like field q_i for each relaxation time.
@@ -154,8 +153,8 @@ impl Exponential {
 
     /// Writes u_old over `u_old`, which after a commit must still hold the displacement before that step, as
     /// `displacement` holds the one after it.
-    pub(crate) fn predict(&mut self, time: f64, dt: f64, displacement: &[f64], u_old: &mut [f64]) -> Result<f64> {
-        let c = self.compliance(time, dt)?;
+    pub(crate) fn predict(&mut self, dt: f64, displacement: &[f64], u_old: &mut [f64]) -> f64 {
+        let c = self.compliance(dt);
         // u − c E∞ u, written so that an elastic body keeps exactly nothing
         let kept = if self.remembers() { 1.0 - c * self.relaxation.equilibrium() } else { 0.0 };
         let mut change = [0.0; BLOCK];
@@ -179,11 +178,11 @@ impl Exponential {
             }
         }
         self.waiting = false;
-        Ok(c)
+        c
     }
 
-    /// The compliance c of a step, and its factors.
-    fn compliance(&mut self, time: f64, dt: f64) -> Result<f64> {
+    /// The compliance c of a step, and its factors; 0 for a jump of a body without elastic response.
+    fn compliance(&mut self, dt: f64) -> f64 {
         let mut stiffness = self.relaxation.equilibrium();
         for (factor, &(modulus, tau)) in self.factors.iter_mut().zip(self.relaxation.terms()) {
             let z = dt / tau;
@@ -192,15 +191,9 @@ impl Exponential {
             stiffness += factor.1;
         }
         if self.relaxation.viscosity() > 0.0 {
-            if dt == 0.0 {
-                return Err(Error::NoElasticResponse {
-                    time,
-                    what: "a step of length zero (ramp the load over a short time instead)",
-                });
-            }
             stiffness += self.relaxation.viscosity() / dt;
         }
-        Ok(1.0 / stiffness)
+        1.0 / stiffness
     }
 
     /// Takes the step that was predicted last into the past. The fields follow at the next prediction.

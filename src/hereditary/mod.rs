@@ -26,7 +26,7 @@ pub(crate) use exponential::Exponential;
 pub(crate) use sources::Sources;
 pub(crate) use unfitted::Unfitted;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::rheology::Material;
 
 /// The past of one contact.
@@ -40,16 +40,33 @@ pub(crate) enum History {
 
 impl History {
     /// Writes u_old of a step of length `dt` that ends at `time` over `u_old`, given the displacement at its
-    /// start, and returns c. After a commit, `u_old` must still hold the displacement at the start of the step
-    /// committed.
+    /// start, and returns c, which is 0 in jumps of bodies without elastic response. After a commit, `u_old` must still
+    /// hold the displacement at the start of the step committed.
     pub(crate) fn predict(&mut self, time: f64, dt: f64, displacement: &[f64], u_old: &mut [f64]) -> Result<f64> {
         match self {
-            History::Exponential(history) => history.predict(time, dt, displacement, u_old),
-            History::Direct(history) => history.predict(time, dt, u_old),
-            History::Unfitted(history) => history.predict(time, dt, displacement, u_old),
+            History::Exponential(history) => Ok(history.predict(dt, displacement, u_old)),
+            History::Direct(history) => {
+                let c = history.predict(time, dt, u_old)?;
+                if c == 0.0 {
+                    u_old.copy_from_slice(displacement); // the sum is the same but for rounding
+                }
+                Ok(c)
+            }
+            History::Unfitted(history) => history.predict(dt, displacement, u_old),
             // u_old is a convolution away
-            History::Sources(history) => history.predict(time, dt, [0; 2]),
+            History::Sources(history) => Ok(history.predict(dt, [0; 2])),
         }
+    }
+
+    /// The error of a jump that a body without elastic response cannot follow.
+    pub(crate) fn no_elastic_response(&self, time: f64) -> Error {
+        let what = match self {
+            History::Unfitted(_) => {
+                "a jump of the load that changes the pressure (ramp the load over a short time, or say with Builder::times from which time on the body creeps)"
+            }
+            _ => "a jump of the load that changes the pressure (ramp the load over a short time instead)",
+        };
+        Error::NoElasticResponse { time, what }
     }
 
     /// Whether the displacement itself is part of the memory, rather than computed anew from v.

@@ -1,6 +1,5 @@
 //! The memory of bodies that move under the grid.
 
-use crate::error::Result;
 use crate::hereditary::Exponential;
 use crate::rheology::CreepSpectrum;
 
@@ -81,10 +80,10 @@ impl Sources {
 
     /// Finds U_old and e_old at the end of a step in which the cell `[i, j]` comes over what was the cell `[i, j] + by`;
     /// returns c.
-    pub(crate) fn predict(&mut self, time: f64, dt: f64, by: [isize; 2]) -> Result<f64> {
+    pub(crate) fn predict(&mut self, dt: f64, by: [isize; 2]) -> f64 {
         self.by = by;
-        self.laid.predict(time, dt, self.cells, by, self.periodic)?;
-        self.caused.predict(time, dt, self.cells, by, self.periodic)
+        self.laid.predict(dt, self.cells, by, self.periodic);
+        self.caused.predict(dt, self.cells, by, self.periodic)
     }
 
     /// What was predicted, U_old and e_old: u_old = K U_old + e_old.
@@ -137,10 +136,10 @@ impl Sources {
 }
 
 impl Carried {
-    fn predict(&mut self, time: f64, dt: f64, cells: [usize; 2], by: [isize; 2], periodic: [bool; 2]) -> Result<f64> {
-        let c = self.history.predict(time, dt, &self.now, &mut self.trial)?;
+    fn predict(&mut self, dt: f64, cells: [usize; 2], by: [isize; 2], periodic: [bool; 2]) -> f64 {
+        let c = self.history.predict(dt, &self.now, &mut self.trial);
         shift(&mut self.trial, cells, by, periodic);
-        Ok(c)
+        c
     }
 }
 

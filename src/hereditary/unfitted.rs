@@ -1,6 +1,6 @@
 //! A past that waits for its exponential series.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::hereditary::Exponential;
 use crate::rheology::Material;
 
@@ -39,18 +39,11 @@ impl Unfitted {
         Unfitted { material, tolerance, cells: 0, expected: 0.0, fitted: None }
     }
 
-    pub(crate) fn predict(&mut self, time: f64, dt: f64, displacement: &[f64], u_old: &mut [f64]) -> Result<f64> {
+    pub(crate) fn predict(&mut self, dt: f64, displacement: &[f64], u_old: &mut [f64]) -> Result<f64> {
         if dt == 0.0 {
             self.fitted = None;
-            let c = self.material.checked_compliance(0.0, (0.0, 0.0))?;
-            if c == 0.0 {
-                return Err(Error::NoElasticResponse {
-                    time,
-                    what: "a step of length zero (ramp the load over a short time, or say with Builder::times from which time on it creeps)",
-                });
-            }
             u_old.fill(0.0);
-            return Ok(c);
+            return self.material.checked_compliance(0.0, (0.0, 0.0));
         }
         let last = (STEPS_AHEAD * dt).max(self.expected).min(self.material.known_until());
         let times = [WITHIN_STEP * dt, last.clamp(dt, LATEST.max(dt))];
@@ -63,7 +56,7 @@ impl Unfitted {
             self.fitted = Some(Fitted { material, history, times });
         }
         match &mut self.fitted {
-            Some(fitted) => fitted.history.predict(time, dt, displacement, u_old),
+            Some(fitted) => Ok(fitted.history.predict(dt, displacement, u_old)),
             None => Err(self.material.no_series("a step")),
         }
     }

@@ -55,6 +55,8 @@ pub fn even_times(first: f64, last: f64, count: usize) -> Vec<f64> {
     (0..=count).map(|k| first + (last - first) * (k as f64 / count as f64)).collect()
 }
 
+const IS_A_LOAD: &str = "every load is one that a step accepts";
+
 /// Every law, at ascending `times` \[s\].
 ///
 /// # Errors
@@ -117,10 +119,15 @@ fn moments(history: &dyn LoadHistory, times: &[f64]) -> Vec<f64> {
     moments
 }
 
+/// The moments, and times between them.
+fn and_between(moments: &[f64]) -> impl Iterator<Item = f64> {
+    let between = moments.windows(2).flat_map(|pair| [0.3, 0.5, 0.7].map(|part| pair[0] + part * (pair[1] - pair[0])));
+    moments.iter().copied().chain(between)
+}
+
 /// The greatest of each value at the moments and between them: at its own corners a load may vanish.
 fn scales(history: &dyn LoadHistory, moments: &[f64]) -> [f64; 3] {
-    let between = moments.windows(2).flat_map(|pair| [0.3, 0.5, 0.7].map(|part| pair[0] + part * (pair[1] - pair[0])));
-    moments.iter().copied().chain(between).fold([0.0; 3], |most, t| {
+    and_between(moments).fold([0.0; 3], |most, t| {
         let (at, before) = (values(&history.at(t)), values(&history.before(t)));
         [0, 1, 2].map(|k| f64::max(most[k], f64::max(at[k].abs(), before[k].abs())))
     })
@@ -172,16 +179,16 @@ pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict
     Ok(())
 }
 
-/// The loads are ones that a step can be given: finite, forces not negative, before jumps and after them.
+/// The loads are ones that a step can be given: finite, forces not negative, before jumps and after them, and between the times.
 ///
 /// # Errors
 /// Where they are not.
 pub fn is_a_load(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
-    for &t in &moments(history, times) {
+    for t in and_between(&moments(history, times)) {
         for load in [history.at(t), history.before(t)].iter().filter(|load| load.validate().is_err()) {
             let (named, found) = (names(load), values(load));
             let k = (0..3).find(|&k| !found[k].is_finite()).unwrap_or(0);
-            verdict("every load is one that a step accepts", t, Some((named[k], found[k], 0.0)))?;
+            verdict(IS_A_LOAD, t, Some((named[k], found[k], 0.0)))?;
         }
     }
     Ok(())
@@ -300,6 +307,7 @@ fn roughest(value: &dyn Fn(f64) -> f64, start: f64, end: f64, straight: f64) -> 
     let [.., early, _, _, _, _, _, late, _] = bends[..] else { return None };
     let at = 0.5 * (window[0] + window[1]);
     match late / early {
+        ratio if ratio.is_nan() => Some((IS_A_LOAD, at)),
         ratio if ratio > 0.125 => Some(("jumps lie on breakpoints", at)),
         ratio if ratio > 0.0055 => Some(("corners lie on breakpoints", at)),
         _ => None,

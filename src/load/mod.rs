@@ -147,6 +147,15 @@ impl Load {
         Ok(())
     }
 
+    /// Accepts what a history says for `time`, if a step can be given it.
+    pub(crate) fn validated_at(self, time: f64) -> Result<Load> {
+        match self.validate() {
+            Ok(()) => Ok(self),
+            Err(Error::OutOfRange { field, value, allowed }) => Err(Error::InvalidLoad { time, field, value, allowed }),
+            Err(other) => Err(other),
+        }
+    }
+
     /// What is given and what is free, in words.
     fn kind(&self) -> &'static str {
         let free = self.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
@@ -245,7 +254,9 @@ impl Load {
 /// assert_eq!(Knock.at(0.5), Load::force(1.0));
 /// ```
 pub trait LoadHistory: Debug + Send + Sync {
-    /// The load at time `t` \[s\]; at a jump, the load after it (right-continuous).
+    /// The load at time `t` \[s\]; at a jump, the load after it (right-continuous). A run looks at the ends of steps, with
+    /// adaptive steps also between them, and ends with [`Error::InvalidLoad`](crate::Error::InvalidLoad) wherever it
+    /// finds a load that no step can be given.
     fn at(&self, t: f64) -> Load;
 
     /// The load just before time `t`: differs from [`LoadHistory::at`] only at a jump.

@@ -255,7 +255,8 @@ impl Coarse<'_> {
     fn first_length(&self) -> Result<f64> {
         let (mut force, mut approach) = (0.0_f64, 0.0_f64);
         for k in 0..=64 {
-            match self.history.at(self.until * f64::from(k) / 64.0) {
+            let time = self.until * f64::from(k) / 64.0;
+            match self.history.at(time).validated_at(time)? {
                 Load::Force { normal, .. } => force = force.max(normal),
                 Load::Approach { approach: depth, .. } => approach = approach.max(depth),
             }

@@ -160,6 +160,21 @@ impl Material {
         self.bodies.iter().filter_map(|body| body.rheology.fit_report())
     }
 
+    /// Accepts rheologies whose times are numbers.
+    pub(crate) fn validate(&self) -> Result<()> {
+        for rheology in self.bodies.iter().map(|body| &body.rheology) {
+            let (until, measured) = (rheology.known_until(), rheology.measured());
+            if until.is_nan() || until <= 0.0 {
+                let (field, allowed) = ("Rheology::known_until", "> 0, +∞ for a formula");
+                return Err(Error::OutOfRange { field, value: until, allowed });
+            }
+            if let Some(value) = measured.into_iter().find(|time| time.is_nan()) {
+                return Err(Error::OutOfRange { field: "Rheology::measured", value, allowed: "two times" });
+            }
+        }
+        Ok(())
+    }
+
     /// C at `age`, which must not be less than `younger` = C at `earlier`, an age no greater.
     pub(crate) fn checked_compliance(&self, age: f64, (earlier, younger): (f64, f64)) -> Result<f64> {
         let value = self.contact_compliance(age);
