@@ -14,7 +14,14 @@ pub fn minimum(matrix: &[f64], gap: &[f64], columns: &[Vec<f64>], right: &[f64])
     let mut inside: Vec<bool> = p.iter().zip(&s).map(|(p, s)| p > s).collect();
     let scale = p.iter().copied().fold(0.0, f64::max);
     for _ in 0..EXCHANGES {
-        let (p, y) = on_set(matrix, gap, columns, right, &inside)?;
+        if right.iter().all(|b| *b == 0.0) && p.iter().fold(0.0, |most: f64, p| most.max(*p)) < 1e-3 {
+            // a body held at a pivot beside which it touches swings clear
+            return Some((vec![0.0; n], vec![f64::NAN; columns.len()]));
+        }
+        let Some((p, y)) = on_set(matrix, gap, columns, right, &inside) else {
+            // too few cells to tell the motion: pressures are determined all the same
+            return Some((p, vec![f64::NAN; columns.len()]));
+        };
         let h = |k: usize| {
             let own: f64 = (0..n).map(|l| matrix[k * n + l] * p[l]).sum();
             own + gap[k] - columns.iter().zip(&y).map(|(column, y)| column[k] * y).sum::<f64>()
@@ -58,12 +65,15 @@ fn interior(matrix: &[f64], gap: &[f64], columns: &[Vec<f64>], right: &[f64]) ->
             return (mu < 1e-8).then_some((p, s));
         }
         let image: Vec<Vec<f64>> = columns.iter().map(|column| back(&factor, n, column)).collect();
-        let schur: Vec<f64> = (0..m * m).map(|at| dot(&columns[at / m], &image[at % m])).collect();
+        // scaled to a unit diagonal: a body that hardly presses counts like any other
+        let unit: Vec<f64> = (0..m).map(|k| dot(&columns[k], &image[k]).sqrt().recip()).collect();
+        let schur: Vec<f64> =
+            (0..m * m).map(|at| unit[at / m] * unit[at % m] * dot(&columns[at / m], &image[at % m])).collect();
         let direction = |complementarity: &dyn Fn(usize) -> f64| {
             let force: Vec<f64> = (0..n).map(|k| complementarity(k) / p[k] - dual[k]).collect();
             let plain = back(&factor, n, &force);
-            let wanted: Vec<f64> = columns.iter().zip(&primal).map(|(column, r)| r - dot(column, &plain)).collect();
-            let dy = gauss(schur.clone(), wanted)?;
+            let wanted = (0..m).map(|k| unit[k] * (primal[k] - dot(&columns[k], &plain))).collect();
+            let dy: Vec<f64> = gauss(schur.clone(), wanted)?.iter().zip(&unit).map(|(dy, unit)| unit * dy).collect();
             let dp: Vec<f64> = (0..n)
                 .map(|k| plain[k] + image.iter().zip(&dy).map(|(image, dy)| image[k] * dy).sum::<f64>())
                 .collect();
@@ -157,9 +167,10 @@ fn back(factor: &[f64], n: usize, b: &[f64]) -> Vec<f64> {
 /// Gaussian elimination with row pivoting; `None` if a row depends on the others.
 fn gauss(mut a: Vec<f64>, mut b: Vec<f64>) -> Option<Vec<f64>> {
     let n = b.len();
+    let scale = a.iter().fold(0.0, |most: f64, a| most.max(a.abs()));
     for column in 0..n {
         let pivot = (column..n).max_by(|&i, &j| a[i * n + column].abs().total_cmp(&a[j * n + column].abs()))?;
-        if a[pivot * n + column].abs() < 1e-13 {
+        if a[pivot * n + column].abs() <= 1e-13 * scale {
             return None;
         }
         for k in 0..n {

@@ -155,6 +155,10 @@ impl Reference {
         own.map(|(p, _)| p).sum::<f64>() * self.grid.cell_area()
     }
 
+    pub fn total_force(&self) -> f64 {
+        (0..self.bodies).map(|body| self.force(body)).sum()
+    }
+
     /// The greatest displacement.
     pub fn deepest(&self) -> f64 {
         self.displacement.iter().copied().fold(0.0, f64::max)
