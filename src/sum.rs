@@ -38,13 +38,16 @@ pub(crate) fn sum_of_pairs(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) ->
     lanes.into_iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(&a, &b)| f(a, b)).sum::<f64>()
 }
 
-/// Sums over a field that tell one from another: of its absolute values, these weighted along x1 and x2, and their squares.
+/// Sums over a field that tell one from another: of its absolute values, these weighted along x1 and x2, their squares, and the
+/// absolute values with weights that have no symmetry, so that a field that is turned or mirrored is another one.
 #[cfg(feature = "checkpoint")]
 pub(crate) fn moments(field: impl Iterator<Item = f64>, columns: usize) -> Vec<f64> {
-    let mut sums = vec![0.0; 4];
+    let mut sums = vec![0.0; 5];
     for (k, value) in field.enumerate() {
         let (size, i, j) = (value.abs(), (k / columns) as f64, (k % columns) as f64);
-        for (sum, term) in sums.iter_mut().zip([size, size * i, size * j, size * size]) {
+        // the bits of a product with an odd number, 0.5 to 1.5
+        let weight = 0.5 + ((k as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 11) as f64 / (1_u64 << 53) as f64;
+        for (sum, term) in sums.iter_mut().zip([size, size * i, size * j, size * size, size * weight]) {
             *sum += term;
         }
     }
