@@ -4,10 +4,10 @@
 #[allow(dead_code, reason = "other tests want its normal deviates")]
 #[path = "common/noise.rs"]
 mod noise;
-#[path = "common/runs.rs"]
-mod runs;
 #[path = "checkpoint/scenes.rs"]
 mod random_scenes;
+#[path = "common/runs.rs"]
+mod runs;
 
 use std::fs;
 use std::path::{Path, PathBuf};

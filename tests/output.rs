@@ -435,12 +435,16 @@ fn full_disks_leave_whole_files_and_no_word() {
         .unwrap();
     let told = String::from_utf8_lossy(&child.stderr);
     assert!(child.status.success() && told.is_empty(), "{told}");
-    let (text, rows) = (text_of(&folder.0.join("history.csv")), text_of(&folder.0.join("rows")).parse::<usize>().unwrap());
+    let (text, rows) =
+        (text_of(&folder.0.join("history.csv")), text_of(&folder.0.join("rows")).parse::<usize>().unwrap());
     assert!(rows > 50 && text.len() <= 32768, "{rows} rows, {} bytes", text.len());
     let (head, lines): (Vec<_>, Vec<_>) = (text.lines().take(2).collect(), text.lines().skip(2).collect());
     assert_eq!((head.len(), lines.len()), (2, rows));
     assert!(text.ends_with('\n') && lines.iter().all(|line| *line == lines[0]));
     assert_eq!(folder.names(), ["few", "history.csv", "npz", "rows", "vtk"]);
-    assert_eq!(fs::read_dir(folder.0.join("npz")).unwrap().count() + fs::read_dir(folder.0.join("vtk")).unwrap().count(), 0);
+    assert_eq!(
+        fs::read_dir(folder.0.join("npz")).unwrap().count() + fs::read_dir(folder.0.join("vtk")).unwrap().count(),
+        0
+    );
     assert_eq!(fs::read_dir(folder.0.join("few")).unwrap().count(), 1);
 }

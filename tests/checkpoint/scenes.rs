@@ -9,6 +9,8 @@ use super::noise::uniform;
 use super::runs::three_times;
 use super::{file, refused};
 
+const OWNERS: &str = "assignment of cells to rigid bodies";
+
 /// A body at random, which can be built again, turned, or changed a little.
 #[derive(Clone, Copy, Debug)]
 struct Body {
@@ -28,7 +30,9 @@ impl Body {
             2 => Box::new(Shifted::new(FlatPunch::rectangular([0.1 * a, 0.1 * b]).unwrap(), self.at).unwrap()),
             _ => {
                 let [x, y] = self.at;
-                Box::new(FnGeometry::new(move |x1, x2| height + ((x1 - x).powi(2) / a + (x2 - y).powi(2) / b).sqrt() * 1e-2))
+                Box::new(FnGeometry::new(move |x1, x2| {
+                    height + ((x1 - x).powi(2) / a + (x2 - y).powi(2) / b).sqrt() * 1e-2
+                }))
             }
         }
     }
@@ -84,7 +88,7 @@ fn random_scenes_are_told_apart() {
             other.swap(0, first);
             let mut other = build(&grid, &all(&other)).unwrap();
             let error = refused(&mut other, &path);
-            let CheckpointError::OtherScene { what: "assignment of cells to rigid bodies", saved, built } = &error else {
+            let CheckpointError::OtherScene { what: OWNERS, saved, built } = &error else {
                 panic!("seed {seed}: {error}")
             };
             assert_ne!(saved, built, "seed {seed}");
@@ -112,7 +116,7 @@ fn random_scenes_are_told_apart() {
                 continue;
             }
             let error = refused(&mut other, &path);
-            let named = matches!(error, CheckpointError::OtherScene { what: "geometry", .. });
+            let named = matches!(error, CheckpointError::OtherScene { what: "geometry" | OWNERS, .. });
             assert!(named, "seed {seed}, {:?} of {bodies:?}: {error}", scene[changed]);
             reshaped += 1;
         }
@@ -121,7 +125,8 @@ fn random_scenes_are_told_apart() {
             [-1.0, 1.0]
                 .map(|side| -> Box<dyn Geometry> {
                     let whole = body.geometry();
-                    let part = move |x1, x2| if (x1 - at) * side > 0.0 { whole.initial_gap(x1, x2) } else { f64::INFINITY };
+                    let part =
+                        move |x1, x2| if (x1 - at) * side > 0.0 { whole.initial_gap(x1, x2) } else { f64::INFINITY };
                     Box::new(FnGeometry::new(part))
                 })
                 .into()
@@ -134,12 +139,11 @@ fn random_scenes_are_told_apart() {
         };
         one.save(&path).unwrap();
         build(&grid, &cut(at(middle) + 0.3 * spacing)).unwrap().resume(&path).unwrap();
-        assert_eq!(gap(&one), gap(&other));
         // only where there is something to touch on the column between
         let column = middle * grid.cells()[1]..(middle + 1) * grid.cells()[1];
         if gap(&one)[column].iter().any(|gap| gap.is_finite()) {
             let error = refused(&mut other, &path);
-            let named = matches!(error, CheckpointError::OtherScene { what: "assignment of cells to rigid bodies", .. });
+            let named = matches!(error, CheckpointError::OtherScene { what: OWNERS, .. });
             assert!(named, "seed {seed}: {error}");
             recut += 1;
         }

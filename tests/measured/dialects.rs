@@ -89,7 +89,9 @@ fn units_of_headings_are_those_given() {
     assert_eq!(refused("time min;J", Units::SI), as_text(1, "min", "abscissa", "s"));
     assert_eq!(refused("t;J [GPa]", minutes), as_text(2, "GPa", "value", "1/GPa"));
     assert_eq!(refused("first [h];second", Units::SI), as_text(1, "h", "abscissa", "s"));
-    for headings in ["t [min];J [1/GPa]", "t / min;J·GPa", "t;J", "t [MINUTES];J [10^-9 1/Pa]", "t [?];J (at 5 MPa)"] {
+    for headings in
+        ["t [min];J [1/GPa]", "t / min;J / GPa^-1", "t;J", "t [MINUTES];J [10^-9 1/Pa]", "t [?];J (at 5 MPa)"]
+    {
         creep(&format!("{headings}\n{rows}"), minutes).unwrap_or_else(|error| panic!("{headings}: {error}"));
     }
     let dynamic = |headings: &str, units| {
@@ -99,7 +101,10 @@ fn units_of_headings_are_those_given() {
     let kilohertz = Units { abscissa: 6283.19, value: 1e6 };
     assert_eq!(dynamic("f [kHz];G' [MPa];G'' [MPa]", kilohertz), Ok(()));
     let error = dynamic("f [Hz];G' [MPa];G'' [MPa]", kilohertz).unwrap_err();
-    assert!(matches!(&error, Error::Table(TableError::Unit { column: 1, .. })) && error.to_string().contains("kHz"), "{error}");
+    assert!(
+        matches!(&error, Error::Table(TableError::Unit { column: 1, .. })) && error.to_string().contains("kHz"),
+        "{error}"
+    );
     let error = dynamic("omega [rad/s];G' [MPa];G'' [Pa]", Units { abscissa: 1.0, value: 1e6 }).unwrap_err();
     assert!(matches!(error, Error::Table(TableError::Unit { column: 3, .. })), "{error}");
     let message = creep(&format!("time [min];J\n{rows}"), Units::SI).unwrap_err().to_string();
@@ -157,7 +162,8 @@ fn tables_are_read_exactly_or_refused_where_they_are_spoiled() {
             end: ["\n", "\r\n", "\r"][random(3)],
             quotes: random(4) == 0,
         };
-        let (x_units, value_units) = if dynamic { (&FREQUENCIES[..], &MODULI[..]) } else { (&TIMES[..], &COMPLIANCES[..]) };
+        let (x_units, value_units) =
+            if dynamic { (&FREQUENCIES[..], &MODULI[..]) } else { (&TIMES[..], &COMPLIANCES[..]) };
         let (x_unit, value_unit) = (x_units[random(x_units.len())], value_units[random(value_units.len())]);
         let units = Units { abscissa: x_unit.1, value: value_unit.1 };
         // columns in any order, and one that is not needed, where headings say so
@@ -184,7 +190,7 @@ fn tables_are_read_exactly_or_refused_where_they_are_spoiled() {
             false => text.to_owned(),
         };
         let pad = if dialect.separator == ' ' { ["", "  ", " "] } else { ["", " ", "  "] };
-        let mut join = |fields: Vec<String>, random: &mut dyn FnMut(usize) -> usize| {
+        let join = |fields: Vec<String>, random: &mut dyn FnMut(usize) -> usize| {
             let mut line = String::new();
             for (k, field) in fields.iter().enumerate() {
                 if k > 0 {
@@ -197,7 +203,7 @@ fn tables_are_read_exactly_or_refused_where_they_are_spoiled() {
             line
         };
         let (mut lines, mut heading_line, mut row_lines) = (Vec::<String>::new(), 0, Vec::new());
-        let mut remark = |lines: &mut Vec<String>, random: &mut dyn FnMut(usize) -> usize| match random(8) {
+        let remark = |lines: &mut Vec<String>, random: &mut dyn FnMut(usize) -> usize| match random(8) {
             0 => lines.push("# 1,5; \"a\tb".into()),
             1 => lines.push(["", "  ", " # remark"][random(3)].into()),
             _ => {}
@@ -267,7 +273,9 @@ fn tables_are_read_exactly_or_refused_where_they_are_spoiled() {
                 let found: Vec<[f64; 2]> = report.samples().iter().map(|sample| [sample.x, sample.given]).collect();
                 let value = |text: &String, unit: f64| text.parse::<f64>().unwrap() * unit;
                 let expected: Vec<[f64; 2]> = (1..width)
-                    .flat_map(|column| rows.iter().map(move |row| [value(&row[0], units.abscissa), value(&row[column], units.value)]))
+                    .flat_map(|column| {
+                        rows.iter().map(move |row| [value(&row[0], units.abscissa), value(&row[column], units.value)])
+                    })
                     .collect();
                 assert_eq!(found, expected, "seed {seed}:\n{text}");
                 exact += 1;

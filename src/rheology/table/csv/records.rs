@@ -75,21 +75,22 @@ fn field(text: &str, separator: char) -> (String, &str) {
 /// The separator of a text: the first of semicolon, tab and comma that half of its lines hold, or else blanks. Commas within
 /// numbers that blanks separate are decimal commas.
 pub(super) fn separator(text: &str) -> char {
-    let data = text.split(['\r', '\n']).map(str::trim).filter(|line| !line.is_empty() && !line.starts_with(['#']));
+    let data = text.split(['\r', '\n']).map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let lines: Vec<&str> = data.collect();
-    let half = |holds: &dyn Fn(&str) -> bool| 2 * lines.iter().filter(|line| holds(line)).count() >= lines.len();
     // every other piece is quoted
     let outside = |line: &str, mark: char| line.split('"').step_by(2).any(|piece| piece.contains(mark));
-    let blanks = |line: &str| {
+    let mark = [';', '\t', ','].into_iter().find(|&mark| half(&lines, &|line| outside(line, mark))).unwrap_or(' ');
+    let with_comma: Vec<&str> = lines.into_iter().filter(|line| line.contains(',')).collect();
+    let decimal = |line: &str| {
         let words = || line.split_whitespace().map(|word| word.trim_matches('"'));
-        words().count() > 1 && words().all(plain)
+        words().count() > 1 && words().all(|word| !word.contains(',') || plain(word))
     };
-    let marks = [';', '\t', ','].into_iter();
-    match marks.filter(|_| !lines.is_empty()).find(|&mark| half(&|line: &str| outside(line, mark))) {
-        Some(',') if half(&blanks) => ' ',
-        Some(mark) => mark,
-        None => ' ',
-    }
+    if mark == ',' && half(&with_comma, &decimal) { ' ' } else { mark }
+}
+
+/// Whether half of the lines, and one at least, fit.
+fn half(lines: &[&str], fits: &dyn Fn(&str) -> bool) -> bool {
+    !lines.is_empty() && 2 * lines.iter().filter(|line| fits(line)).count() >= lines.len()
 }
 
 #[cfg(test)]
@@ -109,8 +110,8 @@ mod tests {
         assert_eq!(rows("  1   \t2 \n 3 4", ' '), [row(1, &["1", "2"]), row(2, &["3", "4"])]);
         // quotes that enclose no field
         assert_eq!(
-            rows("1,\"2\n3,G\"\n\"4\"5,6\n", ','),
-            [row(1, &["1", "\"2"]), row(2, &["3", "G\""]), row(3, &["\"4\"5", "6"])]
+            rows("1,\"2\n3,G\"H\n\"4\"5,6\n", ','),
+            [row(1, &["1", "\"2"]), row(2, &["3", "G\"H"]), row(3, &["\"4\"5", "6"])]
         );
     }
 
@@ -122,6 +123,7 @@ mod tests {
             ("# a;b\nt,J\n1,2\n", ','),
             ("1, 2\n2, 3\n", ','),
             ("1,5 2,5\n2 3,5\n", ' '),
+            ("t J\n1,5 a\n2 b\n", ' '),
             ("1 2\n3 4\n", ' '),
             ("\"a;b\",\"c;d\"\n", ','),
             ("", ' '),

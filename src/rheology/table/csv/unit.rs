@@ -47,7 +47,8 @@ const NAMES: [(&str, Kind, f64); 27] = [
 impl Kind {
     /// The unit of this name and size, as an error shows it.
     pub(super) fn name(self, size: f64) -> String {
-        let of = |kind, size| NAMES.iter().find(|unit| unit.1 == kind && same(unit.2, size)).map(|unit| unit.0.to_owned());
+        let of =
+            |kind, size| NAMES.iter().find(|unit| unit.1 == kind && same(unit.2, size)).map(|unit| unit.0.to_owned());
         let (si, found) = match self {
             Kind::Time => ("s", of(self, size)),
             Kind::Frequency if same(size, 1.0) => ("rad/s", Some("rad/s".to_owned())),
@@ -101,7 +102,8 @@ pub(super) fn readings(text: &str) -> Vec<Unit> {
 
 /// The power of ten before a unit, and the unit.
 fn scaled(text: &str) -> (f64, &str) {
-    let Some(power) = text.strip_prefix("10^").or_else(|| text.strip_prefix("1e")).or_else(|| text.strip_prefix("1E")) else {
+    let Some(power) = text.strip_prefix("10^").or_else(|| text.strip_prefix("1e")).or_else(|| text.strip_prefix("1E"))
+    else {
         return (1.0, text);
     };
     let power = power.trim_start_matches('{');
@@ -137,7 +139,10 @@ mod tests {
             (&["Hz", "HZ", "1/s", "s⁻¹"], (Kind::Frequency, TAU)),
             (&["GPa", "gpa", "10^9 Pa", "1E9 Pa", "10⁹·Pa"], (Kind::Modulus, 1e9)),
             (&["MPa", "mpa", "N/mm^2", "N/mm²"], (Kind::Modulus, 1e6)),
-            (&["1/GPa", "GPa^-1", "GPa⁻¹", "/GPa", "1 / GPa", "10^-9/Pa", "10^{-9} 1/Pa", "1/(GPa)"], (Kind::Compliance, 1e-9)),
+            (
+                &["1/GPa", "GPa^-1", "GPa⁻¹", "/GPa", "1 / GPa", "10^-9/Pa", "10^{-9} 1/Pa", "1/(GPa)"],
+                (Kind::Compliance, 1e-9),
+            ),
             (&["1/MPa", "mm²/N", "MPa-1"], (Kind::Compliance, 1e-6)),
         ] {
             for text in texts {
@@ -146,7 +151,11 @@ mod tests {
                 assert!(found, "{text}: {readings:?}");
             }
             let (kind, size) = unit;
-            assert!(self::readings(&kind.name(size)).iter().any(|&(k, s)| k == kind && same(s, size)), "{}", kind.name(size));
+            assert!(
+                self::readings(&kind.name(size)).iter().any(|&(k, s)| k == kind && same(s, size)),
+                "{}",
+                kind.name(size)
+            );
         }
         for text in ["", "%", "t", "S", "H", "1", "10^", "K", "°C", "-", "5 MPa", "1 Hz", "ω", "mm", "1/K"] {
             assert_eq!(readings(text), [], "{text}");
