@@ -130,8 +130,8 @@ fn tables_are_read_exactly_or_refused_where_they_are_spoiled() {
     const MODULI: [(&str, f64); 3] = [("Pa", 1.0), ("MPa", 1e6), ("kPa", 1e3)];
     const SPOILED: [&str; 15] =
         ["<1", "≥ 2.5", "1,5,2", "", "NA", "1.5.2", "oops", "1e", "O.5", "--", "1;5", "5 Pa", "\"1", "\"1\"5", "1D"];
-    let [mut exact, mut spoiled, mut other_unit, mut ambiguous] = [0; 4];
-    for seed in 0..3000 {
+    let [mut exact, mut spoiled, mut other_unit] = [0; 3];
+    for seed in 0..1500 {
         let mut number = uniform(seed);
         let mut random = move |below: usize| (number() * below as f64) as usize;
         let dynamic = random(3) == 0;
@@ -289,15 +289,6 @@ fn tables_are_read_exactly_or_refused_where_they_are_spoiled() {
                 assert!(wrong == Some(0) && dynamic, "seed {seed}:\n{text}");
                 other_unit += 1;
             }
-            Err(Error::Table(TableError::Ambiguous { line, column, .. })) => {
-                // commas that may all be separators of thousands
-                let at = row_lines.iter().position(|&row| row as u64 == line).unwrap();
-                assert!(dialect.comma && bad.is_empty(), "seed {seed}:\n{text}");
-                let decimals = rows.iter().flatten().filter_map(|number| number.split_once('.'));
-                let mut groups = decimals.map(|(whole, decimals)| !whole.starts_with('0') && decimals.len() == 3);
-                assert!(groups.all(|group| group) && rows[at][order[column - 1]].contains('.'), "seed {seed}:\n{text}");
-                ambiguous += 1;
-            }
             Err(Error::Table(error)) => {
                 let Some(&(row, place, spoil)) = bad.first() else { panic!("seed {seed}: {error} in\n{text}") };
                 let line = row_lines[row] as u64;
@@ -317,6 +308,6 @@ fn tables_are_read_exactly_or_refused_where_they_are_spoiled() {
             Err(other) => panic!("seed {seed}: {other}"),
         }
     }
-    println!("{exact} exact, {spoiled} spoiled, {other_unit} in other units, {ambiguous} ambiguous");
-    assert!(exact > 800 && spoiled > 800 && other_unit > 100 && ambiguous < 60);
+    println!("{exact} exact, {spoiled} spoiled, {other_unit} in other units");
+    assert!(exact > 600 && spoiled > 500 && other_unit > 80);
 }
