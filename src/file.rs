@@ -12,8 +12,10 @@ mod part;
 
 #[cfg(any(feature = "csv", feature = "plot"))]
 pub(crate) use appending::Appending;
+#[cfg(feature = "plot")]
+pub(crate) use part::Part;
 #[cfg(any(feature = "checkpoint", feature = "npy", feature = "plot", feature = "vtk"))]
-pub(crate) use part::{Part, replace};
+pub(crate) use part::replace;
 
 /// The error of a file.
 pub(crate) fn failed(path: &Path, what: impl Display) -> Error {
