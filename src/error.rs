@@ -373,6 +373,15 @@ pub enum Error {
         what: String,
     },
 
+    /// What stands at the path is no regular file, and is left alone: only files are replaced.
+    #[error("{path} cannot be written: {kind} is there, not a file")]
+    NotAFile {
+        /// The path.
+        path: String,
+        /// What is there.
+        kind: &'static str,
+    },
+
     /// A checkpoint cannot be continued from.
     #[cfg(feature = "checkpoint")]
     #[error("{path}: {source}")]

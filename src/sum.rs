@@ -38,13 +38,18 @@ pub(crate) fn sum_of_pairs(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) ->
     lanes.into_iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(&a, &b)| f(a, b)).sum::<f64>()
 }
 
-/// Sums over a field that tell one from another: of its absolute values, these weighted along x1 and x2, and their squares.
+/// Sums over a field that tell one from another: of its absolute values, these weighted along x1 and x2, their squares, and the
+/// absolute values with weights that have no symmetry, so that a field that is turned or mirrored is another one.
 #[cfg(feature = "checkpoint")]
 pub(crate) fn moments(field: impl Iterator<Item = f64>, columns: usize) -> Vec<f64> {
-    let mut sums = vec![0.0; 4];
+    let mut sums = vec![0.0; 5];
     for (k, value) in field.enumerate() {
         let (size, i, j) = (value.abs(), (k / columns) as f64, (k % columns) as f64);
-        for (sum, term) in sums.iter_mut().zip([size, size * i, size * j, size * size]) {
+        // 0.5 to 1.5, by the finalizer of splitmix64
+        let bits = (k as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        let bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let weight = 0.5 + ((bits ^ (bits >> 27)) >> 11) as f64 / (1_u64 << 53) as f64;
+        for (sum, term) in sums.iter_mut().zip([size, size * i, size * j, size * size, size * weight]) {
             *sum += term;
         }
     }
@@ -54,6 +59,21 @@ pub(crate) fn moments(field: impl Iterator<Item = f64>, columns: usize) -> Vec<f
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[cfg(feature = "checkpoint")]
+    #[test]
+    fn fields_that_are_turned_or_mirrored_are_told_apart() {
+        // bars through the middle: all other sums are the same
+        for (long, short) in [(3, 1), (5, 1), (5, 3), (9, 1), (9, 7), (15, 3)] {
+            let bar = |half1: i32, half2: i32| {
+                let inside = move |k: i32| (k / 31 - 15).abs() <= half1 && (k % 31 - 15).abs() <= half2;
+                moments((0..31 * 31).map(|k| f64::from(u8::from(inside(k)))), 31)
+            };
+            let (one, turned) = (bar(long, short), bar(short, long));
+            assert_eq!(one[..4], turned[..4]);
+            assert!((one[4] / turned[4] - 1.0).abs() > 1e-6, "{long} {short}");
+        }
+    }
 
     #[test]
     fn sums_take_every_value() {

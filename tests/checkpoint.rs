@@ -4,6 +4,8 @@
 #[allow(dead_code, reason = "other tests want its normal deviates")]
 #[path = "common/noise.rs"]
 mod noise;
+#[path = "checkpoint/scenes.rs"]
+mod random_scenes;
 #[path = "common/runs.rs"]
 mod runs;
 
@@ -144,7 +146,9 @@ fn damaged_files_are_refused() {
     }
     let mut newer = bytes.clone();
     newer[8] = 99;
-    assert_eq!(refuse(&newer), CheckpointError::Newer { found: 99, known: 1 });
+    assert_eq!(refuse(&newer), CheckpointError::Newer { found: 99, known: 2 });
+    newer[8] = 1;
+    assert_eq!(refuse(&newer), CheckpointError::Older { found: 1, known: 2 });
     assert_eq!(refuse(b"PK\x03\x04 an archive of something else"), CheckpointError::Foreign);
     let longer = [&bytes[..], &[0]].concat();
     assert!(matches!(refuse(&longer), CheckpointError::Size { .. }));

@@ -3,6 +3,10 @@
 #[path = "common/noise.rs"]
 mod noise;
 
+#[cfg(feature = "csv")]
+#[path = "measured/dialects.rs"]
+mod dialects;
+
 use noise::noise;
 use viscocontact::Error;
 use viscocontact::prelude::*;

@@ -299,3 +299,45 @@ proptest! {
         }
     }
 }
+
+/// What the test below runs with room for 32 KiB in a file.
+#[cfg(unix)]
+#[test]
+#[ignore = "a_frame_without_room_leaves_no_trace runs it"]
+fn frames_until_there_is_no_room() {
+    let folder = std::path::PathBuf::from(std::env::var_os("FULL_FOLDER").expect("FULL_FOLDER names a folder"));
+    let mut contact = ball();
+    let mut animation = Animation::create(folder.join("run.gif"), Field::Pressure, [0.0, 0.4e6], 0.05).unwrap();
+    let length = || fs::read_dir(&folder).unwrap().next().unwrap().unwrap().metadata().unwrap().len();
+    let mut before = length();
+    for _ in 0..1000 {
+        contact.step(0.2, Load::force(0.1 + 0.2 * (contact.time() % 0.7))).unwrap();
+        match animation.add(&contact) {
+            Ok(()) => before = length(),
+            Err(error) => {
+                assert!(matches!(error, Error::Output { .. }), "{error}");
+                assert!(animation.frames() > 0 && length() == before && before <= 32768);
+                return;
+            }
+        }
+    }
+    panic!("{} frames in {before} bytes", animation.frames());
+}
+
+/// A frame that the disk has no room for leaves nothing in the file.
+#[cfg(unix)]
+#[test]
+fn a_frame_without_room_leaves_no_trace() {
+    let folder = folder("full");
+    let child = std::process::Command::new("sh")
+        .args([
+            "-c",
+            "trap '' XFSZ; ulimit -f 64; exec \"$0\" --exact frames_until_there_is_no_room --ignored --nocapture",
+        ])
+        .arg(std::env::current_exe().unwrap())
+        .env("FULL_FOLDER", &folder)
+        .output()
+        .unwrap();
+    assert!(child.status.success(), "{}", String::from_utf8_lossy(&child.stderr));
+    fs::remove_dir_all(folder).unwrap();
+}

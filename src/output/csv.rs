@@ -1,13 +1,12 @@
 //! The history of a run as a table.
 
-use std::fs::{File, OpenOptions};
-use std::io::Write;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 use crate::ViscoelasticContact;
 use crate::contact::StepReport;
 use crate::error::{Result, exact_length};
-use crate::file::failed;
+use crate::file::{Appending, failed};
 use crate::output::Scene;
 
 /// The columns of every history.
@@ -61,7 +60,7 @@ const COLUMNS: [&str; 17] = [
 #[derive(Debug)]
 pub struct CsvHistory {
     path: PathBuf,
-    table: ::csv::Writer<File>,
+    file: Appending<File>,
     further: usize,
 }
 
@@ -85,20 +84,22 @@ impl CsvHistory {
                 return Err(failed(&path, format!("a column may not be called {name:?}: it must have {rule}")));
             }
         }
-        let unusable = |error: std::io::Error| failed(&path, error);
-        let mut file = OpenOptions::new().write(true).create_new(true).open(&path).map_err(unusable)?;
-        writeln!(file, "# {}", scene.json(contact)).map_err(unusable)?;
-        let mut history =
-            CsvHistory { table: ::csv::Writer::from_writer(file), path: path.clone(), further: further.len() };
-        history.row(COLUMNS.iter().chain(further))?;
-        Ok(history)
+        let names: Vec<String> = COLUMNS.iter().chain(further).map(|name| quoted(name)).collect();
+        let head = format!("# {}\n{}\n", scene.json(contact), names.join(","));
+        let mut file = Appending::new(File::create_new(&path).map_err(|error| failed(&path, error))?);
+        if let Err(error) = file.append(head.as_bytes()) {
+            let _ = fs::remove_file(&path); // the error that matters is that of the write
+            return Err(failed(&path, error));
+        }
+        Ok(CsvHistory { path, file, further: further.len() })
     }
 
     /// Adds the row of a step that was just taken, with the values of the further columns, which are written as they
     /// are: NaN as `NaN`.
     ///
     /// # Errors
-    /// If there is not one value for each further column, or the file cannot be written.
+    /// If there is not one value for each further column, or the file cannot be written. Nothing of the row is in the file
+    /// then, and the next row can be written as soon as there is room again.
     pub fn write(&mut self, contact: &ViscoelasticContact, report: &StepReport, further: &[f64]) -> Result<()> {
         exact_length("further columns", further.len(), self.further)?;
         let number = |value: f64| format!("{value:?}");
@@ -122,12 +123,13 @@ impl CsvHistory {
             number(report.residual),
             number(report.time_error),
         ];
-        self.row(own.into_iter().chain(further.iter().copied().map(number)))
+        let cells: Vec<String> = own.into_iter().chain(further.iter().copied().map(number)).collect();
+        let row = cells.join(",") + "\n";
+        self.file.append(row.as_bytes()).map_err(|error| failed(&self.path, error))
     }
+}
 
-    /// Writes a row and hands it to the system.
-    fn row(&mut self, cells: impl Iterator<Item = impl AsRef<[u8]>>) -> Result<()> {
-        self.table.write_record(cells).map_err(|error| failed(&self.path, error))?;
-        self.table.flush().map_err(|error| failed(&self.path, error))
-    }
+/// The name of a column, which holds no quotes, as a field.
+fn quoted(name: &str) -> String {
+    if name.contains(',') { format!("\"{name}\"") } else { name.to_owned() }
 }

@@ -12,10 +12,17 @@
 //! returns, so that a run that is killed leaves all frames before readable.
 //!
 //! Nothing of an earlier run is overwritten: a series is refused a folder that holds frames, a history a file
-//! that exists.
+//! that exists. A single file (`write_npy`, pictures, checkpoints) replaces a file of its name when it is complete; where its name
+//! is a link, the link stays and the file that it leads to is replaced. A folder, device, pipe or socket is left alone:
+//! [`Error::NotAFile`](crate::Error::NotAFile). Until it is complete a file has the number of the process and `.part` behind its
+//! name; a process that is killed leaves it so.
+//!
+//! A write that fails, as on a full disk, leaves what was written before, no part of its own, and can be tried again.
 
 #[cfg(feature = "csv")]
 mod csv;
+#[cfg(feature = "npy")]
+mod deferred;
 mod field;
 #[cfg(any(feature = "npy", feature = "vtk"))]
 mod frames;

@@ -1,6 +1,6 @@
 //! Frames as NumPy archives.
 
-use std::io::{self, Seek, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use zip::ZipWriter;
@@ -9,6 +9,7 @@ use zip::write::SimpleFileOptions;
 use crate::ViscoelasticContact;
 use crate::error::Result;
 use crate::file::replace;
+use crate::output::deferred::Deferred;
 use crate::output::frames::Frames;
 use crate::output::{Field, Scene, npy};
 
@@ -70,7 +71,7 @@ impl NpzSeries {
         let path = self.frames.path(&self.frames.next_name());
         let NpzSeries { scene, fields, buffer, .. } = self;
         replace(&path, |out| {
-            let mut archive = Archive(ZipWriter::new(out));
+            let mut archive = Archive(ZipWriter::new(Deferred::new(out)));
             archive.add("time", &[], &[contact.time()])?;
             for (axis, name) in ["x1", "x2"].into_iter().enumerate() {
                 let cells = contact.grid().cells()[axis];
@@ -87,7 +88,7 @@ impl NpzSeries {
             archive.add("contact_area", &[], &[contact.contact_area()])?;
             archive.start("scene", false)?;
             npy::text(&mut archive.0, &scene.json(contact))?;
-            archive.0.finish()?.flush()
+            archive.0.finish()?.finish()
         })?;
         self.frames.count();
         Ok(path)
@@ -100,9 +101,9 @@ impl NpzSeries {
 }
 
 /// An archive under construction.
-struct Archive<W: Write + Seek>(ZipWriter<W>);
+struct Archive<W: io::Write + io::Seek>(ZipWriter<Deferred<W>>);
 
-impl<W: Write + Seek> Archive<W> {
+impl<W: io::Write + io::Seek> Archive<W> {
     fn start(&mut self, name: &str, large: bool) -> io::Result<()> {
         let options = SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored).large_file(large);
         Ok(self.0.start_file(npyz::npz::file_name_from_array_name(name), options)?)

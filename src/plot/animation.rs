@@ -1,13 +1,12 @@
 //! Runs that move.
 
 use std::fmt;
-use std::fs::{self, File};
-use std::io::{BufWriter, Write};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use crate::ViscoelasticContact;
 use crate::error::{Error, Result, within};
-use crate::file::failed;
+use crate::file::{Appending, Part, failed};
 use crate::output::Field;
 use crate::plot::palette::Palette;
 use crate::plot::quantity::drawable;
@@ -15,8 +14,8 @@ use crate::plot::{Map, Picture};
 
 /// A run as an animated GIF, frame by frame, played over and over.
 ///
-/// Frames are written as they are added, to a file with `.part` behind its name, which browsers show as far as it goes;
-/// it gets its own name by [`Animation::finish`]. An animation that is dropped before leaves the part.
+/// Frames are written as they are added, to a file with the number of the process and `.part` behind its name, which browsers
+/// show as far as it goes; it gets its own name by [`Animation::finish`]. An animation that is dropped before leaves the part.
 ///
 /// ```
 /// use viscocontact::plot::Animation;
@@ -38,14 +37,15 @@ use crate::plot::{Map, Picture};
 /// ```
 pub struct Animation {
     path: PathBuf,
-    part: PathBuf,
+    part: Part,
+    file: Appending<File>,
     field: Field,
     range: [f64; 2],
     /// Hundredths of a second a frame.
     delay: u16,
     palette: Palette,
     /// From the first frame on.
-    encoder: Option<gif::Encoder<BufWriter<File>>>,
+    encoder: Option<gif::Encoder<Vec<u8>>>,
     size: [u32; 2],
     /// The last frame, to write of the next what has changed.
     last: Vec<u8>,
@@ -67,13 +67,11 @@ impl Animation {
         // players show shorter ones for a tenth of a second
         let allowed = (0.02..=600.0).contains(&seconds);
         let delay = (within("seconds a frame", seconds, allowed, "in [0.02, 600]")? * 100.0).round() as u16;
-        let mut name = path.file_name().ok_or_else(|| failed(&path, "it names no file"))?.to_owned();
-        name.push(".part");
-        let part = path.with_file_name(name);
-        File::create(&part).map_err(|error| failed(&path, error))?;
+        let (part, file) = Part::create(&path)?;
         Ok(Animation {
             path,
             part,
+            file: Appending::new(file),
             field,
             range,
             delay,
@@ -98,17 +96,16 @@ impl Animation {
     /// Adds a picture of your own. Its colours are the nearest of 256: those of maps and series, and greys.
     ///
     /// # Errors
-    /// If it has another size than the first, or the file cannot be written.
+    /// If it has another size than the first, or the file cannot be written; nothing of it is in the file then.
     pub fn add_picture(&mut self, picture: &Picture) -> Result<()> {
         let size = picture.size();
-        let unusable = |error: &dyn fmt::Display| failed(&self.path, error);
-        if self.encoder.is_none() {
-            let file = File::create(&self.part).map_err(|error| unusable(&error))?;
+        let path = &self.path;
+        if self.frames == 0 {
             // a picture has 16384 pixels along a side at most
             let [width, height] = size.map(|side| side as u16);
-            let mut encoder = gif::Encoder::new(BufWriter::new(file), width, height, &self.palette.bytes())
-                .map_err(|error| unusable(&error))?;
-            encoder.set_repeat(gif::Repeat::Infinite).map_err(|error| unusable(&error))?;
+            let mut encoder = gif::Encoder::new(Vec::new(), width, height, &self.palette.bytes())
+                .map_err(|error| failed(path, error))?;
+            encoder.set_repeat(gif::Repeat::Infinite).map_err(|error| failed(path, error))?;
             (self.encoder, self.size) = (Some(encoder), size);
         }
         for (field, side, first) in
@@ -131,8 +128,10 @@ impl Animation {
             ..gif::Frame::default()
         };
         if let Some(encoder) = &mut self.encoder {
-            encoder.write_frame(&frame).map_err(|error| failed(&self.path, error))?;
-            encoder.get_mut().flush().map_err(|error| failed(&self.path, error))?;
+            let encoded = encoder.write_frame(&frame);
+            let piece = std::mem::take(encoder.get_mut());
+            encoded.map_err(|error| failed(path, error))?;
+            self.file.append(&piece).map_err(|error| failed(path, error))?;
         }
         self.last = pixels;
         self.frames += 1;
@@ -149,14 +148,13 @@ impl Animation {
     /// # Errors
     /// If there are no frames, or the file cannot be written.
     pub fn finish(mut self) -> Result<()> {
-        let Some(encoder) = self.encoder.take() else {
-            // nothing worth keeping; the error that matters is this
-            let _ = fs::remove_file(&self.part);
+        let Some(encoder) = self.encoder.take().filter(|_| self.frames > 0) else {
+            self.part.remove(); // nothing worth keeping
             return Err(Error::WrongLength { field: "frames of an animation", len: 0, expected: 1, exact: false });
         };
-        let writer = encoder.into_inner().map_err(|error| failed(&self.path, error))?;
-        let file = writer.into_inner().map_err(|error| failed(&self.path, error))?;
-        file.sync_all().and_then(|()| fs::rename(&self.part, &self.path)).map_err(|error| failed(&self.path, error))
+        let end = encoder.into_inner().map_err(|error| failed(&self.path, error))?;
+        self.file.append(&end).map_err(|error| failed(&self.path, error))?;
+        self.part.place(self.file.into_inner())
     }
 }
 

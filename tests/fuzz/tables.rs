@@ -108,23 +108,34 @@ fn master(source: &mut Source) -> Verdict {
 fn csv(source: &mut Source) -> Verdict {
     use viscocontact::rheology::Units;
 
-    const FILES: [&str; 5] = [
+    const FILES: [&str; 8] = [
         "# PMMA, 23 C\ntime [s], J [1/Pa]\n10, 1.2e-9\n1, 1.0e-9\n100, 1.3e-9\n3, 1.1e-9\n30, 1.25e-9\n300, 1.4e-9\n",
         "1; 4.0e6\n3; 3.1e6\n10; 2.4e6\n30; 2.1e6\n100; 1.9e6\n300; 1.8e6\n",
         "omega,G',G''\n0.1,1.0e6,2e5\n1,1.5e6,4e5\n10,2.2e6,4e5\n100,2.5e6,1e5\n30,2.3e6,3e5\n",
         "t\tE\n0.1\t\"3e6\"\n1\t2e6\n10\t1e6\n100\t0.5e6\n\n",
-        "1,5 2,5\n2,5 2,6\n1 2\n",
+        "1,5 2,5\n2,5 2,6\n1 2,4\n3 2,7\n",
+        "remark;t / min;J (1/GPa)\na;0,5;1,0\n\"b;c\";1;1,25\n;2;1,5\n;4;1,75\n",
+        " 1.0D-01 3.0D+06\n 1.0D+00 2.0D+06\n 1.0D+01 1.0D+06\n 1.0D+02 0.5D+06\n",
+        "f [Hz],E' [10^6 Pa],E'' [N/mm²]\r\n\"0,1\",\"1,0\",\"0,2\"\r\n1,\"1,5\",\"0,4\"\r\n10,2,\"0,4\"\r\n100,\"2,5\",\"0,1\"\r\n",
     ];
-    const KINDS: [usize; 5] = [0, 1, 2, 1, 0];
-    let few = source.chance(0.9);
-    let which = source.below(if few { 4 } else { 5 });
+    const KINDS: [usize; 8] = [0, 1, 2, 1, 0, 0, 1, 2];
+    const UNITS: [[f64; 2]; 8] = {
+        let mut units = [[1.0; 2]; 8];
+        units[5] = [60.0, 1e-9];
+        units[7] = [std::f64::consts::TAU, 1e6];
+        units
+    };
+    let which = source.below(FILES.len());
     let file = FILES[which].as_bytes();
     let file = match source.below(8) {
         0 => file.to_vec(),
         1 => source.damage(file),
         _ => source.damage_text(file),
     };
-    let units = Units { abscissa: source.scale(1e-3, 1e3), value: source.scale(1e-3, 1e3) };
+    // those of the headings, mostly
+    let [abscissa, value] =
+        if source.chance(0.7) { UNITS[which] } else { [source.scale(1e-3, 1e3), source.scale(1e-3, 1e3)] };
+    let units = Units { abscissa, value };
     match if source.chance(0.9) { KINDS[which] } else { source.below(3) } {
         0 => judged(TabulatedCreep::from_csv_reader(&file[..], units), |table| look(&table)),
         1 => judged(TabulatedRelaxation::from_csv_reader(&file[..], units), |table| look(&table)),

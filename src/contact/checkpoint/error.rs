@@ -16,11 +16,22 @@ pub enum CheckpointError {
     Foreign,
 
     /// It was written by a newer version of this crate.
-    #[error("the checkpoint is of format {found}, this version reads formats up to {known}: update viscocontact")]
+    #[error("the checkpoint is of format {found}, this version reads format {known}: update viscocontact")]
     Newer {
         /// Its format.
         found: u32,
-        /// The newest format known.
+        /// The format known.
+        known: u32,
+    },
+
+    /// It was written by an older version of this crate.
+    #[error(
+        "the checkpoint is of format {found}, this version reads format {known}: resume it with the version that wrote it"
+    )]
+    Older {
+        /// Its format.
+        found: u32,
+        /// The format known.
         known: u32,
     },
 

@@ -1,5 +1,7 @@
 //! The file around a state: a mark, the version of the format, length, checksum.
 
+use std::cmp::Ordering;
+
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
@@ -7,7 +9,7 @@ use super::CheckpointError;
 
 const MARK: [u8; 8] = *b"VISCOCHK";
 /// Raised whenever what is saved changes.
-pub(super) const VERSION: u32 = 1;
+pub(super) const VERSION: u32 = 2;
 /// Mark, version, length, checksum of all but itself.
 const HEADER: usize = 24;
 const CHECKSUM: std::ops::Range<usize> = 20..HEADER;
@@ -40,8 +42,10 @@ pub(super) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, CheckpointE
         return Err(CheckpointError::Foreign);
     }
     let version = number(8);
-    if version > VERSION {
-        return Err(CheckpointError::Newer { found: version, known: VERSION });
+    match version.cmp(&VERSION) {
+        Ordering::Greater => return Err(CheckpointError::Newer { found: version, known: VERSION }),
+        Ordering::Less => return Err(CheckpointError::Older { found: version, known: VERSION }),
+        Ordering::Equal => {}
     }
     let length = u64::from(number(12)) | u64::from(number(16)) << 32;
     if length != payload.len() as u64 {

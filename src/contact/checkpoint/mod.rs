@@ -51,8 +51,11 @@ impl ViscoelasticContact {
     /// # Ok::<(), Error>(())
     /// ```
     ///
+    /// Contacts may save to one path at once: the file is always that of one of them, the last to finish in the end. Where the path
+    /// is a link, the file that it leads to is replaced.
+    ///
     /// # Errors
-    /// If the file cannot be written.
+    /// If the file cannot be written, or there is something other than a file at `path` ([`Error::NotAFile`]).
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         self.save_with(path.as_ref(), None)
     }
@@ -67,7 +70,7 @@ impl ViscoelasticContact {
     /// kernel, geometry and material. Settings may differ in how steps are solved (solver, tolerance, iterations, edge,
     /// memory), not in the rest. Where an indenter has moved, it is where it was.
     ///
-    /// Scenes are compared by sums over gap and influence, and materials by their series, or by their compliance at eight times a decade
+    /// Scenes are compared by sums over gap and influence, the rigid body that each cell belongs to, and materials by their series, or by their compliance at eight times a decade
     /// where they have none: of closures that agree there, nothing can tell. A run along a history that saved it
     /// ([`Follow::keeping`](crate::contact::Follow::keeping)) goes on where it was with the next
     /// [`ViscoelasticContact::follow`].
@@ -75,7 +78,7 @@ impl ViscoelasticContact {
     /// Needs the feature `checkpoint`.
     ///
     /// # Errors
-    /// If the file cannot be read, is no checkpoint, is newer than this version, cut short, damaged, or of another scene
+    /// If the file cannot be read, is no checkpoint, is of a newer or older format, cut short, damaged, or of another scene
     /// ([`Error::Checkpoint`]); the contact is then as it was.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();

@@ -24,8 +24,17 @@ pub(crate) struct Built {
     pub(super) material: Material,
     /// Sums over the gap.
     shape: Vec<f64>,
+    owners: Owners,
     /// Found when it is first asked for: it may take many evaluations.
     creep: OnceLock<Creep>,
+}
+
+/// Which rigid body each cell belongs to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Owners {
+    /// Cells of each body.
+    cells: Vec<u64>,
+    checksum: u32,
 }
 
 /// The contact compliance of a material, by numbers.
@@ -53,15 +62,17 @@ pub(super) struct SceneMark {
     series_tolerance: f64,
     creep: Creep,
     shape: Vec<f64>,
+    owners: Owners,
 }
 
 impl Built {
     pub(crate) fn new(material: &Material, gap: &Gap, cells: [usize; 2]) -> Built {
         let known = gap.above.iter().map(|h| if h.is_finite() { *h } else { 0.0 });
-        let open = gap.above.iter().filter(|h| h.is_infinite()).count();
+        let open = gap.above.iter().map(|h| f64::from(h.is_infinite()));
         let mut shape = moments(known, cells[1]);
-        shape.extend([open as f64, gap.datum]);
-        Built { material: material.clone(), shape, creep: OnceLock::new() }
+        shape.extend(moments(open, cells[1]));
+        shape.push(gap.datum);
+        Built { material: material.clone(), shape, owners: Owners::of(gap), creep: OnceLock::new() }
     }
 
     fn creep(&self) -> &Creep {
@@ -74,6 +85,29 @@ impl Built {
                 let known = times().take_while(|&t| t <= self.material.known_until());
                 Creep::Values(known.map(|t| self.material.contact_compliance(t)).collect())
             }
+        })
+    }
+}
+
+impl Owners {
+    fn of(gap: &Gap) -> Owners {
+        let (mut cells, mut hasher) = (Vec::new(), crc32fast::Hasher::new());
+        // cells without anything to touch belong to no body
+        for k in (0..gap.above.len()).filter(|&k| gap.above[k].is_finite()) {
+            let body = gap.owner(k);
+            cells.resize(cells.len().max(body + 1), 0);
+            cells[body] += 1;
+            hasher.update(&(body as u16).to_le_bytes());
+        }
+        Owners { cells, checksum: hasher.finalize() }
+    }
+
+    /// The cells of the first body that differs from `other`, in words.
+    fn difference(&self, other: &Owners) -> [String; 2] {
+        let body = self.cells.iter().zip(&other.cells).position(|(one, two)| one != two);
+        [self, other].map(|owners| match body {
+            Some(body) => format!("{} to body {body}", owners.cells[body]),
+            None => format!("one with checksum {:08x}", owners.checksum),
         })
     }
 }
@@ -131,6 +165,7 @@ impl SceneMark {
             series_tolerance,
             creep: contact.built.creep().clone(),
             shape: contact.built.shape.clone(),
+            owners: contact.built.owners.clone(),
         }
     }
 
@@ -165,6 +200,11 @@ impl SceneMark {
             let [saved, built] = [&self.creep, &built.creep].map(|creep| creep.entry(entry));
             return Err(CheckpointError::OtherScene { what: "contact compliance", saved, built });
         }
-        numbers("geometry", &self.shape, &built.shape)
+        numbers("geometry", &self.shape, &built.shape)?;
+        if self.owners != built.owners {
+            let [saved, built] = self.owners.difference(&built.owners);
+            return Err(CheckpointError::OtherScene { what: "assignment of cells to rigid bodies", saved, built });
+        }
+        Ok(())
     }
 }

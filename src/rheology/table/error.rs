@@ -143,6 +143,27 @@ pub enum TableError {
         heading: String,
     },
 
+    /// A heading says another unit than [`Units`](crate::rheology::Units) does: correct one of them.
+    #[error(
+        "line {line}, column {column}: the heading {heading:?} says {unit}, but Units::{field} = {given} means {expected}"
+    )]
+    Unit {
+        /// The line of the headings.
+        line: u64,
+        /// Number of the column, from 1.
+        column: usize,
+        /// The heading.
+        heading: String,
+        /// Its unit.
+        unit: String,
+        /// `abscissa` or `value`.
+        field: &'static str,
+        /// What was given as the size of the unit.
+        given: f64,
+        /// The unit of this size.
+        expected: String,
+    },
+
     /// A file could not be read.
     #[error("{file}: {reason}")]
     Unreadable {
@@ -185,6 +206,19 @@ pub enum TableError {
         column: usize,
         /// What is there.
         text: String,
+    },
+
+    /// An entry of a file can be read in more than one way.
+    #[error("line {line}, column {column}: {text:?} can be {readings}")]
+    Ambiguous {
+        /// The line.
+        line: u64,
+        /// Number of the column, from 1.
+        column: usize,
+        /// What is there.
+        text: String,
+        /// What it may mean.
+        readings: &'static str,
     },
 
     /// Isotherms of a master curve measure different things.

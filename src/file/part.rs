@@ -1,0 +1,210 @@
+//! A file under another name until it is complete.
+
+use std::fs::{self, File, FileType};
+use std::io::{self, BufWriter, ErrorKind, IntoInnerError};
+use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use super::failed;
+use crate::error::{Error, Result};
+
+/// Tells the files that this process is writing from each other.
+static NUMBER: AtomicU64 = AtomicU64::new(0);
+
+/// A file that is being written: its name has the number of the process and `.part` behind that of the file to be, so
+/// that no two writers share it.
+#[derive(Debug)]
+pub(crate) struct Part {
+    path: PathBuf,
+    part: PathBuf,
+}
+
+impl Part {
+    /// Creates the file beside the one that it will replace, a link followed. Whatever is no regular file is not
+    /// replaced: [`Error::NotAFile`].
+    pub(crate) fn create(path: &Path) -> Result<(Part, File)> {
+        path.file_name().ok_or_else(|| failed(path, "it names no file"))?;
+        check_regular(path)?;
+        // a link stays, and the file that it leads to is replaced
+        let path = match path.is_symlink() {
+            true => fs::canonicalize(path).map_err(|error| failed(path, error))?,
+            false => path.to_owned(),
+        };
+        loop {
+            let mut name = path.file_name().unwrap_or_default().to_owned();
+            name.push(format!(".{}-{}.part", process::id(), NUMBER.fetch_add(1, Ordering::Relaxed)));
+            let part = path.with_file_name(name);
+            match File::create_new(&part) {
+                Ok(file) => return Ok((Part { path, part }, file)),
+                // left by a killed process of the same number
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(failed(&path, error)),
+            }
+        }
+    }
+
+    /// Gives the complete file its name, once it is on the medium.
+    pub(crate) fn place(&self, file: File) -> Result<()> {
+        let unusable = |error: io::Error| failed(&self.path, error);
+        file.sync_all().map_err(unusable)?;
+        drop(file); // some systems rename no open file
+        check_regular(&self.path)?;
+        fs::rename(&self.part, &self.path).map_err(unusable)?;
+        // the new name is on the medium when its folder is, on systems that can say so; the file is complete in any case
+        let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+        Ok(())
+    }
+
+    /// Removes it after an error, which matters more than that of the removal.
+    pub(crate) fn remove(&self) {
+        let _ = fs::remove_file(&self.part);
+    }
+}
+
+/// Writes a file under another name and gives it its own when it is complete and on the medium. The file that was of this
+/// name before is replaced then, and not touched if anything fails; of several writers at once the last one to finish wins.
+pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
+    let (part, file) = Part::create(path)?;
+    let mut writer = BufWriter::with_capacity(1 << 18, file);
+    let written = write(&mut writer).and_then(|()| writer.into_inner().map_err(IntoInnerError::into_error));
+    let placed = written.map_err(|error| failed(path, error)).and_then(|file| part.place(file));
+    if placed.is_err() {
+        part.remove();
+    }
+    placed
+}
+
+/// Refuses a path at which there is something other than a regular file, or a link to one.
+fn check_regular(path: &Path) -> Result<()> {
+    let kind = match fs::metadata(path) {
+        Ok(found) if found.is_file() => return Ok(()),
+        Ok(found) => kind(found.file_type()),
+        Err(error) if error.kind() == ErrorKind::NotFound && path.is_symlink() => "a symbolic link to nothing",
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(failed(path, error)),
+    };
+    Err(Error::NotAFile { path: path.display().to_string(), kind })
+}
+
+fn kind(found: FileType) -> &'static str {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        let kinds = [
+            (found.is_fifo(), "a pipe"),
+            (found.is_socket(), "a socket"),
+            (found.is_char_device() || found.is_block_device(), "a device"),
+        ];
+        if let Some((_, kind)) = kinds.into_iter().find(|(is, _)| *is) {
+            return kind;
+        }
+    }
+    if found.is_dir() { "a folder" } else { "something else than a file" }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::*;
+
+    /// An empty folder of this name and process.
+    fn folder(name: &str) -> PathBuf {
+        let folder = std::env::temp_dir().join(format!("viscocontact-{name}-{}", process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        folder
+    }
+
+    #[test]
+    fn a_failed_file_leaves_the_old_one_and_nothing_else() {
+        let folder = folder("file");
+        let path = folder.join("a.bin");
+        replace(&path, |out| out.write_all(b"old")).unwrap();
+        let error = replace(&path, |out| {
+            out.write_all(b"new")?;
+            Err(io::Error::other("the disk is full"))
+        });
+        assert_eq!(
+            error.unwrap_err(),
+            Error::Output { path: path.display().to_string(), what: "the disk is full".into() }
+        );
+        assert_eq!(fs::read(&path).unwrap(), b"old");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+        replace(&path, |out| out.write_all(b"new")).unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"new");
+        assert!(matches!(replace(&folder.join(".."), |_| Ok(())), Err(Error::Output { .. })));
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn writers_at_once_do_not_disturb_each_other() {
+        let folder = folder("at-once");
+        let path = folder.join("a.bin");
+        std::thread::scope(|scope| {
+            for writer in 0..4_u8 {
+                let path = &path;
+                scope.spawn(move || {
+                    for round in 0..30_u8 {
+                        // every third fails half way
+                        let written = replace(path, |out| {
+                            out.write_all(&[writer; 4096])?;
+                            out.flush()?;
+                            if round % 3 == 2 { Err(io::Error::other("full")) } else { out.write_all(&[writer; 4096]) }
+                        });
+                        assert_eq!(written.is_ok(), round % 3 != 2, "{written:?}");
+                        let file = fs::read(path).unwrap();
+                        assert!(file.len() == 8192 && file.iter().all(|&byte| byte == file[0]));
+                    }
+                });
+            }
+        });
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn only_regular_files_are_replaced() {
+        use std::os::unix::fs::{FileTypeExt, symlink};
+
+        let folder = folder("kinds");
+        let at = |name: &str| folder.join(name);
+        fs::create_dir(at("folder")).unwrap();
+        let _socket = std::os::unix::net::UnixListener::bind(at("socket")).unwrap();
+        assert!(process::Command::new("mkfifo").arg(at("pipe")).status().unwrap().success());
+        symlink("/dev/null", at("device")).unwrap();
+        symlink("pipe", at("to-pipe")).unwrap();
+        symlink("nowhere", at("to-nothing")).unwrap();
+        let count = || fs::read_dir(&folder).unwrap().count();
+        let before = count();
+        for (name, expected) in [
+            ("folder", "a folder"),
+            ("socket", "a socket"),
+            ("pipe", "a pipe"),
+            ("to-pipe", "a pipe"),
+            ("device", "a device"),
+            ("to-nothing", "a symbolic link to nothing"),
+        ] {
+            let error = replace(&at(name), |out| out.write_all(b"new")).unwrap_err();
+            assert!(matches!(&error, Error::NotAFile { kind, .. } if *kind == expected), "{error}");
+            assert!(error.to_string().contains(expected) && error.to_string().contains(name), "{error}");
+        }
+        let null = replace(Path::new("/dev/null"), |_| Ok(())).unwrap_err();
+        assert!(matches!(null, Error::NotAFile { kind: "a device", .. }), "{null}");
+        assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
+        assert_eq!(count(), before);
+
+        // a link stays, and leads to the new file; the part is made where that is
+        fs::write(at("folder/file"), b"old").unwrap();
+        symlink("folder/file", at("link")).unwrap();
+        symlink("link", at("again")).unwrap();
+        replace(&at("again"), |out| out.write_all(b"new")).unwrap();
+        assert!(at("link").is_symlink() && at("again").is_symlink());
+        assert_eq!(fs::read(at("folder/file")).unwrap(), b"new");
+        assert_eq!(fs::read_dir(at("folder")).unwrap().count(), 1);
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}

@@ -1,0 +1,151 @@
+//! What the headings of a table say: which column holds what, in which unit.
+
+use super::Units;
+use super::number::{resembles, shortened};
+use super::unit::{Kind, readings, same};
+use crate::rheology::fit::Quantity;
+use crate::rheology::table::TableError;
+use crate::rheology::table::data::Layout;
+
+/// First words of headings, lower case.
+const ABSCISSA: &[&str] = &["time", "t", "omega", "ω", "angular", "frequency", "freq", "f", "w"];
+const CREEP_WORDS: &[&str] = &["j", "creep", "compliance"];
+const RELAXATION_WORDS: &[&str] = &["g", "e", "relaxation", "modulus"];
+const STORAGE_WORDS: &[&str] = &["g'", "g′", "e'", "e′", "storage", "gp"];
+const LOSS_WORDS: &[&str] = &["g''", "g″", "g\"", "e''", "e″", "e\"", "loss", "gpp"];
+
+/// What a heading of something else says.
+const OTHERS: &[&str] = &["factor", "tan", "strain", "stress", "phase", "%"];
+
+fn words(column: &str) -> &'static [&'static str] {
+    match column {
+        "creep compliance" => CREEP_WORDS,
+        "relaxation modulus" => RELAXATION_WORDS,
+        "storage modulus" => STORAGE_WORDS,
+        "loss modulus" => LOSS_WORDS,
+        _ => ABSCISSA,
+    }
+}
+
+/// Names of the columns that a table needs.
+pub(super) fn names(layout: &Layout) -> Vec<&'static str> {
+    std::iter::once(layout.abscissa).chain(layout.columns.iter().map(|&(name, _)| name)).collect()
+}
+
+/// Whether a first row names the columns: no field of it resembles a number.
+pub(super) fn are_headings(fields: &[String]) -> bool {
+    !fields.iter().any(|field| resembles(field))
+}
+
+/// Which columns hold what a table needs, in its order, or `None` if no heading says so.
+pub(super) fn columns(
+    line: u64,
+    headings: &[String],
+    names: &[&'static str],
+) -> Result<Option<Vec<usize>>, TableError> {
+    let is_other = |heading: &&String| OTHERS.iter().any(|other| heading.to_lowercase().contains(other));
+    let meaning: Vec<Option<&'static str>> = headings
+        .iter()
+        .map(|heading| {
+            if is_other(&heading) {
+                return None;
+            }
+            let heading = heading.to_lowercase();
+            let word = heading.split(|c: char| " [(_/,;|*".contains(c)).next().unwrap_or_default();
+            names.iter().copied().find(|name| words(name).contains(&word))
+        })
+        .collect();
+    let nothing = meaning.iter().all(Option::is_none) && !headings.iter().any(|heading| is_other(&heading));
+    if nothing && headings.len() == names.len() {
+        return Ok(None);
+    }
+    let single = |&name: &&'static str| {
+        let mut places = (0..headings.len()).filter(|&k| meaning[k] == Some(name));
+        match (places.next(), places.next()) {
+            (Some(place), None) => Ok(place),
+            _ => {
+                let found = shortened(&headings.join(", "));
+                Err(TableError::Heading { line, column: name, found })
+            }
+        }
+    };
+    names.iter().map(single).collect::<Result<_, _>>().map(Some)
+}
+
+/// Refuses headings with other units than those given; `order` tells which columns are read.
+pub(super) fn check_units(
+    line: u64,
+    headings: &[String],
+    order: &[usize],
+    layout: &Layout,
+    units: Units,
+) -> Result<(), TableError> {
+    let heading = &headings[order[0]];
+    if heading.to_lowercase().contains("hz") && units.abscissa == 1.0 {
+        return Err(TableError::Hertz { line, heading: heading.clone() });
+    }
+    let abscissa = if layout.zero { Kind::Time } else { Kind::Frequency };
+    let values = layout.columns.iter().map(|&(_, quantity)| match quantity {
+        Quantity::Creep => Kind::Compliance,
+        _ => Kind::Modulus,
+    });
+    let columns =
+        std::iter::once(("abscissa", abscissa, units.abscissa)).chain(values.map(|kind| ("value", kind, units.value)));
+    for ((field, kind, given), &column) in columns.zip(order) {
+        for (text, enclosed) in unit_texts(&headings[column]) {
+            let readings = readings(text);
+            let right = readings.iter().filter(|reading| reading.0 == kind);
+            if right.clone().any(|reading| same(reading.1, given)) {
+                break;
+            }
+            // G(s) is a function, and a last word may be no unit
+            let clear = right.clone().next().is_some() || enclosed && text.chars().count() > 1;
+            if clear && !readings.is_empty() {
+                let heading = headings[column].clone();
+                let (column, unit, expected) = (column + 1, text.to_owned(), kind.name(given));
+                return Err(TableError::Unit { line, column, heading, unit, field, given, expected });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Where a heading may have its unit: in brackets, behind a slash, or as its last word; whether it is more than a word.
+fn unit_texts(heading: &str) -> Vec<(&str, bool)> {
+    let mut texts = Vec::new();
+    let mut outside = heading;
+    for brackets in [['[', ']'], ['(', ')']] {
+        if let Some((before, rest)) = heading.rsplit_once(brackets[0])
+            && let Some((inside, _)) = rest.rsplit_once(brackets[1])
+        {
+            texts.push((inside.trim(), true));
+            outside = if before.len() < outside.len() { before } else { outside };
+        }
+    }
+    if let Some((_, below)) = outside.split_once('/') {
+        texts.push((below.trim(), true));
+    }
+    let mut words = outside.trim().rsplit([' ', '_', ',']);
+    if let (Some(last), Some(before)) = (words.next(), words.next())
+        && !before.contains(|c: char| c.is_ascii_digit())
+    {
+        texts.push((last, false));
+    }
+    texts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_stand_in_brackets_behind_slashes_and_last() {
+        assert_eq!(unit_texts("time [s]"), [("s", true)]);
+        assert_eq!(unit_texts("J / (1/GPa)"), [("1/GPa", true), ("", true), ("/", false)]);
+        assert_eq!(unit_texts("t/min"), [("min", true)]);
+        assert_eq!(unit_texts("J/GPa^-1"), [("GPa^-1", true)]);
+        assert_eq!(unit_texts("E_MPa"), [("MPa", false)]);
+        assert_eq!(unit_texts("E at 5 MPa"), []);
+        assert_eq!(unit_texts("G'"), []);
+    }
+}

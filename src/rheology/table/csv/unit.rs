@@ -1,0 +1,165 @@
+//! Units as headings write them.
+
+/// What a unit measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    Time,
+    Frequency,
+    Modulus,
+    Compliance,
+}
+
+/// One unit in s, rad/s, Pa or 1/Pa.
+pub(super) type Unit = (Kind, f64);
+
+const TAU: f64 = std::f64::consts::TAU;
+
+const NAMES: [(&str, Kind, f64); 27] = [
+    ("s", Kind::Time, 1.0),
+    ("ms", Kind::Time, 1e-3),
+    ("µs", Kind::Time, 1e-6),
+    ("us", Kind::Time, 1e-6),
+    ("ns", Kind::Time, 1e-9),
+    ("min", Kind::Time, 60.0),
+    ("h", Kind::Time, 3600.0),
+    ("d", Kind::Time, 86400.0),
+    ("sec", Kind::Time, 1.0),
+    ("seconds", Kind::Time, 1.0),
+    ("minutes", Kind::Time, 60.0),
+    ("hr", Kind::Time, 3600.0),
+    ("hours", Kind::Time, 3600.0),
+    ("days", Kind::Time, 86400.0),
+    ("Hz", Kind::Frequency, TAU),
+    ("mHz", Kind::Frequency, 1e-3 * TAU),
+    ("kHz", Kind::Frequency, 1e3 * TAU),
+    ("MHz", Kind::Frequency, 1e6 * TAU),
+    ("Pa", Kind::Modulus, 1.0),
+    ("mPa", Kind::Modulus, 1e-3),
+    ("kPa", Kind::Modulus, 1e3),
+    ("MPa", Kind::Modulus, 1e6),
+    ("GPa", Kind::Modulus, 1e9),
+    ("N/m2", Kind::Modulus, 1.0),
+    ("N/mm2", Kind::Modulus, 1e6),
+    ("bar", Kind::Modulus, 1e5),
+    ("psi", Kind::Modulus, 6894.757),
+];
+
+impl Kind {
+    /// The unit of this name and size, as an error shows it.
+    pub(super) fn name(self, size: f64) -> String {
+        let of =
+            |kind, size| NAMES.iter().find(|unit| unit.1 == kind && same(unit.2, size)).map(|unit| unit.0.to_owned());
+        let (si, found) = match self {
+            Kind::Time => ("s", of(self, size)),
+            Kind::Frequency if same(size, 1.0) => ("rad/s", Some("rad/s".to_owned())),
+            Kind::Frequency => ("rad/s", of(self, size)),
+            Kind::Modulus => ("Pa", of(self, size)),
+            Kind::Compliance => ("1/Pa", of(Kind::Modulus, 1.0 / size).map(|modulus| format!("1/{modulus}"))),
+        };
+        found.unwrap_or_else(|| format!("{size:e} {si}"))
+    }
+}
+
+/// Whether two sizes are those of one unit: 2π may be given with few digits.
+pub(super) fn same(one: f64, other: f64) -> bool {
+    (one / other - 1.0).abs() < 1e-2
+}
+
+/// What a text may mean as a unit, none if it is none: `1/s` is an angular frequency or another way to write Hz.
+pub(super) fn readings(text: &str) -> Vec<Unit> {
+    // 10⁻⁹ Pa⁻¹ as 10^-9 Pa^-1
+    let mut plain = String::new();
+    for c in text.trim().chars() {
+        let raised = "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|other| other == c).map(|digit| char::from(b'0' + digit as u8));
+        let raised = if c == '⁻' { Some('-') } else { raised };
+        if raised.is_some() && !plain.ends_with(['-', '^']) {
+            plain.push('^');
+        }
+        plain.push(raised.unwrap_or(if c == 'μ' { 'µ' } else { c }));
+    }
+    let (scale, unit) = scaled(&plain);
+    let unit: String = unit.chars().filter(|c| !" ^·*".contains(*c)).collect();
+    let mut found = simple(&unit);
+    let below = unit.strip_prefix("1/").or_else(|| unit.strip_prefix('/')).or_else(|| unit.strip_suffix("-1"));
+    if let Some(below) = below {
+        let below = below.strip_prefix('(').and_then(|below| below.strip_suffix(')')).unwrap_or(below);
+        for (kind, size) in simple(below) {
+            match kind {
+                Kind::Time => found.extend([(Kind::Frequency, 1.0 / size), (Kind::Frequency, TAU / size)]),
+                Kind::Modulus => found.push((Kind::Compliance, 1.0 / size)),
+                Kind::Frequency | Kind::Compliance => {}
+            }
+        }
+    }
+    match unit.as_str() {
+        "m2/N" => found.push((Kind::Compliance, 1.0)),
+        "mm2/N" => found.push((Kind::Compliance, 1e-6)),
+        "rad/s" | "rads-1" | "rad/sec" => found.push((Kind::Frequency, 1.0)),
+        _ => {}
+    }
+    found.into_iter().map(|(kind, size)| (kind, scale * size)).collect()
+}
+
+/// The power of ten before a unit, and the unit.
+fn scaled(text: &str) -> (f64, &str) {
+    let Some(power) = text.strip_prefix("10^").or_else(|| text.strip_prefix("1e")).or_else(|| text.strip_prefix("1E"))
+    else {
+        return (1.0, text);
+    };
+    let power = power.trim_start_matches('{');
+    let end = power.char_indices().find(|&(at, c)| !(c.is_ascii_digit() || at == 0 && "+-".contains(c)));
+    let (digits, unit) = power.split_at(end.map_or(power.len(), |(at, _)| at));
+    match digits.parse::<i32>() {
+        Ok(power) => (10_f64.powi(power), unit.trim_start_matches(['}', ' ', '·', '*', '×'])),
+        Err(_) => (1.0, text),
+    }
+}
+
+/// A unit without an exponent or a slash of its own; in other capitals than usual where it is longer than a letter.
+fn simple(name: &str) -> Vec<Unit> {
+    let units = |fits: &dyn Fn(&str) -> bool| -> Vec<Unit> {
+        NAMES.iter().filter(|unit| fits(unit.0)).map(|unit| (unit.1, unit.2)).collect()
+    };
+    let exact = units(&|unit| unit == name);
+    if exact.is_empty() && name.len() > 1 { units(&|unit| unit.eq_ignore_ascii_case(name)) } else { exact }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_known_as_they_are_written() {
+        for (texts, unit) in [
+            (&["s", "sec", "seconds", "SEC", "10^0 s"][..], (Kind::Time, 1.0)),
+            (&["min", "Min", "minutes"], (Kind::Time, 60.0)),
+            (&["h", "hr"], (Kind::Time, 3600.0)),
+            (&["µs", "μs", "us", "10⁻⁶ s", "1e-6 s"], (Kind::Time, 1e-6)),
+            (&["rad/s", "rad s^-1", "rad·s⁻¹", "1/s", "s^-1"], (Kind::Frequency, 1.0)),
+            (&["Hz", "HZ", "1/s", "s⁻¹"], (Kind::Frequency, TAU)),
+            (&["GPa", "gpa", "10^9 Pa", "1E9 Pa", "10⁹·Pa"], (Kind::Modulus, 1e9)),
+            (&["MPa", "mpa", "N/mm^2", "N/mm²"], (Kind::Modulus, 1e6)),
+            (
+                &["1/GPa", "GPa^-1", "GPa⁻¹", "/GPa", "1 / GPa", "10^-9/Pa", "10^{-9} 1/Pa", "1/(GPa)"],
+                (Kind::Compliance, 1e-9),
+            ),
+            (&["1/MPa", "mm²/N", "MPa-1"], (Kind::Compliance, 1e-6)),
+        ] {
+            for text in texts {
+                let readings = readings(text);
+                let found = readings.iter().any(|reading| reading.0 == unit.0 && same(reading.1, unit.1));
+                assert!(found, "{text}: {readings:?}");
+            }
+            let (kind, size) = unit;
+            assert!(
+                self::readings(&kind.name(size)).iter().any(|&(k, s)| k == kind && same(s, size)),
+                "{}",
+                kind.name(size)
+            );
+        }
+        for text in ["", "%", "t", "S", "H", "1", "10^", "K", "°C", "-", "5 MPa", "1 Hz", "ω", "mm", "1/K"] {
+            assert_eq!(readings(text), [], "{text}");
+        }
+        assert_eq!(Kind::Time.name(7.0), "7e0 s");
+    }
+}
