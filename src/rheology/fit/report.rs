@@ -40,6 +40,7 @@ pub struct FitReport {
     terms: usize,
     exact: bool,
     wrong_way: f64,
+    open: f64,
 }
 
 impl FitReport {
@@ -56,17 +57,23 @@ impl FitReport {
             terms: series.terms.len(),
             exact: false,
             wrong_way: 0.0,
+            open: 0.0,
         }
     }
 
     /// Of a series that is the function itself.
     pub(crate) fn exact(terms: usize) -> FitReport {
-        FitReport { samples: Vec::new(), terms, exact: true, wrong_way: 0.0 }
+        FitReport { samples: Vec::new(), terms, exact: true, wrong_way: 0.0, open: 0.0 }
     }
 
     /// The same, of data that turn back by so much.
     pub(crate) fn with_wrong_way(self, wrong_way: f64) -> FitReport {
         FitReport { wrong_way, ..self }
+    }
+
+    /// The same, of data that leave the curve open by so much.
+    pub(crate) fn with_open(self, open: f64) -> FitReport {
+        FitReport { open, ..self }
     }
 
     /// Whether the series is the function itself and nothing was fitted.

@@ -12,13 +12,11 @@ pub use error::{Place, TableError};
 pub use master_curve::{Isotherm, MasterCurve};
 
 use crate::error::{Result, exact_length};
-use crate::rheology::fit::{FitReport, Goal, Sample, Search, Series};
+use crate::rheology::fit::{FitReport, Measured, Sample, Search, Series};
 use crate::rheology::series::known_series;
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 use data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
 
-/// Misfits below this warrant no further term: measurements are not that good.
-const FLOOR: f64 = 3e-5;
 /// A worse misfit, in the root mean square, is no fit.
 const MOST_MISFIT: f64 = 0.1;
 /// Of denser tables so many means a decade are fitted, ...
@@ -217,9 +215,9 @@ fn fitted(layout: Layout, rows: Vec<Row>, slope: bool) -> Result<(Series, FitRep
     };
     let positive = || samples.iter().map(times).filter(|t| *t > 0.0);
     let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
-    let search = Search { constant: None, slope, times: [first / BEYOND, last * BEYOND], goal: Goal::Warranted(FLOOR) };
-    let series = search.run(&gathered(&samples, (last / first).log10()));
-    let report = FitReport::new(&series, &samples).with_wrong_way(deepest);
+    let search = Search { constant: None, slope, times: [first / BEYOND, last * BEYOND] };
+    let Measured { series, open } = search.measured(&gathered(&samples, (last / first).log10()));
+    let report = FitReport::new(&series, &samples).with_wrong_way(deepest).with_open(open);
     match report.worst() {
         Some(worst) if report.rms_misfit() > MOST_MISFIT => {
             let (table, rms) = (layout.table, report.rms_misfit());
