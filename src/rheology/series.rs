@@ -69,11 +69,8 @@ impl CreepSeries {
 
         let glassy = checked(rheology, 0.0, 0.0)?;
         let samples = sampled(rheology, [first, last], FITTED, glassy)?;
-        let search = Search {
-            constant: (glassy > 0.0).then_some(glassy),
-            slope: true,
-            times: [first / BEYOND, last * BEYOND],
-        };
+        let search =
+            Search { constant: (glassy > 0.0).then_some(glassy), slope: true, times: [first / BEYOND, last * BEYOND] };
         let series = search.within(&samples, FITTED_SHARE * tolerance);
         let report = FitReport::new(&series, &sampled(rheology, [first, last], CHECKED, glassy)?);
         match report.worst() {

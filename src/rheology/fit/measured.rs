@@ -28,7 +28,7 @@ const SMOOTH_BEYOND: f64 = 10.0;
 /// Weights of the curvature of a smooth spectrum that are tried, from the first on, each so many times the one before.
 const WEIGHTS: (f64, f64, usize) = (1e3, 0.1, 16);
 /// A sparse series follows the curve of a smooth spectrum within this, or within this part of the noise, ...
-const FOLLOWS: f64 = 1e-3;
+const FOLLOWS: f64 = 5e-4;
 const FOLLOWS_NOISE: f64 = 0.2;
 /// ... at so many points a decade.
 const FOLLOWED: f64 = 8.0;
@@ -37,8 +37,8 @@ const FOLLOWED: f64 = 8.0;
 #[derive(Debug, Clone)]
 pub(crate) struct Measured {
     pub(crate) series: Series,
-    /// How far, relatively, another series that meets the data as well strays from it between them.
-    pub(crate) open: f64,
+    /// How far, relatively, another series that meets the samples as well strays from it at or between them.
+    pub(crate) uncertainty: f64,
 }
 
 impl Search {
@@ -58,8 +58,8 @@ impl Search {
             Some(curve) => self.within(&along(&curve, samples), FOLLOWS.max(FOLLOWS_NOISE * noise)),
             None => self.sparse(&start, samples, noise.max(FLOOR)),
         };
-        let open = along(&start, samples).iter().map(|sample| series.misfit(sample).abs()).fold(0.0, f64::max);
-        Measured { series, open }
+        let uncertainty = series.worst(&along(&start, samples));
+        Measured { series, uncertainty }
     }
 
     /// The terms that improve the prediction, by the criterion of Mallows (Technometrics 15, 1973).

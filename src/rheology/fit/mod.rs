@@ -18,7 +18,7 @@ mod report;
 pub use basis::Quantity;
 pub(crate) use basis::{Sample, Series};
 pub(crate) use measured::Measured;
-pub use report::{FitReport, FitSample};
+pub use report::{FitReport, FitSample, FitWarning};
 
 use faer::{Col, Mat};
 use polish::{Free, polish};

@@ -55,8 +55,13 @@ macro_rules! tabulated {
 /// A body known by its measured creep compliance: pairs of time \[s\] and J \[1/Pa\].
 ///
 /// The data are fitted by a series with positive coefficients, in the least squares of the relative
-/// misfit, with no more terms than they warrant: a smooth curve through noise. [`TabulatedCreep::report`] tells how
+/// misfit: a smooth curve through noise, with no more terms than it needs. [`TabulatedCreep::report`] tells how
 /// well, and holds what is needed to plot data and fit.
+///
+/// J of smooth creep without noise, four to eight decades of it, is met within 0.1 % at and between the rows from two rows a
+/// decade on. Fewer leave it open: within 0.3 % in most cases, by several percent at worst. Where the rows do not tell how J
+/// runs between them, [`FitReport::warning`] says so, and so do the steps of a contact
+/// ([`Warning::UncertainMaterial`](crate::contact::Warning::UncertainMaterial)).
 ///
 /// Outside the data: what happens before the first time counts as elastic (the compliance stays between J_g of the
 /// fit and its value there). After the last time J is NaN, and a step of a contact fails with
@@ -216,8 +221,8 @@ fn fitted(layout: Layout, rows: Vec<Row>, slope: bool) -> Result<(Series, FitRep
     let positive = || samples.iter().map(times).filter(|t| *t > 0.0);
     let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
     let search = Search { constant: None, slope, times: [first / BEYOND, last * BEYOND] };
-    let Measured { series, open } = search.measured(&gathered(&samples, (last / first).log10()));
-    let report = FitReport::new(&series, &samples).with_wrong_way(deepest).with_open(open);
+    let Measured { series, uncertainty } = search.measured(&gathered(&samples, (last / first).log10()));
+    let report = FitReport::new(&series, &samples).of_measurements(deepest, uncertainty);
     match report.worst() {
         Some(worst) if report.rms_misfit() > MOST_MISFIT => {
             let (table, rms) = (layout.table, report.rms_misfit());
