@@ -199,8 +199,10 @@ fn clean_dynamic_moduli_are_met_between_the_rows() {
 /// With 2 % noise: the error in the root mean square, in percent and the mean of a class, is at most `most`.
 fn noisy(kind: Kind, most: [f64; CLASSES.len()]) {
     let mut classes: [Vec<f64>; CLASSES.len()] = Default::default();
+    let mut systematic = 0;
     tables(kind, 0.02, |_, fits| {
-        for (a_decade, Fitted { rms, .. }) in fits {
+        for (a_decade, Fitted { rms, report, .. }) in fits {
+            systematic += usize::from(matches!(report.warning(), Some(FitWarning::Systematic { .. })));
             let class = CLASSES.iter().rposition(|least| *a_decade >= least - 1e-9).unwrap();
             classes[class].push(100.0 * rms);
         }
@@ -210,13 +212,15 @@ fn noisy(kind: Kind, most: [f64; CLASSES.len()]) {
         println!("{kind:?} with 2 % noise from {least} rows a decade: {mean:.3} % rms, at most {most}");
         assert!(mean <= most, "{kind:?} from {least} rows a decade: {mean}");
     }
+    println!("{kind:?}: misfits of {systematic} tables taken for systematic");
+    assert!(systematic <= 2, "{systematic}");
 }
 
 #[test]
 fn noise_is_smoothed_in_few_rows() {
     noisy(Kind::Creep, [3.0, 2.0, 1.6, 1.3, 1.1, 1.1, 1.0]);
-    noisy(Kind::Relaxation, [3.0, 2.0, 1.6, 1.3, 1.1, 1.1, 1.1]);
-    noisy(Kind::Dynamic, [3.0, 2.0, 1.6, 1.3, 1.1, 1.1, 1.0]);
+    noisy(Kind::Relaxation, [3.5, 2.3, 2.0, 1.5, 1.2, 1.2, 1.1]);
+    noisy(Kind::Dynamic, [3.5, 2.2, 1.6, 1.3, 1.2, 1.1, 1.0]);
 }
 
 /// The tables that came out badly: six decades of logarithmic creep, of a power law with and without glassy compliance.

@@ -52,11 +52,13 @@ impl Search {
         let start = polish(&start, samples, self.free(), LONG, &enough);
         let left = samples.len().saturating_sub(parameters).max(1) as f64;
         let noise = (start.squares(samples) / left).sqrt();
+        // what is called no misfit, as a deviation of one measurement: a mean of many is not met more closely
+        let root = (samples.iter().map(|sample| sample.weight).sum::<f64>() / samples.len() as f64).sqrt();
         let few = samples.len() < VALUES_PER_PARAMETER * parameters;
-        let smooth = if few { self.smooth(samples, noise) } else { None };
+        let smooth = if few { self.smooth(samples, noise.max(SMOOTH_MISFIT * root)) } else { None };
         let series = match smooth {
             Some(curve) => self.within(&along(&curve, samples), FOLLOWS.max(FOLLOWS_NOISE * noise)),
-            None => self.sparse(&start, samples, noise.max(FLOOR)),
+            None => self.sparse(&start, samples, noise.max(FLOOR * root)),
         };
         let uncertainty = series.worst(&along(&start, samples));
         Measured { series, uncertainty }
@@ -80,8 +82,7 @@ impl Search {
     fn smooth(&self, samples: &[Sample], noise: f64) -> Option<Series> {
         let [first, last] = self.times;
         let wide = Search { times: [first / SMOOTH_BEYOND, last * SMOOTH_BEYOND], ..self.clone() };
-        let values: f64 = samples.iter().map(|sample| sample.weight).sum();
-        let enough = (noise.powi(2) * samples.len() as f64).max(SMOOTH_MISFIT.powi(2) * values);
+        let enough = noise.powi(2) * samples.len() as f64;
         let (first, ratio, tried) = WEIGHTS;
         (0..tried)
             .map(|k| wide.regularised(samples, first * ratio.powi(k as i32)))

@@ -29,7 +29,7 @@ const TOLERABLE: f64 = 5e-3;
 const OVER_SCATTER: f64 = 2.0;
 /// Mean square of the difference between neighbouring misfits over their mean square (von Neumann): 2 for noise, less for
 /// misfits that follow one another.
-const SYSTEMATIC: f64 = 0.5;
+const SYSTEMATIC: f64 = 1.0;
 
 /// Why a series fitted to measurements should not be trusted without a look. `Display` tells it.
 #[derive(Debug, Clone, Copy, PartialEq)]
