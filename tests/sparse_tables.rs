@@ -219,8 +219,8 @@ fn noisy(kind: Kind, most: [f64; CLASSES.len()]) {
 #[test]
 fn noise_is_smoothed_in_few_rows() {
     noisy(Kind::Creep, [3.0, 2.0, 1.6, 1.3, 1.1, 1.1, 1.0]);
-    noisy(Kind::Relaxation, [3.5, 2.3, 2.0, 1.5, 1.2, 1.2, 1.1]);
-    noisy(Kind::Dynamic, [3.5, 2.2, 1.6, 1.3, 1.2, 1.1, 1.0]);
+    noisy(Kind::Relaxation, [3.5, 2.3, 2.0, 1.5, 1.2, 1.2, 1.08]);
+    noisy(Kind::Dynamic, [3.5, 2.2, 1.6, 1.2, 1.1, 1.0, 0.95]);
 }
 
 /// The tables that came out badly: six decades of logarithmic creep, of a power law with and without glassy compliance.
