@@ -25,8 +25,8 @@ const SMOOTH_MISFIT: f64 = 1e-4;
 /// Times a decade of a smooth spectrum, and how far it reaches beyond the times of the search, as a factor.
 const SMOOTH_DENSITY: f64 = 4.0;
 const SMOOTH_BEYOND: f64 = 10.0;
-/// Weights of the curvature of a smooth spectrum that are tried, from the first on, each so many times the one before.
-const WEIGHTS: (f64, f64, usize) = (1e3, 0.1, 16);
+/// Weights of the curvature of a smooth spectrum: the first, each so many times the one before, and how many.
+const WEIGHTS: (f64, f64, i32) = (1e3, 0.1, 16);
 /// A sparse series follows the curve of a smooth spectrum within this, or within this part of the noise, ...
 const FOLLOWS: f64 = 5e-4;
 const FOLLOWS_NOISE: f64 = 0.2;
@@ -83,10 +83,19 @@ impl Search {
         let [first, last] = self.times;
         let wide = Search { times: [first / SMOOTH_BEYOND, last * SMOOTH_BEYOND], ..self.clone() };
         let enough = noise.powi(2) * samples.len() as f64;
+        // the misfit grows with the weight
         let (first, ratio, tried) = WEIGHTS;
-        (0..tried)
-            .map(|k| wide.regularised(samples, first * ratio.powi(k as i32)))
-            .find(|series| series.squares(samples) <= enough)
+        let (mut smoothest, mut low, mut high) = (None, 0, tried);
+        while low < high {
+            let middle = (low + high) / 2;
+            let series = wide.regularised(samples, first * ratio.powi(middle));
+            if series.squares(samples) <= enough {
+                (smoothest, high) = (Some(series), middle);
+            } else {
+                low = middle + 1;
+            }
+        }
+        smoothest
     }
 
     /// Non-negative least squares of the misfit and of `weight` times the squared second differences of the strengths,
