@@ -33,6 +33,7 @@ impl ViscoelasticContact {
         }
         let (age, [from, until]) = (self.age(), self.material.measured());
         let remembers = !self.is_undisturbed();
+        let uncertain = self.material.fit_reports().any(|report| report.warning().is_some());
         Warnings::default()
             .with(Warning::NearEdge, near && self.settings.edge == Edge::Refuse)
             .with(Warning::FewCells, few)
@@ -41,5 +42,6 @@ impl ViscoelasticContact {
             .with(Warning::NearEndOfMaterial, remembers && dt > 0.0 && !is_known(age + dt, self.material.known_until()))
             .with(Warning::Rings, rings)
             .with(Warning::FallBack, self.state.current.counts.fallback_iterations > 0)
+            .with(Warning::UncertainMaterial, remembers && uncertain)
     }
 }

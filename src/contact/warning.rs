@@ -28,10 +28,14 @@ pub enum Warning {
     /// [`StepReport::fallback_iterations`](crate::contact::StepReport::fallback_iterations). The answer is as good as any; if it
     /// happens often, take smaller steps, or a larger tolerance.
     FallBack,
+    /// The table of the material leaves its creep uncertain, or does not look like that of a linear body:
+    /// [`Material::fit_reports`](crate::rheology::Material::fit_reports) tells which and why, by
+    /// [`FitReport::warning`](crate::rheology::FitReport::warning).
+    UncertainMaterial,
 }
 
 impl Warning {
-    const ALL: [Warning; 7] = [
+    const ALL: [Warning; 8] = [
         Warning::NearEdge,
         Warning::FewCells,
         Warning::Extrapolated,
@@ -39,6 +43,7 @@ impl Warning {
         Warning::NearEndOfMaterial,
         Warning::Rings,
         Warning::FallBack,
+        Warning::UncertainMaterial,
     ];
 
     fn bit(self) -> u16 {
@@ -56,6 +61,7 @@ impl fmt::Display for Warning {
             Warning::NearEndOfMaterial => "one more such step would look beyond what is known of the material",
             Warning::Rings => "the time rule rings at steps of this length: take shorter ones, or another rule",
             Warning::FallBack => "the solver needed its slow fall-back: take smaller steps if this happens often",
+            Warning::UncertainMaterial => "the table of the material leaves its creep uncertain: see its fit report",
         })
     }
 }

@@ -66,7 +66,7 @@ mod zener;
 
 pub use burgers::Burgers;
 pub use elastic::Elastic;
-pub use fit::{FitReport, FitSample, Quantity};
+pub use fit::{FitReport, FitSample, FitWarning, Quantity};
 pub use fractional_maxwell::FractionalMaxwell;
 pub use fractional_zener::FractionalZener;
 pub use function::FnRheology;

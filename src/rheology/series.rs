@@ -1,7 +1,7 @@
 use std::ops::RangeInclusive;
 
 use crate::error::{Error, Result, positive, within};
-use crate::rheology::fit::{FitReport, Goal, Quantity, Sample, Search};
+use crate::rheology::fit::{FitReport, Quantity, Sample, Search};
 use crate::rheology::{CreepSpectrum, Rheology, may_follow};
 
 /// The exponential series that stands for a creep compliance over a range of times, and its error.
@@ -69,13 +69,9 @@ impl CreepSeries {
 
         let glassy = checked(rheology, 0.0, 0.0)?;
         let samples = sampled(rheology, [first, last], FITTED, glassy)?;
-        let search = Search {
-            constant: (glassy > 0.0).then_some(glassy),
-            slope: true,
-            times: [first / BEYOND, last * BEYOND],
-            goal: Goal::Within(FITTED_SHARE * tolerance),
-        };
-        let series = search.run(&samples);
+        let search =
+            Search { constant: (glassy > 0.0).then_some(glassy), slope: true, times: [first / BEYOND, last * BEYOND] };
+        let series = search.within(&samples, FITTED_SHARE * tolerance);
         let report = FitReport::new(&series, &sampled(rheology, [first, last], CHECKED, glassy)?);
         match report.worst() {
             Some(worst) if worst.misfit().abs() > tolerance => {

@@ -5,33 +5,23 @@
 //! one in between. Neighbours are then merged, the pair that matters least first, and after every merger
 //! strengths and times are polished together, as long as the misfit allows it. What is left is sparse: a
 //! step of the contact pays for each term.
+//!
+//! Functions are fitted within a tolerance, [`Search::within`]; measurements as closely as their noise asks for,
+//! [`Search::measured`].
 
 mod basis;
+mod measured;
 mod nnls;
 mod polish;
 mod report;
 
 pub use basis::Quantity;
 pub(crate) use basis::{Sample, Series};
-pub(crate) use polish::Free;
-pub use report::{FitReport, FitSample};
+pub(crate) use measured::Measured;
+pub use report::{FitReport, FitSample, FitWarning};
 
 use faer::{Col, Mat};
-use polish::polish;
-
-/// What a fit must reach.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Goal {
-    /// The fewest terms with a misfit below this everywhere: for functions, whose every digit counts.
-    Within(f64),
-    /// The terms that the data warrant, by the information criterion of Akaike (1974), which asks for the best
-    /// prediction; misfits below this warrant none. For measurements, which are noisy.
-    ///
-    /// Criteria that ask for the true number of terms (Bayesian ones) find three or six times as surely, but of a
-    /// continuous spectrum they leave ripples: with 2 % noise, J of a fractional Zener body errs by 0.95 % instead of
-    /// 0.68 % rms, and of three retardation times by 0.38 % instead of 0.40 %.
-    Warranted(f64),
-}
+use polish::{Free, polish};
 
 /// Which series to look for.
 #[derive(Debug, Clone)]
@@ -42,69 +32,53 @@ pub(crate) struct Search {
     pub(crate) slope: bool,
     /// Shortest and longest time of a term.
     pub(crate) times: [f64; 2],
-    pub(crate) goal: Goal,
 }
 
-/// Mergers tried, cheapest first, before a series counts as the sparsest. Noise makes a bad guide to the cheapest.
+/// Times a decade on which a function is tried: the trapezoidal rule in ln λ errs by about e^(−π²/h), so that two or three
+/// suffice for 1e-4.
+const DENSITIES: [f64; 4] = [2.0, 3.0, 5.0, 8.0];
+/// Mergers tried, cheapest first, before a series that stands for a function counts as the sparsest.
 const TRIES: usize = 3;
-const TRIES_ON_DATA: usize = 6;
-/// For fewer values the correction of the criterion would leave a constant.
-const LEAST_CORRECTED: f64 = 8.0;
-/// Tables of fewer values take the best merger instead of the first that will do.
-const FEW: usize = 16;
-/// Times a decade that are tried on data.
-const DATA_DENSITY: f64 = 6.0;
 /// Iterations of the polish between mergers, and at the end.
 const BRIEF: usize = 12;
 const LONG: usize = 60;
 
 impl Search {
-    /// The best series found, whether or not it reaches the goal.
-    pub(crate) fn run(&self, samples: &[Sample]) -> Series {
-        let densities: &[f64] = match self.goal {
-            // the trapezoidal rule in ln λ errs by about e^(−π²/h): two or three terms a decade suffice for 1e-4
-            Goal::Within(_) => &[2.0, 3.0, 5.0, 8.0],
-            Goal::Warranted(_) => &[DATA_DENSITY],
-        };
+    /// The series of the fewest terms found whose misfit is at most `most` at every sample; else the one that comes
+    /// nearest.
+    pub(crate) fn within(&self, samples: &[Sample], most: f64) -> Series {
+        let reached = |series: &Series| series.worst(samples) <= most;
         let mut best: Option<Series> = None;
-        for &density in densities {
-            let start = self.on_grid(samples, density);
-            let series = polish(&start, samples, self.free(), LONG, &|series| self.reached(series, samples));
-            let better = best.as_ref().is_none_or(|best| series.worst(samples) < best.worst(samples));
-            if better {
+        for density in DENSITIES {
+            let series = polish(&self.on_grid(samples, density), samples, self.free(), LONG, &reached);
+            if best.as_ref().is_none_or(|best| series.worst(samples) < best.worst(samples)) {
                 best = Some(series);
             }
-            if best.as_ref().is_some_and(|best| self.reached(best, samples)) {
+            if best.as_ref().is_some_and(reached) {
                 break;
             }
         }
         let found = best.unwrap_or(Series { constant: self.constant.unwrap_or(0.0), slope: 0.0, terms: Vec::new() });
-        self.thinned(found, samples)
+        let thinned = self.thinned(found, samples, TRIES, &|trial, _| reached(trial));
+        // what was enough for a merger may not be all there is
+        let polished = polish(&thinned, samples, self.free(), LONG, &|_| false);
+        if polished.worst(samples) <= thinned.worst(samples) { polished } else { thinned }
     }
 
     fn free(&self) -> Free {
         Free { constant: self.constant.is_none(), slope: self.slope }
     }
 
-    fn reached(&self, series: &Series, samples: &[Sample]) -> bool {
-        match self.goal {
-            Goal::Within(most) => series.worst(samples) <= most,
-            Goal::Warranted(floor) => series.worst(samples) <= 0.1 * floor,
-        }
-    }
-
     /// Non-negative least squares with `density` times a decade.
     fn on_grid(&self, samples: &[Sample], density: f64) -> Series {
-        let [first, last] = self.times.map(f64::log10);
-        let count = self.grid(density);
-        let time = |k: usize| 10f64.powf(first + (last - first) * k as f64 / (count - 1).max(1) as f64);
+        let times = self.grid(density);
         let ends = usize::from(self.constant.is_none()) + usize::from(self.slope);
-        let matrix = Mat::from_fn(samples.len(), ends + count, |i, j| {
+        let matrix = Mat::from_fn(samples.len(), ends + times.len(), |i, j| {
             let Sample { quantity, x, value, weight } = samples[i];
             let function = match j {
                 0 if self.constant.is_none() => quantity.constant(),
                 _ if j < ends => quantity.slope(x),
-                _ => quantity.term(x, time(j - ends)).0,
+                _ => quantity.term(x, times[j - ends]).0,
             };
             function * weight.sqrt() / value
         });
@@ -118,75 +92,39 @@ impl Search {
         Series {
             constant: self.constant.unwrap_or_else(|| at_ends[0]),
             slope: if self.slope { at_ends[ends - 1] } else { 0.0 },
-            terms: of_terms.iter().enumerate().filter(|(_, c)| **c > 0.0).map(|(k, &c)| (c, time(k))).collect(),
+            terms: of_terms.iter().copied().zip(times).filter(|(strength, _)| *strength > 0.0).collect(),
         }
     }
 
-    /// Merges terms while the goal allows it.
-    fn thinned(&self, start: Series, samples: &[Sample]) -> Series {
-        let tries = if let Goal::Within(_) = self.goal { TRIES } else { TRIES_ON_DATA };
+    /// Merges terms as long as the series with one term less is preferred to the current one, trying as many of them as
+    /// `tries`, the cheapest first.
+    fn thinned(
+        &self,
+        start: Series,
+        samples: &[Sample],
+        tries: usize,
+        prefers: &dyn Fn(&Series, &Series) -> bool,
+    ) -> Series {
         let mut best = start;
         loop {
             let mut mergers = self.mergers(&best, samples);
             mergers.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let tried = mergers.iter().take(tries).map(|(_, merged)| {
-                let done = |series: &Series| samples.len() >= FEW && self.prefers(series, &best, samples);
-                polish(merged, samples, self.free(), BRIEF, &done)
+            let next = mergers.iter().take(tries).find_map(|(_, merged)| {
+                let trial = polish(merged, samples, self.free(), BRIEF, &|series| prefers(series, &best));
+                prefers(&trial, &best).then_some(trial)
             });
-            let mut preferred = tried.filter(|trial| self.prefers(trial, &best, samples));
-            // of few values every series misses much: there the best merger matters, elsewhere the first will do
-            let next = if samples.len() < FEW {
-                preferred.min_by(|a, b| self.criterion(a, samples).total_cmp(&self.criterion(b, samples)))
-            } else {
-                preferred.next()
-            };
             match next {
                 Some(next) => best = next,
-                None => break,
+                None => return best,
             }
         }
-        // what was enough for a merger may not be all there is
-        let never = |_: &Series| false;
-        let polished = polish(&best, samples, self.free(), LONG, &never);
-        if polished.worst(samples) <= best.worst(samples) || matches!(self.goal, Goal::Warranted(_)) {
-            polished
-        } else {
-            best
-        }
     }
 
-    /// Whether the sparser `trial` is to be preferred.
-    fn prefers(&self, trial: &Series, current: &Series, samples: &[Sample]) -> bool {
-        match self.goal {
-            Goal::Within(most) => trial.worst(samples) <= most,
-            Goal::Warranted(_) => self.criterion(trial, samples) <= self.criterion(current, samples),
-        }
-    }
-
-    /// Akaike's criterion, corrected for small samples (Hurvich & Tsai 1989): the less the better. Never as many
-    /// parameters as values.
-    fn criterion(&self, series: &Series, samples: &[Sample]) -> f64 {
-        let floor = match self.goal {
-            Goal::Within(most) => most,
-            Goal::Warranted(floor) => floor,
-        };
-        let count: f64 = samples.iter().map(|sample| sample.weight).sum();
-        let ends = usize::from(series.constant > 0.0 && self.constant.is_none()) + usize::from(series.slope > 0.0);
-        let (parameters, values) = ((ends + 2 * series.terms.len()) as f64, samples.len() as f64);
-        let price = if parameters >= values {
-            f64::INFINITY
-        } else if values < LEAST_CORRECTED {
-            2.0 * parameters
-        } else {
-            2.0 * parameters * values / (values - parameters - 1.0).max(1.0)
-        };
-        count * (series.squares(samples) / count + floor * floor).ln() + price
-    }
-
-    /// Number of times on a grid of `density` times a decade.
-    fn grid(&self, density: f64) -> usize {
+    /// Log-spaced times, `density` a decade.
+    fn grid(&self, density: f64) -> Vec<f64> {
         let [first, last] = self.times.map(f64::log10);
-        ((last - first) * density).ceil() as usize + 1
+        let steps = ((last - first) * density).ceil().max(1.0) as usize;
+        (0..=steps).map(|k| 10f64.powf(first + (last - first) * k as f64 / steps as f64)).collect()
     }
 
     /// Every series with one term less, and what the merger costs to first order.

@@ -23,6 +23,51 @@ impl FitSample {
     }
 }
 
+/// Uncertainties and systematic misfits below this call for no warning.
+const TOLERABLE: f64 = 5e-3;
+/// An uncertainty of so many times the misfit is not the scatter of the samples.
+const OVER_SCATTER: f64 = 2.0;
+/// Mean square of the difference between neighbouring misfits over their mean square (von Neumann): 2 for noise, less for
+/// misfits that follow one another.
+const SYSTEMATIC: f64 = 1.0;
+
+/// Why a series fitted to measurements should not be trusted without a look. `Display` tells it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum FitWarning {
+    /// There are too few samples to tell how the curve runs between them: measure more of them a decade.
+    FewSamples {
+        /// [`FitReport::uncertainty`].
+        uncertainty: f64,
+    },
+    /// No series meets the samples, and it is not their scatter: the body is not linear, it ages, or the specimen slipped.
+    Systematic {
+        /// [`FitReport::rms_misfit`].
+        rms: f64,
+    },
+}
+
+impl fmt::Display for FitWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            FitWarning::FewSamples { uncertainty } => {
+                write!(
+                    f,
+                    "too few samples a decade: between them the curve is uncertain by {:.1} %",
+                    100.0 * uncertainty
+                )
+            }
+            FitWarning::Systematic { rms } => {
+                write!(
+                    f,
+                    "the samples stray by {:.1} % rms from those of any linear body, and not by chance",
+                    100.0 * rms
+                )
+            }
+        }
+    }
+}
+
 /// How well an exponential series stands for what it was fitted to. `Display` tells it in a line; the
 /// samples are there to be plotted.
 ///
@@ -40,6 +85,8 @@ pub struct FitReport {
     terms: usize,
     exact: bool,
     wrong_way: f64,
+    uncertainty: f64,
+    warning: Option<FitWarning>,
 }
 
 impl FitReport {
@@ -56,17 +103,35 @@ impl FitReport {
             terms: series.terms.len(),
             exact: false,
             wrong_way: 0.0,
+            uncertainty: 0.0,
+            warning: None,
         }
     }
 
     /// Of a series that is the function itself.
     pub(crate) fn exact(terms: usize) -> FitReport {
-        FitReport { samples: Vec::new(), terms, exact: true, wrong_way: 0.0 }
+        FitReport { samples: Vec::new(), terms, exact: true, wrong_way: 0.0, uncertainty: 0.0, warning: None }
     }
 
-    /// The same, of data that turn back by so much.
-    pub(crate) fn with_wrong_way(self, wrong_way: f64) -> FitReport {
-        FitReport { wrong_way, ..self }
+    /// The same, of measurements that turn back by so much and leave the curve uncertain by so much.
+    pub(crate) fn of_measurements(self, wrong_way: f64, uncertainty: f64) -> FitReport {
+        let rms = self.rms_misfit();
+        let warning = if uncertainty > TOLERABLE.max(OVER_SCATTER * rms) {
+            Some(FitWarning::FewSamples { uncertainty })
+        } else if rms > TOLERABLE && self.is_systematic() {
+            Some(FitWarning::Systematic { rms })
+        } else {
+            None
+        };
+        FitReport { wrong_way, uncertainty, warning, ..self }
+    }
+
+    /// Whether misfits resemble those of their neighbours.
+    fn is_systematic(&self) -> bool {
+        let neighbours = self.samples.windows(2).filter(|pair| pair[0].quantity == pair[1].quantity);
+        let (changes, pairs) = neighbours
+            .fold((0.0, 0.0), |(sum, count), pair| (sum + (pair[1].misfit() - pair[0].misfit()).powi(2), count + 1.0));
+        changes < SYSTEMATIC * pairs * self.rms_misfit().powi(2)
     }
 
     /// Whether the series is the function itself and nothing was fitted.
@@ -109,6 +174,18 @@ impl FitReport {
         self.wrong_way
     }
 
+    /// How far, relatively, another series that meets the samples as well strays from this one at or between them. 0 for a
+    /// function, which is sampled as closely as it needs.
+    pub fn uncertainty(&self) -> f64 {
+        self.uncertainty
+    }
+
+    /// What should be looked at, if anything; for measurements only. Steps of a contact whose material has one carry
+    /// [`Warning::UncertainMaterial`](crate::contact::Warning::UncertainMaterial).
+    pub fn warning(&self) -> Option<FitWarning> {
+        self.warning
+    }
+
     /// Relaxation or retardation times that were kept.
     pub fn terms(&self) -> usize {
         self.terms
@@ -136,6 +213,9 @@ impl fmt::Display for FitReport {
         )?;
         if self.wrong_way > 0.0 {
             write!(f, "; the data turn back by {:.1e} at most, taken for noise", self.wrong_way)?;
+        }
+        if let Some(warning) = self.warning {
+            write!(f, "; {warning}")?;
         }
         Ok(())
     }

@@ -12,13 +12,11 @@ pub use error::{Place, TableError};
 pub use master_curve::{Isotherm, MasterCurve};
 
 use crate::error::{Result, exact_length};
-use crate::rheology::fit::{FitReport, Goal, Sample, Search, Series};
+use crate::rheology::fit::{FitReport, Measured, Sample, Search, Series};
 use crate::rheology::series::known_series;
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 use data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
 
-/// Misfits below this warrant no further term: measurements are not that good.
-const FLOOR: f64 = 3e-5;
 /// A worse misfit, in the root mean square, is no fit.
 const MOST_MISFIT: f64 = 0.1;
 /// Of denser tables so many means a decade are fitted, ...
@@ -57,8 +55,13 @@ macro_rules! tabulated {
 /// A body known by its measured creep compliance: pairs of time \[s\] and J \[1/Pa\].
 ///
 /// The data are fitted by a series with positive coefficients, in the least squares of the relative
-/// misfit, with no more terms than they warrant: a smooth curve through noise. [`TabulatedCreep::report`] tells how
+/// misfit: a smooth curve through noise, with no more terms than it needs. [`TabulatedCreep::report`] tells how
 /// well, and holds what is needed to plot data and fit.
+///
+/// J of smooth creep without noise, four to eight decades of it, is met within 0.1 % at and between the rows from two rows a
+/// decade on. Fewer leave it open: within 0.3 % in most cases, by several percent at worst. Where the rows do not tell how J
+/// runs between them, [`FitReport::warning`] says so, and so do the steps of a contact
+/// ([`Warning::UncertainMaterial`](crate::contact::Warning::UncertainMaterial)).
 ///
 /// Outside the data: what happens before the first time counts as elastic (the compliance stays between J_g of the
 /// fit and its value there). After the last time J is NaN, and a step of a contact fails with
@@ -217,9 +220,9 @@ fn fitted(layout: Layout, rows: Vec<Row>, slope: bool) -> Result<(Series, FitRep
     };
     let positive = || samples.iter().map(times).filter(|t| *t > 0.0);
     let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
-    let search = Search { constant: None, slope, times: [first / BEYOND, last * BEYOND], goal: Goal::Warranted(FLOOR) };
-    let series = search.run(&gathered(&samples, (last / first).log10()));
-    let report = FitReport::new(&series, &samples).with_wrong_way(deepest);
+    let search = Search { constant: None, slope, times: [first / BEYOND, last * BEYOND] };
+    let Measured { series, uncertainty } = search.measured(&gathered(&samples, (last / first).log10()));
+    let report = FitReport::new(&series, &samples).of_measurements(deepest, uncertainty);
     match report.worst() {
         Some(worst) if report.rms_misfit() > MOST_MISFIT => {
             let (table, rms) = (layout.table, report.rms_misfit());

@@ -1,0 +1,172 @@
+//! Series through measurements, which are noisy and may be few.
+//!
+//! The noise is what non-negative least squares leaves: that the strengths are positive already smooths. Where there are
+//! many values for each parameter, the sparsest series that predicts best is taken. Few values of little noise determine
+//! as many parameters as there are values, and between the rows the sparsest series ripples; there the smoothest
+//! spectrum is taken that explains the data, and then a sparse series that follows its curve.
+
+use faer::{Col, Mat};
+
+use super::basis::{Quantity, Sample, Series};
+use super::nnls::non_negative_least_squares;
+use super::polish::polish;
+use super::{LONG, Search};
+
+/// Misfits below this call for no further term: measurements are not that good.
+const FLOOR: f64 = 3e-5;
+/// Times a decade on which strength is looked for.
+const DENSITY: f64 = 6.0;
+/// Mergers tried, cheapest first. Noise makes a bad guide to the cheapest.
+const TRIES: usize = 6;
+/// With fewer values than this for each parameter a smooth spectrum is preferred to a sparse one.
+const VALUES_PER_PARAMETER: usize = 3;
+/// A smooth spectrum explains data within this misfit, in the root mean square, or their noise.
+const SMOOTH_MISFIT: f64 = 1e-4;
+/// Times a decade of a smooth spectrum, and how far it reaches beyond the times of the search, as a factor.
+const SMOOTH_DENSITY: f64 = 4.0;
+const SMOOTH_BEYOND: f64 = 10.0;
+/// Weights of the curvature of a smooth spectrum: the first, each so many times the one before, and how many.
+const WEIGHTS: (f64, f64, i32) = (1e3, 0.1, 16);
+/// A sparse series follows the curve of a smooth spectrum within this, or within this part of the noise, ...
+const FOLLOWS: f64 = 5e-4;
+const FOLLOWS_NOISE: f64 = 0.2;
+/// ... at so many points a decade.
+const FOLLOWED: f64 = 8.0;
+
+/// What is found from measurements.
+#[derive(Debug, Clone)]
+pub(crate) struct Measured {
+    pub(crate) series: Series,
+    /// How far, relatively, another series that meets the samples as well strays from it at or between them.
+    pub(crate) uncertainty: f64,
+}
+
+impl Search {
+    /// The series that predicts best.
+    pub(crate) fn measured(&self, samples: &[Sample]) -> Measured {
+        let start = self.on_grid(samples, DENSITY);
+        // each strength that is not zero is a parameter of non-negative least squares (Meyer & Woodroofe, Ann. Statist. 28,
+        // 2000)
+        let parameters = ends(&start) + start.terms.len();
+        let enough = |series: &Series| series.worst(samples) <= 0.1 * FLOOR;
+        let start = polish(&start, samples, self.free(), LONG, &enough);
+        let left = samples.len().saturating_sub(parameters).max(1) as f64;
+        let noise = (start.squares(samples) / left).sqrt();
+        // what is called no misfit, as a deviation of one measurement: a mean of many is not met more closely
+        let root = (samples.iter().map(|sample| sample.weight).sum::<f64>() / samples.len() as f64).sqrt();
+        let few = samples.len() < VALUES_PER_PARAMETER * parameters;
+        let smooth = if few { self.smooth(samples, noise.max(SMOOTH_MISFIT * root)) } else { None };
+        let series = match smooth {
+            Some(curve) => self.within(&along(&curve, samples), FOLLOWS.max(FOLLOWS_NOISE * noise)),
+            None => self.sparse(&start, samples, noise.max(FLOOR * root)),
+        };
+        let uncertainty = series.worst(&along(&start, samples));
+        Measured { series, uncertainty }
+    }
+
+    /// The terms that improve the prediction, by the criterion of Mallows (Technometrics 15, 1973).
+    ///
+    /// Criteria that ask for the true number of terms (Bayesian ones) find three or six times as surely, but of a
+    /// continuous spectrum they leave ripples: with 2 % noise, J of a fractional Zener body errs by 0.95 % instead of
+    /// 0.68 % rms, and of three retardation times by 0.38 % instead of 0.40 %.
+    fn sparse(&self, start: &Series, samples: &[Sample], noise: f64) -> Series {
+        let criterion = |series: &Series| {
+            series.squares(samples) / (noise * noise) + 2.0 * (ends(series) + 2 * series.terms.len()) as f64
+        };
+        let prefers = |trial: &Series, current: &Series| criterion(trial) <= criterion(current);
+        let thinned = self.thinned(start.clone(), samples, TRIES, &prefers);
+        polish(&thinned, samples, self.free(), LONG, &|_| false)
+    }
+
+    /// The smoothest spectrum that explains the samples; `None` if none does, as for a few discrete times without noise.
+    fn smooth(&self, samples: &[Sample], noise: f64) -> Option<Series> {
+        let [first, last] = self.times;
+        let wide = Search { times: [first / SMOOTH_BEYOND, last * SMOOTH_BEYOND], ..self.clone() };
+        let enough = noise.powi(2) * samples.len() as f64;
+        // the misfit grows with the weight
+        let (first, ratio, tried) = WEIGHTS;
+        let (mut smoothest, mut low, mut high) = (None, 0, tried);
+        while low < high {
+            let middle = (low + high) / 2;
+            let series = wide.regularised(samples, first * ratio.powi(middle));
+            if series.squares(samples) <= enough {
+                (smoothest, high) = (Some(series), middle);
+            } else {
+                low = middle + 1;
+            }
+        }
+        smoothest
+    }
+
+    /// Non-negative least squares of the misfit and of `weight` times the squared second differences of the strengths,
+    /// measured by the data at the same time: those of a power law have none.
+    fn regularised(&self, samples: &[Sample], weight: f64) -> Series {
+        let times = self.grid(SMOOTH_DENSITY);
+        let levels: Vec<f64> = times.iter().map(|&time| level(samples, time)).collect();
+        let ends = 1 + usize::from(self.slope);
+        let (rows, root) = (samples.len(), weight.sqrt());
+        let matrix = Mat::from_fn(rows + times.len() - 2, ends + times.len(), |i, j| {
+            if let Some(Sample { quantity, x, value, weight }) = samples.get(i) {
+                let function = match j {
+                    0 => quantity.constant(),
+                    _ if j < ends => quantity.slope(*x),
+                    _ => levels[j - ends] * quantity.term(*x, times[j - ends]).0,
+                };
+                return function * weight.sqrt() / value;
+            }
+            match (j + rows).checked_sub(ends + i) {
+                Some(0 | 2) => root,
+                Some(1) => -2.0 * root,
+                _ => 0.0,
+            }
+        });
+        let right = Col::from_fn(matrix.nrows(), |i| samples.get(i).map_or(0.0, |sample| sample.weight.sqrt()));
+        let strengths = non_negative_least_squares(&matrix, &right);
+        let (at_ends, of_terms) = strengths.split_at(ends);
+        let terms = of_terms.iter().zip(levels).map(|(part, level)| part * level).zip(times);
+        Series {
+            constant: at_ends[0],
+            slope: if self.slope { at_ends[1] } else { 0.0 },
+            terms: terms.filter(|(strength, _)| *strength > 0.0).collect(),
+        }
+    }
+}
+
+/// How many of constant and slope a series has.
+fn ends(series: &Series) -> usize {
+    usize::from(series.constant > 0.0) + usize::from(series.slope > 0.0)
+}
+
+/// What was measured first at `time`, a straight line between the samples in logarithms, and constant beyond them.
+fn level(samples: &[Sample], time: f64) -> f64 {
+    let quantity = samples[0].quantity;
+    let x = match quantity {
+        Quantity::Creep | Quantity::Relaxation => time,
+        Quantity::Storage | Quantity::Loss => 1.0 / time,
+    };
+    let known: Vec<&Sample> = samples.iter().filter(|sample| sample.quantity == quantity && sample.x > 0.0).collect();
+    let next = known.partition_point(|sample| sample.x < x);
+    match (next.checked_sub(1).map(|before| known[before]), known.get(next)) {
+        (Some(before), Some(next)) => {
+            before.value * (next.value / before.value).powf((x / before.x).ln() / (next.x / before.x).ln())
+        }
+        (Some(nearest), None) => nearest.value,
+        (None, nearest) => nearest.map_or(1.0, |nearest| nearest.value),
+    }
+}
+
+/// The values of `curve` at and between the samples.
+fn along(curve: &Series, samples: &[Sample]) -> Vec<Sample> {
+    let mut points = Vec::new();
+    let mut push = |quantity, x| points.push(Sample { quantity, x, value: curve.value(quantity, x), weight: 1.0 });
+    for (k, &Sample { quantity, x, .. }) in samples.iter().enumerate() {
+        push(quantity, x);
+        if let Some(next) = samples.get(k + 1).filter(|next| next.quantity == quantity && x > 0.0) {
+            let between = ((next.x / x).log10() * FOLLOWED).ceil() as usize;
+            for part in 1..between {
+                push(quantity, x * (next.x / x).powf(part as f64 / between as f64));
+            }
+        }
+    }
+    points
+}
