@@ -1,5 +1,8 @@
 //! Steps, times, moduli, lengths and loads at the ends of their ranges.
 
+#[path = "common/noise.rs"]
+mod noise;
+
 use viscocontact::Error;
 use viscocontact::prelude::*;
 
@@ -370,4 +373,42 @@ fn the_least_pressures_do_not_pull() {
         }
     }
     assert!(accepted > 50, "{accepted} accepted, {refused} refused");
+}
+
+/// Bodies that are held relax: on a Maxwell body all that happens to the pressure is the factor e^(−t/τ), in steps of any
+/// length, as long as numbers last.
+#[test]
+fn a_held_approach_relaxes_by_many_decades() {
+    let mut dice = noise::uniform(7);
+    let mut between = |low: f64, high: f64| low + (high - low) * dice();
+    for scene in 0..40 {
+        let shapes: [Box<dyn Geometry>; 4] = [
+            Box::new(Sphere::new(between(5.0e-3, 20.0e-3)).unwrap()),
+            Box::new(Ellipsoid::new(between(5.0e-3, 20.0e-3), between(5.0e-3, 20.0e-3)).unwrap()),
+            Box::new(Cone::new(between(0.01, 0.1)).unwrap()),
+            Box::new(FlatPunch::circular(between(0.5e-3, 1.5e-3)).unwrap()),
+        ];
+        let cells = [24 + (between(0.0, 24.0) as usize), 24 + (between(0.0, 24.0) as usize)];
+        let mut contact = ViscoelasticContact::builder(Grid::new(cells, [4.0e-3; 2]).unwrap())
+            .geometry(&shapes[scene % 4])
+            .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap()))
+            .build()
+            .unwrap();
+        let held = Load::approach_and_tilt(between(0.2e-5, 3.0e-5), [between(0.0, 1.0e-3), 0.0]);
+        contact.step(0.0, held).unwrap();
+        let (start, force) = (contact.pressure().to_vec(), contact.force());
+        for _ in 0..4 {
+            // in one step, or in several
+            let dt = between(0.1, 60.0);
+            let report = contact.step(dt, held).unwrap();
+            let left = (-report.time).exp();
+            assert!((contact.force() / (left * force) - 1.0).abs() < 1e-5, "scene {scene}, {dt}: {report}");
+            let errors = contact.pressure().iter().zip(&start).map(|(p, p0)| (p - left * p0).abs());
+            assert!(errors.sum::<f64>() < 1e-5 * left * start.iter().sum::<f64>(), "scene {scene}, {dt}: {report}");
+            assert!(report.residual <= contact.settings().tolerance);
+        }
+        // beyond the range of numbers there is nothing left
+        contact.step(1.0e6, held).unwrap();
+        assert_eq!(contact.force(), 0.0);
+    }
 }

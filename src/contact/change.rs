@@ -43,6 +43,7 @@ impl ViscoelasticContact {
     /// Brings what hangs on the gap up to date with a new one, which is even about the axes `still` folded.
     pub(super) fn take_in_the_gap(&mut self, still: [bool; 2]) {
         self.gap_id = next_id();
+        self.state.gap_is_new = true;
         if let Some(here) = &mut self.gap_here {
             self.region.cut_into(&self.initial_gap.above, &mut here.above);
             here.datum = self.initial_gap.datum;

@@ -43,5 +43,6 @@ impl ViscoelasticContact {
             .with(Warning::Rings, rings)
             .with(Warning::FallBack, self.state.current.counts.fallback_iterations > 0)
             .with(Warning::UncertainMaterial, remembers && uncertain)
+            .with(Warning::Rounding, self.state.current.rounding > self.settings.tolerance)
     }
 }

@@ -66,10 +66,24 @@ impl Refresh {
     }
 }
 
+/// Where bodies are held and the pressure falls by more than this in a step, what has passed is no guide: the last pressure
+/// is scaled by what is left.
+const RELAXES_SLOWLY: f64 = 0.5;
+
 impl ViscoelasticContact {
-    /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike.
-    pub(super) fn guess(&mut self, dt: f64) {
+    /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike. `held` bodies whose pressure
+    /// relaxes a lot in this step of compliance `c` get the last one scaled.
+    pub(super) fn guess(&mut self, dt: f64, c: f64, held: bool) {
         self.begin_trial();
+        if held && let Some(share) = self.left_of_pressure(c) {
+            for (trial, state) in [
+                (&mut self.trial.pressure, &self.state.current.pressure),
+                (&mut self.trial.potential, &self.state.current.potential),
+            ] {
+                trial.iter_mut().zip(state).for_each(|(trial, &value)| *trial = share * value);
+            }
+            return;
+        }
         let mut ahead = if self.state.last_dt > 0.0 { (dt / self.state.last_dt).min(FARTHEST_GUESS) } else { 0.0 };
         let positive = |p: f64| if p > 0.0 { p } else { 0.0 };
         let guess = |p: f64, before: f64| positive(p + ahead * (p - before));
@@ -95,6 +109,18 @@ impl ViscoelasticContact {
             return self.trial.release();
         }
         self.extrapolate(ahead);
+    }
+
+    /// The share of the last pressure that best closes the gap of a held step, if it is small. On a fixed contact a single
+    /// relaxation time leaves exactly that.
+    fn left_of_pressure(&self, c: f64) -> Option<f64> {
+        let (mut overlap, mut square) = (0.0, 0.0);
+        let state = self.state.current.pressure.iter().zip(&self.state.current.potential);
+        for ((_, &v), &gap) in state.zip(&self.gap).filter(|((p, _), _)| **p > 0.0) {
+            (overlap, square) = (overlap - gap * c * v, square + c * v * (c * v));
+        }
+        let share = overlap / square;
+        (share < RELAXES_SLOWLY).then_some(share.max(0.0))
     }
 
     /// Counts nothing yet, and leaves the bodies where they are, as far as their loads leave them free.

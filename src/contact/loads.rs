@@ -70,6 +70,27 @@ impl ViscoelasticContact {
         }
     }
 
+    /// Whether every body stays in place: then all that happens in the contact is that the pressure relaxes.
+    pub(super) fn is_held(&self, loads: &[Load]) -> bool {
+        let in_place = |load: &Load| {
+            matches!(load, Load::Approach { tilt: [Tilt::Fixed(_), Tilt::Fixed(_)], .. }) && load.validate().is_ok()
+        };
+        matches!(&self.history, History::Exponential(history) if history.remembers())
+            && loads == self.state.loads
+            && !self.state.gap_is_new
+            && loads.iter().all(in_place)
+    }
+
+    /// The gap of a step in which every body is held, where they touch: hi + u is then the motion of the body, and what the
+    /// past leaves is −c (E∞ u + Σ e^(−z_i) q_i) alone. As a part of hi + u_old − ω it would be lost in rounding once the
+    /// pressure has relaxed by many decades.
+    pub(super) fn fill_held_gap(&mut self, c: f64) {
+        if let History::Exponential(history) = &self.history {
+            let pressed = &self.state.current.pressure;
+            history.fill_recovery(c, &self.state.displacement, pressed, &mut self.gap);
+        }
+    }
+
     /// Refuses an approach beyond that which closes every gap, where the mean displacement is held: Σ h = Σ gap ≥ 0.
     pub(super) fn stay_below_full_contact(&self, time: f64, loads: &[Load]) -> Result<()> {
         let held = loads.iter().all(|load| matches!(load, Load::Approach { .. }));
@@ -84,11 +105,21 @@ impl ViscoelasticContact {
     /// u = u_old + c K p; on a body with memory, the surface in contact is then laid on the rigid body. The
     /// residual of this step would otherwise stay in u, and count many times over when a later step is
     /// much stiffer than this one, as a jump after a long hold is.
-    pub(super) fn displace(&mut self, c: f64) {
+    pub(super) fn displace(&mut self, c: f64, held: bool) {
         if let History::Sources(history) = &mut self.history {
             history.lay_from(&self.trial_displacement, c, &self.trial.potential);
         }
         self.lay(c);
+        if held {
+            // the surface in contact stays where the bodies are, to the last bit: its rounding would feed the branches
+            let pressed = self.state.current.pressure.iter().zip(&self.trial.pressure);
+            let displacements = self.trial_displacement.iter_mut().zip(&self.state.displacement);
+            for ((new, &old), (&before, &after)) in displacements.zip(pressed) {
+                if before > 0.0 && after > 0.0 {
+                    *new = old;
+                }
+            }
+        }
         if let History::Sources(history) = &mut self.history {
             history.lay_to(&self.trial_displacement);
         }

@@ -20,6 +20,8 @@ pub(super) struct State {
     /// Whether the region was chosen for a contact.
     pub(super) placed: bool,
     pub(super) loads: Vec<Load>,
+    /// Whether the initial gap has been replaced since the last step.
+    pub(super) gap_is_new: bool,
     pub(super) displacement: Vec<f64>,
     pub(super) current: Solution,
     /// (ω, α1, α2) of each body, ω at the origin.
@@ -49,6 +51,7 @@ impl State {
             fitted_over: None,
             placed: false,
             loads: vec![Load::force(0.0); bodies],
+            gap_is_new: false,
             displacement: vec![0.0; cells],
             current: unloaded.clone(),
             motions,
@@ -72,6 +75,7 @@ impl State {
             fitted_over,
             placed,
             loads,
+            gap_is_new,
             displacement,
             current,
             motions,
@@ -85,7 +89,7 @@ impl State {
         (*time, *interval, *last_dt) = (other.time, other.interval, other.last_dt);
         (*undisturbed_until, *shortest, *fitted_over) = (other.undisturbed_until, other.shortest, other.fitted_over);
         (*placed, *contact_cells, *before_is_kept) = (other.placed, other.contact_cells, other.before_is_kept);
-        *refresh = other.refresh;
+        (*refresh, *gap_is_new) = (other.refresh, other.gap_is_new);
         loads.clone_from(&other.loads);
         displacement.clone_from(&other.displacement);
         current.copy_from(&other.current);

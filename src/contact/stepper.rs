@@ -90,7 +90,7 @@ impl ViscoelasticContact {
             let Some(region) = self.outgrown(loads) else {
                 let sum_of_pressure = sum(&self.trial.pressure);
                 self.check(time, sum_of_pressure)?;
-                self.displace(c);
+                self.displace(c, self.is_held(loads));
                 if !sum(&self.trial_displacement).is_finite() {
                     return Err(Error::Overflow { time, what: "the displacement" });
                 }
@@ -115,13 +115,17 @@ impl ViscoelasticContact {
             return Err(Error::Overflow { time, what: "the compliance of the step" });
         }
         self.fill_gap(loads);
+        let held = self.is_held(loads);
+        if held {
+            self.fill_held_gap(c);
+        }
         self.stay_below_full_contact(time, loads)?;
 
         // the contact problem of the step
         if unyielding {
             self.jump_without_response(time, loads, tolerance)?;
         } else {
-            self.guess(dt);
+            self.guess(dt, c, held);
         }
         let owner = self.gap_here.as_ref().unwrap_or(&self.initial_gap).owner.as_deref();
         let problem =
@@ -174,6 +178,7 @@ impl ViscoelasticContact {
         }
         self.state.time = time;
         self.state.loads.copy_from_slice(loads);
+        self.state.gap_is_new = false;
         self.state.last_dt = dt;
         self.state.interval = dt;
         self.state.before_is_kept = true;

@@ -38,6 +38,7 @@ impl ViscoelasticContact {
             whole.initial_gap.put_back(&mut gap.clone(), datum);
             whole
         });
+        let gap_was_new = self.state.gap_is_new;
         self.take_in_the_gap(still);
         let before = (self.force(), self.moment(), self.state.motions[0]);
         let result = self.step(dt, load);
@@ -47,6 +48,7 @@ impl ViscoelasticContact {
                 None => {
                     self.initial_gap.put_back(&mut gap, datum);
                     self.take_in_the_gap(still);
+                    self.state.gap_is_new = gap_was_new;
                 }
             }
         }

@@ -32,10 +32,14 @@ pub enum Warning {
     /// [`Material::fit_reports`](crate::rheology::Material::fit_reports) tells which and why, by
     /// [`FitReport::warning`](crate::rheology::FitReport::warning).
     UncertainMaterial,
+    /// The gap is a sum of numbers that round by more than [`Settings::tolerance`](crate::contact::Settings::tolerance) of how far
+    /// the surface yields, as where next to no pressure is left on bodies that once were pressed much harder: pressure and force are
+    /// less certain than the residual says.
+    Rounding,
 }
 
 impl Warning {
-    const ALL: [Warning; 8] = [
+    const ALL: [Warning; 9] = [
         Warning::NearEdge,
         Warning::FewCells,
         Warning::Extrapolated,
@@ -44,6 +48,7 @@ impl Warning {
         Warning::Rings,
         Warning::FallBack,
         Warning::UncertainMaterial,
+        Warning::Rounding,
     ];
 
     fn bit(self) -> u16 {
@@ -61,6 +66,7 @@ impl fmt::Display for Warning {
             Warning::NearEndOfMaterial => "one more such step would look beyond what is known of the material",
             Warning::Rings => "the time rule rings at steps of this length: take shorter ones, or another rule",
             Warning::FallBack => "the solver needed its slow fall-back: take smaller steps if this happens often",
+            Warning::Rounding => "the pressure is so small that the rounding of the gap makes it uncertain",
             Warning::UncertainMaterial => "the table of the material leaves its creep uncertain: see its fit report",
         })
     }

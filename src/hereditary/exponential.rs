@@ -35,8 +35,8 @@ pub(crate) struct Exponential {
 /// a step takes 1.1 times as long as with one; 1.4 times with each branch an array of its own, whose beginnings the
 /// memory has to be asked for block after block.
 const BLOCK: usize = 512;
-/// e^(−40) is a fiftieth of the rounding unit: what decays further leaves no trace.
-const SPENT: f64 = 40.0;
+/// e^(−700) is near the least number with all its digits: what decays further is gone.
+const SPENT: f64 = 700.0;
 
 impl Exponential {
     /// The undisturbed past of a body with contact compliance `creep` on `cells` cells.
@@ -179,6 +179,22 @@ impl Exponential {
         }
         self.waiting = false;
         c
+    }
+
+    /// Writes −c (E∞ u + Σ e^(−z_i) q_i), what the past leaves of a displacement that is held, over `gap` where `pressed` is
+    /// positive; after [`Exponential::predict`] of the step.
+    pub(crate) fn fill_recovery(&self, c: f64, displacement: &[f64], pressed: &[f64], gap: &mut [f64]) {
+        let equilibrium = self.relaxation.equilibrium();
+        let mut blocks = self.fields.chunks((BLOCK * self.factors.len()).max(1));
+        let cells = displacement.chunks(BLOCK).zip(pressed.chunks(BLOCK)).zip(gap.chunks_mut(BLOCK));
+        for ((displacement, pressed), gap) in cells {
+            let fields = blocks.next().unwrap_or_default();
+            for k in (0..gap.len()).filter(|&k| pressed[k] > 0.0) {
+                let branches = fields.chunks(gap.len()).zip(&self.factors);
+                let stress = branches.fold(equilibrium * displacement[k], |sum, (q, (decay, _))| sum + decay * q[k]);
+                gap[k] = -c * stress;
+            }
+        }
     }
 
     /// The compliance c of a step, and its factors; 0 for a jump of a body without elastic response.

@@ -163,8 +163,9 @@ impl ActiveSet {
                 }
                 (state, penetration) = self.advance(problem, solution, 0.0);
             }
-            state.rounding = problem.rounding(&solution.pressure);
+            state.held_mean = problem.rounding(&solution.pressure);
             solution.residual = relative_residual(&state, penetration);
+            solution.rounding = state.relative_rounding();
             solution.trace.note(solution.counts.iterations, solution.residual);
             let admissible = !self.pending() && state.negative == 0.0;
             if admissible && solution.residual <= stop.tolerance {

@@ -57,6 +57,8 @@ pub(crate) struct Solution {
     pub(crate) counts: Counts,
     /// The residual on return, see `relative_residual`.
     pub(crate) residual: f64,
+    /// What the gap is rounded by, in the same measure: no smaller residual could be told.
+    pub(crate) rounding: f64,
     /// How it went.
     #[cfg_attr(feature = "checkpoint", serde(skip, default = "Trace::new"))]
     pub(crate) trace: Trace,
@@ -91,8 +93,8 @@ pub(crate) struct Measure {
     pub(crate) negative: f64,
     /// The greatest |gap|, prior to any pressure.
     pub(crate) height: f64,
-    /// What c K p is rounded by, where it may be much less than its parts.
-    pub(crate) rounding: f64,
+    /// What c K p is rounded by, where the mean is held and it may be much less than its parts.
+    pub(crate) held_mean: f64,
     pub(crate) cells: usize,
 }
 
@@ -103,8 +105,7 @@ pub(crate) const PENETRATION_SLACK: f64 = 10.0;
 /// rms |h| in contact and a tenth of the deepest penetration outside. What the gap itself is rounded by does
 /// not count.
 pub(crate) fn relative_residual(state: &Measure, penetration: f64) -> f64 {
-    let error = state.rms().max(penetration / PENETRATION_SLACK);
-    let error = error - 4.0 * f64::EPSILON * state.height - state.rounding;
+    let error = state.rms().max(penetration / PENETRATION_SLACK) - state.rounding();
     if error <= 0.0 { 0.0 } else { error / state.yielding() }
 }
 
@@ -112,6 +113,16 @@ impl Measure {
     /// rms |h| in contact.
     pub(crate) fn rms(&self) -> f64 {
         (self.square / self.cells.max(1) as f64).sqrt()
+    }
+
+    /// What the gap is rounded by.
+    fn rounding(&self) -> f64 {
+        4.0 * f64::EPSILON * self.height + self.held_mean
+    }
+
+    /// The same, relative to how far the surface yields; 0 if it does not.
+    pub(crate) fn relative_rounding(&self) -> f64 {
+        if self.displacement > 0.0 { self.rounding() / self.yielding() } else { 0.0 }
     }
 
     /// rms (c v) in contact: how far the surface yields.
@@ -209,6 +220,7 @@ impl Solution {
             motions: vec![[0.0; 3]; bodies],
             counts: Counts::default(),
             residual: 0.0,
+            rounding: 0.0,
             trace: Trace::new(),
         }
     }
@@ -218,14 +230,14 @@ impl Solution {
         self.pressure.clone_from(&other.pressure);
         self.potential.clone_from(&other.potential);
         self.motions.clone_from(&other.motions);
-        (self.counts, self.residual) = (other.counts, other.residual);
+        (self.counts, self.residual, self.rounding) = (other.counts, other.residual, other.rounding);
     }
 
     /// No pressure at all.
     pub(crate) fn release(&mut self) {
         self.pressure.fill(0.0);
         self.potential.fill(0.0);
-        self.residual = 0.0;
+        (self.residual, self.rounding) = (0.0, 0.0);
     }
 
     /// Lets every released body follow the surface: just touching, and without any tilt of its own.

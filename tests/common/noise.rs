@@ -9,6 +9,7 @@ pub fn uniform(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
+#[allow(dead_code, reason = "not every user needs both")]
 /// Normal deviates of standard deviation one: Box and Muller.
 pub fn noise(seed: u64) -> impl FnMut() -> f64 {
     let mut uniform = uniform(seed);

@@ -57,8 +57,9 @@ impl ActiveSet {
         loop {
             let mut state = self.fit_motions(problem, solution);
             let penetration = problem.penetration(solution, |k| !self.member[k]);
-            state.rounding = problem.rounding(&solution.pressure);
+            state.held_mean = problem.rounding(&solution.pressure);
             solution.residual = relative_residual(&state, penetration);
+            solution.rounding = state.relative_rounding();
             solution.trace.note(solution.counts.iterations, solution.residual);
             if solution.residual <= stop.tolerance {
                 self.find_runs(problem);
