@@ -145,6 +145,7 @@ mod kernel;
 #[cfg(feature = "laws")]
 pub mod laws;
 pub mod load;
+mod memory;
 pub mod motion;
 pub mod observe;
 pub mod output;

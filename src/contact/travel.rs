@@ -3,6 +3,7 @@
 use crate::contact::settings::Frame;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result, non_negative};
+use crate::memory;
 use crate::load::Load;
 use crate::motion::{Travel, TravelReport};
 
@@ -27,12 +28,20 @@ impl ViscoelasticContact {
         let from = travel.position(self.state.time)?;
         self.move_back();
         let mut gap = std::mem::take(&mut self.spare_gap);
+        memory::check("the gap of a moving indenter", 16 * self.grid.len() as u128)?;
         gap.resize(self.grid.len(), f64::INFINITY);
         let filled = travel.fill_gap(self.state.time + dt, &self.grid, &mut gap, &mut self.spare_track);
         let exchanged = filled.and_then(|()| self.initial_gap.exchange(&mut gap, &self.grid));
         let datum = exchanged.inspect_err(|_| self.spare_gap = std::mem::take(&mut gap))?;
         // what is lost with the symmetry does not come back
-        let still = self.still_even();
+        let still = self.still_even(&self.initial_gap);
+        if still != self.region.folded()
+            && let Err(error) = self.check_room(&self.unfolded(still))
+        {
+            self.initial_gap.put_back(&mut gap, datum);
+            self.spare_gap = gap;
+            return Err(error);
+        }
         let whole = (still != self.region.folded()).then(|| {
             let mut whole = Box::new(self.clone());
             whole.initial_gap.put_back(&mut gap.clone(), datum);
