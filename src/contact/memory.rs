@@ -42,8 +42,8 @@ pub struct Memory {
     pub history: u64,
     /// Bytes of the solver and its preconditioner.
     pub solver: u64,
-    /// Bytes of the spectrum of the kernel, and of what its transforms work in. The spectrum is shared between contacts that
-    /// share the kernel.
+    /// Bytes of what the transforms of the kernel work in, and of its spectrum, unless another contact with the same kernel
+    /// has made that already.
     pub kernel: u64,
     /// Bytes that each further step adds: those of direct sums, up to [`Settings::history_limit`].
     pub each_step: u64,

@@ -138,10 +138,14 @@ impl InfluenceKernel {
         Ok(self.operator([false; 2]))
     }
 
-    /// Bytes of all that belongs to the kernel on so many cells: operator and workspace, and those of the approximate inverse.
+    /// Bytes that the kernel takes on so many cells, operator and workspace, and those of the approximate inverse. An operator that
+    /// there is already takes none.
     pub(crate) fn bytes_on(&self, cells: [usize; 2], folded: [bool; 2]) -> [u128; 2] {
-        let layout = Layout { cells, ..self.layout(folded) };
-        [layout, layout.wrapped()].map(|layout| layout.operator_bytes() + layout.workspace_bytes())
+        let (layout, whole) = (Layout { cells, ..self.layout(folded) }, self.layout(folded));
+        let made = layout == whole && self.operators[index(folded)].get().is_some();
+        let operator = if made { 0 } else { layout.operator_bytes() };
+        let inverse = layout.wrapped();
+        [operator + layout.workspace_bytes(), inverse.operator_bytes() + inverse.workspace_bytes()]
     }
 
     /// The operator on the whole grid.

@@ -18,8 +18,8 @@ impl Layout {
             let twist = if self.folded[axis] { self.line(axis) as u128 / 2 + 1 } else { 0 };
             COMPLEX * (2 * self.line(axis) as u128 + twist)
         });
-        // real transforms of a single column: of half the length, and what parts their coefficients
-        let column = if self.is_single_column() && !self.folded[0] { tables[0] * 3 / 4 } else { 0 };
+        // real transforms of a single column: each of half the length
+        let column = if self.is_single_column() && !self.folded[0] { tables[0] / 2 } else { 0 };
         spectrum + tables[0] + tables[1] + column
     }
 
@@ -27,8 +27,8 @@ impl Layout {
     pub(crate) fn workspace_bytes(&self) -> u128 {
         let [lines, columns] = [self.line(1) as u128, self.line(0) as u128];
         if self.is_single_column() {
-            let real = if self.folded[0] { 0 } else { REAL * columns };
-            return real + COMPLEX * (self.waves() as u128 + columns / 2);
+            let (real, scratch) = if self.folded[0] { (0, columns) } else { (REAL * columns, columns / 2) };
+            return real + COMPLEX * (self.waves() as u128 + scratch);
         }
         let lanes = lanes(self.cells[0].saturating_mul(self.cells[1])) as u128;
         let slack = (CACHE_LINE / size_of::<Complex64>()) as u128;
