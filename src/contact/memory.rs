@@ -164,3 +164,29 @@ pub(super) fn symmetry_of(gaps: &[&Vec<f64>], cells: [usize; 2]) -> [bool; 2] {
         own.0 == image.0 && own.1 - datum == image.1 - datum
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Grid;
+    use crate::hereditary::Exponential;
+    use crate::rheology::CreepSpectrum;
+
+    /// Solvers number the cells that are computed in 32 bits, whatever memory there is.
+    #[test]
+    fn no_more_cells_are_computed_than_can_be_numbered() {
+        let creep = CreepSpectrum::new(1.0, 1.0, &[]).unwrap();
+        let (settings, history) = (Settings::default(), History::Exponential(Exponential::new(&creep, 0)));
+        for cells in [[65536, 65536], [1 << 32, 1], [131072, 65536]] {
+            let kernel = InfluenceKernel::half_space(&Grid::new(cells, [1.0, 1.0]).unwrap()).unwrap();
+            let all = cells[0] * cells[1];
+            let footprint = Footprint { all, bodies: 1, settings: &settings, kernel: &kernel, history: &history };
+            let whole = Computed { cells, folded: [false; 2], covers: true };
+            let refused = footprint.check(whole, 0).unwrap_err();
+            assert!(matches!(refused, Error::CountOutOfRange { value, .. } if value == all), "{refused}");
+            // a small part of them may be, whose memory is that of gap and pressure
+            let part = Computed { cells: [64, 1], folded: [false; 2], covers: false };
+            assert!((16 * all as u64..16 * all as u64 + 100_000).contains(&footprint.on(part).total()));
+        }
+    }
+}
