@@ -118,7 +118,7 @@ fn kernels_are_refused_before_they_are_filled() {
             refused(waves, &grid, 4, "waves");
         }
     }
-    assert!(made > 400 && lines > 2, "{made} {lines}");
+    assert!(made > 400 && lines > 1, "{made} {lines}");
 }
 
 #[test]

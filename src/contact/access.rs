@@ -80,7 +80,10 @@ impl ViscoelasticContact {
         if !self.region.is_whole() && self.whole_displacement.get().is_none() {
             let whole = Region::whole(&self.grid, self.region.folded());
             let [kernel, _] = self.kernel.bytes_on(whole.cells(), whole.folded());
-            memory::check("the displacement on the whole grid", kernel + 8 * (self.grid.len() + 2 * whole.len()) as u128)?;
+            memory::check(
+                "the displacement on the whole grid",
+                kernel + 8 * (self.grid.len() + 2 * whole.len()) as u128,
+            )?;
         }
         let (n2, displacement) = (self.grid.cells()[1], self.displacement());
         for (k, h) in out.iter_mut().enumerate() {

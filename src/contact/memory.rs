@@ -131,7 +131,8 @@ impl Footprint<'_> {
         let memory = self.on(computed);
         if u32::try_from(memory.computed_cells).is_err() {
             let (field, value) = ("cells that are computed", memory.computed_cells);
-            let allowed = "4294967295 at most: take fewer cells, or let symmetry and window of the Settings compute fewer";
+            let allowed =
+                "4294967295 at most: take fewer cells, or let symmetry and window of the Settings compute fewer";
             return Err(Error::CountOutOfRange { field, value, allowed });
         }
         memory::check("the contact", u128::from(memory.total()) + u128::from(besides))

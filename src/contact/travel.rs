@@ -3,8 +3,8 @@
 use crate::contact::settings::Frame;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result, non_negative};
-use crate::memory;
 use crate::load::Load;
+use crate::memory;
 use crate::motion::{Travel, TravelReport};
 
 impl ViscoelasticContact {
@@ -26,9 +26,11 @@ impl ViscoelasticContact {
         }
         non_negative("time step", dt)?;
         let from = travel.position(self.state.time)?;
+        if self.spare_gap.capacity() < self.grid.len() {
+            memory::check("the gap of a moving indenter", 16 * self.grid.len() as u128)?;
+        }
         self.move_back();
         let mut gap = std::mem::take(&mut self.spare_gap);
-        memory::check("the gap of a moving indenter", 16 * self.grid.len() as u128)?;
         gap.resize(self.grid.len(), f64::INFINITY);
         let filled = travel.fill_gap(self.state.time + dt, &self.grid, &mut gap, &mut self.spare_track);
         let exchanged = filled.and_then(|()| self.initial_gap.exchange(&mut gap, &self.grid));

@@ -71,9 +71,8 @@ impl Membrane {
     /// Σ weight (value − value of the neighbour), where known neighbours count 0: the equations without right sides.
     fn apply(&self, values: &[f64], result: &mut [f64]) {
         for ((around, value), result) in self.neighbours.iter().zip(values).zip(result) {
-            *result = around
-                .iter()
-                .fold(0.0, |sum, &(k, w)| sum + w * (value - self.number[k].map_or(0.0, |n| values[n])));
+            *result =
+                around.iter().fold(0.0, |sum, &(k, w)| sum + w * (value - self.number[k].map_or(0.0, |n| values[n])));
         }
     }
 
