@@ -14,6 +14,8 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// What a contact keeps beside its fields: names, plans of transforms, traces of the solver.
 const SMALL: f64 = 16.0e3;
+/// What the threads of a fit keep for the next one, now and then.
+const OF_FITS: f64 = 64.0e3;
 
 /// Bytes taken since, and not given back.
 fn taken(region: &Region<'_, System>) -> f64 {
@@ -103,7 +105,7 @@ fn builders_tell_what_is_counted() {
     let warm = Scene { grid: Grid::square(256, 1.0e-2).unwrap(), kernel: InfluenceKernel::half_space, ..warm };
     drop(warm.builder(&Arc::new((warm.kernel)(&warm.grid).unwrap())).build().unwrap());
     let (mut equal, mut bounded, mut grown) = (0, 0, 0);
-    for number in 0..200 {
+    for number in 0..300 {
         let scene = scene(&mut random);
         let kernel = Arc::new((scene.kernel)(&scene.grid).unwrap());
         // what coefficients and their proof took is the user's
@@ -118,7 +120,8 @@ fn builders_tell_what_is_counted() {
                 continue;
             }
         };
-        assert!(taken(&asked).abs() < SMALL, "{number}: {} bytes stay after the question", taken(&asked));
+        let small = SMALL + if scene.fitted { OF_FITS } else { 0.0 };
+        assert!(taken(&asked).abs() < small, "{number}: {} bytes stay after the question", taken(&asked));
         let contact = builder.build().unwrap();
         let (counted, told) = (taken(&region), memory.total() as f64);
         let what = format!(
@@ -129,10 +132,12 @@ fn builders_tell_what_is_counted() {
             scene.terms,
             scene.settings
         );
-        assert!(counted <= 1.05 * told + SMALL, "{what}");
+        assert!(counted <= 1.05 * told + small, "{what}");
         // a window is as small as the contact at first, and may grow
-        let least = if scene.settings.window && contact.kernel().to_string() == "half-space" { 0.0 } else { 0.95 };
-        assert!(counted >= least * told - SMALL, "{what}");
+        let on_half_space = contact.kernel().to_string() == "half-space";
+        let recursive = scene.settings.frame == Frame::Bodies && memory.each_step == 0;
+        let least = if scene.settings.window && on_half_space && recursive { 0.0 } else { 0.95 };
+        assert!(counted >= least * told - small, "{what}");
         if least > 0.0 {
             equal += 1;
             continue;
@@ -142,10 +147,12 @@ fn builders_tell_what_is_counted() {
         for force in [1.0e-3, 1.0e-1, 10.0] {
             let stepped = contact.step_each(0.0, &vec![Load::force(force); scene.bodies]);
             grown += usize::from(stepped.is_ok_and(|_| taken(&region) > 2.0 * counted));
-            assert!(taken(&region) <= 1.05 * told + SMALL, "{} after a step: {what}", taken(&region));
+            // what the solver makes for several bodies when it first needs it
+            let late = if scene.bodies > 1 { 32.0 * memory.computed_cells as f64 } else { 0.0 };
+            assert!(taken(&region) <= 1.05 * told + small + late, "{} after a step: {what}", taken(&region));
         }
         bounded += 1;
     }
     println!("{equal} {bounded} {grown}");
-    assert!(equal > 100 && bounded > 20 && grown > 20, "{equal} {bounded} {grown}");
+    assert!(equal > 200 && bounded > 10 && grown > 20, "{equal} {bounded} {grown}");
 }

@@ -309,6 +309,9 @@ impl ViscoelasticContact {
         self.solver = ContactSolver::new(self.settings.solver, &self.kernel_here, bodies);
         self.trial = Solution::zero(cells, bodies);
         self.gap = vec![0.0; cells];
+        if self.region.is_whole() {
+            self.shown = Vec::new();
+        }
         // what lies beyond a smaller region is of the larger one
         self.shown.fill(0.0);
         old
