@@ -104,6 +104,8 @@ fn builders_tell_what_is_counted() {
     let warm = Scene { fitted: true, bodies: 1, settings: Settings::default(), ..scene(&mut random) };
     let warm = Scene { grid: Grid::square(256, 1.0e-2).unwrap(), kernel: InfluenceKernel::half_space, ..warm };
     drop(warm.builder(&Arc::new((warm.kernel)(&warm.grid).unwrap())).build().unwrap());
+    #[cfg(feature = "rayon")]
+    rayon::broadcast(|_| ());
     let (mut equal, mut bounded, mut grown) = (0, 0, 0);
     for number in 0..300 {
         let scene = scene(&mut random);
