@@ -23,7 +23,7 @@ use crate::memory;
 /// | where threads share the transforms | 16 + 8 more |
 ///
 /// and for each cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are several
-/// bodies. Transforms have tables as long as they are, which counts in line contacts: 180 bytes a cell.
+/// bodies. Transforms have tables as long as they are, which counts in line contacts: 144 bytes a cell.
 ///
 /// Counted allocations agree to 5 % and a few kB (`tests/memory.rs`). Not in it: the displacement where not all cells are computed, made
 /// when it is first asked for, with a kernel for the whole grid; the relaxation times of a series that the first step
