@@ -23,7 +23,7 @@ fn convolution(c: &mut Criterion) {
         let (pressure, mut out) = (vec![1.0; grid.len()], vec![0.0; grid.len()]);
         for threads in [1, 2] {
             let pool = pool(threads);
-            let mut work = pool.install(|| kernel.workspace());
+            let mut work = pool.install(|| kernel.workspace().unwrap());
             group.bench_function(BenchmarkId::new(format!("{threads} threads"), cells), |b| {
                 b.iter_custom(|times| {
                     pool.install(|| {
@@ -58,7 +58,7 @@ fn other_bodies(c: &mut Criterion) {
     for (name, kernel) in kernels {
         let kernel = kernel.unwrap();
         let (pressure, mut out) = (vec![1.0; kernel.grid().len()], vec![0.0; kernel.grid().len()]);
-        let mut work = pool(1).install(|| kernel.workspace());
+        let mut work = pool(1).install(|| kernel.workspace().unwrap());
         group.bench_function(name, |b| {
             b.iter(|| kernel.convolve(black_box(&pressure), &mut out, &mut work).unwrap());
         });

@@ -153,7 +153,7 @@ fn cost(cells: usize, steps: usize, settings: Settings, wide: f64) -> Result<Cos
 /// On the whole grid \[ms\], the median of nine.
 fn time_of_a_convolution(cells: usize) -> Result<f64, Box<dyn Error>> {
     let kernel = Arc::new(InfluenceKernel::half_space(&Grid::square(cells, 1.0)?)?);
-    let mut work = kernel.workspace();
+    let mut work = kernel.workspace()?;
     let (pressure, mut out) = (vec![1.0; cells * cells], vec![0.0; cells * cells]);
     let repeat = 1 + (1 << 18) / (cells * cells);
     let mut times = Vec::new();

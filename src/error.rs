@@ -42,6 +42,18 @@ pub enum Error {
         allowed: &'static str,
     },
 
+    /// Something needs more memory than there is, or than may be addressed. Take fewer cells; a contact computes fewer of
+    /// them by [`Settings::symmetry`](crate::contact::Settings::symmetry) and
+    /// [`Settings::window`](crate::contact::Settings::window), and tells what it takes before it is built
+    /// ([`Builder::memory`](crate::contact::Builder::memory)).
+    #[error("{what} needs {bytes} bytes ({:.1} GB), more than there is: take fewer cells, or let symmetry and window of the Settings compute fewer of them", *.bytes as f64 * 1e-9)]
+    OutOfMemory {
+        /// What was to be made.
+        what: &'static str,
+        /// The bytes that it needs; `u64::MAX` where they are more.
+        bytes: u64,
+    },
+
     /// A slice or table does not have the length it needs: a field of one value a cell, two
     /// slices that belong together, a table too short to define a function.
     #[error("{field} holds {len} values, but needs {expected}{}", if *.exact { "" } else { " at least" })]

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result, positive};
 
-/// Most cells a grid may have: cell indices are kept in 32 bits.
-const MOST_CELLS: usize = u32::MAX as usize;
+/// Most cells a grid may have: a field of 8 bytes a cell can be addressed.
+const MOST_CELLS: usize = isize::MAX as usize / size_of::<f64>();
 
 /// A rectangular grid of equal cells in the common plane of contact, centred on the origin.
 ///
@@ -31,8 +31,8 @@ impl Grid {
     /// A grid of `cells[0]` × `cells[1]` cells on a rectangle of `lengths[0]` × `lengths[1]` \[m\].
     ///
     /// # Errors
-    /// If a count is zero or there are more than 2³² − 1 cells in all, or a length is not finite
-    /// and positive.
+    /// If a count is zero or there are so many cells that a field of 8 bytes a cell cannot be addressed, more than 2⁶⁰ − 1
+    /// where addresses have 64 bits, or a length is not finite and positive.
     pub fn new(cells: [usize; 2], lengths: [f64; 2]) -> Result<Grid> {
         for (field, count) in [("cells along x1", cells[0]), ("cells along x2", cells[1])] {
             if count == 0 {
@@ -41,7 +41,8 @@ impl Grid {
         }
         if cells[0].checked_mul(cells[1]).is_none_or(|all| all > MOST_CELLS) {
             let value = cells[0].saturating_mul(cells[1]);
-            return Err(Error::CountOutOfRange { field: "cells of the grid", value, allowed: "4294967295 at most" });
+            let allowed = "few enough for a field of 8 bytes a cell to be addressed (2^60 - 1 with 64 bits)";
+            return Err(Error::CountOutOfRange { field: "cells of the grid", value, allowed });
         }
         positive("length along x1", lengths[0])?;
         positive("length along x2", lengths[1])?;
@@ -171,7 +172,8 @@ mod tests {
         assert_eq!(field(Grid::new([0, 3], [1.0, 1.0])), "cells along x1");
         assert_eq!(field(Grid::new([3, 0], [1.0, 1.0])), "cells along x2");
         assert_eq!(field(Grid::new([usize::MAX, 2], [1.0, 1.0])), "cells of the grid");
-        assert_eq!(field(Grid::new([1 << 20, 1 << 20], [1.0, 1.0])), "cells of the grid");
+        assert_eq!(field(Grid::new([1 << 30, 1 << 30], [1.0, 1.0])), "cells of the grid");
+        assert_eq!(Grid::new([(1 << 30) - 1, 1 << 30], [1.0, 1.0]).unwrap().len(), (1 << 60) - (1 << 30));
         assert_eq!(field(Grid::square(3, f64::NAN)), "length along x1");
         assert_eq!(field(Grid::new([3, 3], [1.0, -1.0])), "length along x2");
         assert_eq!(field(Grid::new([3, 3], [1e-200, 1e-200])), "cell area");

@@ -81,7 +81,8 @@
 //! exponential series has one fitted ([`rheology::Rheology::series`]), about two relaxation times a decade for an error
 //! of 1e-4, in a tenth of a second. Memory: about 175 bytes a computed cell (360 of a line
 //! contact, whose transforms' tables are as long as itself), and 8 for each further relaxation time, 16 where the grid follows the indenter
-//! (an elastic bulk doubles their number); a step allocates nothing, save the first one
+//! (an elastic bulk doubles their number); [`contact::Builder::memory`] tells it before a contact is built, and what there is no memory
+//! for is an error ([`Error::OutOfMemory`]), not the end of the process; a step allocates nothing, save the first one
 //! that takes time, if it has to fit a series, and those in which a window grows.
 //!
 //! # Co-simulation, and runs that last
@@ -145,6 +146,7 @@ mod kernel;
 #[cfg(feature = "laws")]
 pub mod laws;
 pub mod load;
+mod memory;
 pub mod motion;
 pub mod observe;
 pub mod output;

@@ -204,7 +204,7 @@ fn every_poissons_ratio_and_shape_of_cell() {
 /// K p is carried from guess to guess: on an elastic body u = C K p shows whether it is still K p.
 fn drift(contact: &ViscoelasticContact, fresh: &mut [f64]) -> f64 {
     let kernel = contact.kernel();
-    kernel.convolve(contact.pressure(), fresh, &mut kernel.workspace()).unwrap();
+    kernel.convolve(contact.pressure(), fresh, &mut kernel.workspace().unwrap()).unwrap();
     let scale = fresh.iter().copied().fold(0.0, f64::max);
     let c = contact.material().contact_compliance(0.0);
     contact.displacement().iter().zip(fresh.iter()).map(|(u, v)| (u / c - v).abs()).fold(0.0, f64::max) / scale

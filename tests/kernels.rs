@@ -6,7 +6,7 @@ use viscocontact::{Error, Grid, InfluenceKernel};
 
 fn convolve(kernel: &InfluenceKernel, pressure: &[f64]) -> Vec<f64> {
     let mut displacement = vec![f64::NAN; pressure.len()];
-    kernel.convolve(pressure, &mut displacement, &mut kernel.workspace()).unwrap();
+    kernel.convolve(pressure, &mut displacement, &mut kernel.workspace().unwrap()).unwrap();
     displacement
 }
 
@@ -230,7 +230,7 @@ fn slender_cells_add_up_to_one() {
 fn products_beyond_numbers_are_refused() {
     let field = |kernel: &InfluenceKernel, pressure: &[f64]| {
         let mut out = vec![0.0; pressure.len()];
-        match kernel.convolve(pressure, &mut out, &mut kernel.workspace()).unwrap_err() {
+        match kernel.convolve(pressure, &mut out, &mut kernel.workspace().unwrap()).unwrap_err() {
             Error::OutOfRange { field, .. } => field,
             other => panic!("unexpected {other}"),
         }
@@ -257,7 +257,7 @@ fn a_line_leaves_it_to_the_caller_to_say_what_is_no_number() {
         let kernel = InfluenceKernel::line(&grid, 10.0).unwrap();
         let mut out = vec![0.0; cells];
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-            let refused = kernel.convolve(&vec![bad; cells], &mut out, &mut kernel.workspace()).unwrap_err();
+            let refused = kernel.convolve(&vec![bad; cells], &mut out, &mut kernel.workspace().unwrap()).unwrap_err();
             assert!(matches!(refused, Error::OutOfRange { field: "pressure", .. }), "{refused}");
         }
     }

@@ -163,7 +163,7 @@ fn nothing_drifts_in_five_thousand_steps() {
         .settings(Settings { tolerance: 1e-8, ..Settings::default() })
         .build()
         .unwrap();
-    let mut work = contact.kernel().workspace();
+    let mut work = contact.kernel().workspace().unwrap();
     let mut fresh = vec![0.0; contact.grid().len()];
     for step in 0..5000 {
         contact.step(0.01, Load::force(0.6 + 0.4 * (0.003 * step as f64).sin())).unwrap();
@@ -189,7 +189,7 @@ fn falling_by_halves_leaves_no_noise() {
                 .settings(Settings { solver, ..Settings::default() })
                 .build()
                 .unwrap();
-            let mut work = contact.kernel().workspace();
+            let mut work = contact.kernel().workspace().unwrap();
             let mut fresh = vec![0.0; contact.grid().len()];
             let mut step = |force: f64| {
                 contact.step(1.0, Load::force(force)).unwrap();

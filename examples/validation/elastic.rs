@@ -41,7 +41,7 @@ pub fn convolution() -> Outcome {
     let (mut pressure, mut displacement) = (vec![0.0; grid.len()], vec![0.0; grid.len()]);
     let middle = (cells / 2) * (cells + 1);
     pressure[middle] = 1.0;
-    kernel.convolve(&pressure, &mut displacement, &mut kernel.workspace())?;
+    kernel.convolve(&pressure, &mut displacement, &mut kernel.workspace()?)?;
     let itself = displacement[middle];
     // Love's closed form, from the corner [0, 0]: the square's own corners are so far away
     let [near, far] = [cells as f64 / 2.0 - 0.5, cells as f64 / 2.0 + 0.5].map(|x| x * side);

@@ -3,7 +3,8 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::error::{Error, Result, finite, length, non_negative, positive};
-use crate::hereditary::Exponential;
+use crate::hereditary::{Exponential, History};
+use crate::memory;
 use crate::rheology::{Material, is_known};
 
 /// The profile g(x) of a one-dimensional foundation that stands for an axisymmetric indenter f(r):
@@ -101,7 +102,7 @@ impl AxisymmetricContact {
     ///
     /// # Errors
     /// If there are no elements, the reach is not positive or more than 1e300 m, no value of the profile is finite or one is NaN or
-    /// −∞, or the material has no exponential series.
+    /// −∞, or the material has no exponential series. If there is no memory for the elements.
     pub fn new(profile: &Profile, material: &Material, elements: usize, reach: f64) -> Result<AxisymmetricContact> {
         if elements == 0 {
             return Err(Error::CountOutOfRange { field: "elements", value: 0, allowed: "1 or more" });
@@ -109,6 +110,9 @@ impl AxisymmetricContact {
         length("reach of the foundation", reach)?;
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("the one-dimensional foundation"))?;
         let width = reach / elements as f64;
+        let history = History::Exponential(Exponential::new(&creep, 0));
+        // six fields and the history
+        memory::check("a foundation", 48 * elements as u128 + history.bytes(elements))?;
         let depths: Vec<f64> = (0..elements).map(|k| (profile.depth)((k as f64 + 0.5) * width)).collect();
         for &depth in &depths {
             if depth != f64::INFINITY {

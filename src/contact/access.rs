@@ -11,6 +11,7 @@ use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Result, exact_length};
 use crate::kernel::InfluenceKernel;
 use crate::load::Load;
+use crate::memory;
 use crate::rheology::Material;
 use crate::sum::sum;
 
@@ -73,9 +74,17 @@ impl ViscoelasticContact {
     /// tolerance, +∞ where there is nothing to touch.
     ///
     /// # Errors
-    /// If `out` does not hold one value a cell.
+    /// If `out` does not hold one value a cell, or there is no memory for the displacement, where not all of it is computed.
     pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
         exact_length("gap", out.len(), self.grid.len())?;
+        if !self.region.is_whole() && self.whole_displacement.get().is_none() {
+            let whole = Region::whole(&self.grid, self.region.folded());
+            let [kernel, _] = self.kernel.bytes_on(whole.cells(), whole.folded());
+            memory::check(
+                "the displacement on the whole grid",
+                kernel + 8 * (self.grid.len() + 2 * whole.len()) as u128,
+            )?;
+        }
         let (n2, displacement) = (self.grid.cells()[1], self.displacement());
         for (k, h) in out.iter_mut().enumerate() {
             let [omega, alpha1, alpha2] = self.state.motions[self.initial_gap.owner(k)];

@@ -4,6 +4,9 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::Grid;
+use crate::contact::memory::{Footprint, Memory, symmetry_of};
+use crate::contact::region::Region;
+use crate::contact::reside::symmetry;
 use crate::contact::settings::{Frame, Settings, TimeRule};
 use crate::contact::viscoelastic::{Parts, ViscoelasticContact};
 use crate::error::{Error, Result};
@@ -17,8 +20,8 @@ use crate::rheology::Material;
 #[must_use = "a builder does nothing until it is built"]
 pub struct Builder {
     grid: Grid,
-    /// The gap field of each rigid body.
-    gaps: Vec<Vec<f64>>,
+    /// The gap field of each rigid body, if there was memory for it.
+    gaps: Vec<Result<Vec<f64>>>,
     material: Option<Material>,
     counter_body: Option<Material>,
     times: Option<RangeInclusive<f64>>,
@@ -42,8 +45,8 @@ impl Builder {
     /// The shape of the rigid body: the gap before the bodies deform. Required; evaluated here, errors are
     /// reported by [`Builder::build`]. Replaces what was given before.
     pub fn geometry(mut self, geometry: &dyn Geometry) -> Builder {
-        self.gaps = vec![evaluate(geometry, &self.grid)];
-        self
+        self.gaps.clear();
+        self.another_body(geometry)
     }
 
     /// A further rigid body on the same creeping one, with a force, approach and tilt of its own: see
@@ -116,32 +119,100 @@ impl Builder {
     /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a rheology is known until NaN, a setting is out of range, the kernel was made
     /// for another grid, there is none for its cells ([`InfluenceKernel::half_space`]), no series of the material over
     /// [`Builder::times`] is within the tolerance, these are more than 50 decades, or the rectangle rule was chosen for a
-    /// rheology without elastic response.
-    pub fn build(self) -> Result<ViscoelasticContact> {
-        let Builder { grid, gaps, material, counter_body, times, kernel, settings } = self;
-        settings.validate()?;
-        if gaps.is_empty() {
-            return Err(Error::Missing { part: "geometry" });
+    /// rheology without elastic response. If there is no memory for it: [`Error::OutOfMemory`], before any is taken; a scene that
+    /// would fit the machine, but not beside what else runs there, may be granted all the same by systems that promise more
+    /// than they have, as Linux does. If more than 2³² − 1 cells would be computed.
+    pub fn build(mut self) -> Result<ViscoelasticContact> {
+        self.settings.validate()?;
+        let bodies = self.bodies()?;
+        let gaps = std::mem::take(&mut self.gaps).into_iter().collect::<Result<_>>()?;
+        let initial_gap = Gap::new(gaps, &self.grid)?;
+        let (material, kernel, history) = self.parts()?;
+        let Builder { grid, settings, .. } = self;
+        let folded = if settings.symmetry { symmetry(&initial_gap, grid.cells()) } else { [false; 2] };
+        let region = if windowed(&settings, &history, &kernel) {
+            // without load, each body is above the cell that it would touch first
+            Region::first_touched(&grid, folded, &initial_gap, bodies)
+        } else {
+            Region::whole(&grid, folded)
+        };
+        let footprint = Footprint { all: grid.len(), bodies, settings: &settings, kernel: &kernel, history: &history };
+        footprint.check(region.computed(), 0)?;
+        Ok(ViscoelasticContact::new(Parts { grid, bodies, region, kernel, settings, initial_gap, material, history }))
+    }
+
+    /// What the contact takes, before it is built: no field is made for it. Which cells are computed follows from the gap, as
+    /// [`Settings::symmetry`] does; with [`Settings::window`] it is the most that the contact can take when its
+    /// window has grown. A load that breaks the symmetry has the cells computed that were its mirror images: for what
+    /// that takes, set it to false. Where there is not even memory for the gap, it counts as not symmetric.
+    ///
+    /// A series of the material over [`Builder::times`] is fitted for it, in a tenth of a second. Threads are those of the pool that it
+    /// is called in.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let scene = |cells: usize| {
+    ///     Ok::<_, Error>(ViscoelasticContact::builder(Grid::square(cells, 4.0e-3)?)
+    ///         .geometry(&Sphere::new(10.0e-3)?)
+    ///         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?)))
+    /// };
+    /// let memory = scene(256)?.memory()?;
+    /// assert_eq!(memory.computed_cells, 128 * 128);
+    /// assert!(memory.total() < 6_000_000, "{memory}");
+    /// // more than any machine has: told, and refused
+    /// assert!(scene(1 << 25)?.memory()?.total() > 1 << 57);
+    /// assert!(matches!(scene(1 << 25)?.build(), Err(Error::OutOfMemory { .. })));
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Builder::build`], but for what is wrong with a gap, and for memory.
+    pub fn memory(&self) -> Result<Memory> {
+        self.settings.validate()?;
+        let bodies = self.bodies()?;
+        let (_, kernel, history) = self.parts()?;
+        let (settings, cells) = (&self.settings, self.grid.cells());
+        let gaps: Option<Vec<_>> = self.gaps.iter().map(|gap| gap.as_ref().ok()).collect();
+        let folded = gaps.filter(|_| settings.symmetry).map_or([false; 2], |gaps| symmetry_of(&gaps, cells));
+        let footprint = Footprint { all: self.grid.len(), bodies, settings, kernel: &kernel, history: &history };
+        Ok(footprint.most(cells, folded, windowed(settings, &history, &kernel)))
+    }
+
+    /// Number of rigid bodies.
+    fn bodies(&self) -> Result<usize> {
+        match self.gaps.len() {
+            0 => Err(Error::Missing { part: "geometry" }),
+            bodies if bodies > usize::from(u16::MAX) => {
+                Err(Error::CountOutOfRange { field: "rigid bodies", value: bodies, allowed: "65535 at most" })
+            }
+            bodies => Ok(bodies),
         }
-        if gaps.len() > usize::from(u16::MAX) {
-            return Err(Error::CountOutOfRange { field: "rigid bodies", value: gaps.len(), allowed: "65535 at most" });
-        }
-        let (bodies, initial_gap) = (gaps.len(), Gap::new(&gaps, &grid)?);
-        let mut material = material.ok_or(Error::Missing { part: "material" })?;
-        if let Some(other) = counter_body {
+    }
+
+    /// Material, kernel and past, as far as they are known before a step.
+    fn parts(&self) -> Result<(Material, Arc<InfluenceKernel>, History)> {
+        let mut material = self.material.clone().ok_or(Error::Missing { part: "material" })?;
+        if let Some(other) = self.counter_body.clone() {
             material = material.against(other);
         }
         material.validate()?;
-        let kernel = match kernel {
-            Some(kernel) if *kernel.grid() != grid => {
-                return Err(Error::KernelMismatch { kernel: kernel.grid().clone(), contact: grid });
+        let kernel = match &self.kernel {
+            Some(kernel) if *kernel.grid() != self.grid => {
+                return Err(Error::KernelMismatch { kernel: kernel.grid().clone(), contact: self.grid.clone() });
             }
-            Some(kernel) => kernel,
-            None => Arc::new(InfluenceKernel::half_space(&grid)?),
+            Some(kernel) => Arc::clone(kernel),
+            None => Arc::new(InfluenceKernel::half_space(&self.grid)?),
         };
-        let history = history(&mut material, times, &settings, kernel.periodic_axes())?;
-        Ok(ViscoelasticContact::new(Parts { grid, bodies, kernel, settings, initial_gap, material, history }))
+        let history = history(&mut material, self.times.clone(), &self.settings, kernel.periodic_axes())?;
+        Ok((material, kernel, history))
     }
+}
+
+/// Whether only a part of the grid is computed. Elsewhere than on a half-space nothing is known of the displacement beyond
+/// a window.
+fn windowed(settings: &Settings, history: &History, kernel: &InfluenceKernel) -> bool {
+    settings.window && matches!(history, History::Exponential(_)) && kernel.is_half_space()
 }
 
 /// The home of the past that a time rule needs, on no cells yet; `material` is fitted if there is a need and its times are known.

@@ -17,8 +17,8 @@ impl ViscoelasticContact {
     /// and touch the new one from the next step on.
     ///
     /// # Errors
-    /// If a gap is NaN or −∞, or none is finite, or there are several rigid bodies; the contact then keeps
-    /// the old one.
+    /// If a gap is NaN or −∞, or none is finite, or there are several rigid bodies, or there is no memory for what is no longer
+    /// symmetric; the contact then keeps the old one.
     pub fn set_geometry(&mut self, geometry: &dyn Geometry) -> Result<()> {
         self.set_geometries(&[geometry])
     }
@@ -31,11 +31,16 @@ impl ViscoelasticContact {
         if geometries.len() != self.state.loads.len() {
             return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.state.loads.len() });
         }
-        let gaps: Vec<_> = geometries.iter().map(|geometry| evaluate(*geometry, &self.grid)).collect();
+        let gaps = geometries.iter().map(|geometry| evaluate(*geometry, &self.grid)).collect::<Result<Vec<_>>>()?;
         self.move_back();
-        self.initial_gap = Gap::new(&gaps, &self.grid)?;
+        let gap = Gap::new(gaps, &self.grid)?;
+        let still = self.still_even(&gap);
+        if still != self.region.folded() {
+            self.check_room(&self.unfolded(still))?;
+        }
+        self.initial_gap = gap;
         self.gap_here = self.region.cut_gap(&self.initial_gap);
-        self.take_in_the_gap(self.still_even());
+        self.take_in_the_gap(still);
         self.state.last_dt = 0.0; // the last change of the pressure says nothing about the next
         Ok(())
     }
@@ -50,18 +55,18 @@ impl ViscoelasticContact {
         }
         self.survey();
         if still != self.region.folded() {
-            self.unfold(still);
+            self.reside(self.unfolded(still));
         }
         self.hulls.fill(None);
     }
 
-    /// Folded axes about which the gap is even.
-    pub(super) fn still_even(&self) -> [bool; 2] {
+    /// Folded axes about which a gap is even.
+    pub(super) fn still_even(&self, gap: &Gap) -> [bool; 2] {
         let folded = self.region.folded();
         if folded == [false; 2] {
             return folded;
         }
-        let even = symmetry(&self.initial_gap, self.grid.cells());
+        let even = symmetry(gap, self.grid.cells());
         [0, 1].map(|axis| folded[axis] && even[axis])
     }
 }

@@ -17,6 +17,7 @@ mod hull;
 mod jump;
 mod lateral;
 mod loads;
+mod memory;
 mod region;
 mod report;
 mod reside;
@@ -36,6 +37,7 @@ pub use builder::Builder;
 #[cfg(feature = "checkpoint")]
 pub use checkpoint::CheckpointError;
 pub use follow::{ErrorBudget, Follow, Stepping};
+pub use memory::Memory;
 pub use report::{BodyState, StepReport};
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use snapshot::Snapshot;

@@ -2,6 +2,7 @@
 
 use crate::Grid;
 use crate::contact::extent::Extent;
+use crate::contact::memory::Computed;
 use crate::geometry::Gap;
 use crate::kernel::images;
 
@@ -113,6 +114,11 @@ impl Region {
     /// Whether it and its images are the whole grid.
     pub(crate) fn covers(&self) -> bool {
         self.images() * self.len() == self.whole.len()
+    }
+
+    /// The cells that are computed, as far as the memory for them depends on it.
+    pub(super) fn computed(&self) -> Computed {
+        Computed { cells: self.cells(), folded: self.folded, covers: self.covers() }
     }
 
     /// The first and the last of its cells, as cells of the whole grid.

@@ -5,8 +5,10 @@ use std::f64::consts::PI;
 
 use crate::contact::extent::Extent;
 use crate::contact::loads::lowered;
+use crate::contact::memory::Footprint;
 use crate::contact::region::Region;
 use crate::contact::viscoelastic::{ContactSolver, ViscoelasticContact};
+use crate::error::Result;
 use crate::events;
 use crate::geometry::Gap;
 use crate::hereditary::{Exponential, History};
@@ -16,7 +18,7 @@ use crate::solver::{Freedom, Modes, Solution};
 /// Cells a region holds beyond those that contact may reach, so that it need not grow every step.
 const MARGIN: f64 = 0.1;
 /// A region that would be larger than this part of the grid is all of it.
-const WORTH_IT: f64 = 0.7;
+pub(super) const WORTH_IT: f64 = 0.7;
 /// Bisections for the approach at first contact, an estimate.
 const HALVINGS: usize = 24;
 
@@ -69,7 +71,10 @@ impl Beyond {
 
 impl ViscoelasticContact {
     /// Sees to it that `loads` suit the region: symmetric where it is folded, and their first contact within it.
-    pub(super) fn make_room(&mut self, dt: f64, loads: &[Load]) {
+    ///
+    /// # Errors
+    /// If there is no memory for the region that does.
+    pub(super) fn make_room(&mut self, dt: f64, loads: &[Load]) -> Result<()> {
         let upright = |axis: usize| {
             loads.iter().all(|load| match load.tilt()[axis] {
                 Tilt::Fixed(angle) => angle == 0.0,
@@ -80,17 +85,33 @@ impl ViscoelasticContact {
         // nor does anything stay even that moves
         let still = [0, 1].map(|axis| folded[axis] && upright(axis) && self.stride[axis] == 0);
         if still != folded {
+            let region = self.unfolded(still);
+            self.check_room(&region)?;
             self.keep_for_failure();
-            self.unfold(still);
+            self.reside(region);
         }
         if self.beyond.is_some() && self.is_undisturbed() && !self.state.placed {
-            self.place(dt, loads);
+            self.place(dt, loads)?;
         }
+        Ok(())
     }
 
-    /// Gives up the symmetry of all but the axes that are `still` folded.
-    pub(super) fn unfold(&mut self, still: [bool; 2]) {
-        let region = if self.region.covers() {
+    /// Refuses to move to a region that there is no memory for, beside the state that is kept in case the step fails.
+    pub(super) fn check_room(&self, region: &Region) -> Result<()> {
+        let (grid, bodies) = (&self.grid, self.state.loads.len());
+        let footprint = Footprint {
+            all: grid.len(),
+            bodies,
+            settings: &self.settings,
+            kernel: &self.kernel,
+            history: &self.history,
+        };
+        footprint.check(region.computed(), footprint.on(self.region.computed()).total())
+    }
+
+    /// The region without the symmetry of all but the axes that are `still` folded.
+    pub(super) fn unfolded(&self, still: [bool; 2]) -> Region {
+        if self.region.covers() {
             Region::whole(&self.grid, still)
         } else {
             let mut held = self.region.extent();
@@ -98,12 +119,11 @@ impl ViscoelasticContact {
                 held.low[axis] = self.grid.cells()[axis] - 1 - held.high[axis];
             }
             Region::around(&self.grid, still, held, 0.0)
-        };
-        self.reside(region);
+        }
     }
 
     /// Chooses the region of a first contact by an estimate of how deep the bodies sink in.
-    fn place(&mut self, dt: f64, loads: &[Load]) {
+    fn place(&mut self, dt: f64, loads: &[Load]) -> Result<()> {
         let mut touched: Option<Extent> = None;
         for (body, load) in loads.iter().enumerate() {
             let free_tilt = |axis: usize| matches!(load.tilt()[axis], Tilt::Free { .. }) && !self.region.folded()[axis];
@@ -118,10 +138,13 @@ impl ViscoelasticContact {
         }
         if let Some(touched) = touched {
             let lowest = Region::lowest_cells(&self.grid, &self.initial_gap, loads.len());
+            let region = self.region_for(lowest.with(touched));
+            self.check_room(&region)?;
             self.keep_for_failure();
             self.state.placed = true;
-            self.reside(self.region_for(lowest.with(touched)));
+            self.reside(region);
         }
+        Ok(())
     }
 
     /// A depth at which a body pressed by `normal` about comes to rest, above the datum: twice that of the level at
@@ -285,6 +308,9 @@ impl ViscoelasticContact {
         self.solver = ContactSolver::new(self.settings.solver, &self.kernel_here, bodies);
         self.trial = Solution::zero(cells, bodies);
         self.gap = vec![0.0; cells];
+        if self.region.is_whole() {
+            self.shown = Vec::new();
+        }
         // what lies beyond a smaller region is of the larger one
         self.shown.fill(0.0);
         old
@@ -328,8 +354,12 @@ impl ViscoelasticContact {
 }
 
 /// Axes about whose middle the gap is even, bit by bit.
-pub(super) fn symmetry(gap: &Gap, [n1, n2]: [usize; 2]) -> [bool; 2] {
-    let alike = |k: usize, mirror: usize| gap.above[k] == gap.above[mirror] && gap.owner(k) == gap.owner(mirror);
+pub(super) fn symmetry(gap: &Gap, cells: [usize; 2]) -> [bool; 2] {
+    even_axes(cells, |k, mirror| gap.above[k] == gap.above[mirror] && gap.owner(k) == gap.owner(mirror))
+}
+
+/// Axes of an even number of cells about whose middle every cell is `alike` its mirror image.
+pub(super) fn even_axes([n1, n2]: [usize; 2], alike: impl Fn(usize, usize) -> bool) -> [bool; 2] {
     let rows = |i: usize| (0..n2).all(|j| alike(i * n2 + j, (n1 - 1 - i) * n2 + j));
     let columns = |i: usize| (0..n2 / 2).all(|j| alike(i * n2 + j, i * n2 + n2 - 1 - j));
     [n1.is_multiple_of(2) && (0..n1 / 2).all(rows), n2.is_multiple_of(2) && (0..n1).all(columns)]

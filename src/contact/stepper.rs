@@ -34,8 +34,8 @@ impl ViscoelasticContact {
     /// If `dt` or a force is negative, a number not finite, a force acts where it would topple the body, `dt` = 0 and the
     /// body has no elastic response for the pressure that the load asks for, contact reaches the edge of the grid (unless
     /// [`Edge::Allow`]), the solver does not converge, a creep closure returns an impossible value or cannot be fitted,
-    /// the material is not known for so long or so short a time, a direct sum has filled its memory, or there
-    /// are several rigid bodies. The contact is then exactly as it was before, but for
+    /// the material is not known for so long or so short a time, a direct sum has filled its memory, there is
+    /// none for the cells that the contact reaches ([`Error::OutOfMemory`]), or there are several rigid bodies. The contact is then exactly as it was before, but for
     /// [`ViscoelasticContact::within_step`], which has lost the start of the last step.
     pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
         self.step_each(dt, &[load])
@@ -75,7 +75,7 @@ impl ViscoelasticContact {
     /// Computes a step on the region at hand, or on the first larger one that turns out to hold all of the contact.
     fn attempt_where_it_fits(&mut self, time: f64, dt: f64, loads: &[Load], tolerance: f64) -> Result<Attempt> {
         self.admit(time, loads)?;
-        self.make_room(dt, loads);
+        self.make_room(dt, loads)?;
         loop {
             self.free(loads);
             let c = match self.try_step(time, dt, loads, tolerance) {
@@ -96,6 +96,7 @@ impl ViscoelasticContact {
                 }
                 return Ok(Attempt { time, dt, sum: sum_of_pressure });
             };
+            self.check_room(&region)?;
             self.keep_for_failure();
             self.reside(region);
         }

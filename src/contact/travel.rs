@@ -4,6 +4,7 @@ use crate::contact::settings::Frame;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result, non_negative};
 use crate::load::Load;
+use crate::memory;
 use crate::motion::{Travel, TravelReport};
 
 impl ViscoelasticContact {
@@ -25,6 +26,9 @@ impl ViscoelasticContact {
         }
         non_negative("time step", dt)?;
         let from = travel.position(self.state.time)?;
+        if self.spare_gap.capacity() < self.grid.len() {
+            memory::check("the gap of a moving indenter", 16 * self.grid.len() as u128)?;
+        }
         self.move_back();
         let mut gap = std::mem::take(&mut self.spare_gap);
         gap.resize(self.grid.len(), f64::INFINITY);
@@ -32,7 +36,14 @@ impl ViscoelasticContact {
         let exchanged = filled.and_then(|()| self.initial_gap.exchange(&mut gap, &self.grid));
         let datum = exchanged.inspect_err(|_| self.spare_gap = std::mem::take(&mut gap))?;
         // what is lost with the symmetry does not come back
-        let still = self.still_even();
+        let still = self.still_even(&self.initial_gap);
+        if still != self.region.folded()
+            && let Err(error) = self.check_room(&self.unfolded(still))
+        {
+            self.initial_gap.put_back(&mut gap, datum);
+            self.spare_gap = gap;
+            return Err(error);
+        }
         let whole = (still != self.region.folded()).then(|| {
             let mut whole = Box::new(self.clone());
             whole.initial_gap.put_back(&mut gap.clone(), datum);

@@ -11,7 +11,7 @@ use crate::contact::follow::Progress;
 use crate::contact::hull::Hull;
 use crate::contact::loads::first_touch;
 use crate::contact::region::Region;
-use crate::contact::reside::{Beyond, symmetry};
+use crate::contact::reside::Beyond;
 use crate::contact::settings::{Settings, Solver};
 use crate::contact::state::State;
 use crate::geometry::Gap;
@@ -119,6 +119,8 @@ pub(crate) struct Parts {
     pub(crate) grid: Grid,
     /// Number of rigid bodies.
     pub(crate) bodies: usize,
+    /// What is computed at first.
+    pub(crate) region: Region,
     pub(crate) kernel: Arc<InfluenceKernel>,
     pub(crate) settings: Settings,
     pub(crate) initial_gap: Gap,
@@ -142,21 +144,12 @@ impl ViscoelasticContact {
     }
 
     pub(crate) fn new(parts: Parts) -> ViscoelasticContact {
-        let Parts { grid, bodies, kernel, settings, initial_gap, material, mut history } = parts;
+        let Parts { grid, bodies, region, kernel, settings, initial_gap, material, mut history } = parts;
         #[cfg(feature = "checkpoint")]
         let built = Arc::new(Built::new(&material, &initial_gap, grid.cells()));
-        let folded = if settings.symmetry { symmetry(&initial_gap, grid.cells()) } else { [false; 2] };
-        // without load, each body is above the cell that it would touch first
-        // elsewhere than on a half-space nothing is known of the displacement beyond a window
-        let region = match &history {
-            History::Exponential(_) if settings.window && kernel.is_half_space() => {
-                Region::first_touched(&grid, folded, &initial_gap, bodies)
-            }
-            _ => Region::whole(&grid, folded),
-        };
         let cells = region.len();
         history.undisturbed_on(region.cells());
-        let kernel_here = kernel.on(region.grid(), folded);
+        let kernel_here = kernel.on(region.grid(), region.folded());
         let beyond = match &history {
             History::Exponential(history) if !region.covers() => Some(Beyond::new(history, cells)),
             _ => None,

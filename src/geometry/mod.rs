@@ -49,6 +49,7 @@ use std::fmt::Debug;
 
 use crate::Grid;
 use crate::error::{Error, Result};
+use crate::memory;
 
 /// The gap between the undeformed bodies when they just touch, or would touch, at zero approach.
 ///
@@ -146,10 +147,15 @@ pub(crate) struct Gap {
 }
 
 /// The gap of a geometry on every cell, unchecked.
-pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Vec<f64> {
-    let mut gap = vec![f64::INFINITY; grid.len()];
+///
+/// # Errors
+/// If there is no memory for it, nor for the pressure that every contact on the grid shows.
+pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Result<Vec<f64>> {
+    // before a field is filled that cannot be used
+    memory::check("gap and pressure of a contact", 16 * grid.len() as u128)?;
+    let mut gap = memory::field("the gap of a contact", grid.len(), f64::INFINITY)?;
     geometry.fill_gap(grid, &mut gap);
-    gap
+    Ok(gap)
 }
 
 /// Refuses what is no gap.
@@ -165,21 +171,27 @@ fn check(gap: &[f64], grid: &Grid) -> Result<()> {
 
 impl Gap {
     /// Joins the gap fields of the bodies and checks them: no NaN, no −∞, and something to touch.
-    pub(crate) fn new(bodies: &[Vec<f64>], grid: &Grid) -> Result<Gap> {
-        let mut above = vec![f64::INFINITY; grid.len()];
-        let mut owner = (bodies.len() > 1).then(|| vec![0_u16; grid.len()]);
-        for (body, own) in bodies.iter().enumerate() {
-            check(own, grid)?;
+    pub(crate) fn new(bodies: Vec<Vec<f64>>, grid: &Grid) -> Result<Gap> {
+        let count = bodies.len();
+        bodies.iter().try_for_each(|own| check(own, grid))?;
+        let mut bodies = bodies.into_iter();
+        // the first is taken over
+        let mut above = bodies.next().unwrap_or_default();
+        let mut owner = match count {
+            0 | 1 => None,
+            _ => Some(memory::field("the body of each cell", grid.len(), 0_u16)?),
+        };
+        for (body, own) in (1..).zip(bodies) {
             for (k, &h) in own.iter().enumerate() {
                 if h < above[k] {
                     above[k] = h;
                     if let Some(owner) = &mut owner {
-                        owner[k] = body as u16;
+                        owner[k] = body;
                     }
                 }
             }
         }
-        for body in 0..bodies.len() {
+        for body in 0..count {
             let touches =
                 |k: &usize| above[*k].is_finite() && owner.as_ref().is_none_or(|o| usize::from(o[*k]) == body);
             if (0..grid.len()).find(touches).is_none() {
@@ -263,7 +275,7 @@ mod tests {
     fn bad_gaps_are_located() {
         let grid = Grid::new([2, 3], [2.0, 3.0]).unwrap();
         let joined = |bodies: &[&dyn Geometry]| {
-            Gap::new(&bodies.iter().map(|body| evaluate(*body, &grid)).collect::<Vec<_>>(), &grid)
+            Gap::new(bodies.iter().map(|body| evaluate(*body, &grid).unwrap()).collect(), &grid)
         };
         let hole = FnGeometry::new(|x1, x2| if x1 > 0.0 && x2 > 0.0 { f64::NAN } else { 0.0 });
         let Error::InvalidGap { cell, position, value } = joined(&[&hole]).unwrap_err() else { panic!() };

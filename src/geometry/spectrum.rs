@@ -27,6 +27,11 @@ pub(super) struct Wave {
 }
 
 impl Spectrum {
+    /// Bytes of one on so many cells.
+    pub(super) fn bytes(cells: [usize; 2]) -> u128 {
+        size_of::<Complex64>() as u128 * (cells[1] as u128 / 2 + 1) * cells[0] as u128
+    }
+
     /// Of no waves.
     pub(super) fn zero(cells: [usize; 2]) -> Spectrum {
         Spectrum { cells, amplitudes: vec![Complex64::ZERO; (cells[1] / 2 + 1) * cells[0]] }

@@ -105,6 +105,16 @@ impl History {
         }
     }
 
+    /// Bytes of an undisturbed past on so many cells.
+    pub(crate) fn bytes(&self, cells: usize) -> u128 {
+        let a_cell = match self {
+            History::Exponential(history) => 8 * history.branches(),
+            History::Sources(history) => 40 + 16 * history.branches(),
+            History::Direct(_) | History::Unfitted(_) => 0,
+        };
+        a_cell as u128 * cells as u128
+    }
+
     /// An undisturbed past on so many cells.
     pub(crate) fn undisturbed_on(&mut self, cells: [usize; 2]) {
         match self {

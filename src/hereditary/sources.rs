@@ -73,6 +73,11 @@ impl Sources {
                 .all(|field| field.history.fits(count) && [field.now.len(), field.trial.len()] == [count; 2])
     }
 
+    /// Number of relaxation times.
+    pub(crate) fn branches(&self) -> usize {
+        self.caused.history.branches()
+    }
+
     /// Whether there is a past at all.
     pub(crate) fn remembers(&self) -> bool {
         self.caused.history.remembers()

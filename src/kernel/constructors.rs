@@ -2,13 +2,15 @@
 
 use std::sync::Arc;
 
-use super::InfluenceKernel;
 use super::influence::Influence;
+use super::layout::{Ends, Layout};
 use super::love::Love;
 use super::positive::least_eigenvalue;
 use super::strip::{Strip, wave_number};
+use super::{InfluenceKernel, MAKING};
 use crate::Grid;
 use crate::error::{Error, Result, within};
+use crate::memory;
 
 /// How unequal mirrored coefficients may be, of the greatest.
 const UNEQUAL: f64 = 1e-12;
@@ -55,7 +57,7 @@ impl InfluenceKernel {
     /// let q = std::f64::consts::TAU;
     /// let wave: Vec<f64> = (0..64).map(|i| (q * grid.center(i, 0)[0]).cos()).collect();
     /// let mut kp = vec![0.0; 64];
-    /// kernel.convolve(&wave, &mut kp, &mut kernel.workspace())?;
+    /// kernel.convolve(&wave, &mut kp, &mut kernel.workspace()?)?;
     /// assert!((kp[10] - 2.0 / q * wave[10]).abs() < 1e-14);
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
@@ -118,9 +120,12 @@ impl InfluenceKernel {
     /// # Errors
     /// If a coefficient is not finite, or beyond ±1e100 m, or not that of its mirror images, or if a pressure is found that would gain energy: the
     /// spectrum of K is positive, or else its least eigenvalue is sought by Lanczos' method, which finds any that is
-    /// far below zero.
+    /// far below zero. If there is no memory for coefficients and spectrum.
     pub fn from_coefficients(grid: &Grid, coefficient: impl Fn(isize, isize) -> f64) -> Result<InfluenceKernel> {
         let [n1, n2] = grid.cells();
+        let layout = Layout { cells: grid.cells(), ends: [Ends::Free; 2], folded: [false; 2] };
+        let coefficients = (grid.len() * size_of::<f64>()) as u128;
+        memory::check("a kernel of coefficients", 2 * coefficients + MAKING * layout.operator_bytes())?;
         let mut values = Vec::with_capacity(grid.len());
         for i in 0..n1 as isize {
             for j in 0..n2 as isize {
@@ -148,10 +153,11 @@ impl InfluenceKernel {
             }
         }
         let kernel = InfluenceKernel::new(grid, Influence::Coefficients { values: values.into(), columns: n2 });
-        let (layout, whole) = (kernel.layout([false; 2]), kernel.operator([false; 2]));
+        let whole = kernel.operator([false; 2]);
         let symbol = kernel.influence.symbol(grid, layout);
         let mut waves = (0..=layout.period(0) / 2).flat_map(|k1| (0..=layout.period(1) / 2).map(move |k2| (k1, k2)));
         if !waves.all(|(k1, k2)| symbol(k1, k2) > 0.0) {
+            memory::check("the search for a pressure that gains energy", layout.workspace_bytes() + 3 * coefficients)?;
             let (least, most) = least_eigenvalue(whole, grid.len());
             let positive = least > -ROUNDING * most;
             if !positive {
@@ -185,10 +191,13 @@ impl InfluenceKernel {
     /// ```
     ///
     /// # Errors
-    /// If the compliance of a wave is not positive, or that of the mean negative, or either is more than 1e100 m.
+    /// If the compliance of a wave is not positive, or that of the mean negative, or either is more than 1e100 m. If there is no
+    /// memory for them.
     pub fn from_spectrum(grid: &Grid, compliance: impl Fn(f64, f64) -> f64) -> Result<InfluenceKernel> {
         let [half1, half2] = grid.cells().map(|cells| cells / 2);
         let q = |axis: usize, k: usize| wave_number(k, grid.cells()[axis], grid.spacing()[axis]);
+        let count = (half1 + 1) as u128 * (half2 + 1) as u128;
+        memory::check("a kernel of waves", 2 * count * size_of::<f64>() as u128)?;
         let mut values = Vec::with_capacity((half1 + 1) * (half2 + 1));
         for k1 in 0..=half1 {
             for k2 in 0..=half2 {

@@ -84,8 +84,7 @@ impl Influence {
     /// for the mean, which is stiffened by what a uniform pressure does. Other bodies are inverted wave by wave, on the
     /// grid made periodic (G. Strang, Stud. Appl. Math. 74, 1986).
     pub(super) fn inverse(&self, grid: &Grid, cells: [usize; 2], folded: [bool; 2]) -> (Layout, Symbol) {
-        let ends = self.ends().map(|end| if end == Ends::Free { Ends::Wrapped } else { end });
-        let layout = Layout { cells, ends, folded };
+        let layout = Layout { cells, ends: self.ends(), folded }.wrapped();
         let lengths = [0, 1].map(|axis| grid.spacing()[axis] * (cells[axis] * if folded[axis] { 2 } else { 1 }) as f64);
         let westergaard = |mean: f64| -> Symbol {
             let q = magnitude(grid, layout);

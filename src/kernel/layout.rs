@@ -39,6 +39,17 @@ impl Layout {
         }
     }
 
+    /// How many coefficients of a real line along an axis are independent: the others mirror them.
+    pub(super) fn independent(&self, axis: usize) -> usize {
+        if self.folded[axis] { self.line(axis) } else { self.line(axis) / 2 + 1 }
+    }
+
+    /// The layout of what need not be exact: nothing is padded beyond what makes transforms fast.
+    pub(super) fn wrapped(&self) -> Layout {
+        let ends = self.ends.map(|end| if end == Ends::Free { Ends::Wrapped } else { end });
+        Layout { ends, ..*self }
+    }
+
     /// What the symbol of a real even operator is on average over all wave numbers: the coefficient of a cell on itself.
     pub(crate) fn average(&self, symbol: impl Fn(usize, usize) -> f64) -> f64 {
         let [period1, period2] = [self.period(0), self.period(1)];
@@ -59,18 +70,30 @@ impl Layout {
 /// Measured with rustfft on one processor with AVX: n log₂ n takes 0.12 to 0.14 ns a unit for powers of two, 0.15 to 0.2 for
 /// multiples of 16, and up to 0.3 for others: 63 takes 1.7 times as long as 64, 500 2.3 times as long as 512.
 fn fast_length(least: usize) -> usize {
-    let smooth = |mut n: usize| {
-        for factor in [2, 3, 5, 7] {
-            while n.is_multiple_of(factor) {
-                n /= factor;
-            }
-        }
-        n == 1
-    };
     let power = least.next_power_of_two();
     let step = if least > 32 { 16 } else { 4 };
-    let other = (least.div_ceil(step)..).map(|n| n * step).find(|&n| smooth(n)).unwrap_or(power);
-    if 10 * power <= 12 * other { power } else { other }
+    let other = step * least_smooth(least.div_ceil(step));
+    if 10 * power as u128 <= 12 * other as u128 { power } else { other }
+}
+
+/// The least number ≥ `least` whose only prime factors are 2, 3, 5 and 7: for all products of the odd ones that may be part
+/// of it, the least power of two that completes them. A search upwards would take for ever where numbers are large.
+fn least_smooth(least: usize) -> usize {
+    let mut best = least.next_power_of_two();
+    let mut sevens = 1_usize;
+    while sevens < best {
+        let mut fives = sevens;
+        while fives < best {
+            let mut threes = fives;
+            while threes < best {
+                best = best.min(threes * least.div_ceil(threes).next_power_of_two());
+                threes = threes.saturating_mul(3);
+            }
+            fives = fives.saturating_mul(5);
+        }
+        sevens = sevens.saturating_mul(7);
+    }
+    best
 }
 
 #[cfg(test)]
@@ -82,5 +105,20 @@ mod tests {
         assert_eq!([1, 2, 3, 9, 63, 65, 95, 127, 129, 225].map(fast_length), [1, 2, 4, 12, 64, 80, 96, 128, 144, 256]);
         assert_eq!([511, 513, 641, 1023, 1999, 8191].map(fast_length), [512, 560, 672, 1024, 2048, 8192]);
         assert!((1..3000).all(|n| fast_length(n) >= n && fast_length(n) <= n + n / 3 + 16));
+        let plain = |least: usize| (least..).find(|n| [2, 3, 5, 7].iter().fold(*n, divided) == 1).unwrap();
+        assert!((1..3000).all(|n| least_smooth(n) == plain(n)));
+        // the greatest period of a grid that may be, and numbers that a search upwards would not find
+        for n in [(1 << 61) - 1, 1 << 61, (1 << 40) + 1, 3 << 50, 12_345_678_901_234_567] {
+            let found = least_smooth(n);
+            assert!(found >= n && (found - n) as f64 <= 0.01 * n as f64, "{n} {found}");
+            assert_eq!([2, 3, 5, 7].iter().fold(found, divided), 1);
+        }
+    }
+
+    fn divided(mut n: usize, factor: &usize) -> usize {
+        while n.is_multiple_of(*factor) {
+            n /= factor;
+        }
+        n
     }
 }

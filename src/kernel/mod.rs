@@ -35,13 +35,17 @@ use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
 use crate::error::{Error, Result, exact_length, finite};
+use crate::memory;
 use influence::Influence;
 use layout::{Ends, Layout};
+
+/// An operator takes so many times its bytes while it is made: the spectrum, and the transform it is gathered from.
+const MAKING: u128 = 3;
 
 /// The discrete influence operator K of a grid: immutable, shared by `Arc` between contacts and threads.
 ///
 /// Spectra are made when they are first needed, and kept: real and even, a quarter of the padded one is enough, about 8 bytes
-/// a cell. A [`Workspace`] holds one complex row spectrum a row, about 16 bytes a cell, twice that if several
+/// a cell. Where there is no memory for them, what needs them first says so ([`Error::OutOfMemory`]). A [`Workspace`] holds one complex row spectrum a row, about 16 bytes a cell, twice that if several
 /// threads share the work (feature `rayon`, grids of 2¹⁵ cells or more, as many as the thread pool has; the
 /// answer is the same bit by bit).
 ///
@@ -50,7 +54,7 @@ use layout::{Ends, Layout};
 ///
 /// let grid = Grid::square(64, 1.0e-3)?;
 /// let kernel = InfluenceKernel::half_space(&grid)?;
-/// let mut work = kernel.workspace();
+/// let mut work = kernel.workspace()?;
 /// let pressure = vec![1.0e6; grid.len()];
 /// let mut kp = vec![0.0; grid.len()];
 /// kernel.convolve(&pressure, &mut kp, &mut work)?;
@@ -93,8 +97,12 @@ impl InfluenceKernel {
     }
 
     /// Buffers for [`InfluenceKernel::convolve`]: one for each thread that convolves.
-    pub fn workspace(&self) -> Workspace {
-        Workspace { transform: self.operator([false; 2]).workspace() }
+    ///
+    /// # Errors
+    /// If there is no memory for them, or for the spectrum, which is made here if it was not needed before.
+    pub fn workspace(&self) -> Result<Workspace> {
+        memory::check("the workspace of a kernel", self.layout([false; 2]).workspace_bytes())?;
+        Ok(Workspace { transform: self.whole_operator()?.workspace() })
     }
 
     /// Writes K p into `displacement` \[Pa·m\]: the surface displacement \[m\] under `pressure` \[Pa\] of
@@ -102,16 +110,16 @@ impl InfluenceKernel {
     ///
     /// # Errors
     /// If a field does not hold one value a cell, `work` was made by a kernel of another size, a pressure is not finite, or
-    /// K p leaves the range of `f64`; what `displacement` holds then is of no use.
+    /// K p leaves the range of `f64`; what `displacement` holds then is of no use. If `work` was made by another kernel, and there
+    /// is no memory for the spectrum of this one.
     pub fn convolve(&self, pressure: &[f64], displacement: &mut [f64], work: &mut Workspace) -> Result<()> {
         exact_length("pressure", pressure.len(), self.grid.len())?;
         exact_length("displacement", displacement.len(), self.grid.len())?;
-        let operator = self.operator([false; 2]);
-        if !operator.fits(&work.transform) {
-            let (len, expected) = (work.transform.len(), self.workspace().transform.len());
+        if self.layout([false; 2]) != work.transform.layout() {
+            let (len, expected) = (work.transform.layout().numbers(), self.layout([false; 2]).numbers());
             return Err(Error::WrongLength { field: "workspace", len, expected, exact: true });
         }
-        operator.apply(pressure, displacement, &mut work.transform);
+        self.whole_operator()?.apply(pressure, displacement, &mut work.transform);
         if displacement.iter().all(|value| value.is_finite()) {
             return Ok(());
         }
@@ -119,6 +127,25 @@ impl InfluenceKernel {
         pressure.iter().try_for_each(|&p| finite("pressure", p).map(drop))?;
         let value = displacement.iter().copied().find(|value| !value.is_finite()).unwrap_or(f64::NAN);
         Err(Error::OutOfRange { field: "K p", value, allowed: "finite: the pressure is too great for this kernel" })
+    }
+
+    /// The operator on the whole grid, unfolded, if there is memory for it.
+    fn whole_operator(&self) -> Result<&Arc<SpectralOperator>> {
+        if self.operators[index([false; 2])].get().is_none() {
+            let layout = self.layout([false; 2]);
+            memory::check("the spectrum of a kernel", MAKING * layout.operator_bytes())?;
+        }
+        Ok(self.operator([false; 2]))
+    }
+
+    /// Bytes that the kernel takes on so many cells, operator and workspace, and those of the approximate inverse. An operator that
+    /// there is already takes none.
+    pub(crate) fn bytes_on(&self, cells: [usize; 2], folded: [bool; 2]) -> [u128; 2] {
+        let (layout, whole) = (Layout { cells, ..self.layout(folded) }, self.layout(folded));
+        let made = layout == whole && self.operators[index(folded)].get().is_some();
+        let operator = if made { 0 } else { layout.operator_bytes() };
+        let inverse = layout.wrapped();
+        [operator + layout.workspace_bytes(), inverse.operator_bytes() + inverse.workspace_bytes()]
     }
 
     /// The operator on the whole grid.

@@ -11,6 +11,7 @@
 //! * Rows and columns are independent of each other: threads share them, and the answer is the same bit by bit.
 
 mod column;
+mod memory;
 mod tasks;
 
 use std::fmt;
@@ -93,8 +94,7 @@ impl SpectralOperator {
         for k2 in 0..rows.independent() {
             spectrum.extend((0..columns.independent()).map(|k1| scale * symbol(k1, k2)));
         }
-        let single = layout.cells[1] == 1 && rows.len() == 1 && !rows.is_folded();
-        let column = single.then(|| Column::new(&columns));
+        let column = layout.is_single_column().then(|| Column::new(&columns));
         SpectralOperator { layout, rows, columns, spectrum, column }
     }
 
@@ -130,11 +130,6 @@ impl SpectralOperator {
             lanes: vec![lane; lanes.max(1)],
             column: ColumnWorkspace::default(),
         }
-    }
-
-    /// Whether `work` was made for an operator of this size.
-    pub(crate) fn fits(&self, work: &TransformWorkspace) -> bool {
-        work.layout == self.layout
     }
 
     /// Tiles side by side.
@@ -311,13 +306,6 @@ impl fmt::Debug for SpectralOperator {
 impl fmt::Debug for TransformWorkspace {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("TransformWorkspace").field("layout", &self.layout).finish_non_exhaustive()
-    }
-}
-
-impl TransformWorkspace {
-    /// Numbers held by the buffers between the passes: tells workspaces of different sizes apart.
-    pub(crate) fn len(&self) -> usize {
-        2 * self.tiles.len() + self.column.len()
     }
 }
 

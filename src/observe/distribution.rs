@@ -2,6 +2,7 @@
 
 use crate::ViscoelasticContact;
 use crate::error::{Error, Result, positive};
+use crate::memory;
 
 const MOST_BINS: usize = 1_000_000;
 
@@ -81,7 +82,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If `bins` is 0 or more than a million.
     pub fn gap_distribution(&self, bins: usize) -> Result<Distribution> {
-        let mut gap = vec![0.0; self.grid().len()];
+        let mut gap = memory::field("the gap", self.grid().len(), 0.0)?;
         self.gap_into(&mut gap)?;
         let finite = gap.iter().filter(|h| h.is_finite()).count();
         let open = gap.iter().zip(self.pressure()).filter(|(h, p)| h.is_finite() && **h > 0.0 && **p == 0.0);

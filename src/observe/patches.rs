@@ -1,6 +1,7 @@
 //! The separate spots of a contact.
 
 use crate::error::{Error, Result, exact_length, finite};
+use crate::memory;
 use crate::{Grid, ViscoelasticContact};
 
 /// One patch of contact.
@@ -51,19 +52,23 @@ impl Patches {
     ///
     /// # Errors
     /// If there is not one value a cell, a value is not finite or below zero, or the force of a patch is beyond the range
-    /// of `f64`.
+    /// of `f64`. If there is no memory for the labels.
     pub fn new(grid: &Grid, pressure: &[f64], periodic: [bool; 2]) -> Result<Patches> {
         exact_length("pressure", pressure.len(), grid.len())?;
         if let Some(&value) = pressure.iter().find(|p| !(p.is_finite() && **p >= 0.0)) {
             return Err(Error::OutOfRange { field: "pressure", value, allowed: "finite and >= 0" });
         }
-        let mut search =
-            Search { grid, pressure, periodic, labels: vec![0; grid.len()], turns: vec![[0; 2]; grid.len()] };
+        let what = "the labels of patches";
+        let (labels, turns) = (memory::field(what, grid.len(), 0)?, memory::field(what, grid.len(), [0; 2])?);
+        let mut search = Search { grid, pressure, periodic, labels, turns };
         let mut all = Vec::new();
         for (k, &p) in pressure.iter().enumerate() {
             if p > 0.0 && search.labels[k] == 0 {
-                // a grid has less than 2³² cells
-                let patch = search.patch(k, all.len() as u32 + 1);
+                let label = u32::try_from(all.len() + 1).map_err(|_| {
+                    let (field, allowed) = ("patches of contact", "4294967295 at most");
+                    Error::CountOutOfRange { field, value: all.len() + 1, allowed }
+                })?;
+                let patch = search.patch(k, label);
                 finite("force of a patch", patch.force)?;
                 all.push(patch);
             }

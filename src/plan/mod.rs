@@ -44,7 +44,7 @@ pub struct Plan {
     steps: usize,
     convolutions: f64,
     error: SpatialError,
-    bytes: usize,
+    bytes: u64,
 }
 
 /// Cells along a side of the coarse runs.
@@ -97,9 +97,11 @@ impl Plan {
             area: found.error.area * ratio.powf(AREA_ORDER),
             singular: first * ratio,
         };
-        let terms = found.terms.max(1);
-        let bytes = grid.len() * (BYTES_A_CELL + 8 * (terms - 1));
         let builder = coarse.builder(grid.clone());
+        let memory = builder.memory()?;
+        // the slope that adaptive steps keep, and the series that the first step fits where there is none
+        let fields = 1 + if memory.history == 0 { found.terms } else { 0 };
+        let bytes = memory.total() + 8 * (fields * memory.computed_cells) as u64;
         Ok(Plan { accuracy, builder, grid, reach, steps: found.steps, convolutions: found.convolutions, error, bytes })
     }
 
@@ -138,8 +140,9 @@ impl Plan {
         self.convolutions
     }
 
-    /// Memory that the contact will take \[bytes\], about.
-    pub fn bytes(&self) -> usize {
+    /// Memory that the contact will take \[bytes\], about: [`Builder::memory`], what adaptive steps keep, and the series of the
+    /// material.
+    pub fn bytes(&self) -> u64 {
         self.bytes
     }
 
@@ -148,9 +151,6 @@ impl Plan {
         self.error
     }
 }
-
-/// Memory of a contact with one relaxation time, and of the slope that adaptive steps keep.
-const BYTES_A_CELL: usize = 174 + 8;
 
 impl std::fmt::Display for Plan {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {

@@ -142,7 +142,7 @@ fn kernel(source: &mut Source) -> Verdict {
     judged(models::kernel(source, &grid), |kernel| {
         let pressure: Vec<f64> = (0..grid.len()).map(|_| source.unit()).collect();
         let mut displacement = vec![0.0; grid.len()];
-        let mut work = kernel.workspace();
+        let mut work = kernel.workspace().unwrap();
         kernel.convolve(&pressure, &mut displacement, &mut work).map_err(|error| error.to_string())?;
         finite("K p", displacement.iter().copied())?;
         // any numbers at all: K p is a number, or refused

@@ -2,6 +2,7 @@
 
 use super::{HeightMap, MapError};
 use crate::error::{Error, Result};
+use crate::memory;
 
 /// Residual of the equations, relative to the range of the known heights, at which the missing ones are found.
 const TOLERANCE: f64 = 1e-10;
@@ -11,18 +12,20 @@ impl HeightMap {
     /// (harmonic interpolation), so that none exceeds the known ones around.
     ///
     /// # Errors
-    /// If no height is known, or the equations are not solved ([`MapError::NotFilled`]).
-    pub fn filled(self) -> Result<HeightMap> {
+    /// If no height is known, or the equations are not solved ([`MapError::NotFilled`]), or there is no memory for them: 16 bytes
+    /// a point, and 120 more for each that is missing.
+    pub fn filled(mut self) -> Result<HeightMap> {
         self.some_known()?;
         if self.missing == 0 {
             return Ok(self);
         }
+        memory::check("the missing heights of a map", 16 * self.heights.len() as u128 + 120 * self.missing as u128)?;
         let low = self.known().fold(f64::INFINITY, f64::min);
         let membrane = Membrane::new(&self);
         // The middle of the range is where the unknowns start, and what they are measured from: halves do not overflow.
         let middle = 0.5 * low + 0.5 * self.highest;
         let values = membrane.solved(&self, middle, TOLERANCE * (self.highest - low))?;
-        let mut heights = self.heights.clone();
+        let mut heights = std::mem::take(&mut self.heights);
         // No mean exceeds its parts: what does is within the tolerance.
         for (&point, value) in membrane.points.iter().zip(values) {
             heights[point] = (middle + value).clamp(low, self.highest);
@@ -35,7 +38,7 @@ impl HeightMap {
 struct Membrane {
     points: Vec<usize>,
     /// The number of each point of the map among the missing ones.
-    number: Vec<Option<u32>>,
+    number: Vec<Option<usize>>,
     /// Neighbours of each missing point with their weights; 0 where there is none.
     neighbours: Vec<[(usize, f64); 4]>,
 }
@@ -46,7 +49,7 @@ impl Membrane {
         let points: Vec<usize> = (0..map.heights.len()).filter(|&k| map.heights[k].is_nan()).collect();
         let mut number = vec![None; map.heights.len()];
         for (n, &k) in points.iter().enumerate() {
-            number[k] = Some(n as u32);
+            number[k] = Some(n);
         }
         // In proportion to 1/s², with a sum of 1/2 for both.
         let (w1, w2) = (0.5 / (1.0 + (s1 / s2).powi(2)), 0.5 / (1.0 + (s2 / s1).powi(2)));
@@ -68,9 +71,8 @@ impl Membrane {
     /// Σ weight (value − value of the neighbour), where known neighbours count 0: the equations without right sides.
     fn apply(&self, values: &[f64], result: &mut [f64]) {
         for ((around, value), result) in self.neighbours.iter().zip(values).zip(result) {
-            *result = around
-                .iter()
-                .fold(0.0, |sum, &(k, w)| sum + w * (value - self.number[k].map_or(0.0, |n| values[n as usize])));
+            *result =
+                around.iter().fold(0.0, |sum, &(k, w)| sum + w * (value - self.number[k].map_or(0.0, |n| values[n])));
         }
     }
 

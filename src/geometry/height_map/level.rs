@@ -35,10 +35,10 @@ impl HeightMap {
     ///
     /// # Errors
     /// If no height is known, or one comes to lie beyond ±1e300 m.
-    pub fn leveled(self, form: Form) -> Result<HeightMap> {
+    pub fn leveled(mut self, form: Form) -> Result<HeightMap> {
         self.some_known()?;
         let terms = form.terms();
-        let mut heights = self.heights.clone();
+        let mut heights = std::mem::take(&mut self.heights);
         // Once more for what rounding left, which counts where the form is far larger than the roughness.
         for _ in 0..2 {
             let (mut matrix, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);

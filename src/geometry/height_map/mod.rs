@@ -269,7 +269,7 @@ mod tests {
     fn undecided_points_are_refused_where_the_gap_is_used() {
         use crate::geometry::{Gap, evaluate};
         let map = map_of([4, 4], |x1, x2| if x1 > 0.3 && x2 > 0.3 { f64::NAN } else { x1 });
-        let joined = |map: &HeightMap| Gap::new(&[evaluate(map, &map.grid())], &map.grid());
+        let joined = |map: &HeightMap| Gap::new(vec![evaluate(map, &map.grid()).unwrap()], &map.grid());
         let refused = joined(&map).unwrap_err();
         assert!(matches!(refused, Error::InvalidGap { cell: [3, 3], value, .. } if value.is_nan()));
         assert_eq!(joined(&map.clone().masked()).unwrap().above[15], f64::INFINITY);

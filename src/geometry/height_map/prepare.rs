@@ -3,6 +3,7 @@
 use super::HeightMap;
 use crate::Grid;
 use crate::error::{Error, Result, finite};
+use crate::memory;
 
 impl HeightMap {
     /// The map with nothing to touch where heights are missing.
@@ -15,7 +16,7 @@ impl HeightMap {
     /// periodic.
     ///
     /// # Errors
-    /// If there are no points in the part, or it goes beyond the map.
+    /// If there are no points in the part, or it goes beyond the map, or there is no memory for it.
     pub fn cropped(self, first: [usize; 2], cells: [usize; 2]) -> Result<HeightMap> {
         let fields = [("first point along x1", "points along x1"), ("first point along x2", "points along x2")];
         for (axis, (of_first, of_cells)) in fields.into_iter().enumerate() {
@@ -30,7 +31,8 @@ impl HeightMap {
         }
         let n2 = self.cells[1];
         let rows = (first[0]..first[0] + cells[0]).map(|i| i * n2 + first[1]);
-        let heights = rows.flat_map(|from| self.heights[from..from + cells[1]].iter().copied()).collect();
+        let heights = rows.flat_map(|from| self.heights[from..from + cells[1]].iter().copied());
+        let heights = memory::collect("a part of a map", cells[0] * cells[1], heights)?;
         let part = HeightMap { cells, periodic: false, heights: Vec::new(), ..self };
         Ok(part.with_heights(heights))
     }
@@ -62,8 +64,9 @@ impl HeightMap {
 
     /// The map with peaks as valleys, as of a replica: z becomes −z.
     #[must_use]
-    pub fn inverted(self) -> HeightMap {
-        let heights = self.heights.iter().map(|z| -z).collect();
+    pub fn inverted(mut self) -> HeightMap {
+        let mut heights = std::mem::take(&mut self.heights);
+        heights.iter_mut().for_each(|z| *z = -*z);
         self.with_heights(heights)
     }
 
@@ -71,10 +74,11 @@ impl HeightMap {
     ///
     /// # Errors
     /// If the factor is not finite, or a height no longer within ±1e300 m.
-    pub fn scaled(self, factor: f64) -> Result<HeightMap> {
+    pub fn scaled(mut self, factor: f64) -> Result<HeightMap> {
         finite("factor of the heights", factor)?;
-        let heights = super::representable(self.heights.iter().map(|z| factor * z).collect())?;
-        Ok(self.with_heights(heights))
+        let mut heights = std::mem::take(&mut self.heights);
+        heights.iter_mut().for_each(|z| *z *= factor);
+        Ok(self.with_heights(super::representable(heights)?))
     }
 
     /// The map with its middle at the point `center` \[m\].

@@ -3,6 +3,7 @@
 use super::HeightMap;
 use crate::Grid;
 use crate::error::Result;
+use crate::memory;
 
 /// A range of heights smaller than this, relative to the heights, is rounding.
 const FLAT: f64 = 1e-14;
@@ -46,14 +47,14 @@ impl HeightMap {
     /// ```
     ///
     /// # Errors
-    /// If map and grid have no known points in common.
+    /// If map and grid have no known points in common, or there is no memory for the heights on the grid.
     pub fn resampled(&self, grid: &Grid) -> Result<Resampled> {
         let [_, n2] = grid.cells();
         let heights = (0..grid.len()).map(|k| {
             let [x1, x2] = grid.center(k / n2, k % n2);
             self.height_at(x1, x2).unwrap_or(f64::NAN)
         });
-        let mut map = HeightMap::on(grid, heights.collect());
+        let mut map = HeightMap::on(grid, memory::collect("a map on another grid", grid.len(), heights)?);
         map.some_known()?;
         map.center = HeightMap::middle_of(grid);
         // Without missing points in the old map all those of the new one are beyond it.

@@ -14,6 +14,7 @@ use crate::Grid;
 use crate::error::{Error, Result, within};
 use crate::geometry::spectrum::{Spectrum, wave_numbers};
 use crate::geometry::{Geometry, HeightMap};
+use crate::memory;
 
 /// A self-affine random surface: a sum of waves with random amplitudes, Gaussian, of the spectrum of its [`RoughSpec`].
 ///
@@ -53,7 +54,7 @@ impl Rough {
     ///
     /// # Errors
     /// If a number of the spec is out of its range, the shortest wavelength is below two cells, or no wave of the
-    /// spectrum fits the lengths.
+    /// spectrum fits the lengths. If there is no memory for its waves and heights, 16 bytes a cell.
     pub fn new(grid: &Grid, spec: RoughSpec) -> Result<Rough> {
         spec.validate()?;
         let (cells, spacing) = (grid.cells(), grid.spacing());
@@ -61,6 +62,7 @@ impl Rough {
             let resolved = spec.shortest >= 2.0 * spacing[axis] * (1.0 - 1e-12);
             within("shortest wavelength", spec.shortest, resolved, "two cells of the grid or more")?;
         }
+        memory::check("a rough surface", Spectrum::bytes(cells) + 8 * grid.len() as u128)?;
         let spectrum = spectrum(grid, &spec)?;
         let map = HeightMap::on(&Grid::of_spacing(cells, spacing), spectrum.heights());
         match map.heights().iter().position(|z| !z.is_finite()) {

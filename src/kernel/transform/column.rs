@@ -48,13 +48,6 @@ impl Column {
     }
 }
 
-impl ColumnWorkspace {
-    /// Numbers held.
-    pub(super) fn len(&self) -> usize {
-        self.real.len() + 2 * self.waves.len()
-    }
-}
-
 impl SpectralOperator {
     /// Transforms `input`, multiplies it by the spectrum and transforms it back; the result stays in the workspace.
     pub(super) fn convolve_column(&self, column: &Column, input: &[f64], work: &mut ColumnWorkspace) {

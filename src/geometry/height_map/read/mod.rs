@@ -23,6 +23,7 @@ use std::path::Path;
 use crate::Grid;
 use crate::error::Result;
 use crate::geometry::{HeightMap, MapError};
+use crate::memory;
 
 /// The extensions of files that carry the lengths of their maps.
 #[cfg(feature = "x3p")]
@@ -75,7 +76,8 @@ impl HeightMap {
             First::Top => n2 - 1 - j,
             First::Bottom => j,
         };
-        let heights = (0..n1).flat_map(|i| (0..n2).map(move |j| rows[row(j) * n1 + i])).collect();
+        let heights = (0..n1).flat_map(|i| (0..n2).map(move |j| rows[row(j) * n1 + i]));
+        let heights = memory::collect("the heights of a file", rows.len(), heights)?;
         let lengths = [n1 as f64 * spacing[0], n2 as f64 * spacing[1]];
         // the spacing is what the file says, to the last bit, and not a quotient of the length
         Ok(HeightMap { spacing, ..HeightMap::new(cells, lengths, heights)? })

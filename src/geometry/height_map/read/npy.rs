@@ -9,6 +9,7 @@ use super::{bytes, count};
 use crate::Grid;
 use crate::error::Result;
 use crate::geometry::{HeightMap, LengthUnit, MapError};
+use crate::memory;
 
 pub(in crate::geometry::height_map) const MAGIC: &[u8] = b"\x93NUMPY";
 const FORMAT: &str = "NPY";
@@ -36,7 +37,7 @@ impl HeightMap {
         let [n1, n2] = array.cells;
         let place = |i: usize, j: usize| if array.fortran { j * n1 + i } else { i * n2 + j };
         let heights = (0..n1).flat_map(|i| (0..n2).map(move |j| place(i, j))).map(|k| unit.to_metres(stored[k]));
-        HeightMap::new(array.cells, lengths, heights.collect())
+        HeightMap::new(array.cells, lengths, memory::collect("the heights of a file", count, heights)?)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::error::Result;
 use crate::geometry::MapError;
+use crate::memory;
 
 /// How a number is written.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,11 +54,12 @@ impl Number {
 
     /// The `count` numbers that `data` begin with, or, if `exact`, that they are.
     pub(super) fn decode_all(self, format: &'static str, data: &[u8], count: usize, exact: bool) -> Result<Vec<f64>> {
-        let (found, expected) = (data.len() as u64, count as u64 * self.size as u64);
+        let (found, expected) = (data.len() as u64, (count as u64).saturating_mul(self.size as u64));
         if found < expected || exact && found > expected {
             return Err(MapError::Size { format, what: "bytes of heights", found, expected, exact: true }.into());
         }
-        Ok(data.chunks_exact(self.size).take(count).map(|bytes| self.decode(bytes)).collect())
+        let numbers = data.chunks_exact(self.size).take(count).map(|bytes| self.decode(bytes));
+        memory::collect("the numbers of a file", count, numbers)
     }
 }
 

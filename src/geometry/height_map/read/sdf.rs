@@ -235,7 +235,8 @@ pub(super) mod tests {
         ));
         assert!(matches!(read("NumPoints = 3", "NumPoints = 0"), Error::CountOutOfRange { value: 0, .. }));
         assert!(matches!(read("NumPoints = 3", "NumPoints = 2000000000"), Error::Map(MapError::Size { .. })));
-        assert!(matches!(read("NumPoints = 3", "NumPoints = 4000000000"), Error::CountOutOfRange { .. }));
+        assert!(matches!(read("NumPoints = 3", "NumPoints = 4000000000"), Error::Map(MapError::Size { .. })));
+        assert!(matches!(read("NumPoints = 3", "NumPoints = 4000000000000000000"), Error::CountOutOfRange { .. }));
         assert!(matches!(read("aISO", "aBC"), Error::Map(MapError::Magic { .. })));
         let cut = HeightMap::from_sdf(TEXT.split('*').next().unwrap().as_bytes()).unwrap_err();
         assert_eq!(cut, MapError::Missing { format: FORMAT, key: "line * after the header" }.into());

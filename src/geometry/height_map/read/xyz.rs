@@ -6,6 +6,7 @@ use super::text::{Table, height, text};
 use super::{First, count};
 use crate::error::{Result, least_length, positive};
 use crate::geometry::{HeightMap, LengthUnit, MapError};
+use crate::memory;
 
 /// How far a point may lie off the regular grid, in spacings.
 const OFF: f64 = 1e-3;
@@ -45,7 +46,8 @@ impl HeightMap {
         if count / MOST_CELLS_A_POINT > points.len() {
             return Err(MapError::Sparse { points: points.len(), cells }.into());
         }
-        let (mut rows, mut lines) = (vec![f64::NAN; count], vec![0; count]);
+        let what = "the grid that the points of a file lie on";
+        let (mut rows, mut lines) = (memory::field(what, count, f64::NAN)?, memory::field(what, count, 0_u64)?);
         for (k, point) in points.iter().enumerate() {
             let at = axes[1].indices[k] * cells[0] + axes[0].indices[k];
             if lines[at] != 0 {
