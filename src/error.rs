@@ -42,10 +42,9 @@ pub enum Error {
         allowed: &'static str,
     },
 
-    /// Something needs more memory than there is, or than may be addressed. Take fewer cells; a contact computes fewer of
-    /// them by [`Settings::symmetry`](crate::contact::Settings::symmetry) and
-    /// [`Settings::window`](crate::contact::Settings::window), and tells what it takes before it is built
-    /// ([`Builder::memory`](crate::contact::Builder::memory)).
+    /// Something needs more memory than there is, or than may be addressed. Take fewer cells; a contact computes fewer of them by
+    /// [`Settings::symmetry`](crate::contact::Settings::symmetry) and [`Settings::window`](crate::contact::Settings::window), and tells what it takes before
+    /// it is built ([`Builder::memory`](crate::contact::Builder::memory)).
     #[error("{what} needs {bytes} bytes ({:.1} GB), more than there is: take fewer cells, or let symmetry and window of the Settings compute fewer of them", *.bytes as f64 * 1e-9)]
     OutOfMemory {
         /// What was to be made.
@@ -54,8 +53,8 @@ pub enum Error {
         bytes: u64,
     },
 
-    /// A slice or table does not have the length it needs: a field of one value a cell, two
-    /// slices that belong together, a table too short to define a function.
+    /// A slice or table does not have the length it needs: a field of one value a cell, two slices that belong together, a table too short to define a
+    /// function.
     #[error("{field} holds {len} values, but needs {expected}{}", if *.exact { "" } else { " at least" })]
     WrongLength {
         /// Which slice or table.
@@ -94,8 +93,7 @@ pub enum Error {
         second: &'static str,
     },
 
-    /// A load history named a corner that is not later than the time asked for
-    /// ([`LoadHistory::next_breakpoint`](crate::load::LoadHistory::next_breakpoint)).
+    /// A load history named a corner that is not later than the time asked for ([`LoadHistory::next_breakpoint`](crate::load::LoadHistory::next_breakpoint)).
     #[error("the load history says that the first corner after t = {after} s is at {breakpoint} s: it must be later")]
     InvalidBreakpoint {
         /// The time asked for \[s\].
@@ -104,8 +102,7 @@ pub enum Error {
         breakpoint: f64,
     },
 
-    /// A load history returned a load that no step can be given, at a time that a run looked at: the end of a step, or between
-    /// its ends.
+    /// A load history returned a load that no step can be given, at a time that a run looked at: the end of a step, or between its ends.
     #[error("the load history says {field} = {value:?} at t = {time} s, which is not allowed: it must be {allowed}")]
     InvalidLoad {
         /// The time asked for \[s\].
@@ -129,8 +126,7 @@ pub enum Error {
         given: &'static str,
     },
 
-    /// A force acts at a point where no pressure can balance it: outside the convex hull of the cells that
-    /// the body may touch, so that it would topple.
+    /// A force acts at a point where no pressure can balance it: outside the convex hull of the cells that the body may touch, so that it would topple.
     #[error("at t = {time} s the load acts at ({:e}, {:e}) m, outside the convex hull of the cells that body {body} may touch: it would topple", .at[0], .at[1])]
     LoadOutsideHull {
         /// End of the step \[s\].
@@ -159,8 +155,7 @@ pub enum Error {
         bodies: usize,
     },
 
-    /// A geometry returned NaN or −∞ for the gap of a cell; allowed are finite gaps and +∞
-    /// (nothing there).
+    /// A geometry returned NaN or −∞ for the gap of a cell; allowed are finite gaps and +∞ (nothing there).
     #[error("the initial gap at cell [{}, {}], x = ({:e}, {:e}) m, is {value}: it must be finite, or +inf where there is nothing to touch", .cell[0], .cell[1], .position[0], .position[1])]
     InvalidGap {
         /// Indices of the cell.
@@ -171,8 +166,8 @@ pub enum Error {
         value: f64,
     },
 
-    /// The geometry of a body is +∞ on every cell of the grid, or lies above another body everywhere: it has
-    /// nothing to touch. Check its position and size against [`Grid::lengths`](crate::Grid::lengths).
+    /// The geometry of a body is +∞ on every cell of the grid, or lies above another body everywhere: it has nothing to touch. Check its position and size
+    /// against [`Grid::lengths`](crate::Grid::lengths).
     #[error(
         "body {body} has no cell with a finite initial gap of its own: it can touch nothing on the {cells} cells of the grid"
     )]
@@ -214,8 +209,8 @@ pub enum Error {
         allowed: &'static str,
     },
 
-    /// A pressure would gain energy by pressing on a body with these influence coefficients: no contact on it is stable. Check
-    /// their sign, and that near cells influence each other more than distant ones.
+    /// A pressure would gain energy by pressing on a body with these influence coefficients: no contact on it is stable. Check their sign, and that near
+    /// cells influence each other more than distant ones.
     #[error(
         "the influence coefficients are not positive: a pressure was found that gains energy (eigenvalue {least:e} m, the greatest being {most:e} m)"
     )]
@@ -235,16 +230,16 @@ pub enum Error {
         axis: usize,
     },
 
-    /// Something needs the grid to be fixed to the other of indenter and bodies ([`Frame`](crate::contact::Frame)): a step over
-    /// the bodies to the indenter, a path or a direct sum to the bodies.
+    /// Something needs the grid to be fixed to the other of indenter and bodies ([`Frame`](crate::contact::Frame)): a step over the bodies to the indenter, a
+    /// path or a direct sum to the bodies.
     #[error("{what} is not possible with the grid fixed to what Settings::frame says: choose the other Frame")]
     WrongFrame {
         /// What was asked for.
         what: &'static str,
     },
 
-    /// An approach lies beyond full contact on a surface whose mean displacement is held
-    /// ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)): no pressure closes the gap further.
+    /// An approach lies beyond full contact on a surface whose mean displacement is held ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)):
+    /// no pressure closes the gap further.
     #[error(
         "at t = {time} s the approach {approach:e} m is not below {greatest:e} m, that of full contact, which no pressure can exceed on a periodic body: control the force"
     )]
@@ -257,9 +252,9 @@ pub enum Error {
         greatest: f64,
     },
 
-    /// The body has no elastic response (J(0) = 0, as Kelvin–Voigt): it cannot follow a jump of the load, a step of length
-    /// zero, unless nothing presses it after the jump or the load is what the present state satisfies already; nor is the
-    /// paper's rectangle rule possible. Ramp the load over a short time, or give the body a glassy compliance.
+    /// The body has no elastic response (J(0) = 0, as Kelvin–Voigt): it cannot follow a jump of the load, a step of length zero, unless nothing presses it
+    /// after the jump or the load is what the present state satisfies already; nor is the paper's rectangle rule possible. Ramp the load over a short time,
+    /// or give the body a glassy compliance.
     #[error(
         "at t = {time} s: {what} needs an elastic response, but the material has none (its compliance at t = 0 is zero); ramp the load over a short time or add a glassy compliance"
     )]
@@ -272,8 +267,7 @@ pub enum Error {
 
     /// Something needs an exponential series of the creep compliance and the rheology has no exact one
     /// ([`Rheology::creep_spectrum`](crate::rheology::Rheology::creep_spectrum) is `None`). Fit one, with
-    /// [`Rheology::series`](crate::rheology::Rheology::series) or
-    /// [`Material::fitted`](crate::rheology::Material::fitted).
+    /// [`Rheology::series`](crate::rheology::Rheology::series) or [`Material::fitted`](crate::rheology::Material::fitted).
     #[error(
         "{what} needs an exponential series, and {rheology} has no exact one: fit one over the times of the scene with Rheology::series or Material::fitted"
     )]
@@ -284,9 +278,8 @@ pub enum Error {
         rheology: String,
     },
 
-    /// A step would look further into the past of the material than it is known: beyond the data of a table, or
-    /// beyond the times that a series was fitted over. Give
-    /// [`Builder::times`](crate::contact::Builder::times) a longer range, or let the table be extrapolated.
+    /// A step would look further into the past of the material than it is known: beyond the data of a table, or beyond the times that a series was fitted
+    /// over. Give [`Builder::times`](crate::contact::Builder::times) a longer range, or let the table be extrapolated.
     #[error(
         "at t = {time} s the bodies remember {age} s, but the material is known for {known_until} s only: fit its series over longer times (Builder::times), or let its table be extrapolated"
     )]
@@ -299,8 +292,8 @@ pub enum Error {
         known_until: f64,
     },
 
-    /// A step is shorter than the times that the series of the material was fitted over, which the first step chose by its
-    /// own length. Say from the start which times matter: [`Builder::times`](crate::contact::Builder::times).
+    /// A step is shorter than the times that the series of the material was fitted over, which the first step chose by its own length. Say from the start
+    /// which times matter: [`Builder::times`](crate::contact::Builder::times).
     #[error(
         "at t = {time} s: a step of {dt:e} s is shorter than the material's series resolves, {known_from:e} s, as the first step chose it: say with Builder::times which times matter"
     )]
@@ -313,9 +306,8 @@ pub enum Error {
         known_from: f64,
     },
 
-    /// The past of a direct sum has filled the memory that [`Settings::history_limit`](crate::contact::Settings)
-    /// allows. Raise it, or use [`TimeRule::Automatic`](crate::contact::TimeRule::Automatic), whose memory does not
-    /// grow.
+    /// The past of a direct sum has filled the memory that [`Settings::history_limit`](crate::contact::Settings) allows. Raise it, or use
+    /// [`TimeRule::Automatic`](crate::contact::TimeRule::Automatic), whose memory does not grow.
     #[error(
         "at t = {time} s the direct sum over {steps} past steps would take {bytes} bytes, more than Settings::history_limit = {limit}: raise it, or use TimeRule::Automatic, whose memory does not grow"
     )]
@@ -330,8 +322,7 @@ pub enum Error {
         limit: usize,
     },
 
-    /// A user's creep compliance returned a value no body can have: negative, not finite, or less
-    /// than before; or 0 after t = 0, where a series is fitted.
+    /// A user's creep compliance returned a value no body can have: negative, not finite, or less than before; or 0 after t = 0, where a series is fitted.
     #[error(
         "creep compliance J({time:?} s) = {value:?} 1/Pa is not allowed: it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {previous:?} before)"
     )]
@@ -344,9 +335,8 @@ pub enum Error {
         previous: f64,
     },
 
-    /// No exponential series with positive coefficients stands for a material function to within the tolerance:
-    /// ask for less, or let the contact sum its whole past
-    /// ([`TimeRule::Backward`](crate::contact::TimeRule::Backward)).
+    /// No exponential series with positive coefficients stands for a material function to within the tolerance: ask for less, or let the contact sum its
+    /// whole past ([`TimeRule::Backward`](crate::contact::TimeRule::Backward)).
     #[error(
         "no exponential series was found to within {tolerance:e}: the best errs by {misfit:e} at {at:e} s; raise the tolerance (Settings::series_tolerance), or use TimeRule::Backward, which needs no series"
     )]
@@ -404,8 +394,7 @@ pub enum Error {
         source: crate::contact::CheckpointError,
     },
 
-    /// Contact reaches the edge of the grid, beyond which the bodies go on: the pressure there
-    /// would be wrong. Enlarge the grid, or allow it with
+    /// Contact reaches the edge of the grid, beyond which the bodies go on: the pressure there would be wrong. Enlarge the grid, or allow it with
     /// [`Edge::Allow`](crate::contact::Edge::Allow) where the body really ends at the grid's edge.
     #[error(
         "at t = {time} s the contact touches the edge of the grid on {cells} cells: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there"
@@ -417,8 +406,7 @@ pub enum Error {
         cells: usize,
     },
 
-    /// The contact of an [`AxisymmetricContact`](crate::analytic::AxisymmetricContact) reaches the end of its
-    /// foundation: give it a longer one.
+    /// The contact of an [`AxisymmetricContact`](crate::analytic::AxisymmetricContact) reaches the end of its foundation: give it a longer one.
     #[error("at t = {time} s the contact reaches the end of the foundation, {reach:e} m from the axis: make it longer")]
     BeyondReach {
         /// End of the step \[s\].
@@ -427,8 +415,8 @@ pub enum Error {
         reach: f64,
     },
 
-    /// The contact problem of a step was not solved within
-    /// [`Settings::max_iterations`](crate::contact::Settings::max_iterations): what to do, the history of the residual says.
+    /// The contact problem of a step was not solved within [`Settings::max_iterations`](crate::contact::Settings::max_iterations): what to do, the history of
+    /// the residual says.
     #[error(
         "at t = {time} s (step of {dt} s): residual {residual:e} after {iterations} iterations, above the tolerance {tolerance:e}; {convergence}"
     )]
@@ -458,8 +446,8 @@ pub enum Error {
         time: f64,
     },
 
-    /// A steady motion does not become steady: where contact comes and goes, as on a rough surface that moves with the
-    /// bodies, it has no steady state; else allow a greater change.
+    /// A steady motion does not become steady: where contact comes and goes, as on a rough surface that moves with the bodies, it has no steady state; else
+    /// allow a greater change.
     #[error(
         "after {distance:e} m the pressure still changes by {change:e} over a length of contact, more than {tolerance:e}"
     )]
@@ -481,8 +469,7 @@ pub enum Error {
         length: f64,
     },
 
-    /// The error in time asks for a step too short to change the time: the load changes faster than time itself is
-    /// resolved, or the tolerance is too small.
+    /// The error in time asks for a step too short to change the time: the load changes faster than time itself is resolved, or the tolerance is too small.
     #[error(
         "at t = {time} s a step of {dt:e} s would be needed to keep the error in time below {tolerance:e}, too short to change the time"
     )]
@@ -495,8 +482,7 @@ pub enum Error {
         tolerance: f64,
     },
 
-    /// Numbers left the range of `f64` inside a step: the scales of the scene (lengths, moduli,
-    /// loads, times) are too far apart to be represented.
+    /// Numbers left the range of `f64` inside a step: the scales of the scene (lengths, moduli, loads, times) are too far apart to be represented.
     #[error("at t = {time} s: {what} is not finite; the scales of the scene are too far apart for f64")]
     Overflow {
         /// End of the step \[s\].

@@ -1,6 +1,8 @@
 //! Every solution satisfies the contact conditions, and both solvers find the same one.
 
 mod common;
+#[path = "common/noise.rs"]
+mod noise;
 
 use common::StepLoadedSphere;
 use proptest::prelude::*;
@@ -428,4 +430,44 @@ fn steps_backwards_let_nothing_in_that_pulls() {
         }
     }
     assert!(accepted > 100, "{accepted}");
+}
+
+/// Bodies held at a pivot, about which they turn freely: pressed on both sides of it, or swung clear, by either solver.
+#[test]
+fn pivots_are_solved_by_both_solvers() {
+    let mut dice = noise::uniform(11);
+    let mut between = |low: f64, high: f64| low + (high - low) * dice();
+    let (mut pressed, mut clear) = (0, 0);
+    for scene in 0..120 {
+        let shapes: [Box<dyn Geometry>; 4] = [
+            Box::new(Sphere::new(10.0e-3).unwrap()),
+            Box::new(Cone::new(between(0.01, 0.1)).unwrap()),
+            Box::new(FlatPunch::circular(between(0.9e-3, 1.8e-3)).unwrap()),
+            Box::new(Ellipsoid::new(10.0e-3, between(3.0e-3, 30.0e-3)).unwrap()),
+        ];
+        let grid = Grid::new([9 + scene % 20, 9 + scene % 13], [4.0e-3; 2]).unwrap();
+        let tilt = match scene % 3 {
+            0 => [Tilt::Free { at: between(-0.5e-3, 0.5e-3) }, Tilt::Fixed(0.0)],
+            1 => [Tilt::Fixed(between(-1.0e-3, 1.0e-3)), Tilt::Free { at: between(-0.5e-3, 0.5e-3) }],
+            _ => [between(-0.5e-3, 0.5e-3), between(-0.5e-3, 0.5e-3)].map(|at| Tilt::Free { at }),
+        };
+        let load = Load::Approach { approach: between(0.2e-5, 4.0e-5), tilt };
+        let run = |solver| {
+            let mut contact = ViscoelasticContact::builder(grid.clone())
+                .geometry(&shapes[scene % 4])
+                .material(Material::incompressible(Elastic::new(1.0e6).unwrap()))
+                .settings(Settings { solver, tolerance: 1e-8, edge: Edge::Allow, ..Settings::default() })
+                .build()
+                .unwrap();
+            contact.step(0.0, load).unwrap_or_else(|error| panic!("scene {scene}, {solver:?}: {error}"));
+            contact
+        };
+        let [active, reference] = [Solver::ActiveSet, Solver::PolonskyKeer].map(run);
+        // pressures are of the order of 1e4 Pa where there are any
+        let sum: f64 = active.pressure().iter().sum();
+        let difference: f64 = active.pressure().iter().zip(reference.pressure()).map(|(a, b)| (a - b).abs()).sum();
+        assert!(difference <= 1e-4 * sum.max(1.0), "scene {scene} {load}: {difference} of {sum}");
+        if sum > 1.0 { pressed += 1 } else { clear += 1 }
+    }
+    assert!(pressed > 30 && clear > 10, "{pressed} {clear}");
 }

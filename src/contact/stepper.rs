@@ -217,7 +217,8 @@ impl ViscoelasticContact {
                 Err(Error::LoadOutsideHull { time, body, at })
             }
             Outcome::OutOfIterations | Outcome::Stagnated => {
-                let convergence = Convergence::new(trace.samples(), tolerance, self.settings.solver).into();
+                let stagnated = outcome == Outcome::Stagnated;
+                let convergence = Convergence::new(trace.samples(), tolerance, self.settings.solver, stagnated).into();
                 Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
             }
         }

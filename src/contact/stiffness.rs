@@ -38,7 +38,7 @@ impl ViscoelasticContact {
             Ok(sum) => Ok(sum * self.grid.cell_area() * self.region.images() as f64),
             Err((iterations, residual)) => {
                 let (time, dt, tolerance) = (self.state.time, self.state.interval, FLAT_PUNCH_TOLERANCE);
-                let convergence = Convergence::new(Vec::new(), tolerance, self.settings.solver).into();
+                let convergence = Convergence::new(Vec::new(), tolerance, self.settings.solver, false).into();
                 Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
             }
         }

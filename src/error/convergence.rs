@@ -35,6 +35,8 @@ pub struct Convergence {
     samples: Vec<(usize, f64)>,
     tolerance: f64,
     solver: Solver,
+    /// Whether the solver found that rounding hides any further gain.
+    stagnated: bool,
 }
 
 /// What a residual does over the iterations of a solve.
@@ -57,8 +59,8 @@ pub enum Trend {
 }
 
 impl Convergence {
-    pub(crate) fn new(samples: Vec<(usize, f64)>, tolerance: f64, solver: Solver) -> Convergence {
-        Convergence { samples, tolerance, solver }
+    pub(crate) fn new(samples: Vec<(usize, f64)>, tolerance: f64, solver: Solver, stagnated: bool) -> Convergence {
+        Convergence { samples, tolerance, solver, stagnated }
     }
 
     /// Iterations done, and the residual then, in order; no more than 33, spread over the whole solve, its first and last
@@ -74,6 +76,9 @@ impl Convergence {
 
     /// What the residual did.
     pub fn trend(&self) -> Trend {
+        if self.stagnated {
+            return Trend::Rounding;
+        }
         if self.samples.len() < FEWEST {
             return Trend::TooFew;
         }
@@ -107,46 +112,35 @@ impl Convergence {
         let more = (last.1 / self.tolerance).ln() / rate;
         (rate > 0.0 && (0.0..1e9).contains(&more)).then(|| last.0 + more.ceil() as usize)
     }
-
-    /// The solver to try in its place.
-    fn other_solver(&self) -> &'static str {
-        match self.solver {
-            Solver::PolonskyKeer => "Solver::ActiveSet",
-            Solver::ActiveSet => "Solver::PolonskyKeer",
-        }
-    }
 }
 
 impl fmt::Display for Convergence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (lowest, other) = (self.lowest(), self.other_solver());
-        match self.trend() {
-            Trend::TooFew => {
-                f.write_str("too few iterations to say why: raise Settings::max_iterations, or take a smaller step")
-            }
-            Trend::Falling => {
+        let lowest = self.lowest();
+        match (self.trend(), self.solver) {
+            (Trend::TooFew, _) => f.write_str("too few iterations to say why: raise Settings::max_iterations"),
+            (Trend::Falling, _) => {
                 f.write_str("the residual was still falling: raise Settings::max_iterations")?;
                 match self.iterations_needed() {
                     Some(needed) => write!(f, " (about {needed} are needed at this rate)"),
                     None => Ok(()),
                 }
             }
-            Trend::Rounding => write!(
+            (Trend::Rounding, _) => write!(
                 f,
                 "the residual stays at {lowest:.1e}, which is rounding: raise Settings::tolerance above that, or bring the scales of the scene closer together (a grid not much larger than the contact)"
             ),
-            Trend::Stalled => write!(
-                f,
-                "the residual stays at {lowest:.1e}, far above rounding: take a smaller step, try {other}, or raise Settings::tolerance"
-            ),
-            Trend::Oscillating => {
-                write!(
-                    f,
-                    "the residual goes up and down and comes no lower than {lowest:.1e}: take a smaller step, or try {other}"
-                )
+            // its fall-back lowers the energy of the contact with every iteration, whatever the residual does
+            (_, Solver::ActiveSet) => {
+                write!(f, "the residual came no lower than {lowest:.1e} so far: raise Settings::max_iterations")
             }
-            Trend::Growing => {
-                write!(f, "the residual grows from {lowest:.1e}: take a smaller step, or try {other}")
+            (trend, Solver::PolonskyKeer) => {
+                let course = match trend {
+                    Trend::Oscillating => "goes up and down",
+                    Trend::Growing => "grows",
+                    _ => "does not fall",
+                };
+                write!(f, "the residual {course}, and came no lower than {lowest:.1e}: use Solver::ActiveSet")
             }
         }
     }
@@ -158,7 +152,7 @@ mod tests {
 
     fn history(residual: impl Fn(usize) -> f64) -> Convergence {
         let samples = (0..30).map(|k| (10 * k, residual(k))).collect();
-        Convergence::new(samples, 1e-12, Solver::ActiveSet)
+        Convergence::new(samples, 1e-12, Solver::PolonskyKeer, false)
     }
 
     #[test]
@@ -167,17 +161,17 @@ mod tests {
         for (convergence, trend, advice) in [
             (history(|k| 0.5_f64.powi(k as i32)), Trend::Falling, "raise Settings::max_iterations (about 399"),
             (history(|k| 1e-3_f64.powi(k.min(4) as i32)), Trend::Rounding, "raise Settings::tolerance"),
-            (history(|k| 1e-3 + 0.5_f64.powi(3 * k as i32)), Trend::Stalled, "Solver::PolonskyKeer"),
-            (history(|k| 1e-3 * wave(k)), Trend::Oscillating, "smaller step"),
-            (history(|k| 1e-3 * 1.4_f64.powi(k as i32)), Trend::Growing, "grows from 1.0e-3"),
+            (history(|k| 1e-3 + 0.5_f64.powi(3 * k as i32)), Trend::Stalled, "use Solver::ActiveSet"),
+            (history(|k| 1e-3 * wave(k)), Trend::Oscillating, "use Solver::ActiveSet"),
+            (history(|k| 1e-3 * 1.4_f64.powi(k as i32)), Trend::Growing, "grows, and came no lower than 1.0e-3"),
         ] {
             assert_eq!(convergence.trend(), trend, "{convergence}");
             assert!(convergence.to_string().contains(advice), "{convergence}");
             assert_eq!(convergence.iterations_needed().is_some(), trend == Trend::Falling);
         }
-        let few = Convergence::new(vec![(0, 1.0), (1, 0.5)], 1e-6, Solver::PolonskyKeer);
+        let few = Convergence::new(vec![(0, 1.0), (1, 0.5)], 1e-6, Solver::PolonskyKeer, false);
         assert_eq!(few.trend(), Trend::TooFew);
-        let none = Convergence::new(Vec::new(), 1e-6, Solver::PolonskyKeer);
+        let none = Convergence::new(Vec::new(), 1e-6, Solver::PolonskyKeer, false);
         assert!(none.lowest() == f64::INFINITY && !none.to_string().is_empty());
     }
 }

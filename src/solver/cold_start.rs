@@ -112,6 +112,17 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut 
     }
 }
 
+/// Presses every cell that the body may touch, evenly but for the moments: a guess that no gap has a say in.
+pub(crate) fn press_everywhere(problem: &Problem<'_>, body: usize, patch: &mut Patch, solution: &mut Solution) {
+    list_possible(problem, body, patch);
+    let mean = problem.bodies[body].total / patch.cells.len() as f64;
+    patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = mean);
+    if !balance(problem, body, &patch.cells, solution) {
+        // a load so near the rim that next to no cell can carry it
+        press_supports(problem, body, &patch.cells, solution);
+    }
+}
+
 /// Brings pressures ≥ 0 on `cells` into balance with the load by a factor 1 + B y, clipped at zero; false
 /// if that cannot be.
 pub(crate) fn balance(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) -> bool {

@@ -1,8 +1,10 @@
 //! The reference solver of the source paper.
 
 use crate::kernel::Workspace;
-use crate::solver::cold_start::{balance, cold_start};
+use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::problem::{Measure, Outcome, Patch, Problem, Solution, Stop, relative_residual};
+use crate::solver::rest::rest;
+use crate::solver::rigid::{Freedom, Modes, Motion};
 
 /// Conjugate gradients on the cells in contact, after Polonsky & Keer (Wear 231, 1999): two
 /// convolutions an iteration, one for the gap and one for the step length.
@@ -144,20 +146,33 @@ impl PolonskyKeer {
             }
         }
         self.list_cells(problem, solution);
-        for (body, patch) in self.patches.iter_mut().enumerate() {
+        for (body, patch) in self.patches.iter_mut().enumerate().filter(|(body, _)| !problem.released(*body)) {
             let modes = problem.modes(body);
-            if problem.released(body) || balance(problem, body, &patch.cells, solution) {
-                continue;
-            }
-            if !modes.translates() || !cold_start(problem, body, patch, solution, |_, _| ()) {
-                // held at its pivot, and touching on one side of it only: let go, and turn away
-                patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
-                for &k in &patch.cells {
-                    self.image[k as usize] = problem.gap[k as usize];
+            let balanced = balance(problem, body, &patch.cells, solution);
+            if modes.translates() {
+                if !balanced {
+                    press_everywhere(problem, body, patch, solution);
                 }
-                solution.motions[body] = modes.fit(&patch.gram, &patch.cells, &self.image);
+            } else if !balanced || patch.cells.iter().all(|&k| solution.pressure[k as usize] == 0.0) {
+                // held at its pivot, and touching on one side of it only: unloaded, and turned to where its deepest
+                // penetration is least, on both sides of the pivot if it cannot swing clear
+                patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
+                if modes.tilts() && entered {
+                    solution.motions[body] = turned(problem, body);
+                }
             }
         }
         entered
     }
+}
+
+/// The tilt at which a body held at its pivot penetrates the undeformed surface least: where it would rest if it could also
+/// move up and down, its load at the pivot.
+fn turned(problem: &Problem<'_>, body: usize) -> Motion {
+    let free = Freedom { translation: true, total: 1.0, ..problem.bodies[body] };
+    let cells: Vec<u32> = (0..problem.gap.len() as u32)
+        .filter(|&k| problem.owner(k as usize) == body && problem.possible(k as usize))
+        .collect();
+    let (motion, _) = rest(&Modes::new(problem.kernel.grid(), free), &cells, problem.gap);
+    [0.0, motion[1], motion[2]]
 }

@@ -224,8 +224,7 @@ impl Reference {
         let (p, y) = super::quadratic::minimum(&matrix, &gap, &columns, &right)?;
         cells.iter().zip(&p).for_each(|(&k, p)| pressure[k] = unit * p);
         let mut y = y.iter().map(|y| h * y);
-        for (body, found) in found.iter_mut().enumerate().filter(|(body, _)| !motions[*body].released) {
-            let _ = body;
+        for (found, _) in found.iter_mut().zip(motions).filter(|(_, motion)| !motion.released) {
             found.iter_mut().for_each(|found| *found = y.next().unwrap());
         }
         Some((pressure, found))

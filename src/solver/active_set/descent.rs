@@ -65,7 +65,7 @@ impl ActiveSet {
                 self.find_runs(problem);
                 return Outcome::Converged;
             }
-            if !solution.residual.is_finite() && state.cells > 0 {
+            if solution.residual.is_nan() {
                 return Outcome::NotANumber;
             }
             if solution.counts.iterations >= stop.max_iterations {
