@@ -226,7 +226,7 @@ proptest! {
                 report => {
                     // the fall-back may be asked to settle rounding where next to nothing presses
                     let report = report.unwrap();
-                    prop_assert!(report.fallback_iterations == 0 || report.force < 1e-9 * scene.force);
+                    prop_assert!(report.fallback_iterations == 0 || report.force < 1e-9 * scene.force, "{report:?}");
                 }
             }
             assert_contact_conditions(&ours, load, TOLERANCE);

@@ -30,7 +30,7 @@ mod descent;
 mod search;
 
 use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::cold_start::{balance, cold_start};
+use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::passes::Passes;
 use crate::solver::preconditioner::Preconditioner;
 use crate::solver::problem::{Measure, Outcome, PENETRATION_SLACK, Patch, Problem, Solution, Stop, relative_residual};
@@ -338,7 +338,13 @@ impl ActiveSet {
                     // the load acts outside the hull of what is left of A: begin again under this body
                     active.patch.cells.iter().for_each(|&k| self.member[k as usize] = false);
                     active.leaving.drain(..).for_each(|k| solution.pressure[k as usize] = 0.0);
-                    if !cold_start(problem, body, &mut active.patch, solution, |_, _| ()) {
+                    if !modes.translates() {
+                        // held at a pivot, and touching on one side of it only: unloaded, it may turn away
+                        active.patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
+                    } else if shape == Shape::Punch {
+                        // a cold start may be where the iterations came from
+                        press_everywhere(problem, body, &mut active.patch, solution);
+                    } else if !cold_start(problem, body, &mut active.patch, solution, |_, _| ()) {
                         return Err(body);
                     }
                     adopt_pressed(problem, body, active, &mut self.member, solution);

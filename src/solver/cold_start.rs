@@ -36,16 +36,20 @@ pub(crate) fn cold_start(
         }
         fill_hertz(problem, body, &patch.cells, solution);
     }
-    balance(problem, body, &patch.cells, solution) || press_supports(problem, body, &patch.cells, solution)
+    if balance(problem, body, &patch.cells, solution) {
+        return true;
+    }
+    // where what it makes cannot balance the load, the cells that the body would rest on join in
+    fill_hertz(problem, body, &patch.cells, solution);
+    press_supports(problem, body, &patch.cells, solution)
 }
 
-/// Presses the very cells that the body would rest on if nothing yielded: they balance the load if any cells do.
+/// Presses more the very cells that the body would rest on if nothing yielded: they balance the load if any cells do.
 fn press_supports(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) -> bool {
-    cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
     let freedom = problem.bodies[body];
     if freedom.translation {
         for (k, share) in rest(&problem.modes(body), cells, problem.gap).1 {
-            solution.pressure[k as usize] = share * freedom.total;
+            solution.pressure[k as usize] += share * freedom.total;
         }
     }
     balance(problem, body, cells, solution)
