@@ -412,3 +412,34 @@ fn a_held_approach_relaxes_by_many_decades() {
         assert_eq!(contact.force(), 0.0);
     }
 }
+
+/// A flat punch on an elastic body is pressed in proportion to its approach, however much deeper it was before.
+#[test]
+fn small_approaches_after_great_ones() {
+    let mut dice = noise::uniform(3);
+    let mut between = |low: f64, high: f64| low + (high - low) * dice();
+    for scene in 0..30 {
+        let cells = 24 + between(0.0, 48.0) as usize;
+        let mut contact = ViscoelasticContact::builder(Grid::square(cells, 4.0e-3).unwrap())
+            .geometry(&FlatPunch::circular(between(0.5e-3, 1.5e-3)).unwrap())
+            .material(Material::incompressible(Elastic::new(1.0e6).unwrap()))
+            .settings(Settings {
+                tolerance: 1e-8,
+                symmetry: scene % 2 == 0,
+                window: scene % 3 == 0,
+                ..Settings::default()
+            })
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::approach(1.0e-5)).unwrap();
+        let whole = contact.pressure().to_vec();
+        for _ in 0..6 {
+            let approach = 10f64.powf(between(-14.0, -5.0));
+            contact.step(0.0, Load::approach(approach)).unwrap();
+            let share = approach / 1.0e-5;
+            let errors = contact.pressure().iter().zip(&whole).map(|(p, whole)| (p - share * whole).abs());
+            let sum: f64 = whole.iter().sum();
+            assert!(errors.sum::<f64>() < 1e-5 * share * sum, "scene {scene}, {approach:e} m");
+        }
+    }
+}

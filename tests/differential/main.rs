@@ -122,7 +122,10 @@ fn a_dense_reference_agrees() {
     for seed in (first as u64 * 1_000_000..).take(count) {
         let scene = Scene::any(seed, 6);
         let settings = Settings { edge: Edge::Allow, tolerance: 1e-10, ..Settings::default() };
-        let mut contact = scene.contact(settings).unwrap();
+        let mut contact = match scene.contact(settings) {
+            Err(Error::NothingToTouch { .. }) => continue, // no cell's centre lies under a body
+            contact => contact.unwrap(),
+        };
         let mut reference = Reference::new(&scene.grid, &scene.shapes, &scene.rheology);
         for (step, (dt, loads)) in scene.steps.iter().enumerate() {
             match contact.step_each(*dt, loads) {
