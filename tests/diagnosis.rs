@@ -168,3 +168,26 @@ fn few_cells_are_warned_of_where_errors_are_large() {
     println!("8 cells across: {approach:.1e} {peak:.1e} {area:.1e}");
     assert!(warned == 0 && approach < 5e-3 && peak < 2e-2 && area < 3e-2);
 }
+
+/// Where hardly anything of the pressure is left and the body may turn, rounding of the gap hides it: that is told.
+#[test]
+fn rounding_is_told() {
+    let mut contact = ViscoelasticContact::builder(Grid::square(40, 4.0e-3).unwrap())
+        .geometry(&FlatPunch::circular(1.2e-3).unwrap())
+        .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap()))
+        .build()
+        .unwrap();
+    let held = Load::Approach { approach: 1.0e-5, tilt: [Tilt::Free { at: 0.1e-3 }, Tilt::Fixed(0.0)] };
+    let force = {
+        let report = contact.step(0.0, held).unwrap();
+        assert!(!report.warnings.contains(Warning::Rounding), "{report}");
+        report.force
+    };
+    for dt in [5.0, 30.0] {
+        let report = contact.step(dt, held).unwrap();
+        let error = (report.force / (force * (-report.time).exp()) - 1.0).abs();
+        println!("{report}: force errs by {error:.1e}");
+        assert_eq!(report.warnings.contains(Warning::Rounding), dt > 10.0, "{report}");
+        assert!(dt > 10.0 || error < 1e-4, "{report}");
+    }
+}
