@@ -79,10 +79,12 @@ impl ViscoelasticContact {
         loop {
             self.free(loads);
             let c = match self.try_step(time, dt, loads, tolerance) {
-                // perhaps nothing in the window can carry the load where it acts now
-                Err(Error::NotConverged { .. } | Error::LoadOutsideHull { .. }) if self.beyond.is_some() => {
+                // the load acts inside the hull of what the body may touch, but nothing in the window can carry it there
+                Err(Error::LoadOutsideHull { .. }) if self.beyond.is_some() => {
+                    let whole = Region::whole(&self.grid, self.region.folded());
+                    self.check_room(&whole)?;
                     self.keep_for_failure();
-                    self.reside(Region::whole(&self.grid, self.region.folded()));
+                    self.reside(whole);
                     continue;
                 }
                 other => other?,
