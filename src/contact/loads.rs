@@ -70,6 +70,13 @@ impl ViscoelasticContact {
         }
     }
 
+    /// The greatest of what loads prescribe of ω + α·x on the grid.
+    pub(super) fn greatest_prescribed(&self, loads: &[Load]) -> f64 {
+        let [l1, l2] = self.grid.lengths();
+        let motions = loads.iter().map(|load| lowered(load, self.initial_gap.datum));
+        motions.map(|[w, a1, a2]| w.abs() + 0.5 * (a1.abs() * l1 + a2.abs() * l2)).fold(0.0, f64::max)
+    }
+
     /// Whether every body stays in place: then all that happens in the contact is that the pressure relaxes.
     pub(super) fn is_held(&self, loads: &[Load]) -> bool {
         let in_place = |load: &Load| {

@@ -122,6 +122,7 @@ impl ViscoelasticContact {
         if held {
             self.fill_held_gap(c);
         }
+        let prescribed = if held { 0.0 } else { self.greatest_prescribed(loads) };
         self.stay_below_full_contact(time, loads)?;
 
         // the contact problem of the step
@@ -131,8 +132,14 @@ impl ViscoelasticContact {
             self.guess(dt, c, held);
         }
         let owner = self.gap_here.as_ref().unwrap_or(&self.initial_gap).owner.as_deref();
-        let problem =
-            Problem { kernel: &self.kernel_here, compliance: c, gap: &self.gap, bodies: &self.freedoms, owner };
+        let problem = Problem {
+            kernel: &self.kernel_here,
+            compliance: c,
+            gap: &self.gap,
+            prescribed,
+            bodies: &self.freedoms,
+            owner,
+        };
         let stop = Stop { tolerance, max_iterations: self.settings.max_iterations };
         let outcome = match &mut self.solver {
             _ if unyielding => Outcome::Converged,

@@ -35,6 +35,7 @@ use crate::solver::passes::Passes;
 use crate::solver::preconditioner::Preconditioner;
 use crate::solver::problem::{Measure, Outcome, PENETRATION_SLACK, Patch, Problem, Solution, Stop, relative_residual};
 use crate::solver::rigid::Motion;
+use crate::sum::greatest;
 
 /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
 /// slack that the residual grants to penetration, or a state could neither improve nor pass.
@@ -70,6 +71,8 @@ pub(crate) struct ActiveSet {
     passes: Passes,
     /// The greatest |gap| there.
     height: f64,
+    /// What c K p is rounded by, having been that of the guess: where an approach is given, it may fall to nothing.
+    begun: f64,
     bodies: Vec<ActiveBody>,
     /// r on A.
     residual: Vec<f64>,
@@ -115,6 +118,7 @@ impl ActiveSet {
             member: vec![false; grid.len()],
             passes: Passes::new(grid.len()),
             height: 0.0,
+            begun: 0.0,
             energy: 0.0,
             mean: 0.0,
             bodies: (0..bodies).map(body).collect(),
@@ -136,6 +140,9 @@ impl ActiveSet {
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Outcome {
+        let given = problem.bodies.iter().any(|freedom| !freedom.translation);
+        let most = if given { greatest(&solution.potential) } else { 0.0 };
+        self.begun = 4.0 * f64::EPSILON * problem.compliance * most;
         let outcome = match self.iterate(problem, stop, solution, work) {
             Outcome::Stagnated => self.descend(problem, stop, solution, work),
             outcome => outcome,
@@ -163,7 +170,7 @@ impl ActiveSet {
                 }
                 (state, penetration) = self.advance(problem, solution, 0.0);
             }
-            state.held_mean = problem.rounding(&solution.pressure);
+            state.cancelled = problem.rounding(&solution.pressure) + self.begun;
             solution.residual = relative_residual(&state, penetration);
             solution.rounding = state.relative_rounding();
             solution.trace.note(solution.counts.iterations, solution.residual);

@@ -45,7 +45,7 @@ impl PolonskyKeer {
                 problem.measure(body, patch, solution, &mut self.residual, &mut state);
             }
             let penetration = problem.penetration(solution, |k| solution.pressure[k] == 0.0);
-            state.held_mean = problem.rounding(&solution.pressure);
+            state.cancelled = problem.rounding(&solution.pressure);
             solution.residual = relative_residual(&state, penetration);
             solution.rounding = state.relative_rounding();
             solution.trace.note(solution.counts.iterations, solution.residual);

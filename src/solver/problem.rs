@@ -15,6 +15,8 @@ pub(crate) struct Problem<'a> {
     /// Initial gap, history and prescribed motion, hi + u_old − (ω + α·x) \[m\]; +∞ where there is nothing
     /// to touch.
     pub(crate) gap: &'a [f64],
+    /// The greatest of the prescribed motions that were taken from it: what is left is rounded by as much as they are \[m\].
+    pub(crate) prescribed: f64,
     /// What is free of the motion of each rigid body.
     pub(crate) bodies: &'a [Freedom],
     /// The body that each cell belongs to; `None` where there is one.
@@ -93,8 +95,8 @@ pub(crate) struct Measure {
     pub(crate) negative: f64,
     /// The greatest |gap|, prior to any pressure.
     pub(crate) height: f64,
-    /// What c K p is rounded by, where the mean is held and it may be much less than its parts.
-    pub(crate) held_mean: f64,
+    /// What gap and c K p are rounded by where they are much less than their parts.
+    pub(crate) cancelled: f64,
     pub(crate) cells: usize,
 }
 
@@ -117,7 +119,7 @@ impl Measure {
 
     /// What the gap is rounded by.
     fn rounding(&self) -> f64 {
-        4.0 * f64::EPSILON * self.height + self.held_mean
+        4.0 * f64::EPSILON * self.height + self.cancelled
     }
 
     /// The same, relative to how far the surface yields; 0 if it does not.
@@ -136,11 +138,14 @@ impl<'a> Problem<'a> {
         Modes::new(self.kernel.grid(), self.bodies[body])
     }
 
-    /// What c K p is rounded by on bodies whose mean displacement is held: a pressure that is nearly uniform displaces nearly
-    /// nothing.
+    /// What the gap is rounded by where a prescribed motion closes it, and c K p on bodies whose mean displacement is held: a
+    /// pressure that is nearly uniform displaces nearly nothing.
     pub(crate) fn rounding(&self, pressure: &[f64]) -> f64 {
-        let Some(softest) = self.kernel.softest_wave_if_mean_is_held() else { return 0.0 };
-        4.0 * f64::EPSILON * self.compliance * softest * greatest(pressure)
+        let displaced = match self.kernel.softest_wave_if_mean_is_held() {
+            Some(softest) => self.compliance * softest * greatest(pressure),
+            None => 0.0,
+        };
+        4.0 * f64::EPSILON * (self.prescribed + displaced)
     }
 
     /// The body that cell `k` belongs to.

@@ -57,7 +57,7 @@ impl ActiveSet {
         loop {
             let mut state = self.fit_motions(problem, solution);
             let penetration = problem.penetration(solution, |k| !self.member[k]);
-            state.held_mean = problem.rounding(&solution.pressure);
+            state.cancelled = problem.rounding(&solution.pressure) + self.begun;
             solution.residual = relative_residual(&state, penetration);
             solution.rounding = state.relative_rounding();
             solution.trace.note(solution.counts.iterations, solution.residual);
@@ -310,7 +310,8 @@ mod tests {
         let stop = Stop { tolerance: 1e-10, max_iterations: 1000 };
         let mut work = kernel.workspace();
         for compliance in [5.0, 0.5, 1e-3, 1e-9] {
-            let problem = Problem { kernel: &kernel, compliance, gap: &gap, bodies: &[freedom], owner: None };
+            let problem =
+                Problem { kernel: &kernel, compliance, gap: &gap, prescribed: 0.0, bodies: &[freedom], owner: None };
             let mut solver = ActiveSet::new(&kernel, 1);
             let mut exact = Solution::zero(grid.len(), 1);
             assert_eq!(solver.solve(&problem, stop, &mut exact, &mut work), Outcome::Converged);

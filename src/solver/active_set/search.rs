@@ -51,7 +51,7 @@ impl ActiveSet {
             self.mean = 0.0;
         }
         let Survey { displacement, negative, .. } = found;
-        let state = Measure { square, displacement, negative, height: self.height, held_mean: 0.0, cells };
+        let state = Measure { square, displacement, negative, height: self.height, cancelled: 0.0, cells };
         (state, (found.depth + solution.motions[0][0]).max(0.0))
     }
 
