@@ -66,23 +66,24 @@ impl Refresh {
     }
 }
 
-/// Where bodies are held and the pressure falls by more than this in a step, what has passed is no guide: the last pressure
-/// is scaled by what is left.
+/// Where motions are given and the pressure falls to less than this share in a step, what has passed is no guide: the last
+/// pressure is scaled by what is left.
 const RELAXES_SLOWLY: f64 = 0.5;
 
 impl ViscoelasticContact {
-    /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike. `held` bodies whose pressure
-    /// relaxes a lot in this step of compliance `c` get the last one scaled.
-    pub(super) fn guess(&mut self, dt: f64, c: f64, held: bool) {
+    /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike. Bodies of given motion whose
+    /// pressure falls a lot in this step of compliance `c` get the last one scaled: K p would keep the rounding of a greater one.
+    pub(super) fn guess(&mut self, dt: f64, c: f64) {
         self.begin_trial();
-        if held && let Some(share) = self.left_of_pressure(c) {
+        let given = self.freedoms.iter().all(|freedom| !freedom.translation && freedom.tilt == [false; 2]);
+        if given && let Some(share) = self.left_of_pressure(c) {
             for (trial, state) in [
                 (&mut self.trial.pressure, &self.state.current.pressure),
                 (&mut self.trial.potential, &self.state.current.potential),
             ] {
                 trial.iter_mut().zip(state).for_each(|(trial, &value)| *trial = share * value);
             }
-            return;
+            return self.refresh_if_due();
         }
         let mut ahead = if self.state.last_dt > 0.0 { (dt / self.state.last_dt).min(FARTHEST_GUESS) } else { 0.0 };
         let positive = |p: f64| if p > 0.0 { p } else { 0.0 };
@@ -111,8 +112,8 @@ impl ViscoelasticContact {
         self.extrapolate(ahead);
     }
 
-    /// The share of the last pressure that best closes the gap of a held step, if it is small. On a fixed contact a single
-    /// relaxation time leaves exactly that.
+    /// The share of the last pressure that best closes the gap of the step, if it is small. On a fixed contact a single
+    /// relaxation time leaves exactly that, and so does a punch that is lifted from an elastic body.
     fn left_of_pressure(&self, c: f64) -> Option<f64> {
         let (mut overlap, mut square) = (0.0, 0.0);
         let state = self.state.current.pressure.iter().zip(&self.state.current.potential);
@@ -126,6 +127,7 @@ impl ViscoelasticContact {
     /// Counts nothing yet, and leaves the bodies where they are, as far as their loads leave them free.
     pub(super) fn begin_trial(&mut self) {
         self.trial.counts = Counts::default();
+        self.trial.rounding = 0.0;
         self.trial.trace.clear();
         self.state.refresh.ahead = 0.0;
         for (body, motion) in self.trial.motions.iter_mut().enumerate() {
@@ -145,7 +147,13 @@ impl ViscoelasticContact {
         extrapolate(&mut self.trial.pressure, &self.state.current.pressure, &self.state.previous.pressure);
         if self.state.refresh.due == 0 {
             extrapolate(&mut self.trial.potential, &self.state.current.potential, &self.state.previous.potential);
-        } else if matches!(self.solver, ContactSolver::ActiveSet(_)) {
+        }
+        self.refresh_if_due();
+    }
+
+    /// Computes K p of the guess afresh where that is due, and the solver does not do so itself.
+    fn refresh_if_due(&mut self) {
+        if self.state.refresh.due > 0 && matches!(self.solver, ContactSolver::ActiveSet(_)) {
             self.kernel_here.apply(&self.trial.pressure, &mut self.trial.potential, &mut self.work);
             self.trial.counts.convolutions += 1;
         }

@@ -70,31 +70,65 @@ impl ViscoelasticContact {
         }
     }
 
-    /// The greatest of what loads prescribe of ω + α·x on the grid.
+    /// The greatest of what loads prescribe of ω + α·x on the grid, as far as it is taken from the gap: where [`Self::lifted`] is
+    /// known, that is instead.
     pub(super) fn greatest_prescribed(&self, loads: &[Load]) -> f64 {
         let [l1, l2] = self.grid.lengths();
-        let motions = loads.iter().map(|load| lowered(load, self.initial_gap.datum));
+        let motions = loads
+            .iter()
+            .enumerate()
+            .map(|(body, load)| self.lifted(body, load).unwrap_or_else(|| lowered(load, self.initial_gap.datum)));
         motions.map(|[w, a1, a2]| w.abs() + 0.5 * (a1.abs() * l1 + a2.abs() * l2)).fold(0.0, f64::max)
     }
 
-    /// Whether every body stays in place: then all that happens in the contact is that the pressure relaxes.
-    pub(super) fn is_held(&self, loads: &[Load]) -> bool {
-        let in_place = |load: &Load| {
-            matches!(load, Load::Approach { tilt: [Tilt::Fixed(_), Tilt::Fixed(_)], .. }) && load.validate().is_ok()
-        };
-        matches!(&self.history, History::Exponential(history) if history.remembers())
-            && loads == self.state.loads
-            && !self.state.gap_is_new
-            && loads.iter().all(in_place)
+    /// By how much (ω, α1, α2) of `body` falls in a step that prescribes all of it: by nothing if it is held. Only where hi + u
+    /// in contact is known to be the motion at the start of the step.
+    fn lifted(&self, body: usize, load: &Load) -> Option<[f64; 3]> {
+        let Load::Approach { approach, tilt: [Tilt::Fixed(alpha1), Tilt::Fixed(alpha2)] } = *load else { return None };
+        let known = matches!(&self.history, History::Exponential(history) if history.remembers());
+        if !known || self.state.gap_is_new {
+            return None;
+        }
+        if *load == self.state.loads[body] {
+            return Some([0.0; 3]);
+        }
+        let [omega, old1, old2] = self.state.motions[body];
+        Some([omega - approach, old1 - alpha1, old2 - alpha2])
     }
 
-    /// The gap of a step in which every body is held, where they touch: hi + u is then the motion of the body, and what the
-    /// past leaves is −c (E∞ u + Σ e^(−z_i) q_i) alone. As a part of hi + u_old − ω it would be lost in rounding once the
-    /// pressure has relaxed by many decades.
-    pub(super) fn fill_held_gap(&mut self, c: f64) {
-        if let History::Exponential(history) = &self.history {
-            let pressed = &self.state.current.pressure;
-            history.fill_recovery(c, &self.state.displacement, pressed, &mut self.gap);
+    /// The gap of a step in contact, of bodies whose motion is prescribed: hi + u is their motion at its start, so that the gap is
+    /// by how much they are lifted less c (E∞ u + Σ e^(−z_i) q_i), what the past leaves. As a part of hi + u_old − ω that would be
+    /// lost in rounding once the pressure has relaxed by many decades.
+    pub(super) fn refine_gap(&mut self, c: f64, loads: &[Load]) {
+        let n2 = self.region.cells()[1];
+        for (body, load) in loads.iter().enumerate() {
+            let Some([omega, alpha1, alpha2]) = self.lifted(body, load) else { continue };
+            let History::Exponential(history) = &self.history else { continue };
+            let (grid, owner) = (self.region.grid(), self.gap_here.as_ref().unwrap_or(&self.initial_gap));
+            let pressed = |k: usize| self.state.current.pressure[k] > 0.0 && owner.owner(k) == body;
+            let lifted = |k: usize| {
+                let [x1, x2] = grid.center(k / n2, k % n2);
+                omega + alpha1 * x1 + alpha2 * x2
+            };
+            history.recovery(c, &self.state.displacement, pressed, |k, recovery| self.gap[k] = lifted(k) - recovery);
+        }
+    }
+
+    /// The surface in contact follows bodies whose motion is prescribed to the last bit: what it is rounded by would feed the
+    /// branches of the past, and outlive the pressure.
+    fn follow_prescribed(&mut self, loads: &[Load]) {
+        let n2 = self.region.cells()[1];
+        for (body, load) in loads.iter().enumerate() {
+            let Some([omega, alpha1, alpha2]) = self.lifted(body, load) else { continue };
+            let (grid, owner) = (self.region.grid(), self.gap_here.as_ref().unwrap_or(&self.initial_gap));
+            let pressures = self.state.current.pressure.iter().zip(&self.trial.pressure);
+            let displacements = self.trial_displacement.iter_mut().zip(&self.state.displacement);
+            for (k, ((new, &old), (&before, &after))) in displacements.zip(pressures).enumerate() {
+                if before > 0.0 && after > 0.0 && owner.owner(k) == body {
+                    let [x1, x2] = grid.center(k / n2, k % n2);
+                    *new = old - (omega + alpha1 * x1 + alpha2 * x2);
+                }
+            }
         }
     }
 
@@ -112,21 +146,12 @@ impl ViscoelasticContact {
     /// u = u_old + c K p; on a body with memory, the surface in contact is then laid on the rigid body. The
     /// residual of this step would otherwise stay in u, and count many times over when a later step is
     /// much stiffer than this one, as a jump after a long hold is.
-    pub(super) fn displace(&mut self, c: f64, held: bool) {
+    pub(super) fn displace(&mut self, c: f64, loads: &[Load]) {
         if let History::Sources(history) = &mut self.history {
             history.lay_from(&self.trial_displacement, c, &self.trial.potential);
         }
         self.lay(c);
-        if held {
-            // the surface in contact stays where the bodies are, to the last bit: its rounding would feed the branches
-            let pressed = self.state.current.pressure.iter().zip(&self.trial.pressure);
-            let displacements = self.trial_displacement.iter_mut().zip(&self.state.displacement);
-            for ((new, &old), (&before, &after)) in displacements.zip(pressed) {
-                if before > 0.0 && after > 0.0 {
-                    *new = old;
-                }
-            }
-        }
+        self.follow_prescribed(loads);
         if let History::Sources(history) = &mut self.history {
             history.lay_to(&self.trial_displacement);
         }

@@ -92,7 +92,7 @@ impl ViscoelasticContact {
             let Some(region) = self.outgrown(loads) else {
                 let sum_of_pressure = sum(&self.trial.pressure);
                 self.check(time, sum_of_pressure)?;
-                self.displace(c, self.is_held(loads));
+                self.displace(c, loads);
                 if !sum(&self.trial_displacement).is_finite() {
                     return Err(Error::Overflow { time, what: "the displacement" });
                 }
@@ -118,18 +118,15 @@ impl ViscoelasticContact {
             return Err(Error::Overflow { time, what: "the compliance of the step" });
         }
         self.fill_gap(loads);
-        let held = self.is_held(loads);
-        if held {
-            self.fill_held_gap(c);
-        }
-        let prescribed = if held { 0.0 } else { self.greatest_prescribed(loads) };
+        self.refine_gap(c, loads);
+        let prescribed = self.greatest_prescribed(loads);
         self.stay_below_full_contact(time, loads)?;
 
         // the contact problem of the step
         if unyielding {
             self.jump_without_response(time, loads, tolerance)?;
         } else {
-            self.guess(dt, c, held);
+            self.guess(dt, c);
         }
         let owner = self.gap_here.as_ref().unwrap_or(&self.initial_gap).owner.as_deref();
         let problem = Problem {

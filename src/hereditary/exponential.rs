@@ -181,18 +181,23 @@ impl Exponential {
         c
     }
 
-    /// Writes −c (E∞ u + Σ e^(−z_i) q_i), what the past leaves of a displacement that is held, over `gap` where `pressed` is
-    /// positive; after [`Exponential::predict`] of the step.
-    pub(crate) fn fill_recovery(&self, c: f64, displacement: &[f64], pressed: &[f64], gap: &mut [f64]) {
+    /// Calls `take` with c (E∞ u + Σ e^(−z_i) q_i), by how much a displacement that is left free recedes, on each cell that is
+    /// `wanted`; after [`Exponential::predict`] of the step.
+    pub(crate) fn recovery(
+        &self,
+        c: f64,
+        displacement: &[f64],
+        wanted: impl Fn(usize) -> bool,
+        mut take: impl FnMut(usize, f64),
+    ) {
         let equilibrium = self.relaxation.equilibrium();
         let mut blocks = self.fields.chunks((BLOCK * self.factors.len()).max(1));
-        let cells = displacement.chunks(BLOCK).zip(pressed.chunks(BLOCK)).zip(gap.chunks_mut(BLOCK));
-        for ((displacement, pressed), gap) in cells {
+        for (block, displacement) in displacement.chunks(BLOCK).enumerate() {
             let fields = blocks.next().unwrap_or_default();
-            for k in (0..gap.len()).filter(|&k| pressed[k] > 0.0) {
-                let branches = fields.chunks(gap.len()).zip(&self.factors);
+            for k in (0..displacement.len()).filter(|k| wanted(block * BLOCK + k)) {
+                let branches = fields.chunks(displacement.len()).zip(&self.factors);
                 let stress = branches.fold(equilibrium * displacement[k], |sum, (q, (decay, _))| sum + decay * q[k]);
-                gap[k] = -c * stress;
+                take(block * BLOCK + k, c * stress);
             }
         }
     }
