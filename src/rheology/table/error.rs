@@ -143,7 +143,8 @@ pub enum TableError {
         heading: String,
     },
 
-    /// A heading says another unit than [`Units`](crate::rheology::Units) does: correct one of them.
+    /// A heading says another unit than [`Units`](crate::rheology::Units) does, one that is not known, or that its column holds
+    /// logarithms: correct one of them.
     #[error(
         "line {line}, column {column}: the heading {heading:?} says {unit}, but Units::{field} = {given} means {expected}"
     )]

@@ -92,7 +92,15 @@ pub(super) fn check_units(
     let columns =
         std::iter::once(("abscissa", abscissa, units.abscissa)).chain(values.map(|kind| ("value", kind, units.value)));
     for ((field, kind, given), &column) in columns.zip(order) {
-        for (text, enclosed) in unit_texts(&headings[column]) {
+        let heading = &headings[column];
+        let refused = |unit: &str| {
+            let (heading, expected) = (heading.clone(), kind.name(given));
+            Err(TableError::Unit { line, column: column + 1, heading, unit: unit.to_owned(), field, given, expected })
+        };
+        if let Some(logarithm) = logarithm(heading) {
+            return refused(logarithm);
+        }
+        for (text, enclosed) in unit_texts(heading) {
             let readings = readings(text);
             let right = readings.iter().filter(|reading| reading.0 == kind);
             if right.clone().any(|reading| same(reading.1, given)) {
@@ -100,14 +108,20 @@ pub(super) fn check_units(
             }
             // G(s) is a function, and a last word may be no unit
             let clear = right.clone().next().is_some() || enclosed && text.chars().count() > 1;
-            if clear && !readings.is_empty() {
-                let heading = headings[column].clone();
-                let (column, unit, expected) = (column + 1, text.to_owned(), kind.name(given));
-                return Err(TableError::Unit { line, column, heading, unit, field, given, expected });
+            // what stands in square brackets is a unit, known or not
+            let square = heading.contains(&format!("[{text}")) && text.contains(char::is_alphabetic);
+            if clear && !readings.is_empty() || square {
+                return refused(text);
             }
         }
     }
     Ok(())
+}
+
+/// The word by which a heading says that its column holds logarithms.
+fn logarithm(heading: &str) -> Option<&str> {
+    let word = heading.trim().split(|c: char| !c.is_ascii_alphanumeric()).next()?;
+    ["log", "log10", "lg", "ln"].contains(&word.to_ascii_lowercase().as_str()).then_some(word)
 }
 
 /// Where a heading may have its unit: in brackets, behind a slash, or as its last word; whether it is more than a word.
@@ -137,6 +151,16 @@ fn unit_texts(heading: &str) -> Vec<(&str, bool)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn logarithms_are_told() {
+        for (heading, word) in [("log t [s]", Some("log")), ("Log10(J)", Some("Log10")), ("ln_t", Some("ln"))] {
+            assert_eq!(logarithm(heading), word);
+        }
+        for heading in ["logger", "time", "J", "t/s", ""] {
+            assert_eq!(logarithm(heading), None);
+        }
+    }
 
     #[test]
     fn units_stand_in_brackets_behind_slashes_and_last() {

@@ -14,7 +14,7 @@ pub(super) type Unit = (Kind, f64);
 
 const TAU: f64 = std::f64::consts::TAU;
 
-const NAMES: [(&str, Kind, f64); 27] = [
+const NAMES: [(&str, Kind, f64); 38] = [
     ("s", Kind::Time, 1.0),
     ("ms", Kind::Time, 1e-3),
     ("µs", Kind::Time, 1e-6),
@@ -24,11 +24,19 @@ const NAMES: [(&str, Kind, f64); 27] = [
     ("h", Kind::Time, 3600.0),
     ("d", Kind::Time, 86400.0),
     ("sec", Kind::Time, 1.0),
+    ("second", Kind::Time, 1.0),
     ("seconds", Kind::Time, 1.0),
+    ("minute", Kind::Time, 60.0),
     ("minutes", Kind::Time, 60.0),
     ("hr", Kind::Time, 3600.0),
+    ("hour", Kind::Time, 3600.0),
     ("hours", Kind::Time, 3600.0),
+    ("day", Kind::Time, 86400.0),
     ("days", Kind::Time, 86400.0),
+    ("week", Kind::Time, 604_800.0),
+    ("weeks", Kind::Time, 604_800.0),
+    ("year", Kind::Time, 31_557_600.0),
+    ("years", Kind::Time, 31_557_600.0),
     ("Hz", Kind::Frequency, TAU),
     ("mHz", Kind::Frequency, 1e-3 * TAU),
     ("kHz", Kind::Frequency, 1e3 * TAU),
@@ -38,9 +46,12 @@ const NAMES: [(&str, Kind, f64); 27] = [
     ("kPa", Kind::Modulus, 1e3),
     ("MPa", Kind::Modulus, 1e6),
     ("GPa", Kind::Modulus, 1e9),
+    ("TPa", Kind::Modulus, 1e12),
     ("N/m2", Kind::Modulus, 1.0),
     ("N/mm2", Kind::Modulus, 1e6),
+    ("dyn/cm2", Kind::Modulus, 0.1),
     ("bar", Kind::Modulus, 1e5),
+    ("kbar", Kind::Modulus, 1e8),
     ("psi", Kind::Modulus, 6894.757),
 ];
 
@@ -79,6 +90,7 @@ pub(super) fn readings(text: &str) -> Vec<Unit> {
     }
     let (scale, unit) = scaled(&plain);
     let unit: String = unit.chars().filter(|c| !" ^·*".contains(*c)).collect();
+    let unit = unit.trim_end_matches('.').to_owned();
     let mut found = simple(&unit);
     let below = unit.strip_prefix("1/").or_else(|| unit.strip_prefix('/')).or_else(|| unit.strip_suffix("-1"));
     if let Some(below) = below {
@@ -93,6 +105,8 @@ pub(super) fn readings(text: &str) -> Vec<Unit> {
     }
     match unit.as_str() {
         "m2/N" => found.push((Kind::Compliance, 1.0)),
+        "cm2/dyn" | "cm2dyn-1" | "dyn-1cm2" => found.push((Kind::Compliance, 10.0)),
+        "µm2/N" => found.push((Kind::Compliance, 1e-12)),
         "mm2/N" => found.push((Kind::Compliance, 1e-6)),
         "rad/s" | "rads-1" | "rad/sec" => found.push((Kind::Frequency, 1.0)),
         _ => {}
@@ -132,8 +146,12 @@ mod tests {
     fn units_are_known_as_they_are_written() {
         for (texts, unit) in [
             (&["s", "sec", "seconds", "SEC", "10^0 s"][..], (Kind::Time, 1.0)),
-            (&["min", "Min", "minutes"], (Kind::Time, 60.0)),
-            (&["h", "hr"], (Kind::Time, 3600.0)),
+            (&["min", "Min", "minutes", "minute", "min."], (Kind::Time, 60.0)),
+            (&["h", "hr", "hour"], (Kind::Time, 3600.0)),
+            (&["week", "weeks"], (Kind::Time, 604_800.0)),
+            (&["cm2/dyn", "dyn^-1 cm^2", "cm²/dyn"], (Kind::Compliance, 10.0)),
+            (&["1/kbar", "kbar^-1"], (Kind::Compliance, 1e-8)),
+            (&["TPa^-1", "µm²/N"], (Kind::Compliance, 1e-12)),
             (&["µs", "μs", "us", "10⁻⁶ s", "1e-6 s"], (Kind::Time, 1e-6)),
             (&["rad/s", "rad s^-1", "rad·s⁻¹", "1/s", "s^-1"], (Kind::Frequency, 1.0)),
             (&["Hz", "HZ", "1/s", "s⁻¹"], (Kind::Frequency, TAU)),
