@@ -451,7 +451,11 @@ fn pivots_are_solved_by_both_solvers() {
             1 => [Tilt::Fixed(between(-1.0e-3, 1.0e-3)), Tilt::Free { at: between(-0.5e-3, 0.5e-3) }],
             _ => [between(-0.5e-3, 0.5e-3), between(-0.5e-3, 0.5e-3)].map(|at| Tilt::Free { at }),
         };
-        let load = Load::Approach { approach: between(0.2e-5, 4.0e-5), tilt };
+        let load = Load::Approach { approach: between(-0.5e-5, 4.0e-5), tilt };
+        let before = Load::Approach {
+            approach: between(0.2e-5, 4.0e-5),
+            tilt: [between(-0.5e-3, 0.5e-3), between(-0.5e-3, 0.5e-3)].map(|at| Tilt::Free { at }),
+        };
         let run = |solver| {
             let mut contact = ViscoelasticContact::builder(grid.clone())
                 .geometry(&shapes[scene % 4])
@@ -459,6 +463,12 @@ fn pivots_are_solved_by_both_solvers() {
                 .settings(Settings { solver, tolerance: 1e-8, edge: Edge::Allow, ..Settings::default() })
                 .build()
                 .unwrap();
+            // from nothing, after a force, or after another pivot
+            match scene % 4 {
+                0 => {}
+                1 => drop(contact.step(0.0, Load::force(0.02)).unwrap()),
+                _ => drop(contact.step(0.0, before).unwrap_or_else(|e| panic!("before {scene}, {solver:?}: {e}"))),
+            }
             contact.step(0.0, load).unwrap_or_else(|error| panic!("scene {scene}, {solver:?}: {error}"));
             contact
         };

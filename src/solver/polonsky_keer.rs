@@ -153,17 +153,22 @@ impl PolonskyKeer {
                 if !balanced {
                     press_everywhere(problem, body, patch, solution);
                 }
-            } else if !balanced || patch.cells.iter().all(|&k| solution.pressure[k as usize] == 0.0) {
+            } else if modes.tilts() && (!balanced || is_unloaded(problem, &patch.cells, solution)) {
                 // held at its pivot, and touching on one side of it only: unloaded, and turned to where its deepest
                 // penetration is least, on both sides of the pivot if it cannot swing clear
                 patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
-                if modes.tilts() && entered {
-                    solution.motions[body] = turned(problem, body);
-                }
+                solution.motions[body] = turned(problem, body);
             }
         }
         entered
     }
+}
+
+/// Whether pressures are none, or too small to show in the gap.
+fn is_unloaded(problem: &Problem<'_>, cells: &[u32], solution: &Solution) -> bool {
+    let greatest = |field: &[f64]| cells.iter().map(|&k| field[k as usize].abs()).fold(0.0, f64::max);
+    let sunk = problem.compliance * problem.kernel.self_influence() * greatest(&solution.pressure);
+    sunk <= f64::EPSILON * greatest(problem.gap)
 }
 
 /// The tilt at which a body held at its pivot penetrates the undeformed surface least: where it would rest if it could also
