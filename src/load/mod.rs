@@ -255,7 +255,7 @@ impl Load {
 /// ```
 pub trait LoadHistory: Debug + Send + Sync {
     /// The load at time `t` \[s\]; at a jump, the load after it (right-continuous). A run looks at the ends of steps, with
-    /// adaptive steps also between them, and ends with [`Error::InvalidLoad`](crate::Error::InvalidLoad) wherever it
+    /// adaptive steps also between them, and ends with [`Error::InvalidLoad`] wherever it
     /// finds a load that no step can be given.
     fn at(&self, t: f64) -> Load;
 
