@@ -24,6 +24,8 @@ const VALUES_PER_PARAMETER: usize = 3;
 const SMOOTH_MISFIT: f64 = 1e-4;
 /// Times a decade of a smooth spectrum, and how far it reaches beyond the times of the search, as a factor.
 const SMOOTH_DENSITY: f64 = 4.0;
+/// The most of them: over more than fifteen decades there are fewer a decade, since the cost grows with their third power.
+const SMOOTH_TIMES: f64 = 60.0;
 const SMOOTH_BEYOND: f64 = 10.0;
 /// Weights of the curvature of a smooth spectrum: the first, each so many times the one before, and how many.
 const WEIGHTS: (f64, f64, i32) = (1e3, 0.1, 16);
@@ -101,7 +103,8 @@ impl Search {
     /// Non-negative least squares of the misfit and of `weight` times the squared second differences of the strengths,
     /// measured by the data at the same time: those of a power law have none.
     fn regularised(&self, samples: &[Sample], weight: f64) -> Series {
-        let times = self.grid(SMOOTH_DENSITY);
+        let decades = (self.times[1] / self.times[0]).log10();
+        let times = self.grid(SMOOTH_DENSITY.min(SMOOTH_TIMES / decades));
         let levels: Vec<f64> = times.iter().map(|&time| level(samples, time)).collect();
         let ends = 1 + usize::from(self.slope);
         let (rows, root) = (samples.len(), weight.sqrt());
