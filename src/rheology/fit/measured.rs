@@ -24,8 +24,8 @@ const VALUES_PER_PARAMETER: usize = 3;
 const SMOOTH_MISFIT: f64 = 1e-4;
 /// Times a decade of a smooth spectrum, and how far it reaches beyond the times of the search, as a factor.
 const SMOOTH_DENSITY: f64 = 4.0;
-/// The most of them: over more than fifteen decades there are fewer a decade, since the cost grows with their third power.
-const SMOOTH_TIMES: f64 = 60.0;
+/// The most of them: over more than twelve decades there are fewer a decade, since the cost grows with their third power.
+const SMOOTH_TIMES: f64 = 48.0;
 const SMOOTH_BEYOND: f64 = 10.0;
 /// Weights of the curvature of a smooth spectrum: the first, each so many times the one before, and how many.
 const WEIGHTS: (f64, f64, i32) = (1e3, 0.1, 16);
@@ -34,6 +34,8 @@ const FOLLOWS: f64 = 5e-4;
 const FOLLOWS_NOISE: f64 = 0.2;
 /// ... at so many points a decade.
 const FOLLOWED: f64 = 8.0;
+/// The most points between all samples of a table: one over many decades is followed more coarsely.
+const FOLLOWED_IN_ALL: f64 = 64.0;
 
 /// What is found from measurements.
 #[derive(Debug, Clone)]
@@ -160,12 +162,15 @@ fn level(samples: &[Sample], time: f64) -> f64 {
 
 /// The values of `curve` at and between the samples.
 fn along(curve: &Series, samples: &[Sample]) -> Vec<Sample> {
+    let known = || samples.iter().map(|sample| sample.x).filter(|x| *x > 0.0);
+    let decades = (known().fold(0.0, f64::max) / known().fold(f64::INFINITY, f64::min)).log10().max(1.0);
+    let followed = FOLLOWED.min(FOLLOWED_IN_ALL / decades);
     let mut points = Vec::new();
     let mut push = |quantity, x| points.push(Sample { quantity, x, value: curve.value(quantity, x), weight: 1.0 });
     for (k, &Sample { quantity, x, .. }) in samples.iter().enumerate() {
         push(quantity, x);
         if let Some(next) = samples.get(k + 1).filter(|next| next.quantity == quantity && x > 0.0) {
-            let between = ((next.x / x).log10() * FOLLOWED).ceil() as usize;
+            let between = ((next.x / x).log10() * followed).ceil() as usize;
             for part in 1..between {
                 push(quantity, x * (next.x / x).powf(part as f64 / between as f64));
             }
