@@ -3,7 +3,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::error::{Error, Result, finite, length, non_negative, positive};
-use crate::hereditary::{Exponential, History};
+use crate::hereditary::RememberedField;
 use crate::memory;
 use crate::rheology::{Material, is_known};
 
@@ -81,20 +81,18 @@ impl fmt::Debug for Profile {
 /// ```
 #[derive(Clone)]
 pub struct AxisymmetricContact {
-    history: Exponential,
     /// Width of an element; the k-th is centred on (k + ½) width.
     width: f64,
     profile: Vec<f64>,
     known_until: f64,
     time: f64,
     approach: f64,
-    displacement: Vec<f64>,
+    displacement: RememberedField,
     /// Line load q \[N/m\].
     load: Vec<f64>,
     /// g + u_old: the approach at which each element is touched; of the last step, and of the one being tried.
     touch: Vec<f64>,
     trial_touch: Vec<f64>,
-    trial_displacement: Vec<f64>,
 }
 
 impl AxisymmetricContact {
@@ -110,9 +108,9 @@ impl AxisymmetricContact {
         length("reach of the foundation", reach)?;
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("the one-dimensional foundation"))?;
         let width = reach / elements as f64;
-        let history = History::Exponential(Exponential::new(&creep, 0));
-        // six fields and the history
-        memory::check("a foundation", 48 * elements as u128 + history.bytes(elements))?;
+        let displacement = RememberedField::new(&creep, 0);
+        // six fields and the recursion
+        memory::check("a foundation", (48 + displacement.bytes_per_cell()) as u128 * elements as u128)?;
         let depths: Vec<f64> = (0..elements).map(|k| (profile.depth)((k as f64 + 0.5) * width)).collect();
         for &depth in &depths {
             if depth != f64::INFINITY {
@@ -124,17 +122,15 @@ impl AxisymmetricContact {
             return Err(Error::NothingToTouch { body: 0, cells: elements });
         }
         Ok(AxisymmetricContact {
-            history: Exponential::new(&creep, elements),
             width,
             profile: depths,
             known_until: material.known_until(),
             time: 0.0,
             approach,
-            displacement: vec![0.0; elements],
+            displacement: RememberedField::new(&creep, elements),
             load: vec![0.0; elements],
             touch: vec![0.0; elements],
             trial_touch: vec![0.0; elements],
-            trial_displacement: vec![0.0; elements],
         })
     }
 
@@ -179,11 +175,11 @@ impl AxisymmetricContact {
         if !is_known(time, known_until) {
             return Err(Error::BeyondMaterial { time, age: time, known_until });
         }
-        let c = self.history.predict(dt, &self.displacement, &mut self.trial_displacement);
+        let c = self.displacement.predict(dt);
         if c == 0.0 && dt == 0.0 {
             return Err(Error::NoElasticResponse { time, what: "a jump of the foundation (ramp the load instead)" });
         }
-        for ((touch, &g), &u_old) in self.trial_touch.iter_mut().zip(&self.profile).zip(&self.trial_displacement) {
+        for ((touch, &g), &u_old) in self.trial_touch.iter_mut().zip(&self.profile).zip(self.displacement.trial()) {
             *touch = g + u_old;
         }
         Ok(c)
@@ -197,15 +193,14 @@ impl AxisymmetricContact {
             return Err(Error::Overflow { time: self.time + dt, what: "the approach" });
         }
         let force = self.trial_touch.iter().map(|touch| (approach - touch).max(0.0) / c).sum::<f64>() * self.width;
-        if !(force.is_finite() && self.trial_displacement.iter().sum::<f64>().is_finite()) {
+        if !(force.is_finite() && self.displacement.trial().iter().sum::<f64>().is_finite()) {
             return Err(Error::Overflow { time: self.time + dt, what: "the force" });
         }
-        for ((q, u), &touch) in self.load.iter_mut().zip(&mut self.trial_displacement).zip(&self.trial_touch) {
+        for (q, &touch) in self.load.iter_mut().zip(&self.trial_touch) {
             *q = (approach - touch).max(0.0) / c;
-            *u += c * *q;
         }
-        self.history.commit();
-        std::mem::swap(&mut self.displacement, &mut self.trial_displacement);
+        self.displacement.add(c, &self.load);
+        self.displacement.commit();
         std::mem::swap(&mut self.touch, &mut self.trial_touch);
         self.time += dt;
         self.approach = approach;

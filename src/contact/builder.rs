@@ -4,16 +4,27 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::contact::memory::{Footprint, Memory, symmetry_of};
-use crate::contact::region::Region;
-use crate::contact::reside::symmetry;
+#[cfg(feature = "checkpoint")]
+use crate::contact::checkpoint::built::Built;
+use crate::contact::domain::Domain;
+use crate::contact::footprint::{Computed, Footprint, Memory, symmetry_of};
+use crate::contact::indenter::Indenter;
+use crate::contact::scene::Scene;
 use crate::contact::settings::{Frame, Settings, TimeRule};
-use crate::contact::viscoelastic::{Parts, ViscoelasticContact};
+use crate::contact::state::State;
+use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::window::region::Region;
 use crate::error::{Error, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
-use crate::hereditary::{Direct, Exponential, History, Sources, Unfitted, Weighting};
+use crate::hereditary::{self, Weighting};
 use crate::kernel::InfluenceKernel;
+use crate::load::LoadHistory;
 use crate::rheology::Material;
+
+/// The shortest time that a run is taken to look at is this part of the shortest time between corners of its load, ...
+const SHORTEST_PART: f64 = 1e-6;
+/// ... of the first so many.
+const MAX_CORNERS: usize = 1000;
 
 /// Collects what a [`ViscoelasticContact`] is made of; see [`ViscoelasticContact::builder`].
 #[derive(Debug, Clone)]
@@ -29,8 +40,15 @@ pub struct Builder {
     settings: Settings,
 }
 
+impl ViscoelasticContact {
+    /// Starts to put a contact together on `grid`.
+    pub fn builder(grid: Grid) -> Builder {
+        Builder::new(grid)
+    }
+}
+
 impl Builder {
-    pub(crate) fn new(grid: Grid) -> Builder {
+    fn new(grid: Grid) -> Builder {
         Builder {
             grid,
             gaps: Vec::new(),
@@ -77,9 +95,8 @@ impl Builder {
     /// within [`Settings::series_tolerance`], and a step that ends later fails with
     /// [`Error::BeyondMaterial`].
     ///
-    /// Without it, the first step that takes time decides, here of length Δ: from Δ/100 to 10⁶ Δ, or to the end of the run if
-    /// [`ViscoelasticContact::follow`] knows a later one. A body without elastic response can then not start with a
-    /// jump of the load that presses it; with it, what it has crept by the shortest time counts as immediate.
+    /// Bodies without elastic response can start with a jump of the load that presses them: what they have crept by the
+    /// shortest time counts as immediate.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -98,6 +115,37 @@ impl Builder {
     pub fn times(mut self, times: RangeInclusive<f64>) -> Builder {
         self.times = Some(times);
         self
+    }
+
+    /// [`Builder::times`] for a run along `history` to the time `until` \[s\]: to its end, from a millionth of it, or of the
+    /// shortest time between two corners of the load.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let ramp = Ramp::new(Load::force(0.0), Load::force(0.5), 1.0)?;
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(PowerLaw::new(1.0e-6, 1.0, 0.3)?))
+    ///     .times_of(&ramp, 10.0)
+    ///     .build()?;
+    /// let mut run = contact.follow(&ramp, Stepping::fixed(0.5), 10.0);
+    /// while run.next_step()?.is_some() {}
+    /// assert!((contact.force() - 0.5).abs() < 1.0e-12);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    pub fn times_of(self, history: &dyn LoadHistory, until: f64) -> Builder {
+        let (mut shortest, mut corner) = (until, 0.0);
+        for _ in 0..MAX_CORNERS {
+            match history.next_breakpoint(corner) {
+                Some(next) if next > corner && next < until => {
+                    shortest = shortest.min(next - corner);
+                    corner = next;
+                }
+                _ => break,
+            }
+        }
+        self.times(SHORTEST_PART * shortest..=until)
     }
 
     /// An influence kernel to share with other contacts on the same grid; without one,
@@ -126,19 +174,31 @@ impl Builder {
         self.settings.validate()?;
         let bodies = self.bodies()?;
         let gaps = std::mem::take(&mut self.gaps).into_iter().collect::<Result<_>>()?;
-        let initial_gap = Gap::new(gaps, &self.grid)?;
-        let (material, kernel, history) = self.parts()?;
+        let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
+        let (material, kernel, memory) = self.parts()?;
         let Builder { grid, settings, .. } = self;
-        let folded = if settings.symmetry { symmetry(&initial_gap, grid.cells()) } else { [false; 2] };
-        let region = if windowed(&settings, &history, &kernel) {
+        let folded = if settings.symmetry { indenter.even_axes(&grid) } else { [false; 2] };
+        let region = if windowed(&settings, &memory, &kernel) {
             // without load, each body is above the cell that it would touch first
-            Region::first_touched(&grid, folded, &initial_gap, bodies)
+            Region::first_touched(&grid, folded, indenter.gap(), bodies)
         } else {
             Region::whole(&grid, folded)
         };
-        let footprint = Footprint { all: grid.len(), bodies, settings: &settings, kernel: &kernel, history: &history };
-        footprint.check(region.computed(), 0)?;
-        Ok(ViscoelasticContact::new(Parts { grid, bodies, region, kernel, settings, initial_gap, material, history }))
+        let footprint = Footprint { all: grid.len(), bodies, settings: &settings, kernel: &kernel, memory: &memory };
+        footprint.check(Computed::on(&region), 0)?;
+        let scene = Scene {
+            #[cfg(feature = "checkpoint")]
+            built: Built::new(indenter.gap(), grid.cells()),
+            grid,
+            kernel,
+            material,
+            settings,
+            bodies,
+        };
+        let memory = memory.undisturbed_on(region.cells(), !region.covers());
+        let state = State::at_rest(Arc::new(indenter), region, memory);
+        let domain = Domain::new(&scene, state);
+        Ok(ViscoelasticContact::new(scene, domain))
     }
 
     /// What the contact takes, before it is built: no field is made for it. Which cells are computed follows from the gap, as
@@ -171,12 +231,12 @@ impl Builder {
     pub fn memory(&self) -> Result<Memory> {
         self.settings.validate()?;
         let bodies = self.bodies()?;
-        let (_, kernel, history) = self.parts()?;
+        let (_, kernel, memory) = self.parts()?;
         let (settings, cells) = (&self.settings, self.grid.cells());
         let gaps: Option<Vec<_>> = self.gaps.iter().map(|gap| gap.as_ref().ok()).collect();
         let folded = gaps.filter(|_| settings.symmetry).map_or([false; 2], |gaps| symmetry_of(&gaps, cells));
-        let footprint = Footprint { all: self.grid.len(), bodies, settings, kernel: &kernel, history: &history };
-        Ok(footprint.most(cells, folded, windowed(settings, &history, &kernel)))
+        let footprint = Footprint { all: self.grid.len(), bodies, settings, kernel: &kernel, memory: &memory };
+        Ok(footprint.most(cells, folded, windowed(settings, &memory, &kernel)))
     }
 
     /// Number of rigid bodies.
@@ -190,8 +250,8 @@ impl Builder {
         }
     }
 
-    /// Material, kernel and past, as far as they are known before a step.
-    fn parts(&self) -> Result<(Material, Arc<InfluenceKernel>, History)> {
+    /// Material, kernel, and the memory of the bodies on no cells yet.
+    fn parts(&self) -> Result<(Material, Arc<InfluenceKernel>, hereditary::Memory)> {
         let mut material = self.material.clone().ok_or(Error::Missing { part: "material" })?;
         if let Some(other) = self.counter_body.clone() {
             material = material.against(other);
@@ -204,44 +264,44 @@ impl Builder {
             Some(kernel) => Arc::clone(kernel),
             None => Arc::new(InfluenceKernel::half_space(&self.grid)?),
         };
-        let history = history(&mut material, self.times.clone(), &self.settings, kernel.periodic_axes())?;
-        Ok((material, kernel, history))
+        let memory = memory(&mut material, self.times.clone(), &self.settings, kernel.periodic_axes())?;
+        Ok((material, kernel, memory))
     }
 }
 
-/// Whether only a part of the grid is computed. Elsewhere than on a half-space nothing is known of the displacement beyond
+/// Whether only a part of the grid is computed. Elsewhere than on a half-space nothing is known of the displacement outside
 /// a window.
-fn windowed(settings: &Settings, history: &History, kernel: &InfluenceKernel) -> bool {
-    settings.window && matches!(history, History::Exponential(_)) && kernel.is_half_space()
+fn windowed(settings: &Settings, memory: &hereditary::Memory, kernel: &InfluenceKernel) -> bool {
+    settings.window && memory.has_far_field() && kernel.is_half_space()
 }
 
-/// The home of the past that a time rule needs, on no cells yet; `material` is fitted if there is a need and its times are known.
-fn history(
+/// The memory of the bodies by the time rule of the settings, on no cells yet; `material` is fitted over `times` where it
+/// has no exact series.
+fn memory(
     material: &mut Material,
     times: Option<RangeInclusive<f64>>,
     settings: &Settings,
     periodic: [bool; 2],
-) -> Result<History> {
+) -> Result<hereditary::Memory> {
     let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
-    let direct = |weighting| Ok(History::Direct(Direct::new(material.clone(), weighting, settings.history_limit)));
-    match settings.time_rule {
-        TimeRule::Rectangle | TimeRule::Backward if settings.frame == Frame::Indenter => {
-            return Err(Error::WrongFrame { what: "a direct sum" });
-        }
+    let weighting = match settings.time_rule {
+        TimeRule::Exponential => None,
+        _ if settings.frame == Frame::Indenter => return Err(Error::WrongFrame { what: "a direct sum" }),
         TimeRule::Rectangle if glassy == 0.0 => {
             return Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" });
         }
-        TimeRule::Rectangle => return direct(Weighting::End),
-        TimeRule::Backward => return direct(Weighting::Start),
-        TimeRule::Automatic | TimeRule::Exponential => {}
+        TimeRule::Rectangle => Some(Weighting::End),
+        TimeRule::Backward => Some(Weighting::Start),
+    };
+    if let Some(weighting) = weighting {
+        return Ok(hereditary::Memory::direct_sum(weighting));
     }
     if let Some(times) = times {
         *material = material.fitted(times, settings.series_tolerance)?;
     }
-    Ok(match material.contact_spectrum()? {
-        Some(creep) if settings.frame == Frame::Indenter => History::Sources(Box::new(Sources::new(&creep, periodic))),
-        None if settings.frame == Frame::Indenter => return Err(material.no_series("Frame::Indenter")),
-        Some(creep) => History::Exponential(Exponential::new(&creep, 0)),
-        None => History::Unfitted(Box::new(Unfitted::new(material.clone(), settings.series_tolerance))),
+    let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact"))?;
+    Ok(match settings.frame {
+        Frame::Bodies => hereditary::Memory::exponential(&creep),
+        Frame::Indenter => hereditary::Memory::moving_frame(&creep, periodic),
     })
 }

@@ -1,48 +1,45 @@
 //! The stepper: a contact that is advanced in time, step by step or along a load history.
+//!
+//! A contact has five owners: the scene never changes; the indenter is replaced whole when it moves; the state is what a
+//! step changes; the window computes on the region of the state, and follows from the three above; the trial is the step
+//! being tried. State, window and trial form a domain.
 
-mod access;
-mod adaptive;
-mod area;
-mod between;
+mod accessors;
 mod builder;
-mod change;
 #[cfg(feature = "checkpoint")]
 mod checkpoint;
-mod doubts;
-mod extent;
-mod follow;
-mod frame;
-mod guess;
+mod domain;
+mod extrapolation;
+mod footprint;
 mod hull;
-mod jump;
-mod lateral;
-mod loads;
-mod memory;
-mod region;
+mod indenter;
+mod moving;
+mod observations;
 mod report;
-mod reside;
+mod run;
+mod scene;
+mod set_geometry;
 mod settings;
 mod snapshot;
-mod spatial;
 mod state;
-mod steady;
-mod stepper;
-mod stiffness;
-mod travel;
+mod state_within_step;
+mod step;
+mod trial;
+mod view;
 mod viscoelastic;
 mod warning;
+mod window;
 
-pub use between::Between;
 pub use builder::Builder;
 #[cfg(feature = "checkpoint")]
 pub use checkpoint::CheckpointError;
-pub use follow::{ErrorBudget, Follow, Stepping};
-pub use memory::Memory;
+pub use footprint::Memory;
+pub use moving::steady::{SteadyMotion, TowardSteady};
 pub use report::{BodyState, StepReport};
+pub use run::follow::{ErrorBudget, Follow};
+pub use run::stepping::Stepping;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use snapshot::Snapshot;
-pub(crate) use spatial::AREA_ORDER;
-pub use spatial::SpatialError;
-pub use steady::{SteadyMotion, TowardSteady};
+pub use state_within_step::StateWithinStep;
 pub use viscoelastic::ViscoelasticContact;
 pub use warning::{IntoIter as WarningsIter, Warning, Warnings};

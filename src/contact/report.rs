@@ -25,9 +25,6 @@ pub struct StepReport {
     /// Estimated error in time of the step, relative to the displacement; 0 for fixed steps, which nothing is estimated
     /// for, and for the first step after a jump or a corner of the load.
     pub time_error: f64,
-    /// Whether the time rule rings at steps of this length: the rectangle rule does where a step lets the bodies creep by
-    /// more than they gave way at once, C(Δ) > 2 C(0), which is Δ > τ on a Maxwell body; on fluids it diverges further on.
-    pub rings: bool,
     /// What the step should be looked at for, though it succeeded; mostly nothing.
     pub warnings: Warnings,
     /// Cells in contact.

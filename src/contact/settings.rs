@@ -21,7 +21,7 @@ pub struct Settings {
     pub max_iterations: usize,
     /// The solver of the contact problem (default: [`Solver::ActiveSet`]).
     pub solver: Solver,
-    /// The rule that advances the bodies in time (default: [`TimeRule::Automatic`]).
+    /// The rule that advances the bodies in time (default: [`TimeRule::Exponential`]).
     pub time_rule: TimeRule,
     /// What happens when contact reaches the edge of the grid (default: [`Edge::Refuse`]).
     pub edge: Edge,
@@ -75,12 +75,10 @@ pub enum Solver {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum TimeRule {
-    /// The rule that suits the rheology: [`TimeRule::Exponential`].
-    #[default]
-    Automatic,
     /// Exponential integration of the relaxation form: second order (first for a body without elastic response, as
     /// Kelvin–Voigt), stable for steps of any length, one field for each relaxation time. A rheology without an exact
     /// exponential series gets a fitted one: see [`Builder::times`](crate::contact::Builder::times).
+    #[default]
     Exponential,
     /// The rule of the source paper, a direct sum over all past steps: first order, oscillates when
     /// a step is longer than the relaxation time of a Maxwell body and diverges beyond twice that; needs

@@ -1,100 +1,126 @@
-//! The state of a contact between two steps.
+//! What a step changes.
 
-use crate::contact::guess::Refresh;
+use std::sync::Arc;
+
+use crate::contact::indenter::Indenter;
+use crate::contact::extrapolation::Extrapolation;
+use crate::contact::window::region::Region;
+use crate::hereditary::{Interval, Memory};
 use crate::load::Load;
-use crate::solver::Solution;
+use crate::solver::{RigidMotion, Solution};
 
-/// What steps change, beside the past of the bodies: all that is kept where a state is saved, on the region that is computed.
+/// The state of a contact between two steps. A clone of it is a snapshot, its bytes are a checkpoint, and a step that is
+/// tried on a larger region changes a copy.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct State {
+pub(crate) struct State {
+    pub(super) clock: Clock,
+    pub(super) loads: Vec<Load>,
+    #[cfg_attr(feature = "checkpoint", serde(with = "crate::contact::indenter::saved"))]
+    pub(super) indenter: Arc<Indenter>,
+    /// Whether the indenter has been replaced since the last step.
+    pub(super) indenter_is_new: bool,
+    /// The part of the grid that is computed: every field lives there, except for the gap of the indenter.
+    pub(super) region: Region,
+    /// Whether the region was chosen for a contact, rather than for bodies apart.
+    pub(super) region_is_placed: bool,
+    /// Displacement and past of the bodies.
+    pub(super) memory: Memory,
+    pub(super) current: Equilibrium,
+    /// At the start of the last step.
+    pub(super) previous: Equilibrium,
+    pub(super) extrapolation: Extrapolation,
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Clock {
     pub(super) time: f64,
     /// Length of the last step.
-    pub(super) interval: f64,
+    pub(super) last_dt: f64,
     /// The bodies were undisturbed until then.
     pub(super) undisturbed_until: f64,
-    /// Steps may not be shorter: the first step chose the times that the material's series was fitted over.
-    pub(super) shortest: f64,
-    /// The times that the first step fitted the material's series over, if it did.
-    pub(super) fitted_over: Option<[f64; 2]>,
-    /// Whether the region was chosen for a contact.
-    pub(super) placed: bool,
-    pub(super) loads: Vec<Load>,
-    /// Whether the initial gap has been replaced since the last step.
-    pub(super) gap_is_new: bool,
-    pub(super) displacement: Vec<f64>,
-    pub(super) current: Solution,
-    /// (ω, α1, α2) of each body, ω at the origin.
-    pub(super) motions: Vec<[f64; 3]>,
-    /// Cells in contact of the whole grid.
+}
+
+impl Clock {
+    /// After a step; `touched` tells whether anything has ever been displaced.
+    pub(super) fn accept(&mut self, step: Interval, touched: bool) {
+        (self.time, self.last_dt) = (step.time, step.dt);
+        if !touched {
+            self.undisturbed_until = step.time;
+        }
+    }
+}
+
+/// Pressure and motions in equilibrium with the loads.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Equilibrium {
+    pub(super) solution: Solution,
+    /// Motion of each body, prescribed and free parts together.
+    pub(super) motions: Vec<RigidMotion>,
+    /// Cells in contact on the whole grid.
     pub(super) contact_cells: usize,
-    /// (ω, α1, α2) before the last step.
-    pub(super) previous_motions: Vec<[f64; 3]>,
-    /// Whether the contact still has the displacement before the last step.
-    pub(super) before_is_kept: bool,
-    /// The solution one step earlier, and how long before it was: what a guess extrapolates from.
-    pub(super) previous: Solution,
-    pub(super) last_dt: f64,
-    pub(super) refresh: Refresh,
 }
 
 impl State {
     /// Bodies without load, where they just touch.
-    pub(super) fn at_rest(cells: usize, motions: Vec<[f64; 3]>) -> State {
+    pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, memory: Memory) -> State {
+        let motions = indenter.first_touch();
         let bodies = motions.len();
-        let unloaded = Solution::zero(cells, bodies);
+        let current = Equilibrium { solution: Solution::zero(region.len(), bodies), motions, contact_cells: 0 };
         State {
-            time: 0.0,
-            interval: 0.0,
-            undisturbed_until: 0.0,
-            shortest: 0.0,
-            fitted_over: None,
-            placed: false,
+            clock: Clock::default(),
             loads: vec![Load::force(0.0); bodies],
-            gap_is_new: false,
-            displacement: vec![0.0; cells],
-            current: unloaded.clone(),
-            motions,
-            contact_cells: 0,
-            previous_motions: vec![[0.0; 3]; bodies],
-            before_is_kept: true,
-            previous: unloaded,
-            last_dt: 0.0,
-            refresh: Refresh::default(),
+            indenter,
+            indenter_is_new: false,
+            region,
+            region_is_placed: false,
+            memory,
+            previous: current.clone(),
+            current,
+            extrapolation: Extrapolation::default(),
         }
     }
 
-    /// Takes over another's values, in its own memory where the fields are as large.
+    /// Whether no pressure has ever acted.
+    pub(super) fn is_undisturbed(&self) -> bool {
+        self.clock.undisturbed_until == self.clock.time && self.current.contact_cells == 0
+    }
+
+    /// Copies another without reallocating where the regions are the same and no direct sum grows.
     pub(super) fn copy_from(&mut self, other: &State) {
+        if self.region != other.region {
+            *self = other.clone();
+            return;
+        }
         // all are named, so that none that is added can be forgotten
         let State {
-            time,
-            interval,
-            undisturbed_until,
-            shortest,
-            fitted_over,
-            placed,
+            clock,
             loads,
-            gap_is_new,
-            displacement,
+            indenter,
+            indenter_is_new,
+            region: _,
+            region_is_placed,
+            memory,
             current,
-            motions,
-            contact_cells,
-            previous_motions,
-            before_is_kept,
             previous,
-            last_dt,
-            refresh,
+            extrapolation,
         } = self;
-        (*time, *interval, *last_dt) = (other.time, other.interval, other.last_dt);
-        (*undisturbed_until, *shortest, *fitted_over) = (other.undisturbed_until, other.shortest, other.fitted_over);
-        (*placed, *contact_cells, *before_is_kept) = (other.placed, other.contact_cells, other.before_is_kept);
-        (*refresh, *gap_is_new) = (other.refresh, other.gap_is_new);
+        (*clock, *extrapolation) = (other.clock, other.extrapolation);
+        (*indenter_is_new, *region_is_placed) = (other.indenter_is_new, other.region_is_placed);
         loads.clone_from(&other.loads);
-        displacement.clone_from(&other.displacement);
+        indenter.clone_from(&other.indenter);
+        memory.copy_from(&other.memory);
         current.copy_from(&other.current);
-        motions.clone_from(&other.motions);
-        previous_motions.clone_from(&other.previous_motions);
         previous.copy_from(&other.previous);
+    }
+}
+
+impl Equilibrium {
+    fn copy_from(&mut self, other: &Equilibrium) {
+        self.solution.copy_from(&other.solution);
+        self.motions.clone_from(&other.motions);
+        self.contact_cells = other.contact_cells;
     }
 }

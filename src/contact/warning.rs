@@ -22,7 +22,8 @@ pub enum Warning {
     /// One more step of this length would look beyond what is known of the material, and fail with
     /// [`Error::BeyondMaterial`](crate::Error::BeyondMaterial).
     NearEndOfMaterial,
-    /// The time rule rings at steps of this length: [`StepReport::rings`](crate::contact::StepReport::rings).
+    /// The time rule oscillates at steps of this length. The rectangle rule does where a step lets the bodies creep by more than
+    /// they yield at once, C(Δ) > 2 C(0), which is Δ > τ on a Maxwell body; on fluids it diverges further on.
     Rings,
     /// The solver did not get on, and its slow fall-back took over for a while:
     /// [`StepReport::fallback_iterations`](crate::contact::StepReport::fallback_iterations). The answer is as good as any; if it

@@ -41,7 +41,10 @@ const SPENT: f64 = 700.0;
 impl Exponential {
     /// The undisturbed past of a body with contact compliance `creep` on `cells` cells.
     pub(crate) fn new(creep: &CreepSpectrum, cells: usize) -> Exponential {
-        let relaxation = creep.relaxation();
+        Exponential::undisturbed(creep.relaxation(), cells)
+    }
+
+    fn undisturbed(relaxation: RelaxationSpectrum, cells: usize) -> Exponential {
         let branches = relaxation.terms().len();
         Exponential {
             relaxation,
@@ -52,16 +55,9 @@ impl Exponential {
         }
     }
 
-    /// A past of jumps alone, at one time, that left the surface displaced: every branch has its share.
-    pub(crate) fn jump_from_rest(&mut self, displacement: &[f64]) {
-        let terms = self.relaxation.terms();
-        for (fields, u) in self.fields.chunks_mut((BLOCK * terms.len()).max(1)).zip(displacement.chunks(BLOCK)) {
-            for (branch, &(modulus, _)) in fields.chunks_mut(u.len()).zip(terms) {
-                for (q, &u) in branch.iter_mut().zip(u) {
-                    *q = modulus * u;
-                }
-            }
-        }
+    /// The undisturbed past of the same body on `cells` cells.
+    pub(crate) fn undisturbed_on(&self, cells: usize) -> Exponential {
+        Exponential::undisturbed(self.relaxation.clone(), cells)
     }
 
     /// Lets the fields follow the step committed last, whose ends are `before` and `displacement`.
@@ -81,12 +77,7 @@ impl Exponential {
         }
     }
 
-    /// An undisturbed past on so many cells.
-    pub(crate) fn undisturbed_on(&mut self, cells: usize) {
-        self.fields = vec![0.0; cells * self.branches()];
-    }
-
-    /// Takes over another's values, in its own memory.
+    /// Copies another without reallocating.
     pub(crate) fn copy_from(&mut self, other: &Exponential) {
         if self.relaxation != other.relaxation {
             *self = other.clone();
@@ -139,11 +130,11 @@ impl Exponential {
         field.chunks(BLOCK).zip(pieces).for_each(|(values, piece)| self.fields[piece].copy_from_slice(values));
     }
 
-    /// The same past on other cells: what each field, settled, becomes there is up to `carry`.
-    pub(crate) fn carry(&mut self, from: usize, to: usize, mut carry: impl FnMut(usize, Vec<f64>) -> Vec<f64>) {
-        let branches: Vec<_> = (0..self.branches()).map(|i| carry(i, self.branch(i, from))).collect();
-        self.undisturbed_on(to);
-        branches.iter().enumerate().for_each(|(i, branch)| self.write_branch(i, branch));
+    /// The same past, settled, on `cells` other cells; `carry` says what each field is there.
+    pub(crate) fn carried(&self, cells: usize, mut carry: impl FnMut(usize) -> Vec<f64>) -> Exponential {
+        let mut carried = self.undisturbed_on(cells);
+        (0..self.branches()).for_each(|i| carried.write_branch(i, &carry(i)));
+        carried
     }
 
     /// Whether there is a past at all: an elastic body has none.

@@ -11,14 +11,17 @@
 //! All of them read the state and change nothing. Each goes through the cells once; those that need displacement or
 //! gap cost what [`displacement`](crate::ViscoelasticContact::displacement) costs.
 
+pub(crate) mod area;
 mod asymmetry;
 mod distribution;
+pub(crate) mod mesh_error;
 mod patches;
 mod pressure;
 mod profile;
 
 pub use asymmetry::Asymmetry;
 pub use distribution::Distribution;
+pub use mesh_error::MeshError;
 pub use patches::{Patch, Patches};
 pub use profile::{Axis, LineProfile};
 

@@ -5,10 +5,11 @@ mod accuracy;
 pub use accuracy::Accuracy;
 
 use crate::Grid;
-use crate::contact::{AREA_ORDER, Builder, SpatialError, Stepping, ViscoelasticContact};
+use crate::contact::{Builder, Stepping, ViscoelasticContact};
 use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory};
+use crate::observe::mesh_error::{AREA_ORDER, MeshError};
 use crate::rheology::Material;
 
 /// A scene planned for an accuracy: how far the contact will reach, the cells and steps that it takes, and what that costs.
@@ -43,7 +44,7 @@ pub struct Plan {
     reach: [f64; 2],
     steps: usize,
     convolutions: f64,
-    error: SpatialError,
+    error: MeshError,
     bytes: u64,
 }
 
@@ -91,7 +92,7 @@ impl Plan {
         let ratio = COARSE as f64 / cells as f64;
         let grid = Grid::new([cells; 2], lengths)?;
         let finer = |error: f64| (error - first) * ratio * ratio + first * ratio;
-        let error = SpatialError {
+        let error = MeshError {
             approach: finer(found.error.approach),
             greatest_pressure: finer(found.error.greatest_pressure),
             area: found.error.area * ratio.powf(AREA_ORDER),
@@ -99,9 +100,8 @@ impl Plan {
         };
         let builder = coarse.builder(grid.clone());
         let memory = builder.memory()?;
-        // the slope that adaptive steps keep, and the series that the first step fits where there is none
-        let fields = 1 + if memory.history == 0 { found.terms } else { 0 };
-        let bytes = memory.total() + 8 * (fields * memory.computed_cells) as u64;
+        let slope = 8 * memory.computed_cells as u64; // that adaptive steps keep
+        let bytes = memory.total() + slope;
         Ok(Plan { accuracy, builder, grid, reach, steps: found.steps, convolutions: found.convolutions, error, bytes })
     }
 
@@ -147,7 +147,7 @@ impl Plan {
     }
 
     /// Errors of the mesh to expect.
-    pub fn spatial_error(&self) -> SpatialError {
+    pub fn mesh_error(&self) -> MeshError {
         self.error
     }
 }
@@ -186,14 +186,13 @@ struct Found {
     steps: usize,
     convolutions: f64,
     /// Greatest errors of the mesh while the force is not small.
-    error: SpatialError,
-    terms: usize,
+    error: MeshError,
 }
 
 impl Coarse<'_> {
     fn builder(&self, grid: Grid) -> Builder {
         let builder = ViscoelasticContact::builder(grid).geometry(self.geometry).material(self.material.clone());
-        builder.settings(self.accuracy.settings())
+        builder.settings(self.accuracy.settings()).times_of(self.history, self.until)
     }
 
     /// Runs on domains until the contact fills one well, and tells how far it reached.
@@ -221,7 +220,7 @@ impl Coarse<'_> {
         let grid = Grid::new([COARSE; 2], lengths)?;
         let mut contact = self.builder(grid).build()?;
         let mut found =
-            Found { reach: [0.0; 2], steps: 0, convolutions: 0.0, error: SpatialError::default(), terms: 0 };
+            Found { reach: [0.0; 2], steps: 0, convolutions: 0.0, error: MeshError::default() };
         let (mut deepest, mut highest, mut states) = (0.0_f64, 0.0_f64, Vec::new());
         let mut run = contact.follow(self.history, self.accuracy.stepping(), self.until);
         while let Some(report) = run.next_step()? {
@@ -229,7 +228,7 @@ impl Coarse<'_> {
             found.convolutions += report.convolution_equivalents();
             let peak = run.contact().pressure().iter().copied().fold(0.0, f64::max);
             (deepest, highest) = (deepest.max(report.approach), highest.max(peak));
-            states.push((report.approach, peak, run.contact().spatial_error()));
+            states.push((report.approach, peak, run.contact().mesh_error()));
             let touched = run.contact().reach_of_contact();
             found.reach = [0, 1].map(|axis| found.reach[axis].max(touched[axis]));
         }
@@ -239,14 +238,13 @@ impl Coarse<'_> {
             if approach.is_nan() || peak.is_nan() {
                 continue;
             }
-            found.error = SpatialError {
+            found.error = MeshError {
                 approach: found.error.approach.max(approach * error.approach),
                 greatest_pressure: found.error.greatest_pressure.max(peak * error.greatest_pressure),
                 area: found.error.area.max(approach * error.area),
                 singular: found.error.singular.max(approach * error.singular),
             };
         }
-        found.terms = contact.material().contact_spectrum()?.map_or(1, |spectrum| spectrum.terms().len());
         Ok(found)
     }
 

@@ -9,7 +9,7 @@ use super::CheckpointError;
 
 const MARK: [u8; 8] = *b"VISCOCHK";
 /// Raised whenever what is saved changes.
-pub(super) const VERSION: u32 = 2;
+pub(super) const VERSION: u32 = 3;
 /// Mark, version, length, checksum of all but itself.
 const HEADER: usize = 24;
 const CHECKSUM: std::ops::Range<usize> = 20..HEADER;

@@ -1,23 +1,21 @@
-//! Runs that survive: the state of a contact in a file, and on from there.
+//! Checkpoint and resume: the state of a contact in a file, and on from there.
 
+pub(in crate::contact) mod autosave;
+pub(in crate::contact) mod built;
 mod error;
+mod fingerprint;
 mod format;
-mod keep;
 mod saved;
-mod scene;
 
 pub use error::CheckpointError;
 
 use std::path::Path;
 
-use crate::contact::follow::Progress;
+use crate::contact::run::progress::Progress;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::file::replace;
 use saved::Saved;
-
-pub(crate) use keep::Keeping;
-pub(crate) use scene::Built;
 
 impl ViscoelasticContact {
     /// Saves the whole state to a file: a contact that is built like this one and continues from it
@@ -72,7 +70,7 @@ impl ViscoelasticContact {
     ///
     /// Scenes are compared by sums over gap and influence, the rigid body that each cell belongs to, and materials by their series, or by their compliance at eight times a decade
     /// where they have none: of closures that agree there, nothing can tell. A run along a history that saved it
-    /// ([`Follow::keeping`](crate::contact::Follow::keeping)) goes on where it was with the next
+    /// ([`Follow::autosave_to`](crate::contact::Follow::autosave_to)) goes on where it was with the next
     /// [`ViscoelasticContact::follow`].
     ///
     /// Needs the feature `checkpoint`.
@@ -82,14 +80,11 @@ impl ViscoelasticContact {
     /// ([`Error::Checkpoint`]); the contact is then as it was.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
-        let mut resumed = self.clone();
         let mut attempt = || {
             let bytes = std::fs::read(path).map_err(|error| CheckpointError::Unreadable { what: error.to_string() })?;
-            format::decode::<Saved<'_>>(&bytes)?.restore(&mut resumed)
+            format::decode::<Saved<'_>>(&bytes)?.restore(self)
         };
-        attempt().map_err(|source| of_file(path, source))?;
-        *self = resumed;
-        Ok(())
+        attempt().map_err(|source| of_file(path, source))
     }
 }
 

@@ -1,0 +1,175 @@
+//! Read-only accessors.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::Grid;
+use crate::contact::report::BodyState;
+use crate::contact::scene::Scene;
+use crate::contact::settings::Settings;
+use crate::contact::state::State;
+use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::window::region::Region;
+use crate::error::{Result, exact_length};
+use crate::kernel::InfluenceKernel;
+use crate::load::Load;
+use crate::memory;
+use crate::rheology::Material;
+use crate::solver::RigidMotion;
+use crate::sum::sum;
+
+impl ViscoelasticContact {
+    /// Time \[s\], 0 at first.
+    pub fn time(&self) -> f64 {
+        self.domain.state.clock.time
+    }
+
+    /// The grid of every field.
+    pub fn grid(&self) -> &Grid {
+        &self.scene.grid
+    }
+
+    /// The settings it was built with.
+    pub fn settings(&self) -> &Settings {
+        &self.scene.settings
+    }
+
+    /// The material of the bodies. Where a rheology has no exact exponential series, this is the one that was fitted in its
+    /// place over [`Builder::times`](crate::contact::Builder::times); [`Material::fit_reports`] reports how well.
+    pub fn material(&self) -> &Material {
+        &self.scene.material
+    }
+
+    /// The influence kernel, to share with other contacts.
+    pub fn kernel(&self) -> &Arc<InfluenceKernel> {
+        &self.scene.kernel
+    }
+
+    /// The load of the last step, on the first body.
+    pub fn load(&self) -> Load {
+        self.domain.state.loads[0]
+    }
+
+    /// Contact pressure \[Pa\], one value per cell, ≥ 0.
+    pub fn pressure(&self) -> &[f64] {
+        self.view.pressure(&self.domain.state)
+    }
+
+    /// Composite normal surface displacement, positive into the bodies \[m\], one value per cell.
+    ///
+    /// With [`Settings::window`] the first call after a step costs a convolution on the whole grid, and memory for its
+    /// result.
+    pub fn displacement(&self) -> &[f64] {
+        self.view.displacement(&self.scene, &self.domain.state)
+    }
+
+    /// Writes the gap between the deformed bodies into `out` \[m\]: zero in contact to within the tolerance, +∞ where there
+    /// is nothing to touch.
+    ///
+    /// # Errors
+    /// If `out` does not hold one value per cell, or there is no memory for the displacement, where not all of it is
+    /// computed.
+    pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
+        let (Scene { grid, kernel, .. }, state) = (&*self.scene, &self.domain.state);
+        exact_length("gap", out.len(), grid.len())?;
+        if !self.view.has_displacement(state) {
+            let whole = Region::whole(grid, state.region.folded());
+            let [kernel, _] = kernel.bytes_on(whole.cells(), whole.folded());
+            let fields = 8 * (grid.len() + 2 * whole.len()) as u128;
+            memory::check("the displacement on the whole grid", kernel + fields)?;
+        }
+        let (n2, displacement, gap) = (grid.cells()[1], self.displacement(), state.indenter.gap());
+        for (k, h) in out.iter_mut().enumerate() {
+            let RigidMotion { approach, tilt } = state.current.motions[gap.owner(k)];
+            let lowered = RigidMotion { approach: approach - gap.datum, tilt };
+            *h = gap.above[k] + displacement[k] - lowered.at(grid.center(k / n2, k % n2));
+        }
+        Ok(())
+    }
+
+    /// Rigid-body approach ω of the (first) body, at the origin of the grid \[m\]. Without load, the approach
+    /// at which it just touches.
+    pub fn approach(&self) -> f64 {
+        self.domain.state.current.motions[0].approach
+    }
+
+    /// Tilt (α1, α2) of the (first) body \[rad\]: it lowers the surface by ω + α1 x1 + α2 x2.
+    pub fn tilt(&self) -> [f64; 2] {
+        self.domain.state.current.motions[0].tilt
+    }
+
+    /// Normal force Σ p ΔA on all bodies together \[N\].
+    pub fn force(&self) -> f64 {
+        // row by row, so that rounding does not grow with the number of cells
+        let State { region, current, .. } = &self.domain.state;
+        let rows = current.solution.pressure.chunks_exact(region.cells()[1]);
+        rows.map(sum).sum::<f64>() * self.scene.grid.cell_area() * region.images() as f64
+    }
+
+    /// Moments of the whole pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\].
+    pub fn moment(&self) -> [f64; 2] {
+        self.sums(|_| true).1
+    }
+
+    /// Number of cells in contact (p > 0).
+    pub fn contact_cells(&self) -> usize {
+        self.domain.state.current.contact_cells
+    }
+
+    /// How far the cells in contact reach from the origin along x1 and x2, outer sides included \[m\].
+    pub(crate) fn reach_of_contact(&self) -> [f64; 2] {
+        let n2 = self.scene.grid.cells()[1];
+        let half = self.scene.grid.spacing().map(|side| 0.5 * side);
+        let touched = self.pressure().iter().enumerate().filter(|(_, p)| **p > 0.0);
+        touched.fold([0.0; 2], |reach: [f64; 2], (k, _)| {
+            let center = self.scene.grid.center(k / n2, k % n2);
+            [0, 1].map(|axis| reach[axis].max(center[axis].abs() + half[axis]))
+        })
+    }
+
+    /// Number of rigid bodies.
+    pub fn bodies(&self) -> usize {
+        self.scene.bodies
+    }
+
+    /// The state of one rigid body, in the order in which the builder was given them; `None` if there are
+    /// not as many.
+    pub fn body(&self, body: usize) -> Option<BodyState> {
+        let State { indenter, current, .. } = &self.domain.state;
+        let RigidMotion { approach, tilt } = *current.motions.get(body)?;
+        let (force, moment, contact_cells) = self.sums(|k| indenter.gap().owner(k) == body);
+        Some(BodyState { approach, tilt, force, moment, contact_cells })
+    }
+
+    /// Force, moments and number of cells in contact over the cells for which `counts` holds.
+    fn sums(&self, counts: impl Fn(usize) -> bool) -> (f64, [f64; 2], usize) {
+        let (n2, area) = (self.scene.grid.cells()[1], self.scene.grid.cell_area());
+        let (mut force, mut moment, mut cells) = (0.0, [0.0; 2], 0);
+        for (i, row) in self.pressure().chunks_exact(n2).enumerate() {
+            let (mut row_force, mut row_moment) = (0.0, 0.0);
+            for (j, &p) in row.iter().enumerate().filter(|(j, p)| **p > 0.0 && counts(i * n2 + j)) {
+                row_force += p;
+                row_moment += p * self.scene.grid.coordinate(1, j);
+                cells += 1;
+            }
+            force += row_force;
+            moment[0] += row_force * self.scene.grid.coordinate(0, i);
+            moment[1] += row_moment;
+        }
+        (force * area, moment.map(|sum| sum * area), cells)
+    }
+}
+
+impl fmt::Debug for ViscoelasticContact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let state = &self.domain.state;
+        f.debug_struct("ViscoelasticContact")
+            .field("grid", &self.scene.grid)
+            .field("settings", &self.scene.settings)
+            .field("time", &state.clock.time)
+            .field("loads", &state.loads)
+            .field("motions", &state.current.motions)
+            .field("contact_cells", &state.current.contact_cells)
+            .finish_non_exhaustive()
+    }
+}

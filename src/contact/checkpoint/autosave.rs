@@ -1,0 +1,73 @@
+//! Runs along a history that are saved on their way.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+use crate::contact::run::follow::Follow;
+use crate::error::Result;
+
+/// Where a run is saved, how often, and when it was last.
+#[derive(Debug)]
+pub(crate) struct Autosave {
+    path: PathBuf,
+    every: Duration,
+    last: Instant,
+}
+
+impl Follow<'_> {
+    /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end: no more is lost with
+    /// the process. A contact that is built alike and resumes from the file ([`ViscoelasticContact::resume`]) goes on
+    /// with the next run of the same stepping as if nothing had happened, bit by bit.
+    ///
+    /// Needs the feature `checkpoint`.
+    ///
+    /// ```
+    /// use std::time::Duration;
+    /// use viscocontact::prelude::*;
+    ///
+    /// # let path = std::env::temp_dir().join(format!("viscocontact-doc-autosave-{}", std::process::id()));
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .build()?;
+    /// if path.exists() {
+    ///     contact.resume(&path)?; // where the run was when it was cut off
+    /// }
+    /// let load = StepLoad::new(Load::force(0.5))?;
+    /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 1.0).autosave_to(&path, Duration::from_secs(60));
+    /// while run.next_step()?.is_some() {}
+    /// # std::fs::remove_file(&path).unwrap();
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// [`ViscoelasticContact::resume`]: crate::ViscoelasticContact::resume
+    pub fn autosave_to(mut self, path: impl Into<PathBuf>, every: Duration) -> Self {
+        self.autosave = Some(Autosave { path: path.into(), every, last: Instant::now() });
+        self
+    }
+
+    /// Saves the run to a file now.
+    ///
+    /// Needs the feature `checkpoint`.
+    ///
+    /// # Errors
+    /// If the file cannot be written.
+    pub fn save(&mut self, path: impl AsRef<Path>) -> Result<()> {
+        self.progress.now = self.contact.time();
+        self.contact.save_with(path.as_ref(), Some(&self.progress))
+    }
+
+    /// Saves the run if it is time to, or `over`.
+    pub(in crate::contact) fn autosave(&mut self, over: bool) -> Result<()> {
+        let Some(autosave) = &mut self.autosave else { return Ok(()) };
+        if !over && autosave.last.elapsed() < autosave.every {
+            return Ok(());
+        }
+        let path = autosave.path.clone();
+        self.save(path)?;
+        if let Some(autosave) = &mut self.autosave {
+            autosave.last = Instant::now();
+        }
+        Ok(())
+    }
+}

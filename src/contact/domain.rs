@@ -1,0 +1,53 @@
+//! A state on its region, with what computes there.
+
+use crate::contact::footprint::{Computed, Footprint};
+use crate::contact::scene::Scene;
+use crate::contact::state::State;
+use crate::contact::trial::Trial;
+use crate::contact::window::carry::carried;
+use crate::contact::window::region::Region;
+use crate::contact::window::window::Window;
+use crate::error::Result;
+
+/// State, window and trial of one computation. A step that needs a larger region goes on in a copy; whichever was accepted
+/// last is the contact's.
+#[derive(Debug, Clone)]
+pub(crate) struct Domain {
+    pub(super) state: State,
+    pub(super) window: Window,
+    pub(super) trial: Trial,
+}
+
+impl Domain {
+    pub(super) fn new(scene: &Scene, state: State) -> Domain {
+        let window = Window::new(scene, &state.region, &state.indenter);
+        Domain { trial: Trial::new(state.region.len(), scene.bodies), window, state }
+    }
+
+    /// A copy on another region; the state stays what it is.
+    ///
+    /// # Errors
+    /// If there is no memory for both.
+    pub(super) fn carried_to(&mut self, scene: &Scene, region: Region) -> Result<Box<Domain>> {
+        self.check_memory_for(scene, &region)?;
+        let cells = region.len();
+        let (state, window) = carried(scene, &mut self.state, region);
+        Ok(Box::new(Domain { state, window, trial: Trial::new(cells, scene.bodies) }))
+    }
+
+    /// Rejects a region for which there is no memory beside this one.
+    pub(super) fn check_memory_for(&self, scene: &Scene, region: &Region) -> Result<()> {
+        let Scene { grid, kernel, settings, bodies, .. } = scene;
+        let footprint = Footprint { all: grid.len(), bodies: *bodies, settings, kernel, memory: &self.state.memory };
+        footprint.check(Computed::on(region), footprint.on(Computed::on(&self.state.region)).total())
+    }
+
+    /// Goes to another state, without reallocating where the regions are the same.
+    pub(super) fn restore(&mut self, scene: &Scene, state: &State) {
+        if self.state.region == state.region {
+            self.state.copy_from(state);
+        } else {
+            *self = Domain::new(scene, state.clone());
+        }
+    }
+}

@@ -1,0 +1,74 @@
+//! How the first guess of a step extrapolates from the last one.
+
+/// A guess reaches at most this many times the length of the last step ahead.
+const MAX_REACH: f64 = 2.0;
+
+/// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets the rounding of K p
+/// accumulate, step by step linearly. After so many steps K p is computed afresh, in two successive steps: extrapolation
+/// reads two states, and one left stale would feed its error back, multiplied. This costs a thirty-second of a convolution
+/// per step.
+const STEPS_BETWEEN_REFRESHES: usize = 62;
+
+/// K p is computed afresh, too, when the force has fallen by this factor: the rounding was that of the larger force.
+const FALL_BETWEEN_REFRESHES: f64 = 8.0;
+
+/// And when steps that grow have multiplied the rounding by this: a guess that reaches a times the last step ahead
+/// multiplies the difference of the errors of the last two states by a.
+const GROWTH_BETWEEN_REFRESHES: f64 = 1e3;
+
+/// The length of the step to extrapolate from, and when K p was last computed afresh.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Extrapolation {
+    /// Length of the last step, 0 where it says nothing about the next.
+    last_dt: f64,
+    /// Steps that are still to compute K p afresh.
+    due: usize,
+    /// Steps since then.
+    stale: usize,
+    /// The greatest Σ p since then.
+    greatest: f64,
+    /// The factor by which the rounding has grown since then.
+    growth: f64,
+}
+
+impl Default for Extrapolation {
+    fn default() -> Extrapolation {
+        Extrapolation { last_dt: 0.0, due: 0, stale: 0, greatest: 0.0, growth: 1.0 }
+    }
+}
+
+impl Extrapolation {
+    /// How many times the last step a guess for a step of length `dt` reaches ahead.
+    pub(crate) fn reach(&self, dt: f64) -> f64 {
+        if self.last_dt > 0.0 { (dt / self.last_dt).min(MAX_REACH) } else { 0.0 }
+    }
+
+    /// Whether K p of the next guess has to be computed afresh.
+    pub(crate) fn refresh_is_due(&self) -> bool {
+        self.due > 0
+    }
+
+    /// The last step says nothing about the next.
+    pub(crate) fn interrupt(&mut self) {
+        self.last_dt = 0.0;
+    }
+
+    /// After a step of length `dt` with Σ p = `sum`, whose guess reached so many times the step before it ahead.
+    pub(crate) fn accept(&mut self, dt: f64, sum: f64, reach: f64) {
+        self.last_dt = dt;
+        if self.due > 0 {
+            *self = Extrapolation { last_dt: dt, due: self.due - 1, greatest: sum, ..Extrapolation::default() };
+            return;
+        }
+        self.stale = self.stale.saturating_add(1);
+        self.greatest = self.greatest.max(sum);
+        self.growth *= reach.max(1.0);
+        if self.growth > GROWTH_BETWEEN_REFRESHES
+            || self.stale >= STEPS_BETWEEN_REFRESHES
+            || sum < self.greatest / FALL_BETWEEN_REFRESHES
+        {
+            self.due = 2;
+        }
+    }
+}

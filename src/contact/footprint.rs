@@ -1,0 +1,203 @@
+//! What a contact takes, told before it is built.
+
+use std::fmt;
+
+use crate::contact::indenter::even_axes;
+use crate::contact::settings::{Settings, Solver};
+use crate::contact::window::growth::MAX_WINDOW_FRACTION;
+use crate::contact::window::region::Region;
+use crate::error::{Error, Result};
+use crate::hereditary;
+use crate::kernel::InfluenceKernel;
+use crate::memory;
+
+/// Bytes that a contact takes, made by [`Builder::memory`](crate::contact::Builder::memory) before it is built.
+///
+/// Bytes for each cell that is computed, by default:
+///
+/// | | |
+/// |---|---|
+/// | state, and the step being tried | 72 |
+/// | history | 8 for each relaxation time (40 + 16 for each with [`Frame::Indenter`](crate::contact::Frame::Indenter); direct sums: 8 for each step taken) |
+/// | solver | 37, and 8 for each body; [`Solver::PolonskyKeer`]: 28 |
+/// | its preconditioner | 11: a quarter of a spectrum of the grid without padding, 2, and what it works in, 9 |
+/// | kernel | 25: a quarter of the padded spectrum, 8, and what it works in, 17 |
+/// | where threads share the transforms | 16 + 8 more |
+///
+/// and for each cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are several
+/// bodies. Transforms have tables as long as they are, which counts in line contacts: 144 bytes a cell.
+///
+/// Counted allocations agree to 5 % and a few kB (`tests/memory.rs`). Not in it: the displacement where not all cells are computed, made
+/// when it is first asked for, with a kernel for the whole grid; the relaxation times of a series that the first step
+/// fits; 8 bytes a computed cell for the first load that tilts, or presses several bodies, and 24 for the fall-back of the solver, which
+/// few contacts need; [snapshots](crate::contact::Snapshot); the old state, kept during a step that moves to a larger window.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Memory {
+    /// Cells that are computed: with [`Settings::symmetry`] perhaps the half or the quarter of the grid, with
+    /// [`Settings::window`] at most.
+    pub computed_cells: usize,
+    /// Bytes of the gap, and of what users see of the pressure, on the whole grid.
+    pub grid: u64,
+    /// Bytes of the state, and of the step being tried.
+    pub state: u64,
+    /// Bytes of the memory of the bodies.
+    pub history: u64,
+    /// Bytes of the solver and its preconditioner.
+    pub solver: u64,
+    /// Bytes of what the transforms of the kernel work in, and of its spectrum, unless another contact with the same kernel
+    /// has made that already.
+    pub kernel: u64,
+    /// Bytes that each further step adds: those of direct sums, up to [`Settings::history_limit`].
+    pub each_step: u64,
+}
+
+impl Memory {
+    /// All bytes of the contact as it is built, or, with [`Settings::window`], when its window has grown to the most.
+    pub fn total(&self) -> u64 {
+        let Memory { grid, state, history, solver, kernel, .. } = *self;
+        [grid, state, history, solver, kernel].into_iter().fold(0, u64::saturating_add)
+    }
+}
+
+/// Says the bytes in MB, and of what: "11.2 MB on 65536 cells computed (…)".
+impl fmt::Display for Memory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mb = |bytes: u64| bytes as f64 * 1e-6;
+        let Memory { computed_cells, grid, state, history, solver, kernel, each_step } = *self;
+        write!(
+            f,
+            "{:.1} MB with {computed_cells} cells computed (gap and pressure on the grid {:.1}, state {:.1}, history {:.1}, \
+             solver {:.1}, kernel {:.1})",
+            mb(self.total()),
+            mb(grid),
+            mb(state),
+            mb(history),
+            mb(solver),
+            mb(kernel)
+        )?;
+        if each_step > 0 { write!(f, ", {:.1} MB more with each step", mb(each_step)) } else { Ok(()) }
+    }
+}
+
+/// What the bytes of a contact depend on, but for the cells that are computed.
+pub(super) struct Footprint<'a> {
+    /// Cells of the whole grid.
+    pub(super) all: usize,
+    pub(super) bodies: usize,
+    pub(super) settings: &'a Settings,
+    pub(super) kernel: &'a InfluenceKernel,
+    /// The rule that the bodies remember by.
+    pub(super) memory: &'a hereditary::Memory,
+}
+
+/// Cells that a contact is computed on.
+#[derive(Clone, Copy)]
+pub(super) struct Computed {
+    pub(super) cells: [usize; 2],
+    pub(super) folded: [bool; 2],
+    /// Whether the cells and their mirror images are the whole grid.
+    pub(super) covers: bool,
+}
+
+impl Computed {
+    pub(super) fn on(region: &Region) -> Computed {
+        Computed { cells: region.cells(), folded: region.folded(), covers: region.covers() }
+    }
+}
+
+impl Footprint<'_> {
+    /// Bytes of a contact that is computed on these cells.
+    pub(super) fn on(&self, Computed { cells, folded, covers }: Computed) -> Memory {
+        let count = cells[0].saturating_mul(cells[1]);
+        let (all, n, bodies) = (self.all as u128, count as u128, self.bodies as u128);
+        let gap = if bodies > 1 { 10 } else { 8 };
+        // the whole of it, what is computed of it, and the pressure that is shown
+        let grid = if count == self.all { gap * all } else { (gap + 8) * all + gap * n };
+        // of the far field of a window two fields, and one for each relaxation time
+        let history = self.memory.bytes_per_cell() as u128 * n;
+        let far = if covers { 0 } else { 16 * n + history };
+        let [kernel, inverse] = self.kernel.bytes_on(cells, folded);
+        let solver = match self.settings.solver {
+            // four fields, a mark, and runs of cells; lists of those that touch and those that leave for each body
+            Solver::ActiveSet => (32 + 1 + 4 + 8 * bodies) * n + inverse,
+            // three fields, and a list of cells
+            Solver::PolonskyKeer => (24 + 4) * n,
+        };
+        let told = |bytes: u128| u64::try_from(bytes).unwrap_or(u64::MAX);
+        Memory {
+            computed_cells: count,
+            grid: told(grid),
+            // pressure and K p now, before and tried; displacement now and before; the gap
+            state: told(72 * n),
+            history: told(history + far),
+            solver: told(solver),
+            kernel: told(kernel),
+            each_step: if self.memory.grows() { told(8 * n) } else { 0 },
+        }
+    }
+
+    /// Refuses what solvers cannot number, and what there is no memory for, `besides` included \[bytes\].
+    pub(super) fn check(&self, computed: Computed, besides: u64) -> Result<()> {
+        let memory = self.on(computed);
+        if u32::try_from(memory.computed_cells).is_err() {
+            let (field, value) = ("cells that are computed", memory.computed_cells);
+            let allowed =
+                "4294967295 at most: take fewer cells, or let symmetry and window of the Settings compute fewer";
+            return Err(Error::CountOutOfRange { field, value, allowed });
+        }
+        memory::check("the contact", u128::from(memory.total()) + u128::from(besides))
+    }
+
+    /// The most bytes that the contact can take while the axes `folded` stay so.
+    pub(super) fn most(&self, cells: [usize; 2], folded: [bool; 2], windowed: bool) -> Memory {
+        let cells = [0, 1].map(|axis| if folded[axis] { cells[axis] / 2 } else { cells[axis] });
+        let whole = self.on(Computed { cells, folded, covers: true });
+        if !windowed {
+            return whole;
+        }
+        // the largest window, beyond which it is all of the grid
+        let part = (cells[0] as f64 * MAX_WINDOW_FRACTION).ceil() as usize;
+        let window = self.on(Computed { cells: [part, cells[1]], folded, covers: false });
+        if window.total() > whole.total() { window } else { whole }
+    }
+}
+
+/// Axes about whose middle the gap of all bodies together is even, bit by bit.
+pub(super) fn symmetry_of(gaps: &[&Vec<f64>], cells: [usize; 2]) -> [bool; 2] {
+    // the lowest body, and the first of several as low
+    let lowest = |k: usize| {
+        let own = gaps.iter().map(|gap| gap[k]).enumerate();
+        own.fold((0, f64::INFINITY), |lowest, (body, h)| if h < lowest.1 { (body, h) } else { lowest })
+    };
+    let datum = gaps.iter().flat_map(|gap| gap.iter()).copied().fold(f64::INFINITY, f64::min);
+    even_axes(cells, |k, mirror| {
+        let (own, image) = (lowest(k), lowest(mirror));
+        own.0 == image.0 && own.1 - datum == image.1 - datum
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Grid;
+    use crate::rheology::CreepSpectrum;
+
+    /// Solvers number the cells that are computed in 32 bits, whatever memory there is.
+    #[test]
+    fn no_more_cells_are_computed_than_can_be_numbered() {
+        let creep = CreepSpectrum::new(1.0, 1.0, &[]).unwrap();
+        let (settings, memory) = (Settings::default(), hereditary::Memory::exponential(&creep));
+        for cells in [[65536, 65536], [1 << 32, 1], [131072, 65536]] {
+            let kernel = InfluenceKernel::half_space(&Grid::new(cells, [1.0, 1.0]).unwrap()).unwrap();
+            let all = cells[0] * cells[1];
+            let footprint = Footprint { all, bodies: 1, settings: &settings, kernel: &kernel, memory: &memory };
+            let whole = Computed { cells, folded: [false; 2], covers: true };
+            let refused = footprint.check(whole, 0).unwrap_err();
+            assert!(matches!(refused, Error::CountOutOfRange { value, .. } if value == all), "{refused}");
+            // a small part of them may be, whose memory is that of gap and pressure
+            let part = Computed { cells: [64, 1], folded: [false; 2], covers: false };
+            assert!((16 * all as u64..16 * all as u64 + 100_000).contains(&footprint.on(part).total()));
+        }
+    }
+}

@@ -1,0 +1,105 @@
+//! The rigid bodies that press on the creeping one: their gap, and what follows from it.
+
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use crate::Grid;
+use crate::contact::hull::Hull;
+use crate::error::Result;
+use crate::geometry::Gap;
+use crate::solver::RigidMotion;
+
+/// The indenters of a contact where they are. Replaced whole when one of them moves or changes.
+#[derive(Debug)]
+pub(crate) struct Indenter {
+    gap: Gap,
+    bodies: usize,
+    /// What distinguishes it from every other indenter of this process.
+    id: u64,
+    /// Axes about whose middle the gap is even, bitwise.
+    even: OnceLock<[bool; 2]>,
+    /// Where loads may act on each body; found when one is first free to tilt.
+    hulls: Vec<OnceLock<Hull>>,
+}
+
+impl Indenter {
+    pub(crate) fn new(gap: Gap, bodies: usize) -> Indenter {
+        let hulls = (0..bodies).map(|_| OnceLock::new()).collect();
+        Indenter { gap, bodies, id: next_id(), even: OnceLock::new(), hulls }
+    }
+
+    /// On the whole grid.
+    pub(crate) fn gap(&self) -> &Gap {
+        &self.gap
+    }
+
+    pub(crate) fn id(&self) -> u64 {
+        self.id
+    }
+
+    /// Axes about whose middle the gap is even, bitwise.
+    pub(crate) fn even_axes(&self, grid: &Grid) -> [bool; 2] {
+        let gap = &self.gap;
+        let alike = |k: usize, mirror: usize| gap.above[k] == gap.above[mirror] && gap.owner(k) == gap.owner(mirror);
+        *self.even.get_or_init(|| even_axes(grid.cells(), alike))
+    }
+
+    /// The convex hull of the cells that a body may touch.
+    pub(crate) fn hull(&self, body: usize, grid: &Grid) -> &Hull {
+        let touchable = |k: usize| self.gap.owner(k) == body && self.gap.above[k].is_finite();
+        self.hulls[body].get_or_init(|| Hull::new(grid, touchable))
+    }
+
+    /// The motion at which each body just touches the undeformed surface, upright.
+    pub(crate) fn first_touch(&self) -> Vec<RigidMotion> {
+        let of_body = |body: usize| {
+            let own = self.gap.above.iter().enumerate().filter(|(k, _)| self.gap.owner(*k) == body);
+            let approach = self.gap.datum + own.map(|(_, &h)| h).fold(f64::INFINITY, f64::min);
+            RigidMotion { approach, tilt: [0.0; 2] }
+        };
+        (0..self.bodies).map(of_body).collect()
+    }
+
+    /// Takes the heights of a single body, and leaves its own in their place: another indenter without reallocating.
+    ///
+    /// # Errors
+    /// If they are no gap; the indenter is then as it was.
+    pub(crate) fn refill(&mut self, heights: &mut Vec<f64>, grid: &Grid) -> Result<()> {
+        self.gap.exchange(heights, grid)?;
+        self.id = next_id();
+        self.even.take();
+        self.hulls.iter_mut().for_each(|hull| _ = hull.take());
+        Ok(())
+    }
+}
+
+/// Axes of an even number of cells about whose middle every cell is `alike` its mirror image.
+pub(crate) fn even_axes([n1, n2]: [usize; 2], alike: impl Fn(usize, usize) -> bool) -> [bool; 2] {
+    let rows = |i: usize| (0..n2).all(|j| alike(i * n2 + j, (n1 - 1 - i) * n2 + j));
+    let columns = |i: usize| (0..n2 / 2).all(|j| alike(i * n2 + j, i * n2 + n2 - 1 - j));
+    [n1.is_multiple_of(2) && (0..n1 / 2).all(rows), n2.is_multiple_of(2) && (0..n1).all(columns)]
+}
+
+fn next_id() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+/// Indenters in checkpoints: their gap, and how many bodies there are.
+#[cfg(feature = "checkpoint")]
+pub(crate) mod saved {
+    use std::sync::Arc;
+
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    use super::{Gap, Indenter};
+
+    pub(crate) fn serialize<S: Serializer>(indenter: &Arc<Indenter>, serializer: S) -> Result<S::Ok, S::Error> {
+        (&indenter.gap, indenter.bodies as u16).serialize(serializer)
+    }
+
+    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<Indenter>, D::Error> {
+        let (gap, bodies) = <(Gap, u16)>::deserialize(deserializer)?;
+        Ok(Arc::new(Indenter::new(gap, bodies.into())))
+    }
+}

@@ -1,0 +1,76 @@
+//! Steps in which the indenter moves over the grid.
+
+use std::sync::Arc;
+
+use crate::contact::settings::Frame;
+use crate::contact::state::State;
+use crate::contact::step::request::Step;
+use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::error::{Error, Result, non_negative};
+use crate::load::Load;
+use crate::memory;
+use crate::motion::{Travel, TravelReport};
+use crate::solver::RigidMotion;
+
+impl ViscoelasticContact {
+    /// A step at whose end the indenter is where `travel` says: the bodies stay where they are. The time is the contact's own:
+    /// at its start the indenter should be at the path's position there.
+    ///
+    /// The sharper the shape, the shorter the steps: an indenter should not move by more than a part of the contact's
+    /// length in each. A step off the middle gives up the symmetry of the scene for good. With [`Settings::window`](crate::contact::Settings::window) what is computed grows with the track.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::step`], or if the path or a gap is not finite, there are several rigid bodies, or the grid is
+    /// fixed to the indenter. The contact, its indenter included, is then where it was.
+    pub fn step_along(&mut self, travel: &Travel, dt: f64, load: Load) -> Result<TravelReport> {
+        if self.settings().frame != Frame::Bodies {
+            return Err(Error::WrongFrame { what: "a step along a path" });
+        }
+        if self.bodies() != 1 {
+            return Err(Error::WrongNumberOfBodies { given: 1, bodies: self.bodies() });
+        }
+        non_negative("time step", dt)?;
+        let from = travel.position(self.time())?;
+        if self.spare.is_none() {
+            memory::check("the gap of a moving indenter", 16 * self.grid().len() as u128)?;
+        }
+        let mut spare = self.spare.take().unwrap_or_default();
+        let filled = spare.fill(&self.scene.grid, travel, self.time() + dt);
+        let indenter = match filled {
+            Ok(indenter) => indenter,
+            Err(error) => {
+                self.spare = Some(spare);
+                return Err(error);
+            }
+        };
+        let before = (self.force(), self.moment(), self.domain.state.current.motions[0]);
+        let left = Arc::clone(&self.domain.state.indenter);
+        let loads = [load];
+        let step = Step { indenter, ..self.request(self.time() + dt, dt, &loads, self.settings().tolerance) };
+        let taken = self.take(step);
+        spare.indenter = if taken.is_ok() { Some(left) } else { None };
+        self.spare = Some(spare);
+        let step = taken?;
+        let position = travel.position(step.time)?;
+        let lateral_force = self.lateral_force(&travel.shape_at(step.time)?);
+        let power = if dt > 0.0 { self.work_along(before) / dt } else { 0.0 };
+        Ok(TravelReport { step, position, from, lateral_force, power })
+    }
+
+    /// The work of the last step \[J\] that went along the surface: what the pressure did there, Σ p Δu, less the part of force
+    /// and moments.
+    fn work_along(&self, (force, moment, motion): (f64, [f64; 2], RigidMotion)) -> f64 {
+        let State { region, memory, current, previous, .. } = &self.domain.state;
+        let pressures = previous.solution.pressure.iter().zip(&current.solution.pressure);
+        let displacements = memory.trial().iter().zip(memory.displacement());
+        let work: f64 = pressures.zip(displacements).map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum();
+        let parts = |motion: RigidMotion| [motion.approach, motion.tilt[0], motion.tilt[1]];
+        let (start, end) = (parts(motion), parts(current.motions[0]));
+        let ends = [[force, moment[0], moment[1]], {
+            let [m1, m2] = self.moment();
+            [self.force(), m1, m2]
+        }];
+        let pressed = (0..3).map(|k| 0.5 * (ends[0][k] + ends[1][k]) * (end[k] - start[k]));
+        work * self.grid().cell_area() * region.images() as f64 - pressed.sum::<f64>()
+    }
+}

@@ -1,0 +1,7 @@
+//! Indenters that move along the surface.
+
+mod along_path;
+mod lateral_force;
+mod over_bodies;
+pub(in crate::contact) mod spare;
+pub(in crate::contact) mod steady;

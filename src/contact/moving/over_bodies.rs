@@ -1,0 +1,55 @@
+//! Steps in which the indenter moves over the bodies, and the grid with it.
+
+use crate::contact::report::StepReport;
+use crate::contact::settings::Frame;
+use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::error::{Error, Result, non_negative};
+use crate::load::Load;
+
+impl ViscoelasticContact {
+    /// A step in which the indenter, and the grid with it, moves over the bodies by so many whole cells along x1 and x2: what lay
+    /// under the cell `[i, j] + cells` comes to lie under `[i, j]`. At a velocity v along x1 one cell a step takes dt = Δ1/v.
+    ///
+    /// The bodies come in undisturbed from beyond the edge they move in from, or come round where they are periodic. What
+    /// moves out beyond the other edge is forgotten: the grid should be long enough behind the contact for the bodies to
+    /// recover, or for what is left to be far away. Needs [`Frame::Indenter`].
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// // a sphere slides at 50 mm/s; the contact leans forward, and it takes a force to keep it going
+    /// let (grid, shape) = (Grid::new([96, 48], [8.0e-3, 4.0e-3])?, Shifted::new(Sphere::new(10.0e-3)?, [2.0e-3, 0.0])?);
+    /// let mut contact = ViscoelasticContact::builder(grid.clone())
+    ///     .geometry(&shape)
+    ///     .material(Material::incompressible(Zener::new(1.0e6, 0.3e6, 0.01e6)?))
+    ///     .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
+    ///     .build()?;
+    /// contact.step(0.0, Load::force(0.5))?;
+    /// for _ in 0..60 {
+    ///     contact.step_over([1, 0], grid.spacing()[0] / 0.05, Load::force(0.5))?;
+    /// }
+    /// let [resistance, across] = contact.lateral_force(&shape);
+    /// assert!(resistance > 0.005 && across.abs() < 1.0e-9);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::step`], or if the grid is fixed to the bodies.
+    pub fn step_over(&mut self, cells: [isize; 2], dt: f64, load: Load) -> Result<StepReport> {
+        self.step_each_over(cells, dt, &[load])
+    }
+
+    /// [`ViscoelasticContact::step_over`] with a load for each rigid body, all of which move alike.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::step_over`], or if there is not one load a body.
+    pub fn step_each_over(&mut self, cells: [isize; 2], dt: f64, loads: &[Load]) -> Result<StepReport> {
+        if self.settings().frame != Frame::Indenter {
+            return Err(Error::WrongFrame { what: "a step over the bodies" });
+        }
+        non_negative("time step", dt)?;
+        let mut step = self.request(self.time() + dt, dt, loads, self.settings().tolerance);
+        step.interval.stride = cells;
+        self.take(step)
+    }
+}

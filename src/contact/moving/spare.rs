@@ -1,0 +1,36 @@
+//! An indenter to refill where the next one along a path shall be.
+
+use std::sync::Arc;
+
+use crate::Grid;
+use crate::contact::indenter::Indenter;
+use crate::error::Result;
+use crate::geometry::Gap;
+use crate::motion::Travel;
+
+/// The indenter of the step before the last, and the fields that a new one is made in: a step along a path allocates
+/// nothing, unless a snapshot still holds it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Spare {
+    pub(super) indenter: Option<Arc<Indenter>>,
+    heights: Vec<f64>,
+    track: Vec<f64>,
+}
+
+impl Spare {
+    /// The indenter at time `t` of its path.
+    ///
+    /// # Errors
+    /// If its gap is none.
+    pub(super) fn fill(&mut self, grid: &Grid, travel: &Travel, t: f64) -> Result<Arc<Indenter>> {
+        self.heights.resize(grid.len(), f64::INFINITY);
+        travel.fill_gap(t, grid, &mut self.heights, &mut self.track)?;
+        if let Some(mut unused) = self.indenter.take()
+            && let Some(indenter) = Arc::get_mut(&mut unused)
+        {
+            indenter.refill(&mut self.heights, grid)?;
+            return Ok(unused);
+        }
+        Ok(Arc::new(Indenter::new(Gap::new(vec![self.heights.clone()], grid)?, 1)))
+    }
+}

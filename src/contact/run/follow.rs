@@ -1,0 +1,316 @@
+//! Drives a contact along a load history.
+
+#[cfg(feature = "checkpoint")]
+use crate::contact::checkpoint::autosave::Autosave;
+use crate::contact::domain::Domain;
+use crate::contact::report::StepReport;
+use crate::contact::run::progress::Progress;
+use crate::contact::run::step_control::StepControl;
+use crate::contact::run::stepping::Stepping;
+use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::error::{Error, Result, finite, positive, within};
+use crate::events;
+use crate::load::{Load, LoadHistory};
+use crate::observe::mesh_error::MeshError;
+
+/// Two times closer than this fraction of a step are the same time.
+const SAME_TIME: f64 = 1e-6;
+
+/// A step that the solver cannot do is tried again so many times, shorter.
+const MAX_SOLVER_RETRIES: u32 = 5;
+
+/// A run along a load history, made by [`ViscoelasticContact::follow`]. Each call of
+/// [`Follow::next_step`] takes one step.
+///
+/// ```
+/// use viscocontact::prelude::*;
+///
+/// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6)?))
+///     .build()?;
+/// let ramp = Ramp::new(Load::force(0.0), Load::force(0.5), 1.0)?;
+/// let mut run = contact.follow(&ramp, Stepping::fixed(0.25), 2.0);
+/// let mut steps = 0;
+/// while let Some(report) = run.next_step()? {
+///     steps += 1;
+///     assert_eq!(report.time, 0.25 * steps as f64);
+///     assert!(run.contact().contact_cells() > 0);
+/// }
+/// assert_eq!(steps, 8);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+///
+/// With [`Stepping::adaptive`] the steps follow what happens, here over nine decades of time; the state in between
+/// is there for the asking, [`ViscoelasticContact::within_step`]:
+///
+/// ```
+/// # use viscocontact::prelude::*;
+/// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &[(1.0e-6, 1.0e-3), (1.0e-6, 1.0e3)])?))
+///     .build()?;
+/// let load = StepLoad::new(Load::force(0.5))?;
+/// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 1.0e5);
+/// let mut steps = 0;
+/// while let Some(report) = run.next_step()? {
+///     assert!(report.time_error <= 1.0e-3);
+///     steps += 1;
+/// }
+/// assert!(steps < 60);
+/// let budget = run.error_budget();
+/// println!("time {:.0e}, mesh {:.0e}, solver {:.0e}", budget.time, budget.mesh.approach, budget.solver);
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug)]
+#[must_use = "a run takes no step until next_step is called"]
+pub struct Follow<'a> {
+    pub(in crate::contact) contact: &'a mut ViscoelasticContact,
+    history: &'a dyn LoadHistory,
+    stepping: Stepping,
+    until: f64,
+    pub(in crate::contact) progress: Progress,
+    /// Times to end steps on, ascending.
+    stops: Vec<f64>,
+    #[cfg(feature = "checkpoint")]
+    pub(in crate::contact) autosave: Option<Autosave>,
+    /// The report of a step after which the file could not be written.
+    #[cfg(feature = "checkpoint")]
+    unreported: Option<Option<StepReport>>,
+}
+
+/// Where the error of a run comes from, made by [`Follow::error_budget`]. All relative.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct ErrorBudget {
+    /// Greatest error in time estimated for a step, of the displacement; 0 for fixed steps, which nothing is estimated for.
+    pub time: f64,
+    /// Errors due to the mesh, of the present state.
+    pub mesh: MeshError,
+    /// Greatest residual of the contact problems, of the displacement.
+    pub solver: f64,
+}
+
+impl ViscoelasticContact {
+    /// Follows a load history to the time `until` \[s\], step by step as `stepping` says.
+    pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Follow<'a> {
+        let begun = Progress::begin(self.time(), stepping);
+        // a run that was saved goes on, if this is the one
+        let saved = self.progress.take().filter(|saved| until >= begun.now && saved.continues(&begun));
+        Follow {
+            contact: self,
+            history,
+            stepping,
+            until,
+            progress: saved.map_or(begun, |saved| *saved),
+            stops: Vec::new(),
+            #[cfg(feature = "checkpoint")]
+            autosave: None,
+            #[cfg(feature = "checkpoint")]
+            unreported: None,
+        }
+    }
+}
+
+impl<'a> Follow<'a> {
+    /// Lets steps end exactly on these `times` \[s\] too, in any order; those before the contact's time have no effect.
+    ///
+    /// # Errors
+    /// If a time is not finite.
+    pub fn stop_at(mut self, times: &[f64]) -> Result<Follow<'a>> {
+        for &time in times {
+            self.stops.push(finite("time to stop at", time)?);
+        }
+        self.stops.sort_by(f64::total_cmp);
+        Ok(self)
+    }
+
+    /// Takes the next step and reports it; `None` when the end is reached.
+    ///
+    /// At the start, and wherever the history jumps or changes its kind, a step of length zero brings in the new load; which
+    /// of these a body without elastic response can follow, tells [`ViscoelasticContact::step`].
+    /// Corners and jumps of the history are met exactly.
+    ///
+    /// # Errors
+    /// If the end is not finite or lies before the contact's time, the fixed step is not finite and
+    /// positive or too short to change the time, the tolerance is out of range or asks for steps too short to change
+    /// the time, the history returns what is not a load wherever the run looks at it ([`Error::InvalidLoad`]; adaptive steps
+    /// look between their ends, and ahead), or a step fails; the contact is then as it was after the last good step, and the call may be
+    /// repeated. Or if the file of `Follow::autosave_to` cannot be written: the step is then taken all the same, and the next call
+    /// tries to write again, and reports it.
+    pub fn next_step(&mut self) -> Result<Option<StepReport>> {
+        #[cfg(feature = "checkpoint")]
+        {
+            let report = match self.unreported.take() {
+                Some(report) => report,
+                None => self.take_step()?,
+            };
+            if let Err(error) = self.autosave(report.is_none()) {
+                self.unreported = Some(report);
+                return Err(error);
+            }
+            Ok(report)
+        }
+        #[cfg(not(feature = "checkpoint"))]
+        self.take_step()
+    }
+
+    fn take_step(&mut self) -> Result<Option<StepReport>> {
+        match self.stepping {
+            Stepping::Fixed { dt } => positive("fixed step", dt)?,
+            Stepping::Adaptive { tolerance } => {
+                let inside = (1e-9..=0.1).contains(&tolerance);
+                within("tolerance of the adaptive steps", tolerance, inside, "in [1e-9, 0.1]")?
+            }
+        };
+        finite("end of the run", self.until)?;
+        within("end of the run", self.until, self.until >= self.progress.start, "at or after the time of the contact")?;
+
+        let now = self.contact.time();
+        let load = self.history.at(now).validated_at(now)?;
+        if load != self.contact.load() {
+            if let Some(control) = &mut self.progress.control {
+                control.restart();
+            }
+            return self.step_to(now, 0.0, load).map(Some);
+        }
+        if now >= self.until {
+            return Ok(None);
+        }
+        let corner = self.history.next_breakpoint(now).unwrap_or(f64::INFINITY);
+        if corner <= now || corner.is_nan() {
+            return Err(Error::InvalidBreakpoint { after: now, breakpoint: corner });
+        }
+        if let Some(mut control) = self.progress.control.take() {
+            let report = self.adaptive_step(&mut control, corner);
+            self.progress.control = Some(control);
+            return report.map(Some);
+        }
+        let Stepping::Fixed { dt } = self.stepping else { return Ok(None) };
+        let time = self.next_time(now, dt, corner)?;
+        let load = self.history.before(time).validated_at(time)?;
+        self.step_to(time, time - now, load).map(Some)
+    }
+
+    /// One step of given end, as a step of the contact.
+    fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
+        let tolerance = self.solver_tolerance();
+        let loads = [load];
+        let step = self.contact.request(time, dt, &loads, tolerance);
+        let report = self.contact.take(step)?;
+        self.progress.include(report.time_error, report.residual);
+        Ok(report)
+    }
+
+    /// One step as long as its error allows.
+    fn adaptive_step(&mut self, control: &mut StepControl, corner: f64) -> Result<StepReport> {
+        let now = self.contact.time();
+        control.keep_slope(&self.contact.domain.state);
+        let stop = corner.min(self.until).min(self.next_stop(now));
+        let tolerance = control.solver_tolerance(self.contact.settings().tolerance);
+        let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
+        loop {
+            let ViscoelasticContact { scene, domain, .. } = &*self.contact;
+            let wanted = control.length(scene, &domain.state, self.history, self.until - now)?;
+            let (time, dt) = towards(now, stop, wanted);
+            // a step of the last digit of the time, shortened, may round to itself again, and again
+            if time <= now || time >= tried {
+                return Err(Error::StepTooShort { time: now, dt, tolerance: control.tolerance });
+            }
+            tried = time;
+            let loads = [self.history.before(time).validated_at(time)?];
+            let straying = control.watch(self.history, now, time)?;
+            if straying > control.tolerance {
+                control.judge(dt, straying);
+                continue;
+            }
+            let step = self.contact.request(time, dt, &loads, tolerance);
+            let attempt = match self.contact.attempt(&step) {
+                Err(Error::NotConverged { .. }) if failures < MAX_SOLVER_RETRIES => {
+                    failures += 1;
+                    control.shorten(dt);
+                    add_work(&mut wasted, &self.contact.domain);
+                    continue;
+                }
+                other => other?,
+            };
+            let ViscoelasticContact { scene, domain, .. } = &*self.contact;
+            let error = control.estimate(scene, attempt.domain(domain), dt).max(straying);
+            if control.judge(dt, error) {
+                if time == corner {
+                    control.restart();
+                } else {
+                    control.resume(wanted, dt);
+                }
+                let mut report = self.contact.accept(attempt, step);
+                report.time_error = error;
+                report.convolutions += wasted[0];
+                report.preconditioner_applications += wasted[1];
+                self.progress.include(report.time_error, report.residual);
+                return Ok(report);
+            }
+            events::rejected(time, dt, error, control.tolerance);
+            add_work(&mut wasted, attempt.domain(domain));
+        }
+    }
+
+    fn solver_tolerance(&self) -> f64 {
+        let wanted = self.contact.settings().tolerance;
+        self.progress.control.as_ref().map_or(wanted, |control| control.solver_tolerance(wanted))
+    }
+
+    /// The first of the times to stop at after `now`.
+    fn next_stop(&self, now: f64) -> f64 {
+        self.stops.get(self.stops.partition_point(|&time| time <= now)).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// The end of the next equal step, unless a corner or the end of the run comes first.
+    fn next_time(&mut self, now: f64, dt: f64, corner: f64) -> Result<f64> {
+        let (same, progress) = (SAME_TIME * dt, &mut self.progress);
+        while progress.end_of_step(dt) <= now + same {
+            let end = progress.end_of_step(dt);
+            progress.steps += 1;
+            if progress.end_of_step(dt) <= end {
+                let allowed = "long enough to change the time";
+                return Err(Error::OutOfRange { field: "fixed step", value: dt, allowed });
+            }
+        }
+        let end = progress.end_of_step(dt);
+        let stop = corner.min(self.until).min(self.next_stop(now));
+        Ok(if stop <= end + same { stop } else { end })
+    }
+
+    /// What is known of the error of the answer so far.
+    pub fn error_budget(&self) -> ErrorBudget {
+        let [time, solver] = self.progress.worst;
+        ErrorBudget { time, mesh: self.contact.mesh_error(), solver }
+    }
+
+    /// Steps that were tried and found too long, with [`Stepping::adaptive`].
+    pub fn rejected_steps(&self) -> u64 {
+        self.progress.control.as_ref().map_or(0, |control| control.rejected)
+    }
+
+    /// The contact as the last step left it.
+    pub fn contact(&self) -> &ViscoelasticContact {
+        self.contact
+    }
+}
+
+/// Adds the convolutions and preconditioner applications of a step that was tried.
+fn add_work(work: &mut [usize; 2], tried: &Domain) {
+    let counts = tried.trial.solution.counts;
+    *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
+}
+
+/// The end and the length of a step of about `wanted` towards `stop`: onto it if it is near, halfway if the rest
+/// would be a sliver.
+fn towards(now: f64, stop: f64, wanted: f64) -> (f64, f64) {
+    let left = stop - now;
+    if wanted >= 0.99 * left {
+        (stop, left)
+    } else {
+        let dt = if wanted > 0.5 * left { 0.5 * left } else { wanted };
+        (now + dt, now + dt - now) // the step that is really taken
+    }
+}

@@ -1,0 +1,45 @@
+//! How far a run has come.
+
+use crate::contact::run::step_control::StepControl;
+use crate::contact::run::stepping::Stepping;
+
+/// How far a run has come, and what it knows of the steps to come.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Progress {
+    pub(super) start: f64,
+    /// Time of the contact when this was true.
+    pub(crate) now: f64,
+    /// Equal steps that were taken, and their length, 0 for steps chosen by their error.
+    pub(super) steps: u64,
+    dt: f64,
+    pub(super) control: Option<StepControl>,
+    /// Greatest estimated error in time of a step, and greatest residual.
+    pub(super) worst: [f64; 2],
+}
+
+impl Progress {
+    pub(super) fn begin(now: f64, stepping: Stepping) -> Progress {
+        let (control, dt) = match stepping {
+            Stepping::Fixed { dt } => (None, dt),
+            Stepping::Adaptive { tolerance } => (Some(StepControl::new(tolerance)), 0.0),
+        };
+        Progress { start: now, now, steps: 0, dt, control, worst: [0.0; 2] }
+    }
+
+    /// Whether it is that of a run that begins like this one.
+    pub(super) fn continues(&self, begun: &Progress) -> bool {
+        let tolerance = |progress: &Progress| progress.control.as_ref().map(|control| control.tolerance);
+        self.now == begun.now && self.dt == begun.dt && tolerance(self) == tolerance(begun)
+    }
+
+    /// The end of the fixed step that is under way.
+    pub(super) fn end_of_step(&self, dt: f64) -> f64 {
+        self.start + (self.steps + 1) as f64 * dt
+    }
+
+    /// Takes account of the errors of a step.
+    pub(super) fn include(&mut self, time_error: f64, residual: f64) {
+        self.worst = [self.worst[0].max(time_error), self.worst[1].max(residual)];
+    }
+}

@@ -1,0 +1,32 @@
+//! How long the steps of a run are.
+
+/// How long the steps are.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Stepping {
+    /// Equal steps, counted from the time at which following starts; cut where the load has a corner.
+    Fixed {
+        /// Length of a step \[s\].
+        dt: f64,
+    },
+    /// Steps as long as the error in time allows; short after jumps and corners of the load, long when little happens.
+    Adaptive {
+        /// Error in time of a step, relative to the displacement.
+        tolerance: f64,
+    },
+}
+
+impl Stepping {
+    /// Equal steps of `dt` \[s\], which must be finite and positive.
+    pub fn fixed(dt: f64) -> Stepping {
+        Stepping::Fixed { dt }
+    }
+
+    /// Steps whose error in time, relative to the displacement, is estimated to be at most `tolerance`, in
+    /// \[1e-9, 0.1\]. The solver is not asked for more than suits:
+    /// [`Settings::tolerance`](crate::contact::Settings::tolerance) or a fiftieth of `tolerance`, whichever is
+    /// greater.
+    pub fn adaptive(tolerance: f64) -> Stepping {
+        Stepping::Adaptive { tolerance }
+    }
+}

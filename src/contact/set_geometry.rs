@@ -1,0 +1,43 @@
+//! Indenters that are replaced between two steps.
+
+use std::sync::Arc;
+
+use crate::contact::indenter::Indenter;
+use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::error::{Error, Result};
+use crate::geometry::{Gap, Geometry, evaluate};
+
+impl ViscoelasticContact {
+    /// Replaces the indenter, moved or changed, between two steps; the bodies keep their deformation,
+    /// and touch the new one from the next step on.
+    ///
+    /// # Errors
+    /// If a gap is NaN or −∞, or none is finite, or there are several rigid bodies, or there is no memory for what is no longer
+    /// symmetric; the contact then keeps the old one.
+    pub fn set_geometry(&mut self, geometry: &dyn Geometry) -> Result<()> {
+        self.set_geometries(&[geometry])
+    }
+
+    /// [`ViscoelasticContact::set_geometry`] with a geometry for each rigid body.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::set_geometry`], or if there is not one geometry a body.
+    pub fn set_geometries(&mut self, geometries: &[&dyn Geometry]) -> Result<()> {
+        if geometries.len() != self.scene.bodies {
+            return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.scene.bodies });
+        }
+        let gaps = geometries.iter().map(|geometry| evaluate(*geometry, &self.scene.grid)).collect::<Result<Vec<_>>>()?;
+        let indenter = Indenter::new(Gap::new(gaps, &self.scene.grid)?, self.scene.bodies);
+        let region = &self.domain.state.region;
+        let (folded, even) = (region.folded(), indenter.even_axes(&self.scene.grid));
+        let still_folded = [0, 1].map(|axis| folded[axis] && even[axis]);
+        if still_folded != folded {
+            // the next step gives up the symmetry
+            self.domain.check_memory_for(&self.scene, &region.unfolded(still_folded))?;
+        }
+        let state = &mut self.domain.state;
+        (state.indenter, state.indenter_is_new) = (Arc::new(indenter), true);
+        state.extrapolation.interrupt();
+        Ok(())
+    }
+}

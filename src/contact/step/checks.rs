@@ -1,0 +1,73 @@
+//! Whether the end of a step may be accepted.
+
+use crate::contact::scene::Scene;
+use crate::contact::settings::Edge;
+use crate::contact::state::State;
+use crate::contact::step::request::Step;
+use crate::contact::trial::Trial;
+use crate::contact::window::window::Window;
+use crate::error::{Convergence, Error, Result};
+use crate::load::{Load, Tilt};
+use crate::solver::{Counts, Outcome, Solution};
+use crate::sum::sum;
+
+/// Rejects an approach beyond that which closes every gap, where the mean displacement is held: Σ h = Σ gap ≥ 0.
+pub(super) fn below_full_contact(window: &Window, trial: &Trial, step: &Step<'_>) -> Result<()> {
+    let held = step.loads.iter().all(|load| matches!(load, Load::Approach { .. }));
+    let (true, true, &[Load::Approach { approach, .. }, ..]) = (held, window.kernel().mean_is_held(), step.loads) else {
+        return Ok(());
+    };
+    let left = trial.gap.iter().sum::<f64>() / trial.gap.len() as f64;
+    let greatest = approach + left;
+    if left > 0.0 { Ok(()) } else { Err(Error::BeyondFullContact { time: step.interval.time, approach, greatest }) }
+}
+
+/// Rejects what the solver did not solve.
+pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, step: &Step<'_>) -> Result<()> {
+    let Solution { residual, counts: Counts { iterations, .. }, ref trace, .. } = *solution;
+    let (time, dt, tolerance) = (step.interval.time, step.interval.dt, step.tolerance);
+    match outcome {
+        Outcome::Converged => Ok(()),
+        Outcome::NotANumber => Err(Error::Overflow { time, what: "the residual of the contact problem" }),
+        Outcome::Unbalanced(body) => {
+            let at = step.loads[body].tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
+            Err(Error::LoadOutsideHull { time, body, at })
+        }
+        Outcome::OutOfIterations | Outcome::Stagnated => {
+            let stagnated = outcome == Outcome::Stagnated;
+            let convergence = Convergence::new(trace.samples(), tolerance, scene.settings.solver, stagnated).into();
+            Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
+        }
+    }
+}
+
+/// Rejects results that left the range of numbers, and contact at the edge of the grid; returns Σ p.
+pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Step<'_>) -> Result<f64> {
+    let time = step.interval.time;
+    let overflow = |what: &'static str| Err(Error::Overflow { time, what });
+    let Solution { pressure, motions, .. } = &trial.solution;
+    if !motions.iter().flat_map(|motion| motion.0).all(f64::is_finite) {
+        return overflow("the approach");
+    }
+    let sum_of_pressure = sum(pressure);
+    let pressures = state.region.images() as f64 * sum_of_pressure;
+    let force = scene.grid.cell_area() * pressures;
+    if !force.is_finite() {
+        return overflow("the force");
+    }
+    // no moment is greater than that of the whole force at the end of the longer side
+    let arm = scene.grid.lengths().into_iter().fold(0.0, f64::max);
+    if !(arm * pressures.max(force)).is_finite() {
+        return overflow("the moment of the force");
+    }
+    if scene.settings.edge == Edge::Refuse {
+        let cells = state.region.positive_on_edge(pressure, scene.kernel.periodic_axes());
+        if cells > 0 {
+            return Err(Error::ContactAtEdge { time, cells });
+        }
+    }
+    if !sum(state.memory.trial()).is_finite() {
+        return overflow("the displacement");
+    }
+    Ok(sum_of_pressure)
+}

@@ -1,0 +1,107 @@
+//! What the loads of a step ask of the bodies: which motions they leave free, and which they prescribe.
+
+use crate::Grid;
+use crate::contact::scene::Scene;
+use crate::contact::state::State;
+use crate::contact::step::request::Step;
+use crate::contact::window::region::Region;
+use crate::error::{Error, Result};
+use crate::load::{Load, Tilt};
+use crate::solver::{Freedom, RigidMotion};
+
+/// Rejects loads that no pressure can balance.
+pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
+    let (time, loads, grid) = (step.interval.time, step.loads, &scene.grid);
+    if loads.len() != scene.bodies {
+        return Err(Error::WrongNumberOfLoads { loads: loads.len(), bodies: scene.bodies });
+    }
+    for (body, load) in loads.iter().enumerate() {
+        load.validate()?;
+        let Freedom { translation, tilt, point, total } = freedom(load, grid);
+        let tilts = load.tilt().map(|tilt| tilt != Tilt::Fixed(0.0));
+        if let Some(axis) = (0..2).find(|&axis| tilts[axis] && scene.kernel.periodic_axes()[axis]) {
+            return Err(Error::TiltOfPeriodic { time, axis });
+        }
+        let lost = total == 0.0 && matches!(load, Load::Force { normal, .. } if *normal > 0.0);
+        if lost || !total.is_finite() {
+            return Err(Error::Overflow { time, what: "the force over the area of a cell" });
+        }
+        let balanced = tilt != [false; 2] && !(translation && total == 0.0);
+        if balanced && !step.indenter.hull(body, grid).admits(point, tilt) {
+            return Err(Error::LoadOutsideHull { time, body, at: point });
+        }
+    }
+    Ok(())
+}
+
+/// Writes what the loads leave free of each body. A tilt about a folded axis cannot but vanish.
+pub(super) fn find_free_motions(scene: &Scene, region: &Region, loads: &[Load], free: &mut [Freedom]) {
+    for (own, load) in free.iter_mut().zip(loads) {
+        *own = freedom(load, &scene.grid);
+        own.tilt = [0, 1].map(|axis| own.tilt[axis] && !region.folded()[axis]);
+        own.total /= region.images() as f64;
+    }
+}
+
+/// What a load leaves free of a body.
+fn freedom(load: &Load, grid: &Grid) -> Freedom {
+    let tilt = load.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
+    let point = load.tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
+    let (translation, total) = match load {
+        Load::Force { normal, .. } => (true, normal / grid.cell_area()),
+        Load::Approach { .. } => (false, 0.0),
+    };
+    Freedom { translation, tilt, point, total }
+}
+
+/// The motions that a step prescribes, and where the bodies were at its start.
+#[derive(Clone, Copy)]
+pub(super) struct Prescribed<'a> {
+    step: &'a Step<'a>,
+    /// Loads and motions at the start of the step, where hi + u in contact is known to be the motion there.
+    start: Option<(&'a [Load], &'a [RigidMotion])>,
+}
+
+impl<'a> Prescribed<'a> {
+    /// For a step from a state with such loads and motions; `exact` where hi + u in contact is known to be the latter.
+    pub(super) fn new(step: &'a Step<'a>, exact: bool, loads: &'a [Load], motions: &'a [RigidMotion]) -> Self {
+        Prescribed { step, start: exact.then_some((loads, motions)) }
+    }
+
+    /// Number of rigid bodies.
+    pub(super) fn bodies(&self) -> usize {
+        self.step.loads.len()
+    }
+
+    /// What is prescribed of a body's motion, from the datum of the gap.
+    pub(super) fn motion(&self, body: usize) -> RigidMotion {
+        self.step.prescribed(body)
+    }
+
+    /// By how much a body is retracted in a step that prescribes all of its motion: by nothing if it is held. Known only
+    /// where hi + u in contact is its motion at the start.
+    pub(super) fn retraction(&self, body: usize) -> Option<RigidMotion> {
+        let load = self.step.loads[body];
+        let Load::Approach { approach, tilt: [Tilt::Fixed(tilt1), Tilt::Fixed(tilt2)] } = load else { return None };
+        let (loads, motions) = self.start?;
+        if load == loads[body] {
+            return Some(RigidMotion::default());
+        }
+        let start = motions[body];
+        Some(RigidMotion { approach: start.approach - approach, tilt: [start.tilt[0] - tilt1, start.tilt[1] - tilt2] })
+    }
+
+    /// The greatest prescribed |ω + α·x| on the grid, as far as it is taken from the gap: where [`Self::retraction`] is
+    /// known, that is instead.
+    pub(super) fn greatest(&self, grid: &Grid) -> f64 {
+        let [l1, l2] = grid.lengths();
+        let motions = (0..self.bodies()).map(|body| self.retraction(body).unwrap_or(self.motion(body)));
+        let reach = |m: RigidMotion| m.approach.abs() + 0.5 * (m.tilt[0].abs() * l1 + m.tilt[1].abs() * l2);
+        motions.map(reach).fold(0.0, f64::max)
+    }
+}
+
+/// Whether hi + u in contact is the motion of a body whose motion was prescribed, to the last bit.
+pub(super) fn is_exact(step: &Step<'_>, state: &State) -> bool {
+    state.memory.follows_body_exactly() && !step.has_new_indenter(state)
+}

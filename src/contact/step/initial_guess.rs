@@ -1,0 +1,107 @@
+//! The first guess of a step.
+
+use crate::contact::state::State;
+use crate::contact::step::request::Step;
+use crate::contact::trial::Trial;
+use crate::contact::window::window::Window;
+use crate::solver::{Counts, Modes, RigidMotion};
+use crate::sum::{sum, sum_of_pairs};
+
+/// A guess is extrapolated only if it carries the force to within this factor: what is left after a cancellation is noise.
+const MAX_FORCE_RATIO: f64 = 1.5;
+
+/// Where motions are given and the pressure falls to less than this share in a step, the last change of the pressure is no
+/// guide: the last pressure is scaled by what is left.
+const MAX_SHARE_LEFT: f64 = 0.5;
+
+/// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike. Bodies of given motion whose
+/// pressure falls a lot in this step of compliance `c` get the last one scaled: K p would keep the rounding of a greater
+/// one.
+pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Trial, step: &Step<'_>, c: f64) {
+    begin(state, trial, step);
+    let (now, before) = (&state.current.solution, &state.previous.solution);
+    let held = trial.free.iter().all(|freedom| !freedom.translation);
+    let given = held && trial.free.iter().all(|freedom| freedom.tilt == [false; 2]);
+    if given && let Some(share) = share_left(state, trial, c) {
+        let scale = |trial: &mut [f64], field: &[f64]| {
+            trial.iter_mut().zip(field).for_each(|(trial, &value)| *trial = share * value);
+        };
+        scale(&mut trial.solution.pressure, &now.pressure);
+        scale(&mut trial.solution.potential, &now.potential);
+        return refresh_if_due(state, window, trial);
+    }
+    let mut reach = state.extrapolation.reach(step.interval.dt);
+    let positive = |p: f64| if p > 0.0 { p } else { 0.0 };
+    let guessed = sum_of_pairs(&now.pressure, &before.pressure, |p, before| positive(p + reach * (p - before)));
+    // a single force says what the guess must carry; else it should not stray far from the last state
+    let wanted = match trial.free[..] {
+        [only] if only.translation => only.total,
+        _ => sum(&now.pressure),
+    };
+    let near = |sum: f64| (wanted / MAX_FORCE_RATIO..=wanted * MAX_FORCE_RATIO).contains(&sum);
+    if !near(guessed) {
+        reach = 0.0;
+    }
+    trial.reach = reach;
+    // full contact of bodies whose mean is held does not tell how hard a given approach presses
+    let full = state.region.covers() && state.current.contact_cells == state.region.images() * state.region.len();
+    if held && full && window.kernel().mean_is_held() {
+        return trial.solution.release();
+    }
+    if reach == 0.0 && wanted > 0.0 && !near(sum(&now.pressure)) {
+        // another load altogether: the last contact is no guide, the solver starts afresh
+        return trial.solution.release();
+    }
+    extrapolate(state, window, trial, reach);
+}
+
+/// The share of the last pressure that best closes the gap of the step, if it is small. On a fixed contact a single
+/// relaxation time leaves exactly that, and so does a punch that is retracted from an elastic body.
+fn share_left(state: &State, trial: &Trial, c: f64) -> Option<f64> {
+    let (mut overlap, mut square) = (0.0, 0.0);
+    let now = &state.current.solution;
+    let pressed = now.pressure.iter().zip(&now.potential).zip(&trial.gap).filter(|((p, _), _)| **p > 0.0);
+    for ((_, &v), &gap) in pressed {
+        (overlap, square) = (overlap - gap * c * v, square + c * v * (c * v));
+    }
+    let share = overlap / square;
+    (share < MAX_SHARE_LEFT).then_some(share.max(0.0))
+}
+
+/// Resets the counts, and leaves the bodies where they are, as far as their loads leave them free.
+pub(super) fn begin(state: &State, trial: &mut Trial, step: &Step<'_>) {
+    trial.solution.counts = Counts::default();
+    trial.solution.rounding = 0.0;
+    trial.solution.trace.clear();
+    trial.reach = 0.0;
+    let datum = step.indenter.gap().datum;
+    for (body, motion) in trial.solution.motions.iter_mut().enumerate() {
+        let RigidMotion { approach, tilt } = state.current.motions[body];
+        let modes = Modes::new(state.region.grid(), trial.free[body]);
+        *motion = modes.coefficients(RigidMotion { approach: approach - datum, tilt });
+    }
+}
+
+/// Writes p and K p to the trial, `reach` times the last step ahead; K p computed afresh where that is due.
+pub(super) fn extrapolate(state: &State, window: &mut Window, trial: &mut Trial, reach: f64) {
+    let (now, before) = (&state.current.solution, &state.previous.solution);
+    let extrapolate = |trial: &mut [f64], now: &[f64], before: &[f64]| {
+        for ((guess, &now), &before) in trial.iter_mut().zip(now).zip(before) {
+            *guess = now + reach * (now - before);
+        }
+    };
+    extrapolate(&mut trial.solution.pressure, &now.pressure, &before.pressure);
+    if !state.extrapolation.refresh_is_due() {
+        extrapolate(&mut trial.solution.potential, &now.potential, &before.potential);
+    }
+    refresh_if_due(state, window, trial);
+}
+
+/// Computes K p of the guess afresh where that is due, and the solver does not do so itself.
+fn refresh_if_due(state: &State, window: &mut Window, trial: &mut Trial) {
+    if state.extrapolation.refresh_is_due() && window.needs_potential() {
+        let (kernel, work) = window.kernel_and_work();
+        kernel.apply(&trial.solution.pressure, &mut trial.solution.potential, work);
+        trial.solution.counts.convolutions += 1;
+    }
+}

@@ -1,0 +1,78 @@
+//! Jumps of the load on bodies without elastic response.
+
+use crate::contact::state::State;
+use crate::contact::step::initial_guess::{begin, extrapolate};
+use crate::contact::step::request::Step;
+use crate::contact::trial::Trial;
+use crate::contact::window::window::Window;
+use crate::error::Result;
+use crate::geometry::Gap;
+use crate::hereditary::no_elastic_response;
+use crate::solver::Modes;
+
+/// Penetration outside the contact may exceed the residual by this factor, as in the solver.
+const PENETRATION_SLACK: f64 = 10.0;
+/// Rounding of the gap of a cell, relative to the numbers that it is the sum of.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// Writes the end of a jump to the trial where the compliance of the step is 0, so that the displacement stays: with the
+/// pressure as it is if that satisfies the loads, else with none if none is needed. Other loads are rejected.
+pub(super) fn jump_without_response(
+    state: &State,
+    window: &mut Window,
+    trial: &mut Trial,
+    step: &Step<'_>,
+) -> Result<()> {
+    begin(state, trial, step);
+    let initial = window.gap(&step.indenter);
+    let greatest = |pressed: bool| {
+        let residuals = (0..step.loads.len()).map(|body| residual(state, initial, trial, step, body, pressed));
+        residuals.fold(0.0, f64::max)
+    };
+    let as_it_is = greatest(true);
+    if as_it_is <= step.tolerance {
+        extrapolate(state, window, trial, 0.0);
+        trial.solution.residual = as_it_is;
+    } else if greatest(false) <= step.tolerance {
+        trial.solution.release();
+    } else {
+        return Err(no_elastic_response(step.interval.time));
+    }
+    Ok(())
+}
+
+/// How far `body`, pressed as it is or not at all, is from satisfying its load without any change of the displacement: gap
+/// and penetration relative to the displacement in contact, force and moments relative to the force.
+fn residual(state: &State, initial: &Gap, trial: &Trial, step: &Step<'_>, body: usize, pressed: bool) -> f64 {
+    let freedom = trial.free[body];
+    let (modes, motion) = (Modes::new(state.region.grid(), freedom), trial.solution.motions[body]);
+    let released = freedom.translation && freedom.total == 0.0;
+    let prescribed = step.prescribed(body).approach.abs() + initial.datum.abs();
+    let (mut cells, mut square, mut displacement, mut penetration) = (0_usize, 0.0, 0.0, 0.0_f64);
+    let (mut pressures, mut balance) = (0.0, [0.0; 3]);
+    let own = |&k: &usize| initial.owner(k) == body && initial.above[k].is_finite();
+    for k in (0..trial.gap.len()).filter(own) {
+        let p = if pressed { state.current.solution.pressure[k] } else { 0.0 };
+        let (u, moved) = (state.memory.trial()[k], modes.displacement(motion, k));
+        let h = trial.gap[k] - moved;
+        if !h.is_finite() {
+            return f64::INFINITY;
+        }
+        let rounding = ROUNDING * (prescribed + initial.above[k] + u.abs() + trial.gap[k].abs() + moved.abs());
+        if p > 0.0 {
+            let (distance, mode) = ((h.abs() - rounding).max(0.0), modes.at(k));
+            (cells, square, displacement) = (cells + 1, square + distance * distance, displacement + u * u);
+            pressures += p;
+            (0..3).for_each(|m| balance[m] += p * mode[m]);
+        } else if !released {
+            penetration = penetration.max(-h - rounding);
+        }
+    }
+    let force = pressures.max(freedom.total);
+    let imbalance = (0..3).map(|m| (balance[m] - modes.load()[m] * freedom.total).abs() / force);
+    let root_mean = |sum: f64| (sum / cells.max(1) as f64).sqrt();
+    let distance = root_mean(square).max(penetration / PENETRATION_SLACK) / root_mean(displacement);
+    // nothing over nothing is nothing, but numbers that left their range satisfy no load
+    let parts = imbalance.filter(|_| force > 0.0).chain([distance].into_iter().filter(|_| square + penetration > 0.0));
+    parts.fold(0.0, |most, part| if part.is_nan() { f64::INFINITY } else { part.max(most) })
+}

@@ -1,0 +1,254 @@
+//! One step of a contact.
+//!
+//! | Flow chart of the source paper (Figure 1) | here |
+//! |---|---|
+//! | load, and the motions that it leaves free (equations 4, 5) | [`constraints`] |
+//! | displacement due to the past, u_old (equations 9 to 11) | [`Memory::predict`](crate::hereditary::Memory::predict) |
+//! | gap before any pressure (equation 1) | [`gap`] |
+//! | initial guess of the pressure | [`initial_guess`] |
+//! | contact problem of an elastic body (equations 2 to 7), by conjugate gradients | [`Window::solve`] |
+//! | pressure and displacement kept for the steps to come (equation 12) | [`Memory::respond`](crate::hereditary::Memory::respond) |
+//! | next step | [`ViscoelasticContact::accept`] |
+//!
+//! Beyond the paper, a step looks whether the bodies might touch outside the region that is computed, and then goes on in a
+//! copy of the state on a larger one ([`outgrown`]). All that a step computes is in its trial, in such a copy, or in the
+//! part of the memory that it may write; the state changes when the step is accepted. A step that fails has nothing to
+//! undo.
+
+mod checks;
+mod collect_warnings;
+mod constraints;
+mod gap;
+mod initial_guess;
+mod jump;
+pub(in crate::contact) mod request;
+
+use std::sync::Arc;
+
+use crate::contact::domain::Domain;
+use crate::contact::report::StepReport;
+use crate::contact::scene::Scene;
+use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::window::growth::outgrown;
+use crate::contact::window::placement::region_for;
+use crate::contact::window::region::Region;
+use crate::error::{Error, Result, non_negative};
+use crate::events;
+use crate::hereditary::Interval;
+use crate::load::Load;
+use crate::solver::{Modes, RigidMotion, Stop};
+use checks::{acceptable, below_full_contact, converged};
+use collect_warnings::collect_warnings;
+use constraints::{Prescribed, find_free_motions, is_exact, validate_loads};
+use gap::RigidBodies;
+use initial_guess::initial_guess;
+use jump::jump_without_response;
+use request::Step;
+
+/// A step that was computed and waits to be accepted; dropped, it leaves the contact as it was.
+#[must_use]
+pub(in crate::contact) struct Attempt {
+    /// The copy on a larger region in which it was computed, if it needed one.
+    larger: Option<Box<Domain>>,
+    /// Σ p.
+    sum: f64,
+}
+
+impl ViscoelasticContact {
+    /// Advances by `dt` \[s\] to a state that carries `load`, taking u to be linear in between. `dt` = 0 is a jump of the load:
+    /// the bodies respond elastically. A body without elastic response (J(0) = 0) keeps its displacement in a jump; it can
+    /// follow those after which nothing presses it, and those to a load that the pressure as it is satisfies to within
+    /// [`Settings::tolerance`](crate::contact::Settings::tolerance), such as the present approach in place of the force.
+    ///
+    /// # Errors
+    /// If `dt` or a force is negative, a number not finite, a force acts where it would topple the body, `dt` = 0 and the body
+    /// has no elastic response for the pressure that the load asks for, contact reaches the edge of the grid (unless
+    /// [`Edge::Allow`](crate::contact::Edge::Allow)), the solver does not converge, a creep closure returns an impossible
+    /// value, the material is not known for so long a time, a direct sum has filled its memory, there is none for the cells
+    /// that the contact reaches ([`Error::OutOfMemory`]), or there are several rigid bodies. The contact is then exactly as it
+    /// was before, but for [`ViscoelasticContact::within_step`], which has lost the start of the last step.
+    pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
+        self.step_each(dt, &[load])
+    }
+
+    /// [`ViscoelasticContact::step`] with a load for each rigid body, in the order in which the builder was given them.
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::step`], or if there is not one load per body.
+    pub fn step_each(&mut self, dt: f64, loads: &[Load]) -> Result<StepReport> {
+        non_negative("time step", dt)?;
+        let step = self.request(self.time() + dt, dt, loads, self.settings().tolerance);
+        self.take(step)
+    }
+
+    /// A step in which nothing moves along the surface.
+    pub(in crate::contact) fn request<'a>(
+        &self,
+        time: f64,
+        dt: f64,
+        loads: &'a [Load],
+        tolerance: f64,
+    ) -> Step<'a> {
+        let indenter = Arc::clone(&self.domain.state.indenter);
+        Step { interval: Interval { time, dt, stride: [0; 2] }, loads, indenter, tolerance }
+    }
+
+    /// Computes a step and accepts it.
+    pub(in crate::contact) fn take(&mut self, step: Step<'_>) -> Result<StepReport> {
+        let attempt = self.attempt(&step)?;
+        Ok(self.accept(attempt, step))
+    }
+
+    /// Computes a step. The state stays as it is.
+    pub(in crate::contact) fn attempt(&mut self, step: &Step<'_>) -> Result<Attempt> {
+        non_negative("time", step.interval.time)?;
+        let mut larger = None;
+        let tried = compute(&self.scene, &mut self.domain, &mut larger, step);
+        if let Err(error) = &tried {
+            events::failed(step.interval.time, step.interval.dt, error);
+            if let Some(larger) = &larger {
+                self.domain.trial.solution.counts = larger.trial.solution.counts; // the work was done
+            }
+        }
+        tried.map(|sum| Attempt { larger, sum })
+    }
+
+    /// Makes an attempt the state. Nothing here can fail.
+    pub(in crate::contact) fn accept(&mut self, attempt: Attempt, step: Step<'_>) -> StepReport {
+        if let Some(larger) = attempt.larger {
+            self.domain = *larger;
+        }
+        self.domain.accept(step, attempt.sum);
+        self.view.refresh(&self.domain.state);
+        let report = self.report();
+        events::accepted(&report);
+        report
+    }
+
+    fn report(&self) -> StepReport {
+        let state = &self.domain.state;
+        let counts = state.current.solution.counts;
+        StepReport {
+            time: state.clock.time,
+            dt: state.clock.last_dt,
+            iterations: counts.iterations,
+            fallback_iterations: counts.fallback_iterations,
+            convolutions: counts.convolutions,
+            preconditioner_applications: counts.preconditioner_applications,
+            residual: state.current.solution.residual,
+            time_error: 0.0,
+            warnings: collect_warnings(&self.scene, state),
+            contact_cells: state.current.contact_cells,
+            approach: self.approach(),
+            tilt: self.tilt(),
+            force: self.force(),
+        }
+    }
+}
+
+impl Attempt {
+    /// Where it was computed: in its own copy, or in the contact's.
+    pub(in crate::contact) fn domain<'a>(&'a self, own: &'a Domain) -> &'a Domain {
+        self.larger.as_deref().unwrap_or(own)
+    }
+}
+
+/// Computes a step in `own`, or in a copy on the first `larger` region that holds all of the contact; returns Σ p.
+fn compute(scene: &Scene, own: &mut Domain, larger: &mut Option<Box<Domain>>, step: &Step<'_>) -> Result<f64> {
+    validate_loads(scene, step)?;
+    if let Some((region, placed)) = region_for(scene, &own.state, step) {
+        let carried = larger.insert(own.carried_to(scene, region)?);
+        carried.state.region_is_placed = placed;
+    }
+    loop {
+        let at = larger.as_deref_mut().unwrap_or(&mut *own);
+        let grown = match at.solve(scene, step) {
+            Ok(()) => outgrown(scene, &at.state, &at.window, &at.trial, step),
+            // the load acts inside the hull of what the body may touch, but nothing in the window can carry it there
+            Err(Error::LoadOutsideHull { .. }) if at.state.memory.far_source().is_some() => {
+                Some(Region::whole(&scene.grid, at.state.region.folded()))
+            }
+            Err(error) => return Err(error),
+        };
+        let Some(region) = grown else { return acceptable(scene, &at.state, &at.trial, step) };
+        *larger = Some(at.carried_to(scene, region)?);
+    }
+}
+
+impl Domain {
+    /// Computes a step on the region at hand: into the trial, and the part of the memory that a step may write.
+    fn solve(&mut self, scene: &Scene, step: &Step<'_>) -> Result<()> {
+        let Domain { state, window, trial } = self;
+        let (time, dt) = (step.interval.time, step.interval.dt);
+        window.follow(&state.region, &step.indenter);
+        find_free_motions(scene, &state.region, step.loads, &mut trial.free);
+        let undisturbed = state.is_undisturbed(); // what was never touched has nothing to remember
+        if !undisturbed {
+            scene.check_material_age(time, state.clock.undisturbed_until)?;
+        }
+
+        // u = u_old + c K p
+        let (kernel, work) = window.kernel_and_work();
+        let (c, convolutions) = state.memory.predict(step.interval, scene.creeping_bodies(), kernel, work)?;
+        if !(c > 0.0 && c.is_finite() || c == 0.0 && dt == 0.0) {
+            return Err(Error::Overflow { time, what: "the compliance of the step" });
+        }
+
+        // h = hi + u_old + c K p − ω − α·x, what is prescribed of ω and α included
+        let prescribed = Prescribed::new(step, is_exact(step, state), &state.loads, &state.current.motions);
+        let bodies = RigidBodies { region: &state.region, initial: window.gap(&step.indenter), prescribed };
+        bodies.fill_gap(state.memory.trial(), &mut trial.gap);
+        bodies.refine_gap(c, &state.memory, &state.current.solution.pressure, &mut trial.gap);
+        let greatest = prescribed.greatest(&scene.grid);
+        below_full_contact(window, trial, step)?;
+
+        // p ≥ 0, h ≥ 0, p h = 0, with force and moments in balance
+        if c == 0.0 {
+            jump_without_response(state, window, trial, step)?;
+        } else {
+            initial_guess(state, window, trial, step, c);
+        }
+        let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations };
+        let outcome = window.solve(&step.indenter, [c, greatest], stop, trial);
+        converged(outcome, scene, &trial.solution, step)?;
+        trial.solution.counts.convolutions += convolutions;
+        let pressure = &trial.solution.pressure;
+        if undisturbed && pressure.iter().any(|&p| p > 0.0) {
+            scene.check_material_age(time, state.clock.undisturbed_until)?;
+        }
+
+        // what the bodies will remember
+        let (integrated, before) = (state.memory.integrates_displacement(), &state.current.solution.pressure);
+        let bodies = RigidBodies { region: &state.region, initial: window.gap(&step.indenter), prescribed };
+        state.memory.respond(c, [pressure, &trial.solution.potential], |now, u| {
+            bodies.displace(c, integrated, trial, u);
+            bodies.follow_prescribed([before, pressure], now, u);
+        });
+        Ok(())
+    }
+
+    /// Makes the trial the state.
+    fn accept(&mut self, step: Step<'_>, sum: f64) {
+        let Domain { state, trial, .. } = self;
+        let Step { interval, loads, indenter, .. } = step;
+        let datum = indenter.gap().datum;
+        let contact_cells = trial.solution.pressure.iter().filter(|&&p| p > 0.0).count();
+        let touched = !state.is_undisturbed() || contact_cells > 0;
+        let potential = [&state.current.solution.potential[..], &trial.solution.potential];
+        state.memory.commit(interval, potential, touched);
+
+        std::mem::swap(&mut state.previous, &mut state.current);
+        std::mem::swap(&mut state.current.solution, &mut trial.solution);
+        state.current.contact_cells = state.region.images() * contact_cells;
+        for (body, load) in loads.iter().enumerate() {
+            let modes = Modes::new(state.region.grid(), trial.free[body]);
+            let (held, free) = (request::prescribed(load, datum), modes.physical(state.current.solution.motions[body]));
+            let RigidMotion { approach, tilt } = held;
+            state.current.motions[body] = RigidMotion { approach: datum + approach, tilt } + free;
+        }
+        state.loads.copy_from_slice(loads);
+        (state.indenter, state.indenter_is_new) = (indenter, false);
+        state.extrapolation.accept(interval.dt, sum, trial.reach);
+        state.clock.accept(interval, touched);
+    }
+}

@@ -1,0 +1,29 @@
+//! The step being tried.
+
+use crate::solver::{Freedom, Solution};
+
+/// Everything that a step computes before it is accepted, but for the displacement, which the memory of the bodies holds
+/// at both ends of a step. Dropped when the step fails.
+#[derive(Debug, Clone)]
+pub(crate) struct Trial {
+    /// A guess, then the solution.
+    pub(super) solution: Solution,
+    /// The gap before any pressure and free motion.
+    pub(super) gap: Vec<f64>,
+    /// What the loads leave free of each body.
+    pub(super) free: Vec<Freedom>,
+    /// How many times the last step the guess reaches ahead.
+    pub(super) reach: f64,
+}
+
+impl Trial {
+    pub(super) fn new(cells: usize, bodies: usize) -> Trial {
+        let nothing_free = Freedom { translation: false, tilt: [false; 2], point: [0.0; 2], total: 0.0 };
+        Trial {
+            solution: Solution::zero(cells, bodies),
+            gap: vec![0.0; cells],
+            free: vec![nothing_free; bodies],
+            reach: 0.0,
+        }
+    }
+}

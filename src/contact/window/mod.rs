@@ -1,0 +1,9 @@
+//! The part of the grid that is computed: which one, with what, and how a state gets to a larger one.
+
+pub(crate) mod carry;
+pub(crate) mod extent;
+pub(crate) mod growth;
+pub(crate) mod placement;
+pub(crate) mod region;
+#[expect(clippy::module_inception, reason = "a window is the noun of this room")]
+pub(crate) mod window;

@@ -1,0 +1,110 @@
+//! What computes on a region of the grid.
+
+use crate::contact::indenter::Indenter;
+use crate::contact::scene::Scene;
+use crate::contact::settings::Solver;
+use crate::contact::trial::Trial;
+use crate::contact::window::region::Region;
+use crate::geometry::Gap;
+use crate::kernel::{LocalKernel, Workspace};
+use crate::solver::{ActiveSet, Outcome, PolonskyKeer, Problem, Stop};
+
+/// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt for
+/// another region and never saved.
+#[derive(Debug, Clone)]
+pub(crate) struct Window {
+    kernel: LocalKernel,
+    work: Workspace,
+    solver: ContactSolver,
+    /// The gap of the indenter on the region, if that is not the whole grid.
+    gap: Option<Gap>,
+    /// The lowest of the gaps outside the region and its mirror images, above the datum.
+    lowest_outside: f64,
+    /// The indenter whose gap these are.
+    indenter: u64,
+}
+
+#[derive(Debug, Clone)]
+enum ContactSolver {
+    ActiveSet(Box<ActiveSet>),
+    PolonskyKeer(PolonskyKeer),
+}
+
+impl Window {
+    pub(crate) fn new(scene: &Scene, region: &Region, indenter: &Indenter) -> Window {
+        let kernel = scene.kernel.on(region.grid(), region.folded());
+        let solver = match scene.settings.solver {
+            Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, scene.bodies))),
+            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(PolonskyKeer::new(region.len(), scene.bodies)),
+        };
+        Window {
+            work: kernel.workspace(),
+            kernel,
+            solver,
+            gap: region.cut_gap(indenter.gap()),
+            lowest_outside: region.lowest_outside(&indenter.gap().above),
+            indenter: indenter.id(),
+        }
+    }
+
+    /// Brings the gap up to date with an indenter that has moved.
+    pub(crate) fn follow(&mut self, region: &Region, indenter: &Indenter) {
+        if self.indenter == indenter.id() {
+            return;
+        }
+        if let Some(own) = &mut self.gap {
+            region.cut_gap_into(indenter.gap(), own);
+        }
+        self.lowest_outside = region.lowest_outside(&indenter.gap().above);
+        self.indenter = indenter.id();
+    }
+
+    /// The gap of the indenter on the region, which the window follows.
+    pub(crate) fn gap<'a>(&'a self, indenter: &'a Indenter) -> &'a Gap {
+        self.gap.as_ref().unwrap_or(indenter.gap())
+    }
+
+    pub(crate) fn lowest_outside(&self) -> f64 {
+        self.lowest_outside
+    }
+
+    pub(crate) fn kernel(&self) -> &LocalKernel {
+        &self.kernel
+    }
+
+    /// The kernel, and what its transforms work in.
+    pub(crate) fn kernel_and_work(&mut self) -> (&LocalKernel, &mut Workspace) {
+        (&self.kernel, &mut self.work)
+    }
+
+    /// Whether the solver needs K p of a guess, rather than computing it itself.
+    pub(crate) fn needs_potential(&self) -> bool {
+        matches!(self.solver, ContactSolver::ActiveSet(_))
+    }
+
+    /// Solves the contact problem of a step of compliance `c`, from the guess that the trial holds; `prescribed` is the
+    /// greatest motion that was taken from its gap. Where c is 0, the guess is the solution.
+    pub(crate) fn solve(
+        &mut self,
+        indenter: &Indenter,
+        [c, prescribed]: [f64; 2],
+        stop: Stop,
+        trial: &mut Trial,
+    ) -> Outcome {
+        let Window { kernel, work, solver, gap, .. } = self;
+        let Trial { solution, gap: open, free, .. } = trial;
+        let owner = gap.as_ref().unwrap_or(indenter.gap()).owner.as_deref();
+        let problem = Problem { kernel, compliance: c, gap: open, prescribed, bodies: free, owner };
+        let outcome = match solver {
+            _ if c == 0.0 => Outcome::Converged,
+            _ if problem.all_released() => {
+                solution.release();
+                Outcome::Converged
+            }
+            ContactSolver::ActiveSet(solver) => solver.solve(&problem, stop, solution, work),
+            ContactSolver::PolonskyKeer(solver) => solver.solve(&problem, stop, solution, work),
+        };
+        solution.follow_surface(&problem);
+        outcome
+    }
+}

@@ -1,0 +1,104 @@
+//! The hereditary integral as a sum over every past increment.
+
+use crate::error::{Error, Result};
+use crate::rheology::Material;
+
+/// At which end of its step an increment of pressure is thought to have happened.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) enum Weighting {
+    /// At the end, the rule of the source paper: u(t_n) = Σ C(t_n − t_k) (v_k − v_(k−1)). First order,
+    /// explicit in the creep, unstable for long steps.
+    End,
+    /// At the start: u(t_n) = Σ C(t_n − t_(k−1)) (v_k − v_(k−1)). First order and L-stable.
+    Start,
+}
+
+/// Cells summed together, so that they stay in the fastest cache while the past passes by.
+const BLOCK: usize = 2048;
+
+/// The past as all increments of v = K p: one field per step, no transforms.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct DirectSum {
+    weighting: Weighting,
+    /// When each increment happened, by the weighting, and the increment.
+    increments: Vec<(f64, Vec<f64>)>,
+    /// What each increment contributes to u_old of the step predicted last, per unit of v.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    weights: Vec<f64>,
+}
+
+impl DirectSum {
+    pub(crate) fn new(weighting: Weighting) -> DirectSum {
+        DirectSum { weighting, increments: Vec::new(), weights: Vec::new() }
+    }
+
+    pub(crate) fn without_increments(&self) -> DirectSum {
+        DirectSum::new(self.weighting)
+    }
+
+    /// Writes u_old over `u_old` and returns c; `limit` is what the increments may take \[bytes\].
+    pub(crate) fn predict(
+        &mut self,
+        (time, dt): (f64, f64),
+        material: &Material,
+        limit: usize,
+        u_old: &mut [f64],
+    ) -> Result<f64> {
+        let bytes = (self.increments.len() + 1).saturating_mul(std::mem::size_of_val(u_old));
+        if bytes > limit {
+            return Err(Error::HistoryFull { time, steps: self.increments.len(), bytes, limit });
+        }
+        let age = if self.weighting == Weighting::Start { dt } else { 0.0 };
+        // while nothing has happened, a step may be longer than the material is known
+        let age = if self.increments.is_empty() { age.min(material.known_until()) } else { age };
+        let newest = material.checked_compliance(age, (0.0, material.contact_compliance(0.0)))?;
+        if newest == 0.0 && age > 0.0 {
+            return Err(Error::InvalidCompliance { time: age, value: newest, previous: 0.0 });
+        }
+        // c acts on the whole of v, so that a past increment adds only what exceeds c
+        self.weights.clear();
+        let (mut oldest, mut younger) = (age, newest);
+        for (when, _) in self.increments.iter().rev() {
+            // ages never fall, but their differences of times may, by rounding
+            let older = (time - when).max(oldest);
+            younger = material.checked_compliance(older, (oldest, younger))?;
+            oldest = older;
+            self.weights.push(younger - newest);
+        }
+        let past = || self.increments.iter().rev().zip(&self.weights);
+        for (block, old) in u_old.chunks_mut(BLOCK).enumerate() {
+            old.fill(0.0);
+            let first = block * BLOCK;
+            for ((_, increment), &weight) in past() {
+                for (old, &dv) in old.iter_mut().zip(&increment[first..]) {
+                    *old += weight * dv;
+                }
+            }
+        }
+        Ok(newest)
+    }
+
+    /// The same past on other cells; `carry` says what each increment is there.
+    pub(crate) fn carried(&self, carry: impl Fn(&[f64]) -> Vec<f64>) -> DirectSum {
+        let increments = self.increments.iter().map(|(when, increment)| (*when, carry(increment))).collect();
+        DirectSum { increments, weights: Vec::new(), ..*self }
+    }
+
+    /// Takes the step of length `dt` that ends at `time` into the past, where v went from `before` to `after`.
+    pub(crate) fn commit(&mut self, (time, dt): (f64, f64), [before, after]: [&[f64]; 2]) {
+        let when = match self.weighting {
+            Weighting::End => time,
+            Weighting::Start => time - dt,
+        };
+        let increment = after.iter().zip(before).map(|(new, old)| new - old).collect();
+        self.increments.push((when, increment));
+    }
+
+    /// Whether its increments have so many cells.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn fits(&self, cells: usize) -> bool {
+        self.increments.iter().all(|(_, increment)| increment.len() == cells)
+    }
+}

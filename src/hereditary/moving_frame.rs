@@ -1,0 +1,178 @@
+//! Memory of bodies that move under the grid.
+
+use crate::hereditary::remembered_field::RememberedField;
+use crate::rheology::CreepSpectrum;
+
+/// The past kept as the field U with u = K U, and its branches, which follow the recursion of u itself, K and the bodies
+/// being linear. U vanishes wherever there never was contact: what enters the grid across its edge is known, and so the
+/// grid can follow an indenter over endless bodies, or around periodic ones. The displacement costs one convolution per
+/// step, however many relaxation times there are.
+///
+/// The surface in contact is laid on the rigid body after each step. What that changes no pressure has caused; it
+/// follows the same recursion, as a displacement e: u = K U + e.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct MovingFrame {
+    cells: [usize; 2],
+    periodic: [bool; 2],
+    /// U.
+    source: RememberedField,
+    /// e.
+    remainder: RememberedField,
+    scratch: Vec<f64>,
+}
+
+impl MovingFrame {
+    /// The undisturbed past of bodies with contact compliance `creep`, on no cells yet.
+    pub(crate) fn new(creep: &CreepSpectrum, periodic: [bool; 2]) -> MovingFrame {
+        let source = RememberedField::new(creep, 0);
+        MovingFrame { cells: [0; 2], periodic, remainder: source.clone(), source, scratch: Vec::new() }
+    }
+
+    /// The undisturbed past of the same bodies on so many cells.
+    pub(crate) fn undisturbed_on(&self, cells: [usize; 2]) -> MovingFrame {
+        let count = cells[0] * cells[1];
+        let [source, remainder] = [&self.source, &self.remainder].map(|field| field.undisturbed_on(count));
+        MovingFrame { cells, periodic: self.periodic, source, remainder, scratch: vec![0.0; count] }
+    }
+
+    /// Bytes per cell: two fields at both ends of a step, their recursions, and one to shift branches in.
+    pub(crate) fn bytes_per_cell(&self) -> usize {
+        40 + self.source.bytes_per_cell() + self.remainder.bytes_per_cell()
+    }
+
+    /// Copies another without reallocating.
+    pub(crate) fn copy_from(&mut self, other: &MovingFrame) {
+        self.source.copy_from(&other.source);
+        self.remainder.copy_from(&other.remainder);
+        (self.cells, self.periodic) = (other.cells, other.periodic);
+        self.scratch.resize(other.scratch.len(), 0.0);
+    }
+
+    /// Whether its fields have such cells.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn fits(&self, cells: [usize; 2]) -> bool {
+        let count = cells[0] * cells[1];
+        self.cells == cells
+            && self.scratch.len() == count
+            && [&self.source, &self.remainder].iter().all(|field| field.fits(count))
+    }
+
+    /// Whether there is a past at all.
+    pub(crate) fn remembers(&self) -> bool {
+        self.source.recursion.remembers()
+    }
+
+    /// Finds U_old and e_old at the end of a step in which the cell `[i, j]` comes over what was the cell
+    /// `[i, j] + stride`; returns c.
+    pub(crate) fn predict(&mut self, dt: f64, stride: [isize; 2]) -> f64 {
+        let (cells, periodic) = (self.cells, self.periodic);
+        let [_, c] = [&mut self.remainder, &mut self.source].map(|field| {
+            let c = field.predict(dt);
+            shift(&mut field.trial, cells, stride, periodic);
+            c
+        });
+        c
+    }
+
+    /// U_old and e_old: u_old = K U_old + e_old.
+    pub(crate) fn predicted(&self) -> [&[f64]; 2] {
+        [self.source.trial(), self.remainder.trial()]
+    }
+
+    /// U = U_old + c p, and e less u_old + c v: what is left to add to e is the displacement.
+    pub(crate) fn respond(&mut self, c: f64, pressure: &[f64], u_old: &[f64], potential: &[f64]) {
+        self.source.add(c, pressure);
+        let fields = self.remainder.trial.iter_mut().zip(u_old.iter().zip(potential));
+        fields.for_each(|(e, (&u_old, &v))| *e -= u_old + c * v);
+    }
+
+    /// Adds the displacement to e.
+    pub(crate) fn add_displacement(&mut self, u: &[f64]) {
+        self.remainder.add(1.0, u);
+    }
+
+    /// Takes the step that was predicted last into the past.
+    pub(crate) fn commit(&mut self, stride: [isize; 2]) {
+        for field in [&mut self.source, &mut self.remainder] {
+            std::mem::swap(&mut field.now, &mut field.trial);
+            if stride != [0; 2] {
+                shift(&mut field.trial, self.cells, stride, self.periodic);
+                for branch in 0..field.recursion.branches() {
+                    field.recursion.read_branch(branch, &mut self.scratch);
+                    shift(&mut self.scratch, self.cells, stride, self.periodic);
+                    field.recursion.write_branch(branch, &self.scratch);
+                }
+            }
+            field.recursion.commit();
+        }
+    }
+
+    /// The same past on other cells; `carry` says what a field is there.
+    pub(crate) fn carried(&mut self, cells: [usize; 2], carry: impl Fn(&[f64]) -> Vec<f64>) -> MovingFrame {
+        let count = cells[0] * cells[1];
+        let [source, remainder] = [&mut self.source, &mut self.remainder].map(|field| {
+            field.settle();
+            field.carried(count, |_, own| carry(own))
+        });
+        MovingFrame { cells, periodic: self.periodic, source, remainder, scratch: vec![0.0; count] }
+    }
+}
+
+/// Replaces the value of each cell `[i, j]` by that of `[i, j] + by`, which along periodic axes comes round, and is else zero
+/// beyond the ends.
+fn shift(field: &mut [f64], [n1, n2]: [usize; 2], by: [isize; 2], periodic: [bool; 2]) {
+    let line = |line: &mut [f64], by: isize, unit: usize, periodic: bool| {
+        let steps = if periodic { by.unsigned_abs() % (line.len() / unit) } else { by.unsigned_abs() };
+        let far = steps.saturating_mul(unit).min(line.len());
+        let end = line.len() - far;
+        match (periodic, by > 0) {
+            (true, true) => line.rotate_left(far),
+            (true, false) => line.rotate_right(far),
+            (false, true) => {
+                line.copy_within(far.., 0);
+                line[end..].fill(0.0);
+            }
+            (false, false) => {
+                line.copy_within(..end, far);
+                line[..far].fill(0.0);
+            }
+        }
+    };
+    debug_assert_eq!(field.len(), n1 * n2);
+    if by[0] != 0 {
+        line(field, by[0], n2, periodic[0]);
+    }
+    if by[1] != 0 {
+        field.chunks_exact_mut(n2).for_each(|row| line(row, by[1], 1, periodic[1]));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_shift_by_whole_cells() {
+        let (n1, n2) = (5, 4);
+        let field: Vec<f64> = (1..=20).map(f64::from).collect();
+        for periodic in [[false, false], [true, false], [false, true], [true, true]] {
+            for by1 in -6..=6 {
+                for by2 in -6..=6 {
+                    let mut shifted = field.clone();
+                    shift(&mut shifted, [n1, n2], [by1, by2], periodic);
+                    for (k, &value) in shifted.iter().enumerate() {
+                        let from = |own: usize, by: isize, n: usize, periodic: bool| {
+                            let index = own as isize + by;
+                            let index = if periodic { index.rem_euclid(n as isize) } else { index };
+                            usize::try_from(index).ok().filter(|&index| index < n)
+                        };
+                        let from = (from(k / n2, by1, n1, periodic[0]), from(k % n2, by2, n2, periodic[1]));
+                        let exact = if let (Some(i), Some(j)) = from { field[i * n2 + j] } else { 0.0 };
+                        assert_eq!(value, exact, "{k} by {by1} {by2} {periodic:?}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,318 @@
+//! The rigid motion of a body: what a load leaves free of it, and the balance of force and moments that
+//! goes with every freedom.
+
+use crate::Grid;
+
+/// The motions ω + α1 ξ1 + α2 ξ2 that a load leaves free to one body, ξ = x − e measured from the point e
+/// at which it acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Freedom {
+    pub(crate) translation: bool,
+    pub(crate) tilt: [bool; 2],
+    /// e \[m\].
+    pub(crate) point: [f64; 2],
+    /// The force divided by the area of a cell \[Pa\]; of no meaning without translation.
+    pub(crate) total: f64,
+}
+
+/// A motion ω + α1 x1 + α2 x2 of a rigid body, x measured from the origin of the grid.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct RigidMotion {
+    /// ω \[m\].
+    pub(crate) approach: f64,
+    /// α1 and α2 \[rad\].
+    pub(crate) tilt: [f64; 2],
+}
+
+impl RigidMotion {
+    /// The displacement at x \[m\].
+    pub(crate) fn at(self, x: [f64; 2]) -> f64 {
+        self.approach + self.tilt[0] * x[0] + self.tilt[1] * x[1]
+    }
+}
+
+impl std::ops::Add for RigidMotion {
+    type Output = RigidMotion;
+
+    fn add(self, other: RigidMotion) -> RigidMotion {
+        let tilt = [0, 1].map(|axis| self.tilt[axis] + other.tilt[axis]);
+        RigidMotion { approach: self.approach + other.approach, tilt }
+    }
+}
+
+/// Coefficients of the three [`Modes`] of a body: translation and tilts in units in which every mode is of order one.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct ModeCoefficients(pub(crate) [f64; 3]);
+
+/// Eigenvalues below this fraction of the largest count as none: the motion is not determined by the
+/// cells at hand (fewer than three, or all on a line).
+const DEPENDENT: f64 = 1e-11;
+
+/// Newton iterations that [`Modes::balance`] may take; it needs one where nothing is clipped.
+const BALANCE_ITERATIONS: usize = 60;
+
+/// Imbalance, relative to the load, that rounding may leave.
+const BALANCED: f64 = 4.0 * f64::EPSILON;
+
+/// Cells summed together before they join the total.
+const BLOCK: usize = 256;
+
+/// The free motions of a body as functions on the grid.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Modes<'a> {
+    grid: &'a Grid,
+    freedom: Freedom,
+    /// Lengths in which tilts are measured, half the grid's.
+    scale: [f64; 2],
+}
+
+/// Σ w B Bᵀ over some cells.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Gram {
+    entries: [[f64; 3]; 3],
+}
+
+impl<'a> Modes<'a> {
+    pub(crate) fn new(grid: &'a Grid, freedom: Freedom) -> Modes<'a> {
+        Modes { grid, freedom, scale: grid.lengths().map(|length| 0.5 * length) }
+    }
+
+    pub(crate) fn tilts(&self) -> bool {
+        self.freedom.tilt != [false; 2]
+    }
+
+    pub(crate) fn translates(&self) -> bool {
+        self.freedom.translation
+    }
+
+    /// The values of the free modes on cell `k`, zero for those that are not free.
+    pub(crate) fn at(&self, k: usize) -> [f64; 3] {
+        let Freedom { translation, tilt, point, .. } = self.freedom;
+        let n2 = self.grid.cells()[1];
+        let mode = |axis: usize, index: usize| {
+            if tilt[axis] { (self.grid.coordinate(axis, index) - point[axis]) / self.scale[axis] } else { 0.0 }
+        };
+        [if translation { 1.0 } else { 0.0 }, mode(0, k / n2), mode(1, k % n2)]
+    }
+
+    /// Which of ω, α1 and α2 are free.
+    pub(crate) fn free(&self) -> [bool; 3] {
+        [self.freedom.translation, self.freedom.tilt[0], self.freedom.tilt[1]]
+    }
+
+    /// Force and moments of a unit load.
+    pub(crate) fn load(&self) -> [f64; 3] {
+        [if self.freedom.translation { 1.0 } else { 0.0 }, 0.0, 0.0]
+    }
+
+    /// The displacement of cell `k` in a motion.
+    pub(crate) fn displacement(&self, motion: ModeCoefficients, k: usize) -> f64 {
+        if self.tilts() { dot(self.at(k), motion.0) } else { motion.0[0] }
+    }
+
+    /// The motion with these coefficients, ω at the origin of the grid.
+    pub(crate) fn physical(&self, ModeCoefficients(a): ModeCoefficients) -> RigidMotion {
+        let tilt = [a[1] / self.scale[0], a[2] / self.scale[1]];
+        let approach = a[0] - tilt[0] * self.freedom.point[0] - tilt[1] * self.freedom.point[1];
+        RigidMotion { approach, tilt }
+    }
+
+    /// The coefficients of a motion, as far as it is free: the inverse of [`Modes::physical`].
+    pub(crate) fn coefficients(&self, motion: RigidMotion) -> ModeCoefficients {
+        let Freedom { translation, tilt, point, .. } = self.freedom;
+        let alpha = [0, 1].map(|axis| if tilt[axis] { motion.tilt[axis] } else { 0.0 });
+        let held = motion.approach + alpha[0] * point[0] + alpha[1] * point[1];
+        ModeCoefficients([if translation { held } else { 0.0 }, alpha[0] * self.scale[0], alpha[1] * self.scale[1]])
+    }
+
+    /// The balance that the free modes ask for.
+    fn wanted(&self) -> [f64; 3] {
+        self.load().map(|share| share * self.freedom.total)
+    }
+
+    /// B Bᵀ over `cells`; only what [`Modes::fit`] needs.
+    pub(crate) fn gram(&self, cells: &[u32]) -> Gram {
+        let mut gram = Gram::default();
+        if self.tilts() {
+            cells.iter().for_each(|&k| gram.add(self.at(k as usize), 1.0));
+        }
+        gram
+    }
+
+    /// The motion that fits `field` on `cells` best, by least squares; `gram` is theirs.
+    pub(crate) fn fit(&self, gram: &Gram, cells: &[u32], field: &[f64]) -> ModeCoefficients {
+        if !self.tilts() {
+            let sum: f64 = cells.iter().map(|&k| field[k as usize]).sum();
+            let count = cells.len().max(1) as f64;
+            return ModeCoefficients([if self.freedom.translation { sum / count } else { 0.0 }, 0.0, 0.0]);
+        }
+        let mut sums = [0.0; 3];
+        for &k in cells {
+            let modes = self.at(k as usize);
+            (0..3).for_each(|m| sums[m] += modes[m] * field[k as usize]);
+        }
+        ModeCoefficients(gram.solve(sums))
+    }
+
+    /// Takes from `field` on `cells` the part that is a free motion, and returns it.
+    pub(crate) fn project_out(&self, gram: &Gram, cells: &[u32], field: &mut [f64]) -> ModeCoefficients {
+        let motion = self.fit(gram, cells, field);
+        if self.tilts() {
+            cells.iter().for_each(|&k| field[k as usize] -= dot(self.at(k as usize), motion.0));
+        } else if self.freedom.translation {
+            cells.iter().for_each(|&k| field[k as usize] -= motion.0[0]);
+        }
+        motion
+    }
+
+    /// Finds y such that the pressures max(0, base + weight · B y) on `cells` carry the force and moments
+    /// that the load asks for: the minimum of the convex ½ Σ weight (base/weight + B y)₊² − b·y, by
+    /// Newton's method with step halving. `None` if there is none, because the load does not act inside
+    /// the convex hull of the cells.
+    pub(crate) fn balance(
+        &self,
+        cells: &[u32],
+        base: impl Fn(usize) -> f64,
+        weight: impl Fn(usize) -> f64,
+    ) -> Option<ModeCoefficients> {
+        let wanted = self.wanted();
+        let evaluate = |y: [f64; 3]| {
+            let (mut gram, mut sums, mut value) = (Gram::default(), wanted.map(|b| -b), -dot(wanted, y));
+            // in blocks, so that rounding does not grow with the number of cells
+            for block in cells.chunks(BLOCK) {
+                let mut part = [0.0; 3];
+                for k in block.iter().map(|&k| k as usize) {
+                    let (modes, w) = (self.at(k), weight(k));
+                    let p = base(k) + w * dot(modes, y);
+                    if p > 0.0 {
+                        gram.add(modes, w);
+                        (0..3).for_each(|m| part[m] += modes[m] * p);
+                        // without weight it does not depend on y
+                        value += if w > 0.0 { 0.5 * p * p / w } else { p * dot(modes, y) };
+                    }
+                }
+                (0..3).for_each(|m| sums[m] += part[m]);
+            }
+            (gram, sums, value)
+        };
+        // moments in proportion to what all pressure at the far end of the grid would give
+        let size = cells.iter().map(|&k| base(k as usize).abs()).sum::<f64>().max(wanted[0].abs());
+        if size == 0.0 {
+            return Some(ModeCoefficients::default());
+        }
+        let mut y = [0.0; 3];
+        let (mut gram, mut sums, mut value) = evaluate(y);
+        for _ in 0..BALANCE_ITERATIONS {
+            if sums.iter().all(|sum| sum.abs() <= BALANCED * size) {
+                return Some(ModeCoefficients(y));
+            }
+            let step = gram.solve(sums);
+            let descent = dot(step, sums);
+            let mut length = 1.0;
+            let accepted = loop {
+                let next = [0, 1, 2].map(|m| y[m] - length * step[m]);
+                let state = evaluate(next);
+                // near the minimum its value no longer tells, but its gradient still does
+                if state.2 <= value - 1e-4 * length * descent || norm(state.1) <= 0.5 * norm(sums) {
+                    break Some((next, state));
+                }
+                length *= 0.5;
+                if length < 1e-6 {
+                    break None;
+                }
+            };
+            match accepted {
+                Some((next, state)) => (y, (gram, sums, value)) = (next, state),
+                // no descent left but rounding: good if the balance is
+                None => break,
+            }
+        }
+        sums.iter().all(|sum| sum.abs() <= 1e-12 * size).then_some(ModeCoefficients(y))
+    }
+
+    /// base + weight · B y, clipped at zero: a pressure that [`Modes::balance`] found.
+    pub(crate) fn balanced(&self, y: ModeCoefficients, k: usize, base: f64, weight: f64) -> f64 {
+        (base + weight * dot(self.at(k), y.0)).max(0.0)
+    }
+}
+
+impl Gram {
+    fn add(&mut self, modes: [f64; 3], weight: f64) {
+        for (row, a) in self.entries.iter_mut().zip(modes) {
+            for (entry, b) in row.iter_mut().zip(modes) {
+                *entry += weight * a * b;
+            }
+        }
+    }
+
+    /// Solves Gram x = `right` by Cholesky's method with pivoting on the matrix scaled to a unit diagonal,
+    /// leaving out what depends on the rest: x is zero there.
+    fn solve(&self, right: [f64; 3]) -> [f64; 3] {
+        let scale = [0, 1, 2].map(|m| if self.entries[m][m] > 0.0 { 1.0 / self.entries[m][m].sqrt() } else { 0.0 });
+        let mut a = [[0.0; 3]; 3];
+        for (i, row) in a.iter_mut().enumerate() {
+            for (j, entry) in row.iter_mut().enumerate() {
+                *entry = self.entries[i][j] * scale[i] * scale[j];
+            }
+        }
+        let mut b = [0, 1, 2].map(|m| right[m] * scale[m]);
+        // symmetric elimination; `order` holds the pivots taken
+        let (mut order, mut left) = ([0; 3], [true; 3]);
+        let mut rank = 0;
+        while rank < 3 {
+            let pivot = (0..3).filter(|&m| left[m]).max_by(|&m, &n| a[m][m].total_cmp(&a[n][n]));
+            let Some(pivot) = pivot.filter(|&m| a[m][m] > DEPENDENT) else { break };
+            left[pivot] = false;
+            order[rank] = pivot;
+            rank += 1;
+            for m in (0..3).filter(|&m| left[m]) {
+                let factor = a[m][pivot] / a[pivot][pivot];
+                for n in (0..3).filter(|&n| left[n]) {
+                    a[m][n] -= factor * a[pivot][n];
+                }
+                b[m] -= factor * b[pivot];
+            }
+        }
+        let mut x = [0.0; 3];
+        for step in (0..rank).rev() {
+            let pivot = order[step];
+            let known: f64 = order[step + 1..rank].iter().map(|&n| a[pivot][n] * x[n]).sum();
+            x[pivot] = (b[pivot] - known) / a[pivot][pivot];
+        }
+        [0, 1, 2].map(|m| x[m] * scale[m])
+    }
+}
+
+fn norm(a: [f64; 3]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coefficients_and_motion_say_the_same() {
+        let grid = Grid::new([7, 4], [2.0, 3.0]).unwrap();
+        let motion = RigidMotion { approach: 0.3, tilt: [-0.2, 0.7] };
+        for point in [[0.0; 2], [0.4, -1.1]] {
+            let modes = Modes::new(&grid, Freedom { translation: true, tilt: [true; 2], point, total: 1.0 });
+            let coefficients = modes.coefficients(motion);
+            let back = modes.physical(coefficients);
+            assert!((back.approach - motion.approach).abs() < 1e-15);
+            for k in 0..grid.len() {
+                let displacement = modes.displacement(coefficients, k);
+                assert!((displacement - motion.at(grid.center(k / 4, k % 4))).abs() < 1e-14, "{k}: {displacement}");
+            }
+        }
+        let upright = Modes::new(&grid, Freedom { translation: true, tilt: [false; 2], point: [1.0; 2], total: 1.0 });
+        let motion = RigidMotion { tilt: [0.0; 2], ..motion };
+        assert_eq!(upright.physical(upright.coefficients(motion)), motion);
+    }
+}
