@@ -10,21 +10,18 @@ use crate::contact::domain::Domain;
 use crate::contact::footprint::{Computed, Footprint, Memory, symmetry_of};
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
-use crate::contact::settings::{Frame, Settings, TimeRule};
+use crate::contact::settings::{Settings, TimeRule};
 use crate::contact::state::State;
+use crate::contact::time_rule::{memory_by, windowed};
+use crate::contact::times::Times;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::{Error, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
-use crate::hereditary::{self, Weighting};
+use crate::hereditary;
 use crate::kernel::InfluenceKernel;
 use crate::load::LoadHistory;
 use crate::rheology::Material;
-
-/// The shortest time that a run is taken to look at is this part of the shortest time between corners of its load, ...
-const SHORTEST_PART: f64 = 1e-6;
-/// ... of the first so many.
-const MAX_CORNERS: usize = 1000;
 
 /// Collects what a [`ViscoelasticContact`] is made of; see [`ViscoelasticContact::builder`].
 #[derive(Debug, Clone)]
@@ -35,7 +32,7 @@ pub struct Builder {
     gaps: Vec<Result<Vec<f64>>>,
     material: Option<Material>,
     counter_body: Option<Material>,
-    times: Option<RangeInclusive<f64>>,
+    times: Option<Times>,
     kernel: Option<Arc<InfluenceKernel>>,
     settings: Settings,
 }
@@ -113,7 +110,7 @@ impl Builder {
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     pub fn times(mut self, times: RangeInclusive<f64>) -> Builder {
-        self.times = Some(times);
+        self.times = Some(Times::new(times));
         self
     }
 
@@ -135,17 +132,7 @@ impl Builder {
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     pub fn times_of(self, history: &dyn LoadHistory, until: f64) -> Builder {
-        let (mut shortest, mut corner) = (until, 0.0);
-        for _ in 0..MAX_CORNERS {
-            match history.next_breakpoint(corner) {
-                Some(next) if next > corner && next < until => {
-                    shortest = shortest.min(next - corner);
-                    corner = next;
-                }
-                _ => break,
-            }
-        }
-        self.times(SHORTEST_PART * shortest..=until)
+        Builder { times: Some(Times::of_run(history, until)), ..self }
     }
 
     /// An influence kernel to share with other contacts on the same grid; without one,
@@ -264,44 +251,12 @@ impl Builder {
             Some(kernel) => Arc::clone(kernel),
             None => Arc::new(InfluenceKernel::half_space(&self.grid)?),
         };
-        let memory = memory(&mut material, self.times.clone(), &self.settings, kernel.periodic_axes())?;
+        if let Some(times) = &self.times
+            && self.settings.time_rule == TimeRule::Exponential
+        {
+            material = times.fit(&material, self.settings.series_tolerance)?;
+        }
+        let memory = memory_by(&self.settings, &material, kernel.periodic_axes())?;
         Ok((material, kernel, memory))
     }
-}
-
-/// Whether only a part of the grid is computed. Elsewhere than on a half-space nothing is known of the displacement outside
-/// a window.
-fn windowed(settings: &Settings, memory: &hereditary::Memory, kernel: &InfluenceKernel) -> bool {
-    settings.window && memory.has_far_field() && kernel.is_half_space()
-}
-
-/// The memory of the bodies by the time rule of the settings, on no cells yet; `material` is fitted over `times` where it
-/// has no exact series.
-fn memory(
-    material: &mut Material,
-    times: Option<RangeInclusive<f64>>,
-    settings: &Settings,
-    periodic: [bool; 2],
-) -> Result<hereditary::Memory> {
-    let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
-    let weighting = match settings.time_rule {
-        TimeRule::Exponential => None,
-        _ if settings.frame == Frame::Indenter => return Err(Error::WrongFrame { what: "a direct sum" }),
-        TimeRule::Rectangle if glassy == 0.0 => {
-            return Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" });
-        }
-        TimeRule::Rectangle => Some(Weighting::End),
-        TimeRule::Backward => Some(Weighting::Start),
-    };
-    if let Some(weighting) = weighting {
-        return Ok(hereditary::Memory::direct_sum(weighting));
-    }
-    if let Some(times) = times {
-        *material = material.fitted(times, settings.series_tolerance)?;
-    }
-    let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact"))?;
-    Ok(match settings.frame {
-        Frame::Bodies => hereditary::Memory::exponential(&creep),
-        Frame::Indenter => hereditary::Memory::moving_frame(&creep, periodic),
-    })
 }

@@ -6,10 +6,9 @@ use crate::Grid;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::built::Built;
 use crate::contact::settings::Settings;
-use crate::error::{Error, Result};
 use crate::hereditary::Bodies;
 use crate::kernel::InfluenceKernel;
-use crate::rheology::{Material, is_known};
+use crate::rheology::Material;
 
 /// Grid, kernel, material and settings of a contact. A contact and its clones share one.
 #[derive(Debug)]
@@ -29,11 +28,5 @@ impl Scene {
     /// What the memory of the bodies needs of it.
     pub(super) fn creeping_bodies(&self) -> Bodies<'_> {
         Bodies { material: &self.material, history_limit: self.settings.history_limit }
-    }
-
-    /// Rejects a step to `time` whose loading time is longer than the material is known for.
-    pub(super) fn check_material_age(&self, time: f64, undisturbed_until: f64) -> Result<()> {
-        let (age, known_until) = (time - undisturbed_until, self.material.known_until());
-        if is_known(age, known_until) { Ok(()) } else { Err(Error::BeyondMaterial { time, age, known_until }) }
     }
 }

@@ -26,7 +26,8 @@ impl ViscoelasticContact {
         if geometries.len() != self.scene.bodies {
             return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.scene.bodies });
         }
-        let gaps = geometries.iter().map(|geometry| evaluate(*geometry, &self.scene.grid)).collect::<Result<Vec<_>>>()?;
+        let gaps =
+            geometries.iter().map(|geometry| evaluate(*geometry, &self.scene.grid)).collect::<Result<Vec<_>>>()?;
         let indenter = Indenter::new(Gap::new(gaps, &self.scene.grid)?, self.scene.bodies);
         let region = &self.domain.state.region;
         let (folded, even) = (region.folded(), indenter.even_axes(&self.scene.grid));

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::contact::indenter::Indenter;
 use crate::contact::extrapolation::Extrapolation;
+use crate::contact::indenter::Indenter;
 use crate::contact::window::region::Region;
 use crate::hereditary::{Interval, Memory};
 use crate::load::Load;

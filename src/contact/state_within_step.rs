@@ -46,8 +46,7 @@ impl ViscoelasticContact {
         // by rounding the start may come out a little off
         let inside = time >= start - 1e-12 * clock.last_dt && time <= clock.time;
         within("time within the last step", time, inside, "between its start and its end")?;
-        let share =
-            if time == clock.time || !kept { 1.0 } else { ((time - start) / clock.last_dt).clamp(0.0, 1.0) };
+        let share = if time == clock.time || !kept { 1.0 } else { ((time - start) / clock.last_dt).clamp(0.0, 1.0) };
         Ok(StateWithinStep { contact: self, share, time })
     }
 }

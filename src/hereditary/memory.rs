@@ -279,9 +279,8 @@ impl Memory {
                 displacement.settle();
                 far.iter_mut().for_each(RememberedField::settle);
                 let far = far.as_ref();
-                let displacement = displacement.carried(n1 * n2, |part, own| {
-                    transfer.induced(own, far.map(|far| far.part(part)).as_deref())
-                });
+                let displacement = displacement
+                    .carried(n1 * n2, |part, own| transfer.induced(own, far.map(|far| far.part(part)).as_deref()));
                 let far = far.filter(|_| !transfer.covers());
                 let far = far.map(|far| far.carried(n1 * n2, |_, own| transfer.confined(own)));
                 Past::Exponential { displacement, far }
@@ -304,10 +303,9 @@ impl Memory {
     pub(crate) fn copy_from(&mut self, other: &Memory) {
         self.before_is_kept = other.before_is_kept;
         match (&mut self.past, &other.past) {
-            (
-                Past::Exponential { displacement, far: None },
-                Past::Exponential { displacement: other, far: None },
-            ) => displacement.copy_from(other),
+            (Past::Exponential { displacement, far: None }, Past::Exponential { displacement: other, far: None }) => {
+                displacement.copy_from(other)
+            }
             (
                 Past::Exponential { displacement, far: Some(far) },
                 Past::Exponential { displacement: other, far: Some(other_far) },
@@ -333,9 +331,7 @@ impl Memory {
                     displacement.fits(count) && far.as_ref().is_none_or(|far| far.fits(count))
                 }
                 Past::DirectSum(displacement) => displacement.has_cells(count) && displacement.recursion.fits(count),
-                Past::MovingFrame(displacement) => {
-                    displacement.has_cells(count) && displacement.recursion.fits(cells)
-                }
+                Past::MovingFrame(displacement) => displacement.has_cells(count) && displacement.recursion.fits(cells),
             }
     }
 }

@@ -115,7 +115,8 @@ impl Pressed<'_> {
 
     fn index(&self, cell: [isize; 2]) -> Option<usize> {
         let [n1, n2] = self.grid.cells();
-        let wrap = |axis: usize, n: usize| if self.periodic[axis] { cell[axis].rem_euclid(n as isize) } else { cell[axis] };
+        let wrap =
+            |axis: usize, n: usize| if self.periodic[axis] { cell[axis].rem_euclid(n as isize) } else { cell[axis] };
         let [i, j] = [wrap(0, n1), wrap(1, n2)];
         let (i, j) = (usize::try_from(i).ok()?, usize::try_from(j).ok()?);
         (i < n1 && j < n2).then_some(i * n2 + j)

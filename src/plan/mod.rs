@@ -219,8 +219,7 @@ impl Coarse<'_> {
     fn run(&self, lengths: [f64; 2]) -> Result<Found> {
         let grid = Grid::new([COARSE; 2], lengths)?;
         let mut contact = self.builder(grid).build()?;
-        let mut found =
-            Found { reach: [0.0; 2], steps: 0, convolutions: 0.0, error: MeshError::default() };
+        let mut found = Found { reach: [0.0; 2], steps: 0, convolutions: 0.0, error: MeshError::default() };
         let (mut deepest, mut highest, mut states) = (0.0_f64, 0.0_f64, Vec::new());
         let mut run = contact.follow(self.history, self.accuracy.stepping(), self.until);
         while let Some(report) = run.next_step()? {

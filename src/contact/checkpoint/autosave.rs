@@ -1,18 +1,11 @@
-//! Runs along a history that are saved on their way.
+//! Runs along a load history that are saved on their way.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use crate::contact::run::autosave::Autosave;
 use crate::contact::run::follow::Follow;
 use crate::error::Result;
-
-/// Where a run is saved, how often, and when it was last.
-#[derive(Debug)]
-pub(crate) struct Autosave {
-    path: PathBuf,
-    every: Duration,
-    last: Instant,
-}
 
 impl Follow<'_> {
     /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end: no more is lost with
@@ -42,7 +35,7 @@ impl Follow<'_> {
     ///
     /// [`ViscoelasticContact::resume`]: crate::ViscoelasticContact::resume
     pub fn autosave_to(mut self, path: impl Into<PathBuf>, every: Duration) -> Self {
-        self.autosave = Some(Autosave { path: path.into(), every, last: Instant::now() });
+        self.autosave = Some(Autosave::new(path.into(), every));
         self
     }
 
@@ -57,17 +50,12 @@ impl Follow<'_> {
         self.contact.save_with(path.as_ref(), Some(&self.progress))
     }
 
-    /// Saves the run if it is time to, or `over`.
+    /// Saves the run if that is due, or the run is `over`.
     pub(in crate::contact) fn autosave(&mut self, over: bool) -> Result<()> {
-        let Some(autosave) = &mut self.autosave else { return Ok(()) };
-        if !over && autosave.last.elapsed() < autosave.every {
-            return Ok(());
-        }
-        let path = autosave.path.clone();
+        let due = self.autosave.as_ref().filter(|autosave| over || autosave.is_due());
+        let Some(path) = due.map(|autosave| autosave.path.clone()) else { return Ok(()) };
         self.save(path)?;
-        if let Some(autosave) = &mut self.autosave {
-            autosave.last = Instant::now();
-        }
+        self.autosave.iter_mut().for_each(Autosave::done);
         Ok(())
     }
 }

@@ -1,23 +1,17 @@
 //! Drives a contact along a load history.
 
-#[cfg(feature = "checkpoint")]
-use crate::contact::checkpoint::autosave::Autosave;
-use crate::contact::domain::Domain;
 use crate::contact::report::StepReport;
+#[cfg(feature = "checkpoint")]
+use crate::contact::run::autosave::Autosave;
+use crate::contact::run::error_budget::ErrorBudget;
 use crate::contact::run::progress::Progress;
-use crate::contact::run::step_control::StepControl;
 use crate::contact::run::stepping::Stepping;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result, finite, positive, within};
-use crate::events;
 use crate::load::{Load, LoadHistory};
-use crate::observe::mesh_error::MeshError;
 
 /// Two times closer than this fraction of a step are the same time.
 const SAME_TIME: f64 = 1e-6;
-
-/// A step that the solver cannot do is tried again so many times, shorter.
-const MAX_SOLVER_RETRIES: u32 = 5;
 
 /// A run along a load history, made by [`ViscoelasticContact::follow`]. Each call of
 /// [`Follow::next_step`] takes one step.
@@ -66,9 +60,9 @@ const MAX_SOLVER_RETRIES: u32 = 5;
 #[must_use = "a run takes no step until next_step is called"]
 pub struct Follow<'a> {
     pub(in crate::contact) contact: &'a mut ViscoelasticContact,
-    history: &'a dyn LoadHistory,
+    pub(super) history: &'a dyn LoadHistory,
     stepping: Stepping,
-    until: f64,
+    pub(super) until: f64,
     pub(in crate::contact) progress: Progress,
     /// Times to end steps on, ascending.
     stops: Vec<f64>,
@@ -77,18 +71,6 @@ pub struct Follow<'a> {
     /// The report of a step after which the file could not be written.
     #[cfg(feature = "checkpoint")]
     unreported: Option<Option<StepReport>>,
-}
-
-/// Where the error of a run comes from, made by [`Follow::error_budget`]. All relative.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct ErrorBudget {
-    /// Greatest error in time estimated for a step, of the displacement; 0 for fixed steps, which nothing is estimated for.
-    pub time: f64,
-    /// Errors due to the mesh, of the present state.
-    pub mesh: MeshError,
-    /// Greatest residual of the contact problems, of the displacement.
-    pub solver: f64,
 }
 
 impl ViscoelasticContact {
@@ -202,65 +184,13 @@ impl<'a> Follow<'a> {
         Ok(report)
     }
 
-    /// One step as long as its error allows.
-    fn adaptive_step(&mut self, control: &mut StepControl, corner: f64) -> Result<StepReport> {
-        let now = self.contact.time();
-        control.keep_slope(&self.contact.domain.state);
-        let stop = corner.min(self.until).min(self.next_stop(now));
-        let tolerance = control.solver_tolerance(self.contact.settings().tolerance);
-        let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
-        loop {
-            let ViscoelasticContact { scene, domain, .. } = &*self.contact;
-            let wanted = control.length(scene, &domain.state, self.history, self.until - now)?;
-            let (time, dt) = towards(now, stop, wanted);
-            // a step of the last digit of the time, shortened, may round to itself again, and again
-            if time <= now || time >= tried {
-                return Err(Error::StepTooShort { time: now, dt, tolerance: control.tolerance });
-            }
-            tried = time;
-            let loads = [self.history.before(time).validated_at(time)?];
-            let straying = control.watch(self.history, now, time)?;
-            if straying > control.tolerance {
-                control.judge(dt, straying);
-                continue;
-            }
-            let step = self.contact.request(time, dt, &loads, tolerance);
-            let attempt = match self.contact.attempt(&step) {
-                Err(Error::NotConverged { .. }) if failures < MAX_SOLVER_RETRIES => {
-                    failures += 1;
-                    control.shorten(dt);
-                    add_work(&mut wasted, &self.contact.domain);
-                    continue;
-                }
-                other => other?,
-            };
-            let ViscoelasticContact { scene, domain, .. } = &*self.contact;
-            let error = control.estimate(scene, attempt.domain(domain), dt).max(straying);
-            if control.judge(dt, error) {
-                if time == corner {
-                    control.restart();
-                } else {
-                    control.resume(wanted, dt);
-                }
-                let mut report = self.contact.accept(attempt, step);
-                report.time_error = error;
-                report.convolutions += wasted[0];
-                report.preconditioner_applications += wasted[1];
-                self.progress.include(report.time_error, report.residual);
-                return Ok(report);
-            }
-            events::rejected(time, dt, error, control.tolerance);
-            add_work(&mut wasted, attempt.domain(domain));
-        }
-    }
-
     fn solver_tolerance(&self) -> f64 {
         let wanted = self.contact.settings().tolerance;
         self.progress.control.as_ref().map_or(wanted, |control| control.solver_tolerance(wanted))
     }
 
     /// The first of the times to stop at after `now`.
-    fn next_stop(&self, now: f64) -> f64 {
+    pub(super) fn next_stop(&self, now: f64) -> f64 {
         self.stops.get(self.stops.partition_point(|&time| time <= now)).copied().unwrap_or(f64::INFINITY)
     }
 
@@ -294,23 +224,5 @@ impl<'a> Follow<'a> {
     /// The contact as the last step left it.
     pub fn contact(&self) -> &ViscoelasticContact {
         self.contact
-    }
-}
-
-/// Adds the convolutions and preconditioner applications of a step that was tried.
-fn add_work(work: &mut [usize; 2], tried: &Domain) {
-    let counts = tried.trial.solution.counts;
-    *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
-}
-
-/// The end and the length of a step of about `wanted` towards `stop`: onto it if it is near, halfway if the rest
-/// would be a sliver.
-fn towards(now: f64, stop: f64, wanted: f64) -> (f64, f64) {
-    let left = stop - now;
-    if wanted >= 0.99 * left {
-        (stop, left)
-    } else {
-        let dt = if wanted > 0.5 * left { 0.5 * left } else { wanted };
-        (now + dt, now + dt - now) // the step that is really taken
     }
 }

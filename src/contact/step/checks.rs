@@ -7,14 +7,31 @@ use crate::contact::step::request::Step;
 use crate::contact::trial::Trial;
 use crate::contact::window::window::Window;
 use crate::error::{Convergence, Error, Result};
+use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
+use crate::rheology::is_known;
 use crate::solver::{Counts, Outcome, Solution};
 use crate::sum::sum;
+
+/// Rejects a step to `time` whose loading time is longer than the material is known for, if the bodies are `touched`: what
+/// was never touched has nothing to remember.
+pub(super) fn material_is_known(scene: &Scene, state: &State, time: f64, touched: bool) -> Result<()> {
+    let (age, known_until) = (time - state.clock.undisturbed_until, scene.material.known_until());
+    if !touched || is_known(age, known_until) { Ok(()) } else { Err(Error::BeyondMaterial { time, age, known_until }) }
+}
+
+/// Rejects a compliance that left the range of numbers; it is 0 in jumps of bodies without elastic response alone.
+pub(super) fn compliance_is_usable(c: f64, step: &Step<'_>) -> Result<()> {
+    let Interval { time, dt, .. } = step.interval;
+    let usable = c > 0.0 && c.is_finite() || c == 0.0 && dt == 0.0;
+    if usable { Ok(()) } else { Err(Error::Overflow { time, what: "the compliance of the step" }) }
+}
 
 /// Rejects an approach beyond that which closes every gap, where the mean displacement is held: Σ h = Σ gap ≥ 0.
 pub(super) fn below_full_contact(window: &Window, trial: &Trial, step: &Step<'_>) -> Result<()> {
     let held = step.loads.iter().all(|load| matches!(load, Load::Approach { .. }));
-    let (true, true, &[Load::Approach { approach, .. }, ..]) = (held, window.kernel().mean_is_held(), step.loads) else {
+    let (true, true, &[Load::Approach { approach, .. }, ..]) = (held, window.kernel().mean_is_held(), step.loads)
+    else {
         return Ok(());
     };
     let left = trial.gap.iter().sum::<f64>() / trial.gap.len() as f64;

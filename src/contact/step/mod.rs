@@ -15,6 +15,7 @@
 //! part of the memory that it may write; the state changes when the step is accepted. A step that fails has nothing to
 //! undo.
 
+mod accept;
 mod checks;
 mod collect_warnings;
 mod constraints;
@@ -36,8 +37,8 @@ use crate::error::{Error, Result, non_negative};
 use crate::events;
 use crate::hereditary::Interval;
 use crate::load::Load;
-use crate::solver::{Modes, RigidMotion, Stop};
-use checks::{acceptable, below_full_contact, converged};
+use crate::solver::Stop;
+use checks::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use collect_warnings::collect_warnings;
 use constraints::{Prescribed, find_free_motions, is_exact, validate_loads};
 use gap::RigidBodies;
@@ -82,13 +83,7 @@ impl ViscoelasticContact {
     }
 
     /// A step in which nothing moves along the surface.
-    pub(in crate::contact) fn request<'a>(
-        &self,
-        time: f64,
-        dt: f64,
-        loads: &'a [Load],
-        tolerance: f64,
-    ) -> Step<'a> {
+    pub(in crate::contact) fn request<'a>(&self, time: f64, dt: f64, loads: &'a [Load], tolerance: f64) -> Step<'a> {
         let indenter = Arc::clone(&self.domain.state.indenter);
         Step { interval: Interval { time, dt, stride: [0; 2] }, loads, indenter, tolerance }
     }
@@ -179,20 +174,15 @@ impl Domain {
     /// Computes a step on the region at hand: into the trial, and the part of the memory that a step may write.
     fn solve(&mut self, scene: &Scene, step: &Step<'_>) -> Result<()> {
         let Domain { state, window, trial } = self;
-        let (time, dt) = (step.interval.time, step.interval.dt);
+        let time = step.interval.time;
         window.follow(&state.region, &step.indenter);
         find_free_motions(scene, &state.region, step.loads, &mut trial.free);
-        let undisturbed = state.is_undisturbed(); // what was never touched has nothing to remember
-        if !undisturbed {
-            scene.check_material_age(time, state.clock.undisturbed_until)?;
-        }
+        material_is_known(scene, state, time, !state.is_undisturbed())?;
 
         // u = u_old + c K p
         let (kernel, work) = window.kernel_and_work();
         let (c, convolutions) = state.memory.predict(step.interval, scene.creeping_bodies(), kernel, work)?;
-        if !(c > 0.0 && c.is_finite() || c == 0.0 && dt == 0.0) {
-            return Err(Error::Overflow { time, what: "the compliance of the step" });
-        }
+        compliance_is_usable(c, step)?;
 
         // h = hi + u_old + c K p − ω − α·x, what is prescribed of ω and α included
         let prescribed = Prescribed::new(step, is_exact(step, state), &state.loads, &state.current.motions);
@@ -213,9 +203,7 @@ impl Domain {
         converged(outcome, scene, &trial.solution, step)?;
         trial.solution.counts.convolutions += convolutions;
         let pressure = &trial.solution.pressure;
-        if undisturbed && pressure.iter().any(|&p| p > 0.0) {
-            scene.check_material_age(time, state.clock.undisturbed_until)?;
-        }
+        material_is_known(scene, state, time, state.is_undisturbed() && pressure.iter().any(|&p| p > 0.0))?;
 
         // what the bodies will remember
         let (integrated, before) = (state.memory.integrates_displacement(), &state.current.solution.pressure);
@@ -225,30 +213,5 @@ impl Domain {
             bodies.follow_prescribed([before, pressure], now, u);
         });
         Ok(())
-    }
-
-    /// Makes the trial the state.
-    fn accept(&mut self, step: Step<'_>, sum: f64) {
-        let Domain { state, trial, .. } = self;
-        let Step { interval, loads, indenter, .. } = step;
-        let datum = indenter.gap().datum;
-        let contact_cells = trial.solution.pressure.iter().filter(|&&p| p > 0.0).count();
-        let touched = !state.is_undisturbed() || contact_cells > 0;
-        let potential = [&state.current.solution.potential[..], &trial.solution.potential];
-        state.memory.commit(interval, potential, touched);
-
-        std::mem::swap(&mut state.previous, &mut state.current);
-        std::mem::swap(&mut state.current.solution, &mut trial.solution);
-        state.current.contact_cells = state.region.images() * contact_cells;
-        for (body, load) in loads.iter().enumerate() {
-            let modes = Modes::new(state.region.grid(), trial.free[body]);
-            let (held, free) = (request::prescribed(load, datum), modes.physical(state.current.solution.motions[body]));
-            let RigidMotion { approach, tilt } = held;
-            state.current.motions[body] = RigidMotion { approach: datum + approach, tilt } + free;
-        }
-        state.loads.copy_from_slice(loads);
-        (state.indenter, state.indenter_is_new) = (indenter, false);
-        state.extrapolation.accept(interval.dt, sum, trial.reach);
-        state.clock.accept(interval, touched);
     }
 }

@@ -2,6 +2,7 @@
 
 pub(crate) mod carry;
 pub(crate) mod extent;
+mod fields;
 pub(crate) mod growth;
 pub(crate) mod placement;
 pub(crate) mod region;

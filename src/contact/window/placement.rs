@@ -30,7 +30,10 @@ pub(in crate::contact) fn region_for(scene: &Scene, state: &State, step: &Step<'
     let unfolded = (still_folded != folded).then(|| state.region.unfolded(still_folded));
     let region = unfolded.as_ref().unwrap_or(&state.region);
     let to_be_placed = state.is_undisturbed() && !state.region_is_placed && state.memory.far_source().is_some();
-    if to_be_placed && !region.covers() && let Some(placed) = first_contact(scene, region, step) {
+    if to_be_placed
+        && !region.covers()
+        && let Some(placed) = first_contact(scene, region, step)
+    {
         return Some((placed, true));
     }
     unfolded.map(|region| (region, state.region_is_placed))

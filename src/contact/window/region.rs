@@ -11,14 +11,14 @@ use crate::kernel::images;
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Region {
     #[cfg_attr(feature = "checkpoint", serde(with = "crate::grid::saved"))]
-    whole: Grid,
+    pub(super) whole: Grid,
     /// Its cells, with the coordinates of the whole.
     #[cfg_attr(feature = "checkpoint", serde(with = "crate::grid::saved"))]
     grid: Grid,
     /// Its first cell.
-    first: [usize; 2],
+    pub(super) first: [usize; 2],
     /// Axes along which every field is even about the middle: only the upper half is computed.
-    folded: [bool; 2],
+    pub(super) folded: [bool; 2],
 }
 
 impl Region {
@@ -169,91 +169,6 @@ impl Region {
         let n2 = self.cells()[1];
         self.grid.center(k / n2, k % n2)
     }
-
-    /// Takes its share out of a field on the whole grid.
-    pub(crate) fn cut<V: Copy>(&self, whole: &[V]) -> Vec<V> {
-        self.share(whole).collect()
-    }
-
-    /// Writes its share of a gap over another.
-    pub(crate) fn cut_gap_into(&self, gap: &Gap, own: &mut Gap) {
-        own.datum = gap.datum;
-        own.above.iter_mut().zip(self.share(&gap.above)).for_each(|(own, value)| *own = value);
-        if let (Some(own), Some(owner)) = (&mut own.owner, &gap.owner) {
-            own.iter_mut().zip(self.share(owner)).for_each(|(own, value)| *own = value);
-        }
-    }
-
-    fn share<V: Copy>(&self, whole: &[V]) -> impl Iterator<Item = V> {
-        let n2 = self.whole.cells()[1];
-        (0..self.len()).map(|k| self.cell(k)).map(move |[i, j]| whole[i * n2 + j])
-    }
-
-    /// Its share of a gap; nothing if that is all of it.
-    pub(crate) fn cut_gap(&self, gap: &Gap) -> Option<Gap> {
-        (!self.is_whole()).then(|| Gap {
-            datum: gap.datum,
-            above: self.cut(&gap.above),
-            owner: gap.owner.as_ref().map(|owner| self.cut(owner)),
-        })
-    }
-
-    /// Writes a field of its own over the cells, and the images of cells, that it belongs to.
-    pub(crate) fn spread(&self, own: &[f64], whole: &mut [f64]) {
-        let ([n1, n2], [_, m2]) = (self.whole.cells(), self.cells());
-        for (i, row) in own.chunks_exact(m2).enumerate() {
-            let i = self.first[0] + i;
-            let images = [Some(i), self.folded[0].then_some(n1 - 1 - i)];
-            for i in images.into_iter().flatten() {
-                let line = &mut whole[i * n2..(i + 1) * n2];
-                line[self.first[1]..self.first[1] + m2].copy_from_slice(row);
-                if self.folded[1] {
-                    let start = n2 - self.first[1] - m2;
-                    line[start..start + m2].iter_mut().rev().zip(row).for_each(|(out, &value)| *out = value);
-                }
-            }
-        }
-    }
-
-    /// A field on another region of the same grid from one of its own; `elsewhere` says what it is on cells that are
-    /// none of its own, nor images of them.
-    pub(crate) fn carry<V: Copy>(&self, own: &[V], other: &Region, elsewhere: impl Fn(usize) -> V) -> Vec<V> {
-        (0..other.len()).map(|k| self.find(other.cell(k)).map_or_else(|| elsewhere(k), |own_k| own[own_k])).collect()
-    }
-
-    /// The least rectangle of the whole grid that holds the cells, and the images of cells, whose value in `own` is positive;
-    /// `None` if there is none.
-    pub(crate) fn reach(&self, own: &[f64]) -> Option<Extent> {
-        let rows = own.chunks_exact(self.cells()[1]).enumerate().filter_map(|(i, row)| {
-            let first = row.iter().position(|&value| value > 0.0)?;
-            let last = row.iter().rposition(|&value| value > 0.0)?;
-            Some(Extent { low: [i, first], high: [i, last] })
-        });
-        let Extent { mut low, mut high } = Extent::hull(rows)?;
-        for axis in 0..2 {
-            (low[axis], high[axis]) = (low[axis] + self.first[axis], high[axis] + self.first[axis]);
-            if self.folded[axis] {
-                low[axis] = low[axis].min(self.whole.cells()[axis] - 1 - high[axis]);
-            }
-        }
-        Some(Extent { low, high })
-    }
-
-    /// Number of cells on the edge of the whole grid whose value in `own` is positive; periodic axes have no edge.
-    pub(crate) fn positive_on_edge(&self, own: &[f64], periodic: [bool; 2]) -> usize {
-        let [m1, m2] = self.cells();
-        let ends = |axis: usize, count: usize| {
-            let last = self.first[axis] + count == self.whole.cells()[axis];
-            let outermost = [self.first[axis] == 0, last].map(|at_end| at_end && !periodic[axis]);
-            [outermost[0].then_some(0), outermost[1].then_some(count - 1).filter(|&last| last > 0 || !outermost[0])]
-        };
-        let (rows, columns) = (ends(0, m1), ends(1, m2));
-        let positive = |row: &[f64]| row.iter().filter(|&&value| value > 0.0).count();
-        let across: usize = rows.into_iter().flatten().map(|i| positive(&own[i * m2..(i + 1) * m2])).sum();
-        let inner = (0..m1).filter(|i| !rows.contains(&Some(*i)));
-        let down = inner.map(|i| columns.into_iter().flatten().filter(|j| own[i * m2 + j] > 0.0).count());
-        self.images() * (across + down.sum::<usize>())
-    }
 }
 
 /// The next of the sizes 4, 5, 6, 7, 8, 10, 12, 14, 16, 20 …: transforms of them are fast, and a contact that grows need not
@@ -264,96 +179,5 @@ fn suitable(cells: usize) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn grid(cells: [usize; 2]) -> Grid {
-        Grid::new(cells, cells.map(|n| n as f64)).unwrap()
-    }
-
-    #[test]
-    fn edge_cells_are_counted_once() {
-        for (cells, expected) in
-            [([3, 3], 8), ([1, 4], 4), ([4, 1], 4), ([1, 1], 1), ([2, 5], 10), ([4, 6], 16), ([2, 2], 4)]
-        {
-            for folded in [[false, false], [true, false], [false, true], [true, true]] {
-                if (0..2).any(|axis| folded[axis] && cells[axis] % 2 == 1) {
-                    continue;
-                }
-                let region = Region::whole(&grid(cells), folded);
-                assert_eq!(
-                    region.positive_on_edge(&vec![1.0; region.len()], [false; 2]),
-                    expected,
-                    "{cells:?} {folded:?}"
-                );
-            }
-        }
-        let inside = Region::around(&grid([64, 64]), [false; 2], Extent { low: [20, 30], high: [25, 35] }, 0.1);
-        assert_eq!(inside.positive_on_edge(&vec![1.0; inside.len()], [false; 2]), 0);
-        let aside = Region::around(&grid([64, 64]), [false; 2], Extent { low: [0, 30], high: [5, 35] }, 0.1);
-        assert_eq!(aside.positive_on_edge(&vec![1.0; aside.len()], [false; 2]), aside.cells()[1]);
-    }
-
-    /// What is cut out and spread again is the same, on every cell and its images.
-    #[test]
-    fn regions_know_their_cells() {
-        let whole = grid([20, 30]);
-        for folded in [[false, false], [true, false], [false, true], [true, true]] {
-            for region in [
-                Region::whole(&whole, folded),
-                Region::around(&whole, folded, Extent { low: [8, 12], high: [11, 16] }, 0.2),
-                Region::around(&whole, folded, Extent { low: [0, 29], high: [19, 29] }, 0.2),
-            ] {
-                let even = |cell: [usize; 2]| {
-                    let [x, y] = [0, 1].map(|axis| whole.coordinate(axis, cell[axis]));
-                    [x, y]
-                        .iter()
-                        .zip(folded)
-                        .fold(0.0, |sum, (x, folded)| 10.0 * sum + if folded { x.abs() } else { *x })
-                };
-                let field: Vec<f64> = (0..600).map(|k| even([k / 30, k % 30])).collect();
-                let own = region.cut(&field);
-                for (k, &value) in own.iter().enumerate() {
-                    assert_eq!(
-                        region.grid().center(k / region.cells()[1], k % region.cells()[1]),
-                        whole.center(region.cell(k)[0], region.cell(k)[1])
-                    );
-                    assert_eq!((region.find(region.cell(k)), value), (Some(k), even(region.cell(k))));
-                }
-                let mut spread = vec![f64::NAN; 600];
-                region.spread(&own, &mut spread);
-                for k in 0..600 {
-                    let cell = [k / 30, k % 30];
-                    assert!(if region.find(cell).is_some() { spread[k] == field[k] } else { spread[k].is_nan() });
-                }
-                assert_eq!(region.covers(), spread.iter().all(|x| !x.is_nan()));
-                let cell = [region.cell(0), region.cell(region.len() - 1)];
-                for k in [0, region.len() - 1] {
-                    let mut one = vec![0.0; region.len()];
-                    one[k] = 1.0;
-                    let mut images = vec![0.0; 600];
-                    region.spread(&one, &mut images);
-                    let of = |axis: usize| {
-                        let along = |k: usize| [k / 30, k % 30][axis];
-                        let touched = || (0..600).filter(|&k| images[k] > 0.0).map(along);
-                        (touched().min().unwrap(), touched().max().unwrap())
-                    };
-                    let Extent { low, high } = region.reach(&one).unwrap();
-                    assert_eq!([(low[0], high[0]), (low[1], high[1])], [of(0), of(1)], "{cell:?} {folded:?}");
-                }
-                assert_eq!(region.reach(&vec![0.0; region.len()]), None);
-                let carried = region.carry(&own, &Region::whole(&whole, [false; 2]), |_| f64::NAN);
-                assert!(carried.iter().zip(&spread).all(|(a, b)| a == b || (a.is_nan() && b.is_nan())));
-            }
-        }
-    }
-
-    #[test]
-    fn sizes_grow_by_a_quarter_at_most() {
-        let sizes: Vec<usize> = (1..200).map(suitable).collect();
-        assert!(
-            sizes.iter().zip(1..).all(|(&size, wanted)| size >= wanted && (wanted < 4 || 4 * size <= 5 * wanted + 3))
-        );
-        assert_eq!(suitable(129), 160);
-    }
-}
+#[path = "region_tests.rs"]
+mod tests;

@@ -1,0 +1,84 @@
+//! Steps as long as their error allows.
+
+use crate::contact::domain::Domain;
+use crate::contact::report::StepReport;
+use crate::contact::run::follow::Follow;
+use crate::contact::run::step_control::StepControl;
+use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::error::{Error, Result};
+use crate::events;
+
+/// A step that the solver cannot do is tried again so many times, shorter.
+const MAX_SOLVER_RETRIES: u32 = 5;
+
+impl Follow<'_> {
+    /// One step as long as its error allows.
+    pub(super) fn adaptive_step(&mut self, control: &mut StepControl, corner: f64) -> Result<StepReport> {
+        let now = self.contact.time();
+        control.keep_slope(&self.contact.domain.state);
+        let stop = corner.min(self.until).min(self.next_stop(now));
+        let tolerance = control.solver_tolerance(self.contact.settings().tolerance);
+        let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
+        loop {
+            let ViscoelasticContact { scene, domain, .. } = &*self.contact;
+            let wanted = control.length(scene, &domain.state, self.history, self.until - now)?;
+            let (time, dt) = towards(now, stop, wanted);
+            // a step of the last digit of the time, shortened, may round to itself again, and again
+            if time <= now || time >= tried {
+                return Err(Error::StepTooShort { time: now, dt, tolerance: control.tolerance });
+            }
+            tried = time;
+            let loads = [self.history.before(time).validated_at(time)?];
+            let straying = control.watch(self.history, now, time)?;
+            if straying > control.tolerance {
+                control.judge(dt, straying);
+                continue;
+            }
+            let step = self.contact.request(time, dt, &loads, tolerance);
+            let attempt = match self.contact.attempt(&step) {
+                Err(Error::NotConverged { .. }) if failures < MAX_SOLVER_RETRIES => {
+                    failures += 1;
+                    control.shorten(dt);
+                    add_work(&mut wasted, &self.contact.domain);
+                    continue;
+                }
+                other => other?,
+            };
+            let ViscoelasticContact { scene, domain, .. } = &*self.contact;
+            let error = control.estimate(scene, attempt.domain(domain), dt).max(straying);
+            if control.judge(dt, error) {
+                if time == corner {
+                    control.restart();
+                } else {
+                    control.resume(wanted, dt);
+                }
+                let mut report = self.contact.accept(attempt, step);
+                report.time_error = error;
+                report.convolutions += wasted[0];
+                report.preconditioner_applications += wasted[1];
+                self.progress.include(report.time_error, report.residual);
+                return Ok(report);
+            }
+            events::rejected(time, dt, error, control.tolerance);
+            add_work(&mut wasted, attempt.domain(domain));
+        }
+    }
+}
+
+/// Adds the convolutions and preconditioner applications of a step that was tried.
+fn add_work(work: &mut [usize; 2], tried: &Domain) {
+    let counts = tried.trial.solution.counts;
+    *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
+}
+
+/// The end and the length of a step of about `wanted` towards `stop`: onto it if it is near, halfway if the rest
+/// would be a sliver.
+fn towards(now: f64, stop: f64, wanted: f64) -> (f64, f64) {
+    let left = stop - now;
+    if wanted >= 0.99 * left {
+        (stop, left)
+    } else {
+        let dt = if wanted > 0.5 * left { 0.5 * left } else { wanted };
+        (now + dt, now + dt - now) // the step that is really taken
+    }
+}

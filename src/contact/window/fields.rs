@@ -1,0 +1,92 @@
+//! Fields on a region, on the whole grid, and on other regions.
+
+use crate::contact::window::extent::Extent;
+use crate::contact::window::region::Region;
+use crate::geometry::Gap;
+
+impl Region {
+    /// Takes its share out of a field on the whole grid.
+    pub(crate) fn cut<V: Copy>(&self, whole: &[V]) -> Vec<V> {
+        self.share(whole).collect()
+    }
+
+    /// Writes its share of a gap over another.
+    pub(crate) fn cut_gap_into(&self, gap: &Gap, own: &mut Gap) {
+        own.datum = gap.datum;
+        own.above.iter_mut().zip(self.share(&gap.above)).for_each(|(own, value)| *own = value);
+        if let (Some(own), Some(owner)) = (&mut own.owner, &gap.owner) {
+            own.iter_mut().zip(self.share(owner)).for_each(|(own, value)| *own = value);
+        }
+    }
+
+    fn share<V: Copy>(&self, whole: &[V]) -> impl Iterator<Item = V> {
+        let n2 = self.whole.cells()[1];
+        (0..self.len()).map(|k| self.cell(k)).map(move |[i, j]| whole[i * n2 + j])
+    }
+
+    /// Its share of a gap; nothing if that is all of it.
+    pub(crate) fn cut_gap(&self, gap: &Gap) -> Option<Gap> {
+        (!self.is_whole()).then(|| Gap {
+            datum: gap.datum,
+            above: self.cut(&gap.above),
+            owner: gap.owner.as_ref().map(|owner| self.cut(owner)),
+        })
+    }
+
+    /// Writes a field of its own over the cells, and the images of cells, that it belongs to.
+    pub(crate) fn spread(&self, own: &[f64], whole: &mut [f64]) {
+        let ([n1, n2], [_, m2]) = (self.whole.cells(), self.cells());
+        for (i, row) in own.chunks_exact(m2).enumerate() {
+            let i = self.first[0] + i;
+            let images = [Some(i), self.folded[0].then_some(n1 - 1 - i)];
+            for i in images.into_iter().flatten() {
+                let line = &mut whole[i * n2..(i + 1) * n2];
+                line[self.first[1]..self.first[1] + m2].copy_from_slice(row);
+                if self.folded[1] {
+                    let start = n2 - self.first[1] - m2;
+                    line[start..start + m2].iter_mut().rev().zip(row).for_each(|(out, &value)| *out = value);
+                }
+            }
+        }
+    }
+
+    /// A field on another region of the same grid from one of its own; `elsewhere` says what it is on cells that are
+    /// none of its own, nor images of them.
+    pub(crate) fn carry<V: Copy>(&self, own: &[V], other: &Region, elsewhere: impl Fn(usize) -> V) -> Vec<V> {
+        (0..other.len()).map(|k| self.find(other.cell(k)).map_or_else(|| elsewhere(k), |own_k| own[own_k])).collect()
+    }
+
+    /// The least rectangle of the whole grid that holds the cells, and the images of cells, whose value in `own` is positive;
+    /// `None` if there is none.
+    pub(crate) fn reach(&self, own: &[f64]) -> Option<Extent> {
+        let rows = own.chunks_exact(self.cells()[1]).enumerate().filter_map(|(i, row)| {
+            let first = row.iter().position(|&value| value > 0.0)?;
+            let last = row.iter().rposition(|&value| value > 0.0)?;
+            Some(Extent { low: [i, first], high: [i, last] })
+        });
+        let Extent { mut low, mut high } = Extent::hull(rows)?;
+        for axis in 0..2 {
+            (low[axis], high[axis]) = (low[axis] + self.first[axis], high[axis] + self.first[axis]);
+            if self.folded[axis] {
+                low[axis] = low[axis].min(self.whole.cells()[axis] - 1 - high[axis]);
+            }
+        }
+        Some(Extent { low, high })
+    }
+
+    /// Number of cells on the edge of the whole grid whose value in `own` is positive; periodic axes have no edge.
+    pub(crate) fn positive_on_edge(&self, own: &[f64], periodic: [bool; 2]) -> usize {
+        let [m1, m2] = self.cells();
+        let ends = |axis: usize, count: usize| {
+            let last = self.first[axis] + count == self.whole.cells()[axis];
+            let outermost = [self.first[axis] == 0, last].map(|at_end| at_end && !periodic[axis]);
+            [outermost[0].then_some(0), outermost[1].then_some(count - 1).filter(|&last| last > 0 || !outermost[0])]
+        };
+        let (rows, columns) = (ends(0, m1), ends(1, m2));
+        let positive = |row: &[f64]| row.iter().filter(|&&value| value > 0.0).count();
+        let across: usize = rows.into_iter().flatten().map(|i| positive(&own[i * m2..(i + 1) * m2])).sum();
+        let inner = (0..m1).filter(|i| !rows.contains(&Some(*i)));
+        let down = inner.map(|i| columns.into_iter().flatten().filter(|j| own[i * m2 + j] > 0.0).count());
+        self.images() * (across + down.sum::<usize>())
+    }
+}
