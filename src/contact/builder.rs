@@ -1,4 +1,4 @@
-//! Puts the parts of a contact together.
+//! Builds a contact from its parts.
 
 use std::ops::RangeInclusive;
 use std::sync::Arc;
@@ -23,12 +23,12 @@ use crate::kernel::InfluenceKernel;
 use crate::load::LoadHistory;
 use crate::rheology::Material;
 
-/// Collects what a [`ViscoelasticContact`] is made of; see [`ViscoelasticContact::builder`].
+/// The parts of a [`ViscoelasticContact`]; see [`ViscoelasticContact::builder`].
 #[derive(Debug, Clone)]
 #[must_use = "a builder does nothing until it is built"]
 pub struct Builder {
     grid: Grid,
-    /// The gap field of each rigid body, if there was memory for it.
+    /// The gap of each rigid body, if there was memory for it.
     gaps: Vec<Result<Vec<f64>>>,
     material: Option<Material>,
     counter_body: Option<Material>,
@@ -38,7 +38,7 @@ pub struct Builder {
 }
 
 impl ViscoelasticContact {
-    /// Starts to put a contact together on `grid`.
+    /// A builder for a contact on `grid`.
     pub fn builder(grid: Grid) -> Builder {
         Builder::new(grid)
     }
@@ -72,28 +72,28 @@ impl Builder {
         self
     }
 
-    /// The material of the creeping body. Required. The other body is rigid, unless
-    /// [`Builder::counter_body`] says what it is made of.
+    /// The material of the creeping body. Required. The other body is rigid unless [`Builder::counter_body`] gives its
+    /// material.
     pub fn material(mut self, material: Material) -> Builder {
         self.material = Some(material);
         self
     }
 
-    /// The material of the other body, the one with the shape: elastic or creeping too. Both surfaces then give
-    /// way, u is the sum of their displacements, and C(t) that of their compliances.
+    /// The material of the other body, the one with the shape: elastic or creeping too. Both surfaces then
+    /// deform: u is the sum of their displacements, and C(t) that of their compliances.
     pub fn counter_body(mut self, material: Material) -> Builder {
         self.counter_body = Some(material);
         self
     }
 
-    /// The times \[s\] over which the material is wanted, from the shortest that matters to the end of the
-    /// scene, both after the load first acts. Only rheologies without an exact exponential series
-    /// ([`PowerLaw`](crate::rheology::PowerLaw), closures) look at it: their series is fitted over these times to
-    /// within [`Settings::series_tolerance`], and a step that ends later fails with
-    /// [`Error::BeyondMaterial`].
+    /// The loading times \[s\] over which the material is needed, from the shortest that matters to the end of the scene,
+    /// both after the load first acts. Rheologies without an exact exponential series
+    /// ([`PowerLaw`](crate::rheology::PowerLaw), closures) cannot be built without it: their series is fitted over these
+    /// times to within [`Settings::series_tolerance`], and a step that ends later fails with [`Error::BeyondMaterial`]. All
+    /// others ignore it.
     ///
-    /// Bodies without elastic response can start with a jump of the load that presses them: what they have crept by the
-    /// shortest time counts as immediate.
+    /// The creep up to the shortest time counts as immediate, so that bodies without elastic response can start with a jump
+    /// of the load.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -114,8 +114,8 @@ impl Builder {
         self
     }
 
-    /// [`Builder::times`] for a run along `history` to the time `until` \[s\]: to its end, from a millionth of it, or of the
-    /// shortest time between two corners of the load.
+    /// [`Builder::times`] of a run along `history` that ends at `until` \[s\]: from a millionth of the shortest time between
+    /// two corners of the load, or of the whole run if there are none, to its end, as far as the material is known.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -142,7 +142,7 @@ impl Builder {
         self
     }
 
-    /// Choices other than the defaults.
+    /// Settings other than the defaults.
     pub fn settings(mut self, settings: Settings) -> Builder {
         self.settings = settings;
         self
@@ -151,12 +151,15 @@ impl Builder {
     /// Makes the contact: undisturbed bodies at time 0, without load.
     ///
     /// # Errors
-    /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a rheology is known until NaN, a setting is out of range, the kernel was made
-    /// for another grid, there is none for its cells ([`InfluenceKernel::half_space`]), no series of the material over
-    /// [`Builder::times`] is within the tolerance, these are more than 50 decades, or the rectangle rule was chosen for a
-    /// rheology without elastic response. If there is no memory for it: [`Error::OutOfMemory`], before any is taken; a scene that
-    /// would fit the machine, but not beside what else runs there, may be granted all the same by systems that promise more
-    /// than they have, as Linux does. If more than 2³² − 1 cells would be computed.
+    /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a rheology is known until NaN, a setting is
+    /// out of range, the kernel was made for another grid or cannot be made for its cells
+    /// ([`InfluenceKernel::half_space`]), or the rectangle rule was chosen for a rheology without elastic response.
+    ///
+    /// If a rheology without an exact series is given no [`Builder::times`] ([`Error::NoExponentialSeries`]), no series is
+    /// within the tolerance, or the times span more than 50 decades.
+    ///
+    /// If there is not enough memory ([`Error::OutOfMemory`], before any is taken; systems that overcommit memory, as Linux
+    /// does, may grant more than is free), or more than 2³² − 1 cells would be computed.
     pub fn build(mut self) -> Result<ViscoelasticContact> {
         self.settings.validate()?;
         let bodies = self.bodies()?;
@@ -188,13 +191,13 @@ impl Builder {
         Ok(ViscoelasticContact::new(scene, domain))
     }
 
-    /// What the contact takes, before it is built: no field is made for it. Which cells are computed follows from the gap, as
-    /// [`Settings::symmetry`] does; with [`Settings::window`] it is the most that the contact can take when its
-    /// window has grown. A load that breaks the symmetry has the cells computed that were its mirror images: for what
-    /// that takes, set it to false. Where there is not even memory for the gap, it counts as not symmetric.
+    /// The memory that the contact will take; no field is allocated to find out. The cells that are computed follow from the
+    /// symmetry of the gap ([`Settings::symmetry`]); with [`Settings::window`] the figure is that of the largest window. A
+    /// load that breaks the symmetry makes the contact compute the mirror images too: set symmetry to false for what that
+    /// takes. Where there is not even memory for the gap, it counts as asymmetric.
     ///
-    /// A series of the material over [`Builder::times`] is fitted for it, in a tenth of a second. Threads are those of the pool that it
-    /// is called in.
+    /// A series of the material over [`Builder::times`] is fitted for it, in a tenth of a second. Threads are those of the
+    /// pool in which it is called.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -207,14 +210,14 @@ impl Builder {
     /// let memory = scene(256)?.memory()?;
     /// assert_eq!(memory.computed_cells, 128 * 128);
     /// assert!(memory.total() < 6_000_000, "{memory}");
-    /// // more than any machine has: told, and refused
+    /// // more than any machine has: reported, and rejected
     /// assert!(scene(1 << 25)?.memory()?.total() > 1 << 57);
     /// assert!(matches!(scene(1 << 25)?.build(), Err(Error::OutOfMemory { .. })));
     /// # Ok::<(), Error>(())
     /// ```
     ///
     /// # Errors
-    /// As [`Builder::build`], but for what is wrong with a gap, and for memory.
+    /// As [`Builder::build`], except for invalid gaps and for memory.
     pub fn memory(&self) -> Result<Memory> {
         self.settings.validate()?;
         let bodies = self.bodies()?;

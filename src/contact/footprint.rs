@@ -1,4 +1,4 @@
-//! What a contact takes, told before it is built.
+//! The memory that a contact takes, computed before it is built.
 
 use std::fmt;
 
@@ -13,40 +13,40 @@ use crate::memory;
 
 /// Bytes that a contact takes, made by [`Builder::memory`](crate::contact::Builder::memory) before it is built.
 ///
-/// Bytes for each cell that is computed, by default:
+/// Bytes per computed cell, by default:
 ///
 /// | | |
 /// |---|---|
-/// | state, and the step being tried | 72 |
-/// | history | 8 for each relaxation time (40 + 16 for each with [`Frame::Indenter`](crate::contact::Frame::Indenter); direct sums: 8 for each step taken) |
-/// | solver | 37, and 8 for each body; [`Solver::PolonskyKeer`]: 28 |
-/// | its preconditioner | 11: a quarter of a spectrum of the grid without padding, 2, and what it works in, 9 |
-/// | kernel | 25: a quarter of the padded spectrum, 8, and what it works in, 17 |
-/// | where threads share the transforms | 16 + 8 more |
+/// | state and trial step | 72 |
+/// | history | 8 per relaxation time (40 + 16 per relaxation time with [`Frame::Indenter`](crate::contact::Frame::Indenter); direct sums: 8 per step taken) |
+/// | solver | 37, and 8 per body; [`Solver::PolonskyKeer`]: 28 |
+/// | its preconditioner | 11: a quarter of a spectrum of the grid without padding, 2, and work space, 9 |
+/// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
+/// | transforms on several threads | 16 + 8 more |
 ///
-/// and for each cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are several
-/// bodies. Transforms have tables as long as they are, which counts in line contacts: 144 bytes a cell.
+/// and per cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are several
+/// bodies. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.
 ///
-/// Counted allocations agree to 5 % and a few kB (`tests/memory.rs`). Not in it: the displacement where not all cells are computed, made
-/// when it is first asked for, with a kernel for the whole grid; the relaxation times of a series that the first step
-/// fits; 8 bytes a computed cell for the first load that tilts, or presses several bodies, and 24 for the fall-back of the solver, which
-/// few contacts need; [snapshots](crate::contact::Snapshot); the old state, kept during a step that moves to a larger window.
+/// Counted allocations agree to 5 % and a few kB (a test asserts it). Not included: the displacement where not all cells are
+/// computed, made on first use, with a kernel for the whole grid; 8 bytes per computed cell from the first load that tilts,
+/// or presses several bodies; [snapshots](crate::contact::Snapshot); the old state during a step that moves to a larger
+/// window.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Memory {
-    /// Cells that are computed: with [`Settings::symmetry`] perhaps the half or the quarter of the grid, with
+    /// Cells that are computed: with [`Settings::symmetry`] perhaps half or a quarter of the grid, with
     /// [`Settings::window`] at most.
     pub computed_cells: usize,
-    /// Bytes of the gap, and of what users see of the pressure, on the whole grid.
+    /// Bytes of gap and pressure on the whole grid.
     pub grid: u64,
-    /// Bytes of the state, and of the step being tried.
+    /// Bytes of state and trial step.
     pub state: u64,
-    /// Bytes of the memory of the bodies.
+    /// Bytes of the past of the bodies.
     pub history: u64,
     /// Bytes of the solver and its preconditioner.
     pub solver: u64,
-    /// Bytes of what the transforms of the kernel work in, and of its spectrum, unless another contact with the same kernel
-    /// has made that already.
+    /// Bytes of the work space of the kernel, and of its spectrum, unless another contact with the same kernel has made
+    /// that already.
     pub kernel: u64,
     /// Bytes that each further step adds: those of direct sums, up to [`Settings::history_limit`].
     pub each_step: u64,
@@ -60,7 +60,7 @@ impl Memory {
     }
 }
 
-/// Says the bytes in MB, and of what: "11.2 MB on 65536 cells computed (…)".
+/// The memory in MB, in total and by part.
 impl fmt::Display for Memory {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let mb = |bytes: u64| bytes as f64 * 1e-6;
@@ -80,7 +80,7 @@ impl fmt::Display for Memory {
     }
 }
 
-/// What the bytes of a contact depend on, but for the cells that are computed.
+/// What the memory of a contact depends on, besides the cells that are computed.
 pub(super) struct Footprint<'a> {
     /// Cells of the whole grid.
     pub(super) all: usize,
@@ -124,20 +124,20 @@ impl Footprint<'_> {
             // three fields, and a list of cells
             Solver::PolonskyKeer => (24 + 4) * n,
         };
-        let told = |bytes: u128| u64::try_from(bytes).unwrap_or(u64::MAX);
+        let saturated = |bytes: u128| u64::try_from(bytes).unwrap_or(u64::MAX);
         Memory {
             computed_cells: count,
-            grid: told(grid),
+            grid: saturated(grid),
             // pressure and K p now, before and tried; displacement now and before; the gap
-            state: told(72 * n),
-            history: told(history + far),
-            solver: told(solver),
-            kernel: told(kernel),
-            each_step: if self.memory.grows() { told(8 * n) } else { 0 },
+            state: saturated(72 * n),
+            history: saturated(history + far),
+            solver: saturated(solver),
+            kernel: saturated(kernel),
+            each_step: if self.memory.grows() { saturated(8 * n) } else { 0 },
         }
     }
 
-    /// Refuses what solvers cannot number, and what there is no memory for, `besides` included \[bytes\].
+    /// Rejects more cells than solvers can number, and more memory than there is, `besides` included \[bytes\].
     pub(super) fn check(&self, computed: Computed, besides: u64) -> Result<()> {
         let memory = self.on(computed);
         if u32::try_from(memory.computed_cells).is_err() {
@@ -163,7 +163,7 @@ impl Footprint<'_> {
     }
 }
 
-/// Axes about whose middle the gap of all bodies together is even, bit by bit.
+/// Axes about whose middle the gap of all bodies together is even, bitwise.
 pub(super) fn symmetry_of(gaps: &[&Vec<f64>], cells: [usize; 2]) -> [bool; 2] {
     // the lowest body, and the first of several as low
     let lowest = |k: usize| {

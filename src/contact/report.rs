@@ -1,4 +1,4 @@
-//! What one step did.
+//! Reports of steps.
 
 use std::fmt;
 
@@ -14,18 +14,18 @@ pub struct StepReport {
     pub dt: f64,
     /// Iterations of the solver.
     pub iterations: usize,
-    /// Those of them that the slower, sure fall-back took.
+    /// Those of them taken by the fall-back, which is slower and always descends.
     pub fallback_iterations: usize,
-    /// Convolutions with the influence kernel on the cells that are computed: padded transforms forth and back.
+    /// Convolutions with the influence kernel on the cells that are computed: forward and inverse padded transforms.
     pub convolutions: usize,
     /// Applications of the preconditioner, each on an unpadded grid of a quarter of the size.
     pub preconditioner_applications: usize,
     /// Residual reached, in the measure of [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub residual: f64,
-    /// Estimated error in time of the step, relative to the displacement; 0 for fixed steps, which nothing is estimated
-    /// for, and for the first step after a jump or a corner of the load.
+    /// Estimated error in time of the step, relative to the displacement; 0 for fixed steps, for which nothing is
+    /// estimated, and for the first step after a jump or a corner of the load.
     pub time_error: f64,
-    /// What the step should be looked at for, though it succeeded; mostly nothing.
+    /// Reasons why the result may be less accurate than expected; mostly none.
     pub warnings: Warnings,
     /// Cells in contact.
     pub contact_cells: usize,
@@ -38,13 +38,13 @@ pub struct StepReport {
 }
 
 impl StepReport {
-    /// The transforms of the step in units of one convolution, a preconditioner counting a quarter.
+    /// The transforms of the step in units of one convolution; a preconditioner application counts a quarter.
     pub fn convolution_equivalents(&self) -> f64 {
         self.convolutions as f64 + 0.25 * self.preconditioner_applications as f64
     }
 }
 
-/// A line for logs: what came of the step, what it cost, and its warnings.
+/// A line for logs: the result of the step, its cost, and its warnings.
 ///
 /// ```
 /// use viscocontact::prelude::*;

@@ -1,8 +1,8 @@
-//! The choices of a run.
+//! Settings of a contact.
 
 use crate::error::{Error, Result, within};
 
-/// How a contact is computed. Plain fields with defaults; checked when a contact is built.
+/// How a contact is computed. Plain fields with defaults, validated when a contact is built.
 ///
 /// ```
 /// use viscocontact::contact::{Settings, TimeRule};
@@ -14,35 +14,34 @@ use crate::error::{Error, Result, within};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::exhaustive_structs, reason = "users write it with ..Default::default()")]
 pub struct Settings {
-    /// When the contact problem of a step counts as solved: rms |h| in contact, relative to rms (c K p)
-    /// there; penetration outside may be ten times that (default: 1e-6; range \[1e-13, 0.1\]).
+    /// Tolerance of the contact problem of a step: rms |h| in contact, relative to rms (c K p) there; the penetration
+    /// outside may be ten times that (default: 1e-6; range \[1e-13, 0.1\]).
     pub tolerance: f64,
     /// Iterations a step may take before it fails (default: 1000; range: 1 or more).
     pub max_iterations: usize,
     /// The solver of the contact problem (default: [`Solver::ActiveSet`]).
     pub solver: Solver,
-    /// The rule that advances the bodies in time (default: [`TimeRule::Exponential`]).
+    /// The time rule of the hereditary integral (default: [`TimeRule::Exponential`]).
     pub time_rule: TimeRule,
     /// What happens when contact reaches the edge of the grid (default: [`Edge::Refuse`]).
     pub edge: Edge,
-    /// Relative error of the creep compliance allowed to an exponential series that is fitted to a rheology
-    /// without an exact one (default: 1e-4; range \[1e-8, 0.1\]).
+    /// Relative error of the creep compliance of an exponential series that is fitted to a rheology without an exact one (default: 1e-4; range \[1e-8, 0.1\]).
     pub series_tolerance: f64,
-    /// Memory that a direct sum may fill with its past, one field of 8 bytes a computed cell for each step; a step
-    /// beyond it fails \[bytes\] (default: 2 GiB).
+    /// Memory that a direct sum may use for past steps, 8 bytes per computed cell and step; a step beyond it fails
+    /// \[bytes\] (default: 2 GiB).
     pub history_limit: usize,
-    /// Whether half or a quarter of the cells is computed where gap and load are even in x1, x2, or both, bit by bit, and the
-    /// number of cells along that axis is even (default: true). The answer is the same but for rounding.
+    /// Whether only half or a quarter of the cells is computed where gap and load are even in x1, x2, or both, bitwise, and
+    /// the number of cells along that axis is even (default: true). The answer is the same except for rounding.
     pub symmetry: bool,
-    /// Whether only the rectangle that the bodies can touch in is computed, and the rest of the grid when it is asked for
-    /// (default: true). The rectangle grows with the contact; a step in which it does takes memory. Contacts that are
-    /// advanced by direct sums are computed whole.
+    /// Whether only the rectangle in which the bodies can touch is computed, and the rest of the grid on demand (default:
+    /// true). The rectangle grows with the contact; a step in which it grows allocates memory. With direct sums the whole
+    /// grid is computed.
     pub window: bool,
     /// What the grid is fixed to (default: [`Frame::Bodies`]).
     pub frame: Frame,
 }
 
-/// What the grid is fixed to. Nothing to choose where nothing moves along the surface.
+/// What the grid is fixed to. It only matters where something moves along the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Frame {
@@ -53,8 +52,8 @@ pub enum Frame {
     Bodies,
     /// The indenter: the bodies move under the grid, by whole cells
     /// ([`ViscoelasticContact::step_over`](crate::ViscoelasticContact::step_over)), endlessly. A step costs one convolution
-    /// more, and a further relaxation time nothing but two fields and their recursion. Computed on the whole grid, and by the
-    /// exponential rule: a rheology without an exact series needs [`Builder::times`](crate::contact::Builder::times).
+    /// more; a further relaxation time costs two fields and their recursion. The whole grid is computed, by the exponential
+    /// rule.
     Indenter,
 }
 
@@ -71,12 +70,12 @@ pub enum Solver {
     PolonskyKeer,
 }
 
-/// The rule that advances the bodies in time.
+/// The time rule of the hereditary integral.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum TimeRule {
     /// Exponential integration of the relaxation form: second order (first for a body without elastic response, as
-    /// Kelvin–Voigt), stable for steps of any length, one field for each relaxation time. A rheology without an exact
+    /// Kelvin–Voigt), stable for steps of any length, one field per relaxation time. A rheology without an exact
     /// exponential series gets a fitted one: see [`Builder::times`](crate::contact::Builder::times).
     #[default]
     Exponential,
@@ -84,8 +83,8 @@ pub enum TimeRule {
     /// a step is longer than the relaxation time of a Maxwell body and diverges beyond twice that; needs
     /// an elastic response.
     Rectangle,
-    /// A direct sum over all past steps with the rheology's own J(t), no series: first order, stable for steps
-    /// of any length, one field for each past step ([`Settings::history_limit`]).
+    /// A direct sum over all past steps with the rheology's own J(t), without a series: first order, stable for steps of
+    /// any length, one field per past step ([`Settings::history_limit`]).
     Backward,
 }
 
@@ -94,7 +93,7 @@ pub enum TimeRule {
 #[non_exhaustive]
 pub enum Edge {
     /// The step fails with [`Error::ContactAtEdge`]: the bodies go on beyond the grid, so that the
-    /// answer would be wrong.
+    /// result would be wrong.
     #[default]
     Refuse,
     /// The step goes on: the rigid body ends where the grid does.
@@ -119,8 +118,8 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// The algorithm of the source paper whole: Polonsky–Keer, the rectangle rule, direct sums. The
-    /// baseline of every comparison.
+    /// The whole algorithm of the source paper: Polonsky–Keer solver, rectangle rule, direct sums. The baseline of every
+    /// comparison.
     pub fn paper() -> Settings {
         Settings {
             solver: Solver::PolonskyKeer,

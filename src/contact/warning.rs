@@ -1,12 +1,12 @@
-//! What a step that succeeded should nevertheless be looked at for.
+//! Warnings about steps that succeeded.
 
 use std::fmt;
 
-/// Something about a step that its answer may suffer from.
+/// A reason why the result of a step may be less accurate than expected.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Warning {
-    /// Contact has come within two cells of an edge of the grid beyond which the bodies go on: a little more load and a step
+    /// Contact has come within two cells of an edge of the grid beyond which the bodies extend: with a little more load a step
     /// fails with [`Error::ContactAtEdge`](crate::Error::ContactAtEdge). Enlarge the grid. Only with
     /// [`Edge::Refuse`](crate::contact::Edge::Refuse).
     NearEdge,
@@ -14,28 +14,28 @@ pub enum Warning {
     /// it, tells [`ViscoelasticContact::spatial_error`](crate::ViscoelasticContact::spatial_error). A sphere's approach, greatest
     /// pressure and contact area err by up to 1.3 %, 4 % and 8 % with contacts of 4 cells across, by 0.5 %, 1.5 % and 2.5 % with 8.
     FewCells,
-    /// The bodies remember for longer than their material was measured: a table was told to go on beyond its data
+    /// The loading time exceeds that over which the material was measured: a table is extrapolated beyond its data
     /// ([`TabulatedCreep::extrapolated`](crate::rheology::TabulatedCreep::extrapolated)).
     Extrapolated,
-    /// The step is shorter than the material is known for: what it creeps within counts as elastic.
+    /// The step is shorter than the times for which the material is known: creep within it counts as elastic.
     FasterThanMaterial,
-    /// One more step of this length would look beyond what is known of the material, and fail with
+    /// One more step of this length would exceed the range in which the material is known, and fail with
     /// [`Error::BeyondMaterial`](crate::Error::BeyondMaterial).
     NearEndOfMaterial,
     /// The time rule oscillates at steps of this length. The rectangle rule does where a step lets the bodies creep by more than
     /// they yield at once, C(Δ) > 2 C(0), which is Δ > τ on a Maxwell body; on fluids it diverges further on.
     Rings,
-    /// The solver did not get on, and its slow fall-back took over for a while:
-    /// [`StepReport::fallback_iterations`](crate::contact::StepReport::fallback_iterations). The answer is as good as any; if it
-    /// happens often, take smaller steps, or a larger tolerance.
+    /// The solver stagnated, and its slow fall-back took over for a while:
+    /// [`StepReport::fallback_iterations`](crate::contact::StepReport::fallback_iterations). The result is
+    /// as accurate as any; if this happens often, take smaller steps or a larger tolerance.
     FallBack,
-    /// The table of the material leaves its creep uncertain, or does not look like that of a linear body:
-    /// [`Material::fit_reports`](crate::rheology::Material::fit_reports) tells which and why, by
-    /// [`FitReport::warning`](crate::rheology::FitReport::warning).
+    /// The table of the material leaves its creep uncertain, or does not look like that of a linear body: see
+    /// [`FitReport::warning`](crate::rheology::FitReport::warning) of each of the
+    /// [`Material::fit_reports`](crate::rheology::Material::fit_reports).
     UncertainMaterial,
-    /// The gap is a sum of numbers that round by more than [`Settings::tolerance`](crate::contact::Settings::tolerance) of how far
-    /// the surface yields, as where next to no pressure is left on bodies that once were pressed much harder: pressure and force are
-    /// less certain than the residual says.
+    /// The gap is a sum of numbers whose rounding exceeds [`Settings::tolerance`](crate::contact::Settings::tolerance) times
+    /// the displacement due to the pressure, as where next to no pressure is left on bodies that once were pressed much
+    /// harder: pressure and force are less certain than the residual suggests.
     Rounding,
 }
 
@@ -73,7 +73,7 @@ impl fmt::Display for Warning {
     }
 }
 
-/// The warnings of a step, none, one or several; it takes no memory of its own.
+/// The warnings of a step, none, one or several. Stored as a bit set; no allocation.
 ///
 /// ```
 /// use viscocontact::contact::Warning;
@@ -96,23 +96,23 @@ pub struct Warnings {
 }
 
 impl Warnings {
-    /// This set with `warning`, if it `applies`.
+    /// This set, and `warning` if it `applies`.
     #[must_use]
     pub(crate) fn with(self, warning: Warning, applies: bool) -> Warnings {
         Warnings { bits: self.bits | if applies { warning.bit() } else { 0 } }
     }
 
-    /// Whether there is nothing to warn of.
+    /// Whether there is no warning.
     pub fn is_empty(self) -> bool {
         self.bits == 0
     }
 
-    /// How many there are.
+    /// The number of warnings.
     pub fn len(self) -> usize {
         self.bits.count_ones() as usize
     }
 
-    /// Whether `warning` is one of them.
+    /// Whether `warning` is in the set.
     pub fn contains(self, warning: Warning) -> bool {
         self.bits & warning.bit() != 0
     }
@@ -122,7 +122,7 @@ impl Warnings {
         Warning::ALL.into_iter().filter(move |&warning| self.contains(warning))
     }
 
-    /// What is in either set: the warnings of a run, from those of its steps.
+    /// The union of two sets: the warnings of a run, from those of its steps.
     #[must_use]
     pub fn union(self, other: Warnings) -> Warnings {
         Warnings { bits: self.bits | other.bits }

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::rheology::Material;
 
-/// At which end of its step an increment of pressure is thought to have happened.
+/// The end of a step to which its increment of pressure is assigned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Weighting {
@@ -14,7 +14,7 @@ pub(crate) enum Weighting {
     Start,
 }
 
-/// Cells summed together, so that they stay in the fastest cache while the past passes by.
+/// Cells summed together, so that they stay in the fastest cache while the increments stream by.
 const BLOCK: usize = 2048;
 
 /// The past as all increments of v = K p: one field per step, no transforms.
@@ -51,7 +51,7 @@ impl DirectSum {
             return Err(Error::HistoryFull { time, steps: self.increments.len(), bytes, limit });
         }
         let age = if self.weighting == Weighting::Start { dt } else { 0.0 };
-        // while nothing has happened, a step may be longer than the material is known
+        // before the first increment, a step may be longer than the material is known for
         let age = if self.increments.is_empty() { age.min(material.known_until()) } else { age };
         let newest = material.checked_compliance(age, (0.0, material.contact_compliance(0.0)))?;
         if newest == 0.0 && age > 0.0 {

@@ -1,4 +1,4 @@
-//! Exponential integration of the relaxation form.
+//! Exponential integration of the relaxation form of the hereditary integral.
 
 use std::ops::Range;
 
@@ -16,8 +16,8 @@ use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 ///
 /// Second order in Δ, positive, and L-stable: for Δ → ∞ the response tends to the relaxed one.
 ///
-/// The last line waits until the next step is predicted, so that every q_i passes through the processor once
-/// a step: with many relaxation times this is what a step costs beyond its contact problem.
+/// The last line waits until the next step is predicted, so that every q_i passes through the processor once per step: with
+/// many relaxation times this is the cost of a step besides its contact problem.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Exponential {
@@ -31,12 +31,12 @@ pub(crate) struct Exponential {
     waiting: bool,
 }
 
-/// Cells worked on together, so that what the branches share stays in the fastest cache. With 30 branches at 256² cells
-/// a step takes 1.1 times as long as with one; 1.4 times with each branch an array of its own, whose beginnings the
-/// memory has to be asked for block after block.
+/// Cells processed together, so that what the branches share stays in the fastest cache. With 30 branches at 256² cells a
+/// step takes 1.1 times as long as with one; 1.4 times if each branch is an array of its own, whose start must be fetched
+/// from memory for every block.
 const BLOCK: usize = 512;
-/// e^(−700) is near the least number with all its digits: what decays further is gone.
-const SPENT: f64 = 700.0;
+/// e^(−700) is near the smallest normal number: what decays further counts as zero.
+const MAX_EXPONENT: f64 = 700.0;
 
 impl Exponential {
     /// The undisturbed past of a body with contact compliance `creep` on `cells` cells.
@@ -60,7 +60,7 @@ impl Exponential {
         Exponential::undisturbed(self.relaxation.clone(), cells)
     }
 
-    /// Lets the fields follow the step committed last, whose ends are `before` and `displacement`.
+    /// Updates the fields with the step committed last, from `before` to `displacement`.
     pub(crate) fn settle(&mut self, before: &[f64], displacement: &[f64]) {
         if !std::mem::take(&mut self.waiting) {
             return;
@@ -102,7 +102,7 @@ impl Exponential {
         self.factors.len()
     }
 
-    /// Where the field q_i of so many cells lies, piece by piece.
+    /// The ranges of the field q_i.
     fn pieces(branches: usize, i: usize, cells: usize) -> impl Iterator<Item = Range<usize>> {
         (0..cells.div_ceil(BLOCK)).map(move |block| {
             let width = BLOCK.min(cells - block * BLOCK);
@@ -137,7 +137,7 @@ impl Exponential {
         carried
     }
 
-    /// Whether there is a past at all: an elastic body has none.
+    /// Whether there is a past: an elastic body has none.
     pub(crate) fn remembers(&self) -> bool {
         !self.factors.is_empty() || self.relaxation.viscosity() > 0.0
     }
@@ -172,8 +172,8 @@ impl Exponential {
         c
     }
 
-    /// Calls `take` with c (E∞ u + Σ e^(−z_i) q_i), by how much a displacement that is left free recedes, on each cell that is
-    /// `wanted`; after [`Exponential::predict`] of the step.
+    /// Calls `take` with c (E∞ u + Σ e^(−z_i) q_i), by which a free displacement recedes in the step, for each cell that is
+    /// `wanted`; after [`Exponential::predict`].
     pub(crate) fn recovery(
         &self,
         c: f64,
@@ -199,7 +199,7 @@ impl Exponential {
         for (factor, &(modulus, tau)) in self.factors.iter_mut().zip(self.relaxation.terms()) {
             let z = dt / tau;
             let w = if z > 0.0 { -(-z).exp_m1() / z } else { 1.0 };
-            *factor = (if z < SPENT { (-z).exp() } else { 0.0 }, modulus * w);
+            *factor = (if z < MAX_EXPONENT { (-z).exp() } else { 0.0 }, modulus * w);
             stiffness += factor.1;
         }
         if self.relaxation.viscosity() > 0.0 {
@@ -208,7 +208,7 @@ impl Exponential {
         1.0 / stiffness
     }
 
-    /// Takes the step that was predicted last into the past. The fields follow at the next prediction.
+    /// Accepts the step predicted last. The fields follow at the next prediction.
     pub(crate) fn commit(&mut self) {
         self.committed.copy_from_slice(&self.factors);
         self.waiting = true;

@@ -8,7 +8,7 @@ use crate::Grid;
 const LAST_TWO: f64 = 0.6;
 const THREE_BEFORE: f64 = 0.4;
 
-/// The contact ends less than a cell beyond the centre of the last; an estimate farther out than this is none.
+/// The contact ends less than a cell beyond the centre of the last; estimates farther out than this are discarded.
 const TOO_FAR: f64 = 1.3;
 
 /// Pressures that are mirror images of each other do not rise, whatever they are rounded to.

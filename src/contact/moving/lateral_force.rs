@@ -1,4 +1,4 @@
-//! What it takes to move an indenter along the surface.
+//! The force that moves an indenter along the surface.
 
 use crate::contact::viscoelastic::ViscoelasticContact;
 
@@ -6,11 +6,11 @@ impl ViscoelasticContact {
     /// The force \[N\] along x1 and x2 that moves `shape` along the surface without friction: ∬ p ∇h, less the tilt times the
     /// normal force. `shape` is that of the (first) indenter where it is now, or the part of it that moves.
     ///
-    /// It vanishes on elastic bodies, and in any contact that is even. Times the velocity of the indenter it is the power
-    /// that the bodies dissipate, or store: over its slope, p does the work p (∂u/∂t − dω/dt). Over the normal force it is
-    /// the coefficient of hysteretic friction.
+    /// It vanishes on elastic bodies, and in any even contact. Multiplied by the velocity of the indenter, it is the power that
+    /// the bodies dissipate or store: on a slope, p does the work p (∂u/∂t − dω/dt). Divided by the normal force, it is the
+    /// coefficient of hysteretic friction.
     ///
-    /// The pressure being constant on a cell, the slope counts by what the gap rises by from side to side, as
+    /// The pressure being constant on a cell, the slope is the rise of the gap from side to side, as given by
     /// [`Geometry::initial_gap`](crate::geometry::Geometry::initial_gap) has it: of a map that is interpolated, as well as that is, so that
     /// a rough slider with waves of 2 cells shows 3e-4 of the normal force on an elastic body, and with waves of 8 cells 2e-5. Where the rise is not
     /// finite, beside the rim of a face, there is no slope to press against: what a rim carries is in

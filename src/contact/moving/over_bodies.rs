@@ -7,12 +7,12 @@ use crate::error::{Error, Result, non_negative};
 use crate::load::Load;
 
 impl ViscoelasticContact {
-    /// A step in which the indenter, and the grid with it, moves over the bodies by so many whole cells along x1 and x2: what lay
-    /// under the cell `[i, j] + cells` comes to lie under `[i, j]`. At a velocity v along x1 one cell a step takes dt = Δ1/v.
+    /// A step in which the indenter, and the grid with it, moves over the bodies by whole cells along x1 and x2: the material
+    /// under the cell `[i, j] + cells` moves under `[i, j]`. At a velocity v along x1, one cell per step takes dt = Δ1/v.
     ///
-    /// The bodies come in undisturbed from beyond the edge they move in from, or come round where they are periodic. What
-    /// moves out beyond the other edge is forgotten: the grid should be long enough behind the contact for the bodies to
-    /// recover, or for what is left to be far away. Needs [`Frame::Indenter`].
+    /// Undisturbed material enters across one edge of the grid; where the bodies are periodic, it comes round. The past of
+    /// what leaves across the other edge is forgotten: the grid should be long enough behind the contact for the bodies to
+    /// recover, or for the remaining displacement to be far away. Needs [`Frame::Indenter`].
     ///
     /// ```
     /// use viscocontact::prelude::*;

@@ -18,47 +18,47 @@ use crate::load::LoadHistory;
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct StepControl {
     pub(super) tolerance: f64,
-    /// Length of the next step; `None` where the past says nothing about it.
+    /// Length of the next step; `None` where earlier steps do not suggest one.
     next: Option<f64>,
     /// Error over tolerance of the last step accepted.
     last: f64,
     /// ∂u/∂t in the last step and its length, 0 if there is none to compare with.
     rate: Vec<f64>,
-    /// Where that was computed.
+    /// The region of that field.
     region: Option<Region>,
     rate_dt: f64,
-    /// The time for which that was kept.
+    /// The time at which that was kept.
     kept_at: f64,
     /// Whether a jump or a corner lies between that step and the next.
     cornered: bool,
     /// Greatest strength of the load so far.
     strongest: f64,
-    /// Steps tried in vain.
+    /// Steps that were rejected.
     pub(super) rejected: u64,
 }
 
-/// Growth and shrinkage of a step, at most.
-const GROWTH: f64 = 3.0;
-const SHRINKAGE: f64 = 0.2;
-/// Part of the tolerance that a step aims at.
-const AIM: f64 = 0.9;
+/// Bounds of the change of the step length.
+const MAX_GROWTH: f64 = 3.0;
+const MAX_SHRINKAGE: f64 = 0.2;
+/// Safety factor of the step length.
+const SAFETY: f64 = 0.9;
 /// Exponents of the proportional and the integral control of an error that grows with Δ² (Hairer, Wanner, *Solving
 /// Ordinary Differential Equations II*, IV.2).
 const INTEGRAL: f64 = 0.35;
 const PROPORTIONAL: f64 = 0.1;
-/// Part of the error in time that the solver may add.
+/// Error of the solver relative to that in time.
 const SOLVER_SHARE: f64 = 0.02;
-/// Where the material alone says how long a step after a jump may be, its lengths are tried so many a decade, ...
-const TRIED: i32 = 4;
-/// ... over so many decades below the time that is left.
+/// The first step after a jump is chosen from the material alone: this many lengths per decade are tried, ...
+const LENGTHS_PER_DECADE: i32 = 4;
+/// ... over this many decades below the time that is left.
 const DECADES: i32 = 40;
-/// A body that creeps without an elastic response has no shortest time: its first step is this part of the time left.
-const FIRST_PART: f64 = 1e-6;
-/// Part of the estimate that a run really errs by, before and at most after the amplification by C(age)/C(Δ): see
+/// A body without elastic response has no shortest time: its first step is this fraction of the time left.
+const FIRST_FRACTION: f64 = 1e-6;
+/// Error of a run relative to the estimate, before amplification by C(age)/C(Δ), and the bound of the latter: see
 /// docs/accuracy.md.
-const SHARE: f64 = 0.25;
-const MOST_AMPLIFIED: f64 = 5.0;
-/// Loads below this part of the greatest so far are measured against it.
+const ERROR_OVER_ESTIMATE: f64 = 0.25;
+const MAX_AMPLIFICATION: f64 = 5.0;
+/// Loads below this fraction of the greatest so far are measured relative to that.
 const SMALL_LOAD: f64 = 0.05;
 
 impl StepControl {
@@ -82,20 +82,20 @@ impl StepControl {
         (self.next, self.last, self.cornered) = (None, 1.0, true);
     }
 
-    /// After a step of length `dt` that was cut for the sake of its end: takes up the length `wanted` again.
+    /// After a step of length `dt` that was cut short at a stop: returns to the length `wanted`.
     pub(super) fn resume(&mut self, wanted: f64, dt: f64) {
         if dt < wanted && self.last * (wanted / dt).powi(2) <= 1.0 {
             self.next = self.next.map(|next| next.max(wanted));
         }
     }
 
-    /// A step that the solver could not do is tried again at a fifth of its length.
+    /// Shortens a step that the solver could not solve to a fifth.
     pub(super) fn shorten(&mut self, dt: f64) {
-        self.next = Some(SHRINKAGE * dt);
+        self.next = Some(MAX_SHRINKAGE * dt);
         self.rejected += 1;
     }
 
-    /// The tolerance of the solver that suits.
+    /// The tolerance of the solver that matches that in time.
     pub(super) fn solver_tolerance(&self, wanted: f64) -> f64 {
         wanted.max(SOLVER_SHARE * self.tolerance)
     }
@@ -106,19 +106,19 @@ impl StepControl {
         Ok(wanted.min(left))
     }
 
-    /// The length of a step that the past says nothing about: the longest over which the creep after a jump, or after
-    /// a corner, is linear to within the tolerance.
+    /// The length of the first step after a jump or a corner: the longest over which the creep is linear to within the
+    /// tolerance.
     fn first(&self, scene: &Scene, state: &State, history: &dyn LoadHistory, left: f64) -> Result<f64> {
         let (now, jumped) = (state.clock.time, state.clock.last_dt == 0.0);
         // a paraboloid answers with the power 2/3 of force and compliance
         let compliance = |t: f64| scene.material.contact_compliance(t).powf(2.0 / 3.0);
         let glassy = compliance(0.0);
         if glassy == 0.0 {
-            return Ok(FIRST_PART * left);
+            return Ok(FIRST_FRACTION * left);
         }
         let held = state.loads[0].strength();
-        for k in 0..=TRIED * DECADES {
-            let dt = left * 10f64.powf(-f64::from(k) / f64::from(TRIED));
+        for k in 0..=LENGTHS_PER_DECADE * DECADES {
+            let dt = left * 10f64.powf(-f64::from(k) / f64::from(LENGTHS_PER_DECADE));
             let creep = compliance(dt);
             let deviation = if jumped {
                 (compliance(0.5 * dt) - 0.5 * (glassy + creep)) / creep
@@ -133,8 +133,8 @@ impl StepControl {
         Ok(left * 10f64.powi(-DECADES))
     }
 
-    /// How far the load strays from a straight line between now and `time`, relative to itself or to a part of the
-    /// greatest so far. Refuses what is not a load, wherever it looks.
+    /// How far the load strays from a straight line between now and `time`, relative to itself or to a
+    /// fraction of the greatest so far. Rejects invalid loads of the history.
     pub(super) fn watch(&self, history: &dyn LoadHistory, now: f64, time: f64) -> Result<f64> {
         let (start, end) = (history.at(now).validated_at(now)?, history.before(time).validated_at(time)?);
         let scale = start.strength().max(end.strength()).max(SMALL_LOAD * self.strongest);
@@ -204,19 +204,19 @@ impl StepControl {
         let compliance = |t: f64| scene.material.contact_compliance(t);
         let age = state.clock.time - state.clock.undisturbed_until;
         let (old, young) = (compliance(age + dt), compliance(dt));
-        SHARE * if old > young { (old / young).min(MOST_AMPLIFIED) } else { 1.0 }
+        ERROR_OVER_ESTIMATE * if old > young { (old / young).min(MAX_AMPLIFICATION) } else { 1.0 }
     }
 
-    /// Takes note of a step of length `dt` with the given error; says whether it may stand.
+    /// Chooses the length of the next step after one of length `dt` with the given error; whether that is accepted.
     pub(super) fn judge(&mut self, dt: f64, error: f64) -> bool {
         let ratio = (error / self.tolerance).max(1e-10);
         let accepted = ratio <= 1.0;
         let factor = if accepted {
-            AIM * ratio.powf(-INTEGRAL) * (self.last / ratio).powf(PROPORTIONAL)
+            SAFETY * ratio.powf(-INTEGRAL) * (self.last / ratio).powf(PROPORTIONAL)
         } else {
-            AIM * ratio.powf(-0.5)
+            SAFETY * ratio.powf(-0.5)
         };
-        self.next = Some(dt * factor.clamp(SHRINKAGE, if accepted { GROWTH } else { 0.9 }));
+        self.next = Some(dt * factor.clamp(MAX_SHRINKAGE, if accepted { MAX_GROWTH } else { 0.9 }));
         if accepted {
             self.last = ratio.max(1e-3);
         } else {

@@ -5,26 +5,26 @@ use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 
 impl Region {
-    /// Takes its share out of a field on the whole grid.
+    /// The part of a field on the whole grid that belongs to the region.
     pub(crate) fn cut<V: Copy>(&self, whole: &[V]) -> Vec<V> {
-        self.share(whole).collect()
+        self.part(whole).collect()
     }
 
-    /// Writes its share of a gap over another.
+    /// Overwrites a gap with the part of another that belongs to the region.
     pub(crate) fn cut_gap_into(&self, gap: &Gap, own: &mut Gap) {
         own.datum = gap.datum;
-        own.above.iter_mut().zip(self.share(&gap.above)).for_each(|(own, value)| *own = value);
+        own.above.iter_mut().zip(self.part(&gap.above)).for_each(|(own, value)| *own = value);
         if let (Some(own), Some(owner)) = (&mut own.owner, &gap.owner) {
-            own.iter_mut().zip(self.share(owner)).for_each(|(own, value)| *own = value);
+            own.iter_mut().zip(self.part(owner)).for_each(|(own, value)| *own = value);
         }
     }
 
-    fn share<V: Copy>(&self, whole: &[V]) -> impl Iterator<Item = V> {
+    fn part<V: Copy>(&self, whole: &[V]) -> impl Iterator<Item = V> {
         let n2 = self.whole.cells()[1];
         (0..self.len()).map(|k| self.cell(k)).map(move |[i, j]| whole[i * n2 + j])
     }
 
-    /// Its share of a gap; nothing if that is all of it.
+    /// The part of a gap that belongs to the region; `None` if that is all of it.
     pub(crate) fn cut_gap(&self, gap: &Gap) -> Option<Gap> {
         (!self.is_whole()).then(|| Gap {
             datum: gap.datum,
@@ -33,7 +33,7 @@ impl Region {
         })
     }
 
-    /// Writes a field of its own over the cells, and the images of cells, that it belongs to.
+    /// Writes a field of the region over its cells, and their mirror images, of the whole grid.
     pub(crate) fn spread(&self, own: &[f64], whole: &mut [f64]) {
         let ([n1, n2], [_, m2]) = (self.whole.cells(), self.cells());
         for (i, row) in own.chunks_exact(m2).enumerate() {
@@ -50,13 +50,13 @@ impl Region {
         }
     }
 
-    /// A field on another region of the same grid from one of its own; `elsewhere` says what it is on cells that are
-    /// none of its own, nor images of them.
+    /// A field of the region on another one of the same grid; `elsewhere` gives its values on cells that are neither in this
+    /// region nor mirror images of it.
     pub(crate) fn carry<V: Copy>(&self, own: &[V], other: &Region, elsewhere: impl Fn(usize) -> V) -> Vec<V> {
         (0..other.len()).map(|k| self.find(other.cell(k)).map_or_else(|| elsewhere(k), |own_k| own[own_k])).collect()
     }
 
-    /// The least rectangle of the whole grid that holds the cells, and the images of cells, whose value in `own` is positive;
+    /// The smallest rectangle of the whole grid that holds all cells, mirror images included, with a positive value in `own`;
     /// `None` if there is none.
     pub(crate) fn reach(&self, own: &[f64]) -> Option<Extent> {
         let rows = own.chunks_exact(self.cells()[1]).enumerate().filter_map(|(i, row)| {
@@ -74,7 +74,7 @@ impl Region {
         Some(Extent { low, high })
     }
 
-    /// Number of cells on the edge of the whole grid whose value in `own` is positive; periodic axes have no edge.
+    /// Number of cells on the edge of the whole grid with a positive value in `own`; periodic axes have no edge.
     pub(crate) fn positive_on_edge(&self, own: &[f64], periodic: [bool; 2]) -> usize {
         let [m1, m2] = self.cells();
         let ends = |axis: usize, count: usize| {

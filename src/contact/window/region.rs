@@ -5,8 +5,8 @@ use crate::contact::window::extent::Extent;
 use crate::geometry::Gap;
 use crate::kernel::images;
 
-/// A rectangle of cells, by symmetry perhaps the half or the quarter of one: what happens elsewhere is its mirror image, or
-/// out of reach.
+/// A rectangle of cells; where the scene is symmetric, half or a quarter of it. Elsewhere fields are mirror images, or there
+/// is no contact.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Region {
@@ -26,14 +26,14 @@ impl Region {
         Region { whole: whole.clone(), grid: whole.part(first, cells), first, folded }
     }
 
-    /// All of `grid`, but for mirror images along folded axes, which have an even number of cells.
+    /// All of `grid`, except for mirror images along folded axes, which have an even number of cells.
     pub(crate) fn whole(grid: &Grid, folded: [bool; 2]) -> Region {
         let all = grid.cells();
         let first = [0, 1].map(|axis| if folded[axis] { all[axis] / 2 } else { 0 });
         Region::new(grid, folded, first, [0, 1].map(|axis| all[axis] - first[axis]))
     }
 
-    /// A region of suitable size that holds these cells of the whole grid, and the part `margin` of their number more.
+    /// A region of suitable size that holds these cells of the whole grid, and a fraction `margin` more along each axis.
     pub(crate) fn around(grid: &Grid, folded: [bool; 2], held: Extent, margin: f64) -> Region {
         let (mut first, mut cells) = ([0; 2], [0; 2]);
         for axis in 0..2 {
@@ -55,7 +55,7 @@ impl Region {
         Region::new(grid, folded, first, cells)
     }
 
-    /// A small one that holds the lowest cell of each body.
+    /// A small region that holds the lowest cell of each body.
     pub(crate) fn first_touched(grid: &Grid, folded: [bool; 2], gap: &Gap, bodies: usize) -> Region {
         Region::around(grid, folded, Region::lowest_cells(grid, gap, bodies), 0.0)
     }
@@ -83,7 +83,7 @@ impl Region {
         Region::around(&self.whole, still_folded, held, 0.0)
     }
 
-    /// Whether it is one of `grid`.
+    /// Whether it is a region of `grid`.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn is_of(&self, grid: &Grid) -> bool {
         let all = grid.cells();
