@@ -9,7 +9,7 @@ use crate::contact::region::Region;
 use crate::contact::reside::symmetry;
 use crate::contact::settings::{Frame, Settings, TimeRule};
 use crate::contact::viscoelastic::{Parts, ViscoelasticContact};
-use crate::error::{Error, Result};
+use crate::error::{Error, KernelError, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
 use crate::hereditary::{Direct, Exponential, History, Sources, Unfitted, Weighting};
 use crate::kernel::InfluenceKernel;
@@ -199,7 +199,8 @@ impl Builder {
         material.validate()?;
         let kernel = match &self.kernel {
             Some(kernel) if *kernel.grid() != self.grid => {
-                return Err(Error::KernelMismatch { kernel: kernel.grid().clone(), contact: self.grid.clone() });
+                let [kernel, contact] = [kernel.grid(), &self.grid].map(|grid| (grid.cells(), grid.spacing()));
+                return Err(KernelError::WrongGrid { kernel, contact }.into());
             }
             Some(kernel) => Arc::clone(kernel),
             None => Arc::new(InfluenceKernel::half_space(&self.grid)?),

@@ -32,10 +32,10 @@ mod travel;
 mod viscoelastic;
 mod warning;
 
+#[cfg(feature = "checkpoint")]
+pub use crate::error::CheckpointError;
 pub use between::Between;
 pub use builder::Builder;
-#[cfg(feature = "checkpoint")]
-pub use checkpoint::CheckpointError;
 pub use follow::{ErrorBudget, Follow, Stepping};
 pub use memory::Memory;
 pub use report::{BodyState, StepReport};
@@ -44,5 +44,6 @@ pub use snapshot::Snapshot;
 pub(crate) use spatial::AREA_ORDER;
 pub use spatial::SpatialError;
 pub use steady::{SteadyMotion, TowardSteady};
+pub use travel::TravelReport;
 pub use viscoelastic::ViscoelasticContact;
 pub use warning::{IntoIter as WarningsIter, Warning, Warnings};

@@ -3,7 +3,7 @@
 use crate::contact::loads::lowered;
 use crate::contact::region::Region;
 use crate::contact::report::StepReport;
-use crate::contact::settings::{Edge, TimeRule};
+use crate::contact::settings::{Edge, Solver, TimeRule};
 use crate::contact::viscoelastic::{ContactSolver, ViscoelasticContact};
 use crate::error::{Convergence, Error, Result, non_negative};
 use crate::events;
@@ -198,7 +198,7 @@ impl ViscoelasticContact {
             self.material = material;
         }
         let report = self.report(dt);
-        events::accepted(&report);
+        report.emit();
         report
     }
 
@@ -224,7 +224,9 @@ impl ViscoelasticContact {
             }
             Outcome::OutOfIterations | Outcome::Stagnated => {
                 let stagnated = outcome == Outcome::Stagnated;
-                let convergence = Convergence::new(trace.samples(), tolerance, self.settings.solver, stagnated).into();
+                let convergence =
+                    Convergence::new(trace.samples(), tolerance, self.settings.solver == Solver::ActiveSet, stagnated)
+                        .into();
                 Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
             }
         }

@@ -1,5 +1,6 @@
 //! How stiff the contact is.
 
+use crate::contact::settings::Solver;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Convergence, Error, Result};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
@@ -38,7 +39,8 @@ impl ViscoelasticContact {
             Ok(sum) => Ok(sum * self.grid.cell_area() * self.region.images() as f64),
             Err((iterations, residual)) => {
                 let (time, dt, tolerance) = (self.state.time, self.state.interval, FLAT_PUNCH_TOLERANCE);
-                let convergence = Convergence::new(Vec::new(), tolerance, self.settings.solver, false).into();
+                let convergence =
+                    Convergence::new(Vec::new(), tolerance, self.settings.solver == Solver::ActiveSet, false).into();
                 Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
             }
         }

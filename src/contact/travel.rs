@@ -1,11 +1,30 @@
 //! Steps in which the indenter moves over the grid.
 
+use crate::contact::report::StepReport;
 use crate::contact::settings::Frame;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result, non_negative};
 use crate::load::Load;
 use crate::memory;
-use crate::motion::{Travel, TravelReport};
+use crate::motion::Travel;
+
+/// A step along a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct TravelReport {
+    /// The step itself.
+    pub step: StepReport,
+    /// Where the shape is at its end \[m\].
+    pub position: [f64; 2],
+    /// Where it was at its start \[m\].
+    pub from: [f64; 2],
+    /// The force that moves it \[N\], see
+    /// [`ViscoelasticContact::lateral_force`](crate::ViscoelasticContact::lateral_force).
+    pub lateral_force: [f64; 2],
+    /// The power that the motion along the surface feeds into the bodies \[W\], a mean over the step: what the pressure does there,
+    /// less what force and moments do. Lateral force times velocity, but also where it acts on the rim of a face. 0 for a jump.
+    pub power: f64,
+}
 
 impl ViscoelasticContact {
     /// A step at whose end the indenter is where `travel` says: the bodies stay where they are. The time is the contact's own:

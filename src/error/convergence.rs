@@ -2,8 +2,6 @@
 
 use std::fmt;
 
-use crate::contact::Solver;
-
 /// Residuals that stay within this factor for the second half of a solve make no progress.
 const PROGRESS: f64 = 0.9;
 /// Residuals that end higher than the lowest by this factor have grown.
@@ -34,7 +32,8 @@ const FEWEST: usize = 4;
 pub struct Convergence {
     samples: Vec<(usize, f64)>,
     tolerance: f64,
-    solver: Solver,
+    /// Whether the solver lowers the energy of the contact in every iteration, whatever the residual does.
+    monotone: bool,
     /// Whether the solver found that rounding hides any further gain.
     stagnated: bool,
 }
@@ -59,8 +58,8 @@ pub enum Trend {
 }
 
 impl Convergence {
-    pub(crate) fn new(samples: Vec<(usize, f64)>, tolerance: f64, solver: Solver, stagnated: bool) -> Convergence {
-        Convergence { samples, tolerance, solver, stagnated }
+    pub(crate) fn new(samples: Vec<(usize, f64)>, tolerance: f64, monotone: bool, stagnated: bool) -> Convergence {
+        Convergence { samples, tolerance, monotone, stagnated }
     }
 
     /// Iterations done, and the residual then, in order; no more than 33, spread over the whole solve, its first and last
@@ -117,7 +116,7 @@ impl Convergence {
 impl fmt::Display for Convergence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lowest = self.lowest();
-        match (self.trend(), self.solver) {
+        match (self.trend(), self.monotone) {
             (Trend::TooFew, _) => f.write_str("too few iterations to say why: raise Settings::max_iterations"),
             (Trend::Falling, _) => {
                 f.write_str("the residual was still falling: raise Settings::max_iterations")?;
@@ -130,11 +129,10 @@ impl fmt::Display for Convergence {
                 f,
                 "the residual stays at {lowest:.1e}, which is rounding: raise Settings::tolerance above that, or bring the scales of the scene closer together (a grid not much larger than the contact)"
             ),
-            // its fall-back lowers the energy of the contact with every iteration, whatever the residual does
-            (_, Solver::ActiveSet) => {
+            (_, true) => {
                 write!(f, "the residual came no lower than {lowest:.1e} so far: raise Settings::max_iterations")
             }
-            (trend, Solver::PolonskyKeer) => {
+            (trend, false) => {
                 let course = match trend {
                     Trend::Oscillating => "goes up and down",
                     Trend::Growing => "grows",
@@ -152,7 +150,7 @@ mod tests {
 
     fn history(residual: impl Fn(usize) -> f64) -> Convergence {
         let samples = (0..30).map(|k| (10 * k, residual(k))).collect();
-        Convergence::new(samples, 1e-12, Solver::PolonskyKeer, false)
+        Convergence::new(samples, 1e-12, false, false)
     }
 
     #[test]
@@ -169,9 +167,9 @@ mod tests {
             assert!(convergence.to_string().contains(advice), "{convergence}");
             assert_eq!(convergence.iterations_needed().is_some(), trend == Trend::Falling);
         }
-        let few = Convergence::new(vec![(0, 1.0), (1, 0.5)], 1e-6, Solver::PolonskyKeer, false);
+        let few = Convergence::new(vec![(0, 1.0), (1, 0.5)], 1e-6, false, false);
         assert_eq!(few.trend(), Trend::TooFew);
-        let none = Convergence::new(Vec::new(), 1e-6, Solver::PolonskyKeer, false);
+        let none = Convergence::new(Vec::new(), 1e-6, false, false);
         assert!(none.lowest() == f64::INFINITY && !none.to_string().is_empty());
     }
 }

@@ -1,6 +1,6 @@
 //! The hereditary integral as a sum over every past increment.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, MaterialError, Result};
 use crate::hereditary::Change;
 use crate::rheology::Material;
 
@@ -57,7 +57,7 @@ impl Direct {
         let age = if self.increments.is_empty() { age.min(self.material.known_until()) } else { age };
         let newest = self.material.checked_compliance(age, (0.0, self.material.contact_compliance(0.0)))?;
         if newest == 0.0 && age > 0.0 {
-            return Err(Error::InvalidCompliance { time: age, value: newest, previous: 0.0 });
+            return Err(MaterialError::InvalidCompliance { time: age, value: newest, previous: 0.0 }.into());
         }
         // c acts on the whole of v, so that a past increment adds only what exceeds c
         self.weights.clear();

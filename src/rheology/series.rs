@@ -1,6 +1,6 @@
 use std::ops::RangeInclusive;
 
-use crate::error::{Error, Result, positive, within};
+use crate::error::{MaterialError, Result, positive, within};
 use crate::rheology::fit::{FitReport, Quantity, Sample, Search};
 use crate::rheology::{CreepSpectrum, Rheology, may_follow};
 
@@ -75,7 +75,7 @@ impl CreepSeries {
         let report = FitReport::new(&series, &sampled(rheology, [first, last], CHECKED, glassy)?);
         match report.worst() {
             Some(worst) if worst.misfit().abs() > tolerance => {
-                Err(Error::PoorFit { misfit: worst.misfit().abs(), at: worst.x, tolerance })
+                Err(MaterialError::PoorFit { misfit: worst.misfit().abs(), at: worst.x, tolerance }.into())
             }
             _ => {
                 let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
@@ -156,6 +156,6 @@ fn checked<R: Rheology + ?Sized>(rheology: &R, time: f64, previous: f64) -> Resu
     if may_follow(value, previous) && (value > 0.0 || time == 0.0 && value == 0.0) {
         Ok(value)
     } else {
-        Err(Error::InvalidCompliance { time, value, previous })
+        Err(MaterialError::InvalidCompliance { time, value, previous }.into())
     }
 }

@@ -1,18 +1,15 @@
 //! Runs that survive: the state of a contact in a file, and on from there.
 
-mod error;
 mod format;
 mod keep;
 mod saved;
 mod scene;
 
-pub use error::CheckpointError;
-
 use std::path::Path;
 
 use crate::contact::follow::Progress;
 use crate::contact::viscoelastic::ViscoelasticContact;
-use crate::error::{Error, Result};
+use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
 use saved::Saved;
 

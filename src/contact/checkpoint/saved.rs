@@ -4,13 +4,13 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::CheckpointError;
 use super::scene::SceneMark;
 use crate::contact::follow::Progress;
 use crate::contact::region::Region;
 use crate::contact::reside::Beyond;
 use crate::contact::state::State;
 use crate::contact::viscoelastic::{ViscoelasticContact, next_id};
+use crate::error::CheckpointError;
 use crate::geometry::Gap;
 use crate::hereditary::{Exponential, History, Sources, Unfitted};
 use crate::solver::Solution;

@@ -4,9 +4,9 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::CheckpointError;
 use crate::contact::settings::{Settings, TimeRule};
 use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::error::CheckpointError;
 use crate::geometry::Gap;
 use crate::rheology::Material;
 use crate::sum::moments;

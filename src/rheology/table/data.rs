@@ -1,8 +1,7 @@
 //! Checks what was measured before anything is fitted to it.
 
-use crate::error::Result;
+use crate::error::{Place, Result, TableError};
 use crate::rheology::fit::{Quantity, Sample};
-use crate::rheology::table::{Place, TableError};
 
 /// One row of a table: where it stands, the abscissa, and one value for each column.
 #[derive(Debug, Clone, PartialEq)]

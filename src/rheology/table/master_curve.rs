@@ -1,6 +1,6 @@
-use crate::error::{Error, Result, least_length, within};
+use crate::error::{Error, Place, Result, TableError, least_length, within};
 use crate::rheology::table::data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
-use crate::rheology::table::{Place, TableError, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
+use crate::rheology::table::{TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
 use crate::rheology::{Quantity, TimeTemperature};
 
 /// What was measured at one temperature.

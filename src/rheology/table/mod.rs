@@ -3,15 +3,13 @@
 #[cfg(feature = "csv")]
 mod csv;
 mod data;
-mod error;
 mod master_curve;
 
 #[cfg(feature = "csv")]
 pub use self::csv::Units;
-pub use error::{Place, TableError};
 pub use master_curve::{Isotherm, MasterCurve};
 
-use crate::error::{Result, exact_length};
+use crate::error::{Place, Result, TableError, exact_length};
 use crate::rheology::fit::{FitReport, Measured, Sample, Search, Series};
 use crate::rheology::series::known_series;
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};

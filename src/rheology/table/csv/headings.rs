@@ -3,8 +3,8 @@
 use super::Units;
 use super::number::{resembles, shortened};
 use super::unit::{Kind, readings, same};
+use crate::error::TableError;
 use crate::rheology::fit::Quantity;
-use crate::rheology::table::TableError;
 use crate::rheology::table::data::Layout;
 
 /// First words of headings, lower case.

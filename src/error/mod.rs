@@ -1,10 +1,24 @@
 //! The one error type of the crate, and the checks that raise it.
 
+#[cfg(feature = "checkpoint")]
+mod checkpoint;
 mod checks;
 mod convergence;
+mod kernel;
+mod load;
+mod map;
+mod material;
+mod table;
 
+#[cfg(feature = "checkpoint")]
+pub use checkpoint::CheckpointError;
 pub(crate) use checks::{LONGEST, exact_length, finite, least_length, length, non_negative, positive, within};
 pub use convergence::{Convergence, Trend};
+pub use kernel::KernelError;
+pub use load::LoadError;
+pub use map::MapError;
+pub use material::MaterialError;
+pub use table::{Place, TableError};
 
 /// What went wrong, with the numbers needed to mend it.
 ///
@@ -82,49 +96,9 @@ pub enum Error {
         rule: &'static str,
     },
 
-    /// Two loads of a history cannot be interpolated because they control different things.
-    #[error("the {field} mixes loads of different kinds ({first}; {second}), which cannot be interpolated")]
-    MixedLoads {
-        /// Which history or table.
-        field: &'static str,
-        /// Kind of the first load.
-        first: &'static str,
-        /// Kind of the load that differs.
-        second: &'static str,
-    },
-
-    /// A load history named a corner that is not later than the time asked for ([`LoadHistory::next_breakpoint`](crate::load::LoadHistory::next_breakpoint)).
-    #[error("the load history says that the first corner after t = {after} s is at {breakpoint} s: it must be later")]
-    InvalidBreakpoint {
-        /// The time asked for \[s\].
-        after: f64,
-        /// The corner named \[s\].
-        breakpoint: f64,
-    },
-
-    /// A load history returned a load that no step can be given, at a time that a run looked at: the end of a step, or between its ends.
-    #[error("the load history says {field} = {value:?} at t = {time} s, which is not allowed: it must be {allowed}")]
-    InvalidLoad {
-        /// The time asked for \[s\].
-        time: f64,
-        /// What the number stands for.
-        field: &'static str,
-        /// The number returned.
-        value: f64,
-        /// The range it must lie in.
-        allowed: &'static str,
-    },
-
-    /// A load does not control what a reference solution needs.
-    #[error("{field} needs {needed}, but is given {given}")]
-    WrongLoad {
-        /// What takes the load.
-        field: &'static str,
-        /// The kind of load it needs.
-        needed: &'static str,
-        /// The kind of load given.
-        given: &'static str,
-    },
+    /// A load or a load history is not allowed.
+    #[error(transparent)]
+    Load(#[from] LoadError),
 
     /// A force acts at a point where no pressure can balance it: outside the convex hull of the cells that the body may touch, so that it would topple.
     #[error("at t = {time} s the load acts at ({:e}, {:e}) m, outside the convex hull of the cells that body {body} may touch: it would topple", .at[0], .at[1])]
@@ -185,41 +159,9 @@ pub enum Error {
         part: &'static str,
     },
 
-    /// The [`InfluenceKernel`](crate::InfluenceKernel) given was made for another grid.
-    #[error("the kernel was made for {} × {} cells of {:e} m × {:e} m, the contact has {} × {} of {:e} m × {:e} m",
-        .kernel.cells()[0], .kernel.cells()[1], .kernel.spacing()[0], .kernel.spacing()[1],
-        .contact.cells()[0], .contact.cells()[1], .contact.spacing()[0], .contact.spacing()[1])]
-    KernelMismatch {
-        /// Grid of the kernel.
-        kernel: crate::Grid,
-        /// Grid of the contact.
-        contact: crate::Grid,
-    },
-
-    /// A user's influence coefficient, or the compliance of a wave, is not one that a body can have.
-    #[error("the influence {of} [{}, {}] is {value:?}: it must be {allowed}", .at[0], .at[1])]
-    InvalidInfluence {
-        /// A coefficient, or a wave.
-        of: &'static str,
-        /// Distance in cells, or wave numbers of the period.
-        at: [isize; 2],
-        /// The value \[m\].
-        value: f64,
-        /// What it must be.
-        allowed: &'static str,
-    },
-
-    /// A pressure would gain energy by pressing on a body with these influence coefficients: no contact on it is stable. Check their sign, and that near
-    /// cells influence each other more than distant ones.
-    #[error(
-        "the influence coefficients are not positive: a pressure was found that gains energy (eigenvalue {least:e} m, the greatest being {most:e} m)"
-    )]
-    NotPositive {
-        /// Estimate of the least eigenvalue \[m\].
-        least: f64,
-        /// Estimate of the greatest \[m\].
-        most: f64,
-    },
+    /// An influence kernel is not allowed.
+    #[error(transparent)]
+    Kernel(#[from] KernelError),
 
     /// A body may not tilt against a surface that is periodic along the axis of its tilt.
     #[error("at t = {time} s the load tilts the body along x{}, along which the bodies are periodic: a tilted plane is not", .axis + 1)]
@@ -265,18 +207,9 @@ pub enum Error {
         what: &'static str,
     },
 
-    /// Something needs an exponential series of the creep compliance and the rheology has no exact one
-    /// ([`Rheology::creep_spectrum`](crate::rheology::Rheology::creep_spectrum) is `None`). Fit one, with
-    /// [`Rheology::series`](crate::rheology::Rheology::series) or [`Material::fitted`](crate::rheology::Material::fitted).
-    #[error(
-        "{what} needs an exponential series, and {rheology} has no exact one: fit one over the times of the scene with Rheology::series or Material::fitted"
-    )]
-    NoExponentialSeries {
-        /// What needs it.
-        what: &'static str,
-        /// The rheology, as its `Debug` prints it.
-        rheology: String,
-    },
+    /// A rheology or a material is not allowed, or lacks what is needed.
+    #[error(transparent)]
+    Material(#[from] MaterialError),
 
     /// A step would look further into the past of the material than it is known: beyond the data of a table, or beyond the times that a series was fitted
     /// over. Give [`Builder::times`](crate::contact::Builder::times) a longer range, or let the table be extrapolated.
@@ -322,49 +255,13 @@ pub enum Error {
         limit: usize,
     },
 
-    /// A user's creep compliance returned a value no body can have: negative, not finite, or less than before; or 0 after t = 0, where a series is fitted.
-    #[error(
-        "creep compliance J({time:?} s) = {value:?} 1/Pa is not allowed: it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {previous:?} before)"
-    )]
-    InvalidCompliance {
-        /// Time at which it was evaluated \[s\].
-        time: f64,
-        /// The value \[1/Pa\].
-        value: f64,
-        /// Its value at an earlier time \[1/Pa\].
-        previous: f64,
-    },
-
-    /// No exponential series with positive coefficients stands for a material function to within the tolerance: ask for less, or let the contact sum its
-    /// whole past ([`TimeRule::Backward`](crate::contact::TimeRule::Backward)).
-    #[error(
-        "no exponential series was found to within {tolerance:e}: the best errs by {misfit:e} at {at:e} s; raise the tolerance (Settings::series_tolerance), or use TimeRule::Backward, which needs no series"
-    )]
-    PoorFit {
-        /// Greatest relative misfit of the best series found.
-        misfit: f64,
-        /// Where it is \[s\].
-        at: f64,
-        /// The misfit asked for.
-        tolerance: f64,
-    },
-
-    /// No published material has this name.
-    #[error("there is no published material named {name:?}; there are: {known}")]
-    UnknownMaterial {
-        /// The name asked for.
-        name: String,
-        /// The names there are.
-        known: String,
-    },
-
     /// A table of measured data is not one that a body could have given.
     #[error(transparent)]
-    Table(#[from] crate::rheology::TableError),
+    Table(#[from] TableError),
 
     /// A map of heights, or a file of one, is not what a measurement could have given.
     #[error(transparent)]
-    Map(#[from] crate::geometry::MapError),
+    Map(#[from] MapError),
 
     /// A file of results cannot be written: the medium, the permissions, or what stands there already.
     #[error("{path} cannot be written: {what}")]
@@ -391,7 +288,7 @@ pub enum Error {
         /// The file.
         path: String,
         /// Why not.
-        source: crate::contact::CheckpointError,
+        source: CheckpointError,
     },
 
     /// Contact reaches the edge of the grid, beyond which the bodies go on: the pressure there would be wrong. Enlarge the grid, or allow it with
