@@ -67,7 +67,7 @@ mod zener;
 pub use crate::error::{MaterialError, Place, TableError};
 pub use burgers::Burgers;
 pub use elastic::Elastic;
-pub use fit::{FitReport, FitSample, FitWarning, Quantity};
+pub use fit::{FitReport, FitSample, FitWarning, MaterialFunction};
 pub use fractional_maxwell::FractionalMaxwell;
 pub use fractional_zener::FractionalZener;
 pub use function::FnRheology;

@@ -1,7 +1,7 @@
 use std::ops::RangeInclusive;
 
 use crate::error::{MaterialError, Result, positive, within};
-use crate::rheology::fit::{FitReport, Quantity, Sample, Search};
+use crate::rheology::fit::{FitReport, MaterialFunction, Sample, Search};
 use crate::rheology::{CreepSpectrum, Rheology, may_follow};
 
 /// The exponential series that stands for a creep compliance over a range of times, and its error.
@@ -145,7 +145,7 @@ fn sampled<R: Rheology + ?Sized>(
             _ => first * (last / first).powf(k as f64 / count as f64),
         };
         previous = checked(rheology, x, previous)?;
-        samples.push(Sample { quantity: Quantity::Creep, x, value: previous, weight: 1.0 });
+        samples.push(Sample { function: MaterialFunction::Creep, x, value: previous, weight: 1.0 });
     }
     Ok(samples)
 }
