@@ -1,4 +1,4 @@
-/// Why a checkpoint cannot be continued from.
+/// Why a run cannot be resumed from a checkpoint.
 ///
 /// Needs the feature `checkpoint`.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -7,20 +7,20 @@ pub enum CheckpointError {
     /// The file cannot be read.
     #[error("it cannot be read: {what}")]
     Unreadable {
-        /// What stood in the way.
+        /// The cause.
         what: String,
     },
 
-    /// It does not begin as a checkpoint does.
-    #[error("not a checkpoint: it does not begin with the mark of one")]
+    /// The magic number is missing.
+    #[error("not a checkpoint: the magic number is missing")]
     Foreign,
 
     /// It was written by a newer version of this crate.
     #[error("the checkpoint is of format {found}, this version reads format {known}: update viscocontact")]
     Newer {
-        /// Its format.
+        /// Format of the checkpoint.
         found: u32,
-        /// The format known.
+        /// Format that this version reads.
         known: u32,
     },
 
@@ -29,45 +29,45 @@ pub enum CheckpointError {
         "the checkpoint is of format {found}, this version reads format {known}: resume it with the version that wrote it"
     )]
     Older {
-        /// Its format.
+        /// Format of the checkpoint.
         found: u32,
-        /// The format known.
+        /// Format that this version reads.
         known: u32,
     },
 
-    /// It is cut short, or something follows it.
-    #[error("the checkpoint holds {found} bytes and should hold {expected}: it is cut short or damaged")]
+    /// The length is wrong: the file is truncated, or data follow the checkpoint.
+    #[error("the checkpoint holds {found} bytes, but should hold {expected}: it is truncated or damaged")]
     Size {
         /// Bytes found.
         found: u64,
-        /// Bytes there should be.
+        /// Bytes expected.
         expected: u64,
     },
 
-    /// Its checksum does not fit what it holds.
-    #[error("the checkpoint is damaged: its checksum is {found:08x} and should be {expected:08x}")]
+    /// The checksum does not match the contents.
+    #[error("the checkpoint is damaged: its checksum is {found:08x}, but should be {expected:08x}")]
     Damaged {
-        /// Checksum of what it holds.
+        /// Checksum of the contents.
         found: u32,
-        /// Checksum it should have.
+        /// Checksum stored.
         expected: u32,
     },
 
-    /// Its checksum fits, but not what it says: not written by this crate.
+    /// The checksum matches, but the contents are not a state: this crate did not write them.
     #[error("the checkpoint holds no state of a contact: {what}")]
     Malformed {
-        /// What is wrong.
+        /// The cause.
         what: String,
     },
 
-    /// It belongs to another scene than the contact that was built to continue it.
-    #[error("the checkpoint is of another scene: its {what} is {saved}, that of this contact {built}")]
+    /// The checkpoint is of another scene than the contact that is to resume it.
+    #[error("the checkpoint is of another scene: its {what} is {saved}, that of this contact is {built}")]
     OtherScene {
         /// What differs.
         what: &'static str,
-        /// In the checkpoint.
+        /// Its value in the checkpoint.
         saved: String,
-        /// In the contact.
+        /// Its value in the contact.
         built: String,
     },
 }

@@ -26,8 +26,8 @@ pub enum KernelError {
         allowed: &'static str,
     },
 
-    /// The operator of these influence coefficients is not positive definite: no contact on such a body is stable. Check
-    /// the sign of the coefficients, and that near cells influence each other more than distant ones.
+    /// The operator of these influence coefficients is not positive definite: no contact on such a body is stable.
+    /// Check the sign of the coefficients, and that near cells influence each other more than distant ones.
     #[error(
         "the influence coefficients are not positive definite: the least eigenvalue found is {least:e} m, the greatest {most:e} m"
     )]

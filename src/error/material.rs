@@ -3,9 +3,9 @@
 #[non_exhaustive]
 pub enum MaterialError {
     /// An exponential series of the creep compliance is needed, and the rheology has no exact one
-    /// ([`Rheology::creep_spectrum`](crate::rheology::Rheology::creep_spectrum) is `None`). One is fitted over the times
-    /// that [`Builder::times`](crate::contact::Builder::times) or
-    /// [`Builder::times_of`](crate::contact::Builder::times_of) names; a material is fitted beforehand by
+    /// ([`Rheology::creep_spectrum`](crate::rheology::Rheology::creep_spectrum) is `None`). One is fitted over the
+    /// times that [`Builder::times`](crate::contact::Builder::times) or
+    /// `Builder::times_of` names; a material is fitted beforehand by
     /// [`Material::fitted`](crate::rheology::Material::fitted).
     #[error(
         "{what} needs an exponential series, and {rheology} has no exact one: name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Material::fitted"
@@ -17,8 +17,8 @@ pub enum MaterialError {
         rheology: String,
     },
 
-    /// A creep compliance returned a value that no body can have: negative, not finite, or less than at an earlier time;
-    /// or, where a series is fitted, 0 after t = 0.
+    /// A creep compliance returned a value that no body can have: negative, not finite, or less than at an earlier
+    /// time; or, where a series is fitted, 0 after t = 0.
     #[error(
         "creep compliance J({time:?} s) = {value:?} 1/Pa is not allowed: it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {previous:?} before)"
     )]
@@ -31,8 +31,8 @@ pub enum MaterialError {
         previous: f64,
     },
 
-    /// No exponential series with positive coefficients approximates the material function within the tolerance. Allow a
-    /// greater error, or use [`TimeRule::Backward`](crate::contact::TimeRule::Backward), which needs no series.
+    /// No exponential series with positive coefficients approximates the material function within the tolerance. Allow
+    /// a greater error, or use [`TimeRule::Backward`](crate::contact::TimeRule::Backward), which needs no series.
     #[error(
         "no exponential series was found within {tolerance:e}: the error of the best is {misfit:e}, at {at:e} s; raise the tolerance (Settings::series_tolerance), or use TimeRule::Backward, which needs no series"
     )]

@@ -1,4 +1,4 @@
-//! The one error type of the crate, and the checks that raise it.
+//! The error type of the crate, and the checks that return it.
 
 #[cfg(feature = "checkpoint")]
 mod checkpoint;
@@ -20,7 +20,7 @@ pub use map::MapError;
 pub use material::MaterialError;
 pub use table::{Place, TableError};
 
-/// What went wrong, with the numbers needed to mend it.
+/// Everything that can go wrong, with the numbers needed to correct it.
 ///
 /// Every constructor validates its arguments, so an invalid model cannot be built; a
 /// [`step`](crate::ViscoelasticContact::step) that fails leaves the contact as it was.
@@ -34,42 +34,42 @@ pub use table::{Place, TableError};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// A number lies outside the range its meaning allows, or is not finite.
+    /// A number is outside its allowed range, or not finite.
     #[error("{field} = {value:?} is not allowed: it must be {allowed}")]
     OutOfRange {
-        /// What the number stands for.
+        /// The quantity.
         field: &'static str,
-        /// The number given.
+        /// The value given.
         value: f64,
-        /// The range it must lie in.
+        /// The allowed range.
         allowed: &'static str,
     },
 
-    /// A count lies outside the allowed range: cells of a grid, iterations of a solver.
+    /// A count is outside its allowed range: cells of a grid, iterations of a solver.
     #[error("{field} = {value} is not allowed: it must be {allowed}")]
     CountOutOfRange {
         /// What is counted.
         field: &'static str,
         /// The count given.
         value: usize,
-        /// The range it must lie in.
+        /// The allowed range.
         allowed: &'static str,
     },
 
-    /// Something needs more memory than there is, or than may be addressed. Take fewer cells; a contact computes fewer of them by
-    /// [`Settings::symmetry`](crate::contact::Settings::symmetry) and [`Settings::window`](crate::contact::Settings::window), and tells what it takes before
-    /// it is built ([`Builder::memory`](crate::contact::Builder::memory)).
-    #[error("{what} needs {bytes} bytes ({:.1} GB), more than there is: take fewer cells, or let symmetry and window of the Settings compute fewer of them", *.bytes as f64 * 1e-9)]
+    /// More memory is needed than is available, or than can be addressed. Take fewer cells, or compute fewer of them by
+    /// [`Settings::symmetry`](crate::contact::Settings::symmetry) and
+    /// [`Settings::window`](crate::contact::Settings::window). [`Builder::memory`](crate::contact::Builder::memory)
+    /// reports the need of a contact before it is built.
+    #[error("{what} needs {bytes} bytes ({:.1} GB), more than is available: take fewer cells, or compute fewer of them with Settings::symmetry and Settings::window", *.bytes as f64 * 1e-9)]
     OutOfMemory {
-        /// What was to be made.
+        /// What needs it.
         what: &'static str,
-        /// The bytes that it needs; `u64::MAX` where they are more.
+        /// Bytes needed; `u64::MAX` if there are more.
         bytes: u64,
     },
 
-    /// A slice or table does not have the length it needs: a field of one value a cell, two slices that belong together, a table too short to define a
-    /// function.
-    #[error("{field} holds {len} values, but needs {expected}{}", if *.exact { "" } else { " at least" })]
+    /// A slice or table has the wrong length: a field needs one value per cell, a table enough to define a function.
+    #[error("{field} holds {len} values, but needs {}{expected}", if *.exact { "" } else { "at least " })]
     WrongLength {
         /// Which slice or table.
         field: &'static str,
@@ -81,7 +81,7 @@ pub enum Error {
         exact: bool,
     },
 
-    /// A table that must be in order is not.
+    /// The values of a table are not in the required order.
     #[error("{field}[{index}] = {value} may not follow {previous}: the values must {rule}")]
     OutOfOrder {
         /// Which table.
@@ -92,7 +92,7 @@ pub enum Error {
         value: f64,
         /// The entry before it.
         previous: f64,
-        /// The order that the values must keep.
+        /// The order required.
         rule: &'static str,
     },
 
@@ -100,37 +100,37 @@ pub enum Error {
     #[error(transparent)]
     Load(#[from] LoadError),
 
-    /// A force acts at a point where no pressure can balance it: outside the convex hull of the cells that the body may touch, so that it would topple.
-    #[error("at t = {time} s the load acts at ({:e}, {:e}) m, outside the convex hull of the cells that body {body} may touch: it would topple", .at[0], .at[1])]
+    /// A force acts outside the convex hull of the cells that the body may touch, so that no pressure balances it.
+    #[error("at t = {time} s the load acts at ({:e}, {:e}) m, outside the convex hull of the cells that body {body} may touch: it would tip over", .at[0], .at[1])]
     LoadOutsideHull {
         /// End of the step \[s\].
         time: f64,
-        /// The body, 0 for the only one.
+        /// Index of the body.
         body: usize,
-        /// The point at which the load acts \[m\]; a coordinate whose tilt is given does not matter and is 0.
+        /// The point at which the load acts \[m\]; 0 along an axis whose tilt is prescribed, where it does not matter.
         at: [f64; 2],
     },
 
-    /// The number of loads of a step is not the number of rigid bodies.
-    #[error("{loads} loads are given for {bodies} rigid bodies")]
+    /// The number of loads of a step differs from the number of rigid bodies.
+    #[error("{loads} loads were given for {bodies} rigid bodies")]
     WrongNumberOfLoads {
-        /// Loads given.
+        /// Number of loads given.
         loads: usize,
-        /// Bodies of the contact.
+        /// Number of bodies of the contact.
         bodies: usize,
     },
 
-    /// The number of geometries is not the number of rigid bodies that the contact was built with.
-    #[error("{given} geometries are given for {bodies} rigid bodies")]
+    /// The number of geometries differs from the number of rigid bodies of the contact.
+    #[error("{given} geometries were given for {bodies} rigid bodies")]
     WrongNumberOfBodies {
-        /// Geometries given.
+        /// Number of geometries given.
         given: usize,
-        /// Bodies of the contact.
+        /// Number of bodies of the contact.
         bodies: usize,
     },
 
-    /// A geometry returned NaN or −∞ for the gap of a cell; allowed are finite gaps and +∞ (nothing there).
-    #[error("the initial gap at cell [{}, {}], x = ({:e}, {:e}) m, is {value}: it must be finite, or +inf where there is nothing to touch", .cell[0], .cell[1], .position[0], .position[1])]
+    /// A geometry returned NaN or −∞ for the gap of a cell; a gap must be finite, or +∞ where there is no body.
+    #[error("the initial gap at cell [{}, {}], x = ({:e}, {:e}) m, is {value}: it must be finite, or +inf where there is no body", .cell[0], .cell[1], .position[0], .position[1])]
     InvalidGap {
         /// Indices of the cell.
         cell: [usize; 2],
@@ -140,22 +140,22 @@ pub enum Error {
         value: f64,
     },
 
-    /// The geometry of a body is +∞ on every cell of the grid, or lies above another body everywhere: it has nothing to touch. Check its position and size
-    /// against [`Grid::lengths`](crate::Grid::lengths).
+    /// A body can touch nothing: its gap is +∞ on every cell of the grid, or it is above another body everywhere.
+    /// Compare its position and size with [`Grid::lengths`](crate::Grid::lengths).
     #[error(
-        "body {body} has no cell with a finite initial gap of its own: it can touch nothing on the {cells} cells of the grid"
+        "body {body} is the lowest body with a finite gap on none of the {cells} cells of the grid: it can touch nothing"
     )]
     NothingToTouch {
-        /// The body, 0 for the only one.
+        /// Index of the body.
         body: usize,
         /// Number of cells of the grid.
         cells: usize,
     },
 
-    /// A [`Builder`](crate::contact::Builder) was asked to build without a part it needs.
+    /// A [`Builder`](crate::contact::Builder) lacks a part that every contact needs.
     #[error("a contact needs {part}: call Builder::{part} before build")]
     Missing {
-        /// The method of the builder that supplies the part.
+        /// The method of the builder that sets the part.
         part: &'static str,
     },
 
@@ -163,8 +163,8 @@ pub enum Error {
     #[error(transparent)]
     Kernel(#[from] KernelError),
 
-    /// A body may not tilt against a surface that is periodic along the axis of its tilt.
-    #[error("at t = {time} s the load tilts the body along x{}, along which the bodies are periodic: a tilted plane is not", .axis + 1)]
+    /// A load tilts a body along an axis along which the bodies are periodic.
+    #[error("at t = {time} s the load tilts the body along x{}, along which the bodies are periodic: a tilted body is not", .axis + 1)]
     TiltOfPeriodic {
         /// End of the step \[s\].
         time: f64,
@@ -172,38 +172,38 @@ pub enum Error {
         axis: usize,
     },
 
-    /// Something needs the grid to be fixed to the other of indenter and bodies ([`Frame`](crate::contact::Frame)): a step over the bodies to the indenter, a
-    /// path or a direct sum to the bodies.
-    #[error("{what} is not possible with the grid fixed to what Settings::frame says: choose the other Frame")]
+    /// A call needs the grid in the other [`Frame`](crate::contact::Frame): fixed to the indenter for a step over the
+    /// bodies, fixed to the bodies for a path or a direct sum.
+    #[error("{what} is not possible in the frame that Settings::frame chooses: choose the other Frame")]
     WrongFrame {
-        /// What was asked for.
+        /// The call.
         what: &'static str,
     },
 
-    /// An approach lies beyond full contact on a surface whose mean displacement is held ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)):
-    /// no pressure closes the gap further.
+    /// An approach exceeds that of full contact on a surface whose mean displacement is fixed
+    /// ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)): no pressure closes the gap further.
     #[error(
-        "at t = {time} s the approach {approach:e} m is not below {greatest:e} m, that of full contact, which no pressure can exceed on a periodic body: control the force"
+        "at t = {time} s the approach {approach:e} m is not below {greatest:e} m, that of full contact, which no pressure can exceed on a periodic body: prescribe the force"
     )]
     BeyondFullContact {
         /// End of the step \[s\].
         time: f64,
-        /// The approach asked for \[m\].
+        /// The approach prescribed \[m\].
         approach: f64,
         /// The approach of full contact \[m\].
         greatest: f64,
     },
 
-    /// The body has no elastic response (J(0) = 0, as Kelvin–Voigt): it cannot follow a jump of the load, a step of length zero, unless nothing presses it
-    /// after the jump or the load is what the present state satisfies already; nor is the paper's rectangle rule possible. Ramp the load over a short time,
-    /// or give the body a glassy compliance.
+    /// The body has no elastic response (J(0) = 0, as Kelvin–Voigt). It cannot follow a jump of the load, a step of
+    /// length zero, unless the jump removes the load or the present state already satisfies it; nor is the paper's
+    /// rectangle rule possible. Ramp the load over a short time, or give the body a glassy compliance.
     #[error(
         "at t = {time} s: {what} needs an elastic response, but the material has none (its compliance at t = 0 is zero); ramp the load over a short time or add a glassy compliance"
     )]
     NoElasticResponse {
         /// Time of the contact \[s\].
         time: f64,
-        /// What was asked for.
+        /// The call.
         what: &'static str,
     },
 
@@ -211,22 +211,23 @@ pub enum Error {
     #[error(transparent)]
     Material(#[from] MaterialError),
 
-    /// A step would look further into the past of the material than it is known: beyond the data of a table, or beyond the times that a series was fitted
-    /// over. Give [`Builder::times`](crate::contact::Builder::times) a longer range, or let the table be extrapolated.
+    /// The loading time exceeds the range in which the material is known: the data of a table, or the times that a
+    /// series was fitted over. Give [`Builder::times`](crate::contact::Builder::times) a longer range, or extrapolate
+    /// the table.
     #[error(
-        "at t = {time} s the bodies remember {age} s, but the material is known for {known_until} s only: fit its series over longer times (Builder::times), or let its table be extrapolated"
+        "at t = {time} s the loading time {age} s exceeds the range in which the material is known, {known_until} s: fit its series over longer times (Builder::times), or extrapolate its table"
     )]
     BeyondMaterial {
         /// End of the step \[s\].
         time: f64,
-        /// Time since the bodies were undisturbed \[s\].
+        /// Loading time: time since the bodies were undisturbed \[s\].
         age: f64,
         /// [`Rheology::known_until`](crate::rheology::Rheology::known_until) \[s\].
         known_until: f64,
     },
 
-    /// A step is shorter than the times that the series of the material was fitted over, which the first step chose by its own length. Say from the start
-    /// which times matter: [`Builder::times`](crate::contact::Builder::times).
+    /// A step is shorter than the times that the series of the material was fitted over, which the first step chose by
+    /// its own length. Say from the start which times matter: [`Builder::times`](crate::contact::Builder::times).
     #[error(
         "at t = {time} s: a step of {dt:e} s is shorter than the material's series resolves, {known_from:e} s, as the first step chose it: say with Builder::times which times matter"
     )]
@@ -239,60 +240,61 @@ pub enum Error {
         known_from: f64,
     },
 
-    /// The past of a direct sum has filled the memory that [`Settings::history_limit`](crate::contact::Settings) allows. Raise it, or use
-    /// [`TimeRule::Automatic`](crate::contact::TimeRule::Automatic), whose memory does not grow.
+    /// The history of a direct sum would exceed [`Settings::history_limit`](crate::contact::Settings). Raise the limit,
+    /// or use [`TimeRule::Exponential`](crate::contact::TimeRule::Exponential), whose memory does not grow.
     #[error(
-        "at t = {time} s the direct sum over {steps} past steps would take {bytes} bytes, more than Settings::history_limit = {limit}: raise it, or use TimeRule::Automatic, whose memory does not grow"
+        "at t = {time} s the direct sum over {steps} past steps would take {bytes} bytes, more than Settings::history_limit = {limit}: raise it, or use TimeRule::Exponential, whose memory does not grow"
     )]
     HistoryFull {
         /// End of the step \[s\].
         time: f64,
-        /// Steps in the past.
+        /// Number of past steps.
         steps: usize,
-        /// Bytes the past would take with this step.
+        /// Bytes that the history would take with this step.
         bytes: usize,
         /// Bytes allowed.
         limit: usize,
     },
 
-    /// A table of measured data is not one that a body could have given.
+    /// A table of measured data is not allowed.
     #[error(transparent)]
     Table(#[from] TableError),
 
-    /// A map of heights, or a file of one, is not what a measurement could have given.
+    /// A height map, or its file, is not allowed.
     #[error(transparent)]
     Map(#[from] MapError),
 
-    /// A file of results cannot be written: the medium, the permissions, or what stands there already.
+    /// A file of results cannot be written.
     #[error("{path} cannot be written: {what}")]
     Output {
         /// The file or folder.
         path: String,
-        /// What stood in the way.
+        /// The cause.
         what: String,
     },
 
-    /// What stands at the path is no regular file, and is left alone: only files are replaced.
-    #[error("{path} cannot be written: {kind} is there, not a file")]
+    /// Something other than a regular file exists at the path. It is left unchanged: only regular files are replaced.
+    #[error("{path} cannot be written: it is {kind}, not a regular file")]
     NotAFile {
         /// The path.
         path: String,
-        /// What is there.
+        /// What exists there.
         kind: &'static str,
     },
 
-    /// A checkpoint cannot be continued from.
+    /// A run cannot be resumed from a checkpoint.
     #[cfg(feature = "checkpoint")]
     #[error("{path}: {source}")]
     Checkpoint {
         /// The file.
         path: String,
-        /// Why not.
+        /// The cause.
         source: CheckpointError,
     },
 
-    /// Contact reaches the edge of the grid, beyond which the bodies go on: the pressure there would be wrong. Enlarge the grid, or allow it with
-    /// [`Edge::Allow`](crate::contact::Edge::Allow) where the body really ends at the grid's edge.
+    /// Contact reaches the edge of the grid, beyond which the bodies continue: the pressure there would be wrong.
+    /// Enlarge the grid, or choose [`Edge::Allow`](crate::contact::Edge::Allow) if the body really ends at the edge of
+    /// the grid.
     #[error(
         "at t = {time} s the contact touches the edge of the grid on {cells} cells: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there"
     )]
@@ -303,7 +305,8 @@ pub enum Error {
         cells: usize,
     },
 
-    /// The contact of an [`AxisymmetricContact`](crate::analytic::AxisymmetricContact) reaches the end of its foundation: give it a longer one.
+    /// The contact of an [`AxisymmetricContact`](crate::analytic::AxisymmetricContact) reaches the end of its
+    /// foundation: make it longer.
     #[error("at t = {time} s the contact reaches the end of the foundation, {reach:e} m from the axis: make it longer")]
     BeyondReach {
         /// End of the step \[s\].
@@ -312,8 +315,8 @@ pub enum Error {
         reach: f64,
     },
 
-    /// The contact problem of a step was not solved within [`Settings::max_iterations`](crate::contact::Settings::max_iterations): what to do, the history of
-    /// the residual says.
+    /// The solver did not converge within [`Settings::max_iterations`](crate::contact::Settings::max_iterations); the
+    /// residual history suggests a remedy.
     #[error(
         "at t = {time} s (step of {dt} s): residual {residual:e} after {iterations} iterations, above the tolerance {tolerance:e}; {convergence}"
     )]
@@ -326,38 +329,38 @@ pub enum Error {
         iterations: usize,
         /// Residual reached.
         residual: f64,
-        /// Residual asked for.
+        /// Residual allowed.
         tolerance: f64,
-        /// The residual over the iterations.
+        /// The residual history.
         convergence: Box<Convergence>,
     },
 
-    /// A [`Snapshot`](crate::contact::Snapshot) is of another contact than the one to be restored: not of it, nor of a clone.
-    #[error("the snapshot is of another contact: only a contact's own, or a clone's, can be restored")]
+    /// A [`Snapshot`](crate::contact::Snapshot) was taken of another contact, not of this one or a clone of it.
+    #[error("the snapshot was taken of another contact: only snapshots of the contact or of a clone can be restored")]
     OtherContact,
 
-    /// A steady motion needs contact, and its load makes none.
-    #[error("at t = {time} s the load does not make the bodies touch: a steady motion needs contact")]
+    /// The load of a steady motion brings no cell into contact.
+    #[error("at t = {time} s the load brings no cell into contact: a steady motion needs contact")]
     NoContact {
         /// Time of the contact \[s\].
         time: f64,
     },
 
-    /// A steady motion does not become steady: where contact comes and goes, as on a rough surface that moves with the bodies, it has no steady state; else
-    /// allow a greater change.
+    /// The motion did not become steady. Contact that comes and goes, as on a rough surface that moves with the bodies,
+    /// has no steady state; otherwise allow a greater change.
     #[error(
-        "after {distance:e} m the pressure still changes by {change:e} over a length of contact, more than {tolerance:e}"
+        "after {distance:e} m the pressure still changes by {change:e} over a contact length, more than {tolerance:e}"
     )]
     NotSteady {
         /// Distance travelled \[m\].
         distance: f64,
         /// Relative change of the pressure.
         change: f64,
-        /// Change allowed.
+        /// Relative change allowed.
         tolerance: f64,
     },
 
-    /// A [`Plan`](crate::plan::Plan) found no domain that the contact fills: it is never touched, or never ends.
+    /// A [`Plan`](crate::plan::Plan) found no domain that holds the contact: none is large enough.
     #[error(
         "no domain was found that holds the contact (the last one tried was {length:e} m wide): check geometry and load"
     )]
@@ -366,20 +369,21 @@ pub enum Error {
         length: f64,
     },
 
-    /// The error in time asks for a step too short to change the time: the load changes faster than time itself is resolved, or the tolerance is too small.
+    /// The allowed error in time needs a step below the resolution of `f64` at this time: the load changes too fast, or
+    /// the tolerance is too small.
     #[error(
-        "at t = {time} s a step of {dt:e} s would be needed to keep the error in time below {tolerance:e}, too short to change the time"
+        "at t = {time} s a step of {dt:e} s would be needed to keep the error in time below {tolerance:e}: it is shorter than f64 resolves at this time"
     )]
     StepTooShort {
         /// Time of the contact \[s\].
         time: f64,
         /// Length of the step \[s\].
         dt: f64,
-        /// Error in time asked for.
+        /// Error in time allowed.
         tolerance: f64,
     },
 
-    /// Numbers left the range of `f64` inside a step: the scales of the scene (lengths, moduli, loads, times) are too far apart to be represented.
+    /// A quantity overflowed in a step: the scales of lengths, moduli, loads and times are too far apart for `f64`.
     #[error("at t = {time} s: {what} is not finite; the scales of the scene are too far apart for f64")]
     Overflow {
         /// End of the step \[s\].
