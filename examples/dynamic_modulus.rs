@@ -17,7 +17,7 @@ use indicatif::ProgressBar;
 use noise::noise;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
-use viscocontact::rheology::{Isotherm, MasterCurve, Quantity, library};
+use viscocontact::rheology::{Isotherm, MasterCurve, MaterialFunction, library};
 
 /// A master curve of a real adhesive, and what it means in contact.
 #[derive(Parser)]
@@ -85,8 +85,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     table.write_record(["angular_frequency_rad_per_s", "quantity", "given_pa", "fitted_pa", "published_pa"])?;
     for sample in body.report().samples() {
         let exact = truth.complex_modulus(sample.x * slow);
-        let (index, name, exact) = match sample.quantity {
-            Quantity::Storage => (0, "storage modulus", exact.re),
+        let (index, name, exact) = match sample.function {
+            MaterialFunction::Storage => (0, "storage modulus", exact.re),
             _ => (1, "loss modulus", exact.im),
         };
         worst[index] = worst[index].max((sample.fitted / exact - 1.0).abs());
@@ -161,13 +161,13 @@ fn plot_master(
     let title = format!("Master curve at {} K", master.reference());
     let mut chart = Chart::new(&title, "angular frequency [rad/s]", "modulus [Pa]", Legend::UpperLeft);
     chart.scale = Scale::LogLog;
-    for (quantity, name, color) in [(Quantity::Storage, "G'", 0), (Quantity::Loss, "G''", 1)] {
+    for (function, name, color) in [(MaterialFunction::Storage, "G'", 0), (MaterialFunction::Loss, "G''", 1)] {
         let points = master.points();
-        let data = points.iter().filter(|point| point.1 == quantity).map(|&(x, _, value)| (x, value)).collect();
+        let data = points.iter().filter(|point| point.1 == function).map(|&(x, _, value)| (x, value)).collect();
         chart.add(format!("{name}, isotherms shifted"), COLORS[color + 4], Style::Dots, data);
         let value = |omega: f64| {
             let modulus = body.spectrum().complex_modulus(omega);
-            if quantity == Quantity::Storage { modulus.re } else { modulus.im }
+            if function == MaterialFunction::Storage { modulus.re } else { modulus.im }
         };
         chart.add(format!("{name}, fit"), COLORS[color], Style::Line, omega.iter().map(|&w| (w, value(w))).collect());
     }

@@ -4,19 +4,6 @@
 use tracing::{debug, warn};
 
 use crate::Error;
-use crate::contact::StepReport;
-
-/// A step was accepted.
-#[inline]
-pub(crate) fn accepted(report: &StepReport) {
-    #[cfg(feature = "tracing")]
-    {
-        let StepReport { time, dt, iterations, residual, contact_cells, approach, force, warnings, .. } = *report;
-        debug!(time, dt, iterations, residual, contact_cells, approach, force, %warnings, "step accepted");
-    }
-    #[cfg(not(feature = "tracing"))]
-    let _ = report;
-}
 
 /// A step was found too long, and is tried again, shorter.
 #[inline]

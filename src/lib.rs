@@ -162,7 +162,7 @@ mod solver;
 mod sum;
 
 pub use contact::ViscoelasticContact;
-pub use error::{Convergence, Error, Result, Trend};
+pub use error::{Convergence, Error, KernelError, Result, Trend};
 pub use grid::Grid;
 pub use kernel::{InfluenceKernel, Workspace};
 

@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use viscocontact::load::LoadError;
 use viscocontact::prelude::*;
 
 const UNTIL: f64 = 2.0;
@@ -123,13 +124,13 @@ proptest! {
         let named = WRONG.iter().find(|wrong| format!("{:?}", wrong.0) == format!("{:?}", history.wrong)).unwrap().1;
         match error {
             None => prop_assert!(wrong.is_empty(), "looked at {wrong:?}"),
-            Some(Error::InvalidLoad { time, field, .. }) => {
+            Some(Error::Load(LoadError::OutOfRange { time, field, .. })) => {
                 prop_assert_eq!(field, named);
                 prop_assert_eq!(&wrong, &[time], "the first is the last that is looked at");
                 prop_assert_eq!(asked.last().unwrap().0, time);
                 // asked again, it says so again, and the contact stays
                 let again = run.next_step();
-                prop_assert!(matches!(again, Err(Error::InvalidLoad { .. })), "{again:?}");
+                prop_assert!(matches!(again, Err(Error::Load(LoadError::OutOfRange { .. }))), "{again:?}");
                 prop_assert!(state(run.contact()) == before, "the contact changed");
             }
             Some(other) => prop_assert!(false, "{other}"),
@@ -150,7 +151,9 @@ fn a_gap_in_a_history_is_not_leapt_over() {
             Err(error) => break error,
         }
     };
-    let Error::InvalidLoad { time, field: "normal force", value, .. } = error else { panic!("{error}") };
+    let Error::Load(LoadError::OutOfRange { time, field: "normal force", value, .. }) = error else {
+        panic!("{error}")
+    };
     assert!((0.9..1.1).contains(&time) && value.is_nan());
     assert!(error.to_string().contains("normal force = NaN at t = 1"), "{error}");
 }
@@ -162,7 +165,7 @@ fn no_number_is_lost_elsewhere() {
     let (sphere, body) =
         (Sphere::new(10.0e-3).unwrap(), Material::incompressible(Zener::new(1.0e6, 1.0e6, 0.5e6).unwrap()));
     let plan = viscocontact::plan::Plan::new(&sphere, &body, &nan, UNTIL, viscocontact::plan::Accuracy::Coarse);
-    assert!(matches!(plan, Err(Error::InvalidLoad { field: "normal force", .. })));
+    assert!(matches!(plan, Err(Error::Load(LoadError::OutOfRange { field: "normal force", .. }))));
     let broken = viscocontact::load::laws::all(&nan, &[0.0, 2.0]).unwrap_err();
     assert_eq!((broken.law, broken.quantity), ("every load is one that a step accepts", "normal force"));
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
-use viscocontact::{Error, Grid, InfluenceKernel};
+use viscocontact::{Error, Grid, InfluenceKernel, KernelError};
 
 fn convolve(kernel: &InfluenceKernel, pressure: &[f64]) -> Vec<f64> {
     let mut displacement = vec![f64::NAN; pressure.len()];
@@ -155,17 +155,20 @@ fn users_may_bring_their_own() {
 fn impossible_bodies_are_refused() {
     let grid = Grid::new([12, 8], [1.0, 1.0]).unwrap();
     let coefficient = |f: &dyn Fn(isize, isize) -> f64| InfluenceKernel::from_coefficients(&grid, f).unwrap_err();
-    assert!(matches!(coefficient(&|_, _| f64::NAN), Error::InvalidInfluence { at: [0, 0], .. }));
+    assert!(matches!(coefficient(&|_, _| f64::NAN), Error::Kernel(KernelError::InvalidInfluence { at: [0, 0], .. })));
     let lopsided = coefficient(&|i, j| (-(i * i + j * j) as f64).exp() + 1e-3 * i as f64);
-    assert!(matches!(lopsided, Error::InvalidInfluence { at: [-1, 0], .. }), "{lopsided}");
+    assert!(matches!(lopsided, Error::Kernel(KernelError::InvalidInfluence { at: [-1, 0], .. })), "{lopsided}");
     // the neighbours sink in more than the loaded cell
     let unstable = coefficient(&|i, j| if (i, j) == (0, 0) { 1.0 } else { 2.0 / (1 + i * i + j * j) as f64 });
-    assert!(matches!(unstable, Error::NotPositive { least, .. } if least < -0.1), "{unstable}");
+    assert!(
+        matches!(unstable, Error::Kernel(KernelError::NotPositiveDefinite { least, .. }) if least < -0.1),
+        "{unstable}"
+    );
     // positive though its embedding in a period is not: the half-space, which many a grid has
     assert!(InfluenceKernel::from_coefficients(&grid, |i, j| 1.0 / (1.0 + (i * i + j * j) as f64)).is_ok());
     let wave = |f: fn(f64, f64) -> f64| InfluenceKernel::from_spectrum(&grid, f).unwrap_err();
-    assert!(matches!(wave(|_, _| -1.0), Error::InvalidInfluence { of: "wave", at: [0, 0], .. }));
-    assert!(matches!(wave(|q1, _| 7.0 - q1), Error::InvalidInfluence { at: [2, 0], .. }));
+    assert!(matches!(wave(|_, _| -1.0), Error::Kernel(KernelError::InvalidInfluence { of: "wave", at: [0, 0], .. })));
+    assert!(matches!(wave(|q1, _| 7.0 - q1), Error::Kernel(KernelError::InvalidInfluence { at: [2, 0], .. })));
     let field = |result: Result<InfluenceKernel, Error>| match result.unwrap_err() {
         Error::OutOfRange { field, .. } | Error::CountOutOfRange { field, .. } => field,
         other => panic!("unexpected {other}"),
@@ -207,7 +210,9 @@ fn cells_beyond_numbers_are_refused() {
     let line = Grid::new([4, 1], [1.0, 1.0]).unwrap();
     assert_eq!(field(InfluenceKernel::line(&line, 1.0e121)), "datum of a line load");
     let grid = sides(1.0, 1.0);
-    let beyond = |result: Result<InfluenceKernel, Error>| matches!(result, Err(Error::InvalidInfluence { .. }));
+    let beyond = |result: Result<InfluenceKernel, Error>| {
+        matches!(result, Err(Error::Kernel(KernelError::InvalidInfluence { .. })))
+    };
     assert!(beyond(InfluenceKernel::from_coefficients(&grid, |i, j| if i == 0 && j == 0 { 1e101 } else { 0.0 })));
     assert!(beyond(InfluenceKernel::from_spectrum(&grid, |_, _| 1e101)));
 }

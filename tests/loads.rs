@@ -1,6 +1,7 @@
 //! Loads that tilt, prescribe the approach, let go and come back, on elastic and creeping bodies.
 
 use viscocontact::analytic::{AxisymmetricContact, Hertz, Profile, RigidPunch};
+use viscocontact::load::LoadError;
 use viscocontact::prelude::*;
 
 const MODULUS: f64 = 4.0e6; // E* of an incompressible body with G = 1 MPa
@@ -289,7 +290,7 @@ fn bodies_and_loads_are_counted() {
         assert_eq!(named, field);
     }
     let mixed = Ramp::new(Load::force(1.0), Load::approach(1.0), 1.0).unwrap_err();
-    assert!(matches!(mixed, Error::MixedLoads { .. }), "{mixed}");
+    assert!(matches!(mixed, Error::Load(LoadError::MixedKinds { .. })), "{mixed}");
 }
 
 /// More cycles than there are numbers for are a load all the same.

@@ -3,7 +3,7 @@
 use viscocontact::Error;
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};
 use viscocontact::prelude::*;
-use viscocontact::rheology::{CreepSpectrum, RelaxationSpectrum};
+use viscocontact::rheology::{CreepSpectrum, MaterialError, RelaxationSpectrum};
 
 const RADIUS: f64 = 10.0e-3;
 const FORCE: f64 = 1.0;
@@ -88,7 +88,10 @@ fn elastic_bulk_tends_to_its_neighbours() {
     assert!((one / other - 1.0).abs() < 1e-14);
     // a rheology without a series says what to do
     let error = Material::elastic_bulk(PowerLaw::new(1.0, 1.0, 0.5).unwrap(), 1.0).unwrap_err();
-    assert!(matches!(error, Error::NoExponentialSeries { what: "an elastic bulk", .. }), "{error}");
+    assert!(
+        matches!(error, Error::Material(MaterialError::NoExponentialSeries { what: "an elastic bulk", .. })),
+        "{error}"
+    );
     for bad in [0.0, -1.0, f64::NAN] {
         let error = Material::elastic_bulk(zener(), bad).unwrap_err();
         assert!(matches!(error, Error::OutOfRange { field: "bulk modulus", .. }), "{error}");
@@ -204,7 +207,10 @@ fn the_first_step_may_choose_the_times() {
     // what no series can be fitted to
     let arched = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t * t)));
     let error = builder(64, 1e-6).material(arched).times(1e-2..=1e2).build().unwrap_err();
-    assert!(matches!(error, Error::PoorFit { tolerance, misfit, .. } if tolerance == 1e-4 && misfit > 1e-2), "{error}");
+    assert!(
+        matches!(error, Error::Material(MaterialError::PoorFit { tolerance, misfit, .. }) if tolerance == 1e-4 && misfit > 1e-2),
+        "{error}"
+    );
 }
 
 /// Waiting without load decides nothing, and steps shorter than what the first one chose are refused.

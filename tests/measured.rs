@@ -297,7 +297,7 @@ fn temperatures_shift_time() {
 #[cfg(feature = "csv")]
 mod csv {
     use super::*;
-    use viscocontact::rheology::{Quantity, Units};
+    use viscocontact::rheology::{MaterialFunction, Units};
 
     fn read(text: &str) -> Result<TabulatedCreep> {
         TabulatedCreep::from_csv_reader(text.as_bytes(), Units::SI)
@@ -325,7 +325,7 @@ mod csv {
         let hertz = Units { abscissa: std::f64::consts::TAU, value: 1e6 };
         let text = "Frequency [Hz],Loss modulus [MPa],Storage modulus [MPa]\n0.1,0.2,1.0\n1,0.4,1.5\n10,0.4,2.2\n100,0.1,2.5\n";
         let body = TabulatedDynamic::from_csv_reader(text.as_bytes(), hertz).unwrap();
-        assert_eq!(body.report().samples()[0].quantity, Quantity::Storage);
+        assert_eq!(body.report().samples()[0].function, MaterialFunction::Storage);
         assert_eq!(body.report().samples()[0].given, 1.0e6);
         assert!((body.report().samples()[0].x - 0.1 * std::f64::consts::TAU).abs() < 1e-15);
     }

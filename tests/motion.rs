@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use surface::self_affine;
 use viscocontact::prelude::*;
+use viscocontact::rheology::MaterialError;
 
 fn zener() -> Material {
     Material::incompressible(Zener::new(1.0e6, 0.4e6, 0.02e6).unwrap())
@@ -222,7 +223,7 @@ fn steps_that_fail_leave_the_indenter_where_it_was() {
     assert!(matches!(built, Err(Error::WrongFrame { .. })));
     let closure = Material::incompressible(FnRheology::new(|t: f64| 1e-6 * (1.0 + t.powf(0.3))));
     let built = builder(&grid, &sphere(), Frame::Indenter).material(closure).build();
-    assert!(matches!(built, Err(Error::NoExponentialSeries { .. })));
+    assert!(matches!(built, Err(Error::Material(MaterialError::NoExponentialSeries { .. }))));
     let motion = SteadyMotion { axis: 0, velocity: 0.0, load, tolerance: 1e-3 };
     assert!(matches!(moving.toward_steady(motion), Err(Error::OutOfRange { field: "velocity", .. })));
 }

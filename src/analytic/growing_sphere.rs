@@ -1,7 +1,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::error::{Error, Result, positive, within};
+use crate::error::{Error, LoadError, Result, positive, within};
 use crate::load::{Load, LoadHistory, StepLoad};
 use crate::quadrature::GaussLegendre;
 use crate::rheology::{CreepSpectrum, Material, RelaxationSpectrum};
@@ -75,7 +75,9 @@ impl GrowingSphere {
             return Err(Error::NoElasticResponse { time: 0.0, what: "the solution for a growing contact" });
         }
         if let Load::Approach { .. } = load.at(0.0) {
-            return Err(Error::WrongLoad { field: "the growing sphere", needed: "a force", given: "an approach" });
+            return Err(
+                LoadError::WrongKind { field: "the growing sphere", needed: "a force", given: "an approach" }.into()
+            );
         }
         let relaxation = creep.relaxation();
         Ok(GrowingSphere { radius, creep, relaxation, load: Arc::new(load), step: None, rule: GaussLegendre::new(20) })

@@ -16,7 +16,7 @@ use crate::contact::time_rule::{memory_by, windowed};
 use crate::contact::times::Times;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::contact::window::region::Region;
-use crate::error::{Error, Result};
+use crate::error::{Error, KernelError, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
 use crate::hereditary;
 use crate::kernel::InfluenceKernel;
@@ -249,7 +249,8 @@ impl Builder {
         material.validate()?;
         let kernel = match &self.kernel {
             Some(kernel) if *kernel.grid() != self.grid => {
-                return Err(Error::KernelMismatch { kernel: kernel.grid().clone(), contact: self.grid.clone() });
+                let [kernel, contact] = [kernel.grid(), &self.grid].map(|grid| (grid.cells(), grid.spacing()));
+                return Err(KernelError::WrongGrid { kernel, contact }.into());
             }
             Some(kernel) => Arc::clone(kernel),
             None => Arc::new(InfluenceKernel::half_space(&self.grid)?),

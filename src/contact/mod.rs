@@ -32,10 +32,11 @@ mod viscoelastic;
 mod warning;
 mod window;
 
-pub use builder::Builder;
 #[cfg(feature = "checkpoint")]
-pub use checkpoint::CheckpointError;
+pub use crate::error::CheckpointError;
+pub use builder::Builder;
 pub use footprint::Memory;
+pub use moving::along_path::TravelReport;
 pub use moving::steady::{SteadyMotion, TowardSteady};
 pub use report::{BodyState, StepReport};
 pub use run::error_budget::ErrorBudget;

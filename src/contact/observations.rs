@@ -1,5 +1,6 @@
 //! Area, mesh error and stiffness of a contact.
 
+use crate::contact::settings::Solver;
 use crate::contact::state::State;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Convergence, Error, Result};
@@ -80,7 +81,8 @@ impl ViscoelasticContact {
             Ok(sum) => Ok(sum * self.grid().cell_area() * region.images() as f64),
             Err((iterations, residual)) => {
                 let (time, dt, tolerance) = (clock.time, clock.last_dt, FLAT_PUNCH_TOLERANCE);
-                let convergence = Convergence::new(Vec::new(), tolerance, self.settings().solver, false).into();
+                let convergence =
+                    Convergence::new(Vec::new(), tolerance, self.settings().solver == Solver::ActiveSet, false).into();
                 Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
             }
         }

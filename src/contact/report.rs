@@ -42,6 +42,16 @@ impl StepReport {
     pub fn convolution_equivalents(&self) -> f64 {
         self.convolutions as f64 + 0.25 * self.preconditioner_applications as f64
     }
+
+    /// Emits the event of an accepted step, with the feature `tracing`.
+    #[inline]
+    pub(crate) fn emit(&self) {
+        #[cfg(feature = "tracing")]
+        {
+            let StepReport { time, dt, iterations, residual, contact_cells, approach, force, warnings, .. } = *self;
+            tracing::debug!(time, dt, iterations, residual, contact_cells, approach, force, %warnings, "step accepted");
+        }
+    }
 }
 
 /// A line for logs: the result of the step, its cost, and its warnings.

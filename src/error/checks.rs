@@ -1,4 +1,4 @@
-//! Checks of what users give.
+//! Checks of arguments.
 
 use super::{Error, Result};
 
@@ -12,12 +12,12 @@ pub(crate) fn non_negative(field: &'static str, value: f64) -> Result<f64> {
     within(field, value, value >= 0.0, "finite and >= 0")
 }
 
-/// Accepts lengths above zero whose doubles, and sums of which, are numbers.
+/// Accepts lengths above zero whose multiples and sums do not overflow.
 pub(crate) fn length(field: &'static str, value: f64) -> Result<f64> {
-    within(field, value, value > 0.0 && value <= LONGEST, "finite, > 0 and 1e300 m at most")
+    within(field, value, value > 0.0 && value <= LONGEST, "finite, > 0 and at most 1e300 m")
 }
 
-/// The greatest length of a shape, and height of a map \[m\].
+/// Greatest length of a shape, and greatest height of a map \[m\].
 pub(crate) const LONGEST: f64 = 1e300;
 
 /// Accepts any finite value.
@@ -35,7 +35,7 @@ pub(crate) fn exact_length(field: &'static str, len: usize, expected: usize) -> 
     if len == expected { Ok(()) } else { Err(Error::WrongLength { field, len, expected, exact: true }) }
 }
 
-/// Accepts a table of `least` entries or more.
+/// Accepts a table of at least `least` entries.
 pub(crate) fn least_length(field: &'static str, len: usize, least: usize) -> Result<()> {
     if len >= least { Ok(()) } else { Err(Error::WrongLength { field, len, expected: least, exact: false }) }
 }

@@ -1,20 +1,18 @@
-//! How a solve that failed went, and what that says.
+//! The residual history of a solve that failed, and the remedy that it suggests.
 
 use std::fmt;
 
-use crate::contact::Solver;
-
-/// Residuals that stay within this factor for the second half of a solve make no progress.
+/// A residual falls if the second half of a solve lowers it by this factor.
 const PROGRESS: f64 = 0.9;
-/// Residuals that end higher than the lowest by this factor have grown.
+/// A residual grows, or oscillates, by more than this factor.
 const GROWN: f64 = 10.0;
-/// A residual below this that makes no progress is what rounding leaves.
+/// A residual below this that no longer falls is rounding.
 const ROUNDING: f64 = 1e-8;
-/// Fewer residuals say nothing.
+/// Fewer residuals show no trend.
 const FEWEST: usize = 4;
 
-/// The history of the residual of a solve that did not converge, carried by
-/// [`Error::NotConverged`](crate::Error::NotConverged). Its `Display` is the advice that fits.
+/// The residual history of a solve that did not converge, part of [`Error::NotConverged`](crate::Error::NotConverged).
+/// Its `Display` suggests a remedy.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -34,37 +32,37 @@ const FEWEST: usize = 4;
 pub struct Convergence {
     samples: Vec<(usize, f64)>,
     tolerance: f64,
-    solver: Solver,
-    /// Whether the solver found that rounding hides any further gain.
+    /// Whether the solver lowers the energy of the contact in every iteration, whatever the residual does.
+    monotone: bool,
+    /// Whether the solver found that rounding prevents further progress.
     stagnated: bool,
 }
 
-/// What a residual does over the iterations of a solve.
+/// How the residual changes over the iterations of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Trend {
-    /// Too few iterations were done to tell.
+    /// Too few iterations to show a trend.
     TooFew,
-    /// It was still falling: more iterations would have done.
+    /// The residual was still falling: more iterations would converge.
     Falling,
-    /// It has come down to what numbers are rounded by, and stays there: the tolerance is below what the scales of the scene
-    /// allow.
+    /// The residual stagnates at rounding level: the tolerance is too small for the scales of the scene.
     Rounding,
-    /// It stays where it is, far above rounding.
+    /// The residual stagnates far above rounding.
     Stalled,
-    /// It goes up and down, by more than a factor of ten.
+    /// The residual oscillates, by more than a factor of ten.
     Oscillating,
-    /// It grows.
+    /// The residual grows.
     Growing,
 }
 
 impl Convergence {
-    pub(crate) fn new(samples: Vec<(usize, f64)>, tolerance: f64, solver: Solver, stagnated: bool) -> Convergence {
-        Convergence { samples, tolerance, solver, stagnated }
+    pub(crate) fn new(samples: Vec<(usize, f64)>, tolerance: f64, monotone: bool, stagnated: bool) -> Convergence {
+        Convergence { samples, tolerance, monotone, stagnated }
     }
 
-    /// Iterations done, and the residual then, in order; no more than 33, spread over the whole solve, its first and last
-    /// among them. Empty where nothing was noted.
+    /// Pairs of iterations done and the residual after them, in order: at most 33, spread over the whole solve, the
+    /// first and the last included. Empty if none was recorded.
     pub fn residuals(&self) -> &[(usize, f64)] {
         &self.samples
     }
@@ -74,7 +72,7 @@ impl Convergence {
         self.samples.iter().map(|sample| sample.1).fold(f64::INFINITY, f64::min)
     }
 
-    /// What the residual did.
+    /// How the residual changed.
     pub fn trend(&self) -> Trend {
         if self.stagnated {
             return Trend::Rounding;
@@ -101,7 +99,7 @@ impl Convergence {
         }
     }
 
-    /// Iterations that would be needed in all, at the rate of the second half; `None` unless the residual falls.
+    /// The total number of iterations needed at the rate of the second half; `None` unless the residual falls.
     pub fn iterations_needed(&self) -> Option<usize> {
         if self.trend() != Trend::Falling {
             return None;
@@ -117,8 +115,8 @@ impl Convergence {
 impl fmt::Display for Convergence {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let lowest = self.lowest();
-        match (self.trend(), self.solver) {
-            (Trend::TooFew, _) => f.write_str("too few iterations to say why: raise Settings::max_iterations"),
+        match (self.trend(), self.monotone) {
+            (Trend::TooFew, _) => f.write_str("too few iterations to show a trend: raise Settings::max_iterations"),
             (Trend::Falling, _) => {
                 f.write_str("the residual was still falling: raise Settings::max_iterations")?;
                 match self.iterations_needed() {
@@ -128,19 +126,18 @@ impl fmt::Display for Convergence {
             }
             (Trend::Rounding, _) => write!(
                 f,
-                "the residual stays at {lowest:.1e}, which is rounding: raise Settings::tolerance above that, or bring the scales of the scene closer together (a grid not much larger than the contact)"
+                "the residual stagnates at {lowest:.1e}, the level of rounding: raise Settings::tolerance above that, or bring the scales of the scene closer together (a grid not much larger than the contact)"
             ),
-            // its fall-back lowers the energy of the contact with every iteration, whatever the residual does
-            (_, Solver::ActiveSet) => {
-                write!(f, "the residual came no lower than {lowest:.1e} so far: raise Settings::max_iterations")
+            (_, true) => {
+                write!(f, "the lowest residual so far is {lowest:.1e}: raise Settings::max_iterations")
             }
-            (trend, Solver::PolonskyKeer) => {
+            (trend, false) => {
                 let course = match trend {
-                    Trend::Oscillating => "goes up and down",
+                    Trend::Oscillating => "oscillates",
                     Trend::Growing => "grows",
                     _ => "does not fall",
                 };
-                write!(f, "the residual {course}, and came no lower than {lowest:.1e}: use Solver::ActiveSet")
+                write!(f, "the residual {course} (lowest: {lowest:.1e}): use Solver::ActiveSet")
             }
         }
     }
@@ -152,7 +149,7 @@ mod tests {
 
     fn history(residual: impl Fn(usize) -> f64) -> Convergence {
         let samples = (0..30).map(|k| (10 * k, residual(k))).collect();
-        Convergence::new(samples, 1e-12, Solver::PolonskyKeer, false)
+        Convergence::new(samples, 1e-12, false, false)
     }
 
     #[test]
@@ -163,15 +160,15 @@ mod tests {
             (history(|k| 1e-3_f64.powi(k.min(4) as i32)), Trend::Rounding, "raise Settings::tolerance"),
             (history(|k| 1e-3 + 0.5_f64.powi(3 * k as i32)), Trend::Stalled, "use Solver::ActiveSet"),
             (history(|k| 1e-3 * wave(k)), Trend::Oscillating, "use Solver::ActiveSet"),
-            (history(|k| 1e-3 * 1.4_f64.powi(k as i32)), Trend::Growing, "grows, and came no lower than 1.0e-3"),
+            (history(|k| 1e-3 * 1.4_f64.powi(k as i32)), Trend::Growing, "grows (lowest: 1.0e-3)"),
         ] {
             assert_eq!(convergence.trend(), trend, "{convergence}");
             assert!(convergence.to_string().contains(advice), "{convergence}");
             assert_eq!(convergence.iterations_needed().is_some(), trend == Trend::Falling);
         }
-        let few = Convergence::new(vec![(0, 1.0), (1, 0.5)], 1e-6, Solver::PolonskyKeer, false);
+        let few = Convergence::new(vec![(0, 1.0), (1, 0.5)], 1e-6, false, false);
         assert_eq!(few.trend(), Trend::TooFew);
-        let none = Convergence::new(Vec::new(), 1e-6, Solver::PolonskyKeer, false);
+        let none = Convergence::new(Vec::new(), 1e-6, false, false);
         assert!(none.lowest() == f64::INFINITY && !none.to_string().is_empty());
     }
 }

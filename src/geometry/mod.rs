@@ -31,12 +31,13 @@ mod statistics;
 mod sum;
 mod wavy;
 
+pub use crate::error::MapError;
 pub use cone::Cone;
 pub use cylinder::Cylinder;
 pub use ellipsoid::Ellipsoid;
 pub use flat_punch::FlatPunch;
 pub use function::FnGeometry;
-pub use height_map::{Form, HeightMap, LengthUnit, MapError, Resampled, ResamplingError};
+pub use height_map::{Form, HeightMap, LengthUnit, Resampled, ResamplingError};
 pub use repeated::Repeated;
 pub use rough::{Anisotropy, Rough, RoughSpec, Roughness};
 pub use shifted::Shifted;

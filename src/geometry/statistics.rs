@@ -2,9 +2,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::error::{Error, Result, finite, positive};
+use crate::error::{Error, MapError, Result, finite, positive};
+use crate::geometry::HeightMap;
 use crate::geometry::spectrum::{Spectrum, wave_numbers};
-use crate::geometry::{HeightMap, MapError};
 
 /// How rough a surface is, over its known points.
 ///

@@ -1,6 +1,6 @@
 //! The hereditary integral as a sum over every past increment.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, MaterialError, Result};
 use crate::rheology::Material;
 
 /// The end of a step to which its increment of pressure is assigned.
@@ -55,7 +55,7 @@ impl DirectSum {
         let age = if self.increments.is_empty() { age.min(material.known_until()) } else { age };
         let newest = material.checked_compliance(age, (0.0, material.contact_compliance(0.0)))?;
         if newest == 0.0 && age > 0.0 {
-            return Err(Error::InvalidCompliance { time: age, value: newest, previous: 0.0 });
+            return Err(MaterialError::InvalidCompliance { time: age, value: newest, previous: 0.0 }.into());
         }
         // c acts on the whole of v, so that a past increment adds only what exceeds c
         self.weights.clear();

@@ -9,7 +9,7 @@ use super::positive::least_eigenvalue;
 use super::strip::{Strip, wave_number};
 use super::{InfluenceKernel, MAKING};
 use crate::Grid;
-use crate::error::{Error, Result, within};
+use crate::error::{Error, KernelError, Result, within};
 use crate::memory;
 
 /// How unequal mirrored coefficients may be, of the greatest.
@@ -133,7 +133,7 @@ impl InfluenceKernel {
                 // NaN is neither
                 if !(-GREATEST..=GREATEST).contains(&value) {
                     let allowed = "finite, and 1e100 m in absolute value at most";
-                    return Err(Error::InvalidInfluence { of: "coefficient", at: [i, j], value, allowed });
+                    return Err(KernelError::InvalidInfluence { of: "coefficient", at: [i, j], value, allowed }.into());
                 }
                 values.push(value);
             }
@@ -147,7 +147,7 @@ impl InfluenceKernel {
                     let equal = (value - own).abs() <= UNEQUAL * greatest;
                     if !equal {
                         let allowed = "the same as that of its mirror images";
-                        return Err(Error::InvalidInfluence { of: "coefficient", at, value, allowed });
+                        return Err(KernelError::InvalidInfluence { of: "coefficient", at, value, allowed }.into());
                     }
                 }
             }
@@ -161,7 +161,7 @@ impl InfluenceKernel {
             let (least, most) = least_eigenvalue(whole, grid.len());
             let positive = least > -ROUNDING * most;
             if !positive {
-                return Err(Error::NotPositive { least, most });
+                return Err(KernelError::NotPositiveDefinite { least, most }.into());
             }
         }
         Ok(kernel)
@@ -206,14 +206,14 @@ impl InfluenceKernel {
                 if !(value <= GREATEST && (value > 0.0 || (mean && value == 0.0))) {
                     let allowed = if mean { "in [0, 1e100] m" } else { "> 0, and 1e100 m at most" };
                     let at = [k1 as isize, k2 as isize];
-                    return Err(Error::InvalidInfluence { of: "wave", at, value, allowed });
+                    return Err(KernelError::InvalidInfluence { of: "wave", at, value, allowed }.into());
                 }
                 values.push(value);
             }
         }
         if values.iter().all(|&value| value == 0.0) {
             let allowed = "> 0 on a grid of one cell";
-            return Err(Error::InvalidInfluence { of: "wave", at: [0, 0], value: 0.0, allowed });
+            return Err(KernelError::InvalidInfluence { of: "wave", at: [0, 0], value: 0.0, allowed }.into());
         }
         Ok(InfluenceKernel::new(grid, Influence::Waves { values: Arc::from(values), columns: half2 + 1 }))
     }

@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 use std::fmt;
 use std::sync::Arc;
 
+use super::even_spectrum::{EvenLine, EvenSpectrum};
 use super::layout::{Ends, Layout};
 use super::love::Love;
-use super::spectrum::{EvenLine, Spectrum};
 use super::strip::{Strip, wave_number};
 use crate::Grid;
 
@@ -46,7 +46,7 @@ impl Influence {
     /// What the operator multiplies each wave of the layout by.
     pub(super) fn symbol(&self, grid: &Grid, layout: Layout) -> Symbol {
         let spectrum = |coefficient: &dyn Fn(usize, usize) -> f64| -> Symbol {
-            let spectrum = Spectrum::of(layout, coefficient);
+            let spectrum = EvenSpectrum::of(layout, coefficient);
             Box::new(move |k1, k2| spectrum.at(k1, k2))
         };
         match self {

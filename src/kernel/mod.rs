@@ -16,13 +16,13 @@
 //! of the transform is left to the caller.
 
 mod constructors;
+mod even_spectrum;
 mod influence;
 mod lanes;
 mod layout;
 mod lines;
 mod love;
 mod positive;
-mod spectrum;
 mod strip;
 mod transform;
 

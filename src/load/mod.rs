@@ -18,6 +18,7 @@ mod ramp;
 mod sinusoid;
 mod step;
 
+pub use crate::error::LoadError;
 pub use function::FnHistory;
 pub use piecewise_linear::PiecewiseLinear;
 pub use ramp::Ramp;
@@ -151,7 +152,9 @@ impl Load {
     pub(crate) fn validated_at(self, time: f64) -> Result<Load> {
         match self.validate() {
             Ok(()) => Ok(self),
-            Err(Error::OutOfRange { field, value, allowed }) => Err(Error::InvalidLoad { time, field, value, allowed }),
+            Err(Error::OutOfRange { field, value, allowed }) => {
+                Err(LoadError::OutOfRange { time, field, value, allowed }.into())
+            }
             Err(other) => Err(other),
         }
     }
@@ -178,7 +181,7 @@ impl Load {
             load.validate()?;
             let first = *kind.get_or_insert(load.kind());
             if load.kind() != first {
-                return Err(Error::MixedLoads { field, first, second: load.kind() });
+                return Err(LoadError::MixedKinds { field, first, second: load.kind() }.into());
             }
         }
         Ok(())
@@ -255,7 +258,7 @@ impl Load {
 /// ```
 pub trait LoadHistory: Debug + Send + Sync {
     /// The load at time `t` \[s\]; at a jump, the load after it (right-continuous). A run looks at the ends of steps, with
-    /// adaptive steps also between them, and ends with [`Error::InvalidLoad`] wherever it
+    /// adaptive steps also between them, and ends with [`LoadError::OutOfRange`] wherever it
     /// finds a load that no step can be given.
     fn at(&self, t: f64) -> Load;
 

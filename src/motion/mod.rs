@@ -23,4 +23,4 @@ mod path;
 mod travel;
 
 pub use path::{FnPath, Path, Straight};
-pub use travel::{Travel, TravelReport};
+pub use travel::Travel;

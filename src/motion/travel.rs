@@ -1,7 +1,6 @@
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::contact::StepReport;
 use crate::error::{Result, finite};
 use crate::geometry::{Geometry, Shifted};
 use crate::motion::Path;
@@ -31,24 +30,6 @@ pub struct Travel {
     shape: Arc<dyn Geometry>,
     path: Arc<dyn Path>,
     track: Option<Arc<dyn Geometry>>,
-}
-
-/// A step along a path.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct TravelReport {
-    /// The step itself.
-    pub step: StepReport,
-    /// Where the shape is at its end \[m\].
-    pub position: [f64; 2],
-    /// Where it was at its start \[m\].
-    pub from: [f64; 2],
-    /// The force that moves it \[N\], see
-    /// [`ViscoelasticContact::lateral_force`](crate::ViscoelasticContact::lateral_force).
-    pub lateral_force: [f64; 2],
-    /// The power that the motion along the surface feeds into the bodies \[W\], a mean over the step: what the pressure does there,
-    /// less what force and moments do. Lateral force times velocity, but also where it acts on the rim of a face. 0 for a jump.
-    pub power: f64,
 }
 
 impl Travel {

@@ -15,7 +15,7 @@
 
 /// The coefficients of c + f/s + Σ a p/(p + s): positive strengths a at ascending, distinct poles p.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Series {
+pub(crate) struct StieltjesSeries {
     pub(crate) constant: f64,
     pub(crate) slope: f64,
     /// (strength a, pole p)
@@ -28,8 +28,8 @@ pub(crate) struct Series {
 const SAME_POLE: f64 = 1e-6;
 
 /// The coefficients c′, f′ and (b_k, z_k) of the reciprocal c′ + f′ s + Σ b s/(s + z), zeros ascending.
-pub(crate) fn reciprocal(series: &Series) -> Series {
-    let Series { constant, slope, .. } = *series;
+pub(crate) fn reciprocal(series: &StieltjesSeries) -> StieltjesSeries {
+    let StieltjesSeries { constant, slope, .. } = *series;
     let terms = counting(&merged(&series.terms), constant, slope);
     let total: f64 = terms.iter().map(|&(a, _)| a).sum();
     let rate: f64 = terms.iter().map(|&(a, p)| a * p).sum();
@@ -51,7 +51,7 @@ pub(crate) fn reciprocal(series: &Series) -> Series {
             _ => zeros.push((strength, at)),
         }
     }
-    Series {
+    StieltjesSeries {
         constant: if slope > 0.0 { 0.0 } else { 1.0 / (constant + total) },
         slope: if constant > 0.0 { 0.0 } else { 1.0 / (slope + rate) },
         terms: zeros,

@@ -15,7 +15,7 @@
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 
-use crate::error::{Error, Result};
+use crate::error::{MaterialError, Result};
 use crate::rheology::{GeneralizedMaxwell, Material, TimeTemperature};
 
 /// What a published series is a series of.
@@ -128,9 +128,9 @@ pub fn all() -> &'static [Published] {
 /// # Errors
 /// If there is none; the error lists those there are.
 pub fn find(name: &str) -> Result<&'static Published> {
-    MATERIALS.iter().find(|material| material.name.eq_ignore_ascii_case(name)).ok_or_else(|| Error::UnknownMaterial {
-        name: name.to_owned(),
-        known: MATERIALS.map(|material| material.name).join(", "),
+    MATERIALS.iter().find(|material| material.name.eq_ignore_ascii_case(name)).ok_or_else(|| {
+        let known = MATERIALS.map(|material| material.name).join(", ");
+        MaterialError::Unknown { name: name.to_owned(), known }.into()
     })
 }
 

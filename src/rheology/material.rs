@@ -1,7 +1,7 @@
 use std::ops::RangeInclusive;
 use std::sync::Arc;
 
-use crate::error::{Error, Result, positive, within};
+use crate::error::{Error, MaterialError, Result, positive, within};
 use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, is_known, may_follow};
 
 /// A rheology and how it treats volume: together they give the contact creep compliance C(t), the
@@ -185,7 +185,7 @@ impl Material {
         let creep = |body: &Body| (body.rheology.creep_compliance(age), body.rheology.creep_compliance(earlier));
         let (value, previous) =
             self.bodies.iter().map(creep).find(|&(now, before)| !may_follow(now, before)).unwrap_or((value, younger));
-        Err(Error::InvalidCompliance { time: age, value, previous })
+        Err(MaterialError::InvalidCompliance { time: age, value, previous }.into())
     }
 
     /// The error for what needs a series that a rheology does not have.
@@ -198,7 +198,7 @@ impl Material {
 }
 
 fn no_series(what: &'static str, rheology: &dyn std::fmt::Debug) -> Error {
-    Error::NoExponentialSeries { what, rheology: format!("{rheology:?}") }
+    MaterialError::NoExponentialSeries { what, rheology: format!("{rheology:?}") }.into()
 }
 
 impl Body {

@@ -64,9 +64,10 @@ mod table;
 mod time_temperature;
 mod zener;
 
+pub use crate::error::{MaterialError, Place, TableError};
 pub use burgers::Burgers;
 pub use elastic::Elastic;
-pub use fit::{FitReport, FitSample, FitWarning, Quantity};
+pub use fit::{FitReport, FitSample, FitWarning, MaterialFunction};
 pub use fractional_maxwell::FractionalMaxwell;
 pub use fractional_zener::FractionalZener;
 pub use function::FnRheology;
@@ -83,7 +84,7 @@ pub use slow_creep::SlowCreep;
 pub use spectrum::{CreepSpectrum, RelaxationSpectrum};
 #[cfg(feature = "csv")]
 pub use table::Units;
-pub use table::{Isotherm, MasterCurve, Place, TableError, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
+pub use table::{Isotherm, MasterCurve, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
 pub(crate) use time_temperature::GAS_CONSTANT;
 pub use time_temperature::{AtTemperature, TimeTemperature};
 pub use zener::Zener;
@@ -146,7 +147,7 @@ pub trait Rheology: Debug + Send + Sync {
     ///
     /// # Errors
     /// If the times are not in \[1e-90, 1e90\] and in order, a series must be fitted over more than 50 decades of them, the
-    /// tolerance is outside \[1e-8, 0.1\], J is not a creep compliance there, or no series found reaches the tolerance ([`Error::PoorFit`](crate::Error::PoorFit)): J is
+    /// tolerance is outside \[1e-8, 0.1\], J is not a creep compliance there, or no series found reaches the tolerance ([`MaterialError::PoorFit`]): J is
     /// then not that of a body of springs and dashpots, or the tolerance is too small (below 1e-6).
     fn series(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<CreepSeries> {
         CreepSeries::new(self, times, tolerance)

@@ -1,7 +1,7 @@
 use std::ops::RangeInclusive;
 
-use crate::error::{Error, Result, positive, within};
-use crate::rheology::fit::{FitReport, Quantity, Sample, Search};
+use crate::error::{MaterialError, Result, positive, within};
+use crate::rheology::fit::{FitReport, MaterialFunction, Sample, Search};
 use crate::rheology::{CreepSpectrum, Rheology, may_follow};
 
 /// The exponential series that stands for a creep compliance over a range of times, and its error.
@@ -75,7 +75,7 @@ impl CreepSeries {
         let report = FitReport::new(&series, &sampled(rheology, [first, last], CHECKED, glassy)?);
         match report.worst() {
             Some(worst) if worst.misfit().abs() > tolerance => {
-                Err(Error::PoorFit { misfit: worst.misfit().abs(), at: worst.x, tolerance })
+                Err(MaterialError::PoorFit { misfit: worst.misfit().abs(), at: worst.x, tolerance }.into())
             }
             _ => {
                 let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
@@ -145,7 +145,7 @@ fn sampled<R: Rheology + ?Sized>(
             _ => first * (last / first).powf(k as f64 / count as f64),
         };
         previous = checked(rheology, x, previous)?;
-        samples.push(Sample { quantity: Quantity::Creep, x, value: previous, weight: 1.0 });
+        samples.push(Sample { function: MaterialFunction::Creep, x, value: previous, weight: 1.0 });
     }
     Ok(samples)
 }
@@ -156,6 +156,6 @@ fn checked<R: Rheology + ?Sized>(rheology: &R, time: f64, previous: f64) -> Resu
     if may_follow(value, previous) && (value > 0.0 || time == 0.0 && value == 0.0) {
         Ok(value)
     } else {
-        Err(Error::InvalidCompliance { time, value, previous })
+        Err(MaterialError::InvalidCompliance { time, value, previous }.into())
     }
 }

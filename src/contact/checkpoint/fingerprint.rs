@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::CheckpointError;
 use super::built::{Creep, Owners, difference};
 use crate::contact::scene::Scene;
 use crate::contact::settings::Settings;
+use crate::error::CheckpointError;
 
 /// A scene, as far as it must not change. How steps are solved may: solver, tolerance, limits.
 #[derive(Serialize, Deserialize)]

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::CheckpointError;
+use crate::error::CheckpointError;
 
 const MARK: [u8; 8] = *b"VISCOCHK";
 /// Raised whenever what is saved changes.

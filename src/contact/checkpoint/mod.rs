@@ -2,18 +2,15 @@
 
 pub(in crate::contact) mod autosave;
 pub(in crate::contact) mod built;
-mod error;
 mod fingerprint;
 mod format;
 mod saved;
-
-pub use error::CheckpointError;
 
 use std::path::Path;
 
 use crate::contact::run::progress::Progress;
 use crate::contact::viscoelastic::ViscoelasticContact;
-use crate::error::{Error, Result};
+use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
 use saved::Saved;
 

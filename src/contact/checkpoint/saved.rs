@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::CheckpointError;
 use super::fingerprint::Fingerprint;
 use crate::contact::domain::Domain;
 use crate::contact::run::progress::Progress;
 use crate::contact::scene::Scene;
 use crate::contact::state::{Equilibrium, State};
 use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::error::CheckpointError;
 
 /// A state, and the fingerprint of its scene; borrowed from a contact or read from a file.
 #[derive(Serialize, Deserialize)]

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::contact::report::StepReport;
 use crate::contact::settings::Frame;
 use crate::contact::state::State;
 use crate::contact::step::request::Step;
@@ -9,8 +10,27 @@ use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result, non_negative};
 use crate::load::Load;
 use crate::memory;
-use crate::motion::{Travel, TravelReport};
+use crate::motion::Travel;
 use crate::solver::RigidMotion;
+
+/// A step along a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct TravelReport {
+    /// The step itself.
+    pub step: StepReport,
+    /// Position of the shape at its end \[m\].
+    pub position: [f64; 2],
+    /// Position of the shape at its start \[m\].
+    pub from: [f64; 2],
+    /// The force that moves it \[N\], see
+    /// [`ViscoelasticContact::lateral_force`](crate::ViscoelasticContact::lateral_force).
+    pub lateral_force: [f64; 2],
+    /// The mean power over the step that the motion along the surface feeds into the bodies \[W\]: the work of the pressure
+    /// there, less that of force and moments. Lateral force times velocity, except that it includes the rim of a face. 0
+    /// for a jump.
+    pub power: f64,
+}
 
 impl ViscoelasticContact {
     /// A step at whose end the indenter is where `travel` says: the bodies stay where they are. The time is the contact's own:

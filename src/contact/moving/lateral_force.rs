@@ -14,7 +14,7 @@ impl ViscoelasticContact {
     /// [`Geometry::initial_gap`](crate::geometry::Geometry::initial_gap) has it: of a map that is interpolated, as well as that is, so that
     /// a rough slider with waves of 2 cells shows 3e-4 of the normal force on an elastic body, and with waves of 8 cells 2e-5. Where the rise is not
     /// finite, beside the rim of a face, there is no slope to press against: what a rim carries is in
-    /// [`TravelReport::power`](crate::motion::TravelReport) alone. NaN where the shape's gap is.
+    /// [`TravelReport::power`](crate::contact::TravelReport) alone. NaN where the shape's gap is.
     ///
     /// ```
     /// use viscocontact::prelude::*;

@@ -1,6 +1,6 @@
 //! Indenters that move along the surface.
 
-mod along_path;
+pub(in crate::contact) mod along_path;
 mod lateral_force;
 mod over_bodies;
 pub(in crate::contact) mod spare;

@@ -7,7 +7,7 @@ use crate::contact::run::error_budget::ErrorBudget;
 use crate::contact::run::progress::Progress;
 use crate::contact::run::stepping::Stepping;
 use crate::contact::viscoelastic::ViscoelasticContact;
-use crate::error::{Error, Result, finite, positive, within};
+use crate::error::{Error, LoadError, Result, finite, positive, within};
 use crate::load::{Load, LoadHistory};
 
 /// Two times closer than this fraction of a step are the same time.
@@ -116,7 +116,7 @@ impl<'a> Follow<'a> {
     /// # Errors
     /// If the end is not finite or lies before the contact's time, the fixed step is not finite and
     /// positive or too short to change the time, the tolerance is out of range or asks for steps too short to change
-    /// the time, the history returns what is not a load wherever the run looks at it ([`Error::InvalidLoad`]; adaptive steps
+    /// the time, the history returns what is not a load wherever the run looks at it ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); adaptive steps
     /// look between their ends, and ahead), or a step fails; the contact is then as it was after the last good step, and the call may be
     /// repeated. Or if the file of `Follow::autosave_to` cannot be written: the step is then taken all the same, and the next call
     /// tries to write again, and reports it.
@@ -161,7 +161,7 @@ impl<'a> Follow<'a> {
         }
         let corner = self.history.next_breakpoint(now).unwrap_or(f64::INFINITY);
         if corner <= now || corner.is_nan() {
-            return Err(Error::InvalidBreakpoint { after: now, breakpoint: corner });
+            return Err(LoadError::InvalidBreakpoint { after: now, breakpoint: corner }.into());
         }
         if let Some(mut control) = self.progress.control.take() {
             let report = self.adaptive_step(&mut control, corner);

@@ -1,7 +1,7 @@
 //! Whether the end of a step may be accepted.
 
 use crate::contact::scene::Scene;
-use crate::contact::settings::Edge;
+use crate::contact::settings::{Edge, Solver};
 use crate::contact::state::State;
 use crate::contact::step::request::Step;
 use crate::contact::trial::Trial;
@@ -52,7 +52,9 @@ pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, st
         }
         Outcome::OutOfIterations | Outcome::Stagnated => {
             let stagnated = outcome == Outcome::Stagnated;
-            let convergence = Convergence::new(trace.samples(), tolerance, scene.settings.solver, stagnated).into();
+            let convergence =
+                Convergence::new(trace.samples(), tolerance, scene.settings.solver == Solver::ActiveSet, stagnated)
+                    .into();
             Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
         }
     }

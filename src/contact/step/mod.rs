@@ -116,7 +116,7 @@ impl ViscoelasticContact {
         self.domain.accept(step, attempt.sum);
         self.view.refresh(&self.domain.state);
         let report = self.report();
-        events::accepted(&report);
+        report.emit();
         report
     }
 

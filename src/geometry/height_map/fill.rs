@@ -1,7 +1,7 @@
 //! Missing heights from those around them.
 
-use super::{HeightMap, MapError};
-use crate::error::{Error, Result};
+use super::HeightMap;
+use crate::error::{Error, MapError, Result};
 use crate::memory;
 
 /// Residual of the equations, relative to the range of the known heights, at which the missing ones are found.

@@ -1,6 +1,5 @@
 //! Measured surfaces: heights on a regular grid of points, prepared, sampled and moved.
 
-mod error;
 mod fill;
 mod level;
 mod prepare;
@@ -10,13 +9,12 @@ mod sample;
 mod unit;
 mod write;
 
-pub use error::MapError;
 pub use level::Form;
 pub use resample::{Resampled, ResamplingError};
 pub use unit::LengthUnit;
 
 use crate::Grid;
-use crate::error::{Error, LONGEST, Result, exact_length};
+use crate::error::{Error, LONGEST, MapError, Result, exact_length};
 use crate::geometry::Geometry;
 use crate::geometry::spectrum::Spectrum;
 

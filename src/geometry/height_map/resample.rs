@@ -76,7 +76,7 @@ impl HeightMap {
         };
         let count = pairs().count() as f64;
         if count == 0.0 {
-            return Err(crate::Error::Map(super::MapError::NothingKnown));
+            return Err(crate::Error::Map(crate::error::MapError::NothingKnown));
         }
         let mean = pairs().map(|(z, _)| z / count).sum::<f64>();
         // in units of a power of two near the greatest height, squares stay in the range of f64, and digits as they are

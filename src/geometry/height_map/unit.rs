@@ -2,8 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::error::{Error, Result};
-use crate::geometry::MapError;
+use crate::error::{Error, MapError, Result};
 
 /// A unit of length, as files of measured surfaces have them.
 ///

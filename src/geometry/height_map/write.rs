@@ -3,9 +3,9 @@
 use std::fmt::Write as _;
 use std::io::Write;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, MapError, Result};
+use crate::geometry::HeightMap;
 use crate::geometry::height_map::read::gsf;
-use crate::geometry::{HeightMap, MapError};
 
 impl HeightMap {
     /// Writes the map as a Gwyddion Simple Field 1.0, in single precision, in m. [`HeightMap::from_gsf`] tells more.

@@ -1,4 +1,4 @@
-//! A single column: what a line contact is made of. It pays for no tiles and no rows.
+//! The transform of a single column, that of a line contact: it needs no tiles and no rows.
 
 use std::fmt;
 use std::sync::Arc;
@@ -9,14 +9,14 @@ use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use super::SpectralOperator;
 use crate::kernel::lines::Line;
 
-/// How it is transformed: by a real transform of half the work, or if it is folded as all folded lines are.
+/// The transform: a real one of half the work, or, of a folded column, that of folded lines.
 #[derive(Clone)]
 pub(super) enum Column {
     Real(Arc<dyn RealToComplex<f64>>, Arc<dyn ComplexToReal<f64>>),
     Folded,
 }
 
-/// What its transforms work in.
+/// Buffers of the transform.
 #[derive(Clone, Default)]
 pub(super) struct ColumnWorkspace {
     real: Vec<f64>,
@@ -49,7 +49,7 @@ impl Column {
 }
 
 impl SpectralOperator {
-    /// Transforms `input`, multiplies it by the spectrum and transforms it back; the result stays in the workspace.
+    /// Transforms `input`, multiplies it by the spectrum and transforms it back; the result remains in the workspace.
     pub(super) fn convolve_column(&self, column: &Column, input: &[f64], work: &mut ColumnWorkspace) {
         let ColumnWorkspace { real, waves, scratch } = work;
         let values = input.iter().copied();
@@ -57,12 +57,12 @@ impl SpectralOperator {
             Column::Real(forward, inverse) => {
                 real[input.len()..].fill(0.0);
                 real.iter_mut().zip(values).for_each(|(real, value)| *real = value);
-                let forth = forward.process_with_scratch(real, waves, scratch);
+                let transformed = forward.process_with_scratch(real, waves, scratch);
                 waves.iter_mut().zip(&self.spectrum).for_each(|(z, s)| *z *= *s);
-                let back = inverse.process_with_scratch(waves, real, scratch);
-                // the way back complains of a mean that is not a number: so will the step that asked
-                debug_assert!(forth.is_ok());
-                let _ = back;
+                let inverted = inverse.process_with_scratch(waves, real, scratch);
+                // the inverse rejects a mean that is NaN: so does the step that convolves
+                debug_assert!(transformed.is_ok());
+                let _ = inverted;
             }
             Column::Folded => {
                 let line = &self.columns;
@@ -75,7 +75,7 @@ impl SpectralOperator {
         }
     }
 
-    /// Takes the result out of the workspace.
+    /// Copies the result from the workspace.
     pub(super) fn read_column(&self, column: &Column, work: &ColumnWorkspace, output: &mut [f64]) {
         match column {
             Column::Real(..) => {

@@ -1,8 +1,9 @@
-//! What operators and their buffers take, told before they are made.
+//! Memory of operators and their buffers, known before they are made.
 
 use num_complex::Complex64;
 
-use super::{AREA, CACHE_LINE, TILE, TransformWorkspace};
+use super::workspace::CACHE_LINE;
+use super::{AREA, TILE};
 use crate::kernel::lanes::lanes;
 use crate::kernel::layout::Layout;
 
@@ -14,16 +15,16 @@ impl Layout {
     pub(crate) fn operator_bytes(&self) -> u128 {
         let spectrum = REAL * self.independent(0) as u128 * self.independent(1) as u128;
         let tables = [0, 1].map(|axis| {
-            // there and back each about one complex number for each of the line
+            // forward and inverse: about one complex number each per number of the line
             let twist = if self.folded[axis] { self.line(axis) as u128 / 2 + 1 } else { 0 };
             COMPLEX * (2 * self.line(axis) as u128 + twist)
         });
-        // real transforms of a single column: each of half the length
+        // the real transforms of a single column have half the length each
         let column = if self.is_single_column() && !self.folded[0] { tables[0] / 2 } else { 0 };
         spectrum + tables[0] + tables[1] + column
     }
 
-    /// Bytes of the buffers of an operator, for as many threads as the size is worth.
+    /// Bytes of the buffers of an operator, for as many threads as pay off for this size.
     pub(crate) fn workspace_bytes(&self) -> u128 {
         let [lines, columns] = [self.line(1) as u128, self.line(0) as u128];
         if self.is_single_column() {
@@ -37,7 +38,7 @@ impl Layout {
         COMPLEX * (self.tiles() * if lanes > 1 { 2 } else { 1 } + lanes * lane)
     }
 
-    /// Numbers held by the buffers between the passes: tells workspaces of different sizes apart.
+    /// Number of values that the buffers hold between the passes: it differs between workspaces of different sizes.
     pub(crate) fn numbers(&self) -> usize {
         let numbers = match self.is_single_column() {
             true => 2 * self.waves() as u128 + if self.folded[0] { 0 } else { self.line(0) as u128 },
@@ -46,26 +47,19 @@ impl Layout {
         usize::try_from(numbers).unwrap_or(usize::MAX)
     }
 
-    /// Whether there are no rows to be transformed: a line contact.
+    /// Whether there are no rows to transform, as in a line contact.
     pub(super) fn is_single_column(&self) -> bool {
         self.cells[1] == 1 && self.line(1) == 1 && !self.folded[1]
     }
 
-    /// Complex numbers that a single column works in.
+    /// Number of complex values in the transform of a single column.
     fn waves(&self) -> usize {
         if self.folded[0] { self.line(0) } else { self.independent(0) }
     }
 
-    /// Complex numbers in tiles.
+    /// Number of complex values in all tiles.
     fn tiles(&self) -> u128 {
         let high = if self.folded[1] { 2 * TILE } else { TILE };
         self.independent(1).div_ceil(TILE) as u128 * AREA as u128 * self.cells[0].div_ceil(high) as u128
-    }
-}
-
-impl TransformWorkspace {
-    /// What it was made for.
-    pub(crate) fn layout(&self) -> Layout {
-        self.layout
     }
 }

@@ -1,8 +1,9 @@
-//! The three passes of an operator, as pieces of work for threads.
+//! The three passes of an operator, each a task that threads share.
 
 use num_complex::Complex64;
 
-use super::{AREA, Lane, SpectralOperator, TILE};
+use super::workspace::Lane;
+use super::{AREA, SpectralOperator, TILE};
 use crate::kernel::lanes::Task;
 use crate::kernel::lines::{separate, unite};
 
@@ -42,7 +43,7 @@ impl Task for RowsForward<'_> {
                     for (tile, piece) in tiles.chunks_exact_mut(AREA).zip(buffer.chunks(TILE)) {
                         let place = &mut tile[i * TILE..][..TILE];
                         place[..piece.len()].copy_from_slice(piece);
-                        // beyond the last coefficient: half of a complex column, if the number is odd
+                        // beyond the last coefficient: the second half of a complex column, if the number of coefficients is odd
                         place[piece.len()..].fill(Complex64::default());
                     }
                 } else {
@@ -59,7 +60,7 @@ impl Task for RowsForward<'_> {
     }
 }
 
-/// Convolves the columns of tiles that lie row by row.
+/// Convolves the columns of tiles that are stored row by row.
 pub(super) struct ColumnsInPlace<'a> {
     pub(super) operator: &'a SpectralOperator,
 }
@@ -80,7 +81,7 @@ impl Task for ColumnsInPlace<'_> {
     }
 }
 
-/// Convolves the columns of `tiles`; those of the result lie column by column.
+/// Convolves the columns of `tiles`; the tiles of the result are stored column by column.
 pub(super) struct Columns<'a> {
     pub(super) operator: &'a SpectralOperator,
     pub(super) tiles: &'a [Complex64],
@@ -143,7 +144,8 @@ impl Task for RowsInverse<'_> {
     }
 }
 
-/// Multiplies the transforms of two real columns, together those of the complex `column`, by a real even spectrum each.
+/// Multiplies the transforms of two real columns, the real and imaginary parts of the complex `column`, by a real even
+/// spectrum each.
 #[inline(always)]
 pub(super) fn multiply_apart(column: &mut [Complex64], first: &[f64], second: &[f64]) {
     let multiply = |z: Complex64, mirror: Complex64, k: usize| {

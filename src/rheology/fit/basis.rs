@@ -7,7 +7,7 @@
 /// immediate viscosity, relaxing moduli).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum Quantity {
+pub enum MaterialFunction {
     /// Creep compliance J(t) \[1/Pa\] over the time \[s\].
     Creep,
     /// Relaxation modulus G(t) \[Pa\] over the time \[s\].
@@ -18,37 +18,37 @@ pub enum Quantity {
     Loss,
 }
 
-impl Quantity {
+impl MaterialFunction {
     /// What the constant contributes at `x`, per unit.
     pub(crate) fn constant(self) -> f64 {
-        if self == Quantity::Loss { 0.0 } else { 1.0 }
+        if self == MaterialFunction::Loss { 0.0 } else { 1.0 }
     }
 
     /// What the slope contributes at `x`, per unit.
     pub(crate) fn slope(self, x: f64) -> f64 {
         match self {
-            Quantity::Creep | Quantity::Loss => x,
-            Quantity::Relaxation | Quantity::Storage => 0.0,
+            MaterialFunction::Creep | MaterialFunction::Loss => x,
+            MaterialFunction::Relaxation | MaterialFunction::Storage => 0.0,
         }
     }
 
     /// φ(x, λ) and ∂φ/∂ln λ.
     pub(crate) fn term(self, x: f64, lambda: f64) -> (f64, f64) {
         match self {
-            Quantity::Creep => {
+            MaterialFunction::Creep => {
                 let z = x / lambda;
                 (-(-z).exp_m1(), -z * (-z).exp())
             }
-            Quantity::Relaxation => {
+            MaterialFunction::Relaxation => {
                 let z = x / lambda;
                 ((-z).exp(), z * (-z).exp())
             }
             // with y = ωτ; its square is written so that neither end overflows
-            Quantity::Storage => {
+            MaterialFunction::Storage => {
                 let (stored, lost) = debye(x * lambda);
                 (stored, 2.0 * lost * lost)
             }
-            Quantity::Loss => {
+            MaterialFunction::Loss => {
                 let (stored, lost) = debye(x * lambda);
                 (lost, lost * (1.0 - 2.0 * stored))
             }
@@ -65,7 +65,7 @@ fn debye(y: f64) -> (f64, f64) {
 /// One measured or computed value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Sample {
-    pub(crate) quantity: Quantity,
+    pub(crate) function: MaterialFunction,
     pub(crate) x: f64,
     pub(crate) value: f64,
     /// How many measurements it is the mean of.
@@ -81,24 +81,24 @@ impl Sample {
 
 /// An exponential series under construction.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Series {
+pub(crate) struct FittedSeries {
     pub(crate) constant: f64,
     pub(crate) slope: f64,
     /// (strength, time), times ascending.
     pub(crate) terms: Vec<(f64, f64)>,
 }
 
-impl Series {
-    pub(crate) fn value(&self, quantity: Quantity, x: f64) -> f64 {
-        let terms: f64 = self.terms.iter().map(|&(c, lambda)| c * quantity.term(x, lambda).0).sum();
+impl FittedSeries {
+    pub(crate) fn value(&self, function: MaterialFunction, x: f64) -> f64 {
+        let terms: f64 = self.terms.iter().map(|&(c, lambda)| c * function.term(x, lambda).0).sum();
         // a slope of zero counts nothing even where its function is infinite
-        let slope = if self.slope > 0.0 { self.slope * quantity.slope(x) } else { 0.0 };
-        self.constant * quantity.constant() + slope + terms
+        let slope = if self.slope > 0.0 { self.slope * function.slope(x) } else { 0.0 };
+        self.constant * function.constant() + slope + terms
     }
 
     /// fitted/value − 1.
     pub(crate) fn misfit(&self, sample: &Sample) -> f64 {
-        self.value(sample.quantity, sample.x) / sample.value - 1.0
+        self.value(sample.function, sample.x) / sample.value - 1.0
     }
 
     pub(crate) fn worst(&self, samples: &[Sample]) -> f64 {

@@ -7,7 +7,7 @@
 
 use faer::{Col, Mat};
 
-use super::basis::{Quantity, Sample, Series};
+use super::basis::{FittedSeries, MaterialFunction, Sample};
 use super::nnls::non_negative_least_squares;
 use super::polish::polish;
 use super::{LONG, Search};
@@ -40,7 +40,7 @@ const FOLLOWED_IN_ALL: f64 = 64.0;
 /// What is found from measurements.
 #[derive(Debug, Clone)]
 pub(crate) struct Measured {
-    pub(crate) series: Series,
+    pub(crate) series: FittedSeries,
     /// How far, relatively, another series that meets the samples as well strays from it at or between them.
     pub(crate) uncertainty: f64,
 }
@@ -52,7 +52,7 @@ impl Search {
         // each strength that is not zero is a parameter of non-negative least squares (Meyer & Woodroofe, Ann. Statist. 28,
         // 2000)
         let parameters = ends(&start) + start.terms.len();
-        let enough = |series: &Series| series.worst(samples) <= 0.1 * FLOOR;
+        let enough = |series: &FittedSeries| series.worst(samples) <= 0.1 * FLOOR;
         let start = polish(&start, samples, self.free(), LONG, &enough);
         let left = samples.len().saturating_sub(parameters).max(1) as f64;
         let noise = (start.squares(samples) / left).sqrt();
@@ -73,17 +73,17 @@ impl Search {
     /// Criteria that ask for the true number of terms (Bayesian ones) find three or six times as surely, but of a
     /// continuous spectrum they leave ripples: with 2 % noise, J of a fractional Zener body errs by 0.95 % instead of
     /// 0.68 % rms, and of three retardation times by 0.38 % instead of 0.40 %.
-    fn sparse(&self, start: &Series, samples: &[Sample], noise: f64) -> Series {
-        let criterion = |series: &Series| {
+    fn sparse(&self, start: &FittedSeries, samples: &[Sample], noise: f64) -> FittedSeries {
+        let criterion = |series: &FittedSeries| {
             series.squares(samples) / (noise * noise) + 2.0 * (ends(series) + 2 * series.terms.len()) as f64
         };
-        let prefers = |trial: &Series, current: &Series| criterion(trial) <= criterion(current);
+        let prefers = |trial: &FittedSeries, current: &FittedSeries| criterion(trial) <= criterion(current);
         let thinned = self.thinned(start.clone(), samples, TRIES, &prefers);
         polish(&thinned, samples, self.free(), LONG, &|_| false)
     }
 
     /// The smoothest spectrum that explains the samples; `None` if none does, as for a few discrete times without noise.
-    fn smooth(&self, samples: &[Sample], noise: f64) -> Option<Series> {
+    fn smooth(&self, samples: &[Sample], noise: f64) -> Option<FittedSeries> {
         let [first, last] = self.times;
         let wide = Search { times: [first / SMOOTH_BEYOND, last * SMOOTH_BEYOND], ..self.clone() };
         let enough = noise.powi(2) * samples.len() as f64;
@@ -104,18 +104,18 @@ impl Search {
 
     /// Non-negative least squares of the misfit and of `weight` times the squared second differences of the strengths,
     /// measured by the data at the same time: those of a power law have none.
-    fn regularised(&self, samples: &[Sample], weight: f64) -> Series {
+    fn regularised(&self, samples: &[Sample], weight: f64) -> FittedSeries {
         let decades = (self.times[1] / self.times[0]).log10();
         let times = self.grid(SMOOTH_DENSITY.min(SMOOTH_TIMES / decades));
         let levels: Vec<f64> = times.iter().map(|&time| level(samples, time)).collect();
         let ends = 1 + usize::from(self.slope);
         let (rows, root) = (samples.len(), weight.sqrt());
         let matrix = Mat::from_fn(rows + times.len() - 2, ends + times.len(), |i, j| {
-            if let Some(Sample { quantity, x, value, weight }) = samples.get(i) {
+            if let Some(Sample { function, x, value, weight }) = samples.get(i) {
                 let function = match j {
-                    0 => quantity.constant(),
-                    _ if j < ends => quantity.slope(*x),
-                    _ => levels[j - ends] * quantity.term(*x, times[j - ends]).0,
+                    0 => function.constant(),
+                    _ if j < ends => function.slope(*x),
+                    _ => levels[j - ends] * function.term(*x, times[j - ends]).0,
                 };
                 return function * weight.sqrt() / value;
             }
@@ -129,7 +129,7 @@ impl Search {
         let strengths = non_negative_least_squares(&matrix, &right);
         let (at_ends, of_terms) = strengths.split_at(ends);
         let terms = of_terms.iter().zip(levels).map(|(part, level)| part * level).zip(times);
-        Series {
+        FittedSeries {
             constant: at_ends[0],
             slope: if self.slope { at_ends[1] } else { 0.0 },
             terms: terms.filter(|(strength, _)| *strength > 0.0).collect(),
@@ -138,18 +138,18 @@ impl Search {
 }
 
 /// How many of constant and slope a series has.
-fn ends(series: &Series) -> usize {
+fn ends(series: &FittedSeries) -> usize {
     usize::from(series.constant > 0.0) + usize::from(series.slope > 0.0)
 }
 
 /// What was measured first at `time`, a straight line between the samples in logarithms, and constant beyond them.
 fn level(samples: &[Sample], time: f64) -> f64 {
-    let quantity = samples[0].quantity;
-    let x = match quantity {
-        Quantity::Creep | Quantity::Relaxation => time,
-        Quantity::Storage | Quantity::Loss => 1.0 / time,
+    let function = samples[0].function;
+    let x = match function {
+        MaterialFunction::Creep | MaterialFunction::Relaxation => time,
+        MaterialFunction::Storage | MaterialFunction::Loss => 1.0 / time,
     };
-    let known: Vec<&Sample> = samples.iter().filter(|sample| sample.quantity == quantity && sample.x > 0.0).collect();
+    let known: Vec<&Sample> = samples.iter().filter(|sample| sample.function == function && sample.x > 0.0).collect();
     let next = known.partition_point(|sample| sample.x < x);
     match (next.checked_sub(1).map(|before| known[before]), known.get(next)) {
         (Some(before), Some(next)) => {
@@ -161,18 +161,18 @@ fn level(samples: &[Sample], time: f64) -> f64 {
 }
 
 /// The values of `curve` at and between the samples.
-fn along(curve: &Series, samples: &[Sample]) -> Vec<Sample> {
+fn along(curve: &FittedSeries, samples: &[Sample]) -> Vec<Sample> {
     let known = || samples.iter().map(|sample| sample.x).filter(|x| *x > 0.0);
     let decades = (known().fold(0.0, f64::max) / known().fold(f64::INFINITY, f64::min)).log10().max(1.0);
     let followed = FOLLOWED.min(FOLLOWED_IN_ALL / decades);
     let mut points = Vec::new();
-    let mut push = |quantity, x| points.push(Sample { quantity, x, value: curve.value(quantity, x), weight: 1.0 });
-    for (k, &Sample { quantity, x, .. }) in samples.iter().enumerate() {
-        push(quantity, x);
-        if let Some(next) = samples.get(k + 1).filter(|next| next.quantity == quantity && x > 0.0) {
+    let mut push = |function, x| points.push(Sample { function, x, value: curve.value(function, x), weight: 1.0 });
+    for (k, &Sample { function, x, .. }) in samples.iter().enumerate() {
+        push(function, x);
+        if let Some(next) = samples.get(k + 1).filter(|next| next.function == function && x > 0.0) {
             let between = ((next.x / x).log10() * followed).ceil() as usize;
             for part in 1..between {
-                push(quantity, x * (next.x / x).powf(part as f64 / between as f64));
+                push(function, x * (next.x / x).powf(part as f64 / between as f64));
             }
         }
     }

@@ -15,8 +15,8 @@ mod nnls;
 mod polish;
 mod report;
 
-pub use basis::Quantity;
-pub(crate) use basis::{Sample, Series};
+pub use basis::MaterialFunction;
+pub(crate) use basis::{FittedSeries, Sample};
 pub(crate) use measured::Measured;
 pub use report::{FitReport, FitSample, FitWarning};
 
@@ -46,9 +46,9 @@ const LONG: usize = 60;
 impl Search {
     /// The series of the fewest terms found whose misfit is at most `most` at every sample; else the one that comes
     /// nearest.
-    pub(crate) fn within(&self, samples: &[Sample], most: f64) -> Series {
-        let reached = |series: &Series| series.worst(samples) <= most;
-        let mut best: Option<Series> = None;
+    pub(crate) fn within(&self, samples: &[Sample], most: f64) -> FittedSeries {
+        let reached = |series: &FittedSeries| series.worst(samples) <= most;
+        let mut best: Option<FittedSeries> = None;
         for density in DENSITIES {
             let series = polish(&self.on_grid(samples, density), samples, self.free(), LONG, &reached);
             if best.as_ref().is_none_or(|best| series.worst(samples) < best.worst(samples)) {
@@ -58,7 +58,8 @@ impl Search {
                 break;
             }
         }
-        let found = best.unwrap_or(Series { constant: self.constant.unwrap_or(0.0), slope: 0.0, terms: Vec::new() });
+        let found =
+            best.unwrap_or(FittedSeries { constant: self.constant.unwrap_or(0.0), slope: 0.0, terms: Vec::new() });
         let thinned = self.thinned(found, samples, TRIES, &|trial, _| reached(trial));
         // what was enough for a merger may not be all there is
         let polished = polish(&thinned, samples, self.free(), LONG, &|_| false);
@@ -70,26 +71,26 @@ impl Search {
     }
 
     /// Non-negative least squares with `density` times a decade.
-    fn on_grid(&self, samples: &[Sample], density: f64) -> Series {
+    fn on_grid(&self, samples: &[Sample], density: f64) -> FittedSeries {
         let times = self.grid(density);
         let ends = usize::from(self.constant.is_none()) + usize::from(self.slope);
         let matrix = Mat::from_fn(samples.len(), ends + times.len(), |i, j| {
-            let Sample { quantity, x, value, weight } = samples[i];
+            let Sample { function, x, value, weight } = samples[i];
             let function = match j {
-                0 if self.constant.is_none() => quantity.constant(),
-                _ if j < ends => quantity.slope(x),
-                _ => quantity.term(x, times[j - ends]).0,
+                0 if self.constant.is_none() => function.constant(),
+                _ if j < ends => function.slope(x),
+                _ => function.term(x, times[j - ends]).0,
             };
             function * weight.sqrt() / value
         });
         let known = self.constant.unwrap_or(0.0);
         let right = Col::from_fn(samples.len(), |i| {
-            let Sample { quantity, value, weight, .. } = samples[i];
-            weight.sqrt() * (1.0 - known * quantity.constant() / value)
+            let Sample { function, value, weight, .. } = samples[i];
+            weight.sqrt() * (1.0 - known * function.constant() / value)
         });
         let strengths = nnls::non_negative_least_squares(&matrix, &right);
         let (at_ends, of_terms) = strengths.split_at(ends);
-        Series {
+        FittedSeries {
             constant: self.constant.unwrap_or_else(|| at_ends[0]),
             slope: if self.slope { at_ends[ends - 1] } else { 0.0 },
             terms: of_terms.iter().copied().zip(times).filter(|(strength, _)| *strength > 0.0).collect(),
@@ -100,11 +101,11 @@ impl Search {
     /// `tries`, the cheapest first.
     fn thinned(
         &self,
-        start: Series,
+        start: FittedSeries,
         samples: &[Sample],
         tries: usize,
-        prefers: &dyn Fn(&Series, &Series) -> bool,
-    ) -> Series {
+        prefers: &dyn Fn(&FittedSeries, &FittedSeries) -> bool,
+    ) -> FittedSeries {
         let mut best = start;
         loop {
             let mut mergers = self.mergers(&best, samples);
@@ -128,12 +129,12 @@ impl Search {
     }
 
     /// Every series with one term less, and what the merger costs to first order.
-    fn mergers(&self, series: &Series, samples: &[Sample]) -> Vec<(f64, Series)> {
+    fn mergers(&self, series: &FittedSeries, samples: &[Sample]) -> Vec<(f64, FittedSeries)> {
         let mut mergers = Vec::new();
-        let cost = |merged: &Series| {
+        let cost = |merged: &FittedSeries| {
             samples.iter().map(|sample| (merged.misfit(sample) - series.misfit(sample)).powi(2)).sum::<f64>()
         };
-        let mut offer = |merged: Series| mergers.push((cost(&merged), merged));
+        let mut offer = |merged: FittedSeries| mergers.push((cost(&merged), merged));
         for k in 1..series.terms.len() {
             let mut merged = series.clone();
             let (strength, lambda) = merged.terms.remove(k);
@@ -153,7 +154,7 @@ impl Search {
             (merged, term)
         };
         let (swift, slow) = (0, series.terms.len() - 1);
-        let creep = samples[0].quantity == Quantity::Creep;
+        let creep = samples[0].function == MaterialFunction::Creep;
         if self.constant.is_none() {
             let (mut merged, (strength, _)) = without(if creep { swift } else { slow });
             merged.constant += strength;

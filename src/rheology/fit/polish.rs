@@ -2,7 +2,7 @@
 
 use faer::{Col, Mat};
 
-use super::basis::{Sample, Series};
+use super::basis::{FittedSeries, Sample};
 use super::nnls::solve;
 
 /// The farthest a parameter moves in one iteration, as a logarithm.
@@ -18,12 +18,12 @@ pub(crate) struct Free {
 /// Levenberg–Marquardt in the logarithms of strengths and times, which keeps both positive. Ends after
 /// `iterations`, when `done`, or when the squares no longer fall.
 pub(crate) fn polish(
-    start: &Series,
+    start: &FittedSeries,
     samples: &[Sample],
     free: Free,
     iterations: usize,
-    done: &dyn Fn(&Series) -> bool,
-) -> Series {
+    done: &dyn Fn(&FittedSeries) -> bool,
+) -> FittedSeries {
     let mut best = start.clone();
     let mut squares = best.squares(samples);
     let mut damping = 1e-3;
@@ -55,18 +55,18 @@ pub(crate) fn polish(
 }
 
 /// Derivatives of the misfits by ln constant, ln slope, and each (ln strength, ln time), and the misfits.
-fn linearise(series: &Series, samples: &[Sample], free: Free) -> (Mat<f64>, Col<f64>) {
+fn linearise(series: &FittedSeries, samples: &[Sample], free: Free) -> (Mat<f64>, Col<f64>) {
     let ends = usize::from(moves(free.constant, series.constant)) + usize::from(moves(free.slope, series.slope));
     let mut jacobian = Mat::zeros(samples.len(), ends + 2 * series.terms.len());
     let mut misfits = Col::zeros(samples.len());
     for (i, sample) in samples.iter().enumerate() {
-        let (quantity, root) = (sample.quantity, sample.weight.sqrt());
+        let (function, root) = (sample.function, sample.weight.sqrt());
         let weight = root / sample.value;
         misfits[i] = root * series.misfit(sample);
         let mut column = 0;
         for (is_free, strength, function) in [
-            (free.constant, series.constant, quantity.constant()),
-            (free.slope, series.slope, quantity.slope(sample.x)),
+            (free.constant, series.constant, function.constant()),
+            (free.slope, series.slope, function.slope(sample.x)),
         ] {
             if moves(is_free, strength) {
                 jacobian[(i, column)] = strength * function * weight;
@@ -74,7 +74,7 @@ fn linearise(series: &Series, samples: &[Sample], free: Free) -> (Mat<f64>, Col<
             }
         }
         for &(strength, lambda) in &series.terms {
-            let (value, derivative) = quantity.term(sample.x, lambda);
+            let (value, derivative) = function.term(sample.x, lambda);
             jacobian[(i, column)] = strength * value * weight;
             jacobian[(i, column + 1)] = strength * derivative * weight;
             column += 2;
@@ -100,7 +100,7 @@ fn damped_step(jacobian: &Mat<f64>, misfits: &Col<f64>, damping: f64) -> Vec<f64
     solve(&matrix, &right)
 }
 
-fn moved(series: &Series, free: Free, step: &[f64]) -> Series {
+fn moved(series: &FittedSeries, free: Free, step: &[f64]) -> FittedSeries {
     let mut step = step.iter().map(|d| d.clamp(-FARTHEST, FARTHEST).exp());
     let mut next = || step.next().unwrap_or(1.0);
     let mut moved = series.clone();

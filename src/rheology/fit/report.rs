@@ -1,13 +1,13 @@
 use std::fmt;
 
-use super::basis::{Quantity, Sample, Series};
+use super::basis::{FittedSeries, MaterialFunction, Sample};
 
 /// One value that a series was fitted to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FitSample {
     /// What the value is.
-    pub quantity: Quantity,
+    pub function: MaterialFunction,
     /// Time \[s\] or angular frequency \[rad/s\].
     pub x: f64,
     /// The value given: \[1/Pa\] for creep, else \[Pa\].
@@ -91,12 +91,12 @@ pub struct FitReport {
 
 impl FitReport {
     /// The misfit of `series` at `samples`.
-    pub(crate) fn new(series: &Series, samples: &[Sample]) -> FitReport {
+    pub(crate) fn new(series: &FittedSeries, samples: &[Sample]) -> FitReport {
         let fitted = |sample: &Sample| FitSample {
-            quantity: sample.quantity,
+            function: sample.function,
             x: sample.x,
             given: sample.value,
-            fitted: series.value(sample.quantity, sample.x),
+            fitted: series.value(sample.function, sample.x),
         };
         FitReport {
             samples: samples.iter().map(fitted).collect(),
@@ -128,7 +128,7 @@ impl FitReport {
 
     /// Whether misfits resemble those of their neighbours.
     fn is_systematic(&self) -> bool {
-        let neighbours = self.samples.windows(2).filter(|pair| pair[0].quantity == pair[1].quantity);
+        let neighbours = self.samples.windows(2).filter(|pair| pair[0].function == pair[1].function);
         let (changes, pairs) = neighbours
             .fold((0.0, 0.0), |(sum, count), pair| (sum + (pair[1].misfit() - pair[0].misfit()).powi(2), count + 1.0));
         changes < SYSTEMATIC * pairs * self.rms_misfit().powi(2)
@@ -139,7 +139,7 @@ impl FitReport {
         self.exact
     }
 
-    /// The values given and fitted, in ascending order of time or frequency within each quantity.
+    /// The values given and fitted, in ascending order of time or frequency within each function.
     pub fn samples(&self) -> &[FitSample] {
         &self.samples
     }
@@ -197,9 +197,9 @@ impl fmt::Display for FitReport {
         let (Some(worst), Some([first, last])) = (self.worst(), self.range()) else {
             return write!(f, "exact, {} terms", self.terms);
         };
-        let unit = match worst.quantity {
-            Quantity::Creep | Quantity::Relaxation => "s",
-            Quantity::Storage | Quantity::Loss => "rad/s",
+        let unit = match worst.function {
+            MaterialFunction::Creep | MaterialFunction::Relaxation => "s",
+            MaterialFunction::Storage | MaterialFunction::Loss => "rad/s",
         };
         write!(
             f,

@@ -1,8 +1,7 @@
 //! Checks what was measured before anything is fitted to it.
 
-use crate::error::Result;
-use crate::rheology::fit::{Quantity, Sample};
-use crate::rheology::table::{Place, TableError};
+use crate::error::{Place, Result, TableError};
+use crate::rheology::fit::{MaterialFunction, Sample};
 
 /// One row of a table: where it stands, the abscissa, and one value for each column.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,25 +17,25 @@ pub(crate) struct Layout {
     pub(crate) table: &'static str,
     pub(crate) abscissa: &'static str,
     /// Name and meaning of each column.
-    pub(crate) columns: &'static [(&'static str, Quantity)],
+    pub(crate) columns: &'static [(&'static str, MaterialFunction)],
     /// Whether an abscissa of zero makes sense.
     pub(crate) zero: bool,
 }
 
 pub(crate) const CREEP: Layout =
-    Layout { table: "creep", abscissa: "time", columns: &[("creep compliance", Quantity::Creep)], zero: true };
+    Layout { table: "creep", abscissa: "time", columns: &[("creep compliance", MaterialFunction::Creep)], zero: true };
 
 pub(crate) const RELAXATION: Layout = Layout {
     table: "relaxation",
     abscissa: "time",
-    columns: &[("relaxation modulus", Quantity::Relaxation)],
+    columns: &[("relaxation modulus", MaterialFunction::Relaxation)],
     zero: true,
 };
 
 pub(crate) const DYNAMIC: Layout = Layout {
     table: "dynamic",
     abscissa: "angular frequency",
-    columns: &[("storage modulus", Quantity::Storage), ("loss modulus", Quantity::Loss)],
+    columns: &[("storage modulus", MaterialFunction::Storage), ("loss modulus", MaterialFunction::Loss)],
     zero: false,
 };
 
@@ -85,12 +84,12 @@ pub(crate) fn validated(layout: Layout, mut rows: Vec<Row>) -> Result<(Vec<Sampl
         return Err(TableError::TooFew { table, rows: rows.len(), least: LEAST_ROWS }.into());
     }
     let mut deepest: f64 = 0.0;
-    for (index, &(column, quantity)) in columns.iter().enumerate() {
+    for (index, &(column, function)) in columns.iter().enumerate() {
         let values: Vec<f64> = rows.iter().map(|row| row.values[index]).collect();
-        let rising = match quantity {
-            Quantity::Creep | Quantity::Storage => values,
-            Quantity::Relaxation => values.iter().map(|value| 1.0 / value).collect(),
-            Quantity::Loss => continue,
+        let rising = match function {
+            MaterialFunction::Creep | MaterialFunction::Storage => values,
+            MaterialFunction::Relaxation => values.iter().map(|value| 1.0 / value).collect(),
+            MaterialFunction::Loss => continue,
         };
         let most = if rows.len() < FEW { MOST_NOISE_OF_FEW } else { MOST_NOISE };
         let noise = (DEVIATIONS * scatter(&rising)).max(1.5 * quantum(&rising)).clamp(LEAST_NOISE, most);
@@ -102,10 +101,10 @@ pub(crate) fn validated(layout: Layout, mut rows: Vec<Row>) -> Result<(Vec<Sampl
         }
         deepest = deepest.max(change);
     }
-    let sample = |index: usize, quantity| {
-        rows.iter().map(move |row| Sample { quantity, x: row.x, value: row.values[index], weight: 1.0 })
+    let sample = |index: usize, function| {
+        rows.iter().map(move |row| Sample { function, x: row.x, value: row.values[index], weight: 1.0 })
     };
-    let samples = columns.iter().enumerate().flat_map(|(index, &(_, quantity))| sample(index, quantity));
+    let samples = columns.iter().enumerate().flat_map(|(index, &(_, function))| sample(index, function));
     Ok((samples.collect(), deepest))
 }
 

@@ -1,7 +1,7 @@
-use crate::error::{Error, Result, least_length, within};
+use crate::error::{Error, Place, Result, TableError, least_length, within};
 use crate::rheology::table::data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
-use crate::rheology::table::{Place, TableError, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
-use crate::rheology::{Quantity, TimeTemperature};
+use crate::rheology::table::{TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
+use crate::rheology::{MaterialFunction, TimeTemperature};
 
 /// What was measured at one temperature.
 ///
@@ -204,11 +204,11 @@ impl MasterCurve {
 
     /// The points of the curve: reduced time \[s\] or angular frequency \[rad/s\], what it measures, value; from
     /// the lowest temperature to the highest.
-    pub fn points(&self) -> Vec<(f64, Quantity, f64)> {
+    pub fn points(&self) -> Vec<(f64, MaterialFunction, f64)> {
         let mut points = Vec::new();
         for (isotherm, row) in self.reduced() {
             let columns = isotherm.layout.columns.iter().zip(&row.values);
-            points.extend(columns.map(|(&(_, quantity), &value)| (row.x, quantity, value)));
+            points.extend(columns.map(|(&(_, function), &value)| (row.x, function, value)));
         }
         points
     }

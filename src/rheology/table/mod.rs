@@ -3,16 +3,14 @@
 #[cfg(feature = "csv")]
 mod csv;
 mod data;
-mod error;
 mod master_curve;
 
 #[cfg(feature = "csv")]
 pub use self::csv::Units;
-pub use error::{Place, TableError};
 pub use master_curve::{Isotherm, MasterCurve};
 
-use crate::error::{Result, exact_length};
-use crate::rheology::fit::{FitReport, Measured, Sample, Search, Series};
+use crate::error::{Place, Result, TableError, exact_length};
+use crate::rheology::fit::{FitReport, FittedSeries, Measured, Sample, Search};
 use crate::rheology::series::known_series;
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 use data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
@@ -212,7 +210,7 @@ fn rows(x: &[f64], field: &'static str, columns: &[&[f64]]) -> Result<Vec<Row>> 
 }
 
 /// The series that the data warrant.
-fn fitted(layout: Layout, rows: Vec<Row>, slope: bool) -> Result<(Series, FitReport)> {
+fn fitted(layout: Layout, rows: Vec<Row>, slope: bool) -> Result<(FittedSeries, FitReport)> {
     let (samples, deepest) = validated(layout, rows)?;
     let times = |sample: &Sample| match layout.zero {
         true => sample.x,
@@ -239,7 +237,7 @@ fn gathered(samples: &[Sample], decades: f64) -> Vec<Sample> {
     for &sample in samples {
         match gathered.last_mut() {
             Some(mean)
-                if mean.quantity == sample.quantity && mean.bin(a_decade) == sample.bin(a_decade) && mean.x > 0.0 =>
+                if mean.function == sample.function && mean.bin(a_decade) == sample.bin(a_decade) && mean.x > 0.0 =>
             {
                 let share = sample.weight / (mean.weight + sample.weight);
                 mean.x *= (sample.x / mean.x).powf(share);

@@ -6,8 +6,8 @@ use std::io::Read;
 use super::header::Header;
 use super::number::{Kind, Number};
 use super::{First, bytes, count};
-use crate::error::Result;
-use crate::geometry::{HeightMap, LengthUnit, MapError};
+use crate::error::{MapError, Result};
+use crate::geometry::{HeightMap, LengthUnit};
 
 pub(in crate::geometry::height_map) const MAGIC: &str = "Gwyddion Simple Field 1.0\n";
 const FORMAT: &str = "GSF";

@@ -1,7 +1,6 @@
 //! Text headers of lines `key = value`.
 
-use crate::error::{Result, positive};
-use crate::geometry::MapError;
+use crate::error::{MapError, Result, positive};
 
 /// What the lines of a header say.
 #[derive(Debug)]

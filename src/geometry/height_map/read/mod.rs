@@ -21,8 +21,8 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::Grid;
-use crate::error::Result;
-use crate::geometry::{HeightMap, MapError};
+use crate::error::{MapError, Result};
+use crate::geometry::HeightMap;
 use crate::memory;
 
 /// The extensions of files that carry the lengths of their maps.

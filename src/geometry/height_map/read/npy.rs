@@ -7,8 +7,8 @@ use std::io::Read;
 use super::number::{Kind, Number};
 use super::{bytes, count};
 use crate::Grid;
-use crate::error::Result;
-use crate::geometry::{HeightMap, LengthUnit, MapError};
+use crate::error::{MapError, Result};
+use crate::geometry::{HeightMap, LengthUnit};
 use crate::memory;
 
 pub(in crate::geometry::height_map) const MAGIC: &[u8] = b"\x93NUMPY";

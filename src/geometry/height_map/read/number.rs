@@ -1,7 +1,6 @@
 //! Numbers in binary files.
 
-use crate::error::Result;
-use crate::geometry::MapError;
+use crate::error::{MapError, Result};
 use crate::memory;
 
 /// How a number is written.

@@ -10,8 +10,8 @@ use std::io::Read;
 use super::header::Header;
 use super::number::{Kind, Number};
 use super::{First, bytes, count};
-use crate::error::{Result, positive};
-use crate::geometry::{HeightMap, MapError};
+use crate::error::{MapError, Result, positive};
+use crate::geometry::HeightMap;
 
 const FORMAT: &str = "SDF";
 /// How the binary header is divided: version, manufacturer, two dates, two counts, four scales, three kinds.

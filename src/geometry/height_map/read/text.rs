@@ -4,8 +4,8 @@ use std::io::Read;
 
 use super::{First, bytes, count};
 use crate::Grid;
-use crate::error::Result;
-use crate::geometry::{HeightMap, LengthUnit, MapError};
+use crate::error::{MapError, Result};
+use crate::geometry::{HeightMap, LengthUnit};
 
 const FORMAT: &str = "text";
 

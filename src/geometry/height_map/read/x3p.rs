@@ -10,8 +10,8 @@ use zip::ZipArchive;
 
 use super::number::{Kind, Number};
 use super::{First, bytes, count};
-use crate::error::{Result, finite, positive};
-use crate::geometry::{HeightMap, MapError};
+use crate::error::{MapError, Result, finite, positive};
+use crate::geometry::HeightMap;
 
 const FORMAT: &str = "X3P";
 /// Most bytes of `main.xml`, and most nodes in it: an archive may expand a thousandfold.

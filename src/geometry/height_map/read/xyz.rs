@@ -4,8 +4,8 @@ use std::io::Read;
 
 use super::text::{Table, height, text};
 use super::{First, count};
-use crate::error::{Result, least_length, positive};
-use crate::geometry::{HeightMap, LengthUnit, MapError};
+use crate::error::{MapError, Result, least_length, positive};
+use crate::geometry::{HeightMap, LengthUnit};
 use crate::memory;
 
 /// How far a point may lie off the regular grid, in spacings.

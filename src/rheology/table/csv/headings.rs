@@ -3,8 +3,8 @@
 use super::Units;
 use super::number::{resembles, shortened};
 use super::unit::{Kind, readings, same};
-use crate::rheology::fit::Quantity;
-use crate::rheology::table::TableError;
+use crate::error::TableError;
+use crate::rheology::fit::MaterialFunction;
 use crate::rheology::table::data::Layout;
 
 /// First words of headings, lower case.
@@ -85,8 +85,8 @@ pub(super) fn check_units(
         return Err(TableError::Hertz { line, heading: heading.clone() });
     }
     let abscissa = if layout.zero { Kind::Time } else { Kind::Frequency };
-    let values = layout.columns.iter().map(|&(_, quantity)| match quantity {
-        Quantity::Creep => Kind::Compliance,
+    let values = layout.columns.iter().map(|&(_, function)| match function {
+        MaterialFunction::Creep => Kind::Compliance,
         _ => Kind::Modulus,
     });
     let columns =

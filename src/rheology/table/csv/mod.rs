@@ -9,9 +9,9 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use crate::error::{Result, positive};
+use crate::error::{Place, Result, TableError, positive};
 use crate::rheology::table::data::{CREEP, DYNAMIC, Layout, RELAXATION, Row};
-use crate::rheology::table::{Place, TableError, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
+use crate::rheology::table::{TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
 use headings::{are_headings, check_units, columns, names};
 use number::{Numbers, one_decimal, plain, resembles, shortened};
 use records::{Record, records, separator};

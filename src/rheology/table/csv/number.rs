@@ -1,6 +1,6 @@
 //! Numbers as programs and people write them.
 
-use crate::rheology::table::TableError;
+use crate::error::TableError;
 
 /// Reads the numbers of a table, whose decimals all have a point or all a comma.
 #[derive(Debug, Default)]

@@ -1,4 +1,4 @@
-//! The spectrum of an even kernel that is known by its coefficients.
+//! The spectrum of an even kernel that is given by its coefficients.
 
 use std::sync::Arc;
 
@@ -8,15 +8,15 @@ use realfft::{RealFftPlanner, RealToComplex};
 use super::layout::{Ends, Layout};
 
 /// A quarter of the real even spectrum on the period of a padded layout.
-pub(super) struct Spectrum {
+pub(super) struct EvenSpectrum {
     values: Vec<f64>,
     columns: usize,
 }
 
-impl Spectrum {
-    /// Of the kernel with the given coefficients at distances that the layout knows, zero beyond.
-    pub(super) fn of(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> Spectrum {
-        // of a kernel that is made periodic, half a period is known, but not beyond the cells
+impl EvenSpectrum {
+    /// The spectrum of the kernel with these coefficients at the distances of the layout, and zero beyond.
+    pub(super) fn of(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> EvenSpectrum {
+        // a kernel made periodic needs half a period at most, and none beyond the cells
         let known = [0, 1].map(|axis| {
             let cells = layout.cells[axis] * if layout.folded[axis] { 2 } else { 1 };
             if layout.ends[axis] == Ends::Free { cells } else { cells.min(layout.period(axis) / 2 + 1) }
@@ -29,22 +29,22 @@ impl Spectrum {
             let values = across.transform((0..known[1]).map(|j| coefficient(i, j)));
             row.iter_mut().zip(values).for_each(|(out, value)| *out = value);
         }
-        // column after column
+        // stored column by column
         let mut values = vec![0.0; half1 * half2];
         for (k2, column) in values.chunks_exact_mut(half1).enumerate() {
             let values = down.transform(rows[k2..].iter().step_by(half2).copied());
             column.iter_mut().zip(values).for_each(|(out, value)| *out = value);
         }
-        Spectrum { values, columns: half1 }
+        EvenSpectrum { values, columns: half1 }
     }
 
-    /// Its value at the wave numbers `k1`, `k2` of the period.
+    /// The value at the wave numbers `k1`, `k2` of the period.
     pub(super) fn at(&self, k1: usize, k2: usize) -> f64 {
         self.values[k2 * self.columns + k1]
     }
 }
 
-/// The transform of real even lines of one period.
+/// Transforms real even lines of one period.
 pub(super) struct EvenLine {
     plan: Arc<dyn RealToComplex<f64>>,
     line: Vec<f64>,
@@ -57,7 +57,7 @@ impl EvenLine {
         EvenLine { plan, line: vec![0.0; period], transformed: vec![Complex64::default(); period / 2 + 1] }
     }
 
-    /// The independent coefficients of a line whose first values are known, the others zero.
+    /// The independent coefficients of the line that begins with `values` and is zero beyond them.
     pub(super) fn transform(&mut self, values: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
         let period = self.line.len();
         self.line.fill(0.0);
@@ -65,8 +65,8 @@ impl EvenLine {
             self.line[i] = value;
             self.line[(period - i) % period] = value;
         }
-        let done = self.plan.process(&mut self.line, &mut self.transformed);
-        debug_assert!(done.is_ok());
+        let transformed = self.plan.process(&mut self.line, &mut self.transformed);
+        debug_assert!(transformed.is_ok());
         self.transformed.iter().map(|z| z.re)
     }
 }

@@ -1,4 +1,4 @@
-/// What is wrong with a map of heights, or a file of one.
+/// What is wrong with a height map or its file.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum MapError {
@@ -13,21 +13,23 @@ pub enum MapError {
         value: f64,
     },
 
-    /// No height is known: nothing was measured, or the grid lies beside the map.
+    /// No height is known: nothing was measured, or the grid does not overlap the map.
     #[error("no height is known: nothing was measured there")]
     NothingKnown,
 
-    /// Heights are missing where all are needed: fill them
+    /// Some heights are missing and all are needed: fill them
     /// ([`HeightMap::filled`](crate::geometry::HeightMap::filled)) or crop the map.
     #[error("{missing} heights of the map are missing: fill them with HeightMap::filled, or crop the map")]
     Incomplete {
-        /// How many.
+        /// Number of missing heights.
         missing: usize,
     },
 
-    /// The heights between the known ones were not found to the accuracy of the numbers; those known are too far
-    /// apart in height, or too few.
-    #[error("the missing heights were not found in {iterations} iterations: the residual is {residual:e} m")]
+    /// The interpolation of the missing heights did not converge to rounding: the known heights differ too much, or are
+    /// too few.
+    #[error(
+        "the interpolation of the missing heights did not converge in {iterations} iterations: the residual is {residual:e} m"
+    )]
     NotFilled {
         /// Iterations done.
         iterations: usize,
@@ -35,12 +37,12 @@ pub enum MapError {
         residual: f64,
     },
 
-    /// A file could not be read, or is not one of its format.
+    /// A file could not be read, or does not have its format.
     #[error("{file}: {reason}")]
     Unreadable {
         /// Its name, or its format if it has none.
         file: String,
-        /// What the system or the reader says.
+        /// The message of the system or the reader.
         reason: String,
     },
 
@@ -49,57 +51,57 @@ pub enum MapError {
     Unwritable {
         /// Its format.
         format: &'static str,
-        /// What the system says.
+        /// The message of the system.
         reason: String,
     },
 
-    /// The name of a file tells no format that carries the lengths of its map. Formats that do not are read by
-    /// [`from_npy`](crate::geometry::HeightMap), [`from_text`](crate::geometry::HeightMap::from_text) and
-    /// [`from_xyz`](crate::geometry::HeightMap::from_xyz), which are told them.
+    /// The extension of a file is not that of a format that stores the side lengths of its map. Other formats are read
+    /// by [`from_npy`](crate::geometry::HeightMap), [`from_text`](crate::geometry::HeightMap::from_text) and
+    /// [`from_xyz`](crate::geometry::HeightMap::from_xyz), which take them as arguments.
     #[error(
-        "{file}: the extension must be {known}; other formats do not say how long their maps are: use HeightMap::from_npy, from_text or from_xyz"
+        "{file}: the extension must be {known}; other formats do not store the side lengths of a map: use HeightMap::from_npy, from_text or from_xyz"
     )]
     Extension {
         /// The name of the file.
         file: String,
-        /// The extensions that are known.
+        /// The known extensions.
         known: &'static str,
     },
 
-    /// A file does not begin as those of its format do.
+    /// The file does not begin with the magic number of its format.
     #[error("not a {format} file: it does not begin with {magic}")]
     Magic {
         /// The format.
         format: &'static str,
-        /// How such files begin.
+        /// The magic number.
         magic: &'static str,
     },
 
-    /// A file lacks something it must have.
+    /// A required part of a file is missing.
     #[error("the {format} file has no {key}")]
     Missing {
         /// The format.
         format: &'static str,
-        /// What it lacks.
+        /// The missing part.
         key: &'static str,
     },
 
-    /// An entry of a file's header is not one that can be read.
+    /// An entry of the header of a file cannot be read.
     #[error("the {format} file has {key} = {text:?}, which must be {allowed}")]
     Entry {
         /// The format.
         format: &'static str,
         /// The name of the entry.
         key: &'static str,
-        /// What it says.
+        /// Its value.
         text: String,
-        /// What it may say.
+        /// The values allowed.
         allowed: &'static str,
     },
 
-    /// A file does not say in which unit its numbers are: say it, as
-    /// [`HeightMap::from_gsf_with`](crate::geometry::HeightMap::from_gsf_with) lets you.
-    #[error("the {format} file has no {key}, its numbers no unit: give it, as in HeightMap::from_gsf_with")]
+    /// A file does not name the unit of its numbers: give it, as with
+    /// [`HeightMap::from_gsf_with`](crate::geometry::HeightMap::from_gsf_with).
+    #[error("the {format} file has no {key}, the unit of its numbers: give it, as with HeightMap::from_gsf_with")]
     NoUnit {
         /// The format.
         format: &'static str,
@@ -107,29 +109,29 @@ pub enum MapError {
         key: &'static str,
     },
 
-    /// A unit is not one of length.
-    #[error("{symbol:?} is not a unit of length that is known: m, cm, mm, µm (um), nm, Å (A) or pm")]
+    /// A unit is not a known unit of length.
+    #[error("{symbol:?} is not a known unit of length: m, cm, mm, µm (um), nm, Å (A) or pm")]
     Unit {
         /// Its symbol.
         symbol: String,
     },
 
-    /// A file holds more or fewer heights than it says: it is cut short or damaged.
+    /// A file holds more or fewer values than its header states: it is truncated or damaged.
     #[error("the {format} file should hold {expected} {what}, but holds {found}{}", if *.exact { "" } else { " or more" })]
     Size {
         /// The format.
         format: &'static str,
         /// What is counted.
         what: &'static str,
-        /// How many there are.
+        /// The number found.
         found: u64,
-        /// How many there should be.
+        /// The number expected.
         expected: u64,
-        /// Whether all were counted, or only as many as were needed to see that there are too many.
+        /// Whether `found` is the total, or only a count that exceeds the expected one.
         exact: bool,
     },
 
-    /// A line of a file has another number of columns than needed.
+    /// A line of a file has the wrong number of columns.
     #[error("line {line}: {found} columns, but {expected} are needed")]
     Columns {
         /// The line, from 1.
@@ -140,19 +142,19 @@ pub enum MapError {
         expected: usize,
     },
 
-    /// An entry of a file is not a finite number, and does not say that nothing was measured.
+    /// An entry of a file is neither a finite number nor a mark of a missing height.
     #[error("line {line}, column {column}: {text:?} is not a finite number")]
     NotNumeric {
         /// The line, from 1.
         line: u64,
         /// The column, from 1.
         column: usize,
-        /// What is there.
+        /// The entry.
         text: String,
     },
 
-    /// A point does not lie on the regular grid that the others make.
-    #[error("line {line}: {axis} = {value:e} m lies {:.2} spacings of {spacing:e} m off the regular grid of the points; {:.3} are allowed", .off, .allowed)]
+    /// A point is not on the regular grid of the other points.
+    #[error("line {line}: {axis} = {value:e} m is {:.2} spacings of {spacing:e} m off the regular grid of the points; {:.3} are allowed", .off, .allowed)]
     OffGrid {
         /// The line, from 1.
         line: u64,
@@ -164,27 +166,27 @@ pub enum MapError {
         spacing: f64,
         /// The distance from the nearest line of the grid, in spacings.
         off: f64,
-        /// The most that is allowed, in spacings.
+        /// The greatest distance allowed, in spacings.
         allowed: f64,
     },
 
-    /// Two points of a file are the same point of the grid: average them, or keep one.
+    /// Two points of a file are at the same point of the grid: average them, or keep one.
     #[error("lines {earlier} and {line} give two heights for the point ({:e}, {:e}) m", .at[0], .at[1])]
     Duplicate {
         /// The line, from 1.
         line: u64,
-        /// The line that gave it first.
+        /// The earlier line.
         earlier: u64,
         /// The point \[m\].
         at: [f64; 2],
     },
 
-    /// The points of a file are too few for the regular grid they seem to lie on, and are scattered rather than a grid.
+    /// The points of a file cover too little of the regular grid that their spacing suggests: they are scattered.
     #[error("{points} points are less than 1 % of a regular grid of {} x {}: they are scattered, not a map", .cells[0], .cells[1])]
     Sparse {
-        /// How many points there are.
+        /// Number of points.
         points: usize,
-        /// How many the grid would have along x and y.
+        /// Number of points of that grid along x and y.
         cells: [usize; 2],
     },
 }

@@ -1,6 +1,6 @@
 use std::fmt;
 
-/// Where in a table: the entry of a slice, or the line of a file.
+/// A place in a table: the entry of a slice, or the line of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Place {
@@ -23,7 +23,7 @@ impl fmt::Display for Place {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TableError {
-    /// There is no data at all.
+    /// The table has no rows.
     #[error("the {table} table is empty")]
     Empty {
         /// Which table.
@@ -31,13 +31,13 @@ pub enum TableError {
     },
 
     /// Too few values to fit a series to.
-    #[error("the {table} table holds {rows} values, but a fit needs {least} at least")]
+    #[error("the {table} table holds {rows} values, but a fit needs at least {least}")]
     TooFew {
         /// Which table.
         table: &'static str,
-        /// Values given.
+        /// Number of values given.
         rows: usize,
-        /// Values needed.
+        /// Number of values needed.
         least: usize,
     },
 
@@ -54,7 +54,7 @@ pub enum TableError {
         value: f64,
     },
 
-    /// A time is negative, or a frequency or a time that must be positive is not.
+    /// A time is negative, or a frequency, or a time that must be positive, is not positive.
     #[error("{table} table, {place}: {column} = {value:?} must be {allowed}")]
     Abscissa {
         /// Which table.
@@ -65,12 +65,12 @@ pub enum TableError {
         column: &'static str,
         /// The value.
         value: f64,
-        /// The range it must lie in.
+        /// The allowed range.
         allowed: &'static str,
     },
 
-    /// A compliance or modulus is not positive. A first row of zeros, from before the load, does not belong to
-    /// the creep: remove it.
+    /// A compliance or modulus is not positive. Remove a first row of zeros, recorded before the load: it is not part
+    /// of the creep.
     #[error("{table} table, {place}: {column} = {value:?} must be > 0")]
     NotPositive {
         /// Which table.
@@ -90,7 +90,7 @@ pub enum TableError {
         table: &'static str,
         /// Where.
         place: Place,
-        /// Where it was given first.
+        /// The earlier place.
         earlier: Place,
         /// Which column.
         column: &'static str,
@@ -98,31 +98,31 @@ pub enum TableError {
         value: f64,
     },
 
-    /// A compliance decreases, a relaxation modulus increases, or a storage modulus decreases with frequency,
-    /// by more than the scatter of the data explains: no passive body does. Remove the outlier, or what was recorded
+    /// A compliance decreases, a relaxation modulus increases, or a storage modulus decreases with frequency, by more
+    /// than the scatter of the data explains: that of no passive body does. Remove the outlier, or the data recorded
     /// after the specimen failed or slipped.
     #[error(
-        "{table} table, {place}: {column} = {value:?} strays by {:.2} % from any curve that does not turn back; the scatter of the data explains {:.2} %",
+        "{table} table, {place}: {column} = {value:?} deviates by {:.2} % from the nearest monotone curve; the scatter of the data explains {:.2} %",
         100.0 * .change, 100.0 * .noise
     )]
     WrongWay {
         /// Which table.
         table: &'static str,
-        /// Where it is worst.
+        /// Where the deviation is greatest.
         place: Place,
         /// Which column.
         column: &'static str,
         /// The value.
         value: f64,
-        /// Relative distance from the nearest monotone curve.
+        /// Relative deviation from the nearest monotone curve.
         change: f64,
-        /// Relative distance that would have been tolerated.
+        /// Relative deviation that the scatter explains.
         noise: f64,
     },
 
-    /// No series with positive coefficients comes near the data: they are not those of a body of springs and dashpots
-    /// (tertiary creep, a step, moduli that contradict each other, wrong units), or too few for how steep they are.
-    #[error("the {table} table is not that of a linear body: the best series misses it by {:.0} % in the root mean square, and by {:.0} % at x = {x:e}", 100.0 * .rms, 100.0 * .worst)]
+    /// No series with positive coefficients fits the data: they are not those of a body of springs and dashpots
+    /// (tertiary creep, a step, moduli that contradict each other, wrong units), or too few for their steepness.
+    #[error("the {table} table is not that of a linear body: the best series deviates by {:.0} % in the root mean square, and by {:.0} % at x = {x:e}", 100.0 * .rms, 100.0 * .worst)]
     Inconsistent {
         /// Which table.
         table: &'static str,
@@ -134,7 +134,7 @@ pub enum TableError {
         x: f64,
     },
 
-    /// A heading says Hz, but the units given make it rad/s: give 2π as [`Units::abscissa`](crate::rheology::Units).
+    /// A heading names Hz, but the units given mean rad/s: give 2π as [`Units::abscissa`](crate::rheology::Units).
     #[error("line {line}: the column {heading:?} is in Hz, but Units::abscissa is 1: give 2π")]
     Hertz {
         /// The line of the headings.
@@ -143,8 +143,8 @@ pub enum TableError {
         heading: String,
     },
 
-    /// A heading says another unit than [`Units`](crate::rheology::Units) does, one that is not known, or that its column holds
-    /// logarithms: correct one of them.
+    /// A heading names a unit other than that of [`Units`](crate::rheology::Units), an unknown unit, or logarithms:
+    /// correct the heading or the units.
     #[error(
         "line {line}, column {column}: the heading {heading:?} says {unit}, but Units::{field} = {given} means {expected}"
     )]
@@ -159,7 +159,7 @@ pub enum TableError {
         unit: String,
         /// `abscissa` or `value`.
         field: &'static str,
-        /// What was given as the size of the unit.
+        /// The size of the unit given.
         given: f64,
         /// The unit of this size.
         expected: String,
@@ -170,11 +170,11 @@ pub enum TableError {
     Unreadable {
         /// Its name.
         file: String,
-        /// What the system or the reader says.
+        /// The message of the system or the reader.
         reason: String,
     },
 
-    /// A line of a file has another number of columns than needed.
+    /// A line of a file has the wrong number of columns.
     #[error("line {line}: {found} columns, but {expected} are needed ({columns})")]
     Columns {
         /// The line.
@@ -187,14 +187,14 @@ pub enum TableError {
         columns: String,
     },
 
-    /// A heading names no column, or two, of those needed.
-    #[error("line {line}: no single column is headed as {column} (headings: {found})")]
+    /// No heading, or more than one, names a column that is needed.
+    #[error("line {line}: not exactly one heading names the {column} (headings: {found})")]
     Heading {
         /// The line of the headings.
         line: u64,
-        /// What is looked for.
+        /// The column needed.
         column: &'static str,
-        /// The headings there are.
+        /// The headings found.
         found: String,
     },
 
@@ -205,7 +205,7 @@ pub enum TableError {
         line: u64,
         /// Number of the column, from 1.
         column: usize,
-        /// What is there.
+        /// The entry.
         text: String,
     },
 
@@ -216,33 +216,33 @@ pub enum TableError {
         line: u64,
         /// Number of the column, from 1.
         column: usize,
-        /// What is there.
+        /// The entry.
         text: String,
-        /// What it may mean.
+        /// Its possible meanings.
         readings: &'static str,
     },
 
-    /// Isotherms of a master curve measure different things.
+    /// Isotherms of a master curve measure different quantities.
     #[error("the {first} isotherms cannot be joined to {second} isotherms")]
     MixedIsotherms {
-        /// What the first measures, or what is asked for.
+        /// The quantity of the first, or the one requested.
         first: &'static str,
-        /// What the other measures.
+        /// The quantity of the other.
         second: &'static str,
     },
 
-    /// An isotherm is flat: nothing tells by how much it is shifted. Use a law
+    /// An isotherm is constant in time, so that its shift cannot be determined. Use a law
     /// ([`MasterCurve::with_law`](crate::rheology::MasterCurve::with_law)).
-    #[error("of the isotherms at {} K and {} K one does not change with time: nothing tells by how much it is shifted; use MasterCurve::with_law", .temperatures[0], .temperatures[1])]
+    #[error("one of the isotherms at {} K and {} K is constant in time: its shift cannot be determined; use MasterCurve::with_law", .temperatures[0], .temperatures[1])]
     NothingToShift {
         /// The temperatures \[K\].
         temperatures: [f64; 2],
     },
 
-    /// Two isotherms have no values in common, so that no shift brings them together: measure at a temperature in
+    /// The ranges of values of two isotherms do not overlap, so that no shift aligns them: measure at a temperature in
     /// between, or shift by a law ([`MasterCurve::with_law`](crate::rheology::MasterCurve::with_law)).
     #[error(
-        "the isotherms at {} K and {} K do not overlap in their values: at the best shift they are {:.0} % apart; measure at a temperature in between, or use MasterCurve::with_law",
+        "the isotherms at {} K and {} K do not overlap in their values: at the best shift they differ by {:.0} %; measure at a temperature in between, or use MasterCurve::with_law",
         .temperatures[0], .temperatures[1], 100.0 * .apart
     )]
     NoOverlap {

@@ -1,30 +1,32 @@
 //! A two-dimensional linear operator with a real even spectrum: transform, multiply, transform back.
 //!
 //! Both the influence kernel (zero-padded, so that the convolution is linear) and the preconditioner
-//! (periodic) are one. Nothing is spent on what is known to be zero, mirrored or dropped:
+//! (periodic) are such operators. Nothing is computed that is known to be zero, mirrored or discarded:
 //!
-//! * Rows that are zero are not transformed, rows of the result that are dropped not computed.
-//! * Two real rows are the parts of one complex row.
+//! * Zero rows are not transformed, and discarded rows of the result are not computed.
+//! * Two real rows are transformed as the real and imaginary parts of one complex row.
 //! * An axis about which all fields are even is folded: half of the cells, cosine transforms.
-//! * Between rows and columns the coefficients lie in tiles of 8 × 8, so that both passes read and write whole
-//!   pieces of memory; a column is transformed, multiplied and transformed back while it is in cache.
-//! * Rows and columns are independent of each other: threads share them, and the answer is the same bit by bit.
+//! * Between rows and columns the coefficients are stored in tiles of 8 × 8, so that both passes access contiguous
+//!   memory; a column is transformed, multiplied and transformed back while it is in cache.
+//! * Rows and columns are independent of each other: threads share them, and the answer is bitwise the same.
 
 mod column;
 mod memory;
 mod tasks;
+mod tiles;
+mod workspace;
 
 use std::fmt;
 
-use num_complex::Complex64;
-
-use super::lanes::{for_each_share, lanes};
+use super::lanes::for_each_share;
 use super::layout::Layout;
 use super::lines::Line;
-use column::{Column, ColumnWorkspace};
+use column::Column;
 use tasks::{Columns, ColumnsInPlace, RowsForward, RowsInverse, multiply_apart};
+use workspace::Lane;
+pub(crate) use workspace::TransformWorkspace;
 
-/// Sides of a tile: 8 complex numbers fill two cache lines.
+/// Side of a tile: 8 complex numbers fill two cache lines.
 const TILE: usize = 8;
 const AREA: usize = TILE * TILE;
 
@@ -34,54 +36,10 @@ pub(crate) struct SpectralOperator {
     layout: Layout,
     rows: Line,
     columns: Line,
-    /// For each coefficient of a row, its column's independent values, divided by what the transforms multiply by.
+    /// For each coefficient of a row, the independent values of its column, divided by the normalisation of the transforms.
     spectrum: Vec<f64>,
-    /// Where there is but one column.
+    /// The transform of a single column, which has no tiles.
     column: Option<Column>,
-}
-
-/// Buffers that a [`SpectralOperator`] works in; made once, used by every application.
-#[derive(Clone)]
-pub(crate) struct TransformWorkspace {
-    layout: Layout,
-    /// Coefficients of the rows, in tiles: those of 8 rows side by side. A folded row holds the (real) coefficients of two.
-    tiles: Vec<Complex64>,
-    /// The same after the columns, those of 8 columns below each other; empty for a single thread, which works in place.
-    result: Vec<Complex64>,
-    lanes: Vec<Lane>,
-    /// Instead of all this, where there is but one column.
-    column: ColumnWorkspace,
-}
-
-/// What one thread needs of its own.
-#[derive(Clone)]
-struct Lane {
-    line: Buffer,
-    block: Buffer,
-    scratch: Buffer,
-}
-
-/// Numbers that begin on a cache line: a transform in buffers that do not takes up to twice as long.
-#[derive(Clone)]
-struct Buffer {
-    values: Vec<Complex64>,
-    length: usize,
-}
-
-/// Bytes of a cache line.
-const CACHE_LINE: usize = 64;
-
-impl Buffer {
-    fn zeros(length: usize) -> Buffer {
-        let slack = CACHE_LINE / size_of::<Complex64>();
-        Buffer { values: vec![Complex64::default(); length + slack], length }
-    }
-
-    #[inline(always)]
-    fn get(&mut self) -> &mut [Complex64] {
-        let before = self.values.as_ptr().align_offset(CACHE_LINE).min(self.values.len() - self.length);
-        &mut self.values[before..before + self.length]
-    }
 }
 
 impl SpectralOperator {
@@ -98,52 +56,18 @@ impl SpectralOperator {
         SpectralOperator { layout, rows, columns, spectrum, column }
     }
 
-    /// Buffers for [`SpectralOperator::apply`], for as many threads as the size is worth.
-    pub(crate) fn workspace(&self) -> TransformWorkspace {
-        self.workspace_for(lanes(self.layout.cells[0] * self.layout.cells[1]))
-    }
-
-    /// Buffers for so many threads.
-    pub(crate) fn workspace_for(&self, lanes: usize) -> TransformWorkspace {
-        if let Some(column) = &self.column {
-            let column = column.workspace(&self.columns);
-            return TransformWorkspace {
-                layout: self.layout,
-                tiles: Vec::new(),
-                result: Vec::new(),
-                lanes: Vec::new(),
-                column,
-            };
-        }
-        let zeros = |count| vec![Complex64::default(); count];
-        let lane = Lane {
-            line: Buffer::zeros(self.rows.len()),
-            block: Buffer::zeros(TILE * self.stride()),
-            scratch: Buffer::zeros(self.rows.scratch().max(self.columns.scratch())),
-        };
-        let tiles = self.across() * self.down() * AREA;
-        let result = zeros(if lanes > 1 { tiles } else { 0 });
-        TransformWorkspace {
-            layout: self.layout,
-            tiles: zeros(tiles),
-            result,
-            lanes: vec![lane; lanes.max(1)],
-            column: ColumnWorkspace::default(),
-        }
-    }
-
-    /// Tiles side by side.
+    /// Number of tiles side by side.
     fn across(&self) -> usize {
         self.rows.independent().div_ceil(TILE)
     }
 
-    /// Tiles below each other.
+    /// Number of tiles below each other.
     fn down(&self) -> usize {
         self.layout.cells[0].div_ceil(self.rows_in_a_tile())
     }
 
-    /// From one column of a block to the next: whole cache lines, but no power of two, so that they do not get into each
-    /// other's way in the cache.
+    /// Distance between the columns of a block: whole cache lines, but no power of two, which would map the columns to the
+    /// same cache sets.
     fn stride(&self) -> usize {
         self.columns.len().next_multiple_of(TILE) + TILE
     }
@@ -152,7 +76,7 @@ impl SpectralOperator {
         if self.rows.is_folded() { 2 * TILE } else { TILE }
     }
 
-    /// Writes the operator applied to `input` into `output`; both hold one value per cell.
+    /// Applies the operator to `input` and writes the result to `output`; both hold one value per cell.
     pub(crate) fn apply(&self, input: &[f64], output: &mut [f64], work: &mut TransformWorkspace) {
         if let Some(column) = &self.column {
             self.convolve_column(column, input, &mut work.column);
@@ -163,7 +87,7 @@ impl SpectralOperator {
         self.rows_inverse(output, work);
     }
 
-    /// [`SpectralOperator::apply`] with one field for input and output.
+    /// [`SpectralOperator::apply`] in place.
     pub(crate) fn apply_in_place(&self, field: &mut [f64], work: &mut TransformWorkspace) {
         if let Some(column) = &self.column {
             self.convolve_column(column, field, &mut work.column);
@@ -196,67 +120,6 @@ impl SpectralOperator {
         let tiles = if in_place { &work.tiles } else { &work.result };
         let task = RowsInverse { operator: self, tiles, in_place, share };
         for_each_share(&task, &mut work.lanes, output, share * self.rows_in_a_tile() * self.layout.cells[1]);
-    }
-
-    /// Copies the columns of a panel of tiles, which begin at `from`, one below the other into `block`. Columns of folded
-    /// rows are real: two are the parts of a complex one.
-    #[inline(always)]
-    fn gather(&self, tiles: &[Complex64], from: impl Fn(usize) -> usize, block: &mut [Complex64]) {
-        let (cells, line, stride) = (self.layout.cells[0], &self.columns, self.stride());
-        for tile in 0..self.down() {
-            let rows = tiles[from(tile)..][..AREA].chunks_exact(TILE).enumerate();
-            if self.rows.is_folded() {
-                for (i, row) in rows {
-                    let n = 2 * (tile * TILE + i);
-                    for (column, pair) in block.chunks_exact_mut(stride).zip(row.chunks_exact(2)) {
-                        if n < cells {
-                            column[line.place(n)] = Complex64::new(pair[0].re, pair[1].re);
-                        }
-                        if n + 1 < cells {
-                            column[line.place(n + 1)] = Complex64::new(pair[0].im, pair[1].im);
-                        }
-                    }
-                }
-            } else {
-                for (i, row) in rows.take_while(|(i, _)| tile * TILE + i < cells) {
-                    let place = line.place(tile * TILE + i);
-                    for (c, value) in row.iter().enumerate() {
-                        block[c * stride + place] = *value;
-                    }
-                }
-            }
-        }
-    }
-
-    /// The reverse of [`SpectralOperator::gather`].
-    #[inline(always)]
-    fn scatter(&self, block: &[Complex64], tiles: &mut [Complex64], to: impl Fn(usize) -> usize) {
-        let (cells, line, stride) = (self.layout.cells[0], &self.columns, self.stride());
-        for tile in 0..self.down() {
-            let rows = tiles[to(tile)..][..AREA].chunks_exact_mut(TILE).enumerate();
-            if self.rows.is_folded() {
-                for (i, row) in rows {
-                    let n = 2 * (tile * TILE + i);
-                    for (column, pair) in block.chunks_exact(stride).zip(row.chunks_exact_mut(2)) {
-                        if n < cells {
-                            let z = column[line.place(n)];
-                            (pair[0].re, pair[1].re) = (z.re, z.im);
-                        }
-                        if n + 1 < cells {
-                            let z = column[line.place(n + 1)];
-                            (pair[0].im, pair[1].im) = (z.re, z.im);
-                        }
-                    }
-                }
-            } else {
-                for (i, row) in rows.take_while(|(i, _)| tile * TILE + i < cells) {
-                    let place = line.place(tile * TILE + i);
-                    for (c, value) in row.iter_mut().enumerate() {
-                        *value = block[c * stride + place];
-                    }
-                }
-            }
-        }
     }
 
     /// Transforms the columns of a panel, multiplies them by the spectrum, and transforms them back.
@@ -303,23 +166,17 @@ impl fmt::Debug for SpectralOperator {
     }
 }
 
-impl fmt::Debug for TransformWorkspace {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("TransformWorkspace").field("layout", &self.layout).finish_non_exhaustive()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernel::even_spectrum::EvenSpectrum;
     use crate::kernel::layout::Ends;
-    use crate::kernel::spectrum::Spectrum;
 
     impl SpectralOperator {
         /// Convolution with the even kernel whose coefficient at distance (i, j) is `coefficient(i, j)`; asked for
         /// distances below the number of cells (twice that along a folded axis), taken as zero beyond.
         pub(crate) fn from_coefficients(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> SpectralOperator {
-            let spectrum = Spectrum::of(layout, coefficient);
+            let spectrum = EvenSpectrum::of(layout, coefficient);
             SpectralOperator::from_symbol(layout, |k1, k2| spectrum.at(k1, k2))
         }
     }
@@ -357,8 +214,8 @@ mod tests {
         sum
     }
 
-    /// The operator against its definition as a sum: sizes even, odd and not smooth, axes whole and folded, one
-    /// thread and three.
+    /// The operator against its definition as a sum: even, odd and not smooth sizes, whole and folded axes, one thread and
+    /// three.
     #[test]
     fn convolution_matches_the_sum() {
         for folded in FOLDS {
@@ -368,7 +225,7 @@ mod tests {
                 let operator = SpectralOperator::from_coefficients(layout, coefficient);
                 let input = signal(cells);
                 let mut output = vec![f64::NAN; input.len()];
-                // many times: nothing that is left in the workspace may grow
+                // many times: what remains in the workspace must not grow
                 let mut work = operator.workspace_for(1);
                 for _ in 0..500 {
                     operator.apply(&input, &mut output, &mut work);
@@ -386,10 +243,10 @@ mod tests {
         }
     }
 
-    /// Times of a convolution, and of the same code without pruning: the padded grid as a periodic one.
+    /// Times of a convolution, and of the same code without pruning, on the padded grid taken as periodic.
     #[test]
     #[ignore = "a measurement"]
-    fn what_pruning_is_worth() {
+    fn speedup_of_pruning() {
         use std::time::Instant;
         let kernel = |i: usize, j: usize| 1.0 / (1.0 + (i * i + j * j) as f64).sqrt();
         for n in [64, 128, 256, 512, 1024] {
@@ -420,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_symbol_multiplies_its_wave() {
+    fn the_symbol_multiplies_each_wave() {
         for folded in FOLDS {
             let layout = Layout { cells: [12, 16], ends: [Ends::Periodic; 2], folded };
             let period = [layout.period(0), layout.period(1)];

@@ -1,0 +1,40 @@
+/// What is wrong with an influence kernel.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum KernelError {
+    /// The [`InfluenceKernel`](crate::InfluenceKernel) was made for another grid than the contact's.
+    #[error("the kernel was made for {} × {} cells of {:e} m × {:e} m, the contact has {} × {} of {:e} m × {:e} m",
+        .kernel.0[0], .kernel.0[1], .kernel.1[0], .kernel.1[1],
+        .contact.0[0], .contact.0[1], .contact.1[0], .contact.1[1])]
+    WrongGrid {
+        /// Cells of the kernel's grid along x1 and x2, and the sides of a cell \[m\].
+        kernel: ([usize; 2], [f64; 2]),
+        /// Cells of the contact's grid along x1 and x2, and the sides of a cell \[m\].
+        contact: ([usize; 2], [f64; 2]),
+    },
+
+    /// An influence coefficient, or the compliance of a wave, is not one that a body can have.
+    #[error("the influence {of} [{}, {}] is {value:?}: it must be {allowed}", .at[0], .at[1])]
+    InvalidInfluence {
+        /// `coefficient` or `wave`.
+        of: &'static str,
+        /// Distance in cells, or wave numbers per period.
+        at: [isize; 2],
+        /// The value \[m\].
+        value: f64,
+        /// What it must be.
+        allowed: &'static str,
+    },
+
+    /// The operator of these influence coefficients is not positive definite: no contact on such a body is stable.
+    /// Check the sign of the coefficients, and that near cells influence each other more than distant ones.
+    #[error(
+        "the influence coefficients are not positive definite: the least eigenvalue found is {least:e} m, the greatest {most:e} m"
+    )]
+    NotPositiveDefinite {
+        /// Estimate of the least eigenvalue \[m\].
+        least: f64,
+        /// Estimate of the greatest \[m\].
+        most: f64,
+    },
+}

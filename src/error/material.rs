@@ -1,0 +1,56 @@
+/// What is wrong with a rheology or a material.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum MaterialError {
+    /// An exponential series of the creep compliance is needed, and the rheology has no exact one
+    /// ([`Rheology::creep_spectrum`](crate::rheology::Rheology::creep_spectrum) is `None`). One is fitted over the
+    /// times that [`Builder::times`](crate::contact::Builder::times) or
+    /// `Builder::times_of` names; a material is fitted beforehand by
+    /// [`Material::fitted`](crate::rheology::Material::fitted).
+    #[error(
+        "{what} needs an exponential series, and {rheology} has no exact one: name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Material::fitted"
+    )]
+    NoExponentialSeries {
+        /// What needs it.
+        what: &'static str,
+        /// The rheology, as its `Debug` prints it.
+        rheology: String,
+    },
+
+    /// A creep compliance returned a value that no body can have: negative, not finite, or less than at an earlier
+    /// time; or, where a series is fitted, 0 after t = 0.
+    #[error(
+        "creep compliance J({time:?} s) = {value:?} 1/Pa is not allowed: it must be finite, ≥ 0 (> 0 after t = 0) and non-decreasing (J was {previous:?} before)"
+    )]
+    InvalidCompliance {
+        /// Time at which it was evaluated \[s\].
+        time: f64,
+        /// The value \[1/Pa\].
+        value: f64,
+        /// Its value at an earlier time \[1/Pa\].
+        previous: f64,
+    },
+
+    /// No exponential series with positive coefficients approximates the material function within the tolerance. Allow
+    /// a greater error, or use [`TimeRule::Backward`](crate::contact::TimeRule::Backward), which needs no series.
+    #[error(
+        "no exponential series was found within {tolerance:e}: the error of the best is {misfit:e}, at {at:e} s; raise the tolerance (Settings::series_tolerance), or use TimeRule::Backward, which needs no series"
+    )]
+    PoorFit {
+        /// Greatest relative error of the best series found.
+        misfit: f64,
+        /// Where it is \[s\].
+        at: f64,
+        /// The error allowed.
+        tolerance: f64,
+    },
+
+    /// No published material has this name.
+    #[error("there is no published material named {name:?}; known are: {known}")]
+    Unknown {
+        /// The name asked for.
+        name: String,
+        /// The known names.
+        known: String,
+    },
+}

@@ -1,0 +1,93 @@
+//! Buffers of an operator: one set for each thread, aligned to cache lines.
+
+use std::fmt;
+
+use num_complex::Complex64;
+
+use super::column::ColumnWorkspace;
+use super::{AREA, SpectralOperator, TILE};
+use crate::kernel::lanes::lanes;
+use crate::kernel::layout::Layout;
+
+/// Buffers of a [`SpectralOperator`]: made once, used by every application.
+#[derive(Clone)]
+pub(crate) struct TransformWorkspace {
+    layout: Layout,
+    /// Coefficients of the rows, in tiles: those of 8 rows side by side. A folded row holds the (real) coefficients of two.
+    pub(super) tiles: Vec<Complex64>,
+    /// The same after the columns, those of 8 columns below each other; empty for a single thread, which works in place.
+    pub(super) result: Vec<Complex64>,
+    pub(super) lanes: Vec<Lane>,
+    /// Replaces all of these where the operator has a single column.
+    pub(super) column: ColumnWorkspace,
+}
+
+/// Buffers of one thread.
+#[derive(Clone)]
+pub(super) struct Lane {
+    pub(super) line: Buffer,
+    pub(super) block: Buffer,
+    pub(super) scratch: Buffer,
+}
+
+/// A buffer aligned to a cache line: a transform in buffers that are not takes up to twice as long.
+#[derive(Clone)]
+pub(super) struct Buffer {
+    values: Vec<Complex64>,
+    length: usize,
+}
+
+/// Bytes of a cache line.
+pub(super) const CACHE_LINE: usize = 64;
+
+impl Buffer {
+    fn zeros(length: usize) -> Buffer {
+        let slack = CACHE_LINE / size_of::<Complex64>();
+        Buffer { values: vec![Complex64::default(); length + slack], length }
+    }
+
+    #[inline(always)]
+    pub(super) fn get(&mut self) -> &mut [Complex64] {
+        let before = self.values.as_ptr().align_offset(CACHE_LINE).min(self.values.len() - self.length);
+        &mut self.values[before..before + self.length]
+    }
+}
+
+impl SpectralOperator {
+    /// Buffers for [`SpectralOperator::apply`], for as many threads as pay off for this size.
+    pub(crate) fn workspace(&self) -> TransformWorkspace {
+        self.workspace_for(lanes(self.layout.cells[0] * self.layout.cells[1]))
+    }
+
+    /// Buffers for `lanes` threads.
+    pub(crate) fn workspace_for(&self, lanes: usize) -> TransformWorkspace {
+        let layout = self.layout;
+        if let Some(column) = &self.column {
+            let column = column.workspace(&self.columns);
+            return TransformWorkspace { layout, tiles: Vec::new(), result: Vec::new(), lanes: Vec::new(), column };
+        }
+        let zeros = |count| vec![Complex64::default(); count];
+        let lane = Lane {
+            line: Buffer::zeros(self.rows.len()),
+            block: Buffer::zeros(TILE * self.stride()),
+            scratch: Buffer::zeros(self.rows.scratch().max(self.columns.scratch())),
+        };
+        let tiles = self.across() * self.down() * AREA;
+        let result = zeros(if lanes > 1 { tiles } else { 0 });
+        let column = ColumnWorkspace::default();
+        TransformWorkspace { layout, tiles: zeros(tiles), result, lanes: vec![lane; lanes.max(1)], column }
+    }
+}
+
+impl TransformWorkspace {
+    /// The layout that it was made for.
+    pub(crate) fn layout(&self) -> Layout {
+        self.layout
+    }
+}
+
+impl fmt::Debug for TransformWorkspace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("TransformWorkspace").field("layout", &self.layout).finish_non_exhaustive()
+    }
+}
