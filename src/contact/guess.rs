@@ -1,7 +1,7 @@
 //! The first guess of a step.
 
 use crate::contact::viscoelastic::{ContactSolver, ViscoelasticContact};
-use crate::solver::{Counts, Modes};
+use crate::solver::{Counts, Modes, RigidMotion};
 use crate::sum::{sum, sum_of_pairs};
 
 /// A guess reaches at most this many times the length of the last step ahead.
@@ -133,7 +133,8 @@ impl ViscoelasticContact {
         for (body, motion) in self.trial.motions.iter_mut().enumerate() {
             let [omega, alpha1, alpha2] = self.state.motions[body];
             let modes = Modes::new(self.region.grid(), self.freedoms[body]);
-            *motion = modes.motion([omega - self.initial_gap.datum, alpha1, alpha2]);
+            *motion =
+                modes.coefficients(RigidMotion { approach: omega - self.initial_gap.datum, tilt: [alpha1, alpha2] });
         }
     }
 

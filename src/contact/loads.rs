@@ -160,7 +160,7 @@ impl ViscoelasticContact {
     fn lay(&mut self, c: f64) {
         let keeps = self.history.keeps_displacement();
         if let (true, &[Freedom { tilt: [false, false], .. }]) = (keeps, &self.freedoms[..]) {
-            let motion = self.trial.motions[0][0];
+            let motion = self.trial.motions[0].0[0];
             let state = self.trial.pressure.iter().zip(&self.trial.potential).zip(&self.gap);
             for (u, ((&p, &v), &gap)) in self.trial_displacement.iter_mut().zip(state) {
                 let cv = c * v;

@@ -230,7 +230,7 @@ impl ViscoelasticContact {
     pub(super) fn trial_motion(&self, body: usize, load: &Load) -> [f64; 3] {
         let free = Modes::new(self.region.grid(), self.freedoms[body]).physical(self.trial.motions[body]);
         let held = lowered(load, self.initial_gap.datum);
-        [0, 1, 2].map(|m| held[m] + free[m])
+        [held[0] + free.approach, held[1] + free.tilt[0], held[2] + free.tilt[1]]
     }
 
     /// Keeps the state as it is on the old region, for the case that the step does not succeed.

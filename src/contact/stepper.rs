@@ -175,7 +175,7 @@ impl ViscoelasticContact {
         for (body, motion) in self.state.motions.iter_mut().enumerate() {
             let free = Modes::new(self.region.grid(), self.freedoms[body]).physical(self.state.current.motions[body]);
             let [omega, alpha1, alpha2] = lowered(&loads[body], self.initial_gap.datum);
-            *motion = [self.initial_gap.datum + omega + free[0], alpha1 + free[1], alpha2 + free[2]];
+            *motion = [self.initial_gap.datum + omega + free.approach, alpha1 + free.tilt[0], alpha2 + free.tilt[1]];
         }
         if let Some(beyond) = &mut self.beyond {
             beyond.commit();
@@ -232,7 +232,7 @@ impl ViscoelasticContact {
 
     /// Whether the trial may be accepted.
     fn check(&self, time: f64, sum: f64) -> Result<()> {
-        if !self.trial.motions.iter().flatten().all(|motion| motion.is_finite()) {
+        if !self.trial.motions.iter().flat_map(|motion| motion.0).all(|motion| motion.is_finite()) {
             return Err(Error::Overflow { time, what: "the approach" });
         }
         let pressures = self.region.images() as f64 * sum;

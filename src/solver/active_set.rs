@@ -34,7 +34,7 @@ use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::passes::Passes;
 use crate::solver::preconditioner::Preconditioner;
 use crate::solver::problem::{Measure, Outcome, PENETRATION_SLACK, Patch, Problem, Solution, Stop, relative_residual};
-use crate::solver::rigid::Motion;
+use crate::solver::rigid_motion::ModeCoefficients;
 use crate::sum::greatest;
 
 /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
@@ -94,7 +94,7 @@ struct ActiveBody {
     /// Cells outside A whose pressure the next direction brings to zero.
     leaving: Vec<u32>,
     /// The y of the change shape · B y by which the next direction balances the pressure.
-    correction: Option<Motion>,
+    correction: Option<ModeCoefficients>,
 }
 
 /// What a correction of the balance is shaped like.
@@ -339,7 +339,7 @@ impl ActiveSet {
             let p = |k: usize| solution.pressure[k].max(0.0);
             match modes.balance(&active.patch.cells, p, |k| self.shape[k]) {
                 Some(y) => {
-                    active.correction = (y != [0.0; 3]).then_some(y);
+                    active.correction = (y != ModeCoefficients::default()).then_some(y);
                 }
                 None => {
                     // the load acts outside the hull of what is left of A: begin again under this body
@@ -402,7 +402,7 @@ impl ActiveSet {
     fn join(&mut self, problem: &Problem<'_>, state: Measure, penetration: f64, solution: &Solution) {
         let least = penetration * if penetration > state.yielding() { 0.5 } else { DEEP };
         let upright = self.is_upright(problem);
-        let (c, motion) = (problem.compliance, solution.motions[0][0]);
+        let (c, motion) = (problem.compliance, solution.motions[0].0[0]);
         for k in 0..self.member.len() {
             self.member[k] |= solution.pressure[k] == 0.0
                 && if upright {

@@ -65,7 +65,8 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut 
     let (freedom, modes) = (problem.bodies[body], problem.modes(body));
     cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
     // a body that tilts under a force first comes to rest where the load puts it
-    let motion = if modes.tilts() && modes.translates() { rest(&modes, cells, problem.gap).0 } else { [0.0; 3] };
+    let motion =
+        if modes.tilts() && modes.translates() { rest(&modes, cells, problem.gap).0 } else { Default::default() };
     if modes.tilts() {
         solution.motions[body] = motion;
     }

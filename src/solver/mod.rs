@@ -7,12 +7,14 @@ mod polonsky_keer;
 mod preconditioner;
 mod problem;
 mod rest;
-mod rigid;
+mod rigid_motion;
 mod stiffness;
 mod trace;
 
 pub(crate) use active_set::ActiveSet;
 pub(crate) use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::{Counts, Outcome, Problem, Solution, Stop};
-pub(crate) use rigid::{Freedom, Modes};
+#[allow(unused_imports)] // until the contact names the coefficients of its motions
+pub(crate) use rigid_motion::ModeCoefficients;
+pub(crate) use rigid_motion::{Freedom, Modes, RigidMotion};
 pub(crate) use stiffness::{FLAT_PUNCH_TOLERANCE, flat_punch};

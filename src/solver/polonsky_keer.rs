@@ -4,7 +4,7 @@ use crate::kernel::Workspace;
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::problem::{Measure, Outcome, Patch, Problem, Solution, Stop, relative_residual};
 use crate::solver::rest::rest;
-use crate::solver::rigid::{Freedom, Modes, Motion};
+use crate::solver::rigid_motion::{Freedom, ModeCoefficients, Modes};
 
 /// Conjugate gradients on the cells in contact, after Polonsky & Keer (Wear 231, 1999): two
 /// convolutions an iteration, one for the gap and one for the step length.
@@ -173,11 +173,12 @@ fn is_unloaded(problem: &Problem<'_>, cells: &[u32], solution: &Solution) -> boo
 
 /// The tilt at which a body held at its pivot penetrates the undeformed surface least: where it would rest if it could also
 /// move up and down, its load at the pivot.
-fn turned(problem: &Problem<'_>, body: usize) -> Motion {
+fn turned(problem: &Problem<'_>, body: usize) -> ModeCoefficients {
     let free = Freedom { translation: true, total: 1.0, ..problem.bodies[body] };
     let cells: Vec<u32> = (0..problem.gap.len() as u32)
         .filter(|&k| problem.owner(k as usize) == body && problem.possible(k as usize))
         .collect();
-    let (motion, _) = rest(&Modes::new(problem.kernel.grid(), free), &cells, problem.gap);
-    [0.0, motion[1], motion[2]]
+    let (ModeCoefficients([_, alpha1, alpha2]), _) =
+        rest(&Modes::new(problem.kernel.grid(), free), &cells, problem.gap);
+    ModeCoefficients([0.0, alpha1, alpha2])
 }

@@ -1,7 +1,7 @@
 //! What a step asks of a solver, and what it gets back.
 
 use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::rigid::{Freedom, Gram, Modes, Motion};
+use crate::solver::rigid_motion::{Freedom, Gram, ModeCoefficients, Modes};
 use crate::solver::trace::Trace;
 use crate::sum::greatest;
 
@@ -55,7 +55,7 @@ pub(crate) struct Solution {
     /// v = K p \[Pa·m\], kept in step with `pressure`.
     pub(crate) potential: Vec<f64>,
     /// The free part of the motion of each body; on entry that of the last step.
-    pub(crate) motions: Vec<Motion>,
+    pub(crate) motions: Vec<ModeCoefficients>,
     pub(crate) counts: Counts,
     /// The residual on return, see `relative_residual`.
     pub(crate) residual: f64,
@@ -192,7 +192,7 @@ impl<'a> Problem<'a> {
             sums.negative += solution.pressure[k].min(0.0).powi(2);
         }
         let change = modes.project_out(&patch.gram, &patch.cells, residual);
-        solution.motions[body] = [0, 1, 2].map(|m| last[m] - change[m]);
+        solution.motions[body] = ModeCoefficients([0, 1, 2].map(|m| last.0[m] - change.0[m]));
         sums.square += patch.cells.iter().map(|&k| residual[k as usize].powi(2)).sum::<f64>();
         sums.cells += patch.cells.len();
     }
@@ -208,7 +208,7 @@ impl<'a> Problem<'a> {
     pub(crate) fn penetration(&self, solution: &Solution, outside: impl Fn(usize) -> bool) -> f64 {
         // one body without tilt, the common scene, needs no look-up
         if self.owner.is_none() && !self.modes(0).tilts() {
-            let motion = solution.motions[0][0];
+            let motion = solution.motions[0].0[0];
             let depth = |k: usize| motion - (self.compliance * solution.potential[k] + self.gap[k]);
             return (0..self.gap.len()).filter(|&k| outside(k)).map(depth).fold(0.0, f64::max);
         }
@@ -222,7 +222,7 @@ impl Solution {
         Solution {
             pressure: vec![0.0; cells],
             potential: vec![0.0; cells],
-            motions: vec![[0.0; 3]; bodies],
+            motions: vec![ModeCoefficients::default(); bodies],
             counts: Counts::default(),
             residual: 0.0,
             rounding: 0.0,
@@ -250,7 +250,7 @@ impl Solution {
         for body in (0..problem.bodies.len()).filter(|&body| problem.released(body)) {
             let own = (0..problem.gap.len()).filter(|&k| problem.owner(k) == body);
             let heights = own.map(|k| problem.compliance * self.potential[k] + problem.gap[k]);
-            self.motions[body] = [heights.fold(f64::INFINITY, f64::min), 0.0, 0.0];
+            self.motions[body] = ModeCoefficients([heights.fold(f64::INFINITY, f64::min), 0.0, 0.0]);
         }
     }
 

@@ -1,6 +1,6 @@
 //! Where a body comes to rest on the undeformed surface.
 
-use crate::solver::rigid::{Modes, Motion};
+use crate::solver::rigid_motion::{ModeCoefficients, Modes};
 
 /// Pivots after which the search is given up: its result is a guess, and any motion is one.
 const PIVOTS: usize = 200;
@@ -14,7 +14,7 @@ const PIVOTS: usize = 200;
 /// from artificial columns that cost more than any cell.
 ///
 /// Returned with the cells it rests on and the share of the load that each of them carries.
-pub(crate) fn rest(modes: &Modes<'_>, cells: &[u32], gap: &[f64]) -> (Motion, Vec<(u32, f64)>) {
+pub(crate) fn rest(modes: &Modes<'_>, cells: &[u32], gap: &[f64]) -> (ModeCoefficients, Vec<(u32, f64)>) {
     let rows: Vec<usize> = modes.free().into_iter().enumerate().filter(|(_, free)| *free).map(|(m, _)| m).collect();
     let heights = || cells.iter().map(|&k| gap[k as usize]);
     let lowest = heights().fold(f64::INFINITY, f64::min);
@@ -25,10 +25,10 @@ pub(crate) fn rest(modes: &Modes<'_>, cells: &[u32], gap: &[f64]) -> (Motion, Ve
     // columns of the basis and their cost, heights taken from the lowest point
     let mut basis: Vec<([f64; 3], f64)> = rows.iter().map(|&m| (unit(m), artificial)).collect();
     let mut supports: Vec<Option<u32>> = vec![None; rows.len()];
-    let mut dual = [0.0; 3];
+    let mut dual = ModeCoefficients::default();
     for _ in 0..PIVOTS {
         let Some(next) = solve_dual(&rows, &basis) else { break };
-        dual = next;
+        dual = ModeCoefficients(next);
         let cost = |k: u32| (gap[k as usize] - lowest) - modes.displacement(dual, k as usize);
         let entering = cells.iter().copied().min_by(|&a, &b| cost(a).total_cmp(&cost(b)));
         let Some(entering) = entering.filter(|&k| cost(k) < -1e-12 * range) else { break };
@@ -46,7 +46,7 @@ pub(crate) fn rest(modes: &Modes<'_>, cells: &[u32], gap: &[f64]) -> (Motion, Ve
         supports[leaving] = Some(entering);
     }
     if modes.free()[0] {
-        dual[0] += lowest;
+        dual.0[0] += lowest;
     }
     let shares = solve_primal(&rows, &basis, modes.load()).unwrap_or_default();
     let carried = supports.iter().zip(shares).filter_map(|(cell, share)| Some(((*cell)?, share.max(0.0))));

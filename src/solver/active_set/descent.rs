@@ -15,6 +15,7 @@ use super::{ActiveSet, DEEP, JOIN};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::{balance, cold_start};
 use crate::solver::problem::{Measure, Outcome, Problem, Solution, Stop, relative_residual};
+use crate::solver::rigid_motion::ModeCoefficients;
 
 /// Times that cells may join A without any gain before the next ones: then what is left is rounding.
 const FRUITLESS: usize = 3;
@@ -265,7 +266,7 @@ impl ActiveSet {
                 let Some(y) = modes.balance(&active.patch.cells, clipped, clipped) else { return false };
                 y
             } else {
-                [0.0; 3]
+                ModeCoefficients::default()
             };
             for k in active.patch.cells.iter().map(|&k| k as usize) {
                 self.shape[k] = modes.balanced(y, k, clipped(k), clipped(k)) - solution.pressure[k];

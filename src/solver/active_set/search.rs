@@ -26,7 +26,7 @@ impl ActiveSet {
     }
 
     fn advance_upright(&mut self, problem: &Problem<'_>, solution: &mut Solution, a: f64) -> (Measure, f64) {
-        let motion = solution.motions[0][0];
+        let motion = solution.motions[0].0[0];
         let found = self.passes.survey(
             a,
             problem.compliance,
@@ -43,7 +43,7 @@ impl ActiveSet {
         let cells = self.passes.runs.count();
         let count = cells.max(1) as f64;
         self.mean = if problem.modes(0).translates() { found.residual / count } else { 0.0 };
-        solution.motions[0][0] = motion - self.mean;
+        solution.motions[0].0[0] = motion - self.mean;
         let mut square = found.square - count * self.mean * self.mean;
         // where the motion was far off, the difference is mostly rounding
         if square < CANCELLED * found.square {
@@ -52,7 +52,7 @@ impl ActiveSet {
         }
         let Survey { displacement, negative, .. } = found;
         let state = Measure { square, displacement, negative, height: self.height, cancelled: 0.0, cells };
-        (state, (found.depth + solution.motions[0][0]).max(0.0))
+        (state, (found.depth + solution.motions[0].0[0]).max(0.0))
     }
 
     /// d ← z + β d without free motion on A; with pressures to bring to zero or into balance, d is the

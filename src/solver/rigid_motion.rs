@@ -15,8 +15,28 @@ pub(crate) struct Freedom {
     pub(crate) total: f64,
 }
 
-/// Coefficients of the free motions: ω, α1 and α2 in units in which every mode is of order one.
-pub(crate) type Motion = [f64; 3];
+/// A motion ω + α1 x1 + α2 x2 of a rigid body, x measured from the origin of the grid.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct RigidMotion {
+    /// ω \[m\].
+    pub(crate) approach: f64,
+    /// α1 and α2 \[rad\].
+    pub(crate) tilt: [f64; 2],
+}
+
+impl RigidMotion {
+    /// The displacement at x \[m\].
+    #[allow(dead_code)]
+    pub(crate) fn at(self, x: [f64; 2]) -> f64 {
+        self.approach + self.tilt[0] * x[0] + self.tilt[1] * x[1]
+    }
+}
+
+/// Coefficients of the three [`Modes`] of a body: translation and tilts in units in which every mode is of order one.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct ModeCoefficients(pub(crate) [f64; 3]);
 
 /// Eigenvalues below this fraction of the largest count as none: the motion is not determined by the
 /// cells at hand (fewer than three, or all on a line).
@@ -80,22 +100,23 @@ impl<'a> Modes<'a> {
     }
 
     /// The displacement of cell `k` in a motion.
-    pub(crate) fn displacement(&self, motion: Motion, k: usize) -> f64 {
-        if self.tilts() { dot(self.at(k), motion) } else { motion[0] }
+    pub(crate) fn displacement(&self, motion: ModeCoefficients, k: usize) -> f64 {
+        if self.tilts() { dot(self.at(k), motion.0) } else { motion.0[0] }
     }
 
-    /// (ω, α1, α2) of a motion, ω at the origin of the grid.
-    pub(crate) fn physical(&self, motion: Motion) -> [f64; 3] {
-        let tilt = [motion[1] / self.scale[0], motion[2] / self.scale[1]];
-        [motion[0] - tilt[0] * self.freedom.point[0] - tilt[1] * self.freedom.point[1], tilt[0], tilt[1]]
+    /// The motion with these coefficients, ω at the origin of the grid.
+    pub(crate) fn physical(&self, ModeCoefficients(a): ModeCoefficients) -> RigidMotion {
+        let tilt = [a[1] / self.scale[0], a[2] / self.scale[1]];
+        let approach = a[0] - tilt[0] * self.freedom.point[0] - tilt[1] * self.freedom.point[1];
+        RigidMotion { approach, tilt }
     }
 
-    /// The motion with given (ω, α1, α2), as far as they are free: the inverse of [`Modes::physical`].
-    pub(crate) fn motion(&self, [omega, alpha1, alpha2]: [f64; 3]) -> Motion {
+    /// The coefficients of a motion, as far as it is free: the inverse of [`Modes::physical`].
+    pub(crate) fn coefficients(&self, motion: RigidMotion) -> ModeCoefficients {
         let Freedom { translation, tilt, point, .. } = self.freedom;
-        let alpha = [if tilt[0] { alpha1 } else { 0.0 }, if tilt[1] { alpha2 } else { 0.0 }];
-        let held = omega + alpha[0] * point[0] + alpha[1] * point[1];
-        [if translation { held } else { 0.0 }, alpha[0] * self.scale[0], alpha[1] * self.scale[1]]
+        let alpha = [0, 1].map(|axis| if tilt[axis] { motion.tilt[axis] } else { 0.0 });
+        let held = motion.approach + alpha[0] * point[0] + alpha[1] * point[1];
+        ModeCoefficients([if translation { held } else { 0.0 }, alpha[0] * self.scale[0], alpha[1] * self.scale[1]])
     }
 
     /// The balance that the free modes ask for.
@@ -113,27 +134,27 @@ impl<'a> Modes<'a> {
     }
 
     /// The motion that fits `field` on `cells` best, by least squares; `gram` is theirs.
-    pub(crate) fn fit(&self, gram: &Gram, cells: &[u32], field: &[f64]) -> Motion {
+    pub(crate) fn fit(&self, gram: &Gram, cells: &[u32], field: &[f64]) -> ModeCoefficients {
         if !self.tilts() {
             let sum: f64 = cells.iter().map(|&k| field[k as usize]).sum();
             let count = cells.len().max(1) as f64;
-            return [if self.freedom.translation { sum / count } else { 0.0 }, 0.0, 0.0];
+            return ModeCoefficients([if self.freedom.translation { sum / count } else { 0.0 }, 0.0, 0.0]);
         }
         let mut sums = [0.0; 3];
         for &k in cells {
             let modes = self.at(k as usize);
             (0..3).for_each(|m| sums[m] += modes[m] * field[k as usize]);
         }
-        gram.solve(sums)
+        ModeCoefficients(gram.solve(sums))
     }
 
     /// Takes from `field` on `cells` the part that is a free motion, and returns it.
-    pub(crate) fn project_out(&self, gram: &Gram, cells: &[u32], field: &mut [f64]) -> Motion {
+    pub(crate) fn project_out(&self, gram: &Gram, cells: &[u32], field: &mut [f64]) -> ModeCoefficients {
         let motion = self.fit(gram, cells, field);
         if self.tilts() {
-            cells.iter().for_each(|&k| field[k as usize] -= dot(self.at(k as usize), motion));
+            cells.iter().for_each(|&k| field[k as usize] -= dot(self.at(k as usize), motion.0));
         } else if self.freedom.translation {
-            cells.iter().for_each(|&k| field[k as usize] -= motion[0]);
+            cells.iter().for_each(|&k| field[k as usize] -= motion.0[0]);
         }
         motion
     }
@@ -147,9 +168,9 @@ impl<'a> Modes<'a> {
         cells: &[u32],
         base: impl Fn(usize) -> f64,
         weight: impl Fn(usize) -> f64,
-    ) -> Option<Motion> {
+    ) -> Option<ModeCoefficients> {
         let wanted = self.wanted();
-        let evaluate = |y: Motion| {
+        let evaluate = |y: [f64; 3]| {
             let (mut gram, mut sums, mut value) = (Gram::default(), wanted.map(|b| -b), -dot(wanted, y));
             // in blocks, so that rounding does not grow with the number of cells
             for block in cells.chunks(BLOCK) {
@@ -171,13 +192,13 @@ impl<'a> Modes<'a> {
         // moments in proportion to what all pressure at the far end of the grid would give
         let size = cells.iter().map(|&k| base(k as usize).abs()).sum::<f64>().max(wanted[0].abs());
         if size == 0.0 {
-            return Some([0.0; 3]);
+            return Some(ModeCoefficients::default());
         }
         let mut y = [0.0; 3];
         let (mut gram, mut sums, mut value) = evaluate(y);
         for _ in 0..BALANCE_ITERATIONS {
             if sums.iter().all(|sum| sum.abs() <= BALANCED * size) {
-                return Some(y);
+                return Some(ModeCoefficients(y));
             }
             let step = gram.solve(sums);
             let descent = dot(step, sums);
@@ -200,12 +221,12 @@ impl<'a> Modes<'a> {
                 None => break,
             }
         }
-        sums.iter().all(|sum| sum.abs() <= 1e-12 * size).then_some(y)
+        sums.iter().all(|sum| sum.abs() <= 1e-12 * size).then_some(ModeCoefficients(y))
     }
 
     /// base + weight · B y, clipped at zero: a pressure that [`Modes::balance`] found.
-    pub(crate) fn balanced(&self, y: Motion, k: usize, base: f64, weight: f64) -> f64 {
-        (base + weight * dot(self.at(k), y)).max(0.0)
+    pub(crate) fn balanced(&self, y: ModeCoefficients, k: usize, base: f64, weight: f64) -> f64 {
+        (base + weight * dot(self.at(k), y.0)).max(0.0)
     }
 }
 
@@ -262,4 +283,28 @@ fn norm(a: [f64; 3]) -> f64 {
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coefficients_and_motion_say_the_same() {
+        let grid = Grid::new([7, 4], [2.0, 3.0]).unwrap();
+        let motion = RigidMotion { approach: 0.3, tilt: [-0.2, 0.7] };
+        for point in [[0.0; 2], [0.4, -1.1]] {
+            let modes = Modes::new(&grid, Freedom { translation: true, tilt: [true; 2], point, total: 1.0 });
+            let coefficients = modes.coefficients(motion);
+            let back = modes.physical(coefficients);
+            assert!((back.approach - motion.approach).abs() < 1e-15);
+            for k in 0..grid.len() {
+                let displacement = modes.displacement(coefficients, k);
+                assert!((displacement - motion.at(grid.center(k / 4, k % 4))).abs() < 1e-14, "{k}: {displacement}");
+            }
+        }
+        let upright = Modes::new(&grid, Freedom { translation: true, tilt: [false; 2], point: [1.0; 2], total: 1.0 });
+        let motion = RigidMotion { tilt: [0.0; 2], ..motion };
+        assert_eq!(upright.physical(upright.coefficients(motion)), motion);
+    }
 }
