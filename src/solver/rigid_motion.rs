@@ -2,6 +2,7 @@
 //! goes with every freedom.
 
 use crate::Grid;
+use crate::linalg;
 
 /// The motions ω + α1 ξ1 + α2 ξ2 that a load leaves free to one body, ξ = x − e measured from the point e
 /// at which it acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0.
@@ -38,9 +39,9 @@ impl RigidMotion {
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ModeCoefficients(pub(crate) [f64; 3]);
 
-/// Eigenvalues below this fraction of the largest count as none: the motion is not determined by the
-/// cells at hand (fewer than three, or all on a line).
-const DEPENDENT: f64 = 1e-11;
+/// Part of the square of a mode, independent of the other modes, that counts as zero: the cells at hand do not determine
+/// the motion (fewer than three, or all on a line).
+const DEPENDENT_FRACTION: f64 = 1e-11;
 
 /// Newton iterations that [`Modes::balance`] may take; it needs one where nothing is clipped.
 const BALANCE_ITERATIONS: usize = 60;
@@ -239,41 +240,9 @@ impl Gram {
         }
     }
 
-    /// Solves Gram x = `right` by Cholesky's method with pivoting on the matrix scaled to a unit diagonal,
-    /// leaving out what depends on the rest: x is zero there.
+    /// Solves Gram x = `right`; x is zero for a mode that depends on the others.
     fn solve(&self, right: [f64; 3]) -> [f64; 3] {
-        let scale = [0, 1, 2].map(|m| if self.entries[m][m] > 0.0 { 1.0 / self.entries[m][m].sqrt() } else { 0.0 });
-        let mut a = [[0.0; 3]; 3];
-        for (i, row) in a.iter_mut().enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                *entry = self.entries[i][j] * scale[i] * scale[j];
-            }
-        }
-        let mut b = [0, 1, 2].map(|m| right[m] * scale[m]);
-        // symmetric elimination; `order` holds the pivots taken
-        let (mut order, mut left) = ([0; 3], [true; 3]);
-        let mut rank = 0;
-        while rank < 3 {
-            let pivot = (0..3).filter(|&m| left[m]).max_by(|&m, &n| a[m][m].total_cmp(&a[n][n]));
-            let Some(pivot) = pivot.filter(|&m| a[m][m] > DEPENDENT) else { break };
-            left[pivot] = false;
-            order[rank] = pivot;
-            rank += 1;
-            for m in (0..3).filter(|&m| left[m]) {
-                let factor = a[m][pivot] / a[pivot][pivot];
-                for n in (0..3).filter(|&n| left[n]) {
-                    a[m][n] -= factor * a[pivot][n];
-                }
-                b[m] -= factor * b[pivot];
-            }
-        }
-        let mut x = [0.0; 3];
-        for step in (0..rank).rev() {
-            let pivot = order[step];
-            let known: f64 = order[step + 1..rank].iter().map(|&n| a[pivot][n] * x[n]).sum();
-            x[pivot] = (b[pivot] - known) / a[pivot][pivot];
-        }
-        [0, 1, 2].map(|m| x[m] * scale[m])
+        linalg::solve_normal_equations(&self.entries, right, DEPENDENT_FRACTION)
     }
 }
 

@@ -4,23 +4,25 @@
 //!
 //! E(p) = ½ c p·Kp + gap·p   over   p ≥ 0 in balance with the loads.
 //!
-//! Pressures stay feasible throughout (J. Nocedal & S. Wright, *Numerical Optimization*, 2006, section 16.5; J. Moré &
+//! Pressures remain feasible throughout (J. Nocedal & S. Wright, *Numerical Optimization*, 2006, section 16.5; J. Moré &
 //! G. Toraldo, SIAM J. Optim. 1, 1991, for many cells at a time). On the set A conjugate gradients approach the minimum over
 //! pressures of either sign. A step that would make some of them negative is replaced by the better of two that do not: the same
-//! direction up to the first zero, or the way towards the clipped and balanced end of the step, with its own exact
-//! line search. Cells at zero then leave A, and cells that penetrate join it with p = 0, which leaves E as it is. E falls from
+//! direction up to the first zero, or the direction towards the clipped and balanced end of the step, with its own exact
+//! line search. Cells at zero then leave A, and cells that penetrate join it with p = 0, which does not change E. E falls from
 //! step to step, so that no set returns.
 
-use super::{ActiveSet, DEEP, JOIN};
+use super::{ActiveSet, JOIN_OVER_DEEPEST, JOIN_OVER_RMS};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::{balance, cold_start};
-use crate::solver::problem::{Measure, Outcome, Problem, Solution, Stop, relative_residual};
+use crate::solver::contact_cells;
+use crate::solver::outcome::{Outcome, ResidualSums, Stop};
+use crate::solver::problem::{Problem, Solution};
 use crate::solver::rigid_motion::ModeCoefficients;
 
-/// Times that cells may join A without any gain before the next ones: then what is left is rounding.
-const FRUITLESS: usize = 3;
+/// Times that cells may join A without any gain in between; after that, the rest of the residual is rounding.
+const MAX_JOINS_WITHOUT_GAIN: usize = 3;
 
-/// What a step along a direction gains.
+/// The best step along a direction.
 #[derive(Debug, Clone, Copy, Default)]
 struct Gain {
     /// Length of the step.
@@ -52,62 +54,47 @@ impl ActiveSet {
         if let Err(body) = self.make_feasible(problem, solution, work) {
             return Outcome::Unbalanced(body);
         }
-        self.shape.resize(self.member.len(), 0.0);
-        let (mut gained, mut fruitless) = (true, 0);
+        let (mut gained, mut joins_without_gain) = (true, 0);
         self.energy = 0.0;
         loop {
             let mut state = self.fit_motions(problem, solution);
             let penetration = problem.penetration(solution, |k| !self.member[k]);
-            state.cancelled = problem.rounding(&solution.pressure) + self.begun;
-            solution.residual = relative_residual(&state, penetration);
-            solution.rounding = state.relative_rounding();
-            solution.trace.note(solution.counts.iterations, solution.residual);
-            if solution.residual <= stop.tolerance {
-                self.find_runs(problem);
-                return Outcome::Converged;
+            state.note(problem, penetration, self.guess_rounding, solution);
+            if let Some(outcome) = stop.outcome(solution, || true) {
+                return outcome;
             }
-            if solution.residual.is_nan() {
-                return Outcome::NotANumber;
-            }
-            if solution.counts.iterations >= stop.max_iterations {
-                return Outcome::OutOfIterations;
-            }
-            let joins = penetration > JOIN * state.rms();
+            let joins = penetration > JOIN_OVER_RMS * state.rms();
             if joins {
-                fruitless = if gained { 0 } else { fruitless + 1 };
-                if fruitless > FRUITLESS {
+                joins_without_gain = if gained { 0 } else { joins_without_gain + 1 };
+                if joins_without_gain > MAX_JOINS_WITHOUT_GAIN {
                     return Outcome::Stagnated;
                 }
                 gained = false;
-                // where several have not gained anything, the deepest cell alone
-                let share = match fruitless {
+                // where several cells have joined without any gain, only the deepest one
+                let share = match joins_without_gain {
                     0 if penetration > state.yielding() => 0.5,
-                    0 => DEEP,
+                    0 => JOIN_OVER_DEEPEST,
                     _ => 1.0,
                 };
-                self.admit(problem, share * penetration, solution);
+                self.add_cells_deeper_than(problem, share * penetration, solution);
                 self.fit_motions(problem, solution);
             }
             solution.counts.iterations += 1;
             solution.counts.fallback_iterations += 1;
             let cells = state.cells;
-            match self.step_downhill(problem, fruitless, solution, work) {
+            match self.step_downhill(problem, joins_without_gain > 1, solution, work) {
                 0.0 if !joins && self.members() == cells => return Outcome::Stagnated,
                 gain => gained |= gain > 0.0,
             }
         }
     }
 
-    /// The motions that fit the surface on A best, and r = −h there.
-    fn fit_motions(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> Measure {
-        let mut state = Measure::default();
-        for (body, active) in self.bodies.iter().enumerate() {
-            problem.measure(body, &active.patch, solution, &mut self.residual, &mut state);
-        }
-        state
+    /// Sets the motions to the best fit on A, and r = −h there.
+    fn fit_motions(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> ResidualSums {
+        contact_cells::fit_motions(problem, &self.contacts, solution, &mut self.residual)
     }
 
-    /// Pressures that are ≥ 0 and in balance, their K p, and A where they are positive.
+    /// Makes the pressures ≥ 0 and balanced, computes their K p, and sets A to where they are positive.
     fn make_feasible(
         &mut self,
         problem: &Problem<'_>,
@@ -121,57 +108,47 @@ impl ActiveSet {
                 *p = 0.0;
             }
         }
-        self.list_patches(problem);
-        for (body, active) in self.bodies.iter_mut().enumerate() {
-            active.leaving.clear();
-            active.correction = None;
+        self.list_all_cells(problem);
+        for (body, (contact, change)) in self.contacts.iter_mut().zip(&mut self.changes).enumerate() {
+            change.leaving.clear();
+            change.correction = None;
             if !problem.released(body)
-                && (active.patch.cells.is_empty() || !balance(problem, body, &active.patch.cells, solution))
-                && !cold_start(problem, body, &mut active.patch, solution, |_, _| ())
+                && (contact.cells.is_empty() || !balance(problem, body, &contact.cells, solution))
+                && !cold_start(problem, body, &mut contact.cells, solution, |_, _| ())
             {
                 return Err(body);
             }
         }
         self.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
-        self.list_patches(problem);
+        self.list_all_cells(problem);
         solution.convolve(problem, work);
         Ok(())
     }
 
-    /// Lists the members of A by body.
-    fn list_patches(&mut self, problem: &Problem<'_>) {
-        self.bodies.iter_mut().for_each(|active| active.patch.cells.clear());
-        for k in (0..self.member.len()).filter(|&k| self.member[k]) {
-            self.bodies[problem.owner(k)].patch.cells.push(k as u32);
-        }
-        for (body, active) in self.bodies.iter_mut().enumerate() {
-            active.patch.gram = problem.modes(body).gram(&active.patch.cells);
-        }
-    }
-
+    /// Number of cells in A.
     fn members(&self) -> usize {
-        self.bodies.iter().map(|active| active.patch.cells.len()).sum()
+        self.contacts.iter().map(|contact| contact.cells.len()).sum()
     }
 
     /// Takes cells into A that penetrate by `least` or more.
-    fn admit(&mut self, problem: &Problem<'_>, least: f64, solution: &Solution) {
+    fn add_cells_deeper_than(&mut self, problem: &Problem<'_>, least: f64, solution: &Solution) {
         for k in 0..self.member.len() {
             self.member[k] |= problem.possible(k) && least > 0.0 && problem.depth(solution, k) >= least;
         }
-        self.list_patches(problem);
+        self.list_all_cells(problem);
         self.energy = 0.0;
     }
 
-    /// One step; returns by how much E falls.
+    /// One step, along the residual itself if `plain`; returns by how much E falls.
     fn step_downhill(
         &mut self,
         problem: &Problem<'_>,
-        fruitless: usize,
+        plain: bool,
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> f64 {
         let c = problem.compliance;
-        self.find_descent(problem, fruitless > 1, solution);
+        self.find_descent(problem, plain, solution);
         problem.kernel.apply(&self.direction, &mut self.image, work);
         solution.counts.convolutions += 1;
         let [slope, curvature] = self.slope_and_curvature(&self.direction, &self.image);
@@ -181,14 +158,13 @@ impl ActiveSet {
             self.energy = 0.0;
             return 0.0;
         }
-        let members = || self.bodies.iter().flat_map(|active| &active.patch.cells).map(|&k| k as usize);
         let to_zero = |k: usize| {
             let (p, d) = (solution.pressure[k], self.direction[k]);
             if d < 0.0 { -p / d } else { f64::INFINITY }
         };
-        let first_zero = members().map(to_zero).fold(f64::INFINITY, f64::min);
+        let first_zero = contact_cells::all(&self.contacts).map(to_zero).fold(f64::INFINITY, f64::min);
         if free.length <= first_zero {
-            for k in self.bodies.iter().flat_map(|active| &active.patch.cells).map(|&k| k as usize) {
+            for k in contact_cells::all(&self.contacts) {
                 solution.pressure[k] = (solution.pressure[k] + free.length * self.direction[k]).max(0.0);
             }
             add(&mut solution.potential, free.length, &self.image);
@@ -196,91 +172,71 @@ impl ActiveSet {
         }
 
         let straight = Gain::along(slope, c * curvature, first_zero);
-        let bent = if self.clip(problem, free.length, solution) {
-            problem.kernel.apply(&self.shape, &mut self.preconditioned, work);
+        // s of the clipped step takes the place of z, and c K s that of r, which is made anew for the next step
+        let clipped = if self.find_clipped_step(problem, free.length, solution) {
+            let slope = contact_cells::all(&self.contacts)
+                .fold(0.0, |slope, k| slope + self.residual[k] * self.preconditioned[k]);
+            problem.kernel.apply(&self.preconditioned, &mut self.residual, work);
             solution.counts.convolutions += 1;
-            let [slope, curvature] = self.slope_and_curvature(&self.shape, &self.preconditioned);
+            let curvature =
+                contact_cells::all(&self.contacts).fold(0.0, |sum, k| sum + self.preconditioned[k] * self.residual[k]);
             Gain::along(slope, c * curvature, 1.0)
         } else {
             Gain::default()
         };
-        let clips = bent.energy > straight.energy;
-        for active in &self.bodies {
-            for k in active.patch.cells.iter().map(|&k| k as usize) {
-                let (p, d) = (&mut solution.pressure[k], self.direction[k]);
-                *p = if clips {
-                    (*p + bent.length * self.shape[k]).max(0.0)
-                } else if d < 0.0 && -*p / d <= first_zero {
-                    0.0
-                } else {
-                    (*p + straight.length * d).max(0.0)
-                };
-                if *p <= 0.0 && d < 0.0 {
-                    self.member[k] = false;
-                }
+        let clips = clipped.energy > straight.energy;
+        for k in contact_cells::all(&self.contacts) {
+            let (p, d) = (&mut solution.pressure[k], self.direction[k]);
+            *p = if clips {
+                (*p + clipped.length * self.preconditioned[k]).max(0.0)
+            } else if d < 0.0 && -*p / d <= first_zero {
+                0.0
+            } else {
+                (*p + straight.length * d).max(0.0)
+            };
+            if *p <= 0.0 && d < 0.0 {
+                self.member[k] = false;
             }
         }
-        let (gain, image) = if clips { (bent, &self.preconditioned) } else { (straight, &self.image) };
+        let (gain, image) = if clips { (clipped, &self.residual) } else { (straight, &self.image) };
         add(&mut solution.potential, gain.length, image);
-        self.list_patches(problem);
+        self.list_all_cells(problem);
         self.energy = 0.0;
         gain.energy
     }
 
-    /// d ← z + β d without free motion on A, or the plain residual if that is wanted.
+    /// d ← z + β d without free motion on A, with z = r if `plain`.
     fn find_descent(&mut self, problem: &Problem<'_>, plain: bool, solution: &mut Solution) {
-        let z = &mut self.preconditioned;
-        z.fill(0.0);
-        for active in &self.bodies {
-            active.patch.cells.iter().for_each(|&k| z[k as usize] = self.residual[k as usize]);
-        }
+        self.preconditioned.fill(0.0);
+        contact_cells::all(&self.contacts).for_each(|k| self.preconditioned[k] = self.residual[k]);
         if !plain {
-            self.preconditioner.apply(z);
+            self.preconditioner.apply(&mut self.preconditioned);
             solution.counts.preconditioner_applications += 1;
         }
-        let mut overlap = 0.0;
-        for (body, active) in self.bodies.iter().enumerate() {
-            let cells = &active.patch.cells;
-            problem.modes(body).project_out(&active.patch.gram, cells, z);
-            overlap += cells.iter().map(|&k| z[k as usize] * self.image[k as usize]).sum::<f64>();
-        }
-        let beta = Self::conjugate(self.energy, overlap, false);
-        for (body, active) in self.bodies.iter().enumerate().filter(|_| beta != 0.0) {
-            let cells = &active.patch.cells;
-            cells.iter().for_each(|&k| z[k as usize] += beta * self.direction[k as usize]);
-            problem.modes(body).project_out(&active.patch.gram, cells, z);
-        }
+        self.conjugate_preconditioned(problem, false);
         self.direction.fill(0.0);
-        for active in &self.bodies {
-            active.patch.cells.iter().for_each(|&k| self.direction[k as usize] = z[k as usize]);
+        for k in contact_cells::all(&self.contacts) {
+            self.direction[k] = self.preconditioned[k];
         }
     }
 
-    /// Makes the way from p to the balanced max(0, p + a d), the shape; false if there is no such balance on A.
-    fn clip(&mut self, problem: &Problem<'_>, a: f64, solution: &Solution) -> bool {
-        self.shape.fill(0.0);
-        for (body, active) in self.bodies.iter().enumerate().filter(|(body, _)| !problem.released(*body)) {
+    /// Writes s, the way from p to the balanced max(0, p + a d), to `preconditioned`; false if there is no such balance on A.
+    fn find_clipped_step(&mut self, problem: &Problem<'_>, a: f64, solution: &Solution) -> bool {
+        self.preconditioned.fill(0.0);
+        for (body, contact) in self.contacts.iter().enumerate().filter(|(body, _)| !problem.released(*body)) {
             let modes = problem.modes(body);
             let clipped = |k: usize| (solution.pressure[k] + a * self.direction[k]).max(0.0);
             let y = if modes.tilts() || modes.translates() {
-                let Some(y) = modes.balance(&active.patch.cells, clipped, clipped) else { return false };
+                let Some(y) = modes.balance(&contact.cells, clipped, clipped) else { return false };
                 y
             } else {
                 ModeCoefficients::default()
             };
-            for k in active.patch.cells.iter().map(|&k| k as usize) {
-                self.shape[k] = modes.balanced(y, k, clipped(k), clipped(k)) - solution.pressure[k];
+            for k in contact.cells.iter().map(|&k| k as usize) {
+                self.preconditioned[k] = modes.balanced(y, k, clipped(k), clipped(k)) - solution.pressure[k];
             }
         }
         true
-    }
-
-    /// Σ r d and Σ d·Kd on A.
-    fn slope_and_curvature(&self, direction: &[f64], image: &[f64]) -> [f64; 2] {
-        let members = self.bodies.iter().flat_map(|active| &active.patch.cells).map(|&k| k as usize);
-        members.fold([0.0; 2], |[slope, curvature], k| {
-            [slope + self.residual[k] * direction[k], curvature + direction[k] * image[k]]
-        })
     }
 }
 
@@ -294,9 +250,9 @@ mod tests {
     use super::*;
     use crate::Grid;
     use crate::kernel::InfluenceKernel;
-    use crate::solver::Freedom;
+    use crate::solver::rigid_motion::Freedom;
 
-    /// Alone, and from a bad guess, it finds what the active set finds, soft surface or nearly rigid one.
+    /// Alone, and from a bad guess, it finds what the active set finds, on soft surfaces and on nearly rigid ones.
     #[test]
     fn it_converges_on_its_own() {
         let grid = Grid::square(12, 1.2).unwrap();

@@ -1,0 +1,101 @@
+//! How far a state is from a solution, and how a solve ends.
+
+use crate::solver::problem::{Problem, Solution};
+
+/// When to stop.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stop {
+    pub(crate) tolerance: f64,
+    pub(crate) max_iterations: usize,
+}
+
+/// How a solve ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[must_use]
+pub(crate) enum Outcome {
+    /// The residual is below the tolerance, with pressures ≥ 0 that balance the loads.
+    Converged,
+    /// The iterations are spent.
+    OutOfIterations,
+    /// Rounding hides any further gain.
+    Stagnated,
+    /// No pressure on the cells of the problem can balance the load of this body.
+    Unbalanced(usize),
+    /// The residual is NaN.
+    NotANumber,
+}
+
+impl Stop {
+    /// How the solve ends here, if it does. Only an `admissible` state converges: its pressures are ≥ 0 and balance the
+    /// loads.
+    pub(crate) fn outcome(&self, solution: &Solution, admissible: impl FnOnce() -> bool) -> Option<Outcome> {
+        if solution.residual <= self.tolerance && admissible() {
+            Some(Outcome::Converged)
+        } else if solution.residual.is_nan() {
+            Some(Outcome::NotANumber)
+        } else if solution.counts.iterations >= self.max_iterations {
+            Some(Outcome::OutOfIterations)
+        } else {
+            None
+        }
+    }
+}
+
+/// Sums over the cells in contact, of which the residual is made.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ResidualSums {
+    /// Σ h².
+    pub(crate) square: f64,
+    /// Σ (c v)².
+    pub(crate) displacement: f64,
+    /// Σ of the squares of negative pressures.
+    pub(crate) negative: f64,
+    /// The greatest |gap|, before any pressure.
+    pub(crate) greatest_gap: f64,
+    /// What gap and c K p are rounded by where they are much less than their parts.
+    pub(crate) cancellation: f64,
+    pub(crate) cells: usize,
+}
+
+/// Penetration may exceed the root mean square of the residual by this factor, being a maximum.
+pub(crate) const PENETRATION_SLACK: f64 = 10.0;
+
+impl ResidualSums {
+    /// Writes the residual of a state of `penetration` outside the contact to `solution`, and to its trace; `guess_rounding` is
+    /// what c K p of the guess was rounded by.
+    pub(crate) fn note(
+        &mut self,
+        problem: &Problem<'_>,
+        penetration: f64,
+        guess_rounding: f64,
+        solution: &mut Solution,
+    ) {
+        self.cancellation = problem.rounding(&solution.pressure) + guess_rounding;
+        solution.residual = self.relative_residual(penetration);
+        // no smaller residual could be told
+        solution.rounding = if self.displacement > 0.0 { self.rounding() / self.yielding() } else { 0.0 };
+        solution.trace.note(solution.counts.iterations, solution.residual);
+    }
+
+    /// How far a state is from solving its [`Problem`], relative to rms (c v) in contact: the larger of rms |h| in contact
+    /// and a tenth of the deepest penetration outside. What the gap itself is rounded by does not count.
+    fn relative_residual(&self, penetration: f64) -> f64 {
+        let error = self.rms().max(penetration / PENETRATION_SLACK) - self.rounding();
+        if error <= 0.0 { 0.0 } else { error / self.yielding() }
+    }
+
+    /// rms |h| in contact.
+    pub(crate) fn rms(&self) -> f64 {
+        (self.square / self.cells.max(1) as f64).sqrt()
+    }
+
+    /// What the gap is rounded by.
+    fn rounding(&self) -> f64 {
+        4.0 * f64::EPSILON * self.greatest_gap + self.cancellation
+    }
+
+    /// rms (c v) in contact: how far the surface yields.
+    pub(crate) fn yielding(&self) -> f64 {
+        (self.displacement / self.cells.max(1) as f64).sqrt()
+    }
+}
