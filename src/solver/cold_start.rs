@@ -9,7 +9,7 @@ use crate::solver::rigid_motion::ModeCoefficients;
 /// Bisections for the level, far beyond the accuracy that a guess needs.
 const LEVEL_BISECTIONS: usize = 40;
 
-/// Cells summed together before they join the total, so that rounding does not grow with their number.
+/// Cells summed together before they are added to the total, so that rounding does not grow with their number.
 const SUM_BLOCK: usize = 256;
 
 /// Fills the pressure under `body` with a guess whose force and moments are in balance; `cells` becomes the list of the
@@ -80,7 +80,7 @@ fn balance_with_supports(problem: &Problem<'_>, body: usize, cells: &[u32], solu
 fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) {
     let (freedom, modes) = (problem.bodies[body], problem.modes(body));
     cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
-    // a body that tilts under a force first comes to rest where the load puts it
+    // a body that tilts under a force starts from its resting position
     let motion = if modes.tilts() && modes.translates() {
         RestingPosition::new(&modes, cells, problem.gap).motion
     } else {

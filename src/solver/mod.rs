@@ -1,4 +1,4 @@
-//! The contact problem of one step, and two ways to solve it.
+//! The contact problem of one step, and two solvers for it.
 
 mod active_set;
 mod cold_start;
