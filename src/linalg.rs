@@ -1,17 +1,9 @@
 //! Small dense systems of linear equations.
 
-/// A solution of a system whose equations may depend on each other.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Solved<const N: usize> {
-    /// The unknowns, zero for those that the equations leave open.
-    pub(crate) x: [f64; N],
-    /// Number of independent equations.
-    pub(crate) rank: usize,
-}
-
-/// Solves A x = b by Gaussian elimination with complete pivoting. Elimination ends when no entry that is left exceeds
-/// `dependent`: the unknowns without a pivot are zero, and their equations are left out.
-pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], dependent: f64) -> Solved<N> {
+/// Solves A x = b by Gaussian elimination with complete pivoting; returns x and the rank. Elimination ends when no entry
+/// that is left exceeds `dependent`: the unknowns without a pivot are zero, and the equations that depend on others are left
+/// out.
+pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], dependent: f64) -> ([f64; N], usize) {
     let (mut open_rows, mut open_columns) = ([true; N], [true; N]);
     let (mut pivots, mut rank) = ([(0, 0); N], 0);
     while rank < N {
@@ -44,7 +36,7 @@ pub(crate) fn solve<const N: usize>(mut a: [[f64; N]; N], mut b: [f64; N], depen
         let known: f64 = pivots[step + 1..rank].iter().map(|&(_, later)| a[row][later] * x[later]).sum();
         x[column] = (b[row] - known) / a[row][column];
     }
-    Solved { x, rank }
+    (x, rank)
 }
 
 /// Solves the normal equations Σ w f fᵀ x = `right` of a least-squares fit of functions f, scaled to a unit diagonal. A
@@ -56,7 +48,7 @@ pub(crate) fn solve_normal_equations<const N: usize>(
 ) -> [f64; N] {
     let scale: [f64; N] = std::array::from_fn(|m| if gram[m][m] > 0.0 { 1.0 / gram[m][m].sqrt() } else { 0.0 });
     let scaled: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| gram[i][j] * scale[i] * scale[j]));
-    let x = solve(scaled, std::array::from_fn(|m| right[m] * scale[m]), dependent).x;
+    let (x, _) = solve(scaled, std::array::from_fn(|m| right[m] * scale[m]), dependent);
     std::array::from_fn(|m| x[m] * scale[m])
 }
 
@@ -107,7 +99,7 @@ mod tests {
         for _ in 0..500 {
             let (a, b) = (random_matrix::<N>(&mut state), std::array::from_fn(|_| random(&mut state)));
             let (expected, determinant) = reference(&a, &b);
-            let Solved { x, rank } = solve(a, b, DEPENDENT);
+            let (x, rank) = solve(a, b, DEPENDENT);
             assert_eq!(rank, N);
             for (x, expected) in x.into_iter().zip(expected) {
                 let scale = 1.0 + expected.abs();
@@ -134,7 +126,7 @@ mod tests {
             let entry = |i: usize, j: usize| (0..wanted).map(|m| left[m][i] * right[m][j]).sum();
             let a: [[f64; N]; N] = std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)));
             let b = product(&a, &std::array::from_fn(|_| random(&mut state)));
-            let Solved { x, rank } = solve(a, b, DEPENDENT);
+            let (x, rank) = solve(a, b, DEPENDENT);
             assert_eq!(rank, wanted, "{a:?}");
             assert!(x.iter().filter(|x| **x == 0.0).count() >= N - wanted);
             let solutions = if symmetric { vec![x, solve_normal_equations(&a, b, DEPENDENT)] } else { vec![x] };

@@ -2,7 +2,7 @@
 
 use crate::solver::outcome::ResidualSums;
 use crate::solver::problem::{Problem, Solution};
-use crate::solver::rigid_motion::{Gram, ModeCoefficients};
+use crate::solver::rigid_motion::{Gram, ModeCoefficients, Modes};
 
 /// The cells of one body that are in contact, and the products of its free modes over them.
 #[derive(Debug, Clone)]
@@ -16,6 +16,11 @@ impl ContactCells {
     pub(crate) fn of_bodies(bodies: usize, grid_cells: usize) -> Vec<ContactCells> {
         // cloned vectors would not keep their capacity
         (0..bodies).map(|_| ContactCells { cells: Vec::with_capacity(grid_cells), gram: Gram::default() }).collect()
+    }
+    /// Keeps only the cells with positive pressure.
+    pub(crate) fn keep_pressed(&mut self, modes: Modes<'_>, pressure: &[f64]) {
+        self.cells.retain(|&k| pressure[k as usize] > 0.0);
+        self.gram = modes.gram(&self.cells);
     }
 }
 

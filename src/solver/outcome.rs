@@ -60,19 +60,16 @@ pub(crate) struct ResidualSums {
 /// Penetration may exceed the root mean square of the residual by this factor, being a maximum.
 pub(crate) const PENETRATION_SLACK: f64 = 10.0;
 
+/// Of the penetrating cells, those join the contact that are deeper than this fraction of the deepest.
+const JOIN_OVER_DEEPEST: f64 = 0.2;
+
 impl ResidualSums {
-    /// Writes the residual of a state of `penetration` outside the contact to `solution`, and to its trace; `guess_rounding` is
-    /// what c K p of the guess was rounded by.
-    pub(crate) fn note(
-        &mut self,
-        problem: &Problem<'_>,
-        penetration: f64,
-        guess_rounding: f64,
-        solution: &mut Solution,
-    ) {
-        self.cancellation = problem.rounding(&solution.pressure) + guess_rounding;
+    /// Writes the residual of a state of `penetration` outside the contact to `solution`, and to its trace. c K p is rounded
+    /// by no less than `rounding`.
+    pub(crate) fn note(&mut self, problem: &Problem<'_>, penetration: f64, rounding: f64, solution: &mut Solution) {
+        self.cancellation = problem.rounding(&solution.pressure) + rounding;
         solution.residual = self.relative_residual(penetration);
-        // no smaller residual could be told
+        // a smaller residual cannot be detected
         solution.rounding = if self.displacement > 0.0 { self.rounding() / self.yielding() } else { 0.0 };
         solution.trace.note(solution.counts.iterations, solution.residual);
     }
@@ -97,5 +94,10 @@ impl ResidualSums {
     /// rms (c v) in contact: how far the surface yields.
     pub(crate) fn yielding(&self) -> f64 {
         (self.displacement / self.cells.max(1) as f64).sqrt()
+    }
+    /// The penetration from which cells join the contact: the shallowest, on the rim of a growing contact, would mostly leave
+    /// again. A body that penetrates deeper than the surface yields is far from its position: then only the deepest join.
+    pub(crate) fn joining_depth(&self, penetration: f64) -> f64 {
+        penetration * if penetration > self.yielding() { 0.5 } else { JOIN_OVER_DEEPEST }
     }
 }

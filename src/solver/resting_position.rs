@@ -83,6 +83,6 @@ fn solve_primal(basis: &[Column; 3], right: [f64; 3]) -> Option<[f64; 3]> {
 
 /// `None` if the columns of the basis depend on each other.
 fn solve(matrix: [[f64; 3]; 3], right: [f64; 3]) -> Option<[f64; 3]> {
-    let solved = linalg::solve(matrix, right, DEPENDENT_PIVOT);
-    (solved.rank == 3).then_some(solved.x)
+    let (x, rank) = linalg::solve(matrix, right, DEPENDENT_PIVOT);
+    (rank == 3).then_some(x)
 }

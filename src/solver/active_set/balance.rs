@@ -1,6 +1,5 @@
 //! Balance of force and moments on the active set.
 
-use super::membership::adopt_pressed;
 use super::{ActiveSet, Shape};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
@@ -74,7 +73,8 @@ impl ActiveSet {
             } else if !cold_start(problem, body, &mut contact.cells, solution, |_, _| ()) {
                 return Err(body);
             }
-            adopt_pressed(problem, body, contact, &mut self.member, solution);
+            contact.keep_pressed(modes, &solution.pressure);
+            contact.cells.iter().for_each(|&k| self.member[k as usize] = true);
             self.find_runs(problem);
             solution.convolve(problem, work);
         }

@@ -11,11 +11,11 @@
 //! line search. Cells at zero then leave A, and cells that penetrate join it with p = 0, which does not change E. E falls from
 //! step to step, so that no set returns.
 
-use super::{ActiveSet, JOIN_OVER_DEEPEST, JOIN_OVER_RMS};
+use super::{ActiveSet, JOIN_OVER_RMS};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::{balance, cold_start};
 use crate::solver::contact_cells;
-use crate::solver::outcome::{Outcome, ResidualSums, Stop};
+use crate::solver::outcome::{Outcome, Stop};
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::rigid_motion::ModeCoefficients;
 
@@ -57,7 +57,7 @@ impl ActiveSet {
         let (mut gained, mut joins_without_gain) = (true, 0);
         self.energy = 0.0;
         loop {
-            let mut state = self.fit_motions(problem, solution);
+            let mut state = contact_cells::fit_motions(problem, &self.contacts, solution, &mut self.residual);
             let penetration = problem.penetration(solution, |k| !self.member[k]);
             state.note(problem, penetration, self.guess_rounding, solution);
             if let Some(outcome) = stop.outcome(solution, || true) {
@@ -71,27 +71,18 @@ impl ActiveSet {
                 }
                 gained = false;
                 // where several cells have joined without any gain, only the deepest one
-                let share = match joins_without_gain {
-                    0 if penetration > state.yielding() => 0.5,
-                    0 => JOIN_OVER_DEEPEST,
-                    _ => 1.0,
-                };
-                self.add_cells_deeper_than(problem, share * penetration, solution);
-                self.fit_motions(problem, solution);
+                let least = if joins_without_gain == 0 { state.joining_depth(penetration) } else { penetration };
+                self.add_cells_deeper_than(problem, least, solution);
+                contact_cells::fit_motions(problem, &self.contacts, solution, &mut self.residual);
             }
             solution.counts.iterations += 1;
             solution.counts.fallback_iterations += 1;
             let cells = state.cells;
             match self.step_downhill(problem, joins_without_gain > 1, solution, work) {
-                0.0 if !joins && self.members() == cells => return Outcome::Stagnated,
+                0.0 if !joins && contact_cells::all(&self.contacts).count() == cells => return Outcome::Stagnated,
                 gain => gained |= gain > 0.0,
             }
         }
-    }
-
-    /// Sets the motions to the best fit on A, and r = −h there.
-    fn fit_motions(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> ResidualSums {
-        contact_cells::fit_motions(problem, &self.contacts, solution, &mut self.residual)
     }
 
     /// Makes the pressures ≥ 0 and balanced, computes their K p, and sets A to where they are positive.
@@ -123,11 +114,6 @@ impl ActiveSet {
         self.list_all_cells(problem);
         solution.convolve(problem, work);
         Ok(())
-    }
-
-    /// Number of cells in A.
-    fn members(&self) -> usize {
-        self.contacts.iter().map(|contact| contact.cells.len()).sum()
     }
 
     /// Takes cells into A that penetrate by `least` or more.

@@ -53,7 +53,7 @@ impl ActiveSet {
                 return Outcome::Stagnated;
             }
             if penetration > JOIN_OVER_RMS * state.rms() {
-                self.add_penetrating_cells(problem, state, penetration, solution);
+                self.add_penetrating_cells(problem, state.joining_depth(penetration), solution);
                 self.advance(problem, solution, 0.0);
             }
 

@@ -1,9 +1,9 @@
 //! Which cells are in the active set.
 
-use super::{ActiveSet, JOIN_OVER_DEEPEST, LEAVE_OVER_RMS, Shape};
+use super::{ActiveSet, LEAVE_OVER_RMS, Shape};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::cold_start;
-use crate::solver::contact_cells::{self, ContactCells};
+use crate::solver::contact_cells;
 use crate::solver::outcome::{ResidualSums, Stop};
 use crate::solver::problem::{Problem, Solution};
 
@@ -50,7 +50,8 @@ impl ActiveSet {
                 if !cold_start(problem, body, &mut contact.cells, solution, sharpen) {
                     return Err(body);
                 }
-                adopt_pressed(problem, body, contact, &mut self.member, solution);
+                contact.keep_pressed(problem.modes(body), &solution.pressure);
+                contact.cells.iter().for_each(|&k| self.member[k as usize] = true);
                 fresh |= !contact.cells.is_empty();
             }
         }
@@ -94,17 +95,9 @@ impl ActiveSet {
         contact_cells::list(problem, &mut self.contacts, self.passes.runs.ranges().flatten());
     }
 
-    /// Takes the deeper ones of the penetrating cells into A, but for those that are about to leave: they would
-    /// bring a negative pressure with them, and change the force. A body that penetrates deeper than the surface
-    /// yields is far from its position: then only the deepest cells join.
-    pub(super) fn add_penetrating_cells(
-        &mut self,
-        problem: &Problem<'_>,
-        state: ResidualSums,
-        penetration: f64,
-        solution: &Solution,
-    ) {
-        let least = penetration * if penetration > state.yielding() { 0.5 } else { JOIN_OVER_DEEPEST };
+    /// Takes cells into A that penetrate deeper than `least`, but for those that are about to leave: they would bring a
+    /// negative pressure with them, and change the force.
+    pub(super) fn add_penetrating_cells(&mut self, problem: &Problem<'_>, least: f64, solution: &Solution) {
         let upright = self.is_upright(problem);
         let (c, motion) = (problem.compliance, solution.motions[0].0[0]);
         for k in 0..self.member.len() {
@@ -148,17 +141,4 @@ impl ActiveSet {
         self.list_cells(problem);
         self.balance(problem, Shape::Punch, solution, work)
     }
-}
-
-/// Of the listed cells of a body, takes those into A that a new guess presses.
-pub(super) fn adopt_pressed(
-    problem: &Problem<'_>,
-    body: usize,
-    contact: &mut ContactCells,
-    member: &mut [bool],
-    solution: &Solution,
-) {
-    contact.cells.retain(|&k| solution.pressure[k as usize] > 0.0);
-    contact.cells.iter().for_each(|&k| member[k as usize] = true);
-    contact.gram = problem.modes(body).gram(&contact.cells);
 }

@@ -24,7 +24,7 @@
 //! Measured on a creeping Maxwell sphere (256², 100 steps, convolution equivalents per step, residual
 //! 1e-6 / 1e-4): 8.9 / 5.2 when cells leave and join at once, 7.6 / 4.1 with [`JOIN_OVER_RMS`], 6.8 / 3.6 with
 //! [`LEAVE_OVER_RMS`] too, 5.9 / 3.1 with the response to δ, 5.3 / 2.9 without conjugacy in corrections, 5.1 / 2.5
-//! when only the cells of [`JOIN_OVER_DEEPEST`] join.
+//! when only the deeper cells join ([`ResidualSums::joining_depth`](super::outcome::ResidualSums::joining_depth)).
 
 mod balance;
 mod fallback;
@@ -43,10 +43,6 @@ use crate::sum::greatest;
 /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
 /// slack that the residual grants to penetration, or a state could neither improve nor converge.
 const JOIN_OVER_RMS: f64 = 0.4 * PENETRATION_SLACK;
-
-/// Of the penetrating cells, those join that are deeper than this fraction of the deepest: the shallowest,
-/// on the rim of a growing contact, would mostly leave again.
-const JOIN_OVER_DEEPEST: f64 = 0.2;
 
 /// Cells leave A when rms (c p⁻/m), the gap equivalent to their negative pressure, exceeds this
 /// fraction of rms |r|.
