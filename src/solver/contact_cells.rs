@@ -17,6 +17,7 @@ impl ContactCells {
         // cloned vectors would not keep their capacity
         (0..bodies).map(|_| ContactCells { cells: Vec::with_capacity(grid_cells), gram: Gram::default() }).collect()
     }
+
     /// Keeps only the cells with positive pressure.
     pub(crate) fn keep_pressed(&mut self, modes: Modes<'_>, pressure: &[f64]) {
         self.cells.retain(|&k| pressure[k as usize] > 0.0);

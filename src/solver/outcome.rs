@@ -52,7 +52,7 @@ pub(crate) struct ResidualSums {
     pub(crate) negative: f64,
     /// The greatest |gap|, before any pressure.
     pub(crate) greatest_gap: f64,
-    /// What gap and c K p are rounded by where they are much less than their parts.
+    /// Rounding of gap and c K p where they are small differences of large parts.
     pub(crate) cancellation: f64,
     pub(crate) cells: usize,
 }
@@ -64,8 +64,8 @@ pub(crate) const PENETRATION_SLACK: f64 = 10.0;
 const JOIN_OVER_DEEPEST: f64 = 0.2;
 
 impl ResidualSums {
-    /// Writes the residual of a state of `penetration` outside the contact to `solution`, and to its trace. c K p is rounded
-    /// by no less than `rounding`.
+    /// Writes the residual of a state with this `penetration` outside the contact to `solution` and its trace; `rounding` is
+    /// that of c K p of the guess.
     pub(crate) fn note(&mut self, problem: &Problem<'_>, penetration: f64, rounding: f64, solution: &mut Solution) {
         self.cancellation = problem.rounding(&solution.pressure) + rounding;
         solution.residual = self.relative_residual(penetration);
@@ -75,7 +75,7 @@ impl ResidualSums {
     }
 
     /// How far a state is from solving its [`Problem`], relative to rms (c v) in contact: the larger of rms |h| in contact
-    /// and a tenth of the deepest penetration outside. What the gap itself is rounded by does not count.
+    /// and a tenth of the deepest penetration outside. Rounding of the gap itself does not count.
     fn relative_residual(&self, penetration: f64) -> f64 {
         let error = self.rms().max(penetration / PENETRATION_SLACK) - self.rounding();
         if error <= 0.0 { 0.0 } else { error / self.yielding() }
@@ -86,7 +86,7 @@ impl ResidualSums {
         (self.square / self.cells.max(1) as f64).sqrt()
     }
 
-    /// What the gap is rounded by.
+    /// Rounding of the gap.
     fn rounding(&self) -> f64 {
         4.0 * f64::EPSILON * self.greatest_gap + self.cancellation
     }
@@ -95,6 +95,7 @@ impl ResidualSums {
     pub(crate) fn yielding(&self) -> f64 {
         (self.displacement / self.cells.max(1) as f64).sqrt()
     }
+
     /// The penetration from which cells join the contact: the shallowest, on the rim of a growing contact, would mostly leave
     /// again. A body that penetrates deeper than the surface yields is far from its position: then only the deepest join.
     pub(crate) fn joining_depth(&self, penetration: f64) -> f64 {

@@ -65,7 +65,7 @@ impl ActiveSet {
         }
     }
 
-    /// p += a d, v += a K d; sets r and the free motions, and takes the sums over A and the deepest penetration outside.
+    /// p += a d, v += a K d; sets r and the free motions, and returns the sums over A and the deepest penetration outside.
     pub(super) fn advance(&mut self, problem: &Problem<'_>, solution: &mut Solution, a: f64) -> (ResidualSums, f64) {
         if self.is_upright(problem) {
             return self.advance_upright(problem, solution, a);
@@ -164,7 +164,7 @@ impl ActiveSet {
         let share = if problem.modes(0).translates() { 1.0 / self.passes.runs.count().max(1) as f64 } else { 0.0 };
         let beta = conjugate(self.energy, z_kd - share * z * kd, pending);
         let scale = if pending { length } else { 1.0 };
-        // without a last direction, what is left in its place says nothing
+        // without a last direction, d holds values of an earlier solve
         let shift = -share * if beta == 0.0 { z } else { z + beta * d };
         self.passes.redirect([scale, beta, shift], &self.preconditioned, &mut self.direction);
         for &k in &change.leaving {
@@ -200,7 +200,7 @@ impl ActiveSet {
         let leaving = self.changes.iter().flat_map(|change| &change.leaving).map(|&k| k as usize);
         self.energy = curvature + leaving.map(|k| self.direction[k] * self.image[k]).sum::<f64>();
         if !self.pending() {
-            // nothing is left to gain along a direction that vanishes, as on a single cell
+            // a direction that vanishes, as on a single cell, gains nothing
             let downhill = slope > 0.0 && curvature > 0.0;
             return if downhill { slope / (problem.compliance * curvature) } else { 0.0 };
         }
@@ -220,7 +220,7 @@ impl ActiveSet {
     }
 }
 
-/// β from z·Kd. A correction is no conjugate direction, and would only spread the error of its length.
+/// β from z·Kd. A correction is not conjugate to the last direction: conjugacy would only spread the error of its length.
 fn conjugate(energy: f64, overlap: f64, pending: bool) -> f64 {
     if energy > 0.0 && !pending { -overlap / energy } else { 0.0 }
 }
