@@ -148,6 +148,7 @@ mod hereditary;
 mod kernel;
 #[cfg(feature = "laws")]
 pub mod laws;
+mod linalg;
 pub mod load;
 mod memory;
 pub mod motion;

@@ -15,6 +15,72 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 fn main() {
     steps_allocate_nothing();
     println!("steps allocate nothing: ok");
+    tilting_steps_allocate_nothing();
+    println!("tilting steps allocate nothing: ok");
+}
+
+/// Steps of tilting bodies and of several bodies, from the third on, whatever becomes of them: warm steps, cold starts after
+/// a jump of the load, and the fall-back. Returns how many steps there were with iterations of the fall-back.
+fn count_tilting_steps<const N: usize>(mut contact: ViscoelasticContact, loads: impl Fn(usize) -> [Load; N]) -> usize {
+    let mut fallback = 0;
+    for step in 0..600 {
+        let (dt, loads) = (if step % 5 == 0 { 0.0 } else { 0.1 }, loads(step));
+        let region = Region::new(ALLOCATOR);
+        let Ok(report) = contact.step_each(dt, &loads) else { continue };
+        let change = region.change();
+        assert!(step < 2 || (change.allocations, change.reallocations) == (0, 0), "{step} {loads:?}: {change:?}");
+        fallback += usize::from(report.fallback_iterations > 0);
+    }
+    fallback
+}
+
+fn tilting_steps_allocate_nothing() {
+    let side = 4.0e-3;
+    let random = |step: usize, kind: u64| {
+        let mut state = (step as u64 * 31 + kind + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        state = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        state = (state ^ (state >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((state ^ (state >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let rough = |x: f64, y: f64| 50.0 * (x * x + y * y) + 1.0e-6 * (9.0e3 * x + 1.0).sin() * (7.0e3 * y + 2.0).cos();
+    let half = |centre: f64| {
+        let own = move |x: f64| (x - centre).abs() < 0.24 * side;
+        FnGeometry::new(move |x, y| if own(x) { rough(x - centre, y) } else { f64::INFINITY })
+    };
+    let at = |step: usize, reach: f64| [0, 1].map(|axis| reach * (random(step, axis) - 0.5) * side);
+    let wandering = |step: usize| [Load::eccentric_force(1.0, [0.1e-3 + 1.0e-6 * step as f64, 0.05e-3])];
+    let jumping = |step: usize| [Load::eccentric_force(10f64.powf(3.0 * random(step, 2) - 3.0), at(step, 0.4))];
+    let pivoted = |step: usize| {
+        let tilt = at(step, 0.6).map(|at| Tilt::Free { at });
+        [Load::Approach { approach: 3.0e-5 * (random(step, 2) - 0.2), tilt }]
+    };
+    let beside = |step: usize| {
+        [-0.25, 0.25].map(|centre| {
+            let [x, y] = at(step, 0.2);
+            Load::eccentric_force(0.5 + 0.4 * random(step, 3), [x + centre * side, y])
+        })
+    };
+    let mut fallback = [0; 5];
+    for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
+        let builder = || {
+            ViscoelasticContact::builder(Grid::new([24, 30], [side, side]).unwrap())
+                .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
+                .settings(Settings { solver, window: false, edge: Edge::Allow, ..Settings::default() })
+        };
+        let punch = || builder().geometry(&FlatPunch::circular(1.4e-3).unwrap()).build().unwrap();
+        let bowl = || builder().geometry(&FnGeometry::new(rough)).build().unwrap();
+        let two = || builder().geometry(&half(-0.25 * side)).another_body(&half(0.25 * side)).build().unwrap();
+        let counts = [
+            count_tilting_steps(punch(), wandering),
+            count_tilting_steps(punch(), jumping),
+            count_tilting_steps(bowl(), jumping),
+            count_tilting_steps(bowl(), pivoted),
+            count_tilting_steps(two(), beside),
+        ];
+        [0, 1, 2, 3, 4].map(|k| fallback[k] += counts[k]);
+    }
+    println!("steps with the fall-back: {fallback:?}");
+    assert!(fallback.iter().sum::<usize>() > 0, "no step needs the fall-back");
 }
 
 fn steps_allocate_nothing() {

@@ -1,54 +1,70 @@
-//! A first guess of the pressure under a body when there is none to go by.
+//! A first guess of the pressure under a body that has none yet.
 
 use std::f64::consts::PI;
 
-use crate::solver::problem::{Patch, Problem, Solution};
-use crate::solver::rest::rest;
+use crate::solver::problem::{Problem, Solution};
+use crate::solver::resting_position::RestingPosition;
+use crate::solver::rigid_motion::ModeCoefficients;
 
 /// Bisections for the level, far beyond the accuracy that a guess needs.
-const HALVINGS: usize = 40;
+const LEVEL_BISECTIONS: usize = 40;
 
-/// Cells summed together before they join the total, so that rounding does not grow with their number.
-const BLOCK: usize = 256;
+/// Cells summed together before they are added to the total, so that rounding does not grow with their number.
+const SUM_BLOCK: usize = 256;
 
-/// Fills the pressure under `body` with a guess whose force and moments are in balance; `patch` lists the
+/// Fills the pressure under `body` with a guess whose force and moments are in balance; `cells` becomes the list of the
 /// cells that it may touch.
 ///
 /// `sharpen` may improve the pressures where the whole face is pressed, as under a punch, whose pressure
-/// rises to its rim. What it makes is taken if no part of the face has to open for the balance.
+/// rises to its rim. Its result is kept if no part of the face has to open for the balance.
 ///
 /// False if no pressure on these cells can balance the load.
 #[must_use]
 pub(crate) fn cold_start(
     problem: &Problem<'_>,
     body: usize,
-    patch: &mut Patch,
+    cells: &mut Vec<u32>,
     solution: &mut Solution,
     sharpen: impl FnOnce(&[u32], &mut Solution),
 ) -> bool {
-    list_possible(problem, body, patch);
-    let pressed = |solution: &Solution| patch.cells.iter().all(|&k| solution.pressure[k as usize] > 0.0);
-    fill_hertz(problem, body, &patch.cells, solution);
+    list_possible(problem, body, cells);
+    let pressed = |solution: &Solution| cells.iter().all(|&k| solution.pressure[k as usize] > 0.0);
+    fill_hertz(problem, body, cells, solution);
     if pressed(solution) {
-        sharpen(&patch.cells, solution);
-        if balance(problem, body, &patch.cells, solution) && pressed(solution) {
+        sharpen(cells, solution);
+        if balance(problem, body, cells, solution) && pressed(solution) {
             return true;
         }
-        fill_hertz(problem, body, &patch.cells, solution);
+        fill_hertz(problem, body, cells, solution);
     }
-    if balance(problem, body, &patch.cells, solution) {
-        return true;
-    }
-    // where what it makes cannot balance the load, the cells that the body would rest on join in
-    fill_hertz(problem, body, &patch.cells, solution);
-    press_supports(problem, body, &patch.cells, solution)
+    balance_with_supports(problem, body, cells, solution)
 }
 
-/// Presses more the very cells that the body would rest on if nothing yielded: they balance the load if any cells do.
-fn press_supports(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) -> bool {
+/// Presses every cell that the body may touch, evenly but for the moments: a guess that does not depend on the gap.
+pub(crate) fn press_everywhere(problem: &Problem<'_>, body: usize, cells: &mut Vec<u32>, solution: &mut Solution) {
+    list_possible(problem, body, cells);
+    let mean = problem.bodies[body].total / cells.len() as f64;
+    cells.iter().for_each(|&k| solution.pressure[k as usize] = mean);
+    balance_with_supports(problem, body, cells, solution);
+}
+
+/// Lists the cells that a body may touch.
+pub(crate) fn list_possible(problem: &Problem<'_>, body: usize, cells: &mut Vec<u32>) {
+    cells.clear();
+    let own = (0..problem.gap.len()).filter(|&k| problem.owner(k) == body && problem.gap[k].is_finite());
+    cells.extend(own.map(|k| k as u32));
+}
+
+/// Balances the pressures on `cells`. Where that cannot be, as under a load so near the rim that next to no cell can carry it, the
+/// cells that the body would rest on if nothing yielded are pressed more: they balance the load if any cells do.
+fn balance_with_supports(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) -> bool {
+    if balance(problem, body, cells, solution) {
+        return true;
+    }
     let freedom = problem.bodies[body];
     if freedom.translation {
-        for (k, share) in rest(&problem.modes(body), cells, problem.gap).1 {
+        let resting = RestingPosition::new(&problem.modes(body), cells, problem.gap);
+        for (k, share) in resting.supports.into_iter().flatten() {
             solution.pressure[k as usize] += share * freedom.total;
         }
     }
@@ -64,9 +80,12 @@ fn press_supports(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &
 fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) {
     let (freedom, modes) = (problem.bodies[body], problem.modes(body));
     cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
-    // a body that tilts under a force first comes to rest where the load puts it
-    let motion =
-        if modes.tilts() && modes.translates() { rest(&modes, cells, problem.gap).0 } else { Default::default() };
+    // a body that tilts under a force starts from its resting position
+    let motion = if modes.tilts() && modes.translates() {
+        RestingPosition::new(&modes, cells, problem.gap).motion
+    } else {
+        ModeCoefficients::default()
+    };
     if modes.tilts() {
         solution.motions[body] = motion;
     }
@@ -88,7 +107,7 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut 
             level = lowest + rise(level);
         } else {
             let mut low = lowest;
-            for _ in 0..HALVINGS {
+            for _ in 0..LEVEL_BISECTIONS {
                 let middle = 0.5 * (low + level);
                 if middle - lowest < rise(middle) { low = middle } else { level = middle }
             }
@@ -117,17 +136,6 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut 
     }
 }
 
-/// Presses every cell that the body may touch, evenly but for the moments: a guess that no gap has a say in.
-pub(crate) fn press_everywhere(problem: &Problem<'_>, body: usize, patch: &mut Patch, solution: &mut Solution) {
-    list_possible(problem, body, patch);
-    let mean = problem.bodies[body].total / patch.cells.len() as f64;
-    patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = mean);
-    if !balance(problem, body, &patch.cells, solution) {
-        // a load so near the rim that next to no cell can carry it
-        press_supports(problem, body, &patch.cells, solution);
-    }
-}
-
 /// Brings pressures ≥ 0 on `cells` into balance with the load by a factor 1 + B y, clipped at zero; false
 /// if that cannot be.
 pub(crate) fn balance(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) -> bool {
@@ -137,7 +145,7 @@ pub(crate) fn balance(problem: &Problem<'_>, body: usize, cells: &[u32], solutio
     }
     let p = |k: usize| solution.pressure[k];
     if !modes.tilts() && cells.iter().all(|&k| p(k as usize) >= 0.0) {
-        let sum: f64 = cells.chunks(BLOCK).map(|block| block.iter().map(|&k| p(k as usize)).sum::<f64>()).sum();
+        let sum: f64 = cells.chunks(SUM_BLOCK).map(|block| block.iter().map(|&k| p(k as usize)).sum::<f64>()).sum();
         let scale = problem.bodies[body].total / sum;
         if !scale.is_finite() {
             return false;
@@ -151,10 +159,4 @@ pub(crate) fn balance(problem: &Problem<'_>, body: usize, cells: &[u32], solutio
         *p = modes.balanced(y, k as usize, *p, *p);
     }
     true
-}
-
-fn list_possible(problem: &Problem<'_>, body: usize, patch: &mut Patch) {
-    patch.cells.clear();
-    let own = (0..problem.gap.len()).filter(|&k| problem.owner(k) == body && problem.gap[k].is_finite());
-    patch.cells.extend(own.map(|k| k as u32));
 }

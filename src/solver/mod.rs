@@ -1,20 +1,22 @@
-//! The contact problem of one step, and two ways to solve it.
+//! The contact problem of one step, and two solvers for it.
 
 mod active_set;
 mod cold_start;
+mod contact_cells;
+mod outcome;
 mod passes;
 mod polonsky_keer;
 mod preconditioner;
 mod problem;
-mod rest;
+mod resting_position;
 mod rigid_motion;
+mod runs;
 mod stiffness;
 mod trace;
 
 pub(crate) use active_set::ActiveSet;
+pub(crate) use outcome::{Outcome, Stop};
 pub(crate) use polonsky_keer::PolonskyKeer;
-pub(crate) use problem::{Counts, Outcome, Problem, Solution, Stop};
-#[allow(unused_imports)] // until the contact names the coefficients of its motions
-pub(crate) use rigid_motion::ModeCoefficients;
+pub(crate) use problem::{Counts, Problem, Solution};
 pub(crate) use rigid_motion::{Freedom, Modes, RigidMotion};
 pub(crate) use stiffness::{FLAT_PUNCH_TOLERANCE, flat_punch};

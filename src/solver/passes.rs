@@ -1,97 +1,17 @@
 //! The passes of the active set over its fields, for a single body that does not tilt: the common scene.
 //!
-//! Cells in contact come in runs, pieces of rows; each pass reads and writes whole pieces of memory, and does all
-//! there is to do with what it has read.
+//! Each pass works on whole [`Runs`] of cells, and does everything that needs the same fields at once.
 
 use std::ops::Range;
 
 use crate::kernel::{join, lanes};
-use crate::sum::{greatest, sum, sum_of_pairs};
+use crate::solver::runs::Runs;
+use crate::sum::{sum, sum_of_pairs};
 
-/// Lanes of the greatest values.
+/// Lanes in which maxima are taken.
 const LANES: usize = 8;
 
-/// Cells looked at together in search of runs.
-const BLOCK: usize = 32;
-
-/// Cells in contact, as first and last-but-one of pieces of rows.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Runs {
-    runs: Vec<[u32; 2]>,
-    cells: usize,
-}
-
-impl Runs {
-    pub(crate) fn with_capacity(cells: usize) -> Runs {
-        Runs { runs: Vec::with_capacity(cells.div_ceil(2)), cells: 0 }
-    }
-
-    /// Finds the runs of members.
-    pub(crate) fn find(&mut self, member: &[bool]) {
-        self.runs.clear();
-        let mut start = None;
-        for (block, values) in member.chunks(BLOCK).enumerate() {
-            // most blocks are all of one kind, the kind at hand
-            let inside = start.is_some();
-            if values.iter().fold(true, |same, &m| same & (m == inside)) {
-                continue;
-            }
-            for (k, &m) in values.iter().enumerate() {
-                let k = (block * BLOCK + k) as u32;
-                match start {
-                    None if m => start = Some(k),
-                    Some(first) if !m => {
-                        self.runs.push([first, k]);
-                        start = None;
-                    }
-                    _ => {}
-                }
-            }
-        }
-        self.runs.extend(start.map(|first| [first, member.len() as u32]));
-        self.cells = self.ranges().map(|run| run.len()).sum();
-    }
-
-    /// Number of cells in all.
-    pub(crate) fn count(&self) -> usize {
-        self.cells
-    }
-
-    /// Σ values over the runs.
-    pub(crate) fn sum(&self, values: &[f64]) -> f64 {
-        self.ranges().map(|run| sum(&values[run])).sum()
-    }
-
-    /// The greatest |value| over the runs.
-    pub(crate) fn greatest(&self, values: &[f64]) -> f64 {
-        self.ranges().map(|run| greatest(&values[run])).fold(0.0, f64::max)
-    }
-
-    /// The parts of runs that lie in a band.
-    fn within(&self, band: &Range<usize>) -> impl Iterator<Item = Range<usize>> {
-        let (start, end) = (band.start, band.end);
-        let first = self.runs.partition_point(|run| run[1] as usize <= start);
-        let runs = self.runs[first..].iter().map(|run| run.map(|k| k as usize)).take_while(move |run| run[0] < end);
-        runs.map(move |run| run[0].max(start)..run[1].min(end))
-    }
-
-    /// Calls `visit` with pieces of a band, counted from its beginning, and whether they are in contact.
-    fn walk(&self, band: &Range<usize>, mut visit: impl FnMut(Range<usize>, bool)) {
-        let mut outside = 0;
-        for run in self.within(band).map(|run| run.start - band.start..run.end - band.start) {
-            pieces(outside..run.start).for_each(|piece| visit(piece, false));
-            outside = run.end;
-            pieces(run).for_each(|piece| visit(piece, true));
-        }
-        pieces(outside..band.len()).for_each(|piece| visit(piece, false));
-    }
-
-    pub(crate) fn ranges(&self) -> impl Iterator<Item = Range<usize>> {
-        self.runs.iter().map(|[start, end]| *start as usize..*end as usize)
-    }
-}
-
-/// What [`Passes::survey`] finds.
+/// Result of [`Passes::survey`].
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Survey {
     /// Σ r, Σ r², Σ (c v)², Σ min(p, 0)² over the cells in contact.
@@ -103,7 +23,7 @@ pub(crate) struct Survey {
     pub(crate) depth: f64,
 }
 
-/// The fields that [`Passes::survey`] goes through.
+/// The fields of [`Passes::survey`].
 pub(crate) struct Fields<'a> {
     pub(crate) gap: &'a [f64],
     pub(crate) direction: &'a [f64],
@@ -113,7 +33,7 @@ pub(crate) struct Fields<'a> {
     pub(crate) residual: &'a mut [f64],
 }
 
-/// What a pass finds in a band.
+/// Sums and maximum of a pass over a band.
 #[derive(Debug, Clone, Copy)]
 struct Found {
     sums: [f64; 4],
@@ -129,7 +49,7 @@ impl Found {
     }
 }
 
-/// The passes over the fields of one contact, and what they need of their own.
+/// The passes over the fields of one contact.
 #[derive(Debug, Clone)]
 pub(crate) struct Passes {
     pub(crate) runs: Runs,
@@ -144,15 +64,15 @@ struct Bands {
 }
 
 /// Cells passed over by one thread at a time. Sums are taken band by band, whatever the number of threads.
-const BAND: usize = 1 << 13;
+const BAND_CELLS: usize = 1 << 13;
 
 impl Passes {
     pub(crate) fn new(cells: usize) -> Passes {
-        let bands = Bands { found: vec![Found::NOTHING; cells.div_ceil(BAND)], shared: lanes(cells) > 1 };
+        let bands = Bands { found: vec![Found::NOTHING; cells.div_ceil(BAND_CELLS)], shared: lanes(cells) > 1 };
         Passes { runs: Runs::with_capacity(cells), bands }
     }
 
-    /// p += a d, v += a K d, and r = motion − (c v + gap) on the cells in contact, with all sums that follow from them.
+    /// p += a d, v += a K d, and r = motion − (c v + gap) on the cells in contact, with the sums over them.
     pub(crate) fn survey(&mut self, a: f64, c: f64, motion: f64, fields: Fields<'_>) -> Survey {
         let Fields { gap, direction, image, pressure, potential, residual } = fields;
         let Passes { runs, bands } = self;
@@ -228,7 +148,7 @@ impl Passes {
         found.sums
     }
 
-    /// d ← scale (z + β d + shift) in contact, 0 elsewhere; with β = 0 whatever d was.
+    /// d ← scale (z + β d + shift) in contact, 0 elsewhere; with β = 0 for any d, NaN included.
     pub(crate) fn redirect(&mut self, [scale, beta, shift]: [f64; 3], z: &[f64], direction: &mut [f64]) {
         let Passes { runs, bands } = self;
         bands.over([direction], z.len(), |band, [d]| {
@@ -264,20 +184,20 @@ impl Passes {
 }
 
 impl Bands {
-    /// Calls `job` with each band and its part of `outputs`; returns what was found in all of them.
+    /// Calls `job` with each band and its part of `outputs`; returns the sums and the maximum over all of them.
     fn over<const M: usize>(
         &mut self,
         outputs: [&mut [f64]; M],
         cells: usize,
         job: impl Fn(Range<usize>, [&mut [f64]; M]) -> Found + Sync,
     ) -> Found {
-        let found = &mut self.found[..cells.div_ceil(BAND)];
+        let found = &mut self.found[..cells.div_ceil(BAND_CELLS)];
         halve(0..cells, outputs, found, self.shared, &job);
         found.iter().fold(Found::NOTHING, |all, found| all.and(*found))
     }
 }
 
-/// Halves the cells until a band is left, and calls `job` with each.
+/// Halves the cells down to single bands, and calls `job` with each.
 fn halve<const M: usize>(
     cells: Range<usize>,
     outputs: [&mut [f64]; M],
@@ -290,20 +210,13 @@ fn halve<const M: usize>(
         return;
     }
     let bands = found.len() / 2;
-    let middle = bands * BAND;
+    let middle = bands * BAND_CELLS;
     let mut halves = outputs.map(|output| output.split_at_mut(middle));
     let first = halves.each_mut().map(|(first, _)| std::mem::take(first));
     let second = halves.map(|(_, second)| second);
     let (found, others) = found.split_at_mut(bands);
     let (before, after) = (cells.start..cells.start + middle, cells.start + middle..cells.end);
     join(shared, || halve(before, first, found, shared, job), || halve(after, second, others, shared, job));
-}
-
-/// Cells worked on together: what was read stays in the fastest cache.
-const PIECE: usize = 256;
-
-fn pieces(run: Range<usize>) -> impl Iterator<Item = Range<usize>> {
-    run.clone().step_by(PIECE).map(move |start| start..(start + PIECE).min(run.end))
 }
 
 /// x += a y.
@@ -313,7 +226,7 @@ fn add(x: &mut [f64], a: f64, y: &[f64]) {
     }
 }
 
-/// Joins every pair of values to one of the lanes.
+/// Combines every pair of values with one of the lanes.
 fn reduce([x, y]: [&[f64]; 2], lanes: &mut [f64; LANES], join: impl Fn(f64, [f64; 2]) -> f64) {
     let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<LANES>(), y.as_chunks::<LANES>());
     for (x, y) in x.iter().zip(y) {
@@ -330,23 +243,10 @@ fn reduce([x, y]: [&[f64]; 2], lanes: &mut [f64; LANES], join: impl Fn(f64, [f64
 mod tests {
     use super::*;
 
-    #[test]
-    fn runs_are_the_members() {
-        for (cells, period, length) in [(1, 1, 1), (100, 7, 3), (96, 48, 40), (97, 97, 97), (64, 33, 32), (200, 1, 0)] {
-            let member: Vec<bool> = (0..cells).map(|k| k % period < length).collect();
-            let mut runs = Runs::with_capacity(cells);
-            runs.find(&member);
-            let mut found = vec![false; cells];
-            runs.ranges().for_each(|run| found[run].fill(true));
-            assert_eq!(found, member);
-            assert!(runs.runs.windows(2).all(|pair| pair[0][1] < pair[1][0]), "runs do not touch");
-        }
-    }
-
     /// Every pass against its definition, cell by cell.
     #[test]
     fn passes_match_their_definitions() {
-        for n in [77, BAND, 3 * BAND + 100] {
+        for n in [77, BAND_CELLS, 3 * BAND_CELLS + 100] {
             check_passes(n);
         }
     }

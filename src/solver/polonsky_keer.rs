@@ -1,16 +1,21 @@
 //! The reference solver of the source paper.
 
 use crate::kernel::Workspace;
-use crate::solver::cold_start::{balance, cold_start, press_everywhere};
-use crate::solver::problem::{Measure, Outcome, Patch, Problem, Solution, Stop, relative_residual};
-use crate::solver::rest::rest;
+use crate::solver::cold_start::{balance, cold_start, list_possible, press_everywhere};
+use crate::solver::contact_cells::{self, ContactCells};
+use crate::solver::outcome::{Outcome, Stop};
+use crate::solver::problem::{Problem, Solution};
+use crate::solver::resting_position::RestingPosition;
 use crate::solver::rigid_motion::{Freedom, ModeCoefficients, Modes};
 
+/// Relative difference between the pressures and the force that still counts as balanced.
+const FORCE_TOLERANCE: f64 = 1e-9;
+
 /// Conjugate gradients on the cells in contact, after Polonsky & Keer (Wear 231, 1999): two
-/// convolutions an iteration, one for the gap and one for the step length.
+/// convolutions per iteration, one for the gap and one for the step length.
 #[derive(Debug, Clone)]
 pub(crate) struct PolonskyKeer {
-    patches: Vec<Patch>,
+    contacts: Vec<ContactCells>,
     /// −h in contact.
     residual: Vec<f64>,
     direction: Vec<f64>,
@@ -20,8 +25,8 @@ pub(crate) struct PolonskyKeer {
 impl PolonskyKeer {
     pub(crate) fn new(cells: usize, bodies: usize) -> PolonskyKeer {
         let field = vec![0.0; cells];
-        let patch = Patch { cells: Vec::with_capacity(cells), ..Patch::default() };
-        PolonskyKeer { patches: vec![patch; bodies], residual: field.clone(), direction: field.clone(), image: field }
+        let contacts = ContactCells::of_bodies(bodies, cells);
+        PolonskyKeer { contacts, residual: field.clone(), direction: field.clone(), image: field }
     }
 
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent.
@@ -40,23 +45,11 @@ impl PolonskyKeer {
         loop {
             solution.convolve(problem, work);
             self.list_cells(problem, solution);
-            let mut state = Measure::default();
-            for (body, patch) in self.patches.iter().enumerate() {
-                problem.measure(body, patch, solution, &mut self.residual, &mut state);
-            }
+            let mut state = contact_cells::fit_motions(problem, &self.contacts, solution, &mut self.residual);
             let penetration = problem.penetration(solution, |k| solution.pressure[k] == 0.0);
-            state.cancelled = problem.rounding(&solution.pressure);
-            solution.residual = relative_residual(&state, penetration);
-            solution.rounding = state.relative_rounding();
-            solution.trace.note(solution.counts.iterations, solution.residual);
-            if solution.residual <= stop.tolerance && self.carries_the_forces(problem, solution) {
-                return Outcome::Converged;
-            }
-            if solution.residual.is_nan() {
-                return Outcome::NotANumber;
-            }
-            if solution.counts.iterations >= stop.max_iterations {
-                return Outcome::OutOfIterations;
+            state.note(problem, penetration, 0.0, solution);
+            if let Some(outcome) = stop.outcome(solution, || self.carries_the_forces(problem, solution)) {
+                return outcome;
             }
             solution.counts.iterations += 1;
 
@@ -78,12 +71,12 @@ impl PolonskyKeer {
             *p = if problem.possible(k) { p.max(0.0) } else { 0.0 };
         }
         self.list_cells(problem, solution);
-        for (body, patch) in self.patches.iter_mut().enumerate() {
+        for (body, ContactCells { cells, .. }) in self.contacts.iter_mut().enumerate() {
             if problem.released(body) {
                 continue;
             }
-            let balanced = !patch.cells.is_empty() && balance(problem, body, &patch.cells, solution);
-            if !balanced && !cold_start(problem, body, patch, solution, |_, _| ()) {
+            let balanced = !cells.is_empty() && balance(problem, body, cells, solution);
+            if !balanced && !cold_start(problem, body, cells, solution, |_, _| ()) {
                 return Err(body);
             }
         }
@@ -92,21 +85,16 @@ impl PolonskyKeer {
 
     /// Lists the cells in contact of each body.
     fn list_cells(&mut self, problem: &Problem<'_>, solution: &Solution) {
-        self.patches.iter_mut().for_each(|patch| patch.cells.clear());
-        for (k, _) in solution.pressure.iter().enumerate().filter(|(_, p)| **p > 0.0) {
-            self.patches[problem.owner(k)].cells.push(k as u32);
-        }
-        for (body, patch) in self.patches.iter_mut().enumerate() {
-            patch.gram = problem.modes(body).gram(&patch.cells);
-        }
+        let pressed = (0..solution.pressure.len()).filter(|&k| solution.pressure[k] > 0.0);
+        contact_cells::list(problem, &mut self.contacts, pressed);
     }
 
-    /// Whether every force is carried: a balance that could not be found leaves it open.
+    /// Whether the pressures carry every force: they may not where no balance was found.
     fn carries_the_forces(&self, problem: &Problem<'_>, solution: &Solution) -> bool {
         (0..problem.bodies.len()).all(|body| {
             let freedom = problem.bodies[body];
-            let sum: f64 = self.patches[body].cells.iter().map(|&k| solution.pressure[k as usize]).sum();
-            !freedom.translation || (sum - freedom.total).abs() <= 1e-9 * freedom.total
+            let sum: f64 = self.contacts[body].cells.iter().map(|&k| solution.pressure[k as usize]).sum();
+            !freedom.translation || (sum - freedom.total).abs() <= FORCE_TOLERANCE * freedom.total
         })
     }
 
@@ -115,10 +103,9 @@ impl PolonskyKeer {
         problem.kernel.apply(&self.direction, &mut self.image, work);
         solution.counts.convolutions += 1;
         let (mut numerator, mut denominator) = (0.0, 0.0);
-        for (body, patch) in self.patches.iter().enumerate() {
-            problem.modes(body).project_out(&patch.gram, &patch.cells, &mut self.image);
-            for &k in &patch.cells {
-                let k = k as usize;
+        for (body, ContactCells { cells, gram }) in self.contacts.iter().enumerate() {
+            problem.modes(body).project_out(gram, cells, &mut self.image);
+            for k in cells.iter().map(|&k| k as usize) {
                 numerator -= self.residual[k] * self.direction[k];
                 denominator += self.direction[k] * self.image[k];
             }
@@ -130,41 +117,42 @@ impl PolonskyKeer {
         1.0 / (problem.compliance * problem.kernel.self_influence())
     }
 
-    /// Advances, clips, lets penetrating cells in and restores the balance; tells whether any came in.
+    /// Advances, clips, presses penetrating cells and restores the balance; returns whether any cell joined the contact.
     fn advance(&mut self, problem: &Problem<'_>, solution: &mut Solution, step: f64) -> bool {
-        let mut entered = false;
+        let mut joined = false;
         for k in 0..problem.gap.len() {
             if solution.pressure[k] > 0.0 {
                 solution.pressure[k] = (solution.pressure[k] - step * self.direction[k]).max(0.0);
             } else if problem.possible(k) {
                 let depth = problem.depth(solution, k);
                 if depth > 0.0 {
-                    // a step backwards, of gradients that have lost their way, lets none in that pulls
+                    // a step backwards, along gradients spoiled by rounding, must not press cells with tension
                     solution.pressure[k] = step.max(0.0) * depth;
-                    entered = true;
+                    joined = true;
                 }
             }
         }
         self.list_cells(problem, solution);
-        for (body, patch) in self.patches.iter_mut().enumerate().filter(|(body, _)| !problem.released(*body)) {
+        let loaded = self.contacts.iter_mut().enumerate().filter(|(body, _)| !problem.released(*body));
+        for (body, ContactCells { cells, .. }) in loaded {
             let modes = problem.modes(body);
-            let balanced = balance(problem, body, &patch.cells, solution);
+            let balanced = balance(problem, body, cells, solution);
             if modes.translates() {
                 if !balanced {
-                    press_everywhere(problem, body, patch, solution);
+                    press_everywhere(problem, body, cells, solution);
                 }
-            } else if modes.tilts() && (!balanced || is_unloaded(problem, &patch.cells, solution)) {
+            } else if modes.tilts() && (!balanced || is_unloaded(problem, cells, solution)) {
                 // held at its pivot, and touching on one side of it only: unloaded, and turned to where its deepest
                 // penetration is least, on both sides of the pivot if it cannot swing clear
-                patch.cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
-                solution.motions[body] = turned(problem, body);
+                cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
+                solution.motions[body] = least_penetrating_tilt(problem, body, cells);
             }
         }
-        entered
+        joined
     }
 }
 
-/// Whether pressures are none, or too small to show in the gap.
+/// Whether there are no pressures, or too small ones to show in the gap.
 fn is_unloaded(problem: &Problem<'_>, cells: &[u32], solution: &Solution) -> bool {
     let greatest = |field: &[f64]| cells.iter().map(|&k| field[k as usize].abs()).fold(0.0, f64::max);
     let sunk = problem.compliance * problem.kernel.self_influence() * greatest(&solution.pressure);
@@ -172,13 +160,11 @@ fn is_unloaded(problem: &Problem<'_>, cells: &[u32], solution: &Solution) -> boo
 }
 
 /// The tilt at which a body held at its pivot penetrates the undeformed surface least: where it would rest if it could also
-/// move up and down, its load at the pivot.
-fn turned(problem: &Problem<'_>, body: usize) -> ModeCoefficients {
+/// move up and down, its load at the pivot. `cells` becomes the list of the cells that it may touch.
+fn least_penetrating_tilt(problem: &Problem<'_>, body: usize, cells: &mut Vec<u32>) -> ModeCoefficients {
     let free = Freedom { translation: true, total: 1.0, ..problem.bodies[body] };
-    let cells: Vec<u32> = (0..problem.gap.len() as u32)
-        .filter(|&k| problem.owner(k as usize) == body && problem.possible(k as usize))
-        .collect();
-    let (ModeCoefficients([_, alpha1, alpha2]), _) =
-        rest(&Modes::new(problem.kernel.grid(), free), &cells, problem.gap);
-    ModeCoefficients([0.0, alpha1, alpha2])
+    list_possible(problem, body, cells);
+    let resting = RestingPosition::new(&Modes::new(problem.kernel.grid(), free), cells, problem.gap);
+    let ModeCoefficients([_, tilt1, tilt2]) = resting.motion;
+    ModeCoefficients([0.0, tilt1, tilt2])
 }

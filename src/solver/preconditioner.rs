@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::kernel::{LocalKernel, SpectralOperator, TransformWorkspace};
 
-/// M ≈ K⁻¹, a multiplication of waves on a grid without padding ([`LocalKernel::inverse`]): for the half-space a quarter
+/// M ≈ K⁻¹, a multiplication in wave space on a grid without padding ([`LocalKernel::inverse`]): for the half-space a quarter
 /// of the size of a convolution.
 #[derive(Debug, Clone)]
 pub(crate) struct Preconditioner {
@@ -20,7 +20,7 @@ impl Preconditioner {
         let work = operator.workspace();
         let mut preconditioner = Preconditioner { operator: Arc::new(operator), work, diagonal: 0.0 };
         let mut impulse = vec![0.0; kernel.grid().len()];
-        // in the middle, as far as can be from mirror images
+        // in the middle, as far as possible from its mirror images
         let middle = cells[0] / 2 * cells[1] + cells[1] / 2;
         impulse[middle] = 1.0;
         preconditioner.apply(&mut impulse);

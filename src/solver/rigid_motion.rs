@@ -1,17 +1,18 @@
-//! The rigid motion of a body: what a load leaves free of it, and the balance of force and moments that
-//! goes with every freedom.
+//! The rigid motion of a body: the part of it that a load leaves free, and the balance of force and moments that
+//! belongs to every freedom.
 
 use crate::Grid;
+use crate::linalg;
 
 /// The motions ω + α1 ξ1 + α2 ξ2 that a load leaves free to one body, ξ = x − e measured from the point e
-/// at which it acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0.
+/// at which the load acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Freedom {
     pub(crate) translation: bool,
     pub(crate) tilt: [bool; 2],
     /// e \[m\].
     pub(crate) point: [f64; 2],
-    /// The force divided by the area of a cell \[Pa\]; of no meaning without translation.
+    /// The force divided by the area of a cell \[Pa\]; unused without translation.
     pub(crate) total: f64,
 }
 
@@ -46,25 +47,25 @@ impl std::ops::Add for RigidMotion {
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ModeCoefficients(pub(crate) [f64; 3]);
 
-/// Eigenvalues below this fraction of the largest count as none: the motion is not determined by the
-/// cells at hand (fewer than three, or all on a line).
-const DEPENDENT: f64 = 1e-11;
+/// Part of the square of a mode, independent of the other modes, that counts as zero: the cells at hand do not determine
+/// the motion (fewer than three, or all on a line).
+const DEPENDENT_FRACTION: f64 = 1e-11;
 
-/// Newton iterations that [`Modes::balance`] may take; it needs one where nothing is clipped.
-const BALANCE_ITERATIONS: usize = 60;
+/// Newton iterations of [`Modes::balance`]; it needs one where nothing is clipped.
+const MAX_BALANCE_ITERATIONS: usize = 60;
 
-/// Imbalance, relative to the load, that rounding may leave.
-const BALANCED: f64 = 4.0 * f64::EPSILON;
+/// Imbalance, relative to the load, that counts as rounding.
+const BALANCE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
 
-/// Cells summed together before they join the total.
-const BLOCK: usize = 256;
+/// Cells summed together before they are added to the total.
+const SUM_BLOCK: usize = 256;
 
 /// The free motions of a body as functions on the grid.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Modes<'a> {
     grid: &'a Grid,
     freedom: Freedom,
-    /// Lengths in which tilts are measured, half the grid's.
+    /// Unit lengths of the tilts, half those of the grid.
     scale: [f64; 2],
 }
 
@@ -127,12 +128,12 @@ impl<'a> Modes<'a> {
         ModeCoefficients([if translation { held } else { 0.0 }, alpha[0] * self.scale[0], alpha[1] * self.scale[1]])
     }
 
-    /// The balance that the free modes ask for.
+    /// The force and moments that the free modes must carry.
     fn wanted(&self) -> [f64; 3] {
         self.load().map(|share| share * self.freedom.total)
     }
 
-    /// B Bᵀ over `cells`; only what [`Modes::fit`] needs.
+    /// B Bᵀ over `cells`, zero without tilt, where [`Modes::fit`] does not need it.
     pub(crate) fn gram(&self, cells: &[u32]) -> Gram {
         let mut gram = Gram::default();
         if self.tilts() {
@@ -141,7 +142,7 @@ impl<'a> Modes<'a> {
         gram
     }
 
-    /// The motion that fits `field` on `cells` best, by least squares; `gram` is theirs.
+    /// The motion that fits `field` on `cells` best, by least squares; `gram` is that of `cells`.
     pub(crate) fn fit(&self, gram: &Gram, cells: &[u32], field: &[f64]) -> ModeCoefficients {
         if !self.tilts() {
             let sum: f64 = cells.iter().map(|&k| field[k as usize]).sum();
@@ -156,7 +157,7 @@ impl<'a> Modes<'a> {
         ModeCoefficients(gram.solve(sums))
     }
 
-    /// Takes from `field` on `cells` the part that is a free motion, and returns it.
+    /// Subtracts the free motion that fits best from `field` on `cells`, and returns it.
     pub(crate) fn project_out(&self, gram: &Gram, cells: &[u32], field: &mut [f64]) -> ModeCoefficients {
         let motion = self.fit(gram, cells, field);
         if self.tilts() {
@@ -168,7 +169,7 @@ impl<'a> Modes<'a> {
     }
 
     /// Finds y such that the pressures max(0, base + weight · B y) on `cells` carry the force and moments
-    /// that the load asks for: the minimum of the convex ½ Σ weight (base/weight + B y)₊² − b·y, by
+    /// of the load: the minimum of the convex ½ Σ weight (base/weight + B y)₊² − b·y, by
     /// Newton's method with step halving. `None` if there is none, because the load does not act inside
     /// the convex hull of the cells.
     pub(crate) fn balance(
@@ -181,7 +182,7 @@ impl<'a> Modes<'a> {
         let evaluate = |y: [f64; 3]| {
             let (mut gram, mut sums, mut value) = (Gram::default(), wanted.map(|b| -b), -dot(wanted, y));
             // in blocks, so that rounding does not grow with the number of cells
-            for block in cells.chunks(BLOCK) {
+            for block in cells.chunks(SUM_BLOCK) {
                 let mut part = [0.0; 3];
                 for k in block.iter().map(|&k| k as usize) {
                     let (modes, w) = (self.at(k), weight(k));
@@ -189,7 +190,7 @@ impl<'a> Modes<'a> {
                     if p > 0.0 {
                         gram.add(modes, w);
                         (0..3).for_each(|m| part[m] += modes[m] * p);
-                        // without weight it does not depend on y
+                        // without weight p does not depend on y
                         value += if w > 0.0 { 0.5 * p * p / w } else { p * dot(modes, y) };
                     }
                 }
@@ -197,15 +198,15 @@ impl<'a> Modes<'a> {
             }
             (gram, sums, value)
         };
-        // moments in proportion to what all pressure at the far end of the grid would give
+        // in these units a moment is at most that of the whole force at the end of the grid
         let size = cells.iter().map(|&k| base(k as usize).abs()).sum::<f64>().max(wanted[0].abs());
         if size == 0.0 {
             return Some(ModeCoefficients::default());
         }
         let mut y = [0.0; 3];
         let (mut gram, mut sums, mut value) = evaluate(y);
-        for _ in 0..BALANCE_ITERATIONS {
-            if sums.iter().all(|sum| sum.abs() <= BALANCED * size) {
+        for _ in 0..MAX_BALANCE_ITERATIONS {
+            if sums.iter().all(|sum| sum.abs() <= BALANCE_TOLERANCE * size) {
                 return Some(ModeCoefficients(y));
             }
             let step = gram.solve(sums);
@@ -214,7 +215,7 @@ impl<'a> Modes<'a> {
             let accepted = loop {
                 let next = [0, 1, 2].map(|m| y[m] - length * step[m]);
                 let state = evaluate(next);
-                // near the minimum its value no longer tells, but its gradient still does
+                // near the minimum the value is rounded, but the gradient still falls
                 if state.2 <= value - 1e-4 * length * descent || norm(state.1) <= 0.5 * norm(sums) {
                     break Some((next, state));
                 }
@@ -225,14 +226,14 @@ impl<'a> Modes<'a> {
             };
             match accepted {
                 Some((next, state)) => (y, (gram, sums, value)) = (next, state),
-                // no descent left but rounding: good if the balance is
+                // rounding hides any further descent: the balance decides
                 None => break,
             }
         }
         sums.iter().all(|sum| sum.abs() <= 1e-12 * size).then_some(ModeCoefficients(y))
     }
 
-    /// base + weight · B y, clipped at zero: a pressure that [`Modes::balance`] found.
+    /// base + weight · B y, clipped at zero: the pressure balanced by the y of [`Modes::balance`].
     pub(crate) fn balanced(&self, y: ModeCoefficients, k: usize, base: f64, weight: f64) -> f64 {
         (base + weight * dot(self.at(k), y.0)).max(0.0)
     }
@@ -247,41 +248,9 @@ impl Gram {
         }
     }
 
-    /// Solves Gram x = `right` by Cholesky's method with pivoting on the matrix scaled to a unit diagonal,
-    /// leaving out what depends on the rest: x is zero there.
+    /// Solves Gram x = `right`; x is zero for a mode that depends on the others.
     fn solve(&self, right: [f64; 3]) -> [f64; 3] {
-        let scale = [0, 1, 2].map(|m| if self.entries[m][m] > 0.0 { 1.0 / self.entries[m][m].sqrt() } else { 0.0 });
-        let mut a = [[0.0; 3]; 3];
-        for (i, row) in a.iter_mut().enumerate() {
-            for (j, entry) in row.iter_mut().enumerate() {
-                *entry = self.entries[i][j] * scale[i] * scale[j];
-            }
-        }
-        let mut b = [0, 1, 2].map(|m| right[m] * scale[m]);
-        // symmetric elimination; `order` holds the pivots taken
-        let (mut order, mut left) = ([0; 3], [true; 3]);
-        let mut rank = 0;
-        while rank < 3 {
-            let pivot = (0..3).filter(|&m| left[m]).max_by(|&m, &n| a[m][m].total_cmp(&a[n][n]));
-            let Some(pivot) = pivot.filter(|&m| a[m][m] > DEPENDENT) else { break };
-            left[pivot] = false;
-            order[rank] = pivot;
-            rank += 1;
-            for m in (0..3).filter(|&m| left[m]) {
-                let factor = a[m][pivot] / a[pivot][pivot];
-                for n in (0..3).filter(|&n| left[n]) {
-                    a[m][n] -= factor * a[pivot][n];
-                }
-                b[m] -= factor * b[pivot];
-            }
-        }
-        let mut x = [0.0; 3];
-        for step in (0..rank).rev() {
-            let pivot = order[step];
-            let known: f64 = order[step + 1..rank].iter().map(|&n| a[pivot][n] * x[n]).sum();
-            x[pivot] = (b[pivot] - known) / a[pivot][pivot];
-        }
-        [0, 1, 2].map(|m| x[m] * scale[m])
+        linalg::solve_normal_equations(&self.entries, right, DEPENDENT_FRACTION)
     }
 }
 
@@ -298,7 +267,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn coefficients_and_motion_say_the_same() {
+    fn coefficients_are_those_of_the_motion() {
         let grid = Grid::new([7, 4], [2.0, 3.0]).unwrap();
         let motion = RigidMotion { approach: 0.3, tilt: [-0.2, 0.7] };
         for point in [[0.0; 2], [0.4, -1.1]] {

@@ -1,4 +1,4 @@
-//! How stiff a contact of a given area is.
+//! The stiffness of a contact of given area.
 
 use crate::kernel::LocalKernel;
 use crate::solver::preconditioner::Preconditioner;
@@ -6,7 +6,7 @@ use crate::sum::{sum, sum_of_pairs};
 
 /// Residual of the displacement, relative to it.
 pub(crate) const FLAT_PUNCH_TOLERANCE: f64 = 1e-7;
-const MOST_ITERATIONS: usize = 500;
+const MAX_ITERATIONS: usize = 500;
 
 /// Σ q over the cells with K q = 1 on those for which `touches` holds and q = 0 elsewhere: the pressure under a rigid
 /// displacement of a body of unit compliance, by preconditioned conjugate gradients. If they do not converge, their
@@ -38,7 +38,7 @@ pub(crate) fn flat_punch(kernel: &LocalKernel, touches: impl Fn(usize) -> bool) 
         restrict(&mut image);
         let curvature = sum_of_pairs(&direction, &image, |a, b| a * b);
         let length = energy / curvature;
-        if !length.is_finite() || curvature <= 0.0 || iterations > MOST_ITERATIONS {
+        if !length.is_finite() || curvature <= 0.0 || iterations > MAX_ITERATIONS {
             return Err(failure);
         }
         q.iter_mut().zip(&direction).for_each(|(q, d)| *q += length * d);

@@ -1,51 +1,51 @@
-//! How the residual went, in a room of fixed size.
+//! The residuals of a solve, in memory of fixed size.
 
-/// Residuals that are kept.
-const KEPT: usize = 32;
+/// Residuals stored.
+const MAX_SAMPLES: usize = 32;
 
-/// Residuals over the iterations of one solve. When the room is full every second one goes, and from then on only every
-/// second comes: what is kept is always spread over the whole solve.
+/// Residuals over the iterations of one solve. When the memory is full every second one is dropped, and from then on only
+/// every second is stored: the samples are always spread over the whole solve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Trace {
-    kept: [(u32, f64); KEPT],
+    samples: [(u32, f64); MAX_SAMPLES],
     len: usize,
-    /// Every so many iterations one is kept.
+    /// Iterations from one sample to the next.
     stride: usize,
     last: (u32, f64),
 }
 
 impl Trace {
     pub(crate) fn new() -> Trace {
-        Trace { kept: [(0, 0.0); KEPT], len: 0, stride: 1, last: (0, 0.0) }
+        Trace { samples: [(0, 0.0); MAX_SAMPLES], len: 0, stride: 1, last: (0, 0.0) }
     }
 
     pub(crate) fn clear(&mut self) {
         (self.len, self.stride) = (0, 1);
     }
 
-    /// The residual after so many iterations.
+    /// Adds the residual after some iterations.
     pub(crate) fn note(&mut self, iterations: usize, residual: f64) {
         self.last = (u32::try_from(iterations).unwrap_or(u32::MAX), residual);
         if !iterations.is_multiple_of(self.stride) {
             return;
         }
-        if self.len == KEPT {
+        if self.len == MAX_SAMPLES {
             self.stride = self.stride.saturating_mul(2);
-            for k in 1..KEPT / 2 {
-                self.kept[k] = self.kept[2 * k];
+            for k in 1..MAX_SAMPLES / 2 {
+                self.samples[k] = self.samples[2 * k];
             }
-            self.len = KEPT / 2;
+            self.len = MAX_SAMPLES / 2;
             if !iterations.is_multiple_of(self.stride) {
                 return;
             }
         }
-        self.kept[self.len] = self.last;
+        self.samples[self.len] = self.last;
         self.len += 1;
     }
 
     /// Iterations and residuals, the last one included.
     pub(crate) fn samples(&self) -> Vec<(usize, f64)> {
-        let mut samples = self.kept[..self.len].to_vec();
+        let mut samples = self.samples[..self.len].to_vec();
         if samples.last().is_some_and(|last| last.0 != self.last.0) {
             samples.push(self.last);
         }
@@ -63,7 +63,11 @@ mod tests {
             let mut trace = Trace::new();
             (0..count).for_each(|k| trace.note(k, 1.0 / (k + 1) as f64));
             let samples = trace.samples();
-            assert!(samples.len() <= KEPT + 1 && samples.len() >= count.min(KEPT / 2), "{count}: {}", samples.len());
+            assert!(
+                samples.len() <= MAX_SAMPLES + 1 && samples.len() >= count.min(MAX_SAMPLES / 2),
+                "{count}: {}",
+                samples.len()
+            );
             assert_eq!((samples[0].0, samples[samples.len() - 1].0), (0, count - 1));
             let longest = samples.windows(2).map(|pair| pair[1].0 - pair[0].0).max().unwrap_or(1);
             assert!(longest <= (count / 8).max(1), "{count}: {longest}");

@@ -2,6 +2,7 @@
 
 use super::HeightMap;
 use crate::error::Result;
+use crate::linalg;
 
 /// What is taken out of a map as its form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,8 +17,8 @@ pub enum Form {
 
 /// Most functions that a form is made of.
 const MOST: usize = 6;
-/// Squares smaller than this, of what a function has that those before do not, are rounding.
-const DEPENDENT: f64 = 1e-10;
+/// Part of the square of a function, independent of the other functions, that is rounding.
+const DEPENDENT_FRACTION: f64 = 1e-10;
 
 impl Form {
     /// How many of 1, x1, x2, x1², x1 x2 and x2² it is made of.
@@ -51,7 +52,8 @@ impl HeightMap {
                     }
                 }
             }
-            let factors = solved(matrix, right, terms);
+            // A function that the others make up already, as a slope across a single row of points, gets no share.
+            let factors = linalg::solve_normal_equations(&matrix, right, DEPENDENT_FRACTION);
             for (k, height) in heights.iter_mut().enumerate() {
                 *height -= self.basis(k).iter().zip(&factors).map(|(b, f)| b * f).sum::<f64>();
             }
@@ -66,32 +68,6 @@ impl HeightMap {
         let (x, y) = (at(k / self.cells[1], self.cells[0]), at(k % self.cells[1], self.cells[1]));
         [1.0, x, y, x * x, x * y, y * y]
     }
-}
-
-/// Solves the normal equations of the first `terms` functions by elimination. One that the functions before it make
-/// up already, as a slope across a single row of points, gets no share.
-fn solved(mut matrix: [[f64; MOST]; MOST], mut right: [f64; MOST], terms: usize) -> [f64; MOST] {
-    let whole: [f64; MOST] = std::array::from_fn(|a| matrix[a][a]);
-    let counts = |matrix: &[[f64; MOST]; MOST], a: usize| matrix[a][a] > DEPENDENT * whole[a];
-    for a in 0..terms {
-        if !counts(&matrix, a) {
-            continue;
-        }
-        let pivot = matrix[a];
-        for b in a + 1..terms {
-            let factor = matrix[b][a] / pivot[a];
-            for (entry, of_pivot) in matrix[b].iter_mut().zip(&pivot).skip(a) {
-                *entry -= factor * of_pivot;
-            }
-            right[b] -= factor * right[a];
-        }
-    }
-    let mut factors = [0.0; MOST];
-    for a in (0..terms).rev().filter(|&a| counts(&matrix, a)) {
-        let known: f64 = (a + 1..terms).map(|b| matrix[a][b] * factors[b]).sum();
-        factors[a] = (right[a] - known) / matrix[a][a];
-    }
-    factors
 }
 
 #[cfg(test)]

@@ -1,0 +1,272 @@
+//! The fall-back of the active set: a primal active-set method, slower, but every step of it lowers the energy.
+//!
+//! The contact problem is the minimum of the convex
+//!
+//! E(p) = ½ c p·Kp + gap·p   over   p ≥ 0 in balance with the loads.
+//!
+//! Pressures remain feasible throughout (J. Nocedal & S. Wright, *Numerical Optimization*, 2006, section 16.5; J. Moré &
+//! G. Toraldo, SIAM J. Optim. 1, 1991, for many cells at a time). On the set A conjugate gradients approach the minimum over
+//! pressures of either sign. A step that would make some of them negative is replaced by the better of two that do not: the same
+//! direction up to the first zero, or the direction towards the clipped and balanced end of the step, with its own exact
+//! line search. Cells at zero then leave A, and cells that penetrate join it with p = 0, which does not change E. E falls from
+//! step to step, so that no set returns.
+
+use super::{ActiveSet, JOIN_OVER_RMS};
+use crate::kernel::Workspace;
+use crate::solver::cold_start::{balance, cold_start};
+use crate::solver::contact_cells;
+use crate::solver::outcome::{Outcome, Stop};
+use crate::solver::problem::{Problem, Solution};
+use crate::solver::rigid_motion::ModeCoefficients;
+
+/// Times that cells may join A without any gain in between; after that, the rest of the residual is rounding.
+const MAX_JOINS_WITHOUT_GAIN: usize = 3;
+
+/// The best step along a direction.
+#[derive(Debug, Clone, Copy, Default)]
+struct Gain {
+    /// Length of the step.
+    length: f64,
+    /// By how much E falls.
+    energy: f64,
+}
+
+impl Gain {
+    /// Of a step along a direction with Σ r d = `slope` and c Σ d·Kd = `curvature`, up to the minimum or to `most`.
+    fn along(slope: f64, curvature: f64, most: f64) -> Gain {
+        if slope <= 0.0 || curvature <= 0.0 {
+            return Gain::default();
+        }
+        let length = (slope / curvature).min(most);
+        Gain { length, energy: length * (slope - 0.5 * length * curvature) }
+    }
+}
+
+impl ActiveSet {
+    /// Improves `solution` until its residual is below the tolerance, the iterations are spent, or rounding hides any gain.
+    pub(super) fn descend(
+        &mut self,
+        problem: &Problem<'_>,
+        stop: Stop,
+        solution: &mut Solution,
+        work: &mut Workspace,
+    ) -> Outcome {
+        if let Err(body) = self.make_feasible(problem, solution, work) {
+            return Outcome::Unbalanced(body);
+        }
+        let (mut gained, mut joins_without_gain) = (true, 0);
+        self.energy = 0.0;
+        loop {
+            let mut state = contact_cells::fit_motions(problem, &self.contacts, solution, &mut self.residual);
+            let penetration = problem.penetration(solution, |k| !self.member[k]);
+            state.note(problem, penetration, self.guess_rounding, solution);
+            if let Some(outcome) = stop.outcome(solution, || true) {
+                return outcome;
+            }
+            let joins = penetration > JOIN_OVER_RMS * state.rms();
+            if joins {
+                joins_without_gain = if gained { 0 } else { joins_without_gain + 1 };
+                if joins_without_gain > MAX_JOINS_WITHOUT_GAIN {
+                    return Outcome::Stagnated;
+                }
+                gained = false;
+                // where several cells have joined without any gain, only the deepest one
+                let least = if joins_without_gain == 0 { state.joining_depth(penetration) } else { penetration };
+                self.add_cells_deeper_than(problem, least, solution);
+                contact_cells::fit_motions(problem, &self.contacts, solution, &mut self.residual);
+            }
+            solution.counts.iterations += 1;
+            solution.counts.fallback_iterations += 1;
+            let cells = state.cells;
+            match self.step_downhill(problem, joins_without_gain > 1, solution, work) {
+                0.0 if !joins && contact_cells::all(&self.contacts).count() == cells => return Outcome::Stagnated,
+                gain => gained |= gain > 0.0,
+            }
+        }
+    }
+
+    /// Makes the pressures ≥ 0 and balanced, computes their K p, and sets A to where they are positive.
+    fn make_feasible(
+        &mut self,
+        problem: &Problem<'_>,
+        solution: &mut Solution,
+        work: &mut Workspace,
+    ) -> Result<(), usize> {
+        for (k, member) in self.member.iter_mut().enumerate() {
+            let p = &mut solution.pressure[k];
+            *member = problem.possible(k) && *p > 0.0;
+            if !*member {
+                *p = 0.0;
+            }
+        }
+        self.list_all_cells(problem);
+        for (body, (contact, change)) in self.contacts.iter_mut().zip(&mut self.changes).enumerate() {
+            change.leaving.clear();
+            change.correction = None;
+            if !problem.released(body)
+                && (contact.cells.is_empty() || !balance(problem, body, &contact.cells, solution))
+                && !cold_start(problem, body, &mut contact.cells, solution, |_, _| ())
+            {
+                return Err(body);
+            }
+        }
+        self.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
+        self.list_all_cells(problem);
+        solution.convolve(problem, work);
+        Ok(())
+    }
+
+    /// Takes cells into A that penetrate by `least` or more.
+    fn add_cells_deeper_than(&mut self, problem: &Problem<'_>, least: f64, solution: &Solution) {
+        for k in 0..self.member.len() {
+            self.member[k] |= problem.possible(k) && least > 0.0 && problem.depth(solution, k) >= least;
+        }
+        self.list_all_cells(problem);
+        self.energy = 0.0;
+    }
+
+    /// One step, along the residual itself if `plain`; returns by how much E falls.
+    fn step_downhill(
+        &mut self,
+        problem: &Problem<'_>,
+        plain: bool,
+        solution: &mut Solution,
+        work: &mut Workspace,
+    ) -> f64 {
+        let c = problem.compliance;
+        self.find_descent(problem, plain, solution);
+        problem.kernel.apply(&self.direction, &mut self.image, work);
+        solution.counts.convolutions += 1;
+        let [slope, curvature] = self.slope_and_curvature(&self.direction, &self.image);
+        self.energy = curvature;
+        let free = Gain::along(slope, c * curvature, f64::INFINITY);
+        if free.energy <= 0.0 {
+            self.energy = 0.0;
+            return 0.0;
+        }
+        let to_zero = |k: usize| {
+            let (p, d) = (solution.pressure[k], self.direction[k]);
+            if d < 0.0 { -p / d } else { f64::INFINITY }
+        };
+        let first_zero = contact_cells::all(&self.contacts).map(to_zero).fold(f64::INFINITY, f64::min);
+        if free.length <= first_zero {
+            for k in contact_cells::all(&self.contacts) {
+                solution.pressure[k] = (solution.pressure[k] + free.length * self.direction[k]).max(0.0);
+            }
+            add(&mut solution.potential, free.length, &self.image);
+            return free.energy;
+        }
+
+        let straight = Gain::along(slope, c * curvature, first_zero);
+        // s of the clipped step takes the place of z, and c K s that of r, which is made anew for the next step
+        let clipped = if self.find_clipped_step(problem, free.length, solution) {
+            let slope = contact_cells::all(&self.contacts)
+                .fold(0.0, |slope, k| slope + self.residual[k] * self.preconditioned[k]);
+            problem.kernel.apply(&self.preconditioned, &mut self.residual, work);
+            solution.counts.convolutions += 1;
+            let curvature =
+                contact_cells::all(&self.contacts).fold(0.0, |sum, k| sum + self.preconditioned[k] * self.residual[k]);
+            Gain::along(slope, c * curvature, 1.0)
+        } else {
+            Gain::default()
+        };
+        let clips = clipped.energy > straight.energy;
+        for k in contact_cells::all(&self.contacts) {
+            let (p, d) = (&mut solution.pressure[k], self.direction[k]);
+            *p = if clips {
+                (*p + clipped.length * self.preconditioned[k]).max(0.0)
+            } else if d < 0.0 && -*p / d <= first_zero {
+                0.0
+            } else {
+                (*p + straight.length * d).max(0.0)
+            };
+            if *p <= 0.0 && d < 0.0 {
+                self.member[k] = false;
+            }
+        }
+        let (gain, image) = if clips { (clipped, &self.residual) } else { (straight, &self.image) };
+        add(&mut solution.potential, gain.length, image);
+        self.list_all_cells(problem);
+        self.energy = 0.0;
+        gain.energy
+    }
+
+    /// d ← z + β d without free motion on A, with z = r if `plain`.
+    fn find_descent(&mut self, problem: &Problem<'_>, plain: bool, solution: &mut Solution) {
+        self.preconditioned.fill(0.0);
+        contact_cells::all(&self.contacts).for_each(|k| self.preconditioned[k] = self.residual[k]);
+        if !plain {
+            self.preconditioner.apply(&mut self.preconditioned);
+            solution.counts.preconditioner_applications += 1;
+        }
+        self.conjugate_preconditioned(problem, false);
+        self.direction.fill(0.0);
+        for k in contact_cells::all(&self.contacts) {
+            self.direction[k] = self.preconditioned[k];
+        }
+    }
+
+    /// Writes s, the way from p to the balanced max(0, p + a d), to `preconditioned`; false if there is no such balance on A.
+    fn find_clipped_step(&mut self, problem: &Problem<'_>, a: f64, solution: &Solution) -> bool {
+        self.preconditioned.fill(0.0);
+        for (body, contact) in self.contacts.iter().enumerate().filter(|(body, _)| !problem.released(*body)) {
+            let modes = problem.modes(body);
+            let clipped = |k: usize| (solution.pressure[k] + a * self.direction[k]).max(0.0);
+            let y = if modes.tilts() || modes.translates() {
+                let Some(y) = modes.balance(&contact.cells, clipped, clipped) else { return false };
+                y
+            } else {
+                ModeCoefficients::default()
+            };
+            for k in contact.cells.iter().map(|&k| k as usize) {
+                self.preconditioned[k] = modes.balanced(y, k, clipped(k), clipped(k)) - solution.pressure[k];
+            }
+        }
+        true
+    }
+}
+
+/// x += a y.
+fn add(x: &mut [f64], a: f64, y: &[f64]) {
+    x.iter_mut().zip(y).for_each(|(x, &y)| *x += a * y);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Grid;
+    use crate::kernel::InfluenceKernel;
+    use crate::solver::rigid_motion::Freedom;
+
+    /// Alone, and from a bad guess, it finds what the active set finds, on soft surfaces and on nearly rigid ones.
+    #[test]
+    fn it_converges_on_its_own() {
+        let grid = Grid::square(12, 1.2).unwrap();
+        let kernel = InfluenceKernel::half_space(&grid).unwrap().on(&grid, [false; 2]);
+        let gap: Vec<f64> = (0..grid.len())
+            .map(|k| {
+                let [x, y] = grid.center(k / 12, k % 12);
+                if x.hypot(y) < 0.55 { 0.2 * (x * x + 2.0 * y * y) + 0.01 * (9.0 * x).sin() } else { f64::INFINITY }
+            })
+            .collect();
+        let freedom = Freedom { translation: true, tilt: [true; 2], point: [0.1, -0.05], total: 5.0 };
+        let stop = Stop { tolerance: 1e-10, max_iterations: 1000 };
+        let mut work = kernel.workspace();
+        for compliance in [5.0, 0.5, 1e-3, 1e-9] {
+            let problem =
+                Problem { kernel: &kernel, compliance, gap: &gap, prescribed: 0.0, bodies: &[freedom], owner: None };
+            let mut solver = ActiveSet::new(&kernel, 1);
+            let mut exact = Solution::zero(grid.len(), 1);
+            assert_eq!(solver.solve(&problem, stop, &mut exact, &mut work), Outcome::Converged);
+
+            let mut slow = Solution::zero(grid.len(), 1);
+            slow.pressure.iter_mut().zip(&gap).for_each(|(p, h)| *p = if h.is_finite() { 1.0 } else { 0.0 });
+            assert_eq!(solver.descend(&problem, stop, &mut slow, &mut work), Outcome::Converged);
+            assert!(slow.counts.fallback_iterations < 60, "{compliance}: {:?}", slow.counts);
+            let peak = exact.pressure.iter().copied().fold(0.0, f64::max);
+            for (a, b) in slow.pressure.iter().zip(&exact.pressure) {
+                assert!((a - b).abs() < 1e-8 * peak, "{compliance}: {a} {b} after {:?}", slow.counts);
+            }
+        }
+    }
+}

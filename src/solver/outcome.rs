@@ -1,0 +1,104 @@
+//! How far a state is from a solution, and how a solve ends.
+
+use crate::solver::problem::{Problem, Solution};
+
+/// When to stop.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stop {
+    pub(crate) tolerance: f64,
+    pub(crate) max_iterations: usize,
+}
+
+/// How a solve ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[must_use]
+pub(crate) enum Outcome {
+    /// The residual is below the tolerance, with pressures ≥ 0 that balance the loads.
+    Converged,
+    /// The iterations are spent.
+    OutOfIterations,
+    /// Rounding hides any further gain.
+    Stagnated,
+    /// No pressure on the cells of the problem can balance the load of this body.
+    Unbalanced(usize),
+    /// The residual is NaN.
+    NotANumber,
+}
+
+impl Stop {
+    /// How the solve ends here, if it does. Only an `admissible` state converges: its pressures are ≥ 0 and balance the
+    /// loads.
+    pub(crate) fn outcome(&self, solution: &Solution, admissible: impl FnOnce() -> bool) -> Option<Outcome> {
+        if solution.residual <= self.tolerance && admissible() {
+            Some(Outcome::Converged)
+        } else if solution.residual.is_nan() {
+            Some(Outcome::NotANumber)
+        } else if solution.counts.iterations >= self.max_iterations {
+            Some(Outcome::OutOfIterations)
+        } else {
+            None
+        }
+    }
+}
+
+/// Sums over the cells in contact, of which the residual is made.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ResidualSums {
+    /// Σ h².
+    pub(crate) square: f64,
+    /// Σ (c v)².
+    pub(crate) displacement: f64,
+    /// Σ of the squares of negative pressures.
+    pub(crate) negative: f64,
+    /// The greatest |gap|, before any pressure.
+    pub(crate) greatest_gap: f64,
+    /// Rounding of gap and c K p where they are small differences of large parts.
+    pub(crate) cancellation: f64,
+    pub(crate) cells: usize,
+}
+
+/// Penetration may exceed the root mean square of the residual by this factor, being a maximum.
+pub(crate) const PENETRATION_SLACK: f64 = 10.0;
+
+/// Of the penetrating cells, those join the contact that are deeper than this fraction of the deepest.
+const JOIN_OVER_DEEPEST: f64 = 0.2;
+
+impl ResidualSums {
+    /// Writes the residual of a state with this `penetration` outside the contact to `solution` and its trace; `rounding` is
+    /// that of c K p of the guess.
+    pub(crate) fn note(&mut self, problem: &Problem<'_>, penetration: f64, rounding: f64, solution: &mut Solution) {
+        self.cancellation = problem.rounding(&solution.pressure) + rounding;
+        solution.residual = self.relative_residual(penetration);
+        // a smaller residual cannot be detected
+        solution.rounding = if self.displacement > 0.0 { self.rounding() / self.yielding() } else { 0.0 };
+        solution.trace.note(solution.counts.iterations, solution.residual);
+    }
+
+    /// How far a state is from solving its [`Problem`], relative to rms (c v) in contact: the larger of rms |h| in contact
+    /// and a tenth of the deepest penetration outside. Rounding of the gap itself does not count.
+    fn relative_residual(&self, penetration: f64) -> f64 {
+        let error = self.rms().max(penetration / PENETRATION_SLACK) - self.rounding();
+        if error <= 0.0 { 0.0 } else { error / self.yielding() }
+    }
+
+    /// rms |h| in contact.
+    pub(crate) fn rms(&self) -> f64 {
+        (self.square / self.cells.max(1) as f64).sqrt()
+    }
+
+    /// Rounding of the gap.
+    fn rounding(&self) -> f64 {
+        4.0 * f64::EPSILON * self.greatest_gap + self.cancellation
+    }
+
+    /// rms (c v) in contact: how far the surface yields.
+    pub(crate) fn yielding(&self) -> f64 {
+        (self.displacement / self.cells.max(1) as f64).sqrt()
+    }
+
+    /// The penetration from which cells join the contact: the shallowest, on the rim of a growing contact, would mostly leave
+    /// again. A body that penetrates deeper than the surface yields is far from its position: then only the deepest join.
+    pub(crate) fn joining_depth(&self, penetration: f64) -> f64 {
+        penetration * if penetration > self.yielding() { 0.5 } else { JOIN_OVER_DEEPEST }
+    }
+}
