@@ -6,8 +6,8 @@ use num_complex::Complex64;
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 
-/// Fourier coefficients of a real field on `cells` points: amplitudes of exp(2πi (k1 i/n1 + k2 j/n2)), normalised so that
-/// the sum of all waves is the field. Only those with k2 ≥ 0 are stored; the others are their conjugates.
+/// Fourier coefficients of a real field on `cells` points: amplitudes of exp(2πi (k1 i/n1 + k2 j/n2)), normalised so
+/// that the sum of all waves is the field. Only those with k2 ≥ 0 are stored; the others are their conjugates.
 #[derive(Debug, Clone)]
 pub(super) struct HeightSpectrum {
     cells: [usize; 2],

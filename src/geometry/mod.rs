@@ -133,8 +133,8 @@ macro_rules! forward_geometry {
 }
 forward_geometry!(Box<T>, std::sync::Arc<T>);
 
-/// The gap field of the rigid bodies, relative to its minimum: heights that are large compared with the indentation cost
-/// no digits.
+/// The gap field of the rigid bodies, relative to its minimum: heights that are large compared with the indentation
+/// cost no digits.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Gap {

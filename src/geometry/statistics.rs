@@ -8,9 +8,9 @@ use crate::geometry::{HeightMap, MapError};
 
 /// Statistics of a surface over its known points.
 ///
-/// Slopes and curvatures of a periodic map without missing points are those of its Fourier series. Those of other maps are
-/// central differences over two cells, wherever all the points needed are known; they underestimate the slope of waves
-/// a few cells long.
+/// Slopes and curvatures of a periodic map without missing points are those of its Fourier series. Those of other maps
+/// are central differences over two cells, wherever all the points needed are known; they underestimate the slope of
+/// waves a few cells long.
 ///
 /// ```
 /// use viscocontact::geometry::{HeightMap, SurfaceStatistics};
@@ -147,8 +147,8 @@ impl HeightMap {
         Ok(counts.into_iter().enumerate().map(bin).collect())
     }
 
-    /// Power spectral density of the heights about their mean: wave numbers q \[rad/m\] and the radial mean of C \[m⁴\] at
-    /// each, normalised so that
+    /// Power spectral density of the heights about their mean: wave numbers q \[rad/m\] and the radial mean of C \[m⁴\]
+    /// at each, normalised so that
     ///
     /// $$ \int_0^\infty C(q)\, 2\pi q \,dq = \langle (z - \bar z)^2 \rangle $$
     ///

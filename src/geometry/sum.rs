@@ -74,7 +74,8 @@ mod tests {
 
     #[test]
     fn each_part_is_shifted_by_its_own_method() {
-        // A wave with a period of 3 points is shifted exactly only by its Fourier series: bicubic interpolation errs by a tenth.
+        // A wave with a period of 3 points is shifted exactly only by its Fourier series: bicubic interpolation errs by
+        // a tenth.
         let wave = |x: f64| (std::f64::consts::TAU * x / 3.0).cos();
         let map = HeightMap::new([9, 1], [9.0, 1.0], (0..9).map(|i| wave(i as f64 - 4.0)).collect()).unwrap();
         let moved = Shifted::new(Sum::new(map.periodic(), Sphere::new(1.0).unwrap()), [0.2, 0.0]).unwrap();

@@ -3,7 +3,8 @@
 use crate::Grid;
 use crate::sum::greatest;
 
-/// Position of a contact relative to a point, see [`ViscoelasticContact::asymmetry`](crate::ViscoelasticContact::asymmetry).
+/// Position of a contact relative to a point, see
+/// [`ViscoelasticContact::asymmetry`](crate::ViscoelasticContact::asymmetry).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Asymmetry {

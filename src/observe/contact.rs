@@ -77,7 +77,8 @@ impl ViscoelasticContact {
         LineProfile::new(self.grid(), along, at, [self.pressure(), self.displacement(), &gap])
     }
 
-    /// The connected patches of the contact; where the bodies are periodic, the first and the last cells are neighbours.
+    /// The connected patches of the contact; where the bodies are periodic, the first and the last cells are
+    /// neighbours.
     ///
     /// # Errors
     /// If the force of a patch overflows `f64`.
@@ -85,9 +86,9 @@ impl ViscoelasticContact {
         Patches::new(self.grid(), self.pressure(), self.kernel().periodic_axes())
     }
 
-    /// Position of the contact relative to the point `about` \[m\], such as the lowest point of a roller; `None` without
-    /// contact. Several patches count as one contact. Where the bodies are periodic, each cell counts at its periodic
-    /// image nearest to the point, and the centre of pressure may lie beyond the grid.
+    /// Position of the contact relative to the point `about` \[m\], such as the lowest point of a roller; `None`
+    /// without contact. Several patches count as one contact. Where the bodies are periodic, each cell counts at its
+    /// periodic image nearest to the point, and the centre of pressure may lie beyond the grid.
     ///
     /// ```
     /// use viscocontact::prelude::*;

@@ -51,8 +51,8 @@ impl Patches {
     /// last cells are neighbours.
     ///
     /// # Errors
-    /// If there is not one value per cell, a value is not finite or below zero, or the force of a patch overflows `f64`.
-    /// If there is no memory for the labels.
+    /// If there is not one value per cell, a value is not finite or below zero, or the force of a patch overflows
+    /// `f64`. If there is no memory for the labels.
     pub fn new(grid: &Grid, pressure: &[f64], periodic: [bool; 2]) -> Result<Patches> {
         exact_length("pressure", pressure.len(), grid.len())?;
         if let Some(&value) = pressure.iter().find(|p| !(p.is_finite() && **p >= 0.0)) {

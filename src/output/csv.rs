@@ -34,11 +34,11 @@ const COLUMNS: [&str; 17] = [
 ///
 /// Needs the feature `csv`.
 ///
-/// The first line is `#` and the [`Metadata`] as JSON, the second the names of the columns with their units, separated by
-/// commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`, `moment 1 [N m]`,
-/// `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`, `greatest pressure [Pa]`, cost and accuracy
-/// of the step as in [`StepReport`], and additional columns of your choice. Numbers have enough digits to be read back
-/// bitwise. In Python: `pandas.read_csv(path, comment="#")`.
+/// The first line is `#` and the [`Metadata`] as JSON, the second the names of the columns with their units, separated
+/// by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
+/// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`,
+/// `greatest pressure [Pa]`, cost and accuracy of the step as in [`StepReport`], and additional columns of your choice.
+/// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.
 ///
 /// ```
 /// use viscocontact::{output::{CsvHistory, Metadata}, prelude::*};
@@ -67,8 +67,8 @@ impl CsvHistory {
     /// A new file for the history of `contact`, with `additional` columns after those of every history.
     ///
     /// # Errors
-    /// If the file exists or cannot be written, or the name of a column is empty, already used, or contains `#`, a quote
-    /// or a control character, which readers would misinterpret.
+    /// If the file exists or cannot be written, or the name of a column is empty, already used, or contains `#`, a
+    /// quote or a control character, which readers would misinterpret.
     pub fn create(
         path: impl AsRef<Path>,
         metadata: &Metadata,
@@ -96,8 +96,8 @@ impl CsvHistory {
     /// Appends the row of the last step, with the values of the additional columns. NaN is written as `NaN`.
     ///
     /// # Errors
-    /// If there is not one value for each additional column, or the file cannot be written. Then nothing of the row is in
-    /// the file, and writing can be repeated once there is space again.
+    /// If there is not one value for each additional column, or the file cannot be written. Then nothing of the row is
+    /// in the file, and writing can be repeated once there is space again.
     pub fn write(&mut self, contact: &ViscoelasticContact, report: &StepReport, additional: &[f64]) -> Result<()> {
         exact_length("additional columns", additional.len(), self.additional)?;
         let number = |value: f64| format!("{value:?}");

@@ -3,8 +3,8 @@
 use std::io::{self, ErrorKind, Seek, SeekFrom, Write};
 
 /// Writes from the beginning of `inner`. After the first error it accepts and discards everything, and
-/// [`Deferred::finish`] returns the error. Needed for `ZipWriter`, which completes its archive even when it is dropped after
-/// an error, and prints to standard error if that fails again.
+/// [`Deferred::finish`] returns the error. Needed for `ZipWriter`, which completes its archive even when it is dropped
+/// after an error, and prints to standard error if that fails again.
 #[derive(Debug)]
 pub(super) struct Deferred<W> {
     inner: W,

@@ -46,8 +46,8 @@ impl Metadata {
         Metadata { title: title.into(), notes: Vec::new() }
     }
 
-    /// Adds a note on what the contact cannot know, such as the shape of the bodies, the specimen or the operator. A note
-    /// of the same key is replaced.
+    /// Adds a note on what the contact cannot know, such as the shape of the bodies, the specimen or the operator. A
+    /// note of the same key is replaced.
     #[must_use]
     pub fn note(mut self, key: impl Into<String>, value: impl Into<String>) -> Metadata {
         let (key, value) = (key.into(), value.into());
@@ -69,8 +69,8 @@ impl Metadata {
     }
 
     /// The whole description as JSON on a single line: `title`, `notes`, `crate` and `version`, `grid` (`cells`,
-    /// `spacing` and `lengths` \[m\]), `bodies`, `kernel`, `settings` and `material` (as Rust prints them), `units` of all
-    /// values written, and `conventions`.
+    /// `spacing` and `lengths` \[m\]), `bodies`, `kernel`, `settings` and `material` (as Rust prints them), `units` of
+    /// all values written, and `conventions`.
     pub fn json(&self, contact: &ViscoelasticContact) -> String {
         let notes = self.notes.iter().fold(Object::default(), |notes, (key, value)| notes.text(key, value));
         let grid = contact.grid();

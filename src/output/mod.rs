@@ -8,17 +8,17 @@
 //! | `CsvHistory`: one row per step | `csv` | pandas, spreadsheets, gnuplot |
 //!
 //! Values are written in double precision, bitwise, in SI units. Each file contains [`Metadata`] that describe the run.
-//! You choose which [`Field`]s are written. A frame is complete on disk when its `write` returns: if a run is killed, all
-//! earlier frames are readable.
+//! You choose which [`Field`]s are written. A frame is complete on disk when its `write` returns: if a run is killed,
+//! all earlier frames are readable.
 //!
-//! Files of an earlier run are not overwritten: a series refuses a folder with frames, a history an existing file. A single
-//! file (`write_npy`, pictures, checkpoints) replaces an existing one once it is complete; if the path is a link, its
-//! target is replaced. Folders, devices, pipes and sockets are never replaced:
-//! [`Error::NotAFile`](crate::Error::NotAFile). While a file is being written, the process ID and `.part` are appended to
-//! its name; a process that is killed leaves it under that name.
+//! Files of an earlier run are not overwritten: a series refuses a folder with frames, a history an existing file. A
+//! single file (`write_npy`, pictures, checkpoints) replaces an existing one once it is complete; if the path is a
+//! link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
+//! [`Error::NotAFile`](crate::Error::NotAFile). While a file is being written, the process ID and `.part` are appended
+//! to its name; a process that is killed leaves it under that name.
 //!
-//! A write that fails, for instance on a full disk, leaves earlier output intact and no partial output of its own. It can
-//! be repeated.
+//! A write that fails, for instance on a full disk, leaves earlier output intact and no partial output of its own. It
+//! can be repeated.
 
 #[cfg(feature = "csv")]
 mod csv;

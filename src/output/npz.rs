@@ -17,9 +17,9 @@ use crate::output::{Field, Metadata, npy};
 ///
 /// Needs the feature `npy`.
 ///
-/// An archive contains `time` \[s\], the cell centres `x1` and `x2` \[m\], the chosen fields as arrays of shape (n1, n2),
-/// `approach` \[m\], `force` \[N\], `tilt` \[rad\] and `contact_area` \[m²\], all in double precision and uncompressed,
-/// and the [`Metadata`] as the JSON text `metadata`. In Python, without pickle:
+/// An archive contains `time` \[s\], the cell centres `x1` and `x2` \[m\], the chosen fields as arrays of shape (n1,
+/// n2), `approach` \[m\], `force` \[N\], `tilt` \[rad\] and `contact_area` \[m²\], all in double precision and
+/// uncompressed, and the [`Metadata`] as the JSON text `metadata`. In Python, without pickle:
 ///
 /// ```python
 /// frame = numpy.load("run/frame_000012.npz")

@@ -12,18 +12,18 @@ use crate::{Grid, ViscoelasticContact};
 /// Name of the file that lists the frames.
 const COLLECTION: &str = "series.pvd";
 
-/// A run as a folder of VTK images, one per frame, `frame_000000.vti` and so on, and a `series.pvd` that lists them with
-/// their times. Open this file in ParaView, even while the run continues.
+/// A run as a folder of VTK images, one per frame, `frame_000000.vti` and so on, and a `series.pvd` that lists them
+/// with their times. Open this file in ParaView, even while the run continues.
 ///
 /// Needs the feature `vtk`.
 ///
-/// An image is a flat sheet of n1 × n2 cells in the plane of contact, with x1 along its x. The chosen fields are cell data
-/// in double precision, named with their units, such as `pressure [Pa]`. `TimeValue` \[s\], `approach [m]`, `force [N]`,
-/// `tilt [rad]`, `contact area [m2]` and the [`Metadata`] as the JSON text `metadata` are field data. The gap is +∞ where
-/// the initial gap is infinite: rescale the colours to the finite range.
+/// An image is a flat sheet of n1 × n2 cells in the plane of contact, with x1 along its x. The chosen fields are cell
+/// data in double precision, named with their units, such as `pressure [Pa]`. `TimeValue` \[s\], `approach [m]`,
+/// `force [N]`, `tilt [rad]`, `contact area [m2]` and the [`Metadata`] as the JSON text `metadata` are field data. The
+/// gap is +∞ where the initial gap is infinite: rescale the colours to the finite range.
 ///
-/// Two frames of the same time, such as before and after a jump of the load, are both written and listed; ParaView shows
-/// one of them.
+/// Two frames of the same time, such as before and after a jump of the load, are both written and listed; ParaView
+/// shows one of them.
 ///
 /// ```
 /// use viscocontact::{output::{Field, Metadata, VtkSeries}, prelude::*};

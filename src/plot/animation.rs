@@ -14,9 +14,9 @@ use crate::plot::{Map, Picture};
 
 /// A run as an animated GIF that repeats endlessly.
 ///
-/// Frames are written as they are added, to a file whose name ends in the process ID and `.part`; browsers show it as far
-/// as it is written. [`Animation::finish`] gives it its final name. An animation that is dropped before that leaves the
-/// partial file.
+/// Frames are written as they are added, to a file whose name ends in the process ID and `.part`; browsers show it as
+/// far as it is written. [`Animation::finish`] gives it its final name. An animation that is dropped before that leaves
+/// the partial file.
 ///
 /// ```
 /// use viscocontact::plot::Animation;
@@ -54,8 +54,8 @@ pub struct Animation {
 }
 
 impl Animation {
-    /// An animation of `field` with a colour scale from `range[0]` to `range[1]` in SI units in all frames. Each frame is
-    /// shown for `seconds`, rounded to hundredths. An existing file of this name is replaced when the animation is
+    /// An animation of `field` with a colour scale from `range[0]` to `range[1]` in SI units in all frames. Each frame
+    /// is shown for `seconds`, rounded to hundredths. An existing file of this name is replaced when the animation is
     /// finished.
     ///
     /// # Errors

@@ -115,8 +115,8 @@ impl History {
 }
 
 impl Chart {
-    /// Labelled columns of values of one quantity over time \[s\]. [`Chart::scale`] makes axes logarithmic; time 0 is left
-    /// out on those.
+    /// Labelled columns of values of one quantity over time \[s\]. [`Chart::scale`] makes axes logarithmic; time 0 is
+    /// left out on those.
     ///
     /// # Errors
     /// If a column does not have one value per time.

@@ -130,8 +130,8 @@ impl Map {
     /// Draws maps side by side, with one colour bar if all have the same quantity and scale, otherwise with one each.
     ///
     /// # Errors
-    /// If there are none, the ends of a colour scale are not increasing or beyond ±1e100, or the row is wider than 16384
-    /// pixels.
+    /// If there are none, the ends of a colour scale are not increasing or beyond ±1e100, or the row is wider than
+    /// 16384 pixels.
     pub fn draw_row(maps: &[Map]) -> Result<Picture> {
         least_length("maps of a row", maps.len(), 1)?;
         maps.iter().try_for_each(|map| color_scale(map.range))?;

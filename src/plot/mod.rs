@@ -36,8 +36,8 @@
 //! # Ok::<(), Error>(())
 //! ```
 //!
-//! Values are given in SI; axes and colour bars choose the prefix that keeps numbers short ([`Quantity`]). The colours can
-//! be distinguished without colour vision. The font is compiled in: no system font is needed.
+//! Values are given in SI; axes and colour bars choose the prefix that keeps numbers short ([`Quantity`]). The colours
+//! can be distinguished without colour vision. The font is compiled in: no system font is needed.
 
 mod animation;
 mod chart;

@@ -73,7 +73,8 @@ impl Picture {
         &self.rgb
     }
 
-    /// Writes the picture to a PNG file, whatever the extension. An existing file is replaced when the new one is complete.
+    /// Writes the picture to a PNG file, whatever the extension. An existing file is replaced when the new one is
+    /// complete.
     ///
     /// # Errors
     /// If the file cannot be written.

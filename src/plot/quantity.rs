@@ -4,9 +4,10 @@ use crate::error::{Result, within};
 
 /// The quantity of an axis or a colour bar.
 ///
-/// A quantity with a unit is given in SI and shown with the prefix for which its greatest value lies between 1 and 1000:
-/// `approach [µm]`, `contact area [mm²]`. Lengths, times and angles get no prefix above 1 (`km`, `ks`). Units that have a
-/// prefix already, or take none (`kg`, `%`, `1/Pa`, `°C`), are not changed. A plain text is a quantity without a unit.
+/// A quantity with a unit is given in SI and shown with the prefix for which its greatest value lies between 1 and
+/// 1000: `approach [µm]`, `contact area [mm²]`. Lengths, times and angles get no prefix above 1 (`km`, `ks`). Units
+/// that have a prefix already, or take none (`kg`, `%`, `1/Pa`, `°C`), are not changed. A plain text is a quantity
+/// without a unit.
 ///
 /// ```
 /// use viscocontact::plot::Quantity;

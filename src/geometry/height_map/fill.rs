@@ -13,8 +13,8 @@ impl HeightMap {
     /// stretched membrane, so that none exceeds the known heights around it.
     ///
     /// # Errors
-    /// If no height is known, the iteration does not converge ([`MapError::NotFilled`]), or there is no memory for it: 16
-    /// bytes per point, and 120 more per missing point.
+    /// If no height is known, the iteration does not converge ([`MapError::NotFilled`]), or there is no memory for it:
+    /// 16 bytes per point, and 120 more per missing point.
     pub fn filled(mut self) -> Result<HeightMap> {
         self.require_known()?;
         if self.missing == 0 {

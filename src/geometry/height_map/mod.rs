@@ -27,14 +27,14 @@ const SAME_SPACING: f64 = 1e-12;
 
 /// The heights of a surface on a regular grid of points.
 ///
-/// Heights are positive out of the measured material. As a [`Geometry`], the gap is the height of the highest point above
-/// the surface: that point touches first, at an approach of 0. The middle of the map is at the origin, unless
+/// Heights are positive out of the measured material. As a [`Geometry`], the gap is the height of the highest point
+/// above the surface: that point touches first, at an approach of 0. The middle of the map is at the origin, unless
 /// [`HeightMap::centered_at`] moves it.
 ///
 /// Between its points a map is interpolated bicubically (Keys 1981, a = −1/2). Beyond the outermost points it is
 /// extrapolated linearly to the edge of their cells, and outside there is nothing to touch (+∞), unless it is
-/// [periodic](HeightMap::periodic). A periodic map without missing points is shifted over a grid of its own spacing by its
-/// Fourier series, which is exact for every surface whose waves are longer than two cells.
+/// [periodic](HeightMap::periodic). A periodic map without missing points is shifted over a grid of its own spacing by
+/// its Fourier series, which is exact for every surface whose waves are longer than two cells.
 ///
 /// You decide how missing points are treated: [filled](HeightMap::filled) by interpolation, or
 /// [masked](HeightMap::masked) as nothing to touch. Otherwise the gap there is NaN, which a contact refuses.
@@ -75,8 +75,8 @@ impl HeightMap {
     /// row-major with x2 fastest; NaN where nothing was measured.
     ///
     /// # Errors
-    /// If a [`Grid`] may not have these numbers of cells or lengths, there are not `cells[0] * cells[1]` heights, or one is
-    /// infinite or beyond ±1e300 m.
+    /// If a [`Grid`] may not have these numbers of cells or lengths, there are not `cells[0] * cells[1]` heights, or
+    /// one is infinite or beyond ±1e300 m.
     pub fn new(cells: [usize; 2], lengths: [f64; 2], heights: Vec<f64>) -> Result<HeightMap> {
         let grid = Grid::new(cells, lengths)?;
         exact_length("heights", heights.len(), grid.len())?;
@@ -161,8 +161,8 @@ impl HeightMap {
         self.index(axis, grid.coordinate(axis, 0) - by[axis])
     }
 
-    /// Writes the gap of the shifted map: the Fourier series shifts the heights by a fraction of a cell, and whole cells are
-    /// copied.
+    /// Writes the gap of the shifted map: the Fourier series shifts the heights by a fraction of a cell, and whole
+    /// cells are copied.
     fn fill_by_fourier_shift(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
         let offset = [0, 1].map(|axis| self.offset(grid, by, axis));
         let whole = offset.map(f64::round);

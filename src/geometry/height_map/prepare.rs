@@ -37,8 +37,8 @@ impl HeightMap {
         Ok(part.with_heights(heights))
     }
 
-    /// The mirror image: the order of the points is reversed along the chosen axes. Flip a surface that was measured from
-    /// above along one axis to place it face down on another body.
+    /// The mirror image: the order of the points is reversed along the chosen axes. Flip a surface that was measured
+    /// from above along one axis to place it face down on another body.
     #[must_use]
     pub fn flipped(mut self, along: [bool; 2]) -> HeightMap {
         if along[0] != along[1] {

@@ -17,8 +17,8 @@ pub struct Resampled {
     pub error: ResamplingError,
 }
 
-/// Error of resampling: the new map, interpolated back to the points of the old one, minus the old map. It shows what the
-/// new grid does not resolve.
+/// Error of resampling: the new map, interpolated back to the points of the old one, minus the old map. It shows what
+/// the new grid does not resolve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResamplingError {
     /// Root mean square \[m\].
@@ -30,7 +30,8 @@ pub struct ResamplingError {
 }
 
 impl HeightMap {
-    /// The map interpolated at the cells of `grid` by [`HeightMap::height_at`], with the error that a coarser grid makes.
+    /// The map interpolated at the cells of `grid` by [`HeightMap::height_at`], with the error that a coarser grid
+    /// makes.
     ///
     /// Points outside the map are masked. On a grid of the same lengths a periodic map stays periodic.
     ///

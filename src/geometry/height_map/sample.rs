@@ -89,8 +89,8 @@ impl HeightMap {
 
     /// Height at the point (x1, x2) \[m\]; `None` outside the map and where it is missing.
     ///
-    /// Interpolated bicubically, exact at the points of the map. Next to masked points it is interpolated linearly between
-    /// the known ones, and missing if the nearest point is. Next to undecided points it is missing.
+    /// Interpolated bicubically, exact at the points of the map. Next to masked points it is interpolated linearly
+    /// between the known ones, and missing if the nearest point is. Next to undecided points it is missing.
     pub fn height_at(&self, x1: f64, x2: f64) -> Option<f64> {
         if !self.covers(x1, x2) {
             return None;
@@ -105,8 +105,8 @@ impl HeightMap {
         }
     }
 
-    /// Slopes ∂z/∂x1 and ∂z/∂x2 of [`HeightMap::height_at`] at the point (x1, x2); `None` outside the map and where one of
-    /// the sixteen points around is missing.
+    /// Slopes ∂z/∂x1 and ∂z/∂x2 of [`HeightMap::height_at`] at the point (x1, x2); `None` outside the map and where one
+    /// of the sixteen points around is missing.
     pub fn slope_at(&self, x1: f64, x2: f64) -> Option<[f64; 2]> {
         if !self.covers(x1, x2) {
             return None;

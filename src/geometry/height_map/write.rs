@@ -76,8 +76,8 @@ impl HeightMap {
         save(writer, "SDF", file.as_bytes())
     }
 
-    /// Writes the heights in m as a NumPy array in double precision, little endian, with x1 as the first axis and x2 as the
-    /// second. The lengths of the map are not in the file.
+    /// Writes the heights in m as a NumPy array in double precision, little endian, with x1 as the first axis and x2 as
+    /// the second. The lengths of the map are not in the file.
     ///
     /// Needs the feature `npy`.
     ///

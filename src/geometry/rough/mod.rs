@@ -18,8 +18,8 @@ use crate::memory;
 
 /// A self-affine random surface: a sum of waves with Gaussian random amplitudes and the spectrum of a [`RoughSpec`].
 ///
-/// The mean height is 0. The gap is the height of the highest point of the mesh above the surface. On the grid that it was
-/// created for, the surface can be shifted exactly by any distance, because it has no waves that the grid does not
+/// The mean height is 0. The gap is the height of the highest point of the mesh above the surface. On the grid that it
+/// was created for, the surface can be shifted exactly by any distance, because it has no waves that the grid does not
 /// resolve; on other grids it is interpolated like a [`HeightMap`].
 ///
 /// ```
@@ -53,8 +53,8 @@ impl Rough {
     /// A surface whose periods are the lengths of `grid`.
     ///
     /// # Errors
-    /// If a value of the spec is out of range, the shortest wavelength is below two cells, or no wave of the spectrum fits
-    /// the lengths. If there is no memory for waves and heights, 16 bytes per cell.
+    /// If a value of the spec is out of range, the shortest wavelength is below two cells, or no wave of the spectrum
+    /// fits the lengths. If there is no memory for waves and heights, 16 bytes per cell.
     pub fn new(grid: &Grid, spec: RoughSpec) -> Result<Rough> {
         spec.validate()?;
         let (cells, spacing) = (grid.cells(), grid.spacing());

@@ -39,8 +39,8 @@ fn history<I: std::fmt::Debug + 'static, H: LoadHistory + 'static>(
     built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as AnyHistory))
 }
 
-/// Histories of a force up to `force` \[N\] on a body that does not tilt, varying over `duration` \[s\]: constant, ramps,
-/// tables with corners and jumps, oscillations, closures with and without corners.
+/// Histories of a force up to `force` \[N\] on a body that does not tilt, varying over `duration` \[s\]: constant,
+/// ramps, tables with corners and jumps, oscillations, closures with and without corners.
 pub fn histories(force: f64, duration: f64) -> impl Strategy<Value = AnyHistory> {
     let load = move || (0.0..1.0_f64).prop_map(move |part| Load::force(part * force));
     let time = move || (0.05..1.0_f64).prop_map(move |part| part * duration);

@@ -1,7 +1,7 @@
 //! Random valid models, as strategies of [`proptest`](mod@proptest).
 //!
-//! Each takes the scales of its models, finite, positive and within 1e±50, so that they suit the scenario of a test. The
-//! simplest models come first: failures shrink towards them.
+//! Each takes the scales of its models, finite, positive and within 1e±50, so that they suit the scenario of a test.
+//! The simplest models come first: failures shrink towards them.
 
 use std::f64::consts::FRAC_PI_4;
 use std::sync::Arc;
@@ -103,8 +103,8 @@ pub fn spectra(modulus: f64, time: f64) -> impl Strategy<Value = CreepSpectrum> 
     })
 }
 
-/// Indenters with a formula, alone, superposed, shifted and repeated, that touch within `length` \[m\] of the origin. At
-/// that distance their gap is up to about a tenth of it.
+/// Indenters with a formula, alone, superposed, shifted and repeated, that touch within `length` \[m\] of the origin.
+/// At that distance their gap is up to about a tenth of it.
 pub fn geometries(length: f64) -> impl Strategy<Value = AnyGeometry> {
     let radius = around(5.0 * length);
     let wave = (around(1e-3 * length), (0.3..3.0_f64).prop_map(move |part| part * length));

@@ -88,9 +88,9 @@ fn indenters(radius: f64, reach: f64) -> BoxedStrategy<AnyGeometry> {
     .boxed()
 }
 
-/// Scenarios with 10 to 24 cells per side, not square in general, 1 mm to 10 cm long; single indenters up to two cells off
-/// centre, or centred; creep spectra with an elastic response, of 10 kPa to 10 GPa and 1 ms to 1000 s; a jump, then 2 to 7
-/// time steps or jumps, under forces that may vanish. The contact does not reach the edge of the grid.
+/// Scenarios with 10 to 24 cells per side, not square in general, 1 mm to 10 cm long; single indenters up to two cells
+/// off centre, or centred; creep spectra with an elastic response, of 10 kPa to 10 GPa and 1 ms to 1000 s; a jump, then
+/// 2 to 7 time steps or jumps, under forces that may vanish. The contact does not reach the edge of the grid.
 pub fn scenarios() -> impl Strategy<Value = Scenario> {
     let scales = (around(1e-2), -2.0..2.0_f64, -2.0..2.0_f64);
     let cells = [10_usize..=24, 10_usize..=24];
