@@ -32,22 +32,18 @@ impl Observed {
 
     /// Name and SI unit.
     pub fn quantity(self) -> Quantity {
-        match self {
-            Observed::Force => Quantity::of("force", "N"),
-            Observed::Approach => Quantity::of("approach", "m"),
-            Observed::ContactArea => Quantity::of("contact area", "m²"),
-            Observed::MeanPressure => Quantity::of("mean pressure", "Pa"),
-            Observed::GreatestPressure => Quantity::of("greatest pressure", "Pa"),
-        }
+        let (name, unit, _) = self.definition();
+        Quantity::of(name, unit)
     }
 
-    fn of(self, contact: &ViscoelasticContact) -> f64 {
+    /// Name, SI unit and the method that returns the value.
+    fn definition(self) -> (&'static str, &'static str, fn(&ViscoelasticContact) -> f64) {
         match self {
-            Observed::Force => contact.force(),
-            Observed::Approach => contact.approach(),
-            Observed::ContactArea => contact.contact_area(),
-            Observed::MeanPressure => contact.mean_pressure(),
-            Observed::GreatestPressure => contact.greatest_pressure(),
+            Observed::Force => ("force", "N", ViscoelasticContact::force),
+            Observed::Approach => ("approach", "m", ViscoelasticContact::approach),
+            Observed::ContactArea => ("contact area", "m²", ViscoelasticContact::contact_area),
+            Observed::MeanPressure => ("mean pressure", "Pa", ViscoelasticContact::mean_pressure),
+            Observed::GreatestPressure => ("greatest pressure", "Pa", ViscoelasticContact::greatest_pressure),
         }
     }
 }
@@ -91,7 +87,7 @@ impl History {
     pub fn add(&mut self, contact: &ViscoelasticContact) {
         self.times.push(contact.time());
         for (column, observed) in self.columns.iter_mut().zip(Observed::ALL) {
-            column.push(observed.of(contact));
+            column.push(observed.definition().2(contact));
         }
     }
 

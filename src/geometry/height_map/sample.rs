@@ -98,11 +98,7 @@ impl HeightMap {
         let [u1, u2] = [self.index(0, x1), self.index(1, x2)];
         let (along1, along2) = self.stencils(u1, u2);
         let height = self.weighted(&along1.index, &along1.weight, &along2.index, &along2.weight);
-        if height.is_nan() && self.masked {
-            self.linear_between_known(u1, u2)
-        } else {
-            Some(height).filter(|z| !z.is_nan())
-        }
+        if height.is_nan() && self.masked { self.linear_of_known(u1, u2) } else { Some(height).filter(|z| !z.is_nan()) }
     }
 
     /// Slopes ∂z/∂x1 and ∂z/∂x2 of [`HeightMap::height_at`] at the point (x1, x2); `None` outside the map and where one
@@ -135,7 +131,7 @@ impl HeightMap {
     }
 
     /// Linear interpolation between the known ones of the four neighbours; `None` if the nearest is missing.
-    fn linear_between_known(&self, u1: f64, u2: f64) -> Option<f64> {
+    fn linear_of_known(&self, u1: f64, u2: f64) -> Option<f64> {
         let ((b1, t1), (b2, t2)) = (split(u1), split(u2));
         let (mut sum, mut weights) = (0.0, 0.0);
         for (d1, w1) in [(0.0, 1.0 - t1), (1.0, t1)] {

@@ -34,9 +34,8 @@ impl HeightMap {
         let table = Table::new(&text);
         let (mut rows, mut columns) = (Vec::new(), 0);
         // a separator at the end of every line terminates it; one at the end of some lines precedes a missing height
-        let terminated = table
-            .lines()
-            .all(|(_, line)| table.separator.is_some_and(|mark| line.trim_end_matches(' ').ends_with(mark)));
+        let is_terminated = |line: &str| table.separator.is_some_and(|mark| line.trim_end_matches(' ').ends_with(mark));
+        let terminated = table.lines().all(|(_, line)| is_terminated(line));
         for (line, content) in table.lines() {
             let mut fields = table.fields(content);
             if terminated {

@@ -109,8 +109,7 @@ fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<RegularAxis
             .unwrap_or(MapError::Sparse { points: points.len(), cells: [1, 1] }.into()));
     };
     // in decreasing order, the last step before the first that is a small fraction of its predecessor
-    let smallest =
-        steps.iter().try_fold(greatest, |last, &step| if step < SAME_POSITION * last { Err(last) } else { Ok(step) });
+    let smallest = steps.iter().try_fold(greatest, |a, &b| if b < SAME_POSITION * a { Err(a) } else { Ok(b) });
     let smallest = positive("step between the points", smallest.unwrap_or_else(|last| last))?;
 
     let mut positions = Vec::with_capacity(order.len());
@@ -127,10 +126,8 @@ fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<RegularAxis
     for (k, &position) in positions.iter().enumerate() {
         let off = ((value(k) - origin) / spacing - position).abs();
         if off > MAX_OFFSET || off.is_nan() {
-            let line = points[order[k]].line;
-            return Err(
-                MapError::OffGrid { line, axis: name, value: value(k), spacing, off, allowed: MAX_OFFSET }.into()
-            );
+            let (line, allowed) = (points[order[k]].line, MAX_OFFSET);
+            return Err(MapError::OffGrid { line, axis: name, value: value(k), spacing, off, allowed }.into());
         }
         indices[order[k]] = position as usize;
     }
