@@ -16,7 +16,7 @@ use clap::Parser;
 use indicatif::ProgressBar;
 use viscocontact::analytic::Hertz;
 use viscocontact::observe::Axis;
-use viscocontact::output::{CsvHistory, Scene};
+use viscocontact::output::{CsvHistory, Metadata};
 use viscocontact::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
@@ -150,7 +150,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
     if table.exists() {
         fs::remove_file(&table)?;
     }
-    let scene = Scene::new("Rough ball on rubber").note("radius", format!("{} m", args.radius));
+    let scene = Metadata::new("Rough ball on rubber").note("radius", format!("{} m", args.radius));
     let mut history = CsvHistory::create(&table, &scene, &contact, &["patches", "smooth ball: contact area [m2]"])?;
 
     println!("\npolyisobutylene under {} mN", args.load * 1e3);

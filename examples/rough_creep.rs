@@ -25,7 +25,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use indicatif::ProgressBar;
-use viscocontact::output::{CsvHistory, Scene};
+use viscocontact::output::{CsvHistory, Metadata};
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Scale, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
@@ -141,7 +141,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             .build()
     };
     let mut contact = build(&material)?;
-    let scene = Scene::new("Rough surface on a creeping polymer").note("material", &args.material);
+    let scene = Metadata::new("Rough surface on a creeping polymer").note("material", &args.material);
     let mut files = Files::create(args, &scene, &contact)?;
 
     // Loading: steps as long as their error allows, and such that the times of the table are met.
@@ -320,7 +320,7 @@ struct Files {
 }
 
 impl Files {
-    fn create(args: &Args, scene: &Scene, contact: &ViscoelasticContact) -> Result<Files, Box<dyn Error>> {
+    fn create(args: &Args, scene: &Metadata, contact: &ViscoelasticContact) -> Result<Files, Box<dyn Error>> {
         // the library writes over nothing: what an earlier run of this example left goes first
         let table = args.output.join("history.csv");
         if table.exists() {

@@ -154,12 +154,12 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     map.save(output.join("pressure.png"))?;
     #[cfg(feature = "vtk")]
     {
-        use viscocontact::output::{Field, Scene, VtkSeries};
+        use viscocontact::output::{Field, Metadata, VtkSeries};
         let folder = output.join("vtk");
         if folder.exists() {
             fs::remove_dir_all(&folder)?; // a series is never written over
         }
-        let scene = Scene::new("Sphere sliding steadily").note("friction", friction.to_string());
+        let scene = Metadata::new("Sphere sliding steadily").note("friction", friction.to_string());
         VtkSeries::create(folder, scene, &Field::ALL)?.write(&contact)?;
     }
     Ok(())
@@ -184,7 +184,7 @@ fn there_and_back(bodies: &Bodies, cells: usize, output: &File) -> Result<(), Bo
         .material(bodies.material.clone())
         .build()?;
     contact.step(0.0, bodies.load)?;
-    let scene = viscocontact::output::Scene::new("Sphere sliding there and back");
+    let scene = viscocontact::output::Metadata::new("Sphere sliding there and back");
     let history = output.join("there_and_back.csv");
     if history.exists() {
         fs::remove_file(&history)?; // a history is never written over

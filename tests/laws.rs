@@ -184,7 +184,7 @@ fn every_geometry_obeys_every_law() {
     }
     // what has a formula moves by any distance
     for (name, grid, shape) in shapes().into_iter().take(9) {
-        if let Err(violation) = geometry::laws::moves_as_its_points(&*shape, &grid, [0.0123, -0.77], 0.0) {
+        if let Err(violation) = geometry::laws::shift_matches_points(&*shape, &grid, [0.0123, -0.77], 0.0) {
             panic!("{name}: {violation}");
         }
     }
@@ -222,12 +222,12 @@ fn every_law_of_geometry_can_be_broken() {
     let twice = |_: &Grid, gap: &mut [f64]| gap[9] *= 2.0;
     assert_eq!(broken(Wrong(bowl, twice, stay)), ("a field is the gap at the cell centres", [1, 3]));
     let always = |by: [f64; 2]| [by[0] + 0.5, by[1]];
-    assert_eq!(broken(Wrong(|_, x2| x2.abs(), nothing, |[a, b]| [a, -b])).0, "moved by whole cells, so is its field");
+    assert_eq!(broken(Wrong(|_, x2| x2.abs(), nothing, |[a, b]| [a, -b])).0, "a shift by whole cells shifts the field");
     let undone: fn(&Grid, &mut [f64]) = |grid, gap| {
         let n2 = grid.cells()[1];
         gap.iter_mut().enumerate().for_each(|(k, h)| *h = grid.center(k / n2, k % n2)[0]);
     };
-    assert_eq!(broken(Wrong(|x1, _| x1, undone, always)).0, "moved by nothing, it stays");
+    assert_eq!(broken(Wrong(|x1, _| x1, undone, always)).0, "a shift by zero changes nothing");
 
     // keeps what the field held
     #[derive(Debug)]
@@ -241,9 +241,10 @@ fn every_law_of_geometry_can_be_broken() {
         }
     }
     let violation = geometry::laws::all(&Lazy, &grid).unwrap_err();
-    assert_eq!((violation.law, violation.cell), ("asked again, it answers the same", [0, 0]));
-    let error = geometry::laws::moves_as_its_points(&Wrong(bowl, nothing, always), &grid, [0.1, 0.0], 0.0).unwrap_err();
-    assert_eq!(error.law, "moved, its field is the gap of the points it came from");
+    assert_eq!((violation.law, violation.cell), ("repeated evaluations give the same gap", [0, 0]));
+    let error =
+        geometry::laws::shift_matches_points(&Wrong(bowl, nothing, always), &grid, [0.1, 0.0], 0.0).unwrap_err();
+    assert_eq!(error.law, "the shifted field is the gap at the shifted points");
 }
 
 fn table(entries: &[(f64, f64)]) -> PiecewiseLinear {
@@ -373,7 +374,7 @@ mod at_random {
         ) {
             let grid = Grid::new(cells, [1e-3, aspect * 1e-3]).unwrap();
             geometry::laws::all(&shape, &grid).map_err(|violation| fail(violation, &shape))?;
-            geometry::laws::moves_as_its_points(&shape, &grid, by, 0.0).map_err(|violation| fail(violation, &shape))?;
+            geometry::laws::shift_matches_points(&shape, &grid, by, 0.0).map_err(|violation| fail(violation, &shape))?;
         }
 
         #[test]

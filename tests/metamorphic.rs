@@ -7,13 +7,13 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use related::{TIGHT, assert_ends_like, assert_same, end, field, forces, pressures, tight};
-use viscocontact::laws::Scene;
-use viscocontact::laws::strategies::scenes;
+use viscocontact::laws::Scenario;
+use viscocontact::laws::strategies::scenarios;
 use viscocontact::prelude::*;
 
 /// A scene with another shape.
-fn reshaped(scene: &Scene, gap: impl Fn(f64, f64) -> f64 + Send + Sync + 'static) -> Scene {
-    Scene { shape: Arc::new(FnGeometry::new(gap)), ..scene.clone() }
+fn reshaped(scene: &Scenario, gap: impl Fn(f64, f64) -> f64 + Send + Sync + 'static) -> Scenario {
+    Scenario { shape: Arc::new(FnGeometry::new(gap)), ..scene.clone() }
 }
 
 proptest! {
@@ -21,14 +21,14 @@ proptest! {
 
     /// Lengths, pressures and times in other units.
     #[test]
-    fn units_do_not_matter(scene in scenes(), powers in [-4.0..4.0_f64, -4.0..4.0_f64, -4.0..4.0_f64]) {
+    fn units_do_not_matter(scene in scenarios(), powers in [-4.0..4.0_f64, -4.0..4.0_f64, -4.0..4.0_f64]) {
         let [length, stress, time] = powers.map(|power| 10f64.powf(power));
         let (grid, shape) = (&scene.grid, Arc::clone(&scene.shape));
         let steps = scene.steps.iter().map(|&(dt, load)| match load {
             Load::Force { normal, tilt } => (dt * time, Load::Force { normal: normal * stress * length * length, tilt }),
             other => (dt, other),
         });
-        let other = Scene {
+        let other = Scenario {
             grid: Grid::new(grid.cells(), grid.lengths().map(|side| side * length)).unwrap(),
             shape: Arc::new(FnGeometry::new(move |x1, x2| length * shape.initial_gap(x1 / length, x2 / length))),
             creep: scene.creep.scaled(1.0 / stress).unwrap().slowed(time).unwrap(),
@@ -41,7 +41,7 @@ proptest! {
 
     /// Turned over along either axis, or the axes exchanged.
     #[test]
-    fn mirrored_scenes_have_mirrored_answers(scene in scenes(), turn in [any::<bool>(), any::<bool>()], exchange in any::<bool>()) {
+    fn mirrored_scenes_have_mirrored_answers(scene in scenarios(), turn in [any::<bool>(), any::<bool>()], exchange in any::<bool>()) {
         let sign = turn.map(|turn| if turn { -1.0 } else { 1.0 });
         let shape = Arc::clone(&scene.shape);
         let mut other = reshaped(&scene, move |x1, x2| {
@@ -63,11 +63,11 @@ proptest! {
 
     /// On a wider grid, off the middle by whole cells.
     #[test]
-    fn shifted_scenes_have_shifted_answers(scene in scenes(), shift in [-4_i32..=4, -4_i32..=4]) {
+    fn shifted_scenes_have_shifted_answers(scene in scenarios(), shift in [-4_i32..=4, -4_i32..=4]) {
         let ([n1, n2], spacing) = (scene.grid.cells(), scene.grid.spacing());
         let by = [0, 1].map(|axis| f64::from(shift[axis]) * spacing[axis]);
         let wide = [n1 + 8, n2 + 8];
-        let moved = Scene {
+        let moved = Scenario {
             grid: Grid::new(wide, [0, 1].map(|axis| wide[axis] as f64 * spacing[axis])).unwrap(),
             shape: Arc::new(Shifted::new(Arc::clone(&scene.shape), by).unwrap()),
             ..scene.clone()
@@ -82,7 +82,7 @@ proptest! {
 
     /// A gap that is wider everywhere is approached by as much more.
     #[test]
-    fn a_wider_gap_is_a_longer_way(scene in scenes(), wider in -1.0..1.0_f64) {
+    fn a_wider_gap_is_a_longer_way(scene in scenarios(), wider in -1.0..1.0_f64) {
         let (shape, wider) = (Arc::clone(&scene.shape), wider * 1e-2 * scene.grid.lengths()[0]);
         let other = reshaped(&scene, move |x1, x2| shape.initial_gap(x1, x2) + wider);
         let (one, other) = (end(&scene, tight()), other.run(tight()).unwrap());
@@ -93,7 +93,7 @@ proptest! {
 
     /// Both solvers, with and without windows and symmetry.
     #[test]
-    fn settings_choose_the_work_not_the_answer(scene in scenes()) {
+    fn settings_choose_the_work_not_the_answer(scene in scenarios()) {
         let one = end(&scene, tight());
         let others = [
             Settings { solver: Solver::PolonskyKeer, max_iterations: 5000, ..tight() },
@@ -108,7 +108,7 @@ proptest! {
 
     /// Two bodies that creep are one body that creeps as both.
     #[test]
-    fn two_bodies_are_one(scene in scenes(), share in 0.05..0.95_f64) {
+    fn two_bodies_are_one(scene in scenarios(), share in 0.05..0.95_f64) {
         let part = |share: f64| Material::incompressible(scene.creep.scaled(share).unwrap());
         let builder = scene.builder().material(part(share)).counter_body(part(1.0 - share));
         let mut both = builder.settings(tight()).build().unwrap();
@@ -121,7 +121,7 @@ proptest! {
 
     /// The approaches that forces lead to lead to the forces.
     #[test]
-    fn force_and_approach_are_two_sides_of_one(scene in scenes()) {
+    fn force_and_approach_are_two_sides_of_one(scene in scenarios()) {
         let mut one = scene.builder().settings(tight()).build().unwrap();
         let mut other = scene.builder().settings(tight()).build().unwrap();
         let (most, deepest) = (forces(&scene).fold(0.0, f64::max), end(&scene, tight()).displacement);
@@ -140,7 +140,7 @@ proptest! {
 
     /// After the same past, the deeper the greater the force, and the pressure of an upright body nowhere less than none.
     #[test]
-    fn force_grows_with_approach(scene in scenes(), dt in prop_oneof![Just(0.0), 0.01..1.0_f64], depths in [-0.5..2.0_f64, 0.01..0.5_f64]) {
+    fn force_grows_with_approach(scene in scenarios(), dt in prop_oneof![Just(0.0), 0.01..1.0_f64], depths in [-0.5..2.0_f64, 0.01..0.5_f64]) {
         let before = scene.run(tight()).unwrap();
         let scale = before.approach().abs().max(1e-9 * scene.grid.lengths()[0]);
         let settings = Settings { edge: Edge::Allow, ..tight() };
@@ -166,7 +166,7 @@ mod superposition {
 
         #[test]
         fn of_forces_on_a_face(
-            scene in scenes(), face in 0.3..0.9_f64,
+            scene in scenarios(), face in 0.3..0.9_f64,
             parts in prop::collection::vec((0.02..1.0_f64, 0.1..1.0_f64, 0.1..1.0_f64), 2..6),
         ) {
             let side = scene.grid.lengths().into_iter().fold(f64::INFINITY, f64::min);
@@ -179,7 +179,7 @@ mod superposition {
                     (dt * scene.duration().max(1e-3), Load::force(force))
                 });
                 let steps = steps.collect();
-                pressures(&Scene { shape: Arc::clone(&punch) as _, steps, ..scene.clone() }.run(tight()).unwrap())
+                pressures(&Scenario { shape: Arc::clone(&punch) as _, steps, ..scene.clone() }.run(tight()).unwrap())
             };
             let (first, second, both) = (run([1.0, 0.0]), run([0.0, 1.0]), run([2.0, 0.5]));
             let sum: Vec<f64> = first.iter().zip(&second).map(|(a, b)| 2.0 * a + 0.5 * b).collect();
@@ -188,7 +188,7 @@ mod superposition {
 
         #[test]
         fn of_shapes_in_full_contact(
-            scene in scenes(), heights in [0.1..1.0_f64, 0.1..1.0_f64], numbers in [1_usize..3, 1_usize..3],
+            scene in scenarios(), heights in [0.1..1.0_f64, 0.1..1.0_f64], numbers in [1_usize..3, 1_usize..3],
             loads in prop::collection::vec((0.02..1.0_f64, 1.0..3.0_f64), 1..6),
         ) {
             let (grid, [l1, l2]) = (&scene.grid, scene.grid.lengths());
@@ -225,10 +225,10 @@ mod threads {
         #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2033), max_shrink_iters: 0, ..ProptestConfig::with_cases(4) })]
 
         #[test]
-        fn any_number_gives_the_same_bits(scene in scenes()) {
+        fn any_number_gives_the_same_bits(scene in scenarios()) {
             let grid = Grid::new([192, 176], scene.grid.lengths()).unwrap();
             let steps = scene.steps.iter().copied().take(3).collect();
-            let fine = Scene { grid, steps, ..scene };
+            let fine = Scenario { grid, steps, ..scene };
             let run = |threads: usize| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 let whole = Settings { symmetry: false, window: false, ..Settings::default() };

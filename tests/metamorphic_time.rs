@@ -5,8 +5,8 @@ mod related;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use related::{assert_ends_like, assert_same, difference, end, tight};
-use viscocontact::laws::Scene;
-use viscocontact::laws::strategies::scenes;
+use viscocontact::laws::Scenario;
+use viscocontact::laws::strategies::scenarios;
 use viscocontact::motion::{Straight, Travel};
 use viscocontact::prelude::*;
 
@@ -19,7 +19,7 @@ struct Record {
 }
 
 /// Takes `steps`, and says what they did.
-fn record(scene: &Scene, steps: &[(f64, Load)]) -> Record {
+fn record(scene: &Scenario, steps: &[(f64, Load)]) -> Record {
     let settings = Settings { edge: Edge::Allow, ..tight() };
     let mut contact = scene.builder().settings(settings).build().unwrap();
     let mut record = Record { force: vec![0.0], approach: vec![contact.approach()], work: Vec::new() };
@@ -37,7 +37,7 @@ fn record(scene: &Scene, steps: &[(f64, Load)]) -> Record {
 }
 
 /// The approach by which the first step of a scene presses, a scale for depths.
-fn depth(scene: &Scene) -> f64 {
+fn depth(scene: &Scenario) -> f64 {
     let mut contact = scene.builder().settings(tight()).build().unwrap();
     let start = contact.approach();
     let (dt, load) = scene.steps[0];
@@ -45,7 +45,7 @@ fn depth(scene: &Scene) -> f64 {
 }
 
 /// The time in which things happen \[s\].
-fn time(scene: &Scene) -> f64 {
+fn time(scene: &Scenario) -> f64 {
     scene.creep.terms().iter().map(|term| term.1).fold(scene.duration(), f64::max).max(1e-3)
 }
 
@@ -54,7 +54,7 @@ proptest! {
 
     /// What is done later happens later.
     #[test]
-    fn waiting_changes_nothing(scene in scenes(), wait in 0.01..10.0_f64) {
+    fn waiting_changes_nothing(scene in scenarios(), wait in 0.01..10.0_f64) {
         let one = end(&scene, tight());
         let mut late = scene.clone();
         late.steps.insert(0, (wait * time(&scene), Load::force(0.0)));
@@ -65,7 +65,7 @@ proptest! {
 
     /// Followed along a table of its loads, a scene is the one that is stepped.
     #[test]
-    fn following_is_stepping(scene in scenes()) {
+    fn following_is_stepping(scene in scenarios()) {
         let mut table = vec![(0.0, scene.steps[0].1)];
         let mut stepped = scene.builder().settings(tight()).build().unwrap();
         stepped.step(0.0, scene.steps[0].1).unwrap();
@@ -89,7 +89,7 @@ proptest! {
     /// The bodies take more than they give back: at no time have they returned more than was done to them, and over a closed
     /// cycle of the approach the force has done work. Equal steps of either.
     #[test]
-    fn bodies_dissipate(scene in scenes(), deep in 0.2..2.0_f64, dt in 0.01..1.0_f64, steps in 2_usize..5, cycles in 1_usize..3) {
+    fn bodies_dissipate(scene in scenarios(), deep in 0.2..2.0_f64, dt in 0.01..1.0_f64, steps in 2_usize..5, cycles in 1_usize..3) {
         let (dt, start) = (dt * time(&scene), scene.builder().build().unwrap().approach());
         let deep = deep * depth(&scene);
         let triangle = (1..=steps).chain((0..steps).rev()).map(|k| deep * k as f64 / steps as f64);
@@ -109,7 +109,7 @@ proptest! {
 
     /// Steps cut in two, and again: what is left on a face that stays down is an error in time of second order.
     #[test]
-    fn splitting_leaves_an_error_of_second_order(scene in scenes(), parts in prop::collection::vec(0.2..1.0_f64, 2..4), dt in 0.02..0.15_f64) {
+    fn splitting_leaves_an_error_of_second_order(scene in scenarios(), parts in prop::collection::vec(0.2..1.0_f64, 2..4), dt in 0.02..0.15_f64) {
         let side = scene.grid.lengths().into_iter().fold(f64::INFINITY, f64::min);
         let punch = std::sync::Arc::new(FlatPunch::circular(0.3 * side).unwrap());
         // steps that resolve the fastest time
@@ -121,7 +121,7 @@ proptest! {
                 steps.extend((1..=cuts).map(|k| (dt / cuts as f64, Load::force(force + part * k as f64 / cuts as f64))));
                 force += part;
             }
-            Scene { shape: punch.clone() as _, steps, ..scene.clone() }.run(Settings { tolerance: 1e-12, ..tight() }).unwrap()
+            Scenario { shape: punch.clone() as _, steps, ..scene.clone() }.run(Settings { tolerance: 1e-12, ..tight() }).unwrap()
         };
         let [one, two, four] = [1, 2, 4].map(run);
         let (coarse, fine) = (difference(two.displacement(), one.displacement()), difference(four.displacement(), two.displacement()));
@@ -138,7 +138,7 @@ mod frames {
         #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2042), max_shrink_iters: 64, ..ProptestConfig::with_cases(250) })]
 
         #[test]
-        fn agree(scene in scenes(), axis in 0_usize..2, cells in prop_oneof![-3_i32..=-1, 1_i32..=3], dt in 0.05..1.0_f64) {
+        fn agree(scene in scenarios(), axis in 0_usize..2, cells in prop_oneof![-3_i32..=-1, 1_i32..=3], dt in 0.05..1.0_f64) {
             let (grid, counts) = (&scene.grid, scene.grid.cells());
             let kernel = std::sync::Arc::new(InfluenceKernel::periodic(grid).unwrap());
             let shape = Repeated::new(std::sync::Arc::clone(&scene.shape), grid.lengths()).unwrap();

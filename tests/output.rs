@@ -8,7 +8,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use viscocontact::output::{Field, Scene};
+use viscocontact::output::{Field, Metadata};
 use viscocontact::prelude::*;
 
 /// A folder of its own for each test, removed when the test is over.
@@ -47,8 +47,8 @@ fn punch() -> ViscoelasticContact {
         .unwrap()
 }
 
-fn scene() -> Scene {
-    Scene::new("A \"punch\" <on> & µm, \u{1d11e}").note("line\nend", "\\ tab\t").note("operator", "-->]]>")
+fn scene() -> Metadata {
+    Metadata::new("A \"punch\" <on> & µm, \u{1d11e}").note("line\nend", "\\ tab\t").note("operator", "-->]]>")
 }
 
 /// The jump and two steps of a hold; `after` sees the state after each.
@@ -132,7 +132,7 @@ mod npy {
             let (shape, x2) = archive.numbers("x2");
             assert_eq!(shape, [17]);
             assert!((0..17).all(|j| x2[j] == contact.grid().center(0, j)[1]));
-            let bytes = archive.bytes("scene");
+            let bytes = archive.bytes("metadata");
             let text = npyz::NpyFile::new(&bytes[..]).unwrap().into_vec::<String>().unwrap();
             assert_eq!(text, [scene().json(contact)]);
         });
@@ -148,7 +148,7 @@ mod npy {
         let error = NpzSeries::create(&folder.0, scene(), &[Field::Gap]).unwrap_err();
         assert!(matches!(&error, Error::Output { what, .. } if what.contains("frame_000000.npz")), "{error}");
         let twice = NpzSeries::create(folder.0.join("b"), scene(), &[Field::Gap, Field::Gap]).unwrap_err();
-        assert!(twice.to_string().contains("gap is asked for twice"), "{twice}");
+        assert!(twice.to_string().contains("gap is requested twice"), "{twice}");
     }
 
     #[test]
@@ -250,7 +250,7 @@ mod vtk {
             assert_eq!(image.numbers("force [N]"), [contact.force()]);
             assert_eq!(image.numbers("tilt [rad]"), contact.tilt());
             assert_eq!(image.numbers("contact area [m2]"), [contact.contact_area()]);
-            let (end, text) = image.array("scene").split_last().unwrap();
+            let (end, text) = image.array("metadata").split_last().unwrap();
             assert_eq!((*end, text), (0, scene().json(contact).as_bytes()));
 
             // the collection is complete after every frame

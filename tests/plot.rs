@@ -194,7 +194,7 @@ fn bad_pictures_are_refused_by_name() {
     assert!(Map::new(&grid, vec![0.0; 3], "q").is_err());
     assert!(Map::new(&grid, vec![1e101; 4], "q").is_err());
     let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
-    assert_eq!(field(chart.draw()), "points with a place in the chart");
+    assert_eq!(field(chart.draw()), "points to draw in the chart");
     chart.add("", COLORS[0], Style::Line, vec![(1.0, 1e200)]);
     assert_eq!(field(chart.draw()), "y of a point in a chart");
     let saved = Chart::profile(&ball(), Axis::X1, 0.0).unwrap().save(Path::new("/no/such/folder/a.png"));

@@ -39,16 +39,16 @@ def same_bits(found, expected):
 
 def check_archive(folder, frame, raw, shape, scene):
     with numpy.load(folder / f"{frame}.npz", allow_pickle=False) as archive:
-        names = {"time", "x1", "x2", "approach", "force", "tilt", "contact_area", "scene", *UNITS}
+        names = {"time", "x1", "x2", "approach", "force", "tilt", "contact_area", "metadata", *UNITS}
         check(f"{frame}.npz: names", set(archive.files) == names)
-        for name in names - {"scene"}:
+        for name in names - {"metadata"}:
             expected = raw(name)
             if name in UNITS:
                 expected = expected.reshape(shape)
             elif name not in ("x1", "x2", "tilt"):
                 expected = expected.reshape(())
             check(f"{frame}.npz: {name}", same_bits(archive[name], expected))
-        check(f"{frame}.npz: scene", json.loads(str(archive["scene"])) == scene)
+        check(f"{frame}.npz: scene", json.loads(str(archive["metadata"])) == scene)
     gap = numpy.load(folder / f"{frame}.npy", allow_pickle=False)
     check(f"{frame}.npy", same_bits(gap, raw("gap").reshape(shape)))
 
@@ -83,7 +83,7 @@ def check_image(path, raw, shape, scene):
     for name, other in numbers.items():
         check(f"{frame}: {name}", same_bits(vtk_to_numpy(state.GetArray(name)).ravel(), raw(other)))
     check(f"{frame}: time steps of the pipeline", times is None or tuple(times) == tuple(raw("time")))
-    check(f"{frame}: scene", json.loads(state.GetAbstractArray("scene").GetValue(0)) == scene)
+    check(f"{frame}: scene", json.loads(state.GetAbstractArray("metadata").GetValue(0)) == scene)
     # cells lie where they belong: the one that VTK finds at a centre is the one of this centre
     x1, x2 = raw("x1"), raw("x2")
     for i in range(shape[0]):

@@ -8,8 +8,8 @@ pub struct Cone {
 }
 
 impl Cone {
-    /// A cone whose flank rises by `tan_beta` per unit of radius: β is the angle between flank and
-    /// plane, small in the half-space theory.
+    /// A cone whose flank rises by `tan_beta` per unit of radius. β is the angle between flank and plane, small in the
+    /// half-space theory.
     ///
     /// # Errors
     /// If the slope is not finite and positive.

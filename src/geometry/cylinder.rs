@@ -1,9 +1,9 @@
 use crate::error::{Result, length};
 use crate::geometry::Geometry;
 
-/// A cylinder lying on the plane with its axis along x2, as a parabola: h = x1² / 2R.
+/// A cylinder on the plane with its axis along x2, approximated by a parabola: h = x1² / 2R.
 ///
-/// It has no ends: contact reaches the edges of the grid along x2, so a contact needs
+/// It has no ends: the contact reaches the edges of the grid along x2, so that it needs
 /// [`Edge::Allow`](crate::contact::Edge::Allow) and models a cylinder as long as the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cylinder {

@@ -1,8 +1,8 @@
 use crate::error::{Result, length};
 use crate::geometry::Geometry;
 
-/// An ellipsoid touching the plane at the origin, as the paraboloid of its two principal radii of
-/// curvature along the axes: h = x1²/2R1 + x2²/2R2.
+/// An ellipsoid touching the plane at the origin, approximated by the paraboloid of its principal radii of curvature
+/// along the axes: h = x1²/2R1 + x2²/2R2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ellipsoid {
     radii: [f64; 2],

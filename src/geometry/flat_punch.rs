@@ -3,7 +3,7 @@ use crate::geometry::Geometry;
 
 /// A rigid punch with a flat face centred on the origin: the gap is 0 on the face and +∞ off it.
 ///
-/// A cell belongs to the face when its centre does.
+/// A cell belongs to the face if its centre does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlatPunch {
     face: Face,

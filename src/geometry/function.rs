@@ -2,7 +2,7 @@ use std::fmt;
 
 use crate::geometry::Geometry;
 
-/// A geometry given by a closure of (x1, x2) \[m\] that returns the gap \[m\].
+/// A geometry whose gap \[m\] is a closure of (x1, x2) \[m\].
 ///
 /// ```
 /// use viscocontact::geometry::{FnGeometry, Geometry};
@@ -15,7 +15,7 @@ pub struct FnGeometry<F> {
 }
 
 impl<F: Fn(f64, f64) -> f64 + Send + Sync> FnGeometry<F> {
-    /// Wraps the closure; its values are checked when a contact is built.
+    /// Wraps the closure. Its values are checked when a contact is built.
     pub fn new(gap: F) -> FnGeometry<F> {
         FnGeometry { gap }
     }

@@ -1,4 +1,4 @@
-//! The shape of the bodies: the clearance between them before they deform.
+//! The shape of the bodies: the gap between them before they deform.
 //!
 //! | shape | initial gap |
 //! |---|---|
@@ -10,9 +10,9 @@
 //! | [`Wavy`] | A (1 − cos 2πx1/λ), or the sum of two such waves |
 //! | [`HeightMap`] | a measured surface |
 //! | [`Rough`] | a random self-affine surface |
-//! | [`Sum`] | shapes on top of each other, as roughness on a sphere |
-//! | [`Shifted`] | another shape, moved in the plane |
-//! | [`Repeated`] | another shape, once a period |
+//! | [`Sum`] | superposed shapes, such as roughness on a sphere |
+//! | [`Shifted`] | another shape, shifted in the plane |
+//! | [`Repeated`] | another shape, repeated periodically |
 //! | [`FnGeometry`] | any closure of (x1, x2) |
 
 mod cone;
@@ -21,11 +21,11 @@ mod ellipsoid;
 mod flat_punch;
 mod function;
 mod height_map;
+mod height_spectrum;
 pub mod laws;
 mod repeated;
 mod rough;
 mod shifted;
-mod spectrum;
 mod sphere;
 mod statistics;
 mod sum;
@@ -52,9 +52,9 @@ use crate::Grid;
 use crate::error::{Error, Result};
 use crate::memory;
 
-/// The gap between the undeformed bodies when they just touch, or would touch, at zero approach.
+/// The gap between the undeformed bodies at zero approach.
 ///
-/// Only differences matter: adding a constant to the gap moves the approach by that constant.
+/// Only differences matter: a constant added to the gap is added to the approach.
 ///
 /// ```
 /// use viscocontact::{Grid, geometry::Geometry};
@@ -76,13 +76,13 @@ use crate::memory;
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 pub trait Geometry: Debug + Send + Sync {
-    /// Gap at the point (x1, x2) \[m\]; `+∞` where there is nothing to touch. NaN and −∞ are errors
-    /// wherever a geometry is used.
+    /// Gap at the point (x1, x2) \[m\]; `+∞` where there is nothing to touch. NaN and −∞ are errors wherever a
+    /// geometry is used.
     fn initial_gap(&self, x1: f64, x2: f64) -> f64;
 
-    /// Writes the gap at every cell centre of `grid` into `gap` \[m\], which holds one value a cell.
+    /// Writes the gap at every cell centre of `grid` into `gap` \[m\], which has one value per cell.
     ///
-    /// Override it where a whole field is cheaper than its points one by one.
+    /// Override it if a whole field is cheaper than its points one by one.
     ///
     /// # Panics
     /// If `gap` is not of length [`Grid::len`].
@@ -90,10 +90,10 @@ pub trait Geometry: Debug + Send + Sync {
         fill_by_points(self, grid, [0.0; 2], gap);
     }
 
-    /// As [`fill_gap`](Geometry::fill_gap), of the shape with its origin moved to the point `by` \[m\].
+    /// As [`fill_gap`](Geometry::fill_gap), for the shape with its origin shifted to the point `by` \[m\].
     ///
-    /// Override it where a whole field can be moved better than its points one by one, as the waves of a periodic
-    /// surface.
+    /// Override it if a whole field can be shifted more accurately than its points one by one, such as the Fourier
+    /// series of a periodic surface.
     ///
     /// # Panics
     /// If `gap` is not of length [`Grid::len`].
@@ -102,9 +102,9 @@ pub trait Geometry: Debug + Send + Sync {
     }
 }
 
-/// The gap of the moved shape at the cell centres one by one.
+/// Writes the gap of the shifted shape at the cell centres, one by one.
 fn fill_by_points<G: Geometry + ?Sized>(shape: &G, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
-    assert_eq!(gap.len(), grid.len(), "gap must hold one value a cell");
+    assert_eq!(gap.len(), grid.len(), "gap must have one value per cell");
     let [_, n2] = grid.cells();
     for (i, row) in gap.chunks_exact_mut(n2).enumerate() {
         for (j, value) in row.iter_mut().enumerate() {
@@ -114,7 +114,7 @@ fn fill_by_points<G: Geometry + ?Sized>(shape: &G, grid: &Grid, by: [f64; 2], ga
     }
 }
 
-/// What is owned, shared or chosen at run time behind a pointer serves like the thing itself.
+/// Implements [`Geometry`] for pointers, so that shapes can be owned, shared or chosen at run time.
 macro_rules! forward_geometry {
     ($($pointer:ty),*) => {$(
         impl<T: Geometry + ?Sized> Geometry for $pointer {
@@ -134,32 +134,32 @@ macro_rules! forward_geometry {
 }
 forward_geometry!(Box<T>, std::sync::Arc<T>);
 
-/// The gap field of the rigid bodies above their lowest point, so that heights far larger than the contact
-/// is deep cost no digits.
+/// The gap field of the rigid bodies, relative to its minimum: heights that are large compared with the indentation
+/// cost no digits.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Gap {
-    /// The lowest gap \[m\].
+    /// Minimum of the gap \[m\].
     pub(crate) datum: f64,
-    /// What the gap of each cell exceeds it by \[m\]; 0 somewhere, +∞ where there is nothing to touch.
+    /// Gap of each cell above the minimum \[m\]; 0 in at least one cell, +∞ where there is nothing to touch.
     pub(crate) above: Vec<f64>,
-    /// The body that each cell belongs to, the one that is lowest there; `None` for a single body.
+    /// The body of each cell, the lowest one there; `None` for a single body.
     pub(crate) owner: Option<Vec<u16>>,
 }
 
 /// The gap of a geometry on every cell, unchecked.
 ///
 /// # Errors
-/// If there is no memory for it, nor for the pressure that every contact on the grid shows.
+/// If there is no memory for it and for the pressure, which every contact on the grid needs as well.
 pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Result<Vec<f64>> {
-    // before a field is filled that cannot be used
+    // checked before filling a field that could not be used
     memory::check("gap and pressure of a contact", 16 * grid.len() as u128)?;
     let mut gap = memory::field("the gap of a contact", grid.len(), f64::INFINITY)?;
     geometry.fill_gap(grid, &mut gap);
     Ok(gap)
 }
 
-/// Refuses what is no gap.
+/// Refuses NaN and −∞.
 fn check(gap: &[f64], grid: &Grid) -> Result<()> {
     match gap.iter().position(|h| h.is_nan() || *h == f64::NEG_INFINITY) {
         Some(k) => {
@@ -171,12 +171,12 @@ fn check(gap: &[f64], grid: &Grid) -> Result<()> {
 }
 
 impl Gap {
-    /// Joins the gap fields of the bodies and checks them: no NaN, no −∞, and something to touch.
+    /// Combines the gap fields of the bodies and checks them: no NaN, no −∞, and each body has something to touch.
     pub(crate) fn new(bodies: Vec<Vec<f64>>, grid: &Grid) -> Result<Gap> {
         let count = bodies.len();
         bodies.iter().try_for_each(|own| check(own, grid))?;
         let mut bodies = bodies.into_iter();
-        // the first is taken over
+        // the field of the first body is reused
         let mut above = bodies.next().unwrap_or_default();
         let mut owner = match count {
             0 | 1 => None,
@@ -204,7 +204,7 @@ impl Gap {
         Ok(Gap { datum, above, owner })
     }
 
-    /// Takes the heights of a single body, checked, and leaves those it had in their place; returns the datum it had.
+    /// Swaps in the checked heights of a single body, leaving the old ones in `heights`; returns the old datum.
     pub(crate) fn exchange(&mut self, heights: &mut Vec<f64>, grid: &Grid) -> Result<f64> {
         check(heights, grid)?;
         let datum = heights.iter().copied().fold(f64::INFINITY, f64::min);
@@ -215,13 +215,13 @@ impl Gap {
         Ok(self.put_back(heights, datum))
     }
 
-    /// Takes heights above a datum, and leaves those it had in their place; returns the datum it had.
+    /// Swaps in heights above a datum, leaving the old ones in `above`; returns the old datum.
     pub(crate) fn put_back(&mut self, above: &mut Vec<f64>, datum: f64) -> f64 {
         std::mem::swap(&mut self.above, above);
         std::mem::replace(&mut self.datum, datum)
     }
 
-    /// The body that cell `k` belongs to.
+    /// The body of cell `k`.
     pub(crate) fn owner(&self, k: usize) -> usize {
         self.owner.as_ref().map_or(0, |owner| owner[k].into())
     }
@@ -250,7 +250,7 @@ mod tests {
     }
 
     #[test]
-    fn shifting_moves_the_shape() {
+    fn shifted_shapes_are_shifted() {
         let shifted = Shifted::new(Sphere::new(1.0).unwrap(), [0.5, -0.25]).unwrap();
         assert_eq!(shifted.initial_gap(0.5, -0.25), 0.0);
         assert_eq!(shifted.initial_gap(1.5, -0.25), 0.5);

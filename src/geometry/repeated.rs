@@ -3,7 +3,7 @@ use std::sync::Arc;
 use crate::error::{Error, Result};
 use crate::geometry::Geometry;
 
-/// Another shape once a period, for periodic domains: what lies within half a period of the origin is repeated.
+/// Another shape repeated periodically, for periodic domains: its part within half a period of the origin is repeated.
 ///
 /// ```
 /// use viscocontact::geometry::{Geometry, Repeated, Sphere};
@@ -20,20 +20,20 @@ pub struct Repeated {
 }
 
 impl Repeated {
-    /// `shape` repeated with a `period` \[m\] along x1 and x2; `+∞` along an axis on which it is not.
+    /// `shape` repeated with a `period` \[m\] along x1 and x2; `+∞` along an axis without repetition.
     ///
     /// # Errors
     /// If a period is not positive.
     pub fn new(shape: impl Geometry + 'static, period: [f64; 2]) -> Result<Repeated> {
         for (field, value) in [("period along x1", period[0]), ("period along x2", period[1])] {
             if value.is_nan() || value <= 0.0 {
-                return Err(Error::OutOfRange { field, value, allowed: "> 0, or +∞ for none" });
+                return Err(Error::OutOfRange { field, value, allowed: "> 0, or +∞ for no repetition" });
             }
         }
         Ok(Repeated { shape: Arc::new(shape), period })
     }
 
-    /// The coordinate from the nearest image of the origin.
+    /// The coordinate relative to the nearest periodic image of the origin.
     fn wrapped(&self, axis: usize, x: f64) -> f64 {
         let period = self.period[axis];
         if period.is_finite() { x - period * (x / period).round() } else { x }
@@ -53,7 +53,7 @@ mod tests {
     use crate::geometry::{Cone, Shifted};
 
     #[test]
-    fn a_track_closes_under_a_shift() {
+    fn shifted_repetitions_are_periodic() {
         let grid = Grid::new([8, 2], [8.0, 2.0]).unwrap();
         let cones = Repeated::new(Cone::new(1.0).unwrap(), [8.0, f64::INFINITY]).unwrap();
         let gap_at = |by: f64| {
@@ -63,7 +63,7 @@ mod tests {
         };
         assert_eq!(gap_at(3.0), gap_at(-5.0));
         assert_eq!(gap_at(3.0), gap_at(19.0));
-        // The cone at 3 m reaches around the edge: the cell at −3.5 m is 1.5 m from it.
+        // The cone at 3 m extends across the periodic boundary: the cell at −3.5 m is 1.5 m from it.
         assert_eq!(gap_at(3.0)[0], 1.5_f64.hypot(0.5));
     }
 

@@ -4,7 +4,7 @@ use crate::Grid;
 use crate::error::{Result, finite};
 use crate::geometry::Geometry;
 
-/// Another geometry moved in the plane of contact.
+/// Another geometry shifted in the plane of contact.
 ///
 /// ```
 /// use viscocontact::geometry::{Geometry, Shifted, Sphere};
@@ -20,7 +20,7 @@ pub struct Shifted {
 }
 
 impl Shifted {
-    /// `shape` with its origin moved to the point `by` \[m\].
+    /// `shape` with its origin shifted to the point `by` \[m\].
     ///
     /// # Errors
     /// If a component of the shift is not finite.
@@ -28,7 +28,7 @@ impl Shifted {
         Shifted::of(Arc::new(shape), by)
     }
 
-    /// The same of a shape that is shared.
+    /// The same for a shared shape.
     pub(crate) fn of(shape: Arc<dyn Geometry>, by: [f64; 2]) -> Result<Shifted> {
         let by = [finite("shift along x1", by[0])?, finite("shift along x2", by[1])?];
         Ok(Shifted { shape, by })

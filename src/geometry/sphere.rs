@@ -1,10 +1,9 @@
 use crate::error::{Result, length};
 use crate::geometry::Geometry;
 
-/// A sphere touching the plane at the origin, as the paraboloid of its radius of curvature:
-/// h = (x1² + x2²) / 2R.
+/// A sphere touching the plane at the origin, approximated by a paraboloid: h = (x1² + x2²) / 2R.
 ///
-/// For two spheres give the combined radius, 1/R = 1/R_upper + 1/R_lower.
+/// For two spheres use the combined radius, 1/R = 1/R_upper + 1/R_lower.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sphere {
     radius: f64,

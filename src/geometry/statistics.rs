@@ -1,16 +1,16 @@
-//! Statistics of surfaces.
+//! Statistics of rough surfaces.
 
 use std::f64::consts::{PI, TAU};
 
 use crate::error::{Error, MapError, Result, finite, positive};
 use crate::geometry::HeightMap;
-use crate::geometry::spectrum::{Spectrum, wave_numbers};
+use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
 
-/// How rough a surface is, over its known points.
+/// Statistics of a surface over its known points.
 ///
-/// Slopes and curvatures of a periodic map without missing points are those of its waves; of others they are central
-/// differences over two cells, wherever all the points they need are known: they see waves of a few cells as less
-/// steep than they are.
+/// Slopes and curvatures of a periodic map without missing points are those of its Fourier series. Those of other maps
+/// are central differences over two cells, wherever all the points needed are known; they underestimate the slope of
+/// waves a few cells long.
 ///
 /// ```
 /// use viscocontact::geometry::{HeightMap, SurfaceStatistics};
@@ -27,7 +27,7 @@ pub struct SurfaceStatistics {
     pub mean: f64,
     /// Root mean square of the height above the mean, S_q \[m\].
     pub rms_height: f64,
-    /// Skewness of the heights, S_sk; 0 for a Gaussian surface, negative for one with valleys rather than peaks.
+    /// Skewness of the heights, S_sk; 0 for a Gaussian surface, negative if valleys dominate over peaks.
     pub skewness: f64,
     /// Kurtosis of the heights, S_ku; 3 for a Gaussian surface.
     pub kurtosis: f64,
@@ -46,10 +46,9 @@ impl SurfaceStatistics {
     /// The statistics of a map.
     ///
     /// # Errors
-    /// If no height is known, or all of them are equal, so that there is no distribution, or a statistic leaves the range of
-    /// `f64`.
+    /// If no height is known, all heights are equal, so that there is no distribution, or a statistic overflows `f64`.
     pub fn of(map: &HeightMap) -> Result<SurfaceStatistics> {
-        map.some_known()?;
+        map.require_known()?;
         let count = map.known().count() as f64;
         let mean = map.known().map(|z| z / count).sum::<f64>();
         let moment = |power: i32| map.known().map(|z| (z - mean).powi(power) / count).sum::<f64>();
@@ -58,9 +57,10 @@ impl SurfaceStatistics {
             positive("rms height", 0.0)?;
         }
         positive("rms height", rms_height)?;
-        // In units of the rms height, whose fourth power may be too small to be represented.
+        // In units of the rms height, whose fourth power may underflow.
         let scaled = |power: i32| map.known().map(|z| ((z - mean) / rms_height).powi(power) / count).sum::<f64>();
-        let squares = if map.is_periodic() && map.missing() == 0 { of_waves(map) } else { of_differences(map) };
+        let squares =
+            if map.is_periodic() && map.missing() == 0 { spectral_derivatives(map) } else { central_differences(map) };
         let rms_slopes =
             [finite("rms slope along x1", squares[0].sqrt())?, finite("rms slope along x2", squares[1].sqrt())?];
         Ok(SurfaceStatistics {
@@ -75,9 +75,9 @@ impl SurfaceStatistics {
     }
 }
 
-/// Of the waves of a periodic map, each with its own wave number.
-fn of_waves(map: &HeightMap) -> MeanSquares {
-    let spectrum = Spectrum::of(map.cells(), map.heights());
+/// From the Fourier series of a periodic map.
+fn spectral_derivatives(map: &HeightMap) -> MeanSquares {
+    let spectrum = HeightSpectrum::of(map.cells(), map.heights());
     let lengths = map.lengths();
     spectrum.waves().fold([0.0; 3], |[a, b, c], wave| {
         let [q1, q2] = wave_numbers(wave.number, lengths).map(|q| q * q);
@@ -86,11 +86,11 @@ fn of_waves(map: &HeightMap) -> MeanSquares {
     })
 }
 
-/// Of central differences.
-fn of_differences(map: &HeightMap) -> MeanSquares {
+/// By central differences.
+fn central_differences(map: &HeightMap) -> MeanSquares {
     let ([n1, n2], [s1, s2]) = (map.cells(), map.spacing());
     let (z, periodic) = (map.heights(), map.is_periodic());
-    let around = |index: usize, n: usize| {
+    let neighbours = |index: usize, n: usize| {
         let inside = index > 0 && index + 1 < n;
         (n > 2 && (inside || periodic)).then(|| ((index + n - 1) % n, (index + 1) % n))
     };
@@ -104,19 +104,19 @@ fn of_differences(map: &HeightMap) -> MeanSquares {
     for i in 0..n1 {
         for j in 0..n2 {
             let here = z[i * n2 + j];
-            let along1 = around(i, n1).map(|(a, b)| (z[a * n2 + j], z[b * n2 + j]));
-            let along2 = around(j, n2).map(|(a, b)| (z[i * n2 + a], z[i * n2 + b]));
-            let bend = |(a, b): (f64, f64), s: f64| (a - 2.0 * here + b) / (s * s);
+            let along1 = neighbours(i, n1).map(|(a, b)| (z[a * n2 + j], z[b * n2 + j]));
+            let along2 = neighbours(j, n2).map(|(a, b)| (z[i * n2 + a], z[i * n2 + b]));
+            let second_derivative = |(a, b): (f64, f64), s: f64| (a - 2.0 * here + b) / (s * s);
             if let Some((a, b)) = along1 {
                 add(0, (b - a) / (2.0 * s1));
             }
             if let Some((a, b)) = along2 {
                 add(1, (b - a) / (2.0 * s2));
             }
-            // A row of points is straight across.
-            let bends = [(along1, s1, n1), (along2, s2, n2)];
-            let bends = bends.map(|(pair, s, n)| if n == 1 { Some(0.0) } else { pair.map(|pair| bend(pair, s)) });
-            if let [Some(a), Some(b)] = bends {
+            // A single row of points has no curvature across.
+            let curvatures = [(along1, s1, n1), (along2, s2, n2)]
+                .map(|(pair, s, n)| if n == 1 { Some(0.0) } else { pair.map(|pair| second_derivative(pair, s)) });
+            if let [Some(a), Some(b)] = curvatures {
                 add(2, 0.5 * (a + b));
             }
         }
@@ -125,16 +125,16 @@ fn of_differences(map: &HeightMap) -> MeanSquares {
 }
 
 impl HeightMap {
-    /// Probability density of the known heights: the middles of `bins` equal intervals between the lowest and the
-    /// highest \[m\], with the density in each \[1/m\], whose integral is 1.
+    /// Probability density of the known heights: centres of `bins` equal intervals between the lowest and the highest
+    /// \[m\], and the density in each \[1/m\], whose integral is 1.
     ///
     /// # Errors
-    /// If there are no bins, or the heights have no range.
+    /// If there are no bins, or all heights are equal.
     pub fn height_distribution(&self, bins: usize) -> Result<Vec<(f64, f64)>> {
         if bins == 0 {
             return Err(Error::CountOutOfRange { field: "bins of the heights", value: 0, allowed: "1 or more" });
         }
-        self.some_known()?;
+        self.require_known()?;
         let low = self.known().fold(f64::INFINITY, f64::min);
         let range = positive("range of the heights", self.known().fold(low, f64::max) - low)?;
         let width = positive("width of a bin", range / bins as f64)?;
@@ -147,18 +147,18 @@ impl HeightMap {
         Ok(counts.into_iter().enumerate().map(bin).collect())
     }
 
-    /// Power spectral density of the heights above their mean: wave numbers q \[rad/m\], and the radial mean of C
-    /// \[m⁴\] there, normalised so that
+    /// Power spectral density of the heights about their mean: wave numbers q \[rad/m\] and the radial mean of C \[m⁴\]
+    /// at each, normalised so that
     ///
     /// $$ \int_0^\infty C(q)\, 2\pi q \,dq = \langle (z - \bar z)^2 \rangle $$
     ///
-    /// to within the width 2π/L of the rings, L the shorter side, and the waves in the corners beyond the last ring,
-    /// at two cells of the coarser side. Of a single row of points it is that of a profile \[m³\], with
-    /// 2 ∫ C dq as the mean square. A map that is not periodic is weighted by a Hann window, corrected for the power
-    /// that it takes; level the map before ([`HeightMap::leveled`]).
+    /// except for the width 2π/L of the rings, where L is the shorter side, and for the waves in the corners beyond the
+    /// last ring, whose wavelength is two cells of the coarser side. For a single row of points it is the spectrum of a
+    /// profile \[m³\], with 2 ∫ C dq as the mean square. A map that is not periodic is weighted by a Hann window and
+    /// corrected for the power lost; level the map first ([`HeightMap::leveled`]).
     ///
     /// # Errors
-    /// If heights are missing: fill them, or crop the map.
+    /// If heights are missing: fill them or crop the map.
     pub fn power_spectrum(&self) -> Result<Vec<(f64, f64)>> {
         if self.missing() > 0 {
             return Err(Error::Map(MapError::Incomplete { missing: self.missing() }));
@@ -172,7 +172,7 @@ impl HeightMap {
             field.iter_mut().enumerate().for_each(|(k, z)| *z *= window[0][k / cells[1]] * window[1][k % cells[1]]);
         }
         let axes = || (0..2).filter(|&axis| cells[axis] > 1);
-        // Modes on a square of 2π/L1 by 2π/L2 each: power over its area is the density.
+        // Each wave covers 2π/L1 by 2π/L2: its power over this area is the density.
         let area: f64 = axes().map(|axis| lengths[axis] / TAU).product();
         let width = axes().map(|axis| TAU / lengths[axis]).fold(0.0, f64::max);
         let last = axes().map(|axis| PI / self.spacing()[axis]).fold(f64::INFINITY, f64::min);
@@ -181,7 +181,7 @@ impl HeightMap {
         }
         let rings = (last / width * (1.0 + 1e-12)) as usize;
         let mut sums = vec![[0.0; 3]; rings + 1];
-        let spectrum = Spectrum::of(cells, &field);
+        let spectrum = HeightSpectrum::of(cells, &field);
         for wave in spectrum.waves() {
             let [q1, q2] = wave_numbers(wave.number, lengths);
             let q = q1.hypot(q2);
@@ -195,7 +195,7 @@ impl HeightMap {
     }
 }
 
-/// A Hann window over the points of an axis, with a mean square of 1.
+/// A Hann window over the points of an axis, normalised to a mean square of 1.
 fn hann(n: usize) -> Vec<f64> {
     if n == 1 {
         return vec![1.0];
@@ -253,12 +253,12 @@ mod tests {
         close(exact.rms_slopes[1], rms * q2, 1e-12);
         close(exact.rms_slope, rms * q1.hypot(q2), 1e-12);
         close(exact.rms_curvature, rms * 0.5 * (q1 * q1 + q2 * q2), 1e-11);
-        // Differences over two cells take sin(qs)/(qs) off, up to the ends that they lack.
+        // Differences over two cells reduce slopes by sin(qs)/(qs), except at the ends, where they are missing.
         let seen = SurfaceStatistics::of(&map).unwrap();
         close(seen.rms_slopes[0], rms * (q1 / 32.0).sin() * 32.0, 2e-2 * rms * q1);
         let curvature = 0.5 * (2.0 * (1.0 - (q1 / 32.0).cos()) * 1024.0 + 2.0 * (1.0 - (q2 / 12.0).cos()) * 144.0);
         close(seen.rms_curvature, rms * curvature, 2e-2 * rms * curvature);
-        // With a point missing, a periodic map is seen in differences too.
+        // With a missing point, a periodic map is differentiated by differences too.
         let mut holed = map.heights().to_vec();
         holed[100] = f64::NAN;
         let holed = HeightMap::new([32, 24], [1.0, 2.0], holed).unwrap().periodic();
@@ -266,13 +266,13 @@ mod tests {
     }
 
     #[test]
-    fn rough_surfaces_come_back_with_their_exponent() {
+    fn spectra_of_rough_surfaces_have_their_exponent() {
         for (hurst, seed) in [(0.5, 1), (0.8, 2), (1.0, 3)] {
             let map = rough(256, hurst, seed);
             let (from, to) = (1.2 * TAU / 0.25, 0.9 * TAU * 32.0);
             let found = slope(&map.power_spectrum().unwrap(), from, to);
             assert!((found + 2.0 * (hurst + 1.0)).abs() < 0.15, "H = {hurst}: {found}");
-            // A window of it, which is not periodic.
+            // A part of it, which is not periodic.
             let part = map.cropped([20, 30], [160, 160]).unwrap();
             let found = slope(&part.power_spectrum().unwrap(), from, to);
             assert!((found + 2.0 * (hurst + 1.0)).abs() < 0.3, "window, H = {hurst}: {found}");
@@ -287,7 +287,7 @@ mod tests {
             spectrum.iter().map(|(q, c)| c * TAU * q * width).sum::<f64>().sqrt()
         };
         assert!((integral(&map) / 3e-3 - 1.0).abs() < 0.05, "{}", integral(&map));
-        // The mean over twenty surfaces, as the window weighs the middle of each more.
+        // The mean over twenty surfaces, since the window weights the middle of each more.
         let seen = (0..20).map(|seed| integral(&rough(128, 0.8, seed).cropped([0, 0], [127, 127]).unwrap()));
         let mean = seen.sum::<f64>() / 20.0;
         assert!((mean / 3e-3 - 1.0).abs() < 0.05, "{mean}");
@@ -311,9 +311,9 @@ mod tests {
         }
     }
 
-    /// Slopes of points that lie as close as numbers allow are none: told by name, and not as NaN.
+    /// Slopes between points whose spacing is close to the smallest numbers overflow: an error by name, not NaN.
     #[test]
-    fn statistics_beyond_numbers_are_refused() {
+    fn overflowing_statistics_are_refused() {
         let heights = || vec![1.0, 3.0, -2.0, 7.0, 0.5, 4.0, 1.5, 2.0, 9.0];
         for lengths in [[1e-200, 1.0], [1.0, 1e-200], [1e-160, 1e-120]] {
             for map in [
@@ -327,7 +327,7 @@ mod tests {
     }
 
     #[test]
-    fn what_has_no_statistics_is_refused() {
+    fn maps_without_statistics_are_refused() {
         let flat = HeightMap::new([3, 3], [1.0, 1.0], vec![0.1; 9]).unwrap();
         assert!(matches!(SurfaceStatistics::of(&flat), Err(Error::OutOfRange { field: "rms height", .. })));
         assert!(matches!(flat.height_distribution(3), Err(Error::OutOfRange { field: "range of the heights", .. })));

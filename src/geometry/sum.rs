@@ -3,7 +3,7 @@ use std::sync::Arc;
 use crate::Grid;
 use crate::geometry::Geometry;
 
-/// Shapes on top of each other: the gap is the sum of theirs, and nothing where one of them has nothing to touch.
+/// Superposed shapes: the gap is the sum of theirs, and +∞ where one of them has nothing to touch.
 ///
 /// ```
 /// use viscocontact::geometry::{Geometry, Sphere, Sum, Wavy};
@@ -23,14 +23,14 @@ impl Sum {
         Sum { parts: vec![Arc::new(first), Arc::new(second)] }
     }
 
-    /// The sum with a further shape.
+    /// The sum with another shape.
     #[must_use]
     pub fn and(mut self, shape: impl Geometry + 'static) -> Sum {
         self.parts.push(Arc::new(shape));
         self
     }
 
-    /// Adds up what every part writes into a field.
+    /// Adds up the fields that `write` fills for each part.
     fn fill(&self, gap: &mut [f64], write: impl Fn(&dyn Geometry, &mut [f64])) {
         gap.fill(0.0);
         let mut part = vec![0.0; gap.len()];
@@ -61,7 +61,7 @@ mod tests {
     use crate::geometry::{FlatPunch, FnGeometry, HeightMap, Shifted, Sphere};
 
     #[test]
-    fn gaps_add_up_and_nothing_wins() {
+    fn gaps_add_up_and_infinity_prevails() {
         let sum =
             Sum::new(Sphere::new(0.5).unwrap(), FlatPunch::circular(1.0).unwrap()).and(FnGeometry::new(|x1, _| x1));
         assert_eq!(sum.initial_gap(0.5, 0.0), 0.75);
@@ -73,8 +73,9 @@ mod tests {
     }
 
     #[test]
-    fn parts_move_in_their_own_way() {
-        // A wave of a period of 3 points moves exactly only as a wave: bicubic would be off by a tenth.
+    fn each_part_is_shifted_by_its_own_method() {
+        // A wave with a period of 3 points is shifted exactly only by its Fourier series: bicubic interpolation errs by
+        // a tenth.
         let wave = |x: f64| (std::f64::consts::TAU * x / 3.0).cos();
         let map = HeightMap::new([9, 1], [9.0, 1.0], (0..9).map(|i| wave(i as f64 - 4.0)).collect()).unwrap();
         let moved = Shifted::new(Sum::new(map.periodic(), Sphere::new(1.0).unwrap()), [0.2, 0.0]).unwrap();

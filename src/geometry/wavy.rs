@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use crate::error::{Result, length, positive};
 use crate::geometry::Geometry;
 
-/// A wavy surface, A (1 − cos 2πx1/λ), or the sum of one wave along x1 and one along x2. A crest lies on the origin.
+/// A wavy surface, A (1 − cos 2πx1/λ), or the sum of a wave along x1 and one along x2. A crest touches at the origin.
 ///
 /// ```
 /// use viscocontact::geometry::{Geometry, Wavy};
@@ -20,7 +20,7 @@ pub struct Wavy {
 }
 
 impl Wavy {
-    /// A wave along x1 of `amplitude` A \[m\], half its height from trough to crest, and `wavelength` λ \[m\].
+    /// A wave along x1 of `amplitude` A \[m\], half the height from trough to crest, and `wavelength` λ \[m\].
     ///
     /// # Errors
     /// If amplitude or wavelength is not finite and positive, or the amplitude more than 1e300 m.
@@ -43,10 +43,10 @@ impl Wavy {
 
 impl Geometry for Wavy {
     fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
-        // 1 − cos 2a = 2 sin² a, which keeps its digits near the crest.
+        // 1 − cos 2a = 2 sin² a avoids cancellation near the crest.
         let wave = |axis: usize, x: f64| {
             let periods = x / self.wavelength[axis];
-            // more waves than there are numbers for: any height of the wave is as good
+            // the number of periods overflows: the phase is lost, and any value of the wave is as good
             let periods = if periods.is_finite() { periods } else { x % self.wavelength[axis] / self.wavelength[axis] };
             2.0 * self.amplitude[axis] * (PI * (periods - periods.round())).sin().powi(2)
         };
@@ -73,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn more_waves_than_numbers_are_waves_all_the_same() {
+    fn waves_stay_in_range_when_the_number_of_periods_overflows() {
         for (wavelength, x) in [(5e-324, 1.0), (1e-310, 1e10), (1e-200, f64::MAX), (5e-324, f64::MAX)] {
             let gap = Wavy::new(2.0, wavelength).unwrap().initial_gap(x, 0.0);
             assert!((0.0..=4.0).contains(&gap), "{gap} at {x:e} m of {wavelength:e} m");
@@ -87,7 +87,7 @@ mod tests {
             other => panic!("unexpected {other}"),
         };
         assert_eq!(field(Wavy::new(0.0, 1.0)), "amplitude along x1");
-        // twice as high from trough to crest, which would be no number
+        // the height from trough to crest would overflow
         assert_eq!(field(Wavy::new(1e308, 1.0)), "amplitude along x1");
         assert_eq!(field(Wavy::new(1.0, f64::INFINITY)), "wavelength along x1");
         assert_eq!(field(Wavy::in_two_directions([1.0, f64::NAN], [1.0, 1.0])), "amplitude along x2");

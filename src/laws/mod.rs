@@ -1,15 +1,15 @@
-//! For the tests of those who write a rheology, a geometry or a load history: what each must obey, and random ones to
-//! try against it. Feature `laws`.
+//! For tests of your own rheologies, geometries and load histories: the laws that each must obey, and random models to
+//! test with. Feature `laws`.
 //!
-//! | what | its laws | valid ones at random |
+//! | model | its laws | random valid models |
 //! |---|---|---|
 //! | [`Rheology`](crate::rheology::Rheology) | [`rheology`] | [`strategies::rheologies`], [`strategies::spectra`] |
 //! | [`Geometry`](crate::geometry::Geometry) | [`geometry`] | [`strategies::geometries`], [`strategies::height_maps`] |
 //! | [`LoadHistory`](crate::load::LoadHistory) | [`load`] | [`strategies::histories`], [`strategies::loads`] |
-//! | a whole contact | | [`strategies::scenes`] |
+//! | a whole contact | | [`strategies::scenarios`] |
 //!
-//! The laws themselves need no feature; the strategies are [`proptest`](mod@proptest)'s. The models of the crate pass through the very
-//! same functions.
+//! The laws need no feature; the strategies are those of [`proptest`](mod@proptest). The models of the crate are tested
+//! with the same functions.
 //!
 //! ```
 //! use proptest::prelude::*;
@@ -33,11 +33,9 @@
 //! });
 //! ```
 
-mod histories;
-mod scenes;
 pub mod strategies;
 
 pub use crate::geometry::laws as geometry;
 pub use crate::load::laws as load;
 pub use crate::rheology::laws as rheology;
-pub use scenes::Scene;
+pub use strategies::Scenario;

@@ -1,68 +1,44 @@
-//! Contacts that are pressed to one side.
+//! Position of a contact relative to a reference point.
 
-use crate::ViscoelasticContact;
-use crate::error::{Result, finite};
+use crate::Grid;
+use crate::sum::greatest;
 
-/// How a contact lies about a point, see [`ViscoelasticContact::asymmetry`].
+/// Position of a contact relative to a point, see
+/// [`ViscoelasticContact::asymmetry`](crate::ViscoelasticContact::asymmetry).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Asymmetry {
-    /// Where the force acts: ∬ p x / ∬ p along x1 and x2 \[m\], from the origin of the grid.
+    /// Centre of pressure, ∬ p x / ∬ p along x1 and x2 \[m\], from the origin of the grid.
     pub center_of_pressure: [f64; 2],
-    /// How far the contact reaches from the point \[m\]: for each axis towards lower and towards higher coordinates, to
-    /// the outer sides of the last cells in contact; negative if all of it lies on the other side.
+    /// Distance from the point to the ends of the contact \[m\]: for each axis towards lower and towards higher
+    /// coordinates, to the outer sides of the last cells in contact; negative if the whole contact lies on the other
+    /// side.
     pub reach: [[f64; 2]; 2],
 }
 
 impl Asymmetry {
-    /// How much farther the contact reaches towards higher coordinates, relative to its length, for each axis: 0 for
-    /// a contact that is symmetric about the point, ±1 for one that begins there.
+    /// Difference between the reach towards higher and towards lower coordinates, relative to the length of the
+    /// contact, for each axis: 0 for a contact that is symmetric about the point, ±1 for one that begins there.
     pub fn skewness(&self) -> [f64; 2] {
         self.reach.map(|[lower, higher]| (higher - lower) / (higher + lower))
     }
-}
 
-impl ViscoelasticContact {
-    /// How the contact lies about the point `about` \[m\], as the point of a roller that is lowest; `None` without
-    /// contact. Of several patches, all together; where the bodies are periodic each cell counts where it is nearest to the
-    /// point, and the centre of pressure may lie beyond the grid.
-    ///
-    /// ```
-    /// use viscocontact::prelude::*;
-    ///
-    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
-    ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
-    ///     .build()?;
-    /// assert_eq!(contact.asymmetry([0.0; 2])?, None);
-    /// contact.step(0.0, Load::force(0.5))?;
-    /// let asymmetry = contact.asymmetry([0.0; 2])?.expect("it is pressed");
-    /// assert!(asymmetry.skewness()[0].abs() < 1e-12);
-    /// # Ok::<(), Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If a coordinate is not finite.
-    pub fn asymmetry(&self, about: [f64; 2]) -> Result<Option<Asymmetry>> {
-        finite("point along x1", about[0])?;
-        finite("point along x2", about[1])?;
-        let (grid, n2) = (self.grid(), self.grid().cells()[1]);
-        let touched = || self.pressure().iter().enumerate().filter(|(_, p)| **p > 0.0);
-        let greatest = self.greatest_pressure();
-        if greatest == 0.0 {
-            return Ok(None);
+    /// Asymmetry of `pressure` \[Pa\] about the point `about` \[m\]; `None` without contact.
+    pub(super) fn new(grid: &Grid, pressure: &[f64], periodic: [bool; 2], about: [f64; 2]) -> Option<Asymmetry> {
+        let (n2, lengths, highest) = (grid.cells()[1], grid.lengths(), greatest(pressure));
+        if highest == 0.0 {
+            return None;
         }
-        // relative to the greatest, no sum leaves the range of f64
+        // relative to the highest pressure, so that no sum overflows
         let (mut weight, mut moment) = (0.0, [0.0; 2]);
-        let (lengths, periodic) = (grid.lengths(), self.kernel().periodic_axes());
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-        for (k, p) in touched() {
-            let (cell, share) = ([k / n2, k % n2], p / greatest);
+        for (k, p) in pressure.iter().enumerate().filter(|(_, p)| **p > 0.0) {
+            let (cell, share) = ([k / n2, k % n2], p / highest);
             weight += share;
             for axis in 0..2 {
                 let distance = grid.coordinate(axis, cell[axis]) - about[axis];
-                let turns = if periodic[axis] { (distance / lengths[axis]).round() } else { 0.0 };
-                let distance = distance - turns * lengths[axis];
+                let periods = if periodic[axis] { (distance / lengths[axis]).round() } else { 0.0 };
+                let distance = distance - periods * lengths[axis];
                 moment[axis] += share * distance;
                 bounds[axis] = [bounds[axis][0].min(distance), bounds[axis][1].max(distance)];
             }
@@ -72,7 +48,7 @@ impl ViscoelasticContact {
             [half - bounds[axis][0], half + bounds[axis][1]]
         });
         let center_of_pressure = [0, 1].map(|axis| about[axis] + moment[axis] / weight);
-        Ok(Some(Asymmetry { center_of_pressure, reach }))
+        Some(Asymmetry { center_of_pressure, reach })
     }
 }
 
@@ -82,27 +58,27 @@ mod tests {
     use crate::observe::sphere;
 
     #[test]
-    fn a_sphere_that_is_off_the_origin() {
+    fn a_sphere_off_the_origin() {
         let a = Hertz::new(10.0e-3, 4.0e6, 0.2).unwrap().contact_radius();
         let contact = sphere([120, 100], [2.4e-3, 2.0e-3], [0.3e-3, -0.2e-3], 0.2);
         let found = contact.asymmetry([0.1e-3, -0.2e-3]).unwrap().unwrap();
         let [x1, x2] = found.center_of_pressure;
         assert!((x1 - 0.3e-3).abs() < 1e-7 && (x2 + 0.2e-3).abs() < 1e-7, "{x1:e} {x2:e}");
         assert!((contact.moment()[0] / contact.force() - x1).abs() < 1e-15);
-        // to a cell
+        // within a cell
         for (found, exact) in found.reach.as_flattened().iter().zip([a - 0.2e-3, a + 0.2e-3, a, a]) {
             assert!((found - exact).abs() < 20.0e-6, "{found:e} {exact:e}");
         }
         assert!((found.skewness()[0] - 0.2e-3 / a).abs() < 0.05);
         assert!(found.skewness()[1].abs() < 1e-9);
-        // seen from beyond its edge it lies on one side
+        // about a point beyond its edge, all of it lies on one side
         let beyond = contact.asymmetry([1.1e-3, 0.0]).unwrap().unwrap();
         assert!(beyond.reach[0][1] < 0.0 && beyond.skewness()[0] < -1.0);
         assert!(contact.asymmetry([f64::NAN, 0.0]).is_err());
     }
 
     #[test]
-    fn a_contact_across_the_seam_of_a_period() {
+    fn a_contact_across_the_periodic_boundary() {
         use crate::prelude::*;
 
         let grid = Grid::new([64, 1], [4.0e-3, 1.0]).unwrap();

@@ -1,13 +1,12 @@
-//! How gaps and pressures are distributed.
+//! Distributions of gap and pressure over the surface.
 
-use crate::ViscoelasticContact;
-use crate::error::{Error, Result, positive};
-use crate::memory;
+use crate::error::{Error, Result, finite, positive};
 
-const MOST_BINS: usize = 1_000_000;
+const MAX_BINS: usize = 1_000_000;
 
-/// The distribution of a quantity over the surface: a share of it where the quantity is zero, and a density in bins of
-/// equal width where it is above. Their sum over the surface is 1, as of P in Persson's theory of contact.
+/// The distribution of a quantity over the surface: the share of the surface where the quantity is zero, and the
+/// probability density of its positive values in bins of equal width. Together they integrate to 1, as P does in
+/// Persson's theory of contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Distribution {
     share_at_zero: f64,
@@ -16,25 +15,37 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// Of values `above` zero, of `all` values.
-    fn new(above: impl Iterator<Item = f64> + Clone, all: usize, bins: usize) -> Result<Distribution> {
-        if !(1..=MOST_BINS).contains(&bins) {
+    /// The distribution of `positive_values` out of `all` values, the others being zero.
+    fn new(positive_values: impl Iterator<Item = f64> + Clone, all: usize, bins: usize) -> Result<Distribution> {
+        if !(1..=MAX_BINS).contains(&bins) {
             return Err(Error::CountOutOfRange { field: "bins", value: bins, allowed: "in [1, 1000000]" });
         }
-        let greatest = above.clone().fold(0.0, f64::max);
+        let greatest = positive_values.clone().fold(0.0, f64::max);
         if greatest == 0.0 {
             return Ok(Distribution { share_at_zero: 1.0, width: 0.0, density: Vec::new() });
         }
         let width = positive("width of a bin", greatest / bins as f64)?;
         let (mut counts, mut counted) = (vec![0_usize; bins], 0);
-        for value in above {
-            // the last bin holds the greatest value too
+        for value in positive_values {
+            // the last bin includes its upper end
             counts[((value / width) as usize).min(bins - 1)] += 1;
             counted += 1;
         }
         let density = counts.into_iter().map(|count| count as f64 / all as f64 / width);
-        let density = density.map(|value| crate::error::finite("density", value)).collect::<Result<_>>()?;
+        let density = density.map(|value| finite("density", value)).collect::<Result<_>>()?;
         Ok(Distribution { share_at_zero: (all - counted) as f64 / all as f64, width, density })
+    }
+
+    /// The distribution of `gap` \[m\] over the cells where it is finite. A cell under pressure counts as gap 0.
+    pub(super) fn of_gap(gap: &[f64], pressure: &[f64], bins: usize) -> Result<Distribution> {
+        let finite = gap.iter().filter(|h| h.is_finite()).count();
+        let open = gap.iter().zip(pressure).filter(|(h, p)| h.is_finite() && **h > 0.0 && **p == 0.0);
+        Distribution::new(open.map(|(h, _)| *h), finite, bins)
+    }
+
+    /// The distribution of `pressure` \[Pa\] over all cells.
+    pub(super) fn of_pressure(pressure: &[f64], bins: usize) -> Result<Distribution> {
+        Distribution::new(pressure.iter().copied().filter(|p| *p > 0.0), pressure.len(), bins)
     }
 
     /// Share of the surface where the quantity is zero.
@@ -42,61 +53,21 @@ impl Distribution {
         self.share_at_zero
     }
 
-    /// Width of a bin, in the unit of the quantity; 0 if there are none.
+    /// Width of a bin, in the unit of the quantity; 0 without bins.
     pub fn width(&self) -> f64 {
         self.width
     }
 
-    /// Density in each bin, in 1 over the unit of the quantity; none where the quantity is zero all over.
+    /// Density in each bin, in 1 over the unit of the quantity; empty if the quantity is zero everywhere.
     ///
-    /// Times the width it adds up to 1 − [`share_at_zero`](Distribution::share_at_zero).
+    /// Its sum times the width is 1 − [`share_at_zero`](Distribution::share_at_zero).
     pub fn density(&self) -> &[f64] {
         &self.density
     }
 
-    /// Middles of the bins, in the unit of the quantity.
+    /// Centres of the bins, in the unit of the quantity.
     pub fn centers(&self) -> impl Iterator<Item = f64> {
         (0..self.density.len()).map(|k| (k as f64 + 0.5) * self.width)
-    }
-}
-
-impl ViscoelasticContact {
-    /// The distribution of the gap \[m\] over all cells that have something to touch, in `bins` between 0 and the greatest
-    /// gap. [`Distribution::share_at_zero`] is the share in contact, cells that touch without pressure included.
-    ///
-    /// ```
-    /// use viscocontact::prelude::*;
-    ///
-    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
-    ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
-    ///     .build()?;
-    /// contact.step(0.0, Load::force(0.5))?;
-    /// let gaps = contact.gap_distribution(20)?;
-    /// for (gap, density) in gaps.centers().zip(gaps.density()) {
-    ///     println!("{gap:.2e} m  {density:.3e} 1/m");
-    /// }
-    /// # Ok::<(), Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If `bins` is 0 or more than a million.
-    pub fn gap_distribution(&self, bins: usize) -> Result<Distribution> {
-        let mut gap = memory::field("the gap", self.grid().len(), 0.0)?;
-        self.gap_into(&mut gap)?;
-        let finite = gap.iter().filter(|h| h.is_finite()).count();
-        let open = gap.iter().zip(self.pressure()).filter(|(h, p)| h.is_finite() && **h > 0.0 && **p == 0.0);
-        Distribution::new(open.map(|(h, _)| *h), finite, bins)
-    }
-
-    /// The distribution of the pressure \[Pa\] over all cells of the grid, in `bins` between 0 and the greatest pressure.
-    /// [`Distribution::share_at_zero`] is the share out of contact.
-    ///
-    /// # Errors
-    /// If `bins` is 0 or more than a million.
-    pub fn pressure_distribution(&self, bins: usize) -> Result<Distribution> {
-        let pressed = self.pressure().iter().copied().filter(|p| *p > 0.0);
-        Distribution::new(pressed, self.grid().len(), bins)
     }
 }
 
@@ -114,10 +85,10 @@ mod tests {
         assert_eq!(found.centers().collect::<Vec<_>>(), [0.5, 1.5, 2.5, 3.5]);
         let none = Distribution::new(std::iter::empty(), 8, 4).unwrap();
         assert_eq!((none.share_at_zero(), none.density().len(), none.width()), (1.0, 0, 0.0));
-        for bins in [0, MOST_BINS + 1] {
+        for bins in [0, MAX_BINS + 1] {
             assert!(matches!(Distribution::new([1.0].into_iter(), 1, bins), Err(Error::CountOutOfRange { .. })));
         }
-        // a width that is no number any more
+        // a width that underflows
         assert!(matches!(Distribution::new([5e-324].into_iter(), 1, 2), Err(Error::OutOfRange { .. })));
     }
 
@@ -130,7 +101,7 @@ mod tests {
         let found = sphere([256; 2], [side; 2], [0.0; 2], 0.5).pressure_distribution(10).unwrap();
         let scale = 2.0 * std::f64::consts::PI * (a / side).powi(2) / peak.powi(2);
         for (p, density) in found.centers().zip(found.density()) {
-            // a tenth of the peak holds 200 cells and more
+            // each tenth of the peak holds at least 200 cells
             assert!((density - scale * p).abs() < 0.03 * scale * peak, "{p:e}: {density:e} {:e}", scale * p);
         }
         let share = std::f64::consts::PI * (a / side).powi(2);
@@ -138,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_add_up_and_cells_with_nothing_to_touch_do_not_count() {
+    fn shares_add_up_and_cells_with_infinite_gap_do_not_count() {
         let mut contact = ViscoelasticContact::builder(Grid::square(40, 4.0e-3).unwrap())
             .geometry(&FlatPunch::circular(1.0e-3).unwrap())
             .material(Material::incompressible(Elastic::new(1.0e6).unwrap()))

@@ -1,22 +1,23 @@
-//! What is asked of the state of a contact over time.
+//! Observations of the state of a contact.
 //!
 //! | question | answer |
 //! |---|---|
-//! | how hard is it pressed? | [`mean_pressure`](crate::ViscoelasticContact::mean_pressure), [`greatest_pressure`](crate::ViscoelasticContact::greatest_pressure), [`pressure_distribution`](crate::ViscoelasticContact::pressure_distribution) |
-//! | how far is the rest apart? | [`gap_distribution`](crate::ViscoelasticContact::gap_distribution) |
-//! | what does a line across it look like? | [`profile`](crate::ViscoelasticContact::profile) |
-//! | how many spots touch, how large? | [`patches`](crate::ViscoelasticContact::patches) |
-//! | is it pressed to one side? | [`asymmetry`](crate::ViscoelasticContact::asymmetry) |
+//! | How high is the pressure? | [`mean_pressure`](crate::ViscoelasticContact::mean_pressure), [`greatest_pressure`](crate::ViscoelasticContact::greatest_pressure), [`pressure_distribution`](crate::ViscoelasticContact::pressure_distribution) |
+//! | How wide is the gap outside the contact? | [`gap_distribution`](crate::ViscoelasticContact::gap_distribution) |
+//! | What are the values along a line? | [`profile`](crate::ViscoelasticContact::profile) |
+//! | How many patches touch, and how large are they? | [`patches`](crate::ViscoelasticContact::patches) |
+//! | Is the contact shifted to one side? | [`asymmetry`](crate::ViscoelasticContact::asymmetry) |
 //!
-//! All of them read the state and change nothing. Each goes through the cells once; those that need displacement or
-//! gap cost what [`displacement`](crate::ViscoelasticContact::displacement) costs.
+//! Each is a pure function of grid, pressure and gap; the methods apply it to the fields of a contact and change
+//! nothing. Each visits the cells once; those that need displacement or gap cost as much as
+//! [`displacement`](crate::ViscoelasticContact::displacement).
 
 pub(crate) mod area;
 mod asymmetry;
+mod contact;
 mod distribution;
 pub(crate) mod mesh_error;
 mod patches;
-mod pressure;
 mod profile;
 
 pub use asymmetry::Asymmetry;
@@ -25,7 +26,7 @@ pub use mesh_error::MeshError;
 pub use patches::{Patch, Patches};
 pub use profile::{Axis, LineProfile};
 
-/// A sphere pressed on an elastic half-space: what most observables are checked on.
+/// A sphere pressed on an elastic half-space, for the tests of most observations.
 #[cfg(test)]
 fn sphere(cells: [usize; 2], lengths: [f64; 2], center: [f64; 2], force: f64) -> crate::ViscoelasticContact {
     use crate::prelude::*;

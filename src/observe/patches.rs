@@ -1,29 +1,29 @@
-//! The separate spots of a contact.
+//! Connected patches of a contact.
 
 use crate::error::{Error, Result, exact_length, finite};
-use crate::memory;
-use crate::{Grid, ViscoelasticContact};
+use crate::{Grid, memory};
 
 /// One patch of contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Patch {
-    /// Its number of cells.
+    /// Number of cells.
     pub cells: usize,
-    /// Its area, that of its cells \[m²\].
+    /// Area of its cells \[m²\].
     pub area: f64,
-    /// The force that it carries \[N\].
+    /// Normal force on the patch \[N\].
     pub force: f64,
-    /// Centroid of its area \[m\], on the grid. Where the patch lies across the edge of a periodic grid, it is put
-    /// together first; along an axis which it winds around it is the mean of the coordinates on the grid.
+    /// Centroid of its area \[m\], on the grid. A patch across the edge of a periodic grid is unwrapped first; along
+    /// an axis that it winds around, the centroid is the mean of the coordinates on the grid.
     pub centroid: [f64; 2],
-    /// Its greatest pressure \[Pa\].
+    /// Greatest pressure \[Pa\].
     pub greatest_pressure: f64,
-    /// Whether the patch meets itself around the periodic axes x1 and x2.
+    /// Whether the patch connects to itself around the periodic axes x1 and x2.
     pub winds: [bool; 2],
 }
 
-/// The connected patches of a contact: cells under pressure that share a side, not merely a corner, belong together.
+/// The connected patches of a contact. Cells under pressure belong to one patch if they share a side, not merely a
+/// corner.
 ///
 /// ```
 /// use viscocontact::{Grid, observe::Patches};
@@ -47,33 +47,33 @@ pub struct Patches {
 }
 
 impl Patches {
-    /// The patches where `pressure` \[Pa\], one value a cell, is above zero. Along axes that are `periodic` the first
-    /// and the last cells are neighbours.
+    /// The patches where `pressure` \[Pa\], one value per cell, is above zero. Along `periodic` axes the first and the
+    /// last cells are neighbours.
     ///
     /// # Errors
-    /// If there is not one value a cell, a value is not finite or below zero, or the force of a patch is beyond the range
-    /// of `f64`. If there is no memory for the labels.
+    /// If there is not one value per cell, a value is not finite or below zero, or the force of a patch overflows
+    /// `f64`. If there is no memory for the labels.
     pub fn new(grid: &Grid, pressure: &[f64], periodic: [bool; 2]) -> Result<Patches> {
         exact_length("pressure", pressure.len(), grid.len())?;
         if let Some(&value) = pressure.iter().find(|p| !(p.is_finite() && **p >= 0.0)) {
             return Err(Error::OutOfRange { field: "pressure", value, allowed: "finite and >= 0" });
         }
         let what = "the labels of patches";
-        let (labels, turns) = (memory::field(what, grid.len(), 0)?, memory::field(what, grid.len(), [0; 2])?);
-        let mut search = Search { grid, pressure, periodic, labels, turns };
+        let (labels, periods) = (memory::field(what, grid.len(), 0)?, memory::field(what, grid.len(), [0; 2])?);
+        let mut fill = FloodFill { grid, pressure, periodic, labels, periods };
         let mut all = Vec::new();
         for (k, &p) in pressure.iter().enumerate() {
-            if p > 0.0 && search.labels[k] == 0 {
+            if p > 0.0 && fill.labels[k] == 0 {
                 let label = u32::try_from(all.len() + 1).map_err(|_| {
                     let (field, allowed) = ("patches of contact", "4294967295 at most");
                     Error::CountOutOfRange { field, value: all.len() + 1, allowed }
                 })?;
-                let patch = search.patch(k, label);
+                let patch = fill.patch(k, label);
                 finite("force of a patch", patch.force)?;
                 all.push(patch);
             }
         }
-        Ok(Patches { labels: search.labels, all })
+        Ok(Patches { labels: fill.labels, all })
     }
 
     /// The label of each cell: 0 out of contact, k + 1 in the patch `all()[k]`.
@@ -86,77 +86,78 @@ impl Patches {
         &self.all
     }
 
-    /// How many patches there are.
+    /// Number of patches.
     pub fn count(&self) -> usize {
         self.all.len()
     }
 
-    /// The patch of the most cells, the first if there are several; `None` without contact.
+    /// The patch with the most cells, the first of several; `None` without contact.
     pub fn largest(&self) -> Option<&Patch> {
         self.all.iter().rev().max_by_key(|patch| patch.cells)
     }
 }
 
-/// Patches are followed from a first cell to its neighbours.
-struct Search<'a> {
+/// Flood fill from a first cell to its neighbours.
+struct FloodFill<'a> {
     grid: &'a Grid,
     pressure: &'a [f64],
     periodic: [bool; 2],
     labels: Vec<u32>,
-    /// How often the way from the first cell of its patch to a cell went around the axes, up less down.
-    turns: Vec<[i32; 2]>,
+    /// Net number of periods crossed along each axis on the way from the first cell of the patch.
+    periods: Vec<[i32; 2]>,
 }
 
-impl Search<'_> {
-    /// Labels the patch that the cell `first` belongs to.
+impl FloodFill<'_> {
+    /// Labels the patch of the cell `first`.
     fn patch(&mut self, first: usize, label: u32) -> Patch {
         let grid = self.grid;
         let ([n1, n2], lengths) = (grid.cells(), grid.lengths());
         let (mut cells, mut sum, mut greatest, mut winds) = (0, 0.0, 0.0_f64, [false; 2]);
-        // coordinates on the grid, and of the patch when put together
-        let (mut plain, mut unwound) = ([0.0; 2], [0.0; 2]);
+        // sums of the coordinates on the grid, and of those of the unwrapped patch
+        let (mut on_grid, mut unwrapped) = ([0.0; 2], [0.0; 2]);
         self.labels[first] = label;
         let mut waiting = vec![first];
         while let Some(k) = waiting.pop() {
-            let (cell, turns) = ([k / n2, k % n2], self.turns[k]);
+            let (cell, periods) = ([k / n2, k % n2], self.periods[k]);
             cells += 1;
             sum += self.pressure[k];
             greatest = greatest.max(self.pressure[k]);
             for axis in 0..2 {
                 let x = grid.coordinate(axis, cell[axis]);
-                plain[axis] += x;
-                unwound[axis] += x + f64::from(turns[axis]) * lengths[axis];
+                on_grid[axis] += x;
+                unwrapped[axis] += x + f64::from(periods[axis]) * lengths[axis];
             }
             for axis in 0..2 {
                 for up in [false, true] {
-                    let Some((next, turn)) = self.neighbour(cell[axis], [n1, n2][axis], self.periodic[axis], up) else {
+                    let Some((next, crossed)) = self.neighbour(cell[axis], [n1, n2][axis], self.periodic[axis], up)
+                    else {
                         continue;
                     };
                     let other = if axis == 0 { next * n2 + cell[1] } else { cell[0] * n2 + next };
                     if self.pressure[other] <= 0.0 {
                         continue;
                     }
-                    let mut there = turns;
-                    there[axis] += turn;
+                    let mut there = periods;
+                    there[axis] += crossed;
                     if self.labels[other] == 0 {
-                        (self.labels[other], self.turns[other]) = (label, there);
+                        (self.labels[other], self.periods[other]) = (label, there);
                         waiting.push(other);
                     } else {
-                        // reached on two ways, one of which goes around
-                        (0..2).for_each(|axis| winds[axis] |= self.turns[other][axis] != there[axis]);
+                        // reached along two paths: the patch winds where they cross different numbers of periods
+                        (0..2).for_each(|axis| winds[axis] |= self.periods[other][axis] != there[axis]);
                     }
                 }
             }
         }
         let centroid = [0, 1].map(|axis| {
-            let mean = (if winds[axis] { plain } else { unwound })[axis] / cells as f64;
+            let mean = (if winds[axis] { on_grid } else { unwrapped })[axis] / cells as f64;
             mean - (mean / lengths[axis]).round() * lengths[axis]
         });
         let area = grid.cell_area();
         Patch { cells, area: cells as f64 * area, force: sum * area, centroid, greatest_pressure: greatest, winds }
     }
 
-    /// The next cell along an axis of `count`, and by how many turns it goes around.
+    /// The next cell along an axis of `count` cells, and the periods crossed on the way.
     fn neighbour(&self, index: usize, count: usize, periodic: bool, up: bool) -> Option<(usize, i32)> {
         match (up, index) {
             (true, k) if k + 1 < count => Some((k + 1, 0)),
@@ -168,22 +169,12 @@ impl Search<'_> {
     }
 }
 
-impl ViscoelasticContact {
-    /// The patches of the contact; where the bodies are periodic the first and the last cells are neighbours.
-    ///
-    /// # Errors
-    /// If the force of a patch is beyond the range of `f64`.
-    pub fn patches(&self) -> Result<Patches> {
-        Patches::new(self.grid(), self.pressure(), self.kernel().periodic_axes())
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::observe::sphere;
 
-    /// A map of digits, the pressures, on cells of 1 m × 2 m.
+    /// Patches of a map whose digits are pressures, on cells of 1 m × 2 m.
     fn patches(rows: &[&str], periodic: [bool; 2]) -> Patches {
         let cells = [rows.len(), rows[0].len()];
         let grid = Grid::new(cells, [cells[0] as f64, 2.0 * cells[1] as f64]).unwrap();
@@ -206,35 +197,35 @@ mod tests {
     }
 
     #[test]
-    fn periodic_axes_join_what_lies_across_the_edge() {
+    fn periodic_axes_join_patches_across_the_edge() {
         let rows = ["30001", "00000", "00000", "20000"];
         assert_eq!(patches(&rows, [false; 2]).count(), 3);
         assert_eq!(patches(&rows, [true, false]).labels()[15], 1);
         assert_eq!(patches(&rows, [true, false]).count(), 2);
         let found = patches(&rows, [true; 2]);
         let [patch] = *found.all() else { panic!("{found:?}") };
-        // from the corner cell at (−1.5, −4) one cell up and one to the left, each beyond the edge
+        // the corner cell at (−1.5, −4), its neighbours across either edge
         let expected: [f64; 2] = [-1.5 - 1.0 / 3.0, -4.0 - 2.0 / 3.0];
         assert!((0..2).all(|axis| (patch.centroid[axis] - expected[axis]).abs() < 1e-14), "{:?}", patch.centroid);
         assert_eq!((patch.cells, patch.force, patch.greatest_pressure, patch.winds), (3, 12.0, 3.0, [false; 2]));
     }
 
     #[test]
-    fn patches_that_meet_themselves_wind() {
+    fn patches_connected_to_themselves_wind() {
         let found = patches(&["000", "121", "000"], [true; 2]);
         assert_eq!((found.all()[0].winds, found.all()[0].centroid), ([false, true], [0.0; 2]));
         let found = patches(&["000", "121", "000"], [true, false]);
         assert_eq!(found.all()[0].winds, [false; 2]);
-        // up the stairs, around both axes
+        // diagonal stairs, around both axes
         let found = patches(&["1100", "0110", "0011", "1001"], [true; 2]);
         assert_eq!((found.count(), found.all()[0].winds), (1, [true; 2]));
         // a cell that is its own neighbour
         assert_eq!(patches(&["1"], [true; 2]).all()[0].winds, [true; 2]);
     }
 
-    /// Against labels that spread from cell to cell until nothing changes.
+    /// Against labels that spread from cell to cell until none changes.
     #[test]
-    fn random_maps_against_slow_spreading() {
+    fn random_maps_agree_with_label_propagation() {
         let (n1, n2, mut seed) = (13_usize, 17_usize, 1_u64);
         for round in 0..200 {
             let periodic = [round % 2 == 0, round % 3 == 0];
@@ -274,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sphere_has_one_patch_that_carries_all() {
+    fn a_sphere_has_one_patch_with_the_whole_force() {
         let contact = sphere([64, 48], [2.0e-3, 1.5e-3], [0.1e-3, -0.05e-3], 0.1);
         let found = contact.patches().unwrap();
         assert_eq!(found.count(), 1);

@@ -1,11 +1,11 @@
-//! The state along a line of cells.
+//! Pressure, displacement and gap along a line of cells.
 
-use crate::ViscoelasticContact;
+use crate::Grid;
 use crate::error::{Result, within};
 
 /// One of the two axes in the plane of contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(clippy::exhaustive_enums, reason = "a plane has two")]
+#[expect(clippy::exhaustive_enums, reason = "a plane has two axes")]
 pub enum Axis {
     /// Along x1.
     X1,
@@ -13,11 +13,12 @@ pub enum Axis {
     X2,
 }
 
-/// Pressure, displacement and gap along a line of cells, see [`ViscoelasticContact::profile`].
+/// Pressure, displacement and gap along a line of cells, see
+/// [`ViscoelasticContact::profile`](crate::ViscoelasticContact::profile).
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct LineProfile {
-    /// The coordinate that is the same all along, that of the centres of the line of cells \[m\].
+    /// The constant coordinate of the line, at the centres of its cells \[m\].
     pub at: f64,
     /// Cell centres along the line \[m\].
     pub positions: Vec<f64>,
@@ -29,29 +30,14 @@ pub struct LineProfile {
     pub gap: Vec<f64>,
 }
 
-impl ViscoelasticContact {
-    /// The state along the line of cells that runs in the direction of `along` and holds the other coordinate `at`
-    /// \[m\]; of two lines that meet there, the upper. Nothing is interpolated: [`LineProfile::at`] is where the centres
-    /// of the line lie.
-    ///
-    /// ```
-    /// use viscocontact::{observe::Axis, prelude::*};
-    ///
-    /// let mut contact = ViscoelasticContact::builder(Grid::square(33, 4.0e-3)?)
-    ///     .geometry(&Sphere::new(10.0e-3)?)
-    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
-    ///     .build()?;
-    /// contact.step(0.0, Load::force(0.5))?;
-    /// let profile = contact.profile(Axis::X1, 0.0)?;
-    /// assert_eq!([profile.positions.len(), profile.pressure.len()], [33, 33]);
-    /// assert_eq!(profile.pressure[16], contact.greatest_pressure());
-    /// # Ok::<(), Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// If `at` lies outside the grid.
-    pub fn profile(&self, along: Axis, at: f64) -> Result<LineProfile> {
-        let grid = self.grid();
+impl LineProfile {
+    /// The values of the fields along the line of cells that contains the other coordinate `at` \[m\].
+    pub(super) fn new(
+        grid: &Grid,
+        along: Axis,
+        at: f64,
+        [pressure, displacement, gap]: [&[f64]; 3],
+    ) -> Result<LineProfile> {
         let (along, across) = match along {
             Axis::X1 => (0, 1),
             Axis::X2 => (1, 0),
@@ -59,18 +45,16 @@ impl ViscoelasticContact {
         let cells = grid.cells();
         let half = 0.5 * grid.lengths()[across];
         within("coordinate of the profile", at, at.abs() <= half, "inside the grid")?;
-        // the last line holds the edge of the grid too
+        // the last line includes the edge of the grid
         let line = (((at + half) / grid.spacing()[across]) as usize).min(cells[across] - 1);
         let cell = |k: usize| if along == 0 { k * cells[1] + line } else { line * cells[1] + k };
-        let mut gap = vec![0.0; grid.len()];
-        self.gap_into(&mut gap)?;
-        let take = |field: &[f64]| (0..cells[along]).map(|k| field[cell(k)]).collect();
+        let values_of = |field: &[f64]| (0..cells[along]).map(|k| field[cell(k)]).collect();
         Ok(LineProfile {
             at: grid.coordinate(across, line),
             positions: (0..cells[along]).map(|k| grid.coordinate(along, k)).collect(),
-            pressure: take(self.pressure()),
-            displacement: take(self.displacement()),
-            gap: take(&gap),
+            pressure: values_of(pressure),
+            displacement: values_of(displacement),
+            gap: values_of(gap),
         })
     }
 }
@@ -82,7 +66,7 @@ mod tests {
     use crate::observe::sphere;
 
     #[test]
-    fn lines_are_those_of_the_fields() {
+    fn profiles_are_lines_of_the_fields() {
         let contact = sphere([24, 32], [2.4e-3, 3.2e-3], [0.2e-3, -0.1e-3], 0.2);
         let mut gap = vec![0.0; 24 * 32];
         contact.gap_into(&mut gap).unwrap();

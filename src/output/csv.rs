@@ -1,4 +1,4 @@
-//! The history of a run as a table.
+//! The history of a run as a CSV table.
 
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use crate::ViscoelasticContact;
 use crate::contact::StepReport;
 use crate::error::{Result, exact_length};
 use crate::file::{Appending, failed};
-use crate::output::Scene;
+use crate::output::Metadata;
 
 /// The columns of every history.
 const COLUMNS: [&str; 17] = [
@@ -30,19 +30,18 @@ const COLUMNS: [&str; 17] = [
     "time error",
 ];
 
-/// A run as a CSV file of one row a step, each on its way to the disk when its `write` returns.
+/// A run as a CSV file with one row per step, each passed to the operating system when its `write` returns.
 ///
 /// Needs the feature `csv`.
 ///
-/// The first line is a `#` and the [`Scene`] as JSON, the second the names of the columns with their units, separated
+/// The first line is `#` and the [`Metadata`] as JSON, the second the names of the columns with their units, separated
 /// by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
 /// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`,
-/// `greatest pressure [Pa]`, the cost and accuracy of the step as in [`StepReport`], and
-/// columns of your own. Numbers have as many digits as make them the same when read back. In Python:
-/// `pandas.read_csv(path, comment="#")`.
+/// `greatest pressure [Pa]`, cost and accuracy of the step as in [`StepReport`], and additional columns of your choice.
+/// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.
 ///
 /// ```
-/// use viscocontact::{output::{CsvHistory, Scene}, prelude::*};
+/// use viscocontact::{output::{CsvHistory, Metadata}, prelude::*};
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
@@ -51,7 +50,7 @@ const COLUMNS: [&str; 17] = [
 /// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-csv-{}", std::process::id()));
 /// # std::fs::create_dir_all(&folder).unwrap();
 /// # let path = folder.join("history.csv");
-/// let mut history = CsvHistory::create(&path, &Scene::new("Ball on rubber"), &contact, &["energy [J]"])?;
+/// let mut history = CsvHistory::create(&path, &Metadata::new("Ball on rubber"), &contact, &["energy [J]"])?;
 /// let report = contact.step(0.0, Load::force(0.5))?;
 /// history.write(&contact, &report, &[0.5 * report.force * report.approach])?;
 /// # std::fs::remove_dir_all(&folder).unwrap();
@@ -61,50 +60,49 @@ const COLUMNS: [&str; 17] = [
 pub struct CsvHistory {
     path: PathBuf,
     file: Appending<File>,
-    further: usize,
+    additional: usize,
 }
 
 impl CsvHistory {
-    /// A new file for the history of `contact`, with columns named `further` behind those that every history has.
+    /// A new file for the history of `contact`, with `additional` columns after those of every history.
     ///
     /// # Errors
-    /// If the file exists or cannot be written, or the name of a column is empty, taken, or holds a `#`, a quote or a
-    /// control character, which readers would stumble on.
+    /// If the file exists or cannot be written, or the name of a column is empty, already used, or contains `#`, a
+    /// quote or a control character, which readers would misinterpret.
     pub fn create(
         path: impl AsRef<Path>,
-        scene: &Scene,
+        metadata: &Metadata,
         contact: &ViscoelasticContact,
-        further: &[&str],
+        additional: &[&str],
     ) -> Result<CsvHistory> {
         let path = path.as_ref().to_owned();
-        for (k, name) in further.iter().enumerate() {
-            let odd = name.is_empty() || name.contains(|c: char| c == '#' || c == '"' || c.is_control());
-            if odd || COLUMNS.contains(name) || further[..k].contains(name) {
-                let rule = "a name of its own, without '#', quotes and control characters";
-                return Err(failed(&path, format!("a column may not be called {name:?}: it must have {rule}")));
+        for (k, name) in additional.iter().enumerate() {
+            let invalid = name.is_empty() || name.contains(|c: char| c == '#' || c == '"' || c.is_control());
+            if invalid || COLUMNS.contains(name) || additional[..k].contains(name) {
+                let rule = "unique, not empty, and without '#', quotes and control characters";
+                return Err(failed(&path, format!("invalid column name {name:?}: names must be {rule}")));
             }
         }
-        let names: Vec<String> = COLUMNS.iter().chain(further).map(|name| quoted(name)).collect();
-        let head = format!("# {}\n{}\n", scene.json(contact), names.join(","));
+        let names: Vec<String> = COLUMNS.iter().chain(additional).map(|name| quoted(name)).collect();
+        let head = format!("# {}\n{}\n", metadata.json(contact), names.join(","));
         let mut file = Appending::new(File::create_new(&path).map_err(|error| failed(&path, error))?);
         if let Err(error) = file.append(head.as_bytes()) {
-            let _ = fs::remove_file(&path); // the error that matters is that of the write
+            let _ = fs::remove_file(&path); // the error to report is that of the write
             return Err(failed(&path, error));
         }
-        Ok(CsvHistory { path, file, further: further.len() })
+        Ok(CsvHistory { path, file, additional: additional.len() })
     }
 
-    /// Adds the row of a step that was just taken, with the values of the further columns, which are written as they
-    /// are: NaN as `NaN`.
+    /// Appends the row of the last step, with the values of the additional columns. NaN is written as `NaN`.
     ///
     /// # Errors
-    /// If there is not one value for each further column, or the file cannot be written. Nothing of the row is in the file
-    /// then, and the next row can be written as soon as there is room again.
-    pub fn write(&mut self, contact: &ViscoelasticContact, report: &StepReport, further: &[f64]) -> Result<()> {
-        exact_length("further columns", further.len(), self.further)?;
+    /// If there is not one value for each additional column, or the file cannot be written. Then nothing of the row is
+    /// in the file, and writing can be repeated once there is space again.
+    pub fn write(&mut self, contact: &ViscoelasticContact, report: &StepReport, additional: &[f64]) -> Result<()> {
+        exact_length("additional columns", additional.len(), self.additional)?;
         let number = |value: f64| format!("{value:?}");
         let ([tilt1, tilt2], [moment1, moment2]) = (contact.tilt(), contact.moment());
-        let own = [
+        let standard = [
             number(contact.time()),
             number(report.dt),
             number(contact.force()),
@@ -123,13 +121,13 @@ impl CsvHistory {
             number(report.residual),
             number(report.time_error),
         ];
-        let cells: Vec<String> = own.into_iter().chain(further.iter().copied().map(number)).collect();
+        let cells: Vec<String> = standard.into_iter().chain(additional.iter().copied().map(number)).collect();
         let row = cells.join(",") + "\n";
         self.file.append(row.as_bytes()).map_err(|error| failed(&self.path, error))
     }
 }
 
-/// The name of a column, which holds no quotes, as a field.
+/// A column name, which contains no quotes, as a CSV field.
 fn quoted(name: &str) -> String {
     if name.contains(',') { format!("\"{name}\"") } else { name.to_owned() }
 }

@@ -1,10 +1,10 @@
-//! A writer whose errors are reported at its end.
+//! A writer that reports its first error at the end.
 
 use std::io::{self, ErrorKind, Seek, SeekFrom, Write};
 
-/// Writes from the beginning of `inner`; from its first error on it takes everything and keeps nothing, and
-/// [`Deferred::finish`] returns the error. For `ZipWriter`, which completes its archive even when it is dropped after an error,
-/// and prints to the standard error when that fails again.
+/// Writes from the beginning of `inner`. After the first error it accepts and discards everything, and
+/// [`Deferred::finish`] returns the error. Needed for `ZipWriter`, which completes its archive even when it is dropped
+/// after an error, and prints to standard error if that fails again.
 #[derive(Debug)]
 pub(super) struct Deferred<W> {
     inner: W,
@@ -18,7 +18,7 @@ impl<W: Write + Seek> Deferred<W> {
         Deferred { inner, position: 0, end: 0, error: None }
     }
 
-    /// Hands everything to the system, or returns the first error.
+    /// Flushes `inner`, or returns the first error.
     pub(super) fn finish(mut self) -> io::Result<()> {
         self.flush()?;
         self.error.map_or(Ok(()), Err)
@@ -27,18 +27,18 @@ impl<W: Write + Seek> Deferred<W> {
 
 impl<W: Write> Write for Deferred<W> {
     fn write(&mut self, buf: &[u8]) -> io::Result<usize> {
-        let mut taken = buf.len();
+        let mut accepted = buf.len();
         if self.error.is_none() && !buf.is_empty() {
             match self.inner.write(buf) {
                 Ok(0) => self.error = Some(ErrorKind::WriteZero.into()),
-                Ok(count) => taken = count,
-                Err(error) if error.kind() == ErrorKind::Interrupted => return Err(error), // it is tried again
+                Ok(count) => accepted = count,
+                Err(error) if error.kind() == ErrorKind::Interrupted => return Err(error), // the caller tries again
                 Err(error) => self.error = Some(error),
             }
         }
-        self.position += taken as u64;
+        self.position += accepted as u64;
         self.end = self.end.max(self.position);
-        Ok(taken)
+        Ok(accepted)
     }
 
     fn flush(&mut self) -> io::Result<()> {

@@ -1,9 +1,9 @@
-//! The fields of a contact.
+//! The fields of a contact that can be written.
 
 #[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
 use crate::{Result, ViscoelasticContact};
 
-/// A field that can be written: one value a cell.
+/// A field that can be written, with one value per cell.
 ///
 /// ```
 /// use viscocontact::output::Field;
@@ -18,16 +18,16 @@ pub enum Field {
     Pressure,
     /// [`ViscoelasticContact::displacement`](crate::ViscoelasticContact::displacement) \[m\].
     Displacement,
-    /// [`ViscoelasticContact::gap_into`](crate::ViscoelasticContact::gap_into) \[m\]; +∞ where there is nothing
-    /// to touch.
+    /// [`ViscoelasticContact::gap_into`](crate::ViscoelasticContact::gap_into) \[m\]; +∞ where the
+    /// initial gap is infinite.
     Gap,
 }
 
 impl Field {
-    /// All of them.
+    /// All fields.
     pub const ALL: [Field; 3] = [Field::Pressure, Field::Displacement, Field::Gap];
 
-    /// Its name in files.
+    /// Name in files.
     pub fn name(self) -> &'static str {
         match self {
             Field::Pressure => "pressure",
@@ -36,7 +36,7 @@ impl Field {
         }
     }
 
-    /// Its unit.
+    /// SI unit.
     pub fn unit(self) -> &'static str {
         match self {
             Field::Pressure => "Pa",
@@ -44,7 +44,7 @@ impl Field {
         }
     }
 
-    /// The values in the state the contact is in; `buffer` holds those that the contact does not keep.
+    /// The values in the current state of the contact; `buffer` receives those that the contact does not store.
     #[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
     pub(crate) fn values<'a>(self, contact: &'a ViscoelasticContact, buffer: &'a mut Vec<f64>) -> Result<&'a [f64]> {
         match self {

@@ -5,21 +5,30 @@ use std::path::{Path, PathBuf};
 
 use crate::error::Result;
 use crate::file::failed;
-use crate::output::Field;
+use crate::output::{Field, Metadata};
 
-/// A folder of frames `frame_000000`, `frame_000001`, ...
+/// A folder of frames `frame_000000`, `frame_000001`, ... and what each of them contains.
 #[derive(Debug)]
 pub(super) struct Frames {
     folder: PathBuf,
     extension: &'static str,
     written: usize,
+    pub(super) metadata: Metadata,
+    pub(super) fields: Vec<Field>,
+    /// For fields that the contact does not store.
+    pub(super) buffer: Vec<f64>,
 }
 
 impl Frames {
-    /// Makes the folder, if there is none, and refuses one that holds frames.
-    pub(super) fn create(folder: &Path, extension: &'static str, fields: &[Field]) -> Result<Frames> {
+    /// Creates the folder if it does not exist, and refuses one that contains frames.
+    pub(super) fn create(
+        folder: &Path,
+        extension: &'static str,
+        metadata: Metadata,
+        fields: &[Field],
+    ) -> Result<Frames> {
         if let Some(k) = (1..fields.len()).find(|&k| fields[..k].contains(&fields[k])) {
-            return Err(failed(folder, format!("the field {} is asked for twice", fields[k].name())));
+            return Err(failed(folder, format!("the field {} is requested twice", fields[k].name())));
         }
         let unusable = |error: std::io::Error| failed(folder, error);
         fs::create_dir_all(folder).map_err(unusable)?;
@@ -27,13 +36,12 @@ impl Frames {
             let name = entry.map_err(unusable)?.file_name();
             let name = name.to_string_lossy();
             if name.starts_with("frame_") && name.ends_with(&format!(".{extension}")) {
-                return Err(failed(
-                    folder,
-                    format!("it holds {name} of another run; remove it or choose another folder"),
-                ));
+                let reason = format!("the folder contains {name} of another run; remove it or choose another folder");
+                return Err(failed(folder, reason));
             }
         }
-        Ok(Frames { folder: folder.to_owned(), extension, written: 0 })
+        let (folder, fields) = (folder.to_owned(), fields.to_vec());
+        Ok(Frames { folder, extension, written: 0, metadata, fields, buffer: Vec::new() })
     }
 
     /// Name of the next frame.
@@ -41,7 +49,7 @@ impl Frames {
         format!("frame_{:06}.{}", self.written, self.extension)
     }
 
-    /// A file in the folder.
+    /// Path of a file in the folder.
     pub(super) fn path(&self, name: &str) -> PathBuf {
         self.folder.join(name)
     }
@@ -51,7 +59,7 @@ impl Frames {
         self.written += 1;
     }
 
-    /// Frames written.
+    /// Number of frames written.
     pub(super) fn written(&self) -> usize {
         self.written
     }

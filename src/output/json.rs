@@ -1,22 +1,22 @@
-//! The little JSON that a scene needs.
+//! A minimal JSON writer for [`Metadata`](crate::output::Metadata).
 
 /// An object under construction.
 #[derive(Debug, Default)]
 pub(super) struct Object(String);
 
 impl Object {
-    /// Adds a text.
+    /// Adds a string.
     pub(super) fn text(self, key: &str, text: &str) -> Object {
         let value = quoted(text);
         self.value(key, &value)
     }
 
-    /// Adds finite numbers, in as many digits as make them the same when read back.
+    /// Adds finite numbers with enough digits to be read back bitwise.
     pub(super) fn numbers(self, key: &str, numbers: [f64; 2]) -> Object {
         self.value(key, &format!("{numbers:?}"))
     }
 
-    /// Adds what is JSON already.
+    /// Adds a JSON value.
     pub(super) fn value(mut self, key: &str, json: &str) -> Object {
         self.0.push_str(if self.0.is_empty() { "{" } else { ", " });
         self.0.push_str(&quoted(key));
@@ -32,7 +32,7 @@ impl Object {
     }
 }
 
-/// A JSON string: no line ends or other control characters are left in it.
+/// A JSON string, in which line breaks and other control characters are escaped.
 fn quoted(text: &str) -> String {
     let mut out = String::from('"');
     for c in text.chars() {

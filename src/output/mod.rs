@@ -1,23 +1,24 @@
-//! Results as files that other tools open, written frame by frame: a run does not have to fit into memory.
+//! Results in files that other tools open, written frame by frame, so that a run does not have to fit into memory.
 //!
-//! | what | feature | opened by |
+//! | output | feature | opened by |
 //! |---|---|---|
-//! | `NpzSeries`: a folder of NPZ archives, one a frame | `npy` | NumPy, Julia, MATLAB |
+//! | `NpzSeries`: a folder of NPZ archives, one per frame | `npy` | NumPy, Julia, MATLAB |
 //! | `write_npy`: one field as an NPY file | `npy` | NumPy, Julia, MATLAB |
 //! | `VtkSeries`: a folder of VTK images and a `series.pvd` | `vtk` | ParaView, VisIt, PyVista |
-//! | `CsvHistory`: one row a step | `csv` | pandas, spreadsheets, gnuplot |
+//! | `CsvHistory`: one row per step | `csv` | pandas, spreadsheets, gnuplot |
 //!
-//! Values are written in double precision, bit by bit, in SI units; each file carries a [`Scene`] that says
-//! what was computed. Which [`Field`]s are written is chosen. A frame is complete on disk when its `write`
-//! returns, so that a run that is killed leaves all frames before readable.
+//! Values are written in double precision, bitwise, in SI units. Each file contains [`Metadata`] that describe the run.
+//! You choose which [`Field`]s are written. A frame is complete on disk when its `write` returns: if a run is killed,
+//! all earlier frames are readable.
 //!
-//! Nothing of an earlier run is overwritten: a series is refused a folder that holds frames, a history a file
-//! that exists. A single file (`write_npy`, pictures, checkpoints) replaces a file of its name when it is complete; where its name
-//! is a link, the link stays and the file that it leads to is replaced. A folder, device, pipe or socket is left alone:
-//! [`Error::NotAFile`](crate::Error::NotAFile). Until it is complete a file has the number of the process and `.part` behind its
-//! name; a process that is killed leaves it so.
+//! Files of an earlier run are not overwritten: a series refuses a folder with frames, a history an existing file. A
+//! single file (`write_npy`, pictures, checkpoints) replaces an existing one once it is complete; if the path is a
+//! link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
+//! [`Error::NotAFile`](crate::Error::NotAFile). While a file is being written, the process ID and `.part` are appended
+//! to its name; a process that is killed leaves it under that name.
 //!
-//! A write that fails, as on a full disk, leaves what was written before, no part of its own, and can be tried again.
+//! A write that fails, for instance on a full disk, leaves earlier output intact and no partial output of its own. It
+//! can be repeated.
 
 #[cfg(feature = "csv")]
 mod csv;
@@ -27,21 +28,21 @@ mod field;
 #[cfg(any(feature = "npy", feature = "vtk"))]
 mod frames;
 mod json;
+mod metadata;
 #[cfg(feature = "npy")]
 mod npy;
 #[cfg(feature = "npy")]
 mod npz;
-mod scene;
 #[cfg(feature = "vtk")]
 mod vtk;
 
 #[cfg(feature = "csv")]
 pub use csv::CsvHistory;
 pub use field::Field;
+pub use metadata::Metadata;
 #[cfg(feature = "npy")]
 pub use npy::write_npy;
 #[cfg(feature = "npy")]
 pub use npz::NpzSeries;
-pub use scene::Scene;
 #[cfg(feature = "vtk")]
 pub use vtk::VtkSeries;

@@ -1,4 +1,4 @@
-//! Arrays in NumPy's own format.
+//! Arrays in the NPY format of NumPy.
 
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
@@ -9,8 +9,8 @@ use crate::Grid;
 use crate::error::{Result, exact_length};
 use crate::file::replace;
 
-/// Writes a field, one value a cell of `grid`, as an NPY file: an array of `float64` of the shape of the grid,
-/// so that `numpy.load(path)[i, j]` is the value of the cell `[i, j]`. A file of this name is replaced.
+/// Writes a field, one value per cell of `grid`, as an NPY file: a `float64` array of the shape of the grid, so that
+/// `numpy.load(path)[i, j]` is the value of the cell `[i, j]`. An existing file is replaced.
 ///
 /// Needs the feature `npy`.
 ///
@@ -27,13 +27,13 @@ use crate::file::replace;
 /// ```
 ///
 /// # Errors
-/// If there is not one value a cell, or the file cannot be written.
+/// If there is not one value per cell, or the file cannot be written.
 pub fn write_npy(path: impl AsRef<Path>, grid: &Grid, values: &[f64]) -> Result<()> {
     exact_length("field", values.len(), grid.len())?;
     replace(path.as_ref(), |out| array(out, &grid.cells(), values))
 }
 
-/// An array of numbers in row-major order.
+/// Writes numbers in row-major order.
 pub(super) fn array(out: impl Write, shape: &[usize], values: &[f64]) -> io::Result<()> {
     let shape: Vec<u64> = shape.iter().map(|&n| n as u64).collect();
     let mut out = BufWriter::with_capacity(1 << 16, out);
@@ -44,7 +44,7 @@ pub(super) fn array(out: impl Write, shape: &[usize], values: &[f64]) -> io::Res
     out.flush()
 }
 
-/// A text, as a NumPy string without a dimension: `str(array)` is the text.
+/// Writes a text as a zero-dimensional string array: `str(array)` is the text.
 pub(super) fn text(mut out: impl Write, text: &str) -> io::Result<()> {
     let text: Vec<char> = text.chars().collect();
     let string = npyz::DType::Plain(type_string(&format!("<U{}", text.len().max(1)))?);

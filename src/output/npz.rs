@@ -1,4 +1,4 @@
-//! Frames as NumPy archives.
+//! Frames as NPZ archives of NumPy.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -11,31 +11,31 @@ use crate::error::Result;
 use crate::file::replace;
 use crate::output::deferred::Deferred;
 use crate::output::frames::Frames;
-use crate::output::{Field, Scene, npy};
+use crate::output::{Field, Metadata, npy};
 
-/// A run as a folder of NPZ archives, one a frame: `frame_000000.npz` and so on.
+/// A run as a folder of NPZ archives, one per frame: `frame_000000.npz` and so on.
 ///
 /// Needs the feature `npy`.
 ///
-/// An archive holds `time` \[s\], the cell centres `x1` and `x2` \[m\], the fields chosen as arrays of shape
-/// (n1, n2), `approach` \[m\], `force` \[N\], `tilt` \[rad\], `contact_area` \[m²\], all in double precision and
-/// uncompressed, and the [`Scene`] as the JSON text `scene`. In Python, without pickle:
+/// An archive contains `time` \[s\], the cell centres `x1` and `x2` \[m\], the chosen fields as arrays of shape (n1,
+/// n2), `approach` \[m\], `force` \[N\], `tilt` \[rad\] and `contact_area` \[m²\], all in double precision and
+/// uncompressed, and the [`Metadata`] as the JSON text `metadata`. In Python, without pickle:
 ///
 /// ```python
 /// frame = numpy.load("run/frame_000012.npz")
 /// matplotlib.pyplot.pcolormesh(frame["x1"], frame["x2"], frame["pressure"].T)
-/// units = json.loads(str(frame["scene"]))["units"]
+/// units = json.loads(str(frame["metadata"]))["units"]
 /// ```
 ///
 /// ```
-/// use viscocontact::{output::{Field, NpzSeries, Scene}, prelude::*};
+/// use viscocontact::{output::{Field, Metadata, NpzSeries}, prelude::*};
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
 ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
 ///     .build()?;
 /// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-npz-{}", std::process::id()));
-/// let mut series = NpzSeries::create(&folder, Scene::new("Ball on rubber"), &[Field::Pressure])?;
+/// let mut series = NpzSeries::create(&folder, Metadata::new("Ball on rubber"), &[Field::Pressure])?;
 /// contact.step(0.0, Load::force(0.5))?;
 /// for _ in 0..3 {
 ///     contact.step(0.1, Load::force(0.5))?;
@@ -48,28 +48,24 @@ use crate::output::{Field, Scene, npy};
 #[derive(Debug)]
 pub struct NpzSeries {
     frames: Frames,
-    scene: Scene,
-    fields: Vec<Field>,
-    buffer: Vec<f64>,
 }
 
 impl NpzSeries {
-    /// A series in `folder`, which is made if there is none.
+    /// A series in `folder`, which is created if it does not exist.
     ///
     /// # Errors
-    /// If the folder cannot be used or holds frames already, or a field is asked for twice.
-    pub fn create(folder: impl AsRef<Path>, scene: Scene, fields: &[Field]) -> Result<NpzSeries> {
-        let frames = Frames::create(folder.as_ref(), "npz", fields)?;
-        Ok(NpzSeries { frames, scene, fields: fields.to_vec(), buffer: Vec::new() })
+    /// If the folder cannot be used or contains frames already, or a field is requested twice.
+    pub fn create(folder: impl AsRef<Path>, metadata: Metadata, fields: &[Field]) -> Result<NpzSeries> {
+        Ok(NpzSeries { frames: Frames::create(folder.as_ref(), "npz", metadata, fields)? })
     }
 
-    /// Writes the state the contact is in as the next frame, and returns its path.
+    /// Writes the current state of the contact as the next frame and returns its path.
     ///
     /// # Errors
-    /// If the file cannot be written; there is no frame then, and the next call tries the same number.
+    /// If the file cannot be written. Then there is no frame, and the next call uses the same number.
     pub fn write(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
         let path = self.frames.path(&self.frames.next_name());
-        let NpzSeries { scene, fields, buffer, .. } = self;
+        let Frames { metadata, fields, buffer, .. } = &mut self.frames;
         replace(&path, |out| {
             let mut archive = Archive(ZipWriter::new(Deferred::new(out)));
             archive.add("time", &[], &[contact.time()])?;
@@ -86,21 +82,21 @@ impl NpzSeries {
             archive.add("force", &[], &[contact.force()])?;
             archive.add("tilt", &[2], &contact.tilt())?;
             archive.add("contact_area", &[], &[contact.contact_area()])?;
-            archive.start("scene", false)?;
-            npy::text(&mut archive.0, &scene.json(contact))?;
+            archive.start("metadata", false)?;
+            npy::text(&mut archive.0, &metadata.json(contact))?;
             archive.0.finish()?.finish()
         })?;
         self.frames.count();
         Ok(path)
     }
 
-    /// Frames written.
+    /// Number of frames written.
     pub fn frames(&self) -> usize {
         self.frames.written()
     }
 }
 
-/// An archive under construction.
+/// An NPZ archive being written.
 struct Archive<W: io::Write + io::Seek>(ZipWriter<Deferred<W>>);
 
 impl<W: io::Write + io::Seek> Archive<W> {
@@ -110,7 +106,7 @@ impl<W: io::Write + io::Seek> Archive<W> {
     }
 
     fn add(&mut self, name: &str, shape: &[usize], values: &[f64]) -> io::Result<()> {
-        // the sizes of a plain entry are kept in 32 bits, and an array has a header
+        // plain entries have sizes of 32 bits, including the header of the array
         let large = values.len() >= (u32::MAX as usize - 4096) / 8;
         self.start(name, large)?;
         npy::array(&mut self.0, shape, values)

@@ -1,4 +1,4 @@
-//! Frames as images of VTK.
+//! Frames as VTK images.
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -6,34 +6,34 @@ use std::path::{Path, PathBuf};
 use crate::error::Result;
 use crate::file::replace;
 use crate::output::frames::Frames;
-use crate::output::{Field, Scene};
+use crate::output::{Field, Metadata};
 use crate::{Grid, ViscoelasticContact};
 
-/// The file that lists the frames.
+/// Name of the file that lists the frames.
 const COLLECTION: &str = "series.pvd";
 
-/// A run as a folder of VTK images, one a frame, `frame_000000.vti` and so on, and a `series.pvd` that lists them
-/// with their times: open this in ParaView, also while the run goes on.
+/// A run as a folder of VTK images, one per frame, `frame_000000.vti` and so on, and a `series.pvd` that lists them
+/// with their times. Open this file in ParaView, even while the run continues.
 ///
 /// Needs the feature `vtk`.
 ///
-/// An image is a flat sheet of n1 × n2 cells with x1 along its x, where the grid lies in the plane of contact. The
-/// fields chosen are cell data in double precision, named with their units, as `pressure [Pa]`. `TimeValue` \[s\],
-/// `approach [m]`, `force [N]`, `tilt [rad]`, `contact area [m2]` and the [`Scene`] as the JSON text `scene` are field
-/// data. Where there is nothing to touch the gap is +∞: rescale the colours to the finite range.
+/// An image is a flat sheet of n1 × n2 cells in the plane of contact, with x1 along its x. The chosen fields are cell
+/// data in double precision, named with their units, such as `pressure [Pa]`. `TimeValue` \[s\], `approach [m]`,
+/// `force [N]`, `tilt [rad]`, `contact area [m2]` and the [`Metadata`] as the JSON text `metadata` are field data. The
+/// gap is +∞ where the initial gap is infinite: rescale the colours to the finite range.
 ///
-/// Two frames of the same time, as before and after a jump of the load, are both written and listed; ParaView shows
-/// one of them.
+/// Two frames of the same time, such as before and after a jump of the load, are both written and listed; ParaView
+/// shows one of them.
 ///
 /// ```
-/// use viscocontact::{output::{Field, Scene, VtkSeries}, prelude::*};
+/// use viscocontact::{output::{Field, Metadata, VtkSeries}, prelude::*};
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
 ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
 ///     .build()?;
 /// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-vtk-{}", std::process::id()));
-/// let mut series = VtkSeries::create(&folder, Scene::new("Ball on rubber"), &Field::ALL)?;
+/// let mut series = VtkSeries::create(&folder, Metadata::new("Ball on rubber"), &Field::ALL)?;
 /// contact.step(0.0, Load::force(0.5))?;
 /// for _ in 0..3 {
 ///     contact.step(0.1, Load::force(0.5))?;
@@ -46,32 +46,28 @@ const COLLECTION: &str = "series.pvd";
 #[derive(Debug)]
 pub struct VtkSeries {
     frames: Frames,
-    scene: Scene,
-    fields: Vec<Field>,
-    buffer: Vec<f64>,
-    /// The entries of the collection, one a line.
+    /// The entries of the collection, one per line.
     entries: String,
 }
 
 impl VtkSeries {
-    /// A series in `folder`, which is made if there is none.
+    /// A series in `folder`, which is created if it does not exist.
     ///
     /// # Errors
-    /// If the folder cannot be used or holds frames already, or a field is asked for twice.
-    pub fn create(folder: impl AsRef<Path>, scene: Scene, fields: &[Field]) -> Result<VtkSeries> {
-        let frames = Frames::create(folder.as_ref(), "vti", fields)?;
-        Ok(VtkSeries { frames, scene, fields: fields.to_vec(), buffer: Vec::new(), entries: String::new() })
+    /// If the folder cannot be used or contains frames already, or a field is requested twice.
+    pub fn create(folder: impl AsRef<Path>, metadata: Metadata, fields: &[Field]) -> Result<VtkSeries> {
+        let frames = Frames::create(folder.as_ref(), "vti", metadata, fields)?;
+        Ok(VtkSeries { frames, entries: String::new() })
     }
 
-    /// Writes the state the contact is in as the next frame, lists it in `series.pvd`, and returns its path.
+    /// Writes the current state of the contact as the next frame, lists it in `series.pvd` and returns its path.
     ///
     /// # Errors
-    /// If a file cannot be written; the frame is not listed then, and the next call tries the same number.
+    /// If a file cannot be written. Then the frame is not listed, and the next call uses the same number.
     pub fn write(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
         let name = self.frames.next_name();
         let path = self.frames.path(&name);
-        let VtkSeries { scene, fields, buffer, .. } = self;
-        replace(&path, |out| image(out, contact, &scene.json(contact), fields, buffer))?;
+        replace(&path, |out| write_image(out, contact, &mut self.frames))?;
 
         let time = contact.time();
         let entry = format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{name}\"/>\n");
@@ -87,21 +83,16 @@ impl VtkSeries {
         Ok(path)
     }
 
-    /// Frames written.
+    /// Number of frames written.
     pub fn frames(&self) -> usize {
         self.frames.written()
     }
 }
 
-/// Writes an image: a head in XML, then all values as they are in memory, each array behind its size in bytes.
-fn image(
-    out: &mut impl Write,
-    contact: &ViscoelasticContact,
-    scene: &str,
-    fields: &[Field],
-    buffer: &mut Vec<f64>,
-) -> io::Result<()> {
-    let grid = contact.grid();
+/// Writes an image: an XML header, then all values in binary, each array preceded by its size in bytes.
+fn write_image(out: &mut impl Write, contact: &ViscoelasticContact, frames: &mut Frames) -> io::Result<()> {
+    let Frames { metadata, fields, buffer, .. } = frames;
+    let (grid, metadata) = (contact.grid(), metadata.json(contact));
     let numbers: [(&str, &[f64]); 5] = [
         ("TimeValue", &[contact.time()]),
         ("approach [m]", &[contact.approach()]),
@@ -109,20 +100,20 @@ fn image(
         ("tilt [rad]", &contact.tilt()),
         ("contact area [m2]", &[contact.contact_area()]),
     ];
-    head(out, grid, &numbers, scene, fields)?;
+    write_header(out, grid, &numbers, &metadata, fields)?;
     for (_, values) in numbers {
-        size(out, 8 * values.len() as u64)?;
+        write_size(out, 8 * values.len() as u64)?;
         values.iter().try_for_each(|value| out.write_all(&value.to_le_bytes()))?;
     }
-    // texts end with a zero, which there is none of within JSON
-    size(out, scene.len() as u64 + 1)?;
-    out.write_all(scene.as_bytes())?;
+    // strings end with a NUL byte, which JSON does not contain
+    write_size(out, metadata.len() as u64 + 1)?;
+    out.write_all(metadata.as_bytes())?;
     out.write_all(&[0])?;
     let [n1, n2] = grid.cells();
-    for field in fields {
+    for field in fields.iter() {
         let values = field.values(contact, buffer).map_err(io::Error::other)?;
-        size(out, 8 * values.len() as u64)?;
-        // VTK runs along x first
+        write_size(out, 8 * values.len() as u64)?;
+        // in VTK x varies fastest
         for j in 0..n2 {
             (0..n1).try_for_each(|i| out.write_all(&values[i * n2 + j].to_le_bytes()))?;
         }
@@ -130,23 +121,23 @@ fn image(
     out.write_all(b"\n  </AppendedData>\n</VTKFile>\n")
 }
 
-/// The size of the array that follows.
-fn size(out: &mut impl Write, bytes: u64) -> io::Result<()> {
+/// Writes the size of the array that follows.
+fn write_size(out: &mut impl Write, bytes: u64) -> io::Result<()> {
     out.write_all(&bytes.to_le_bytes())
 }
 
-/// The XML before the values.
-fn head(
+/// Writes the XML before the values.
+fn write_header(
     out: &mut impl Write,
     grid: &Grid,
     numbers: &[(&str, &[f64])],
-    scene: &str,
+    metadata: &str,
     fields: &[Field],
 ) -> io::Result<()> {
     let ([n1, n2], [d1, d2], [c1, c2]) = (grid.cells(), grid.spacing(), grid.center(0, 0));
     let extent = format!("0 {n1} 0 {n2} 0 0");
     let mut offset = 0;
-    let mut next = |bytes: usize| {
+    let mut next_offset = |bytes: usize| {
         let this = offset;
         offset += 8 + bytes as u64;
         format!("format=\"appended\" offset=\"{this}\"/>")
@@ -160,16 +151,16 @@ fn head(
         c2 - 0.5 * d2,
     )?;
     for (name, values) in numbers {
-        // one tuple, of as many components as there are values
-        let (components, place) = (values.len(), next(8 * values.len()));
+        // one tuple with as many components as values
+        let (components, place) = (values.len(), next_offset(8 * values.len()));
         let shape = format!("NumberOfComponents=\"{components}\" NumberOfTuples=\"1\"");
         writeln!(out, "      <DataArray type=\"Float64\" Name=\"{name}\" {shape} {place}")?;
     }
-    let place = next(scene.len() + 1);
-    writeln!(out, "      <Array type=\"String\" Name=\"scene\" NumberOfTuples=\"1\" {place}")?;
+    let place = next_offset(metadata.len() + 1);
+    writeln!(out, "      <Array type=\"String\" Name=\"metadata\" NumberOfTuples=\"1\" {place}")?;
     writeln!(out, "    </FieldData>\n    <Piece Extent=\"{extent}\">\n      <CellData>")?;
     for field in fields {
-        let (name, unit, place) = (field.name(), field.unit(), next(8 * grid.len()));
+        let (name, unit, place) = (field.name(), field.unit(), next_offset(8 * grid.len()));
         writeln!(out, "        <DataArray type=\"Float64\" Name=\"{name} [{unit}]\" {place}")?;
     }
     write!(out, "      </CellData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n   _")

@@ -1,4 +1,4 @@
-//! Runs that move.
+//! Animations of a run.
 
 use std::fmt;
 use std::fs::File;
@@ -9,13 +9,14 @@ use crate::error::{Error, Result, within};
 use crate::file::{Appending, Part, failed};
 use crate::output::Field;
 use crate::plot::palette::Palette;
-use crate::plot::quantity::drawable;
+use crate::plot::quantity::color_scale;
 use crate::plot::{Map, Picture};
 
-/// A run as an animated GIF, frame by frame, played over and over.
+/// A run as an animated GIF that repeats endlessly.
 ///
-/// Frames are written as they are added, to a file with the number of the process and `.part` behind its name, which browsers
-/// show as far as it goes; it gets its own name by [`Animation::finish`]. An animation that is dropped before leaves the part.
+/// Frames are written as they are added, to a file whose name ends in the process ID and `.part`; browsers show it as
+/// far as it is written. [`Animation::finish`] gives it its final name. An animation that is dropped before that leaves
+/// the partial file.
 ///
 /// ```
 /// use viscocontact::plot::Animation;
@@ -41,32 +42,30 @@ pub struct Animation {
     file: Appending<File>,
     field: Field,
     range: [f64; 2],
-    /// Hundredths of a second a frame.
+    /// Duration of a frame in hundredths of a second.
     delay: u16,
     palette: Palette,
-    /// From the first frame on.
+    /// `None` before the first frame.
     encoder: Option<gif::Encoder<Vec<u8>>>,
     size: [u32; 2],
-    /// The last frame, to write of the next what has changed.
+    /// Palette indices of the last frame: of the next one only what differs is written.
     last: Vec<u8>,
     frames: usize,
 }
 
 impl Animation {
-    /// An animation of `field`, whose colours go from `range[0]` to `range[1]` in SI units, the same in all frames;
-    /// each frame is shown for `seconds`, to a hundredth. A file of this name is replaced when the animation is
+    /// An animation of `field` with a colour scale from `range[0]` to `range[1]` in SI units in all frames. Each frame
+    /// is shown for `seconds`, rounded to hundredths. An existing file of this name is replaced when the animation is
     /// finished.
     ///
     /// # Errors
-    /// If the range is not in order, `seconds` is not in \[0.02, 600\], or the file cannot be written.
+    /// If the range is not increasing, `seconds` is not in \[0.02, 600\], or the file cannot be written.
     pub fn create(path: impl AsRef<Path>, field: Field, range: [f64; 2], seconds: f64) -> Result<Animation> {
         let path = path.as_ref().to_owned();
-        drawable("lower end of the colour scale", range[0])?;
-        let upper = "upper end of the colour scale";
-        within(upper, drawable(upper, range[1])?, range[1] > range[0], "above the lower end")?;
-        // players show shorter ones for a tenth of a second
+        color_scale(range)?;
+        // players show shorter frames for a tenth of a second
         let allowed = (0.02..=600.0).contains(&seconds);
-        let delay = (within("seconds a frame", seconds, allowed, "in [0.02, 600]")? * 100.0).round() as u16;
+        let delay = (within("seconds per frame", seconds, allowed, "in [0.02, 600]")? * 100.0).round() as u16;
         let (part, file) = Part::create(&path)?;
         Ok(Animation {
             path,
@@ -83,25 +82,25 @@ impl Animation {
         })
     }
 
-    /// Adds the state a contact is in: the field, and a line around the cells in contact.
+    /// Adds the current state of a contact: the field, with the contact outlined.
     ///
     /// # Errors
-    /// As [`Animation::add_picture`], or if a value is beyond 1e100.
+    /// As [`Animation::add_picture`], or if a value exceeds 1e100 in magnitude.
     pub fn add(&mut self, contact: &ViscoelasticContact) -> Result<()> {
         let mut map = Map::field(contact, self.field)?.outline_contact(contact)?;
         map.range = self.range;
         self.add_picture(&map.draw()?)
     }
 
-    /// Adds a picture of your own. Its colours are the nearest of 256: those of maps and series, and greys.
+    /// Adds any picture. Its colours are mapped to the nearest of 256: those of maps and curves, and greys.
     ///
     /// # Errors
-    /// If it has another size than the first, or the file cannot be written; nothing of it is in the file then.
+    /// If its size differs from that of the first, or the file cannot be written; then nothing of it is in the file.
     pub fn add_picture(&mut self, picture: &Picture) -> Result<()> {
         let size = picture.size();
         let path = &self.path;
         if self.frames == 0 {
-            // a picture has 16384 pixels along a side at most
+            // a picture has at most 16384 pixels per side
             let [width, height] = size.map(|side| side as u16);
             let mut encoder = gif::Encoder::new(Vec::new(), width, height, &self.palette.bytes())
                 .map_err(|error| failed(path, error))?;
@@ -138,18 +137,18 @@ impl Animation {
         Ok(())
     }
 
-    /// Frames added.
+    /// Number of frames.
     pub fn frames(&self) -> usize {
         self.frames
     }
 
-    /// Ends the file and gives it its name.
+    /// Completes the file and gives it its final name.
     ///
     /// # Errors
     /// If there are no frames, or the file cannot be written.
     pub fn finish(mut self) -> Result<()> {
         let Some(encoder) = self.encoder.take().filter(|_| self.frames > 0) else {
-            self.part.remove(); // nothing worth keeping
+            self.part.remove(); // without frames the file is useless
             return Err(Error::WrongLength { field: "frames of an animation", len: 0, expected: 1, exact: false });
         };
         let end = encoder.into_inner().map_err(|error| failed(&self.path, error))?;
@@ -158,7 +157,7 @@ impl Animation {
     }
 }
 
-/// The rectangle in which a frame differs from the one before: left, top, width and height, a pixel at least.
+/// Bounding box of the pixels that differ from the previous frame: left, top, width and height, at least one pixel.
 fn changed(before: &[u8], now: &[u8], width: usize) -> [usize; 4] {
     if before.len() != now.len() {
         return [0, 0, width, now.len() / width];
@@ -188,7 +187,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_changed_is_found() {
+    fn the_bounding_box_of_changes_is_found() {
         let before = [0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0];
         let mut now = before;
         assert_eq!(changed(&before, &now, 4), [0, 0, 1, 1]);

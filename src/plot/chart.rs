@@ -7,23 +7,23 @@ use plotters::prelude::*;
 use plotters::style::Color as _;
 
 use crate::error::{Error, Result};
-use crate::plot::picture::{Drawing, FONT};
+use crate::plot::picture::{DrawingError, FONT};
 use crate::plot::quantity::{drawable, drawable_as_power, numbers, powers};
 use crate::plot::{Color, Picture, Quantity};
 
-/// Pixels of a chart.
+/// Width and height of a chart in pixels.
 const SIZE: [u32; 2] = [1200, 800];
 
 /// Which axes of a chart are logarithmic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[expect(clippy::exhaustive_enums, reason = "there are two axes")]
 pub enum Scale {
-    /// None.
+    /// Neither.
     #[default]
     Linear,
-    /// The horizontal one.
+    /// The horizontal axis.
     LogX,
-    /// The vertical one.
+    /// The vertical axis.
     LogY,
     /// Both.
     LogLog,
@@ -36,7 +36,7 @@ impl Scale {
     }
 }
 
-/// How a series is drawn.
+/// How a curve is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Style {
@@ -48,10 +48,10 @@ pub enum Style {
     LineAndDots,
 }
 
-/// Where the legend of a chart stands.
+/// Position of the legend in a chart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[expect(missing_docs, reason = "the names say it")]
-#[expect(clippy::exhaustive_enums, reason = "there are no other places")]
+#[expect(missing_docs, reason = "the names are self-explanatory")]
+#[expect(clippy::exhaustive_enums, reason = "there are nine positions")]
 pub enum Legend {
     UpperLeft,
     UpperMiddle,
@@ -65,17 +65,17 @@ pub enum Legend {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-struct Series {
+struct Curve {
     label: String,
     points: Vec<(f64, f64)>,
     color: Color,
     style: Style,
 }
 
-/// A chart of lines and dots over two axes.
+/// A chart of curves over two axes.
 ///
-/// Points with a coordinate that is not finite, or not above zero on a logarithmic axis, have no place: they are left
-/// out, and break the line.
+/// Points with a coordinate that is not finite, or not positive on a logarithmic axis, are left out and interrupt the
+/// line.
 ///
 /// ```
 /// use viscocontact::plot::{COLORS, Chart, Legend, Quantity, Style};
@@ -91,39 +91,40 @@ struct Series {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Chart {
-    /// Above it.
+    /// The title above the chart.
     pub title: String,
     /// The horizontal axis.
     pub x: Quantity,
     /// The vertical axis.
     pub y: Quantity,
-    /// Which axes are logarithmic (at first: none).
+    /// Which axes are logarithmic (default: none).
     pub scale: Scale,
-    /// Where the legend leaves the curves free.
+    /// Position of the legend.
     pub legend: Legend,
-    series: Vec<Series>,
+    curves: Vec<Curve>,
 }
 
-/// An axis as it is drawn: its label, what values are multiplied by, and its ends after that.
-struct Scaled {
+/// An axis as drawn: its label, the factor from SI to its unit, and its ends in that unit.
+struct ScaledAxis {
     label: String,
     factor: f64,
     ends: [f64; 2],
 }
 
 impl Chart {
-    /// A chart without series.
+    /// A chart without curves.
     pub fn new(title: impl Into<String>, x: impl Into<Quantity>, y: impl Into<Quantity>, legend: Legend) -> Chart {
         let (title, x, y) = (title.into(), x.into(), y.into());
-        Chart { title, x, y, scale: Scale::Linear, legend, series: Vec::new() }
+        Chart { title, x, y, scale: Scale::Linear, legend, curves: Vec::new() }
     }
 
-    /// Adds a series, in the units of the axes' quantities; without a label it is not in the legend.
+    /// Adds a curve through `points`, in the units of the quantities of the axes. With an empty label it is not in the
+    /// legend.
     pub fn add(&mut self, label: impl Into<String>, color: Color, style: Style, points: Vec<(f64, f64)>) {
-        self.series.push(Series { label: label.into(), points, color, style });
+        self.curves.push(Curve { label: label.into(), points, color, style });
     }
 
-    /// Draws the chart and writes it to a PNG file, which is replaced if it is there.
+    /// Draws the chart and writes it to a PNG file, replacing an existing one.
     ///
     /// # Errors
     /// As [`Chart::draw`], or if the file cannot be written.
@@ -134,7 +135,8 @@ impl Chart {
     /// Draws the chart.
     ///
     /// # Errors
-    /// If no point has a place on it, or a coordinate is beyond 1e100 (or on a logarithmic axis below 1e-100).
+    /// If there is no point to draw, or a coordinate exceeds 1e100 in magnitude (or, on a logarithmic axis, is below
+    /// 1e-100).
     pub fn draw(&self) -> Result<Picture> {
         let [x, y] = [self.scaled(0)?, self.scaled(1)?];
         Picture::new(SIZE, |root| {
@@ -157,55 +159,55 @@ impl Chart {
         })
     }
 
-    /// The points that have a place, in unbroken pieces.
-    fn pieces<'a>(&'a self, series: &'a Series) -> impl Iterator<Item = &'a [(f64, f64)]> {
+    /// The uninterrupted runs of points that can be drawn.
+    fn pieces<'a>(&'a self, curve: &'a Curve) -> impl Iterator<Item = &'a [(f64, f64)]> {
         let logarithmic = self.scale.is_logarithmic();
-        let has_place = move |value: f64, log: bool| value.is_finite() && (!log || value > 0.0);
-        let both = move |&(x, y): &(f64, f64)| has_place(x, logarithmic[0]) && has_place(y, logarithmic[1]);
-        series.points.split(move |point| !both(point)).filter(|piece| !piece.is_empty())
+        let drawn = move |value: f64, log: bool| value.is_finite() && (!log || value > 0.0);
+        let both = move |&(x, y): &(f64, f64)| drawn(x, logarithmic[0]) && drawn(y, logarithmic[1]);
+        curve.points.split(move |point| !both(point)).filter(|piece| !piece.is_empty())
     }
 
-    /// An axis that holds all points, with some room.
-    fn scaled(&self, axis: usize) -> Result<Scaled> {
+    /// The axis that contains all points, with a margin.
+    fn scaled(&self, axis: usize) -> Result<ScaledAxis> {
         let (field, quantity) = [("x of a point in a chart", &self.x), ("y of a point in a chart", &self.y)][axis];
         let logarithmic = self.scale.is_logarithmic()[axis];
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for point in self.series.iter().flat_map(|series| self.pieces(series)).flatten() {
+        for point in self.curves.iter().flat_map(|curve| self.pieces(curve)).flatten() {
             let value = [point.0, point.1][axis];
             let value = if logarithmic { drawable_as_power(field, value) } else { drawable(field, value) }?;
             (low, high) = (low.min(value), high.max(value));
         }
         if low > high {
-            let field = "points with a place in the chart";
+            let field = "points to draw in the chart";
             return Err(Error::WrongLength { field, len: 0, expected: 1, exact: false });
         }
         let (label, factor) = quantity.shown(low.abs().max(high.abs()));
         let [low, high] = [low * factor, high * factor];
         let ends = if logarithmic && high < 10.0 * low {
-            // whole decades and a little more, or there would be no number along the axis
+            // whole decades and a little more: otherwise no tick would have a number
             [0.99 * 10_f64.powf((low / 1.1).log10().floor()), 1.01 * 10_f64.powf((high * 1.1).log10().ceil())]
         } else if logarithmic {
             [low / 1.5, high * 1.5]
         } else {
-            // what is all the same gets a scale about it
+            // values that are all equal get a range around them
             let span = (high - low).max(1e-9 * high.abs().max(low.abs()));
-            let room = 0.04 * if span > 0.0 { span } else { 1.0 };
-            [if low == 0.0 { 0.0 } else { low - room }, high + room]
+            let margin = 0.04 * if span > 0.0 { span } else { 1.0 };
+            [if low == 0.0 { 0.0 } else { low - margin }, high + margin]
         };
-        Ok(Scaled { label, factor, ends })
+        Ok(ScaledAxis { label, factor, ends })
     }
 
     fn fill<'a, X, Y>(
         &self,
         chart: &mut ChartContext<'a, BitMapBackend<'a>, Cartesian2d<X, Y>>,
-        x: &Scaled,
-        y: &Scaled,
-    ) -> Result<(), Drawing>
+        x: &ScaledAxis,
+        y: &ScaledAxis,
+    ) -> Result<(), DrawingError>
     where
         X: Ranged<ValueType = f64> + ValueFormatter<f64>,
         Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
-        let format = |axis: &Scaled, logarithmic: bool| -> Box<dyn Fn(&f64) -> String> {
+        let format = |axis: &ScaledAxis, logarithmic: bool| -> Box<dyn Fn(&f64) -> String> {
             if logarithmic { Box::new(powers) } else { Box::new(numbers(axis.ends)) }
         };
         let [log_x, log_y] = self.scale.is_logarithmic();
@@ -220,24 +222,24 @@ impl Chart {
             .light_line_style(RGBColor(240, 240, 240))
             .bold_line_style(RGBColor(215, 215, 215))
             .draw()?;
-        for series in &self.series {
-            let color = series.color.rgb();
+        for curve in &self.curves {
+            let color = curve.color.rgb();
             let at = |point: &(f64, f64)| (point.0 * x.factor, point.1 * y.factor);
-            let mut label = Some(&series.label).filter(|label| !label.is_empty());
-            for piece in self.pieces(series) {
-                if series.style != Style::Dots {
-                    // piece by piece: plotters draws spikes where a thick line turns back
-                    let pieces = piece
+            let mut label = Some(&curve.label).filter(|label| !label.is_empty());
+            for piece in self.pieces(curve) {
+                if curve.style != Style::Dots {
+                    // segment by segment: plotters draws spikes where a thick line reverses direction
+                    let segments = piece
                         .windows(2)
                         .map(|ends| PathElement::new(ends.iter().map(at).collect::<Vec<_>>(), color.stroke_width(3)));
-                    let drawn = chart.draw_series(pieces)?;
+                    let drawn = chart.draw_series(segments)?;
                     if let Some(label) = label.take() {
                         drawn
                             .label(label)
                             .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 28, y)], color.stroke_width(3)));
                     }
                 }
-                if series.style != Style::Line {
+                if curve.style != Style::Line {
                     let dots = piece.iter().map(|point| Circle::new(at(point), 5, color.filled()));
                     let drawn = chart.draw_series(dots)?;
                     if let Some(label) = label.take() {
@@ -246,7 +248,7 @@ impl Chart {
                 }
             }
         }
-        if self.series.iter().all(|series| series.label.is_empty()) {
+        if self.curves.iter().all(|curve| curve.label.is_empty()) {
             return Ok(());
         }
         chart

@@ -1,4 +1,4 @@
-//! The state of a contact as pictures.
+//! Maps and charts of a contact.
 
 use crate::ViscoelasticContact;
 use crate::error::Result;
@@ -8,46 +8,45 @@ use crate::plot::quantity::measure;
 use crate::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Style};
 
 impl Map {
-    /// The pressure of a contact, white where nothing touches; the scale begins at zero. Of a line contact, whose map is a strip,
-    /// [`Chart::profile`] shows more.
+    /// The pressure of a contact, white out of contact; the colour scale begins at zero. A line contact, whose map is a
+    /// strip, is better shown by [`Chart::profile`].
     ///
     /// # Errors
-    /// If a pressure is beyond 1e100 Pa.
+    /// If a pressure exceeds 1e100 Pa.
     pub fn pressure(contact: &ViscoelasticContact) -> Result<Map> {
         Map::field(contact, Field::Pressure)
     }
 
-    /// The gap of a contact, grey where there is nothing to touch, with a line around the cells in contact; the scale
-    /// begins at zero.
+    /// The gap of a contact, grey where it is infinite, with the contact outlined; the colour scale begins at zero.
     ///
     /// # Errors
-    /// If a finite gap is beyond 1e100 m.
+    /// If a finite gap exceeds 1e100 m.
     pub fn gap(contact: &ViscoelasticContact) -> Result<Map> {
         Map::field(contact, Field::Gap)?.outline_contact(contact)
     }
 
-    /// The displacement of a contact, with a line around the cells in contact.
+    /// The displacement of a contact, with the contact outlined.
     ///
     /// # Errors
-    /// If a displacement is beyond 1e100 m.
+    /// If a displacement exceeds 1e100 m in magnitude.
     pub fn displacement(contact: &ViscoelasticContact) -> Result<Map> {
         Map::field(contact, Field::Displacement)?.outline_contact(contact)
     }
 
-    /// Draws a line around the cells of `contact` that are in contact.
+    /// Outlines the cells of `contact` that are in contact.
     ///
     /// # Errors
-    /// If the map has not the cells of the contact.
+    /// If map and contact differ in the number of cells.
     pub fn outline_contact(self, contact: &ViscoelasticContact) -> Result<Map> {
         self.outline(contact.pressure().iter().map(|&p| p > 0.0).collect())
     }
 
-    /// A field of a contact, with its time as title.
+    /// A field of a contact, titled with its time.
     pub(super) fn field(contact: &ViscoelasticContact, field: Field) -> Result<Map> {
         let mut buffer = Vec::new();
         let mut values = field.values(contact, &mut buffer)?.to_vec();
         if field == Field::Pressure {
-            // what does not touch stays blank
+            // cells out of contact stay blank
             values.iter_mut().filter(|p| **p <= 0.0).for_each(|p| *p = f64::NAN);
         }
         let mut map = Map::new(contact.grid(), values, Quantity::of(field.name(), field.unit()))?;
@@ -57,14 +56,13 @@ impl Map {
         if field == Field::Gap {
             map.blank = Color::GREY;
         }
-        map.title = time_of(contact);
+        map.title = time_title(contact);
         Ok(map)
     }
 }
 
 impl Chart {
-    /// The pressure of a contact along the line of cells in the direction of `along` at the other coordinate `at`
-    /// \[m\], as [`ViscoelasticContact::profile`] gives it.
+    /// The pressure along a line of cells, see [`ViscoelasticContact::profile`].
     ///
     /// # Errors
     /// If `at` lies outside the grid.
@@ -75,7 +73,7 @@ impl Chart {
             Axis::X2 => ["x2", "x1"],
         };
         let (x, y) = (Quantity::of(name, "m"), Quantity::of("pressure", "Pa"));
-        let title = format!("{}, {across} = {}", time_of(contact), measure(at, "m"));
+        let title = format!("{}, {across} = {}", time_title(contact), measure(at, "m"));
         let mut chart = Chart::new(title, x, y, Legend::UpperRight);
         let points = profile.positions.into_iter().zip(profile.pressure).collect();
         chart.add("", COLORS[0], Style::LineAndDots, points);
@@ -83,7 +81,7 @@ impl Chart {
     }
 }
 
-/// The time of a state, as a title.
-pub(super) fn time_of(contact: &ViscoelasticContact) -> String {
+/// The time of a contact, as a title.
+fn time_title(contact: &ViscoelasticContact) -> String {
     format!("t = {}", measure(contact.time(), "s"))
 }

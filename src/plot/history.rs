@@ -1,10 +1,10 @@
-//! Runs over time.
+//! Quantities of a contact over time.
 
 use crate::ViscoelasticContact;
 use crate::error::{Result, exact_length};
 use crate::plot::{COLORS, Chart, Legend, Quantity, Style};
 
-/// What a [`History`] keeps of each state.
+/// A quantity of a contact that a [`History`] records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Observed {
@@ -30,29 +30,25 @@ impl Observed {
         Observed::GreatestPressure,
     ];
 
-    /// Its name and SI unit.
+    /// Name and SI unit.
     pub fn quantity(self) -> Quantity {
-        match self {
-            Observed::Force => Quantity::of("force", "N"),
-            Observed::Approach => Quantity::of("approach", "m"),
-            Observed::ContactArea => Quantity::of("contact area", "m²"),
-            Observed::MeanPressure => Quantity::of("mean pressure", "Pa"),
-            Observed::GreatestPressure => Quantity::of("greatest pressure", "Pa"),
-        }
+        let (name, unit, _) = self.definition();
+        Quantity::of(name, unit)
     }
 
-    fn of(self, contact: &ViscoelasticContact) -> f64 {
+    /// Name, SI unit and the method that returns the value.
+    fn definition(self) -> (&'static str, &'static str, fn(&ViscoelasticContact) -> f64) {
         match self {
-            Observed::Force => contact.force(),
-            Observed::Approach => contact.approach(),
-            Observed::ContactArea => contact.contact_area(),
-            Observed::MeanPressure => contact.mean_pressure(),
-            Observed::GreatestPressure => contact.greatest_pressure(),
+            Observed::Force => ("force", "N", ViscoelasticContact::force),
+            Observed::Approach => ("approach", "m", ViscoelasticContact::approach),
+            Observed::ContactArea => ("contact area", "m²", ViscoelasticContact::contact_area),
+            Observed::MeanPressure => ("mean pressure", "Pa", ViscoelasticContact::mean_pressure),
+            Observed::GreatestPressure => ("greatest pressure", "Pa", ViscoelasticContact::greatest_pressure),
         }
     }
 }
 
-/// A run, state by state, to be drawn over time.
+/// Quantities of a contact recorded over a run, to draw over time.
 ///
 /// ```
 /// use viscocontact::plot::{History, Observed, Scale};
@@ -82,44 +78,44 @@ pub struct History {
 }
 
 impl History {
-    /// Without a state.
+    /// An empty history.
     pub fn new() -> History {
         History::default()
     }
 
-    /// Adds the state a contact is in.
+    /// Records the current state of a contact.
     pub fn add(&mut self, contact: &ViscoelasticContact) {
         self.times.push(contact.time());
         for (column, observed) in self.columns.iter_mut().zip(Observed::ALL) {
-            column.push(observed.of(contact));
+            column.push(observed.definition().2(contact));
         }
     }
 
-    /// The times of the states \[s\].
+    /// The recorded times \[s\].
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// One value a state.
+    /// The recorded values of a quantity, one per time.
     pub fn column(&self, observed: Observed) -> &[f64] {
         &self.columns[observed as usize]
     }
 
-    /// One of its columns over time.
+    /// A recorded quantity over time.
     ///
     /// # Errors
-    /// As [`Chart::history`]: none is expected, the columns being as long as the times.
+    /// As [`Chart::history`]; none is expected, since all columns are as long as the times.
     pub fn chart(&self, observed: Observed) -> Result<Chart> {
         Chart::history("", &self.times, observed.quantity(), &[("", self.column(observed))])
     }
 }
 
 impl Chart {
-    /// Columns of one quantity, each with its label, over time \[s\]. [`Chart::scale`] makes axes logarithmic; the time
-    /// 0 has no place on those.
+    /// Labelled columns of values of one quantity over time \[s\]. [`Chart::scale`] makes axes logarithmic; time 0 is
+    /// left out on those.
     ///
     /// # Errors
-    /// If a column does not hold one value a time.
+    /// If a column does not have one value per time.
     pub fn history(
         title: impl Into<String>,
         times: &[f64],

@@ -1,4 +1,4 @@
-//! Fields as colours.
+//! Colour maps of fields.
 
 use std::path::Path;
 
@@ -7,22 +7,23 @@ use plotters::prelude::*;
 use plotters::style::Color as _;
 
 use crate::Grid;
-use crate::error::{Result, exact_length, least_length, within};
-use crate::plot::picture::{Area, Drawing, FONT};
-use crate::plot::quantity::{drawable, numbers};
+use crate::error::{Result, exact_length, least_length};
+use crate::plot::picture::{Area, DrawingError, FONT};
+use crate::plot::quantity::{color_scale, drawable, numbers};
 use crate::plot::{Color, Picture, Quantity};
 
-/// Width of the space for the numbers beside a map, and of its colour bar with its numbers, in pixels.
-const SIDE: u32 = 110;
-const BAR: u32 = 170;
-/// Height of the space for the title above a map and the numbers below.
-const ENDS: u32 = 130;
-/// Least pixels of a map along a side: very long ones are not drawn to scale.
-const LEAST: u32 = 40;
+/// Width of the tick labels beside a map in pixels.
+const LABEL_WIDTH: u32 = 110;
+/// Width of a colour bar with its labels in pixels.
+const BAR_WIDTH: u32 = 170;
+/// Height of the title above a map and the tick labels below in pixels.
+const TITLE_AND_LABEL_HEIGHT: u32 = 130;
+/// Least side of a map in pixels: very long maps are not drawn to scale.
+const MIN_SIDE: u32 = 40;
 
-/// A field on a grid as colours, light for small values and dark for great ones.
+/// A field on a grid as colours, light for small values and dark for large ones.
 ///
-/// [`Map::pressure`], [`Map::gap`] and [`Map::displacement`] draw those of a contact in a line.
+/// [`Map::pressure`], [`Map::gap`] and [`Map::displacement`] are the maps of a contact.
 ///
 /// ```
 /// use viscocontact::{Grid, plot::{Map, Quantity}};
@@ -38,29 +39,29 @@ const LEAST: u32 = 40;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Map {
-    /// Above it.
+    /// The title above the map.
     pub title: String,
-    /// What the colour bar shows.
+    /// The quantity of the colour bar.
     pub quantity: Quantity,
-    /// The axes; at first x1 and x2 in metres, shown with the prefix that suits them.
+    /// The axes (default: x1 and x2 in metres, shown with a suitable prefix).
     pub axes: [Quantity; 2],
-    /// Ends of the colour scale, in the unit of the values; at first the least and the greatest finite value. What lies
-    /// beyond has the colour of the end.
+    /// Ends of the colour scale, in the unit of the values (default: the least and the greatest finite value). Values
+    /// outside have the colour of the nearer end.
     pub range: [f64; 2],
-    /// The colour of cells without a value (at first: white).
+    /// The colour of cells without a value (default: white).
     pub blank: Color,
     cells: [usize; 2],
     lengths: [f64; 2],
     values: Vec<f64>,
-    /// Cells that are outlined; empty for none.
-    outlined: Vec<bool>,
+    /// Whether each cell lies inside the outline; empty without an outline.
+    inside_outline: Vec<bool>,
 }
 
 impl Map {
-    /// The map of `values`, one a cell of `grid`, x2 fastest. Cells whose value is not finite stay blank.
+    /// The map of `values`, one per cell of `grid`, x2 fastest. Cells whose value is not finite stay blank.
     ///
     /// # Errors
-    /// If there is not one value a cell, or a finite one is beyond ±1e100.
+    /// If there is not one value per cell, or a finite one is beyond ±1e100.
     pub fn new(grid: &Grid, values: Vec<f64>, quantity: impl Into<Quantity>) -> Result<Map> {
         exact_length("values of a map", values.len(), grid.len())?;
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -68,7 +69,7 @@ impl Map {
             drawable("value of a map", value)?;
             (low, high) = (low.min(value), high.max(value));
         }
-        // a field that is all the same, or nowhere, still has a scale
+        // a uniform or empty field still needs a scale
         let range = match low.partial_cmp(&high) {
             Some(std::cmp::Ordering::Less) => [low, high],
             Some(std::cmp::Ordering::Equal) if low != 0.0 => [low.min(0.0), low.max(0.0)],
@@ -83,26 +84,26 @@ impl Map {
             cells: grid.cells(),
             lengths: grid.lengths(),
             values,
-            outlined: Vec::new(),
+            inside_outline: Vec::new(),
         })
     }
 
-    /// The values, one a cell.
+    /// The values, one per cell.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 
-    /// Draws a line around the cells for which `inside` holds, such as those in contact.
+    /// Outlines the cells for which `inside` holds, such as those in contact.
     ///
     /// # Errors
-    /// If there is not one entry a cell.
+    /// If there is not one entry per cell.
     pub fn outline(mut self, inside: Vec<bool>) -> Result<Map> {
         exact_length("cells of an outline", inside.len(), self.values.len())?;
-        self.outlined = inside;
+        self.inside_outline = inside;
         Ok(self)
     }
 
-    /// Draws the map and writes it to a PNG file, which is replaced if it is there.
+    /// Draws the map and writes it to a PNG file, replacing an existing one.
     ///
     /// # Errors
     /// As [`Map::draw`], or if the file cannot be written.
@@ -110,16 +111,15 @@ impl Map {
         self.draw()?.save(path)
     }
 
-    /// Draws the map, to scale unless a side is more than about twenty times as long as the other.
+    /// Draws the map, to scale unless one side is more than about twenty times as long as the other.
     ///
     /// # Errors
-    /// If the ends of its colour scale are not in order, or beyond ±1e100.
+    /// If the ends of the colour scale are not increasing, or beyond ±1e100.
     pub fn draw(&self) -> Result<Picture> {
         Map::draw_row(std::slice::from_ref(self))
     }
 
-    /// Draws maps next to each other, with one colour bar if they have the same quantity and scale, else with one each,
-    /// and writes them to a PNG file.
+    /// Draws maps side by side as [`Map::draw_row`] and writes them to a PNG file, replacing an existing one.
     ///
     /// # Errors
     /// As [`Map::draw_row`], or if the file cannot be written.
@@ -127,43 +127,39 @@ impl Map {
         Map::draw_row(maps)?.save(path)
     }
 
-    /// Draws maps next to each other, with one colour bar if they have the same quantity and scale, else with one each.
+    /// Draws maps side by side, with one colour bar if all have the same quantity and scale, otherwise with one each.
     ///
     /// # Errors
-    /// If there are none, the ends of a colour scale are not in order or beyond ±1e100, or the row is wider than 16384
-    /// pixels.
+    /// If there are none, the ends of a colour scale are not increasing or beyond ±1e100, or the row is wider than
+    /// 16384 pixels.
     pub fn draw_row(maps: &[Map]) -> Result<Picture> {
         least_length("maps of a row", maps.len(), 1)?;
-        for map in maps {
-            let [low, high] = map.range;
-            drawable("lower end of the colour scale", low)?;
-            let field = "upper end of the colour scale";
-            within(field, drawable(field, high)?, high > low, "above the lower end")?;
-        }
+        maps.iter().try_for_each(|map| color_scale(map.range))?;
         let (last, alone) = (&maps[maps.len() - 1], maps.len() == 1);
-        // a map as large as legible; several are smaller
-        let most = if alone { 730.0 } else { 460.0 };
+        // several maps are drawn smaller
+        let longest = if alone { 730.0 } else { 460.0 };
         let shared = maps.iter().all(|map| map.range == last.range && map.quantity == last.quantity);
         let sizes: Vec<[u32; 2]> = maps
             .iter()
             .map(|map| {
                 let longer = map.lengths[0].max(map.lengths[1]);
-                map.lengths.map(|length| ((length / longer * most).round() as u32).max(LEAST))
+                map.lengths.map(|length| ((length / longer * longest).round() as u32).max(MIN_SIDE))
             })
             .collect();
-        let bar = |k: usize| !shared || k + 1 == maps.len();
-        let widths = sizes.iter().enumerate().map(|(k, size)| size[0] + SIDE + if bar(k) { BAR } else { 0 });
+        let has_bar = |k: usize| !shared || k + 1 == maps.len();
+        let widths =
+            sizes.iter().enumerate().map(|(k, size)| size[0] + LABEL_WIDTH + if has_bar(k) { BAR_WIDTH } else { 0 });
         let width = widths.fold(0_u32, u32::saturating_add);
-        let height = sizes.iter().map(|size| size[1]).max().unwrap_or(LEAST).max(if alone { 300 } else { 200 });
-        Picture::new([width, height + ENDS], |root| {
+        let height = sizes.iter().map(|size| size[1]).max().unwrap_or(MIN_SIDE).max(if alone { 300 } else { 200 });
+        Picture::new([width, height + TITLE_AND_LABEL_HEIGHT], |root| {
             let mut rest = root.clone();
             for (k, map) in maps.iter().enumerate() {
-                let (area, right) = rest.split_horizontally(sizes[k][0] + SIDE);
-                let (area, _) = area.split_vertically(sizes[k][1] + ENDS);
+                let (area, right) = rest.split_horizontally(sizes[k][0] + LABEL_WIDTH);
+                let (area, _) = area.split_vertically(sizes[k][1] + TITLE_AND_LABEL_HEIGHT);
                 map.draw_on(&area, alone)?;
                 rest = right;
-                if bar(k) {
-                    let (area, right) = rest.split_horizontally(BAR);
+                if has_bar(k) {
+                    let (area, right) = rest.split_horizontally(BAR_WIDTH);
                     map.draw_bar(&area)?;
                     rest = right;
                 }
@@ -172,7 +168,7 @@ impl Map {
         })
     }
 
-    fn draw_on(&self, area: &Area, alone: bool) -> Result<(), Drawing> {
+    fn draw_on(&self, area: &Area, alone: bool) -> Result<(), DrawingError> {
         let shown = [0, 1].map(|axis| {
             let half = 0.5 * self.lengths[axis];
             let (label, factor) = self.axes[axis].shown(half);
@@ -185,7 +181,7 @@ impl Map {
             .x_label_area_size(60)
             .y_label_area_size(80)
             .build_cartesian_2d(-h1..h1, -h2..h2)?;
-        // numbers would run into each other on a small map
+        // more labels would overlap on a small map
         let labels = if alone { 10 } else { 5 };
         chart
             .configure_mesh()
@@ -211,11 +207,11 @@ impl Map {
         Ok(())
     }
 
-    /// The colours of `size` pixels, from above.
+    /// The colours of `size` pixels, top row first.
     fn pixels(&self, size: [u32; 2]) -> Vec<u8> {
         let [least, most] = self.range;
         let [n1, n2] = self.cells;
-        // the cell that holds the middle of a pixel
+        // the cell at the centre of a pixel
         let cell = |pixel: u32, pixels: u32, cells: usize| {
             (((f64::from(pixel) + 0.5) / f64::from(pixels) * cells as f64) as usize).min(cells - 1)
         };
@@ -225,23 +221,22 @@ impl Map {
             for column in 0..size[0] {
                 let value = self.values[cell(column, size[0], n1) * n2 + j];
                 let known = value.is_finite();
-                let color = if known { Color::of_share((value - least) / (most - least)) } else { self.blank };
+                let color = if known { Color::on_scale((value - least) / (most - least)) } else { self.blank };
                 rgb.extend([color.0, color.1, color.2]);
             }
         }
         rgb
     }
 
-    /// The sides between cells that are outlined and those that are not, on axes that reach from −`half` to `half`;
-    /// sides in line are joined.
+    /// The outline on axes from −`half` to `half`: the sides between cells inside and outside, collinear ones joined.
     fn edges(&self, half: [f64; 2]) -> Vec<[(f64, f64); 2]> {
-        if self.outlined.is_empty() {
+        if self.inside_outline.is_empty() {
             return Vec::new();
         }
         let [n1, n2] = self.cells;
         let x = |i: usize| half[0] * (2.0 * i as f64 / n1 as f64 - 1.0);
         let y = |j: usize| half[1] * (2.0 * j as f64 / n2 as f64 - 1.0);
-        let inside = |i: usize, j: usize| self.outlined[i * n2 + j];
+        let inside = |i: usize, j: usize| self.inside_outline[i * n2 + j];
         let mut edges = Vec::new();
         for i in 1..n1 {
             for (from, to) in runs(n2, |j| inside(i - 1, j) != inside(i, j)) {
@@ -256,7 +251,7 @@ impl Map {
         edges
     }
 
-    fn draw_bar(&self, area: &Area) -> Result<(), Drawing> {
+    fn draw_bar(&self, area: &Area) -> Result<(), DrawingError> {
         let (label, factor) = self.quantity.shown(self.range[0].abs().max(self.range[1].abs()));
         let [least, most] = self.range.map(|end| end * factor);
         let step = 0.01 * (most - least);
@@ -278,14 +273,14 @@ impl Map {
             .draw()?;
         bar.draw_series((0..100).map(|k| {
             let low = least + f64::from(k) * step;
-            let color = Color::of_share(0.01 * f64::from(k)).rgb();
+            let color = Color::on_scale(0.01 * f64::from(k)).rgb();
             Rectangle::new([(0.0, low), (1.0, low + step)], color.filled())
         }))?;
         Ok(())
     }
 }
 
-/// The runs of numbers below `n` for which `holds`.
+/// The half-open ranges of indices below `n` for which `holds`.
 fn runs(n: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
     let mut found: Vec<(usize, usize)> = Vec::new();
     for k in (0..n).filter(|&k| holds(k)) {

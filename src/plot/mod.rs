@@ -1,16 +1,16 @@
-//! Pictures of contacts and runs: a line of code each. Feature `plot`.
+//! Pictures of contacts and runs, one line of code each. Feature `plot`.
 //!
 //! | picture | call |
 //! |---|---|
 //! | pressure, gap or displacement as a map | [`Map::pressure`], [`Map::gap`], [`Map::displacement`] |
-//! | a field of your own as a map | [`Map::new`] |
-//! | where it touches, on any map | [`Map::outline_contact`] |
+//! | any field as a map | [`Map::new`] |
+//! | an outline of the contact on any map | [`Map::outline_contact`] |
 //! | maps, charts, or both side by side | [`Map::save_row`], [`Picture::beside`] |
 //! | a profile along a line | [`Chart::profile`] |
-//! | a run over time | [`History`] |
-//! | columns of your own over time | [`Chart::history`] |
+//! | quantities of a contact over time | [`History`] |
+//! | any quantity over time | [`Chart::history`] |
 //! | any curves | [`Chart`] |
-//! | a run that moves | [`Animation`] |
+//! | an animation of a run | [`Animation`] |
 //!
 //! ```
 //! use viscocontact::plot::{Animation, History, Map, Observed};
@@ -36,8 +36,8 @@
 //! # Ok::<(), Error>(())
 //! ```
 //!
-//! Values are given in SI; axes and colour bars choose the prefix that keeps numbers short ([`Quantity`]). Colours are
-//! told apart without colour vision. The font is compiled in: nothing of the system is needed.
+//! Values are given in SI; axes and colour bars choose the prefix that keeps numbers short ([`Quantity`]). The colours
+//! can be distinguished without colour vision. The font is compiled in: no system font is needed.
 
 mod animation;
 mod chart;

@@ -1,4 +1,4 @@
-//! What is drawn, before it is a file.
+//! Pictures in memory, and as PNG files.
 
 use std::fmt;
 use std::io;
@@ -12,15 +12,15 @@ use plotters::style::{FontStyle, WHITE, register_font};
 use crate::error::{Error, Result, least_length};
 use crate::file::{failed, replace};
 
-/// The font of every text.
+/// Name under which the font of all texts is registered.
 pub(super) const FONT: &str = "viscocontact";
-/// Most pixels of a picture along a side.
-const MOST_PIXELS: usize = 16_384;
+/// Greatest width or height of a picture in pixels.
+const MAX_SIDE: usize = 16_384;
 
-/// The area that a picture is drawn on.
+/// The drawing area of a picture.
 pub(super) type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
 
-/// A picture in memory, three bytes a pixel: red, green and blue, row by row from above.
+/// A picture in memory, three bytes per pixel: red, green and blue, row by row from the top.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Picture {
     size: [u32; 2],
@@ -29,33 +29,27 @@ pub struct Picture {
 
 impl Picture {
     /// A white picture of `width` × `height` pixels, drawn on by `draw`.
-    pub(super) fn new(size: [u32; 2], draw: impl FnOnce(&Area) -> Result<(), Drawing>) -> Result<Picture> {
-        register()?;
-        for value in size.map(|side| side as usize) {
-            if !(1..=MOST_PIXELS).contains(&value) {
-                let field = "pixels along a side of a picture";
-                return Err(Error::CountOutOfRange { field, value, allowed: "1 to 16384" });
-            }
-        }
+    pub(super) fn new(size: [u32; 2], draw: impl FnOnce(&Area) -> Result<(), DrawingError>) -> Result<Picture> {
+        register_font_once()?;
+        size.iter().try_for_each(|&side| check_side(side as usize))?;
         let mut rgb = vec![255; 3 * size[0] as usize * size[1] as usize];
         let area = BitMapBackend::with_buffer(&mut rgb, (size[0], size[1])).into_drawing_area();
-        let drawn = area.fill(&WHITE).map_err(Drawing::from).and_then(|()| draw(&area));
-        drawn.and_then(|()| area.present().map_err(Drawing::from)).map_err(|Drawing(what)| undrawn(what))?;
+        let drawn = area.fill(&WHITE).map_err(DrawingError::from).and_then(|()| draw(&area));
+        drawn
+            .and_then(|()| area.present().map_err(DrawingError::from))
+            .map_err(|DrawingError(what)| drawing_failed(what))?;
         drop(area);
         Ok(Picture { size, rgb })
     }
 
-    /// Pictures next to each other, from left to right, on white where one is lower than others.
+    /// Pictures side by side from left to right; white below those that are lower than others.
     ///
     /// # Errors
     /// If there are none, or they are wider than 16384 pixels together.
     pub fn beside(pictures: &[Picture]) -> Result<Picture> {
         least_length("pictures", pictures.len(), 1)?;
         let width = pictures.iter().map(|picture| picture.size[0] as usize).sum();
-        if width > MOST_PIXELS {
-            let field = "pixels along a side of a picture";
-            return Err(Error::CountOutOfRange { field, value: width, allowed: "1 to 16384" });
-        }
+        check_side(width)?;
         let height = pictures.iter().map(|picture| picture.size[1]).max().unwrap_or(1);
         let mut rgb = vec![255; 3 * width * height as usize];
         let mut left = 0;
@@ -74,12 +68,13 @@ impl Picture {
         self.size
     }
 
-    /// The pixels, row by row from above: red, green and blue of each.
+    /// The pixels, row by row from the top: red, green and blue of each.
     pub fn rgb(&self) -> &[u8] {
         &self.rgb
     }
 
-    /// Writes the picture to a PNG file, whatever its name ends in. A file of this name is replaced, when the new one is complete.
+    /// Writes the picture to a PNG file, whatever the extension. An existing file is replaced when the new one is
+    /// complete.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -101,26 +96,34 @@ impl fmt::Debug for Picture {
     }
 }
 
-/// What went wrong while drawing, in words.
-#[derive(Debug)]
-pub(super) struct Drawing(String);
+/// Accepts a width or height in pixels.
+fn check_side(value: usize) -> Result<()> {
+    if (1..=MAX_SIDE).contains(&value) {
+        return Ok(());
+    }
+    Err(Error::CountOutOfRange { field: "pixels along a side of a picture", value, allowed: "in [1, 16384]" })
+}
 
-impl<E: std::error::Error> From<E> for Drawing {
-    fn from(error: E) -> Drawing {
-        Drawing(error.to_string())
+/// The message of a drawing error.
+#[derive(Debug)]
+pub(super) struct DrawingError(String);
+
+impl<E: std::error::Error> From<E> for DrawingError {
+    fn from(error: E) -> DrawingError {
+        DrawingError(error.to_string())
     }
 }
 
-fn undrawn(what: impl fmt::Display) -> Error {
+fn drawing_failed(what: impl fmt::Display) -> Error {
     failed(Path::new("a picture"), what)
 }
 
-/// Makes the font known, once: no font of the system is needed.
-fn register() -> Result<()> {
-    static KNOWN: OnceLock<bool> = OnceLock::new();
-    let known =
-        KNOWN.get_or_init(|| register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok());
-    if *known { Ok(()) } else { Err(undrawn("its font is not one")) }
+/// Registers the compiled-in font once: no system font is needed.
+fn register_font_once() -> Result<()> {
+    static REGISTERED: OnceLock<bool> = OnceLock::new();
+    let registered =
+        REGISTERED.get_or_init(|| register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok());
+    if *registered { Ok(()) } else { Err(drawing_failed("the font cannot be read")) }
 }
 
 #[cfg(test)]
@@ -128,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_lie_beside_each_other() {
+    fn pictures_are_placed_side_by_side() {
         let plain = |size: [u32; 2], value: u8| Picture { size, rgb: vec![value; 3 * (size[0] * size[1]) as usize] };
         let both = Picture::beside(&[plain([2, 1], 7), plain([1, 2], 9)]).unwrap();
         assert_eq!(both.size(), [3, 2]);

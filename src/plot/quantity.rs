@@ -1,13 +1,13 @@
-//! Labels of axes, with units that keep the numbers short.
+//! Quantities of axes, and their numbers in units with a suitable prefix.
 
 use crate::error::{Result, within};
 
-/// What an axis or a colour bar shows.
+/// The quantity of an axis or a colour bar.
 ///
-/// A quantity with a unit is given in SI, and shown with the prefix that makes its greatest value lie between 1 and
-/// 1000: `approach [µm]`, `contact area [mm²]`. Lengths of a picture never get a prefix above one (`km`, `ks`), and
-/// units that have a prefix already, or no symbol to put it before (`kg`, `%`, `1/Pa`, `°C`), are left as they are. A
-/// plain text is a quantity too, shown as it is.
+/// A quantity with a unit is given in SI and shown with the prefix for which its greatest value lies between 1 and
+/// 1000: `approach [µm]`, `contact area [mm²]`. Lengths, times and angles get no prefix above 1 (`km`, `ks`). Units
+/// that have a prefix already, or take none (`kg`, `%`, `1/Pa`, `°C`), are not changed. A plain text is a quantity
+/// without a unit.
 ///
 /// ```
 /// use viscocontact::plot::Quantity;
@@ -22,7 +22,7 @@ pub struct Quantity {
     unit: Option<String>,
 }
 
-/// Prefixes and their powers of ten.
+/// SI prefixes and their powers of ten.
 const PREFIXES: [(&str, i32); 15] = [
     ("f", -15),
     ("p", -12),
@@ -56,20 +56,20 @@ const SYMBOLS: [(&str, bool); 10] = [
 ];
 
 impl Quantity {
-    /// A quantity named `name`, whose values are in `unit`, an SI unit.
+    /// The quantity `name`, whose values are in the SI unit `unit`.
     pub fn of(name: impl Into<String>, unit: impl Into<String>) -> Quantity {
         Quantity { name: name.into(), unit: Some(unit.into()) }
     }
 
-    /// The label where the greatest absolute value is `greatest`, in SI, and what values are multiplied by to be in the
-    /// unit of the label. A value that is not finite, or zero, leaves the unit as it is.
+    /// The label for values up to `greatest` in magnitude, in SI, and the factor from SI to the unit of the label. If
+    /// `greatest` is zero or not finite, the unit has no prefix.
     pub fn shown(&self, greatest: f64) -> (String, f64) {
         let Some(unit) = &self.unit else { return (self.name.clone(), 1.0) };
         let (prefix, factor) = prefix(unit, greatest.abs()).unwrap_or(("", 1.0));
         (format!("{} [{prefix}{unit}]", self.name), factor)
     }
 
-    /// Its name, without the unit.
+    /// The name, without the unit.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -87,7 +87,7 @@ impl From<String> for Quantity {
     }
 }
 
-/// The prefix of a unit and what the values are multiplied by; nothing if the unit takes none.
+/// The prefix for a unit and the factor that values are multiplied by; `None` if the unit takes none.
 fn prefix(unit: &str, greatest: f64) -> Option<(&'static str, f64)> {
     if !(greatest > 0.0 && greatest.is_finite()) {
         return None;
@@ -95,14 +95,14 @@ fn prefix(unit: &str, greatest: f64) -> Option<(&'static str, f64)> {
     let letters = unit.find(|c: char| !c.is_alphabetic()).unwrap_or(unit.len());
     let (symbol, rest) = unit.split_at(letters);
     let &(_, above) = SYMBOLS.iter().find(|(known, _)| *known == symbol)?;
-    // the prefix is raised with its unit
+    // a prefix is raised to the power of its unit
     let power = match rest.chars().next() {
         Some('²') => 2,
         Some('³') => 3,
         Some('2' | '3' | '^' | '⁴' | '⁻') => return None,
         _ => 1,
     };
-    // not 1000 by rounding: 999.99999 is as good as 1000
+    // 999.99999 counts as 1000, which it would be rounded to
     let tens = (greatest.log10() + 1e-9).floor() as i32;
     let step = 3 * power;
     let wanted = tens.div_euclid(step) * 3;
@@ -111,28 +111,40 @@ fn prefix(unit: &str, greatest: f64) -> Option<(&'static str, f64)> {
     Some((prefix, 10f64.powi(-tens * power)))
 }
 
-/// Greatest absolute value that a picture can show.
-const GREATEST: f64 = 1e100;
+/// Greatest magnitude that a picture can show.
+const MAX_DRAWABLE: f64 = 1e100;
 
 /// Accepts values that a picture can show.
 pub(super) fn drawable(field: &'static str, value: f64) -> Result<f64> {
-    within(field, value, value.abs() <= GREATEST, "finite and 1e100 in absolute value at most")
+    within(field, value, value.abs() <= MAX_DRAWABLE, "finite and at most 1e100 in magnitude")
+}
+
+/// Accepts a colour scale that a picture can show.
+pub(super) fn color_scale([low, high]: [f64; 2]) -> Result<()> {
+    drawable("lower end of the colour scale", low)?;
+    let upper = "upper end of the colour scale";
+    within(upper, drawable(upper, high)?, high > low, "above the lower end").map(drop)
 }
 
 /// Accepts values that a logarithmic axis can show.
 pub(super) fn drawable_as_power(field: &'static str, value: f64) -> Result<f64> {
-    within(field, value, (1.0 / GREATEST..=GREATEST).contains(&value), "in [1e-100, 1e100] on a logarithmic axis")
+    within(
+        field,
+        value,
+        (1.0 / MAX_DRAWABLE..=MAX_DRAWABLE).contains(&value),
+        "in [1e-100, 1e100] on a logarithmic axis",
+    )
 }
 
-/// How the numbers along an axis from `low` to `high` are written: with the digits that tell them apart.
+/// Formats the numbers along an axis from `low` to `high` with as many digits as distinguish them.
 pub(super) fn numbers([low, high]: [f64; 2]) -> impl Fn(&f64) -> String {
     let (span, greatest) = (high - low, low.abs().max(high.abs()));
-    // two more than the greatest digit of the span
+    // down to a hundredth of the leading digit of the span
     let decimals = (2.0 - span.log10().floor()).clamp(0.0, 15.0) as usize;
     let powers = greatest >= 1e6 || (greatest < 1e-3 && greatest > 0.0);
     move |v: &f64| {
         if powers {
-            // of a span of nothing, endlessly many
+            // infinite for a span of 0
             let digits = (greatest / span).log10().clamp(0.0, 14.0).ceil() as usize + 1;
             let text = format!("{v:.*e}", digits);
             let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
@@ -142,12 +154,12 @@ pub(super) fn numbers([low, high]: [f64; 2]) -> impl Fn(&f64) -> String {
     }
 }
 
-/// How the numbers along a logarithmic axis are written.
+/// Formats the numbers along a logarithmic axis.
 pub(super) fn powers(v: &f64) -> String {
     if (0.01..1e4).contains(v) { shortened(&format!("{v:.6}")) } else { format!("{v:.0e}") }
 }
 
-/// A value in SI with its unit, in four digits, and all of those before the point: "412.4 µs".
+/// Formats a value in SI with its unit to four digits, and all digits before the point: "412.4 µs".
 pub(super) fn measure(value: f64, unit: &str) -> String {
     let (prefix, factor) = prefix(unit, value.abs()).unwrap_or(("", 1.0));
     let number = value * factor;
@@ -155,7 +167,7 @@ pub(super) fn measure(value: f64, unit: &str) -> String {
     format!("{} {prefix}{unit}", shortened(&format!("{number:.*}", decimals as usize)))
 }
 
-/// A number without the zeros at its end, and no minus before a zero.
+/// A number without trailing zeros, and without the sign of a negative zero.
 fn shortened(text: &str) -> String {
     let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text };
     if short == "-0" { "0".into() } else { short.into() }
@@ -191,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_as_short_as_tells_them_apart() {
+    fn numbers_have_the_digits_that_distinguish_them() {
         assert_eq!(numbers([0.0, 10.0])(&2.0), "2");
         assert_eq!(numbers([0.0, 10.0])(&-1e-17), "0");
         assert_eq!(numbers([0.0, 0.1])(&0.025), "0.025");

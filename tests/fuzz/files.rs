@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use viscocontact::output::{CsvHistory, Field, NpzSeries, Scene, write_npy};
+use viscocontact::output::{CsvHistory, Field, Metadata, NpzSeries, write_npy};
 use viscocontact::prelude::*;
 
 use crate::engine::{Outcome, Target, Verdict};
@@ -99,7 +99,7 @@ fn fields(source: &mut Source) -> Verdict {
 /// Frames and a history of a contact, whatever its state and the texts that go with it.
 fn frames(source: &mut Source) -> Verdict {
     let Ok(contact) = contact(source) else { return Ok(Outcome::Refused) };
-    let scene = Scene::new(text(source)).note(text(source), text(source)).note(text(source), text(source));
+    let scene = Metadata::new(text(source)).note(text(source), text(source)).note(text(source), text(source));
     let json = scene.json(&contact);
     let balanced = json.matches('{').count() == json.matches('}').count() || json.contains("\\\"");
     if json.contains(|c: char| c.is_control()) || !json.starts_with('{') || !json.ends_with('}') || !balanced {
@@ -141,7 +141,7 @@ fn frames(source: &mut Source) -> Verdict {
 }
 
 /// Every number of a history is read back as it was.
-fn history(source: &mut Source, contact: &ViscoelasticContact, scene: &Scene, folder: &Folder) -> Verdict {
+fn history(source: &mut Source, contact: &ViscoelasticContact, scene: &Metadata, folder: &Folder) -> Verdict {
     let good = source.chance(0.7);
     let name = |k: usize, source: &mut Source| if good { format!("column {k}") } else { text(source) };
     let names: Vec<String> = (0..source.below(3)).map(|k| name(k, source)).collect();

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use viscocontact::contact::{SteadyMotion, Stepping};
 use viscocontact::motion::{Straight, Travel};
 use viscocontact::observe::Axis;
-use viscocontact::output::Scene;
+use viscocontact::output::Metadata;
 use viscocontact::prelude::*;
 
 use crate::engine::{Outcome, Target, Verdict, finite, known};
@@ -129,7 +129,7 @@ pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Sou
         if let Ok(stiffness) = contact.stiffness_over_modulus() {
             known("stiffness", [stiffness])?;
         }
-        let text = Scene::new("fuzz").json(contact);
+        let text = Metadata::new("fuzz").json(contact);
         if text.contains("NaN") || !text.ends_with('}') {
             return Err("a description that is no JSON".to_owned());
         }

@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each user takes what it needs")]
 
 use proptest::prelude::*;
-use viscocontact::laws::Scene;
+use viscocontact::laws::Scenario;
 use viscocontact::prelude::*;
 
 /// Solved so tightly that what is left is the difference of the scenes.
@@ -21,7 +21,7 @@ pub fn field(field: &[f64], factor: f64) -> Vec<f64> {
     field.iter().map(|value| value * factor).collect()
 }
 
-pub fn forces(scene: &Scene) -> impl Iterator<Item = f64> {
+pub fn forces(scene: &Scenario) -> impl Iterator<Item = f64> {
     scene.steps.iter().map(|(_, load)| if let Load::Force { normal, .. } = load { *normal } else { 0.0 })
 }
 
@@ -54,7 +54,7 @@ pub struct End {
 }
 
 /// All steps of a scene.
-pub fn end(scene: &Scene, settings: Settings) -> End {
+pub fn end(scene: &Scenario, settings: Settings) -> End {
     let contact = scene.builder().settings(settings).build().unwrap();
     let mut end = End { contact, pressure: 0.0, displacement: 0.0 };
     for &(dt, load) in &scene.steps {

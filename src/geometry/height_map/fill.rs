@@ -1,123 +1,121 @@
-//! Missing heights from those around them.
+//! Interpolation of missing heights.
 
 use super::HeightMap;
 use crate::error::{Error, MapError, Result};
 use crate::memory;
+use crate::sum::{greatest, sum_of_pairs};
 
-/// Residual of the equations, relative to the range of the known heights, at which the missing ones are found.
+/// Residual of the equations, relative to the range of the known heights, at which the iteration stops.
 const TOLERANCE: f64 = 1e-10;
 
 impl HeightMap {
-    /// The map with its missing heights filled as a membrane that spans them: each is the mean of its neighbours
-    /// (harmonic interpolation), so that none exceeds the known ones around.
+    /// The map with its missing heights filled by harmonic interpolation: each is the mean of its neighbours, as in a
+    /// stretched membrane, so that none exceeds the known heights around it.
     ///
     /// # Errors
-    /// If no height is known, or the equations are not solved ([`MapError::NotFilled`]), or there is no memory for them: 16 bytes
-    /// a point, and 120 more for each that is missing.
+    /// If no height is known, the iteration does not converge ([`MapError::NotFilled`]), or there is no memory for it:
+    /// 16 bytes per point, and 120 more per missing point.
     pub fn filled(mut self) -> Result<HeightMap> {
-        self.some_known()?;
+        self.require_known()?;
         if self.missing == 0 {
             return Ok(self);
         }
         memory::check("the missing heights of a map", 16 * self.heights.len() as u128 + 120 * self.missing as u128)?;
         let low = self.known().fold(f64::INFINITY, f64::min);
-        let membrane = Membrane::new(&self);
-        // The middle of the range is where the unknowns start, and what they are measured from: halves do not overflow.
+        let laplacian = Laplacian::new(&self);
+        // Unknowns are relative to the middle of the range, and start there. Halves do not overflow.
         let middle = 0.5 * low + 0.5 * self.highest;
-        let values = membrane.solved(&self, middle, TOLERANCE * (self.highest - low))?;
+        let values = laplacian.solve(&self, middle, TOLERANCE * (self.highest - low))?;
         let mut heights = std::mem::take(&mut self.heights);
-        // No mean exceeds its parts: what does is within the tolerance.
-        for (&point, value) in membrane.points.iter().zip(values) {
+        // A mean does not exceed its terms: any excess is within the tolerance.
+        for (&point, value) in laplacian.points.iter().zip(values) {
             heights[point] = (middle + value).clamp(low, self.highest);
         }
         Ok(self.with_heights(heights))
     }
 }
 
-/// The missing points and their neighbours, whose equations say that the weighted differences to these add up to 0.
-struct Membrane {
+/// The discrete Laplace equation at the missing points: the weighted differences from their neighbours add up to 0.
+struct Laplacian {
+    /// The missing points.
     points: Vec<usize>,
-    /// The number of each point of the map among the missing ones.
-    number: Vec<Option<usize>>,
+    /// The unknown of each point of the map; `None` where the height is known.
+    unknown: Vec<Option<usize>>,
     /// Neighbours of each missing point with their weights; 0 where there is none.
     neighbours: Vec<[(usize, f64); 4]>,
 }
 
-impl Membrane {
-    fn new(map: &HeightMap) -> Membrane {
+impl Laplacian {
+    fn new(map: &HeightMap) -> Laplacian {
         let ([n1, n2], [s1, s2]) = (map.cells, map.spacing);
         let points: Vec<usize> = (0..map.heights.len()).filter(|&k| map.heights[k].is_nan()).collect();
-        let mut number = vec![None; map.heights.len()];
+        let mut unknown = vec![None; map.heights.len()];
         for (n, &k) in points.iter().enumerate() {
-            number[k] = Some(n);
+            unknown[k] = Some(n);
         }
-        // In proportion to 1/s², with a sum of 1/2 for both.
+        // Proportional to 1/s², with a sum of 1/2.
         let (w1, w2) = (0.5 / (1.0 + (s1 / s2).powi(2)), 0.5 / (1.0 + (s2 / s1).powi(2)));
-        let step = |index: usize, n: usize, forward: bool| match (forward, index) {
+        let next = |index: usize, n: usize, forward: bool| match (forward, index) {
             (true, index) if index + 1 < n => Some(index + 1),
             (false, index) if index > 0 => Some(index - 1),
             (forward, _) => (map.periodic && n > 1).then_some(if forward { 0 } else { n - 1 }),
         };
         let neighbours = points.iter().map(|&k| {
             let (i, j) = (k / n2, k % n2);
-            let along1 = |forward| step(i, n1, forward).map_or((k, 0.0), |i| (i * n2 + j, w1));
-            let along2 = |forward| step(j, n2, forward).map_or((k, 0.0), |j| (i * n2 + j, w2));
+            let along1 = |forward| next(i, n1, forward).map_or((k, 0.0), |i| (i * n2 + j, w1));
+            let along2 = |forward| next(j, n2, forward).map_or((k, 0.0), |j| (i * n2 + j, w2));
             [along1(false), along1(true), along2(false), along2(true)]
         });
         let neighbours = neighbours.collect();
-        Membrane { points, number, neighbours }
+        Laplacian { points, unknown, neighbours }
     }
 
-    /// Σ weight (value − value of the neighbour), where known neighbours count 0: the equations without right sides.
+    /// Σ weight (value − neighbour) with 0 for known neighbours: the equations without their right-hand sides.
     fn apply(&self, values: &[f64], result: &mut [f64]) {
         for ((around, value), result) in self.neighbours.iter().zip(values).zip(result) {
             *result =
-                around.iter().fold(0.0, |sum, &(k, w)| sum + w * (value - self.number[k].map_or(0.0, |n| values[n])));
+                around.iter().fold(0.0, |sum, &(k, w)| sum + w * (value - self.unknown[k].map_or(0.0, |n| values[n])));
         }
     }
 
-    /// The missing heights above `middle`, by conjugate gradients: the equations are symmetric and definite, as
-    /// every hole has an edge.
-    fn solved(&self, map: &HeightMap, middle: f64, tolerance: f64) -> Result<Vec<f64>> {
+    /// The missing heights relative to `middle`, by preconditioned conjugate gradients. The equations are symmetric and
+    /// positive definite, because every hole has known heights at its edge.
+    fn solve(&self, map: &HeightMap, middle: f64, tolerance: f64) -> Result<Vec<f64>> {
         let mut residual: Vec<f64> = (self.neighbours.iter())
             .map(|around| {
-                let known = around.iter().filter(|(k, w)| *w > 0.0 && self.number[*k].is_none());
+                let known = around.iter().filter(|(k, w)| *w > 0.0 && self.unknown[*k].is_none());
                 known.map(|&(k, w)| w * (map.heights[k] - middle)).sum()
             })
             .collect();
         let diagonal: Vec<f64> = self.neighbours.iter().map(|a| a.iter().map(|(_, w)| w).sum()).collect();
         let mut values = vec![0.0; residual.len()];
-        let mut image = values.clone();
-        let mut scaled: Vec<f64> = residual.iter().zip(&diagonal).map(|(r, d)| r / d).collect();
-        let mut direction = scaled.clone();
-        let mut weight = dot(&residual, &scaled);
-        let most = 1000 + 100 * (map.cells[0] + map.cells[1]);
-        for _ in 0..most {
+        let mut product = values.clone();
+        let mut preconditioned: Vec<f64> = residual.iter().zip(&diagonal).map(|(r, d)| r / d).collect();
+        let mut direction = preconditioned.clone();
+        let mut norm = dot(&residual, &preconditioned);
+        let max_iterations = 1000 + 100 * (map.cells[0] + map.cells[1]);
+        for _ in 0..max_iterations {
             if greatest(&residual) <= tolerance {
                 return Ok(values);
             }
-            self.apply(&direction, &mut image);
-            let length = weight / dot(&direction, &image);
+            self.apply(&direction, &mut product);
+            let step = norm / dot(&direction, &product);
             for k in 0..values.len() {
-                values[k] += length * direction[k];
-                residual[k] -= length * image[k];
-                scaled[k] = residual[k] / diagonal[k];
+                values[k] += step * direction[k];
+                residual[k] -= step * product[k];
+                preconditioned[k] = residual[k] / diagonal[k];
             }
-            let next = dot(&residual, &scaled);
-            let kept = next / weight;
-            weight = next;
-            direction.iter_mut().zip(&scaled).for_each(|(d, s)| *d = s + kept * *d);
+            let next = dot(&residual, &preconditioned);
+            let conjugation = next / norm;
+            norm = next;
+            direction.iter_mut().zip(&preconditioned).for_each(|(d, z)| *d = z + conjugation * *d);
         }
-        Err(Error::Map(MapError::NotFilled { iterations: most, residual: greatest(&residual) }))
+        Err(Error::Map(MapError::NotFilled { iterations: max_iterations, residual: greatest(&residual) }))
     }
 }
 
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    crate::sum::sum_of_pairs(a, b, |a, b| a * b)
-}
-
-fn greatest(values: &[f64]) -> f64 {
-    crate::sum::greatest(values)
+    sum_of_pairs(a, b, |a, b| a * b)
 }
 
 #[cfg(test)]
@@ -126,8 +124,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn harmonic_surfaces_come_back() {
-        // x1² − x2² has the same second difference, with opposite signs, along both axes.
+    fn harmonic_surfaces_are_reproduced() {
+        // x1² − x2² has second differences of opposite sign along the two axes.
         let surface = |x1: f64, x2: f64| x1 * x1 - x2 * x2 + 3.0 * x1 * x2 + x1;
         let holed =
             map_of(
@@ -146,11 +144,11 @@ mod tests {
     }
 
     #[test]
-    fn cells_need_not_be_square_and_edges_are_free() {
+    fn rectangular_cells_and_free_edges() {
         let surface = |x1: f64, x2: f64| if x2 > 0.1 { f64::NAN } else { 5.0 + x1 * 0.0 };
         let filled = map_of([4, 9], surface).filled().unwrap();
         assert!(filled.heights().iter().all(|z| (z - 5.0).abs() < 1e-9));
-        // Between 0 on one side and 1 on the other along x1, the same for any x2.
+        // From 0 on one side to 1 on the other along x1, independent of x2.
         let ramp = map_of([5, 30], |x1, x2| if x1.abs() > 0.3 || x2.abs() > 0.49 { 2.5 * x1 + 1.0 } else { f64::NAN });
         for (k, z) in ramp.filled().unwrap().heights().iter().enumerate() {
             assert!((z - (k / 30) as f64 * 0.5).abs() < 1e-8, "{k}: {z}");
@@ -158,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn holes_of_periodic_maps_reach_around() {
+    fn holes_across_the_periodic_boundary() {
         let ring = HeightMap::new([6, 1], [6.0, 1.0], vec![f64::NAN, 0.0, 9.0, f64::NAN, f64::NAN, 3.0]).unwrap();
         let expected = [1.5, 0.0, 9.0, 7.0, 5.0, 3.0];
         for (a, b) in ring.periodic().filled().unwrap().heights().iter().zip(expected) {

@@ -37,7 +37,7 @@ impl HeightMap {
     /// # Errors
     /// If no height is known, or one comes to lie beyond ±1e300 m.
     pub fn leveled(mut self, form: Form) -> Result<HeightMap> {
-        self.some_known()?;
+        self.require_known()?;
         let terms = form.terms();
         let mut heights = std::mem::take(&mut self.heights);
         // Once more for what rounding left, which counts where the form is far larger than the roughness.
@@ -58,7 +58,7 @@ impl HeightMap {
                 *height -= self.basis(k).iter().zip(&factors).map(|(b, f)| b * f).sum::<f64>();
             }
         }
-        let heights = super::representable(heights)?;
+        let heights = super::check_heights(heights)?;
         Ok(self.with_heights(heights))
     }
 

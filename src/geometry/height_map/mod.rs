@@ -1,4 +1,4 @@
-//! Measured surfaces: heights on a regular grid of points, prepared, sampled and moved.
+//! Measured surfaces: heights on a regular grid of points, read, prepared, interpolated and shifted.
 
 mod fill;
 mod level;
@@ -16,31 +16,31 @@ pub use unit::LengthUnit;
 use crate::Grid;
 use crate::error::{Error, LONGEST, MapError, Result, exact_length};
 use crate::geometry::Geometry;
-use crate::geometry::spectrum::Spectrum;
+use crate::geometry::height_spectrum::HeightSpectrum;
 
-/// Distances from a point of less than this, in cells, are rounding.
+/// Distances from a point below this, in cells, are rounding errors.
 const ROUNDING: f64 = 1e-10;
-/// Cells whose sides differ relatively by less than this are the same.
+/// Spacings whose relative difference is below this are the same.
 const SAME_SPACING: f64 = 1e-12;
 
 /// The heights of a surface on a regular grid of points.
 ///
-/// Heights are positive out of the material that they were measured on. As a [`Geometry`] the gap is what the
-/// highest point exceeds the height by: that point touches first, at an approach of 0. The middle of the map is at
-/// the origin, unless it is moved ([`HeightMap::centered_at`]).
+/// Heights are positive out of the measured material. As a [`Geometry`], the gap is the height of the highest point
+/// above the surface: that point touches first, at an approach of 0. The middle of the map is at the origin, unless
+/// [`HeightMap::centered_at`] moves it.
 ///
-/// Between its points a map is bicubic (Keys 1981, a = −1/2), through the outermost points it goes on straight to the
-/// edge of their cells, and beyond there is nothing to touch (+∞), unless it is [periodic](HeightMap::periodic).
-/// A periodic map without missing points moves over a grid of its own spacing as the sum of its waves, exact for
-/// every surface whose shortest waves are longer than two cells.
+/// Between its points a map is interpolated bicubically (Keys 1981, a = −1/2). Beyond the outermost points it is
+/// extrapolated linearly to the edge of their cells, and outside there is nothing to touch (+∞), unless it is
+/// [periodic](HeightMap::periodic). A periodic map without missing points is shifted over a grid of its own spacing by
+/// its Fourier series, which is exact for every surface whose waves are longer than two cells.
 ///
-/// What becomes of missing points is yours to say: [filled](HeightMap::filled) from their neighbours, or
-/// [masked](HeightMap::masked) as nothing to touch. Where neither was said the gap is NaN, which a contact refuses.
+/// You decide how missing points are treated: [filled](HeightMap::filled) by interpolation, or
+/// [masked](HeightMap::masked) as nothing to touch. Otherwise the gap there is NaN, which a contact refuses.
 ///
 /// ```
 /// use viscocontact::geometry::{Form, Geometry, HeightMap};
 ///
-/// // Heights of 3 × 3 points 1 µm apart; one was not measured.
+/// // Heights of 3 × 3 points 1 µm apart, one of them not measured.
 /// let heights = vec![0.0, 1e-9, 0.0, 1e-9, f64::NAN, 1e-9, 0.0, 1e-9, 0.0];
 /// let map = HeightMap::new([3, 3], [3e-6, 3e-6], heights)?;
 /// assert_eq!(map.missing(), 1);
@@ -58,30 +58,30 @@ pub struct HeightMap {
     spacing: [f64; 2],
     /// Row-major, x2 fastest; NaN where nothing was measured.
     heights: Vec<f64>,
-    /// The greatest height known; −∞ if there is none.
+    /// The greatest known height; −∞ if there is none.
     highest: f64,
-    /// How many heights are missing.
+    /// Number of missing heights.
     missing: usize,
-    /// Whether there is nothing to touch where heights are missing; else they are undecided.
+    /// Whether there is nothing to touch where heights are missing; otherwise they are undecided.
     masked: bool,
     center: [f64; 2],
     periodic: bool,
 }
 
 impl HeightMap {
-    /// A map of `cells[0]` × `cells[1]` heights \[m\], each in the middle of its cell of a rectangle of `lengths`
-    /// \[m\], row-major with x2 fastest; NaN where nothing was measured.
+    /// A map of `cells[0]` × `cells[1]` heights \[m\] at the centres of the cells of a rectangle of `lengths` \[m\],
+    /// row-major with x2 fastest; NaN where nothing was measured.
     ///
     /// # Errors
-    /// If a count or a length is not one a [`Grid`] may have, there are not `cells[0] * cells[1]` heights,
-    /// or one is infinite or beyond ±1e300 m.
+    /// If a [`Grid`] may not have these numbers of cells or lengths, there are not `cells[0] * cells[1]` heights, or
+    /// one is infinite or beyond ±1e300 m.
     pub fn new(cells: [usize; 2], lengths: [f64; 2], heights: Vec<f64>) -> Result<HeightMap> {
         let grid = Grid::new(cells, lengths)?;
         exact_length("heights", heights.len(), grid.len())?;
-        Ok(HeightMap::on(&grid, representable(heights)?))
+        Ok(HeightMap::on(&grid, check_heights(heights)?))
     }
 
-    /// A map on a grid, of heights known to be finite or missing and as many as cells.
+    /// A map on the cells of a grid. The heights, one per cell, must be finite or NaN.
     pub(in crate::geometry) fn on(grid: &Grid, heights: Vec<f64>) -> HeightMap {
         let map = HeightMap {
             cells: grid.cells(),
@@ -109,12 +109,12 @@ impl HeightMap {
         self.cells
     }
 
-    /// Distance of the points along x1 and x2 \[m\].
+    /// Distance between points along x1 and x2 \[m\].
     pub fn spacing(&self) -> [f64; 2] {
         self.spacing
     }
 
-    /// Sides of the rectangle that the cells of the points fill \[m\]; the periods of a periodic map.
+    /// Sides of the rectangle of all cells \[m\]; the periods of a periodic map.
     pub fn lengths(&self) -> [f64; 2] {
         self.grid().lengths()
     }
@@ -124,7 +124,7 @@ impl HeightMap {
         &self.heights
     }
 
-    /// How many heights are missing, be they masked or undecided.
+    /// Number of missing heights, masked or undecided.
     pub fn missing(&self) -> usize {
         self.missing
     }
@@ -134,12 +134,12 @@ impl HeightMap {
         self.center
     }
 
-    /// Whether the map repeats beyond its edges ([`HeightMap::periodic`]).
+    /// Whether the map is periodic ([`HeightMap::periodic`]).
     pub fn is_periodic(&self) -> bool {
         self.periodic
     }
 
-    /// The grid whose cells have the points in their middles, if the map is centred on the origin as every grid is.
+    /// The grid whose cell centres are the points of the map, centred at the origin like every grid.
     pub fn grid(&self) -> Grid {
         Grid::of_spacing(self.cells, self.spacing)
     }
@@ -149,28 +149,29 @@ impl HeightMap {
         self.heights.iter().copied().filter(|h| !h.is_nan())
     }
 
-    /// Refuses a map without a single height.
-    pub(in crate::geometry) fn some_known(&self) -> Result<()> {
+    /// Refuses a map without a known height.
+    pub(in crate::geometry) fn require_known(&self) -> Result<()> {
         if self.missing < self.heights.len() { Ok(()) } else { Err(Error::Map(MapError::NothingKnown)) }
     }
 
-    /// Where the first cell of `grid` lies among the points of the map moved by `by`: an index with its fraction.
+    /// Position of the first cell of `grid` in the map shifted by `by`, as a fractional index.
     fn offset(&self, grid: &Grid, by: [f64; 2], axis: usize) -> f64 {
         self.index(axis, grid.coordinate(axis, 0) - by[axis])
     }
 
-    /// The gap of the moved map by its waves: the heights moved by the fraction of a cell, and copied from there on.
-    fn fill_by_waves(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
+    /// Writes the gap of the shifted map: the Fourier series shifts the heights by a fraction of a cell, and whole
+    /// cells are copied.
+    fn fill_by_fourier_shift(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
         let offset = [0, 1].map(|axis| self.offset(grid, by, axis));
         let whole = offset.map(f64::round);
         let fraction = [0, 1].map(|axis| offset[axis] - whole[axis]);
-        let moved = (fraction.iter().any(|f| f.abs() > ROUNDING)).then(|| {
-            let mut spectrum = Spectrum::of(self.cells, &self.heights);
+        let shifted = (fraction.iter().any(|f| f.abs() > ROUNDING)).then(|| {
+            let mut spectrum = HeightSpectrum::of(self.cells, &self.heights);
             spectrum.shift(fraction);
             spectrum.heights()
         });
-        let heights = moved.as_ref().unwrap_or(&self.heights);
-        // The remainder first: whole numbers far away leave the range of isize.
+        let heights = shifted.as_ref().unwrap_or(&self.heights);
+        // The remainder first: large shifts exceed the range of isize.
         let first = [0, 1].map(|axis| whole[axis].rem_euclid(self.cells[axis] as f64) as usize);
         let ([n1, n2], [_, columns]) = (self.cells, grid.cells());
         for (i, row) in gap.chunks_exact_mut(columns).enumerate() {
@@ -181,8 +182,8 @@ impl HeightMap {
         }
     }
 
-    /// Whether the points of the map fall on cells of `grid`, or all beside them by the same fraction.
-    fn keeps_step_with(&self, grid: &Grid) -> bool {
+    /// Whether map and grid have the same spacing, so that all points have the same fractional offset.
+    fn has_spacing_of(&self, grid: &Grid) -> bool {
         let same = |axis: usize| {
             self.cells[axis] == 1 || (grid.spacing()[axis] / self.spacing[axis] - 1.0).abs() <= SAME_SPACING
         };
@@ -190,8 +191,8 @@ impl HeightMap {
     }
 }
 
-/// Refuses heights whose differences and sums are no numbers.
-fn representable(heights: Vec<f64>) -> Result<Vec<f64>> {
+/// Refuses heights whose differences and sums would overflow.
+fn check_heights(heights: Vec<f64>) -> Result<Vec<f64>> {
     match heights.iter().position(|height| height.abs() > LONGEST) {
         Some(entry) => Err(Error::Map(MapError::NotFinite { entry, value: heights[entry] })),
         None => Ok(heights),
@@ -212,9 +213,9 @@ impl Geometry for HeightMap {
     }
 
     fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
-        if self.periodic && self.missing == 0 && self.keeps_step_with(grid) && by.iter().all(|b| b.is_finite()) {
-            assert_eq!(gap.len(), grid.len(), "gap must hold one value a cell");
-            self.fill_by_waves(grid, by, gap);
+        if self.periodic && self.missing == 0 && self.has_spacing_of(grid) && by.iter().all(|b| b.is_finite()) {
+            assert_eq!(gap.len(), grid.len(), "gap must have one value per cell");
+            self.fill_by_fourier_shift(grid, by, gap);
         } else {
             super::fill_by_points(self, grid, by, gap);
         }
@@ -225,7 +226,7 @@ impl Geometry for HeightMap {
 mod tests {
     use super::*;
 
-    /// A sum of waves that a map of `cells` on the unit square resolves.
+    /// A sum of waves on the unit square.
     pub(super) fn waves(x1: f64, x2: f64) -> f64 {
         let tau = std::f64::consts::TAU;
         (tau * (x1 + 0.1)).sin() + 0.5 * (tau * (2.0 * x1 - 3.0 * x2)).cos() + 0.3 * (tau * (x2 - 0.3)).cos()
@@ -248,7 +249,7 @@ mod tests {
             panic!()
         };
         assert_eq!(entry, 2);
-        // a difference of two such would be no number, nor would a sum
+        // their differences and sums would overflow
         assert!(matches!(refused(vec![1e305, 0.0, -1e308, 0.0]), Error::Map(MapError::NotFinite { entry: 0, .. })));
         assert!(HeightMap::new([0, 2], [1.0, 1.0], vec![]).is_err());
     }
@@ -277,7 +278,7 @@ mod tests {
     }
 
     #[test]
-    fn band_limited_maps_move_exactly() {
+    fn band_limited_maps_are_shifted_exactly() {
         for cells in [[16, 12], [15, 13], [16, 15]] {
             let map = map_of(cells, waves).periodic();
             let grid = Grid::new(cells, [1.0, 1.0]).unwrap();
@@ -294,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn whole_cells_are_copied_bit_by_bit() {
+    fn whole_cells_are_copied_bitwise() {
         let map = map_of([8, 6], |x1, x2| (37.0 * x1 + 91.0 * x2 * x2).sin()).periodic();
         let (mut moved, mut wide) = (vec![0.0; 48], vec![0.0; 16 * 6]);
         map.fill_gap_at(&map.grid(), [3.0 / 8.0, -2.0 / 6.0], &mut moved);
@@ -309,13 +310,13 @@ mod tests {
     }
 
     #[test]
-    fn a_wave_at_the_limit_stays_real() {
-        // The shortest wave of an even number of points: what a shift leaves of it at the points is its cosine.
+    fn the_nyquist_wave_stays_real() {
+        // The shortest wave of an even number of points: a shift multiplies it by a cosine.
         let map = map_of([6, 4], |x1, _| if ((x1 + 0.5) * 6.0) as i64 % 2 == 0 { 1.0 } else { -1.0 }).periodic();
         let mut gap = vec![0.0; 24];
         map.fill_gap_at(&map.grid(), [0.25 / 6.0, 0.0], &mut gap);
-        let left = (0.25 * std::f64::consts::PI).cos();
-        assert!((gap[0] - (1.0 - left)).abs() < 1e-14);
-        assert!((gap[4] - (1.0 + left)).abs() < 1e-14);
+        let factor = (0.25 * std::f64::consts::PI).cos();
+        assert!((gap[0] - (1.0 - factor)).abs() < 1e-14);
+        assert!((gap[4] - (1.0 + factor)).abs() < 1e-14);
     }
 }

@@ -1,4 +1,4 @@
-//! Maps cut, turned and placed.
+//! Preparation of maps: masked, cropped, mirrored, scaled and placed.
 
 use super::HeightMap;
 use crate::Grid;
@@ -12,11 +12,11 @@ impl HeightMap {
         HeightMap { masked: true, ..self }
     }
 
-    /// The part of `cells` points that begins with the point `first`, in the middle of where the whole was. It is not
+    /// The part of `cells` points that begins at the point `first`. It has the centre of the whole map and is not
     /// periodic.
     ///
     /// # Errors
-    /// If there are no points in the part, or it goes beyond the map, or there is no memory for it.
+    /// If the part is empty or exceeds the map, or there is no memory for it.
     pub fn cropped(self, first: [usize; 2], cells: [usize; 2]) -> Result<HeightMap> {
         let fields = [("first point along x1", "points along x1"), ("first point along x2", "points along x2")];
         for (axis, (of_first, of_cells)) in fields.into_iter().enumerate() {
@@ -25,7 +25,7 @@ impl HeightMap {
                 return Err(Error::CountOutOfRange { field: of_first, value: first[axis], allowed });
             }
             if cells[axis] == 0 || cells[axis] > self.cells[axis] - first[axis] {
-                let allowed = "1 or more, and no more than the map has from the first on";
+                let allowed = "at least 1, and at most the number of points of the map from the first on";
                 return Err(Error::CountOutOfRange { field: of_cells, value: cells[axis], allowed });
             }
         }
@@ -37,21 +37,21 @@ impl HeightMap {
         Ok(part.with_heights(heights))
     }
 
-    /// The mirror image: the order of the points is reversed along the axes named. What was measured from above and
-    /// is to lie face down on another body is reversed along one axis.
+    /// The mirror image: the order of the points is reversed along the chosen axes. Flip a surface that was measured
+    /// from above along one axis to place it face down on another body.
     #[must_use]
     pub fn flipped(mut self, along: [bool; 2]) -> HeightMap {
         if along[0] != along[1] {
             self.heights.chunks_exact_mut(self.cells[1]).for_each(<[f64]>::reverse);
         }
-        // All points in reverse are those of both axes; along x1 alone is this and once more along x2.
+        // Reversing all points flips both axes; x1 alone is this after a flip along x2.
         if along[0] {
             self.heights.reverse();
         }
         self
     }
 
-    /// The map with x1 and x2 in each other's place.
+    /// The map with x1 and x2 exchanged.
     #[must_use]
     pub fn transposed(mut self) -> HeightMap {
         let [n1, n2] = self.cells;
@@ -62,7 +62,7 @@ impl HeightMap {
         self
     }
 
-    /// The map with peaks as valleys, as of a replica: z becomes −z.
+    /// The map with peaks and valleys exchanged, as on a replica: z becomes −z.
     #[must_use]
     pub fn inverted(mut self) -> HeightMap {
         let mut heights = std::mem::take(&mut self.heights);
@@ -70,15 +70,15 @@ impl HeightMap {
         self.with_heights(heights)
     }
 
-    /// The map with all heights times `factor`.
+    /// The map with all heights multiplied by `factor`.
     ///
     /// # Errors
-    /// If the factor is not finite, or a height no longer within ±1e300 m.
+    /// If the factor is not finite, or a height exceeds ±1e300 m.
     pub fn scaled(mut self, factor: f64) -> Result<HeightMap> {
         finite("factor of the heights", factor)?;
         let mut heights = std::mem::take(&mut self.heights);
         heights.iter_mut().for_each(|z| *z *= factor);
-        Ok(self.with_heights(super::representable(heights)?))
+        Ok(self.with_heights(super::check_heights(heights)?))
     }
 
     /// The map with its middle at the point `center` \[m\].
@@ -91,13 +91,13 @@ impl HeightMap {
         Ok(HeightMap { center, ..self })
     }
 
-    /// The map repeated beyond its edges along both axes, with its lengths as periods.
+    /// The map repeated periodically along both axes, with its lengths as periods.
     #[must_use]
     pub fn periodic(self) -> HeightMap {
         HeightMap { periodic: true, ..self }
     }
 
-    /// Middle of a grid \[m\], the origin for all that are whole.
+    /// Middle of a grid \[m\]; the origin, except for a part of a grid.
     pub(super) fn middle_of(grid: &Grid) -> [f64; 2] {
         [0, 1].map(|axis| 0.5 * (grid.coordinate(axis, 0) + grid.coordinate(axis, grid.cells()[axis] - 1)))
     }
@@ -113,7 +113,7 @@ mod tests {
     }
 
     #[test]
-    fn maps_are_cut_and_turned() {
+    fn maps_are_cropped_and_flipped() {
         let part = map().periodic().cropped([0, 1], [2, 2]).unwrap();
         assert_eq!((part.heights(), part.lengths()), (&[2.0, 3.0, 5.0, 6.0][..], [2.0, 4.0]));
         assert!(!part.is_periodic());
@@ -121,17 +121,17 @@ mod tests {
         assert_eq!(map().flipped([false, true]).heights(), [3.0, 2.0, 1.0, 6.0, 5.0, 4.0]);
         assert_eq!(map().flipped([true, true]).heights(), [6.0, 5.0, 4.0, 3.0, 2.0, 1.0]);
         assert_eq!(map().flipped([false, false]), map());
-        let turned = map().centered_at([1.0, 2.0]).unwrap().transposed();
-        assert_eq!(turned.heights(), [1.0, 4.0, 2.0, 5.0, 3.0, 6.0]);
-        assert_eq!((turned.cells(), turned.spacing(), turned.center()), ([3, 2], [2.0, 1.0], [2.0, 1.0]));
-        assert_eq!(turned.height_at(2.0, 1.5), Some(5.0));
+        let transposed = map().centered_at([1.0, 2.0]).unwrap().transposed();
+        assert_eq!(transposed.heights(), [1.0, 4.0, 2.0, 5.0, 3.0, 6.0]);
+        assert_eq!((transposed.cells(), transposed.spacing(), transposed.center()), ([3, 2], [2.0, 1.0], [2.0, 1.0]));
+        assert_eq!(transposed.height_at(2.0, 1.5), Some(5.0));
     }
 
     #[test]
-    fn heights_follow_and_the_highest_with_them() {
+    fn the_highest_point_follows_the_heights() {
         use crate::geometry::Geometry;
-        let turned = map().inverted();
-        assert_eq!((turned.heights()[0], turned.initial_gap(-0.5, -2.0)), (-1.0, 0.0));
+        let inverted = map().inverted();
+        assert_eq!((inverted.heights()[0], inverted.initial_gap(-0.5, -2.0)), (-1.0, 0.0));
         let doubled = map().scaled(2.0).unwrap();
         assert_eq!((doubled.heights()[5], doubled.initial_gap(-0.5, -2.0)), (12.0, 10.0));
         assert_eq!(map().cropped([0, 0], [1, 3]).unwrap().initial_gap(0.0, 2.0), 0.0);

@@ -1,39 +1,39 @@
-//! A map on another grid.
+//! Interpolation of a map onto another grid.
 
 use super::HeightMap;
 use crate::Grid;
 use crate::error::Result;
 use crate::memory;
 
-/// A range of heights smaller than this, relative to the heights, is rounding.
+/// An rms height below this, relative to the mean, is rounding.
 const FLAT: f64 = 1e-14;
 
-/// A map on another grid, and what it lost.
+/// A map interpolated onto another grid, and the error of that.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resampled {
     /// The map on the new grid.
     pub map: HeightMap,
-    /// How far it is from the old one.
+    /// Difference from the old map.
     pub error: ResamplingError,
 }
 
-/// What the new grid of a map does not resolve: the new map, interpolated back to the points of the old one,
-/// less the old one.
+/// Error of resampling: the new map, interpolated back to the points of the old one, minus the old map. It shows what
+/// the new grid does not resolve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ResamplingError {
     /// Root mean square \[m\].
     pub rms: f64,
-    /// Greatest absolute value \[m\].
+    /// Greatest magnitude \[m\].
     pub greatest: f64,
-    /// The first in proportion to the rms height of the old map about its mean, at the points compared; 0 for a flat
-    /// one.
+    /// `rms` relative to the rms height of the old map about its mean, at the points compared; 0 for a flat map.
     pub of_rms_height: f64,
 }
 
 impl HeightMap {
-    /// The map on the cells of `grid`, by [`HeightMap::height_at`], with what a grid coarser than the map loses.
+    /// The map interpolated at the cells of `grid` by [`HeightMap::height_at`], with the error that a coarser grid
+    /// makes.
     ///
-    /// Points beyond the map are masked. It stays periodic on a grid of the same lengths.
+    /// Points outside the map are masked. On a grid of the same lengths a periodic map stays periodic.
     ///
     /// ```
     /// use viscocontact::{Grid, geometry::HeightMap};
@@ -55,9 +55,9 @@ impl HeightMap {
             self.height_at(x1, x2).unwrap_or(f64::NAN)
         });
         let mut map = HeightMap::on(grid, memory::collect("a map on another grid", grid.len(), heights)?);
-        map.some_known()?;
+        map.require_known()?;
         map.center = HeightMap::middle_of(grid);
-        // Without missing points in the old map all those of the new one are beyond it.
+        // If the old map has no missing points, those of the new one lie outside the old.
         map.masked = self.masked || self.missing == 0;
         let (old, new) = (self.lengths(), map.lengths());
         map.periodic = self.periodic && (0..2).all(|axis| (new[axis] / old[axis] - 1.0).abs() < 1e-9);
@@ -65,7 +65,7 @@ impl HeightMap {
         Ok(Resampled { map, error })
     }
 
-    /// How far `other` is from this map at the points of this one.
+    /// The difference of `other` from this map at the points of this one.
     fn error_of(&self, other: &HeightMap) -> Result<ResamplingError> {
         let grid = self.grid();
         let pairs = || {
@@ -79,7 +79,7 @@ impl HeightMap {
             return Err(crate::Error::Map(crate::error::MapError::NothingKnown));
         }
         let mean = pairs().map(|(z, _)| z / count).sum::<f64>();
-        // in units of a power of two near the greatest height, squares stay in the range of f64, and digits as they are
+        // in units of a power of two near the greatest height, squares stay in range without rounding
         let highest = pairs().fold(f64::MIN_POSITIVE, |highest, (z, back)| highest.max(z.abs()).max(back.abs()));
         let unit = 2_f64.powi(highest.log2().clamp(-1000.0, 1000.0) as i32);
         let rms_of = |sum: f64| (sum / count).sqrt() * unit;
@@ -99,7 +99,7 @@ mod tests {
     use crate::geometry::{Geometry, MapError};
 
     #[test]
-    fn its_own_grid_changes_nothing() {
+    fn resampling_on_the_same_grid_changes_nothing() {
         let map = map_of([12, 10], waves).periodic();
         let again = map.resampled(&map.grid()).unwrap();
         assert_eq!(again.map, HeightMap { masked: true, ..map });
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn the_error_of_a_coarse_grid_is_that_of_what_it_cannot_hold() {
+    fn the_error_is_that_of_interpolating_back() {
         let map = map_of([64, 8], waves).periodic();
         let errors = [64, 32, 16, 8].map(|n| {
             let coarse = map.resampled(&Grid::new([n, 8], [1.0, 1.0]).unwrap()).unwrap();
@@ -123,9 +123,9 @@ mod tests {
         assert!(errors.is_sorted() && errors[1] < 0.01 && errors[3] > 0.03, "{errors:?}");
     }
 
-    /// Squares of these heights leave the range of f64, the error does not.
+    /// The squares of these heights overflow or underflow, the error does not.
     #[test]
-    fn errors_of_the_greatest_and_least_heights_are_numbers() {
+    fn errors_of_extreme_heights_are_finite() {
         let map = map_of([32, 8], waves);
         let coarse = |map: &HeightMap| map.resampled(&Grid::new([8, 8], [1.0, 1.0]).unwrap()).unwrap().error;
         let usual = coarse(&map);
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn beyond_the_map_there_is_nothing_to_touch() {
+    fn outside_the_map_there_is_nothing_to_touch() {
         let map = map_of([8, 8], waves).centered_at([0.5, 0.0]).unwrap();
         let wide = map.resampled(&Grid::new([16, 8], [2.0, 1.0]).unwrap()).unwrap().map;
         assert_eq!(wide.missing(), 64);

@@ -1,16 +1,16 @@
-//! Heights between the points of a map.
+//! Interpolation of heights between the points of a map.
 
 use super::{HeightMap, ROUNDING};
 
-/// The points along one axis that a value between them depends on, with their weights.
+/// The points along one axis that an interpolated value depends on, with their weights.
 struct Stencil {
     index: [usize; 4],
     weight: [f64; 4],
-    /// Derivatives of the weights by the index.
+    /// Derivatives of the weights with respect to the index.
     slope: [f64; 4],
 }
 
-/// Weights of the four points around one that lies `t` behind the second (Keys 1981, a = −1/2).
+/// Weights of the four points around a position that lies `t` after the second (Keys 1981, a = −1/2).
 fn cubic(t: f64) -> [f64; 4] {
     let (t2, t3) = (t * t, t * t * t);
     [0.5 * (2.0 * t2 - t3 - t), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0), 0.5 * (4.0 * t2 - 3.0 * t3 + t), 0.5 * (t3 - t2)]
@@ -27,7 +27,7 @@ fn cubic_slope(t: f64) -> [f64; 4] {
     ]
 }
 
-/// Splits an index into the point before and the fraction beyond it, without rounding errors of the coordinates.
+/// Splits an index into the preceding point and the fraction after it, without the rounding errors of coordinates.
 fn split(index: f64) -> (f64, f64) {
     let nearest = index.round();
     let at = if (index - nearest).abs() <= ROUNDING { nearest } else { index };
@@ -35,7 +35,7 @@ fn split(index: f64) -> (f64, f64) {
 }
 
 impl Stencil {
-    /// Around the point with `index` among `n`.
+    /// The stencil around the fractional `index` among `n` points.
     fn new(index: f64, n: usize, periodic: bool) -> Stencil {
         let (before, t) = split(index);
         let (weights, slopes) = (cubic(t), cubic_slope(t));
@@ -43,7 +43,7 @@ impl Stencil {
             let first = before.rem_euclid(n as f64) as usize + n - 1;
             return Stencil { index: [0, 1, 2, 3].map(|k| (first + k) % n), weight: weights, slope: slopes };
         }
-        // Beyond its ends a row goes on straight: such a point is (1 + d) times the last less d times the one before.
+        // Linear extrapolation: a point d beyond the end is (1 + d) times the last minus d times the one before.
         let (before, last) = (before as isize, n as isize - 1);
         let window = (before - 1).clamp(0, (last - 3).max(0));
         let mut stencil =
@@ -65,7 +65,7 @@ impl Stencil {
 }
 
 impl HeightMap {
-    /// Coordinate as an index among the points along `axis`, with its fraction.
+    /// The coordinate `x` as a fractional index among the points along `axis`.
     pub(super) fn index(&self, axis: usize, x: f64) -> f64 {
         let (distance, spacing, middle) =
             (x - self.center[axis], self.spacing[axis], 0.5 * (self.cells[axis] as f64 - 1.0));
@@ -73,11 +73,11 @@ impl HeightMap {
         if index.is_finite() || !self.periodic {
             return index;
         }
-        // more periods away than there are numbers for: any place in the period is as good
+        // the number of periods overflows: the phase is lost, and any value is as good
         distance.clamp(f64::MIN, f64::MAX) % self.lengths()[axis] / spacing + middle
     }
 
-    /// Whether the point lies in the cell of one of the points.
+    /// Whether (x1, x2) lies in a cell of the map.
     pub(super) fn covers(&self, x1: f64, x2: f64) -> bool {
         let inside = |axis: usize, x: f64| {
             let index = self.index(axis, x);
@@ -87,10 +87,10 @@ impl HeightMap {
         inside(0, x1) && inside(1, x2)
     }
 
-    /// Height at the point (x1, x2) \[m\]; `None` beyond the edges and where it is missing.
+    /// Height at the point (x1, x2) \[m\]; `None` outside the map and where it is missing.
     ///
-    /// Bicubic, and exact at the points of the map. Beside masked points it is linear between those known, and it
-    /// is missing where the nearest point is; beside undecided ones it is missing.
+    /// Interpolated bicubically, exact at the points of the map. Next to masked points it is interpolated linearly
+    /// between the known ones, and missing if the nearest point is. Next to undecided points it is missing.
     pub fn height_at(&self, x1: f64, x2: f64) -> Option<f64> {
         if !self.covers(x1, x2) {
             return None;
@@ -98,11 +98,11 @@ impl HeightMap {
         let [u1, u2] = [self.index(0, x1), self.index(1, x2)];
         let (along1, along2) = self.stencils(u1, u2);
         let height = self.weighted(&along1.index, &along1.weight, &along2.index, &along2.weight);
-        if height.is_nan() && self.masked { self.between_known(u1, u2) } else { Some(height).filter(|z| !z.is_nan()) }
+        if height.is_nan() && self.masked { self.linear_of_known(u1, u2) } else { Some(height).filter(|z| !z.is_nan()) }
     }
 
-    /// Slopes ∂z/∂x1 and ∂z/∂x2 of the surface at the point (x1, x2), those of [`HeightMap::height_at`]; `None` beyond
-    /// the edges and where one of the sixteen points around is missing.
+    /// Slopes ∂z/∂x1 and ∂z/∂x2 of [`HeightMap::height_at`] at the point (x1, x2); `None` outside the map and where one
+    /// of the sixteen points around is missing.
     pub fn slope_at(&self, x1: f64, x2: f64) -> Option<[f64; 2]> {
         if !self.covers(x1, x2) {
             return None;
@@ -119,7 +119,7 @@ impl HeightMap {
         (Stencil::new(u1, self.cells[0], self.periodic), Stencil::new(u2, self.cells[1], self.periodic))
     }
 
-    /// Weighted sum of sixteen heights; NaN if one that counts is missing.
+    /// Weighted sum of sixteen heights; NaN if one with a nonzero weight is missing.
     fn weighted(&self, rows: &[usize; 4], of_rows: &[f64; 4], columns: &[usize; 4], of_columns: &[f64; 4]) -> f64 {
         let mut sum = 0.0;
         for (i, a) in rows.iter().zip(of_rows).filter(|(_, a)| **a != 0.0) {
@@ -130,8 +130,8 @@ impl HeightMap {
         sum
     }
 
-    /// Linear between those of the four neighbours that are known, if the nearest is.
-    fn between_known(&self, u1: f64, u2: f64) -> Option<f64> {
+    /// Linear interpolation between the known ones of the four neighbours; `None` if the nearest is missing.
+    fn linear_of_known(&self, u1: f64, u2: f64) -> Option<f64> {
         let ((b1, t1), (b2, t2)) = (split(u1), split(u2));
         let (mut sum, mut weights) = (0.0, 0.0);
         for (d1, w1) in [(0.0, 1.0 - t1), (1.0, t1)] {
@@ -149,7 +149,7 @@ impl HeightMap {
         Some(sum / weights).filter(|z| z.is_finite())
     }
 
-    /// The height of a point given by whole numbers, if the map has it.
+    /// The height at whole-numbered indices, if the map has it.
     fn point(&self, i: f64, j: f64) -> Option<f64> {
         let whole = |at: f64, n: usize| {
             let n = n as f64;
@@ -165,7 +165,7 @@ mod tests {
     use crate::geometry::{Geometry, HeightMap};
 
     #[test]
-    fn points_are_exact_and_planes_too() {
+    fn points_and_planes_are_exact() {
         let map = map_of([7, 5], waves);
         for k in 0..35 {
             let [x1, x2] = map.grid().center(k / 5, k % 5);
@@ -195,7 +195,7 @@ mod tests {
     }
 
     #[test]
-    fn smooth_maps_converge_with_the_third_power() {
+    fn smooth_maps_converge_with_third_order() {
         let error = |n: usize| {
             let map = map_of([n, n], waves).periodic();
             let points = (0..200).map(|k| (0.0137 * k as f64, 0.0271 * k as f64));
@@ -206,19 +206,19 @@ mod tests {
     }
 
     #[test]
-    fn missing_points_are_decided() {
+    fn masked_points_are_excluded() {
         let plane = |x1: f64, x2: f64| if x1.hypot(x2) < 0.05 { f64::NAN } else { x1 + x2 };
         let map = map_of([5, 5], plane);
         assert!(map.initial_gap(0.0, 0.0).is_nan() && map.initial_gap(0.15, 0.0).is_nan());
         let map = map.masked();
         assert_eq!(map.initial_gap(0.09, 0.0), f64::INFINITY);
-        // Between (0.2, 0), known, and the middle, unknown: what is known counts.
+        // Between (0.2, 0), known, and the middle, unknown: the known point counts.
         assert!((map.initial_gap(0.15, 0.0) - (0.8 - 0.2)).abs() < 1e-14);
         assert!((map.height_at(0.2, 0.1).unwrap() - 0.3).abs() < 1e-14);
     }
 
     #[test]
-    fn periodic_maps_reach_as_far_as_numbers_do() {
+    fn periodic_maps_are_finite_at_any_distance() {
         let map = HeightMap::new([3, 2], [3e-150, 2e-150], vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap().periodic();
         let far = map.clone().centered_at([-f64::MAX, 1e150]).unwrap();
         for (x1, x2) in [(1e200, 0.0), (f64::MAX, -1e300), (-1e120, 1e130)] {
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_of_one_to_three_points_serve() {
+    fn maps_of_one_to_three_points_are_interpolated() {
         let constant = HeightMap::new([1, 1], [1.0, 1.0], vec![2.0]).unwrap();
         assert!((constant.height_at(0.3, -0.4).unwrap() - 2.0).abs() < 1e-15);
         assert!((constant.clone().periodic().height_at(7.3, -9.4).unwrap() - 2.0).abs() < 1e-14);

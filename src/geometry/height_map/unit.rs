@@ -1,10 +1,10 @@
-//! Units of length that files of surfaces use.
+//! Units of length in files of surfaces.
 
 use std::str::FromStr;
 
 use crate::error::{Error, MapError, Result};
 
-/// A unit of length, as files of measured surfaces have them.
+/// A unit of length in files of measured surfaces.
 ///
 /// ```
 /// use viscocontact::geometry::LengthUnit;
@@ -32,20 +32,20 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
-    /// One of it \[m\].
+    /// Length of one unit \[m\].
     pub fn factor(self) -> f64 {
         1.0 / self.per_metre()
     }
 
-    /// `value` of them \[m\].
+    /// Converts `value` to metres.
     ///
-    /// The metre holds a whole number of each unit, by which it is divided: the result is rounded once, 2.5 µm is
-    /// `2.5e-6` to the last bit.
+    /// The value is divided by the whole number of units per metre. The result is rounded once: 2.5 µm is `2.5e-6`,
+    /// bitwise.
     pub fn to_metres(self, value: f64) -> f64 {
         value / self.per_metre()
     }
 
-    /// How many make a metre.
+    /// Number of units per metre.
     fn per_metre(self) -> f64 {
         match self {
             LengthUnit::Metre => 1.0,
@@ -62,16 +62,16 @@ impl LengthUnit {
 impl FromStr for LengthUnit {
     type Err = Error;
 
-    /// The unit of that symbol: m, cm, mm, µm (um), nm, Å (A), pm. Capitals count: Mm is no millimetre.
+    /// The unit of a symbol: m, cm, mm, µm (um), nm, Å (A), pm. Case matters: Mm is not a millimetre.
     fn from_str(symbol: &str) -> Result<LengthUnit> {
         match symbol.trim() {
             "m" => Ok(LengthUnit::Metre),
             "cm" => Ok(LengthUnit::Centimetre),
             "mm" => Ok(LengthUnit::Millimetre),
-            // the micro sign, the Greek letter, and what stands for them in ASCII
+            // micro sign, Greek letter, and the ASCII substitute
             "\u{b5}m" | "\u{3bc}m" | "um" => Ok(LengthUnit::Micrometre),
             "nm" => Ok(LengthUnit::Nanometre),
-            // the letter, the sign, and what stands for them in ASCII
+            // letter, ångström sign, and the ASCII substitute
             "\u{c5}" | "\u{212b}" | "A" => Ok(LengthUnit::Angstrom),
             "pm" => Ok(LengthUnit::Picometre),
             other => Err(MapError::Unit { symbol: other.to_owned() }.into()),
@@ -84,7 +84,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn symbols_name_their_units() {
+    fn symbols_are_parsed() {
         let cases = [
             ("m", 1.0),
             ("cm", 1e-2),

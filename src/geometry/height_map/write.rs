@@ -1,4 +1,4 @@
-//! Maps to files.
+//! Maps written to files.
 
 use std::fmt::Write as _;
 use std::io::Write;
@@ -8,7 +8,7 @@ use crate::geometry::HeightMap;
 use crate::geometry::height_map::read::gsf;
 
 impl HeightMap {
-    /// Writes the map as a Gwyddion Simple Field 1.0, in single precision, in m. [`HeightMap::from_gsf`] tells more.
+    /// Writes the map as a Gwyddion Simple Field 1.0, in single precision and in m; see [`HeightMap::from_gsf`].
     ///
     /// ```
     /// use viscocontact::geometry::HeightMap;
@@ -21,7 +21,7 @@ impl HeightMap {
     /// ```
     ///
     /// # Errors
-    /// If a height exceeds the range of single precision, or what is written to fails.
+    /// If a height exceeds the range of single precision, or writing fails.
     pub fn write_gsf(&self, writer: impl Write) -> Result<()> {
         let [n1, n2] = self.cells;
         let mut header = gsf::MAGIC.to_owned();
@@ -46,13 +46,13 @@ impl HeightMap {
         save(writer, "GSF", &file)
     }
 
-    /// Writes the map as a surface data file of ISO 25178-71, as text (`aISO-1.0`), in m and with all its digits: read
-    /// back by [`HeightMap::from_sdf`] it is the same map, bit by bit.
+    /// Writes the map as a surface data file of ISO 25178-71, as text (`aISO-1.0`), in m and with all digits:
+    /// [`HeightMap::from_sdf`] reads it back bitwise.
     ///
-    /// No date is known: both are written as zeros.
+    /// The dates are unknown and written as zeros.
     ///
     /// # Errors
-    /// If what is written to fails.
+    /// If writing fails.
     pub fn write_sdf(&self, writer: impl Write) -> Result<()> {
         let [n1, n2] = self.cells;
         let [d1, d2] = self.spacing;
@@ -76,8 +76,8 @@ impl HeightMap {
         save(writer, "SDF", file.as_bytes())
     }
 
-    /// Writes the heights in m as an array of NumPy, double precision, little endian, the first axis x1 and the second
-    /// x2. Its lengths are not in the file.
+    /// Writes the heights in m as a NumPy array in double precision, little endian, with x1 as the first axis and x2 as
+    /// the second. The lengths of the map are not in the file.
     ///
     /// Needs the feature `npy`.
     ///
@@ -92,13 +92,13 @@ impl HeightMap {
     /// ```
     ///
     /// # Errors
-    /// If what is written to fails.
+    /// If writing fails.
     #[cfg(feature = "npy")]
     pub fn write_npy(&self, writer: impl Write) -> Result<()> {
         use crate::geometry::height_map::read::npy;
         let [n1, n2] = self.cells;
         let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({n1}, {n2}), }}");
-        // magic, version, length and header take a multiple of 64 bytes, the last one a line feed
+        // magic number, version, length and header together have a multiple of 64 bytes and end with a line feed
         let before = npy::MAGIC.len() + 4;
         let length = (before + header.len() + 1).next_multiple_of(64) - before;
         header += &" ".repeat(length - 1 - header.len());
@@ -111,7 +111,7 @@ impl HeightMap {
 
 /// Appends text.
 fn put(file: &mut String, text: std::fmt::Arguments<'_>) {
-    // a string takes everything
+    // writing to a string cannot fail
     let _ = file.write_fmt(text);
 }
 
@@ -124,7 +124,7 @@ fn save(mut writer: impl Write, format: &'static str, file: &[u8]) -> Result<()>
 mod tests {
     use super::*;
 
-    /// Different along both axes, with a missing point, a negative zero and numbers of many digits.
+    /// Different along both axes, with a missing point, a negative zero and values of many digits.
     fn map() -> HeightMap {
         let mut heights: Vec<f64> = (0..35).map(|k| (f64::from(k) * 0.37).sin() * 1e-6 / 3.0).collect();
         (heights[3], heights[20], heights[30]) = (f64::NAN, -0.0, 5e-324);
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn sdf_is_read_back_bit_by_bit() {
+    fn sdf_is_read_back_bitwise() {
         let (map, mut file) = (map(), Vec::new());
         map.write_sdf(&mut file).unwrap();
         let back = HeightMap::from_sdf(&file[..]).unwrap();
@@ -146,7 +146,7 @@ mod tests {
 
     #[cfg(feature = "npy")]
     #[test]
-    fn npy_is_read_back_bit_by_bit() {
+    fn npy_is_read_back_bitwise() {
         let (map, mut file) = (map(), Vec::new());
         map.write_npy(&mut file).unwrap();
         assert_eq!((file.len() - 35 * 8) % 64, 0);
@@ -160,15 +160,15 @@ mod tests {
         map.write_gsf(&mut file).unwrap();
         let back = HeightMap::from_gsf(&file[..]).unwrap();
         let single = map.heights.iter().map(|&height| f64::from(height as f32)).collect();
-        let wanted = HeightMap { heights: single, ..map };
-        assert_eq!(bits(&back)[2..], bits(&wanted)[2..]);
+        let expected = HeightMap { heights: single, ..map };
+        assert_eq!(bits(&back)[2..], bits(&expected)[2..]);
         for axis in 0..2 {
-            assert!((back.spacing[axis] / wanted.spacing[axis] - 1.0).abs() < 1e-15);
+            assert!((back.spacing[axis] / expected.spacing[axis] - 1.0).abs() < 1e-15);
         }
     }
 
     #[test]
-    fn what_cannot_be_written_is_an_error() {
+    fn writing_errors_are_reported() {
         let high = HeightMap::new([1, 1], [1.0, 1.0], vec![1e39]).unwrap();
         assert!(matches!(high.write_gsf(Vec::new()), Err(Error::OutOfRange { field: "height", .. })));
         let mut short = [0; 5];

@@ -1,4 +1,4 @@
-//! Random surfaces.
+//! Random rough surfaces.
 
 mod spec;
 
@@ -12,15 +12,15 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::Grid;
 use crate::error::{Error, Result, within};
-use crate::geometry::spectrum::{Spectrum, wave_numbers};
+use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
 use crate::geometry::{Geometry, HeightMap};
 use crate::memory;
 
-/// A self-affine random surface: a sum of waves with random amplitudes, Gaussian, of the spectrum of its [`RoughSpec`].
+/// A self-affine random surface: a sum of waves with Gaussian random amplitudes and the spectrum of a [`RoughSpec`].
 ///
-/// The heights have no mean. The gap is what the highest point of the mesh exceeds the surface by. It moves over the
-/// grid that it was made for exactly, by any distance, as it has no waves that the grid does not resolve; on other
-/// grids it is interpolated as a [`HeightMap`] is.
+/// The mean height is 0. The gap is the height of the highest point of the mesh above the surface. On the grid that it
+/// was created for, the surface can be shifted exactly by any distance, because it has no waves that the grid does not
+/// resolve; on other grids it is interpolated like a [`HeightMap`].
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -50,19 +50,19 @@ pub struct Rough {
 }
 
 impl Rough {
-    /// A surface with the lengths of `grid` as its periods.
+    /// A surface whose periods are the lengths of `grid`.
     ///
     /// # Errors
-    /// If a number of the spec is out of its range, the shortest wavelength is below two cells, or no wave of the
-    /// spectrum fits the lengths. If there is no memory for its waves and heights, 16 bytes a cell.
+    /// If a value of the spec is out of range, the shortest wavelength is below two cells, or no wave of the spectrum
+    /// fits the lengths. If there is no memory for waves and heights, 16 bytes per cell.
     pub fn new(grid: &Grid, spec: RoughSpec) -> Result<Rough> {
         spec.validate()?;
         let (cells, spacing) = (grid.cells(), grid.spacing());
         for axis in (0..2).filter(|&axis| cells[axis] > 1) {
             let resolved = spec.shortest >= 2.0 * spacing[axis] * (1.0 - 1e-12);
-            within("shortest wavelength", spec.shortest, resolved, "two cells of the grid or more")?;
+            within("shortest wavelength", spec.shortest, resolved, "at least two cells of the grid")?;
         }
-        memory::check("a rough surface", Spectrum::bytes(cells) + 8 * grid.len() as u128)?;
+        memory::check("a rough surface", HeightSpectrum::bytes(cells) + 8 * grid.len() as u128)?;
         let spectrum = spectrum(grid, &spec)?;
         let map = HeightMap::on(&Grid::of_spacing(cells, spacing), spectrum.heights());
         match map.heights().iter().position(|z| !z.is_finite()) {
@@ -74,25 +74,25 @@ impl Rough {
         }
     }
 
-    /// A surface with a longer `period` \[m\], of which the grid shows a part: not periodic on the grid.
+    /// A surface with a longer `period` \[m\], of which the grid shows a part; it is not periodic on the grid.
     ///
     /// # Errors
-    /// As [`Rough::new`], and if a period is shorter than the grid or no whole number of its cells.
+    /// As [`Rough::new`], and if a period is shorter than the grid or not a whole number of its cells.
     pub fn windowed(grid: &Grid, spec: RoughSpec, period: [f64; 2]) -> Result<Rough> {
         let fields = ["period along x1", "period along x2"];
         let mut cells = [0; 2];
         for axis in 0..2 {
             let count = period[axis] / grid.spacing()[axis];
             let whole = (count - count.round()).abs() <= 1e-9 * count && count.round() >= grid.cells()[axis] as f64;
-            within(fields[axis], period[axis], whole, "a whole number of cells and no less than the grid is long")?;
+            within(fields[axis], period[axis], whole, "a whole number of cells and at least the length of the grid")?;
             cells[axis] = count.round() as usize;
         }
-        // The check of the counts.
+        // Checks the numbers of cells.
         Grid::new(cells, period)?;
         Rough::new(&Grid::of_spacing(cells, grid.spacing()), spec)
     }
 
-    /// What it was asked to be.
+    /// The specification of the surface.
     pub fn spec(&self) -> &RoughSpec {
         &self.spec
     }
@@ -117,32 +117,32 @@ impl Geometry for Rough {
     }
 }
 
-/// The random waves, as rough as asked for.
-fn spectrum(grid: &Grid, spec: &RoughSpec) -> Result<Spectrum> {
+/// The random waves, scaled to the specified roughness.
+fn spectrum(grid: &Grid, spec: &RoughSpec) -> Result<HeightSpectrum> {
     let (cells, lengths) = (grid.cells(), grid.lengths());
     let line = cells[0] == 1 || cells[1] == 1;
-    // The last waves along each axis: within the spectrum, and with a direction on the grid.
-    let last = [0, 1].map(|axis| {
+    // Highest wave along each axis: within the spectrum and below the Nyquist wave of the grid.
+    let highest = [0, 1].map(|axis| {
         let resolved = (cells[axis] as i64 - 1) / 2;
         resolved.min((lengths[axis] / spec.shortest).ceil() as i64)
     });
     let origin = grid.center(0, 0);
-    let mut spectrum = Spectrum::zero(cells);
+    let mut spectrum = HeightSpectrum::zero(cells);
     let mut random = ChaCha8Rng::seed_from_u64(spec.seed);
     let (mut height, mut slope) = (0.0, 0.0);
-    for k1 in -last[0]..=last[0] {
-        // A wave's numbers say where its random numbers are, so that they are the same on every mesh.
+    for k1 in -highest[0]..=highest[0] {
+        // The position in the random stream depends on the wave alone, so that it is the same on every mesh.
         random.set_stream(if k1 < 0 { -2 * k1 - 1 } else { 2 * k1 } as u64);
         random.set_word_pos(0);
-        for k2 in 0..=last[1] {
+        for k2 in 0..=highest[1] {
             let amplitude = gaussian(&mut random);
             if k2 == 0 && k1 <= 0 {
-                continue; // the conjugates of those with k1 > 0, and the mean
+                continue; // conjugates of waves with k1 > 0, and the mean
             }
             let q = wave_numbers([k1, k2], lengths);
             let density = spec.density(q, line);
             if density > 0.0 {
-                // The phase counts from the middle of the grid.
+                // The phase is relative to the middle of the grid.
                 let amplitude = amplitude * density.sqrt() * Complex64::cis(q[0] * origin[0] + q[1] * origin[1]);
                 spectrum.set([k1, k2], amplitude);
                 height += 2.0 * amplitude.norm_sqr();
@@ -161,9 +161,9 @@ fn spectrum(grid: &Grid, spec: &RoughSpec) -> Result<Spectrum> {
     Ok(spectrum)
 }
 
-/// A complex number whose parts are independent and standard normal (Box and Muller 1958).
+/// A complex number with independent standard normal parts (Box and Muller 1958).
 fn gaussian(random: &mut ChaCha8Rng) -> Complex64 {
-    // 53 bits each; the first is never 0.
+    // 53 bits each; the radius argument is never 0.
     let unit = 1.0 / (1_u64 << 53) as f64;
     let radius = ((random.next_u64() >> 11) as f64 + 1.0) * unit;
     let angle = (random.next_u64() >> 11) as f64 * unit;
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_as_rough_as_asked_for() {
+    fn it_has_the_specified_roughness() {
         for grid in [Grid::square(64, 1.0).unwrap(), Grid::new([48, 81], [1.0, 2.0]).unwrap()] {
             let by_height = Rough::new(&grid, SPEC).unwrap();
             let heights = by_height.height_map().heights();
@@ -206,10 +206,10 @@ mod tests {
     }
 
     #[test]
-    fn a_seed_is_one_surface_on_every_mesh() {
+    fn a_seed_gives_the_same_surface_on_every_mesh() {
         let surface =
             |n: usize, seed: u64| Rough::new(&Grid::square(n, 1.0).unwrap(), RoughSpec { seed, ..SPEC }).unwrap();
-        // The cells of the coarse mesh are the middle ones of three on the fine mesh.
+        // Each cell of the coarse mesh is the middle one of three on the fine mesh.
         let (coarse, fine) = (surface(31, 7), surface(93, 7));
         for k in 0..31 * 31 {
             let (i, j) = (k / 31, k % 31);
@@ -220,10 +220,10 @@ mod tests {
     }
 
     #[test]
-    fn it_moves_exactly() {
+    fn it_is_shifted_exactly() {
         let rough = Rough::new(&Grid::square(32, 1.0).unwrap(), SPEC).unwrap();
         let fine = Rough::new(&Grid::square(320, 1.0).unwrap(), SPEC).unwrap();
-        // Gaps count from different points.
+        // The gaps have different reference points.
         let (grid, of_fine) = (Grid::square(32, 1.0).unwrap(), Grid::square(320, 1.0).unwrap());
         let (a, b) =
             (field(&grid, &rough, [0.3 / 32.0, -0.4 / 32.0]), field(&of_fine, &fine, [3.5 / 320.0, -4.5 / 320.0]));
@@ -232,7 +232,7 @@ mod tests {
             - fine.initial_gap(-159.5 / 320.0, -159.5 / 320.0);
         for (k, here) in a.into_iter().enumerate() {
             let (i, j) = (k / 32, k % 32);
-            // Moved, the coarse centre is that of a fine cell.
+            // After the shift, the centre of a coarse cell is that of a fine cell.
             let at = b[(10 * i + 5) * 320 + (10 * j + 4)];
             assert!((here - at - datum).abs() < 1e-12, "{} and {}", here, at + datum);
         }
@@ -274,7 +274,7 @@ mod tests {
         assert_eq!(refused(RoughSpec { roughness: Roughness::RmsSlope(0.0), ..SPEC }), "rms slope");
         let lay = Anisotropy { ratio: 0.5, direction: 0.0 };
         assert_eq!(refused(RoughSpec { anisotropy: lay, ..SPEC }), "ratio of the anisotropy");
-        // No wave of a period of 1 lies between 1/√2 and 1, save those that the spectrum excludes.
+        // With a period of 1 no wavelength lies between 1/√2 and 1, except those that the spectrum excludes.
         let between = RoughSpec { longest: 0.99, roll_off: 0.99, shortest: 0.72, ..SPEC };
         assert_eq!(refused(between), "shortest wavelength");
         for period in [[0.5, 1.0], [1.01, 1.0], [f64::NAN, 1.0]] {

@@ -23,7 +23,7 @@ proptest! {
         laws::rheology::all(&gel, &times).map_err(|law| broken(&law))?;
         let grid = Grid::new(cells, [1.0e-3, 2.0e-3]).unwrap();
         laws::geometry::all(&Bowl { radius }, &grid).map_err(|law| broken(&law))?;
-        laws::geometry::moves_as_its_points(&Bowl { radius }, &grid, [1e-4, 2e-5], 0.0).map_err(|law| broken(&law))?;
+        laws::geometry::shift_matches_points(&Bowl { radius }, &grid, [1e-4, 2e-5], 0.0).map_err(|law| broken(&law))?;
         let beat = Heartbeat { force, half_period: time };
         laws::load::all(&beat, &laws::load::even_times(0.0, 7.3 * time, count)).map_err(|law| broken(&law))?;
     }

@@ -1,4 +1,4 @@
-//! Gwyddion Simple Field 1.0, as the user guide of Gwyddion describes it
+//! Gwyddion Simple Field 1.0, as described in the user guide of Gwyddion
 //! (<http://gwyddion.net/documentation/user-guide-en/gsf.html>).
 
 use std::io::Read;
@@ -16,19 +16,19 @@ impl HeightMap {
     /// Reads a Gwyddion Simple Field 1.0, the [format](http://gwyddion.net/documentation/user-guide-en/gsf.html) in
     /// which Gwyddion exchanges single maps: heights in single precision, NaN where nothing was measured.
     ///
-    /// The file must name lengths and units ([`LengthUnit`]), which the format leaves open;
-    /// [`HeightMap::from_gsf_with`] reads one whose numbers have no unit. Its first row is the top; `XOffset` and
-    /// `YOffset` are not kept.
+    /// The file must state lengths and units ([`LengthUnit`]), which the format makes optional;
+    /// [`HeightMap::from_gsf_with`] reads files without units. The first row is the top. `XOffset` and `YOffset` are
+    /// ignored.
     ///
     /// # Errors
     /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed, or lacks a unit; as
-    /// [`HeightMap::new`] if its map is not one that may be.
+    /// [`HeightMap::new`] if its map is invalid.
     pub fn from_gsf(reader: impl Read) -> Result<HeightMap> {
         from_gsf(reader, None)
     }
 
-    /// [`HeightMap::from_gsf`] for a file whose lengths or heights have no unit: they are in `unit`. A unit that the
-    /// file does name holds.
+    /// As [`HeightMap::from_gsf`], for a file whose lengths or heights have no unit: they are in `unit`. Units stated
+    /// in the file take precedence.
     ///
     /// ```
     /// use viscocontact::geometry::{HeightMap, LengthUnit};
@@ -56,7 +56,7 @@ fn from_gsf(reader: impl Read, fallback: Option<LengthUnit>) -> Result<HeightMap
     let Some(end) = rest.iter().position(|&byte| byte == 0) else {
         return Err(MapError::Missing { format: FORMAT, key: "NUL byte after the header" }.into());
     };
-    // titles may hold anything
+    // titles may contain any bytes
     let lines = String::from_utf8_lossy(&rest[..end]);
     let header = Header::new(FORMAT, &lines);
     let unit = |key: &'static str| match (header.get(key), fallback) {
@@ -115,7 +115,7 @@ mod tests {
     }
 
     #[test]
-    fn malformed_files_are_refused_by_what_is_wrong() {
+    fn errors_of_malformed_files_name_the_defect() {
         let read = |header: &str, heights: &[f32]| HeightMap::from_gsf(&file(header, heights)[..]).unwrap_err();
         let six = [1.0; 6];
         let size =
@@ -147,22 +147,22 @@ mod tests {
     }
 
     #[test]
-    fn a_damaged_frame_is_refused() {
+    fn damaged_headers_are_refused() {
         let magic = MapError::Magic { format: FORMAT, magic: "Gwyddion Simple Field 1.0" };
         assert_eq!(HeightMap::from_gsf(&b"Gwyddion Simple Field 2.0\n"[..]).unwrap_err(), magic.clone().into());
         assert_eq!(HeightMap::from_gsf(&b""[..]).unwrap_err(), magic.into());
-        let unending = format!("{MAGIC}{FULL}");
-        let error = HeightMap::from_gsf(unending.as_bytes()).unwrap_err();
+        let unterminated = format!("{MAGIC}{FULL}");
+        let error = HeightMap::from_gsf(unterminated.as_bytes()).unwrap_err();
         assert_eq!(error, MapError::Missing { format: FORMAT, key: "NUL byte after the header" }.into());
         for cut in 0..4 {
-            let mut ends = format!("{MAGIC}{FULL}").into_bytes();
-            ends.extend(std::iter::repeat_n(0, cut));
-            assert!(HeightMap::from_gsf(&ends[..]).is_err(), "{cut}");
+            let mut truncated = format!("{MAGIC}{FULL}").into_bytes();
+            truncated.extend(std::iter::repeat_n(0, cut));
+            assert!(HeightMap::from_gsf(&truncated[..]).is_err(), "{cut}");
         }
     }
 
     #[test]
-    fn absurd_sizes_are_refused_before_memory_is_taken() {
+    fn absurd_sizes_are_refused_before_allocating() {
         for size in ["65000", "4000000000", "18446744073709551615"] {
             let header = FULL.replace("XRes = 3", &format!("XRes = {size}")).replace("YRes=2", &format!("YRes={size}"));
             assert!(HeightMap::from_gsf(&file(&header, &[1.0; 6])[..]).is_err());

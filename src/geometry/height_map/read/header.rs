@@ -2,7 +2,7 @@
 
 use crate::error::{MapError, Result, positive};
 
-/// What the lines of a header say.
+/// The entries of a header.
 #[derive(Debug)]
 pub(super) struct Header<'a> {
     format: &'static str,
@@ -20,7 +20,7 @@ impl<'a> Header<'a> {
         Header { format, entries: lines.lines().filter_map(entry).collect() }
     }
 
-    /// What the entry `key` says, if there is one that says something.
+    /// The value of the entry `key`, if it exists and is not empty.
     pub(super) fn get(&self, key: &'static str) -> Option<&'a str> {
         let &(_, value) = self.entries.iter().find(|(name, _)| name.eq_ignore_ascii_case(key))?;
         (!value.is_empty()).then_some(value)
@@ -34,7 +34,7 @@ impl<'a> Header<'a> {
         MapError::Entry { format: self.format, key, text: text.to_owned(), allowed }
     }
 
-    /// A count; whether it is one a grid may have is for the grid to say.
+    /// A whole number, not checked further: the grid checks numbers of cells.
     pub(super) fn count(&self, key: &'static str) -> Result<usize> {
         let text = self.require(key)?;
         text.parse().map_err(|_| self.error(key, text, "a whole number").into())

@@ -1,7 +1,7 @@
-//! Maps from files.
+//! Maps read from files.
 //!
-//! Orientation: x1 is the x of the file, along its rows, and x2 its y, which points up. Formats that are images (GSF,
-//! text matrices) begin with the top row, the one of largest x2; SDF and X3P begin with the lowest.
+//! Orientation: x1 is the x of the file, along its rows, and x2 its y, which points up. Image formats (GSF, text
+//! matrices) begin with the top row, at the largest x2; SDF and X3P begin with the bottom row.
 
 pub(super) mod gsf;
 mod header;
@@ -25,35 +25,35 @@ use crate::error::{MapError, Result};
 use crate::geometry::HeightMap;
 use crate::memory;
 
-/// The extensions of files that carry the lengths of their maps.
+/// Extensions of the formats that include the lengths of the map.
 #[cfg(feature = "x3p")]
 const KNOWN: &str = "gsf, sdf or x3p";
 #[cfg(not(feature = "x3p"))]
 const KNOWN: &str = "gsf or sdf (or x3p, with the feature of that name)";
 
-/// Which row a file begins with.
+/// The first row of a file.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum First {
-    /// That of largest x2, as in an image.
+    /// The row of largest x2, as in an image.
     Top,
-    /// That of smallest x2.
+    /// The row of smallest x2.
     Bottom,
 }
 
 impl HeightMap {
-    /// Reads a file whose format carries the lengths of the map, which its extension tells:
+    /// Reads a file in a format that includes the lengths of the map. The extension determines the format:
     /// [`gsf`](HeightMap::from_gsf), [`sdf`](HeightMap::from_sdf), or `x3p` with the feature of that name.
     ///
     /// # Orientation
     ///
-    /// x1 is the x of a file, along its rows, x2 its y, which points up, and the map has the height of the point i
-    /// along x1, j along x2 in the cell `[i, j]`. Formats that are images (GSF, text matrices) begin with the top row,
-    /// the one of largest x2; SDF and X3P begin with the lowest. The origin that a file may state is not kept: a map
-    /// is centred on its rectangle.
+    /// x1 is the x of the file, along its rows, and x2 its y, which points up. The cell `[i, j]` of the map has the
+    /// height of point i along x1 and j along x2. Image formats (GSF, text matrices) begin with the top row, at the
+    /// largest x2; SDF and X3P begin with the bottom row. The origin stated in a file is ignored: the map is centred on
+    /// its rectangle.
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the extension is none of these, the file cannot be read or is malformed;
-    /// as [`HeightMap::new`] if the map in it is not one that may be.
+    /// [`Error::Map`](crate::Error::Map) if the extension is unknown, or the file cannot be read or is malformed; as
+    /// [`HeightMap::new`] if its map is invalid.
     pub fn read(path: impl AsRef<Path>) -> Result<HeightMap> {
         let path = path.as_ref();
         let name = || path.display().to_string();
@@ -69,7 +69,7 @@ impl HeightMap {
         }
     }
 
-    /// The map of `rows`, each of `cells[0]` heights along x1, with the exact `spacing`.
+    /// The map of `rows` of `cells[0]` heights along x1, with exactly the given `spacing`.
     fn from_rows(cells: [usize; 2], spacing: [f64; 2], rows: &[f64], first: First) -> Result<HeightMap> {
         let [n1, n2] = cells;
         let row = |j: usize| match first {
@@ -79,12 +79,12 @@ impl HeightMap {
         let heights = (0..n1).flat_map(|i| (0..n2).map(move |j| rows[row(j) * n1 + i]));
         let heights = memory::collect("the heights of a file", rows.len(), heights)?;
         let lengths = [n1 as f64 * spacing[0], n2 as f64 * spacing[1]];
-        // the spacing is what the file says, to the last bit, and not a quotient of the length
+        // the spacing of the file, bitwise, instead of a quotient of lengths
         Ok(HeightMap { spacing, ..HeightMap::new(cells, lengths, heights)? })
     }
 }
 
-/// All that a reader gives. No more is ever allocated than was there.
+/// All bytes of a reader. Sizes stated in a file are never allocated before they are confirmed.
 fn bytes(mut reader: impl Read, format: &str) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let read = reader.read_to_end(&mut bytes);
@@ -92,7 +92,12 @@ fn bytes(mut reader: impl Read, format: &str) -> Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The number of cells, if a grid may have them, before anything is allocated for them.
+/// The number of points, if a grid may have that many: checked before anything is allocated for them.
 fn count(cells: [usize; 2], spacing: [f64; 2]) -> Result<usize> {
     Ok(Grid::new(cells, [cells[0] as f64 * spacing[0], cells[1] as f64 * spacing[1]])?.len())
+}
+
+/// The error of a file with `found` of the `expected` items, all of them counted.
+fn wrong_size(format: &'static str, what: &'static str, found: usize, expected: usize) -> MapError {
+    MapError::Size { format, what, found: found as u64, expected: expected as u64, exact: true }
 }

@@ -1,11 +1,11 @@
-//! Arrays of NumPy, as its NEP 1 and the documentation of `numpy.lib.format` describe them.
+//! Arrays of NumPy, as described in NEP 1 and the documentation of `numpy.lib.format`.
 //!
-//! The header is read here: readers that serve arrays of every kind trust the sizes in it.
+//! The header is parsed here, because general readers of arrays trust the sizes stated in it.
 
 use std::io::Read;
 
 use super::number::{Kind, Number};
-use super::{bytes, count};
+use super::{bytes, count, wrong_size};
 use crate::Grid;
 use crate::error::{MapError, Result};
 use crate::geometry::{HeightMap, LengthUnit};
@@ -15,18 +15,17 @@ pub(in crate::geometry::height_map) const MAGIC: &[u8] = b"\x93NUMPY";
 const FORMAT: &str = "NPY";
 
 impl HeightMap {
-    /// Reads an array of two dimensions as `numpy.save` writes it, the map in `unit` of a rectangle of `lengths`
-    /// \[m\]. Its first axis is x1, its second x2: `heights[i, j]` is that of the cell `[i, j]`.
+    /// Reads a two-dimensional array written by `numpy.save`: the heights in `unit` on a rectangle of `lengths` \[m\].
+    /// The first axis is x1, the second x2: `heights[i, j]` belongs to the cell `[i, j]`.
     ///
     /// Needs the feature `npy`.
     ///
-    /// Floats of single and double precision and integers are read, in either byte order and in the order of C or of
-    /// Fortran; NaN is what was not measured. An image, whose first axis points down, is turned by
-    /// `numpy.flipud(image).T`.
+    /// Floats of single and double precision and integers are supported, in either byte order and in C or Fortran
+    /// order. NaN marks missing points. Convert an image, whose first axis points down, by `numpy.flipud(image).T`.
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed or holds something else; as
-    /// [`HeightMap::new`] if its map is not one that may be.
+    /// [`Error::Map`](crate::Error::Map) if the file cannot be read, is malformed or contains another type of
+    /// array; as [`HeightMap::new`] if its map is invalid.
     pub fn from_npy(reader: impl Read, lengths: [f64; 2], unit: LengthUnit) -> Result<HeightMap> {
         let file = bytes(reader, FORMAT)?;
         let (header, data) = split(&file)?;
@@ -35,13 +34,13 @@ impl HeightMap {
         let count = count(array.cells, spacing)?;
         let stored = array.number.decode_all(FORMAT, data, count, true)?;
         let [n1, n2] = array.cells;
-        let place = |i: usize, j: usize| if array.fortran { j * n1 + i } else { i * n2 + j };
-        let heights = (0..n1).flat_map(|i| (0..n2).map(move |j| place(i, j))).map(|k| unit.to_metres(stored[k]));
+        let index = |i: usize, j: usize| if array.fortran { j * n1 + i } else { i * n2 + j };
+        let heights = (0..n1).flat_map(|i| (0..n2).map(move |j| index(i, j))).map(|k| unit.to_metres(stored[k]));
         HeightMap::new(array.cells, lengths, memory::collect("the heights of a file", count, heights)?)
     }
 }
 
-/// Header and data.
+/// Splits a file into header and data.
 fn split(file: &[u8]) -> Result<(String, &[u8])> {
     let Some(rest) = file.strip_prefix(MAGIC) else {
         return Err(MapError::Magic { format: FORMAT, magic: "\\x93NUMPY" }.into());
@@ -57,15 +56,14 @@ fn split(file: &[u8]) -> Result<(String, &[u8])> {
     };
     let rest = &rest[start..];
     if rest.len() < length {
-        let (found, expected) = (rest.len() as u64, length as u64);
-        return Err(MapError::Size { format: FORMAT, what: "bytes of header", found, expected, exact: true }.into());
+        return Err(wrong_size(FORMAT, "bytes of header", rest.len(), length).into());
     }
     let (header, data) = rest.split_at(length);
-    // strings of Python may be in either quotes
+    // Python strings may have either kind of quotes
     Ok((String::from_utf8_lossy(header).replace('"', "'"), data))
 }
 
-/// What the header says.
+/// The entries of the header.
 struct Array {
     number: Number,
     fortran: bool,
@@ -79,13 +77,14 @@ impl Array {
             Ok::<_, MapError>(rest.trim_start().strip_prefix(':').unwrap_or_default().trim_start())
         };
         let refuse = |key: &'static str, text: &str, allowed: &'static str| {
-            // up to the next entry
+            // the text up to the next entry
             let text = text.split(", '").next().unwrap_or_default().split('}').next().unwrap_or_default();
             MapError::Entry { format: FORMAT, key, text: text.trim_end_matches([',', ' ', '\n']).to_owned(), allowed }
         };
         let text = entry("descr")?;
         let number = text.strip_prefix('\'').and_then(|text| number(text.split('\'').next()?));
-        let number = number.ok_or_else(|| refuse("descr", text, "a float of 4 or 8 bytes or an integer, as '<f8'"))?;
+        let number =
+            number.ok_or_else(|| refuse("descr", text, "a float of 4 or 8 bytes or an integer, such as '<f8'"))?;
         let text = entry("fortran_order")?;
         let fortran = match text {
             _ if text.starts_with("True") => true,
@@ -103,7 +102,7 @@ impl Array {
     }
 }
 
-/// The numbers that a type such as `<f8` means.
+/// The number type of a description such as `<f8`.
 fn number(descr: &str) -> Option<Number> {
     let (order, rest) = descr.split_at_checked(1)?;
     let (kind, size) = rest.split_at_checked(1)?;
@@ -128,7 +127,7 @@ pub(super) mod tests {
     use super::*;
     use crate::Error;
 
-    /// A file as `numpy.save` writes it, less the padding.
+    /// A file as written by `numpy.save`, but without padding.
     pub(in super::super) fn file(header: &str, data: &[u8]) -> Vec<u8> {
         [MAGIC, &[1, 0], &(header.len() as u16).to_le_bytes(), header.as_bytes(), data].concat()
     }
@@ -139,24 +138,25 @@ pub(super) mod tests {
 
     #[test]
     fn axes_are_x1_and_x2_in_either_order() {
-        let wanted = HeightMap::new([2, 3], [2.0, 6.0], [1, 2, 3, 4, 5, 6].map(|h| f64::from(h) / 1e3).into()).unwrap();
+        let expected =
+            HeightMap::new([2, 3], [2.0, 6.0], [1, 2, 3, 4, 5, 6].map(|h| f64::from(h) / 1e3).into()).unwrap();
         let c: Vec<u8> = [1.0_f64, 2.0, 3.0, 4.0, 5.0, 6.0].iter().flat_map(|h| h.to_le_bytes()).collect();
         let header = "{'descr': '<f8', 'fortran_order': False, 'shape': (2, 3), }\n";
-        assert_eq!(read(&file(header, &c)).unwrap(), wanted);
+        assert_eq!(read(&file(header, &c)).unwrap(), expected);
         let fortran: Vec<u8> = [1_i16, 4, 2, 5, 3, 6].iter().flat_map(|h| h.to_be_bytes()).collect();
         let header = r#"{"shape":(2,3,),"fortran_order":True,"descr":">i2"}"#;
-        assert_eq!(read(&file(header, &fortran)).unwrap(), wanted);
+        assert_eq!(read(&file(header, &fortran)).unwrap(), expected);
         let floats: Vec<u8> = [1.0_f32, 2.0, 3.0, 4.0, 5.0, 6.0].iter().flat_map(|h| h.to_be_bytes()).collect();
         let header = "{'descr': '>f4', 'fortran_order': False, 'shape': (2, 3), }      \n";
-        assert_eq!(read(&file(header, &floats)).unwrap(), wanted);
+        assert_eq!(read(&file(header, &floats)).unwrap(), expected);
         let header = "{'descr': '|u1', 'fortran_order': False, 'shape': (2, 3), }";
-        assert_eq!(read(&file(header, &[1, 2, 3, 4, 5, 6])).unwrap(), wanted);
+        assert_eq!(read(&file(header, &[1, 2, 3, 4, 5, 6])).unwrap(), expected);
         let long = [MAGIC, &[2, 0, header.len() as u8, 0, 0, 0], header.as_bytes(), &[1, 2, 3, 4, 5, 6]].concat();
-        assert_eq!(read(&long).unwrap(), wanted);
+        assert_eq!(read(&long).unwrap(), expected);
     }
 
     #[test]
-    fn malformed_files_are_refused_by_what_is_wrong() {
+    fn errors_of_malformed_files_name_the_defect() {
         let header = "{'descr': '|i1', 'fortran_order': False, 'shape': (2, 3), }";
         let with = |from: &str, to: &str| read(&file(&header.replace(from, to), &[0; 6])).unwrap_err();
         for key in ["descr", "fortran_order", "shape"] {

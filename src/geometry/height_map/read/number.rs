@@ -1,13 +1,14 @@
 //! Numbers in binary files.
 
-use crate::error::{MapError, Result};
+use super::wrong_size;
+use crate::error::Result;
 use crate::memory;
 
-/// How a number is written.
+/// Binary representation of a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Number {
     pub(super) kind: Kind,
-    /// Bytes it takes: 1, 2, 4 or 8; 4 or 8 of a float.
+    /// Size in bytes: 1, 2, 4 or 8; 4 or 8 for a float.
     pub(super) size: usize,
     pub(super) big_endian: bool,
 }
@@ -15,7 +16,7 @@ pub(super) struct Number {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Kind {
     Signed,
-    #[cfg_attr(not(feature = "npy"), allow(dead_code, reason = "only NPY files have them"))]
+    #[cfg_attr(not(feature = "npy"), allow(dead_code, reason = "only NPY files have unsigned numbers"))]
     Unsigned,
     Float,
 }
@@ -25,7 +26,7 @@ impl Number {
         Number { kind, size, big_endian: false }
     }
 
-    /// The number that `bytes` stand for.
+    /// The number represented by `bytes`.
     fn decode(self, bytes: &[u8]) -> f64 {
         let mut word = [0; 8];
         for (k, &byte) in bytes.iter().enumerate() {
@@ -41,7 +42,7 @@ impl Number {
         }
     }
 
-    /// The least number that can be written so.
+    /// The least representable number.
     pub(super) fn least(self) -> f64 {
         match self.kind {
             Kind::Unsigned => 0.0,
@@ -51,11 +52,11 @@ impl Number {
         }
     }
 
-    /// The `count` numbers that `data` begin with, or, if `exact`, that they are.
+    /// The first `count` numbers of `data`, which has no others if `exact`.
     pub(super) fn decode_all(self, format: &'static str, data: &[u8], count: usize, exact: bool) -> Result<Vec<f64>> {
-        let (found, expected) = (data.len() as u64, (count as u64).saturating_mul(self.size as u64));
-        if found < expected || exact && found > expected {
-            return Err(MapError::Size { format, what: "bytes of heights", found, expected, exact: true }.into());
+        let expected = count.saturating_mul(self.size);
+        if data.len() < expected || exact && data.len() > expected {
+            return Err(wrong_size(format, "bytes of heights", data.len(), expected).into());
         }
         let numbers = data.chunks_exact(self.size).take(count).map(|bytes| self.decode(bytes));
         memory::collect("the numbers of a file", count, numbers)
@@ -67,7 +68,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_those_that_were_written() {
+    fn numbers_are_decoded() {
         let number = |kind, size, big_endian| Number { kind, size, big_endian };
         assert_eq!(number(Kind::Signed, 1, false).decode(&[0xfe]), -2.0);
         assert_eq!(number(Kind::Signed, 2, true).decode(&(-300_i16).to_be_bytes()), -300.0);

@@ -1,32 +1,32 @@
 //! Surface data files of ISO 25178-71 and EUR 15178.
 //!
-//! The layout is that of ISO 25178-71:2012; the records and the number types of the older files are those of K. J.
-//! Stout et al., *The development of methods for the characterisation of roughness in three dimensions*, EUR 15178 EN
-//! (1993), as NIST (<https://physics.nist.gov/VSC/Help/DataFormat/SDF_Format.jsp>) and NPL
-//! (<http://resource.npl.co.uk/softgauges/Help.htm>) have them.
+//! The layout is that of ISO 25178-71:2012. Records and number types of older files follow K. J. Stout et al.,
+//! *The development of methods for the characterisation of roughness in three dimensions*, EUR 15178 EN (1993), as
+//! documented by NIST (<https://physics.nist.gov/VSC/Help/DataFormat/SDF_Format.jsp>) and NPL
+//! (<http://resource.npl.co.uk/softgauges/Help.htm>).
 
 use std::io::Read;
 
 use super::header::Header;
 use super::number::{Kind, Number};
-use super::{First, bytes, count};
+use super::{First, bytes, count, wrong_size};
 use crate::error::{MapError, Result, positive};
 use crate::geometry::HeightMap;
 
 const FORMAT: &str = "SDF";
-/// How the binary header is divided: version, manufacturer, two dates, two counts, four scales, three kinds.
+/// Size of the binary header: version, manufacturer, two dates, two counts, four scales, three type bytes.
 const BINARY_HEADER: usize = 8 + 10 + 2 * 12 + 2 * 2 + 4 * 8 + 3;
-/// What some instruments write after it: the numbers 5 and 1.
+/// Bytes that some instruments write after the header: the numbers 5 and 1.
 const EXTRA: [u8; 8] = [5, 0, 0, 0, 1, 0, 0, 0];
 
 impl HeightMap {
-    /// Reads a surface data file (SDF) of ISO 25178-71 or, before it, EUR 15178: text (`aISO-1.0`, `aBCR-1.0`) or
+    /// Reads a surface data file (SDF) of ISO 25178-71 or its predecessor EUR 15178: text (`aISO-1.0`, `aBCR-1.0`) or
     /// binary (`bISO-1.0`, `bBCR-1.0`), in m.
     ///
-    /// Points that were not measured are `BAD` in text; in binary they are the least number of their type, or NaN. Of
-    /// the number types of binary files, 3 (single precision), 4, 5, 6 (8, 16, 32 bits with sign) and 7 (double
-    /// precision) are read, little endian. Unsigned ones are not: sources disagree on how they mark a missing point.
-    /// The first profile is that of smallest x2. Dates, `Zresolution` and the trailer are not kept.
+    /// Missing points are `BAD` in text; in binary they are the least number of their type, or NaN. Binary files may
+    /// have the number types 3 (single precision), 4, 5, 6 (8, 16, 32 bits, signed) and 7 (double precision), little
+    /// endian. Unsigned types are not supported: sources disagree on how they mark a missing point. The first profile
+    /// is that of smallest x2. Dates, `Zresolution` and the trailer are ignored.
     ///
     /// ```
     /// use viscocontact::geometry::HeightMap;
@@ -40,7 +40,7 @@ impl HeightMap {
     ///
     /// # Errors
     /// [`Error::Map`](crate::Error::Map) if the file cannot be read or is malformed, compressed or of an unknown
-    /// type; as [`HeightMap::new`] if its map is not one that may be.
+    /// type; as [`HeightMap::new`] if its map is invalid.
     pub fn from_sdf(reader: impl Read) -> Result<HeightMap> {
         let file = bytes(reader, FORMAT)?;
         match file.get(..8) {
@@ -51,7 +51,7 @@ impl HeightMap {
     }
 }
 
-/// What is left to do is the same for text and binary.
+/// Shape and scale of the map, from a text or binary header.
 struct Layout {
     cells: [usize; 2],
     spacing: [f64; 2],
@@ -65,8 +65,8 @@ impl Layout {
     }
 }
 
-/// Nothing but plain data is read.
-fn plain(key: &'static str, value: usize) -> Result<()> {
+/// Accepts only data without compression or checksum, which have type 0.
+fn require_none(key: &'static str, value: usize) -> Result<()> {
     match value {
         0 => Ok(()),
         _ => Err(MapError::Entry { format: FORMAT, key, text: value.to_string(), allowed: "0 (none)" }.into()),
@@ -81,8 +81,8 @@ fn from_text(text: &str) -> Result<HeightMap> {
     let cells = [header.count("NumPoints")?, header.count("NumProfiles")?];
     let spacing = [header.positive("Xscale")?, header.positive("Yscale")?];
     let scale = header.positive("Zscale")?;
-    plain("Compression", header.count("Compression")?)?;
-    plain("CheckType", header.count("CheckType")?)?;
+    require_none("Compression", header.count("Compression")?)?;
+    require_none("CheckType", header.count("CheckType")?)?;
     let count = count(cells, spacing)?;
     let area = rest.split('*').next().unwrap_or_default();
     let mut rows = Vec::new();
@@ -94,30 +94,28 @@ fn from_text(text: &str) -> Result<HeightMap> {
         });
     }
     if rows.len() != count {
-        let (found, expected) = (rows.len() as u64, count as u64);
-        return Err(MapError::Size { format: FORMAT, what: "heights", found, expected, exact: true }.into());
+        return Err(wrong_size(FORMAT, "heights", rows.len(), count).into());
     }
     Layout { cells, spacing, scale }.map(rows)
 }
 
 fn from_binary(file: &[u8]) -> Result<HeightMap> {
     if file.len() < BINARY_HEADER {
-        let (found, expected) = (file.len() as u64, BINARY_HEADER as u64);
-        return Err(MapError::Size { format: FORMAT, what: "bytes of header", found, expected, exact: true }.into());
+        return Err(wrong_size(FORMAT, "bytes of header", file.len(), BINARY_HEADER).into());
     }
     let (header, mut data) = file.split_at(BINARY_HEADER);
-    let half = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
-    let double = |at: usize| {
+    let u16_at = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
+    let f64_at = |at: usize| {
         let mut word = [0; 8];
         word.copy_from_slice(&header[at..at + 8]);
         f64::from_le_bytes(word)
     };
-    let cells = [half(42), half(44)];
-    let spacing = [positive("Xscale", double(46))?, positive("Yscale", double(54))?];
-    let scale = positive("Zscale", double(62))?;
+    let cells = [u16_at(42), u16_at(44)];
+    let spacing = [positive("Xscale", f64_at(46))?, positive("Yscale", f64_at(54))?];
+    let scale = positive("Zscale", f64_at(62))?;
     let [compression, data_type, check] = [78, 79, 80].map(|at| usize::from(header[at]));
-    plain("Compression", compression)?;
-    plain("CheckType", check)?;
+    require_none("Compression", compression)?;
+    require_none("CheckType", check)?;
     let number = match data_type {
         3 => Number::little(Kind::Float, 4),
         4 => Number::little(Kind::Signed, 1),
@@ -125,7 +123,7 @@ fn from_binary(file: &[u8]) -> Result<HeightMap> {
         6 => Number::little(Kind::Signed, 4),
         7 => Number::little(Kind::Float, 8),
         _ => {
-            let (text, allowed) = (data_type.to_string(), "3, 4, 5, 6 or 7 (with sign)");
+            let (text, allowed) = (data_type.to_string(), "3, 4, 5, 6 or 7 (signed)");
             return Err(MapError::Entry { format: FORMAT, key: "DataType", text, allowed }.into());
         }
     };
@@ -199,7 +197,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn malformed_text_is_refused_by_what_is_wrong() {
+    fn errors_of_malformed_text_name_the_defect() {
         let read = |from: &str, to: &str| {
             assert!(TEXT.contains(from));
             HeightMap::from_sdf(TEXT.replacen(from, to, 1).as_bytes()).unwrap_err()
@@ -243,7 +241,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn malformed_binary_is_refused_by_what_is_wrong() {
+    fn errors_of_malformed_binary_name_the_defect() {
         let whole = binary(5, &[0; 12]);
         let read = |at: usize, bytes: &[u8]| {
             let mut file = whole.clone();

@@ -1,10 +1,10 @@
-//! What holds of every format.
+//! Properties of every format.
 
 use super::*;
 use crate::Error;
 use crate::geometry::LengthUnit;
 
-/// Reads any file as one of its format.
+/// Reads a file in a known format.
 type Reader = fn(&[u8]) -> Result<HeightMap>;
 
 /// A valid file of each format.
@@ -33,7 +33,7 @@ fn files() -> Vec<(&'static str, Vec<u8>, Reader)> {
         let xml = x3p::tests::xml("F</DataType>", x3p::tests::LINK);
         let x3p = x3p::tests::archive(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &[1; 24])]);
         files.push(("x3p", x3p, |file| HeightMap::from_x3p(file)));
-        // the XML as it is, so that damage is not found by the check sum
+        // damage in the XML itself, which the checksum of the archive does not detect
         files.push(("x3p, xml", xml.into_bytes(), |file| {
             HeightMap::from_x3p(&x3p::tests::archive(&[("main.xml", file), ("bindata/data.bin", &[1; 24])])[..])
         }));
@@ -88,7 +88,7 @@ fn damaged_files_are_errors_or_maps() {
 }
 
 #[test]
-fn the_extension_tells_the_format() {
+fn the_extension_determines_the_format() {
     let folder = std::env::temp_dir().join(format!("viscocontact-maps-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
     let mut read = Vec::new();
@@ -110,13 +110,13 @@ fn the_extension_tells_the_format() {
     );
     std::fs::remove_dir_all(&folder).unwrap();
     assert_eq!(read.len(), if cfg!(feature = "x3p") { 3 } else { 2 });
-    for (map, wanted) in read {
-        assert_eq!((map.cells, map.spacing), (wanted.cells, wanted.spacing));
+    for (map, expected) in read {
+        assert_eq!((map.cells, map.spacing), (expected.cells, expected.spacing));
     }
 }
 
 #[test]
-fn a_reader_that_fails_is_told() {
+fn reading_errors_are_reported() {
     struct Broken;
     impl Read for Broken {
         fn read(&mut self, _: &mut [u8]) -> std::io::Result<usize> {

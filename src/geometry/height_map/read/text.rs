@@ -1,4 +1,4 @@
-//! Maps as text: matrices of heights.
+//! Matrices of heights in text files.
 
 use std::io::Read;
 
@@ -10,11 +10,11 @@ use crate::geometry::{HeightMap, LengthUnit};
 const FORMAT: &str = "text";
 
 impl HeightMap {
-    /// Reads a matrix of heights in `unit` from text, the map of a rectangle of `lengths` \[m\]: a line is a row of it
-    /// along x1, the first one the top.
+    /// Reads a matrix of heights in `unit` from text, on a rectangle of `lengths` \[m\]. A line is a row along x1; the
+    /// first line is the top.
     ///
-    /// Heights are separated by semicolons, tabs, commas or blanks. What is empty between two separators, or says
-    /// `nan` or `bad`, was not measured. Lines that start with `#` and empty lines are skipped.
+    /// Heights are separated by semicolons, tabs, commas or blanks. A field that is empty, `nan` or `bad` is a missing
+    /// point. Empty lines and lines that start with `#` are skipped.
     ///
     /// ```
     /// use viscocontact::geometry::{HeightMap, LengthUnit};
@@ -26,19 +26,19 @@ impl HeightMap {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the text cannot be read, a line has another number of columns than the
-    /// first, or something that is not a number, each told with its line; as [`HeightMap::new`] if the map is not one
-    /// that may be.
+    /// [`Error::Map`](crate::Error::Map) if the text cannot be read, a line differs from the first in its number of
+    /// columns, or a field is not a number, each with the number of the line; as [`HeightMap::new`] if the map is
+    /// invalid.
     pub fn from_text(reader: impl Read, lengths: [f64; 2], unit: LengthUnit) -> Result<HeightMap> {
         let text = text(reader)?;
         let table = Table::new(&text);
         let (mut rows, mut columns) = (Vec::new(), 0);
-        // a separator at the end of every line ends it, one at the end of some precedes a missing height
-        let ended =
-            table.lines().all(|(_, line)| table.mark.is_some_and(|mark| line.trim_end_matches(' ').ends_with(mark)));
+        // a separator at the end of every line terminates it; one at the end of some lines precedes a missing height
+        let is_terminated = |line: &str| table.separator.is_some_and(|mark| line.trim_end_matches(' ').ends_with(mark));
+        let terminated = table.lines().all(|(_, line)| is_terminated(line));
         for (line, content) in table.lines() {
             let mut fields = table.fields(content);
-            if ended {
+            if terminated {
                 fields.pop();
             }
             columns = if rows.is_empty() { fields.len() } else { columns };
@@ -56,33 +56,33 @@ impl HeightMap {
     }
 }
 
-/// The text that a reader gives; remarks may be in any encoding, numbers are not.
+/// The text of a reader. Comments may be in any encoding; numbers are ASCII.
 pub(super) fn text(reader: impl Read) -> Result<String> {
     let bytes = bytes(reader, FORMAT)?;
     if bytes.contains(&0) {
         return Err(MapError::Unreadable { file: "text file".into(), reason: "it is not text".into() }.into());
     }
     let text = String::from_utf8_lossy(&bytes);
-    // some spreadsheets mark UTF-8 so
+    // byte order mark that some spreadsheets write
     Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned())
 }
 
-/// Lines of numbers, separated by one and the same mark.
+/// Lines of numbers with a common separator.
 pub(super) struct Table<'a> {
     text: &'a str,
-    /// What separates the numbers; blanks if nothing else does.
-    mark: Option<char>,
+    /// `None` for blanks.
+    separator: Option<char>,
 }
 
 impl<'a> Table<'a> {
     pub(super) fn new(text: &'a str) -> Table<'a> {
-        let mut table = Table { text, mark: None };
+        let mut table = Table { text, separator: None };
         let first = table.lines().next().map_or("", |(_, line)| line);
-        table.mark = [';', '\t', ','].into_iter().find(|&mark| first.contains(mark));
+        table.separator = [';', '\t', ','].into_iter().find(|&mark| first.contains(mark));
         table
     }
 
-    /// The lines that hold something, with their numbers.
+    /// The lines with data, and their numbers.
     pub(super) fn lines(&self) -> impl Iterator<Item = (u64, &'a str)> {
         let numbered = (1..).zip(self.text.lines());
         numbered.filter(|(_, line)| {
@@ -92,14 +92,14 @@ impl<'a> Table<'a> {
     }
 
     pub(super) fn fields(&self, line: &'a str) -> Vec<&'a str> {
-        match self.mark {
-            Some(mark) => line.split(mark).map(str::trim).collect(),
+        match self.separator {
+            Some(separator) => line.split(separator).map(str::trim).collect(),
             None => line.split_whitespace().collect(),
         }
     }
 }
 
-/// A height, NaN if it was not measured.
+/// A height, NaN if it is missing.
 pub(super) fn height(line: u64, column: usize, text: &str) -> Result<f64> {
     match text.parse::<f64>() {
         _ if text.is_empty() || text.eq_ignore_ascii_case("bad") => Ok(f64::NAN),
@@ -127,26 +127,26 @@ mod tests {
             "1, 2, 3,\n4, 5, 6,\n",
             "1e0 +2 3.\n4 5 6",
         ];
-        let wanted = HeightMap::new([3, 2], [3.0, 4.0], vec![4e-3, 1e-3, 5e-3, 2e-3, 6e-3, 3e-3]).unwrap();
+        let expected = HeightMap::new([3, 2], [3.0, 4.0], vec![4e-3, 1e-3, 5e-3, 2e-3, 6e-3, 3e-3]).unwrap();
         for text in texts {
-            assert_eq!(read(text).unwrap(), wanted, "{text}");
+            assert_eq!(read(text).unwrap(), expected, "{text}");
         }
     }
 
     #[test]
-    fn what_is_empty_is_missing() {
+    fn empty_fields_are_missing() {
         for text in ["1,,3\n4,5,\n", "1;NaN;3\n4;5;bad\n", "1 BAD 3\n4 5 nan\n", "1\t\t3\n4\t5\t\n"] {
             let heights = read(text).unwrap().heights;
             assert_eq!([heights[0], heights[1], heights[2], heights[5]], [4e-3, 1e-3, 5e-3, 3e-3], "{text}");
             assert!(heights[3].is_nan() && heights[4].is_nan(), "{text}");
         }
-        // a row, or a column, of which nothing was measured
+        // a row, or a column, without measured points
         assert_eq!(read("1,2\n,\n3,4\n").unwrap().cells, [2, 3]);
         assert_eq!(read("1,2,\n4,5,6\n").unwrap().cells, [3, 2]);
     }
 
     #[test]
-    fn malformed_lines_are_told() {
+    fn malformed_lines_are_reported() {
         let columns = MapError::Columns { line: 3, found: 2, expected: 3 };
         assert_eq!(read("# a\n1,2,3\n4,5\n").unwrap_err(), columns.into());
         for text in ["five", "inf", "1e999", "2:3"] {

@@ -1,6 +1,6 @@
-//! X3P, the archive of ISO 25178-72 (ISO 5436-2 before): `main.xml` and the heights, which it refers to or holds.
+//! X3P, the archive of ISO 25178-72 (formerly ISO 5436-2): `main.xml` and the heights, which it refers to or contains.
 //!
-//! Elements and number types are those of the schema of the openGPS consortium
+//! Elements and number types follow the schema of the openGPS consortium
 //! (<https://sourceforge.net/p/open-gps/mwiki>).
 
 use std::io::{Cursor, Read};
@@ -9,16 +9,16 @@ use roxmltree::{Document, Node, ParsingOptions};
 use zip::ZipArchive;
 
 use super::number::{Kind, Number};
-use super::{First, bytes, count};
+use super::{First, bytes, count, wrong_size};
 use crate::error::{MapError, Result, finite, positive};
 use crate::geometry::HeightMap;
 
 const FORMAT: &str = "X3P";
-/// Most bytes of `main.xml`, and most nodes in it: an archive may expand a thousandfold.
-const MOST_XML: u64 = 1 << 26;
-const MOST_NODES: u32 = 1 << 23;
-/// Most bytes of heights: those of 16384² in double precision.
-const MOST_DATA: u64 = 1 << 31;
+/// Greatest size of `main.xml` in bytes and in nodes: an archive may expand a thousandfold.
+const MAX_XML: u64 = 1 << 26;
+const MAX_NODES: u32 = 1 << 23;
+/// Greatest size of the heights in bytes: 16384² in double precision.
+const MAX_DATA: usize = 1 << 31;
 
 const HEIGHT_TYPE: &str = "Record1/Axes/CZ/DataType";
 const INCREMENT: &str = "Record1/Axes/CZ/Increment";
@@ -33,26 +33,25 @@ impl HeightMap {
     ///
     /// Needs the feature `x3p`.
     ///
-    /// Heights are integers of 16 or 32 bits with sign (`I`, `L`) or of single or double precision (`F`, `D`), in a
-    /// binary file or in the XML itself, times `Increment` plus `Offset` of their axis. What was not measured is NaN,
-    /// empty in the XML, or marked in the file of valid points. The first row is that of smallest x2; the offsets of x
-    /// and y are not kept. The MD5 sums are not verified; the check sums of the archive are.
+    /// Heights are signed integers of 16 or 32 bits (`I`, `L`) or floats of single or double precision (`F`, `D`), in a
+    /// binary file or in the XML itself, times `Increment` plus `Offset` of their axis. Missing points are NaN, empty
+    /// in the XML, or marked in the file of valid points. The first row is that of smallest x2. The offsets of x and y
+    /// are ignored. The MD5 sums are not verified, the checksums of the archive are.
     ///
-    /// An archive is expected to hold 2 GiB of heights and 64 MiB of XML at most, so that a small one cannot fill the
-    /// memory.
+    /// An archive may contain at most 2 GiB of heights and 64 MiB of XML, so that a small one cannot fill the memory.
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the archive cannot be read, is malformed or holds something else; as
-    /// [`HeightMap::new`] if its map is not one that may be.
+    /// [`Error::Map`](crate::Error::Map) if the archive cannot be read, is malformed or contains another feature
+    /// type; as [`HeightMap::new`] if its map is invalid.
     pub fn from_x3p(reader: impl Read) -> Result<HeightMap> {
         let file = bytes(reader, FORMAT)?;
         if !file.starts_with(b"PK") {
             return Err(MapError::Magic { format: FORMAT, magic: "PK, as zip archives do" }.into());
         }
         let mut archive = ZipArchive::new(Cursor::new(file)).map_err(|error| unreadable(&error.to_string()))?;
-        let xml = member(&mut archive, "main.xml", "bytes of main.xml at most", MOST_XML)?;
+        let xml = member(&mut archive, "main.xml", "bytes of main.xml at most", MAX_XML)?;
         let xml = String::from_utf8(xml).map_err(|error| unreadable(&format!("main.xml: {error}")))?;
-        let options = ParsingOptions { nodes_limit: MOST_NODES, ..ParsingOptions::default() };
+        let options = ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() };
         let document = Document::parse_with_options(xml.trim_start_matches('\u{feff}'), options)
             .map_err(|error| unreadable(&format!("main.xml: {error}")))?;
         Header { root: document.root_element() }.map(&mut archive)
@@ -65,14 +64,14 @@ fn unreadable(reason: &str) -> MapError {
     MapError::Unreadable { file: format!("{FORMAT} file"), reason: reason.to_owned() }
 }
 
-/// What a file of the archive holds, which may be `most` bytes.
+/// The contents of a file of the archive, of at most `most` bytes.
 fn member(archive: &mut Archive, name: &str, what: &'static str, most: u64) -> Result<Vec<u8>> {
     let name = name.strip_prefix("./").unwrap_or(name);
     let broken = |reason: String| unreadable(&format!("{name}: {reason}"));
     let file = archive.by_name(name).map_err(|error| broken(error.to_string()))?;
     let mut bytes = Vec::new();
     file.take(most + 1).read_to_end(&mut bytes).map_err(|error| broken(error.to_string()))?;
-    // no more is read than shows that there is too much
+    // one byte more than allowed is read to detect files that are too large
     match bytes.len() as u64 {
         found if found > most => {
             Err(MapError::Size { format: FORMAT, what, found, expected: most, exact: false }.into())
@@ -92,7 +91,7 @@ impl<'a, 'i> Header<'a, 'i> {
         path.split('/').try_fold(self.root, child)
     }
 
-    /// The text of an element, if there is one that says something.
+    /// The text of an element, if it exists and is not empty.
     fn get(&self, path: &'static str) -> Option<&'a str> {
         self.node(path).and_then(|node| node.text()).map(str::trim).filter(|text| !text.is_empty())
     }
@@ -127,7 +126,7 @@ impl<'a, 'i> Header<'a, 'i> {
         self.must_be("Record1/Axes/CX/AxisType", "I")?;
         self.must_be("Record1/Axes/CY/AxisType", "I")?;
         self.must_be("Record1/Axes/CZ/AxisType", "A")?;
-        self.unturned()?;
+        self.require_unrotated()?;
         let increment = |path| positive(path, self.number(path)?);
         let spacing = [increment("Record1/Axes/CX/Increment")?, increment("Record1/Axes/CY/Increment")?];
         let text = self.require(HEIGHT_TYPE)?;
@@ -138,7 +137,7 @@ impl<'a, 'i> Header<'a, 'i> {
             "D" => Number::little(Kind::Float, 8),
             _ => return Err(Self::error(HEIGHT_TYPE, text, "I, L, F or D").into()),
         };
-        // integers mean nothing without it
+        // integers have no scale without it
         let scale = match self.get(INCREMENT) {
             None if number.kind == Kind::Float => 1.0,
             _ => increment(INCREMENT)?,
@@ -150,12 +149,11 @@ impl<'a, 'i> Header<'a, 'i> {
         let count = count(cells, spacing)?;
         let mut rows = match self.get(POINTS) {
             Some(name) => {
-                let expected = count as u64 * number.size as u64;
-                if expected > MOST_DATA {
-                    let (what, found) = ("bytes of heights at most", expected);
-                    return Err(MapError::Size { format: FORMAT, what, found, expected: MOST_DATA, exact: true }.into());
+                let expected = count.saturating_mul(number.size);
+                if expected > MAX_DATA {
+                    return Err(wrong_size(FORMAT, "bytes of heights at most", expected, MAX_DATA).into());
                 }
-                let data = member(archive, name, "bytes of heights", expected)?;
+                let data = member(archive, name, "bytes of heights", expected as u64)?;
                 number.decode_all(FORMAT, &data, count, true)?
             }
             None => self.listed(count)?,
@@ -164,22 +162,20 @@ impl<'a, 'i> Header<'a, 'i> {
             *height = *height * scale + offset;
         }
         if let Some(name) = self.get(VALID) {
-            let expected = (count as u64).div_ceil(8);
-            let what = "bytes of valid points";
-            let valid = member(archive, name, what, expected)?;
-            let found = valid.len() as u64;
-            if found < expected {
-                return Err(MapError::Size { format: FORMAT, what, found, expected, exact: true }.into());
+            let (expected, what) = (count.div_ceil(8), "bytes of valid points");
+            let valid = member(archive, name, what, expected as u64)?;
+            if valid.len() < expected {
+                return Err(wrong_size(FORMAT, what, valid.len(), expected).into());
             }
-            // one bit a point, the lowest of a byte first
+            // one bit per point, the lowest of a byte first
             let missing = |k: &usize| valid[k / 8] >> (k % 8) & 1 == 0;
             (0..count).filter(missing).for_each(|k| rows[k] = f64::NAN);
         }
         HeightMap::from_rows(cells, spacing, &rows, First::Bottom)
     }
 
-    /// Refuses axes that are turned in space.
-    fn unturned(&self) -> Result<()> {
+    /// Rejects rotated axes.
+    fn require_unrotated(&self) -> Result<()> {
         const ROTATION: &str = "Record1/Axes/Rotation";
         let Some(rotation) = self.node(ROTATION) else { return Ok(()) };
         for entry in rotation.children().filter(Node::is_element) {
@@ -195,7 +191,7 @@ impl<'a, 'i> Header<'a, 'i> {
         Ok(())
     }
 
-    /// The heights in the XML itself: the last number of each datum, those of x and y before it, if there are any.
+    /// The heights in the XML itself: the last number of each datum, after x and y if they are present.
     fn listed(&self, count: usize) -> Result<Vec<f64>> {
         let list = self.node(LIST).ok_or(MapError::Missing { format: FORMAT, key: "PointDataLink or DataList" })?;
         let mut rows = Vec::new();
@@ -204,12 +200,11 @@ impl<'a, 'i> Header<'a, 'i> {
             rows.push(match text.parse::<f64>() {
                 _ if text.is_empty() => f64::NAN,
                 Ok(height) if !height.is_infinite() => height,
-                _ => return Err(Self::error("Datum", text, "a finite number or nothing").into()),
+                _ => return Err(Self::error("Datum", text, "a finite number or empty").into()),
             });
         }
         if rows.len() != count {
-            let (found, expected) = (rows.len() as u64, count as u64);
-            return Err(MapError::Size { format: FORMAT, what: "heights", found, expected, exact: true }.into());
+            return Err(wrong_size(FORMAT, "heights", rows.len(), count).into());
         }
         Ok(rows)
     }
@@ -283,7 +278,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn heights_may_stand_in_the_xml() {
+    fn heights_in_the_xml_are_read() {
         for list in [
             "<Datum>1</Datum><Datum>2</Datum><Datum>3</Datum><Datum>4</Datum><Datum/><Datum>-6</Datum>",
             "<Datum>;;1</Datum><Datum>1;0;2</Datum><Datum>3</Datum> <Datum>4</Datum><Datum>1;1;</Datum><Datum> -6 </Datum>",
@@ -293,7 +288,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn malformed_archives_are_refused_by_what_is_wrong() {
+    fn errors_of_malformed_archives_name_the_defect() {
         let whole = xml(DOUBLE, LINK);
         let with = |from: &str, to: &str| {
             assert!(whole.contains(from), "{from}");
@@ -351,7 +346,7 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn valid_points_must_be_as_many_as_the_points() {
+    fn the_mask_must_cover_all_points() {
         let files = |valid: &'static [u8]| {
             let xml = xml(DOUBLE, MASK);
             let files = [("main.xml", xml.as_bytes()), ("bindata/data.bin", &[0; 48]), ("bindata/valid.bin", valid)];
@@ -364,10 +359,10 @@ pub(super) mod tests {
     }
 
     #[test]
-    fn deep_and_swollen_xml_is_refused() {
+    fn deep_and_oversized_xml_is_refused() {
         let deep = "<a>".repeat(300_000);
         assert!(matches!(read(&deep, &[]), Err(Error::Map(MapError::Unreadable { .. }))));
-        let swollen = " ".repeat(MOST_XML as usize + 2);
-        assert!(matches!(read(&swollen, &[]), Err(Error::Map(MapError::Size { exact: false, .. }))));
+        let oversized = " ".repeat(MAX_XML as usize + 2);
+        assert!(matches!(read(&oversized, &[]), Err(Error::Map(MapError::Size { exact: false, .. }))));
     }
 }

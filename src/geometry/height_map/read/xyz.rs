@@ -1,4 +1,4 @@
-//! Maps as text: triplets of coordinates and height.
+//! Triplets of coordinates and height in text files.
 
 use std::io::Read;
 
@@ -8,20 +8,21 @@ use crate::error::{MapError, Result, least_length, positive};
 use crate::geometry::{HeightMap, LengthUnit};
 use crate::memory;
 
-/// How far a point may lie off the regular grid, in spacings.
-const OFF: f64 = 1e-3;
-/// Coordinates closer than this part of the spacing are one.
-const SAME: f64 = 1e-2;
-/// Most points of the grid for one of the file.
-const MOST_CELLS_A_POINT: usize = 100;
+/// Greatest distance of a point from the regular grid, in spacings.
+const MAX_OFFSET: f64 = 1e-3;
+/// Coordinates closer than this fraction of the spacing are the same.
+const SAME_POSITION: f64 = 1e-2;
+/// Greatest number of grid points per point of the file.
+const MAX_CELLS_PER_POINT: usize = 100;
 
 impl HeightMap {
-    /// Reads lines of x, y and height from text, the coordinates in `lateral` units and the heights in `height` ones.
+    /// Reads lines of x, y and height from text, with coordinates in the unit `lateral` and heights in the unit
+    /// `vertical`.
     ///
-    /// The points may stand in any order, but must lie on a regular grid along x and y to within 1/1000 of its
-    /// spacing, which is found from them. Points of the grid that are absent, or whose height says `nan` or `bad`,
-    /// were not measured. Columns are separated by semicolons, tabs, commas or blanks, lines that start with `#` and
-    /// empty lines are skipped.
+    /// The points may be in any order, but must lie on a regular grid along x and y to within 1/1000 of its spacing,
+    /// which is determined from them. Points of the grid that are absent, or whose height is `nan` or `bad`, are
+    /// missing. Columns are separated by semicolons, tabs, commas or blanks. Empty lines and lines that start with `#`
+    /// are skipped.
     ///
     /// ```
     /// use viscocontact::geometry::{HeightMap, LengthUnit};
@@ -33,17 +34,16 @@ impl HeightMap {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the text cannot be read, a line has other than three columns, something
-    /// that is not a number, a point off the grid or a point that another line has given, or there is less than one
-    /// point to a hundred of the grid; if there are fewer than two different coordinates along x or y; as
-    /// [`HeightMap::new`] if the map is not one that may be.
+    /// [`Error::Map`](crate::Error::Map) if the text cannot be read, a line does not have three numbers, a point lies
+    /// off the grid or is given twice, or less than 1 % of the points of the grid are given; if there are fewer than
+    /// two different coordinates along x or y; as [`HeightMap::new`] if the map is invalid.
     pub fn from_xyz(reader: impl Read, lateral: LengthUnit, vertical: LengthUnit) -> Result<HeightMap> {
         let text = text(reader)?;
         let points = points(&text, lateral, vertical)?;
         let axes = [axis(&points, "x", 0)?, axis(&points, "y", 1)?];
         let (cells, spacing) = (axes.each_ref().map(|axis| axis.cells), axes.each_ref().map(|axis| axis.spacing));
         let count = count(cells, spacing)?;
-        if count / MOST_CELLS_A_POINT > points.len() {
+        if count / MAX_CELLS_PER_POINT > points.len() {
             return Err(MapError::Sparse { points: points.len(), cells }.into());
         }
         let what = "the grid that the points of a file lie on";
@@ -59,7 +59,7 @@ impl HeightMap {
     }
 }
 
-/// A line of the file.
+/// The point of a line.
 struct Point {
     line: u64,
     at: [f64; 2],
@@ -83,19 +83,19 @@ fn points(text: &str, lateral: LengthUnit, vertical: LengthUnit) -> Result<Vec<P
     table.lines().map(point).collect()
 }
 
-/// The regular positions along an axis.
-struct Axis {
+/// The regular positions along an axis of the grid.
+struct RegularAxis {
     cells: usize,
     spacing: f64,
-    /// The position of each point.
+    /// Index of each point.
     indices: Vec<usize>,
 }
 
-/// The regular positions along one axis of the points.
+/// Determines the regular positions along one axis of the points.
 ///
-/// Coordinates that differ by a small part of the spacing are one and the same. The smallest of the steps between
-/// different ones is about the spacing; a straight line through all of them makes it exact.
-fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<Axis> {
+/// Coordinates that differ by a small fraction of the spacing are the same. The smallest step between different ones
+/// approximates the spacing; a straight line through all of them makes it accurate.
+fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<RegularAxis> {
     let field = if axis == 0 { "different x of the points" } else { "different y of the points" };
     let mut order: Vec<usize> = (0..points.len()).collect();
     order.sort_by(|&a, &b| points[a].at[axis].total_cmp(&points[b].at[axis]));
@@ -103,51 +103,51 @@ fn axis(points: &[Point], name: &'static str, axis: usize) -> Result<Axis> {
     let mut steps: Vec<f64> = (1..order.len()).map(|k| value(k) - value(k - 1)).filter(|step| *step > 0.0).collect();
     steps.sort_by(|a, b| b.total_cmp(a));
     let Some(&greatest) = steps.first() else {
-        // none or all the same
+        // no points, or all at the same coordinate
         return Err(least_length(field, order.len().min(1), 2)
             .err()
             .unwrap_or(MapError::Sparse { points: points.len(), cells: [1, 1] }.into()));
     };
-    // down from the greatest step, those before the first that is a small part of its neighbour
-    let smallest = steps.iter().try_fold(greatest, |last, &step| if step < SAME * last { Err(last) } else { Ok(step) });
+    // in decreasing order, the last step before the first that is a small fraction of its predecessor
+    let smallest = steps.iter().try_fold(greatest, |a, &b| if b < SAME_POSITION * a { Err(a) } else { Ok(b) });
     let smallest = positive("step between the points", smallest.unwrap_or_else(|last| last))?;
 
     let mut positions = Vec::with_capacity(order.len());
     let mut position = 0.0;
     for k in 0..order.len() {
-        if k > 0 && value(k) - value(k - 1) >= SAME * smallest {
+        if k > 0 && value(k) - value(k - 1) >= SAME_POSITION * smallest {
             position += ((value(k) - value(k - 1)) / smallest).round();
         }
         positions.push(position);
     }
-    let (origin, spacing) = line(&positions, value);
+    let (origin, spacing) = fitted_line(&positions, value);
     positive("spacing of the points", spacing)?;
     let mut indices = vec![0; order.len()];
     for (k, &position) in positions.iter().enumerate() {
         let off = ((value(k) - origin) / spacing - position).abs();
-        if off > OFF || off.is_nan() {
-            let line = points[order[k]].line;
-            return Err(MapError::OffGrid { line, axis: name, value: value(k), spacing, off, allowed: OFF }.into());
+        if off > MAX_OFFSET || off.is_nan() {
+            let (line, allowed) = (points[order[k]].line, MAX_OFFSET);
+            return Err(MapError::OffGrid { line, axis: name, value: value(k), spacing, off, allowed }.into());
         }
         indices[order[k]] = position as usize;
     }
-    Ok(Axis { cells: (position as usize).saturating_add(1), spacing, indices })
+    Ok(RegularAxis { cells: (position as usize).saturating_add(1), spacing, indices })
 }
 
-/// Origin and slope of the straight line of least squares through the values at the positions.
-fn line(positions: &[f64], value: impl Fn(usize) -> f64) -> (f64, f64) {
+/// Origin and slope of the least-squares straight line through the values at the positions.
+fn fitted_line(positions: &[f64], value: impl Fn(usize) -> f64) -> (f64, f64) {
     let count = positions.len() as f64;
-    // about the first value, so that a distant origin of coordinates costs no digits
+    // relative to the first value, so that a distant origin costs no digits
     let first = value(0);
     let mean = positions.iter().sum::<f64>() / count;
-    let height = (0..positions.len()).map(|k| value(k) - first).sum::<f64>() / count;
-    let (mut across, mut along) = (0.0, 0.0);
+    let mean_value = (0..positions.len()).map(|k| value(k) - first).sum::<f64>() / count;
+    let (mut covariance, mut variance) = (0.0, 0.0);
     for (k, position) in positions.iter().enumerate() {
-        across += (position - mean) * (value(k) - first - height);
-        along += (position - mean).powi(2);
+        covariance += (position - mean) * (value(k) - first - mean_value);
+        variance += (position - mean).powi(2);
     }
-    let slope = across / along;
-    (first + height - slope * mean, slope)
+    let slope = covariance / variance;
+    (first + mean_value - slope * mean, slope)
 }
 
 #[cfg(test)]
@@ -160,8 +160,8 @@ mod tests {
     }
 
     #[test]
-    fn points_in_any_order_make_the_grid() {
-        // x: 10, 10.5, 11; y: -1, 1; one absent, one not measured
+    fn points_in_any_order_define_the_grid() {
+        // x: 10, 10.5, 11; y: -1, 1; one point absent, one not measured
         let map = read("# x y z\n11;1;6\n10; -1 ;1\n10.5;1;nan\n\n10;1;4\n11;-1;3").unwrap();
         assert_eq!(map.cells, [3, 2]);
         assert!((map.spacing[0] / 0.5e-6 - 1.0).abs() < 1e-12 && (map.spacing[1] / 2e-6 - 1.0).abs() < 1e-12);
@@ -173,7 +173,7 @@ mod tests {
 
     #[test]
     fn rounded_coordinates_of_a_long_grid_are_found() {
-        // a spacing of 1/3 to three places: steps of 0.333 and 0.334, by which 2000 of them would not be counted right
+        // a spacing of 1/3 to four decimals: no single rounded step could locate 2000 points
         let mut text = String::new();
         for i in 0..2000 {
             for j in 0..2 {
@@ -202,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_grid_is_refused() {
+    fn points_off_a_grid_are_refused() {
         let square = "0 0 1\n1 0 2\n2 0 3\n0 1 4\n1 1 5\n";
         assert!(read(square).is_ok());
         let duplicate = read(&format!("{square}1.0002 0 7\n")).unwrap_err();
@@ -214,7 +214,7 @@ mod tests {
         for text in ["", "0 0 1\n", "0 0 1\n1 0 2\n", "0 0 1\n0 1 2\n"] {
             assert!(matches!(read(text), Err(Error::WrongLength { expected: 2, .. })), "{text}");
         }
-        // scattered: a diagonal fills a grid of a million
+        // scattered points: a diagonal in a grid of a million
         let diagonal: String = (0..1000).map(|k| format!("{k} {k} 1\n")).collect();
         let sparse = MapError::Sparse { points: 1000, cells: [1000, 1000] };
         assert_eq!(read(&diagonal).unwrap_err(), sparse.into());
@@ -224,7 +224,7 @@ mod tests {
     }
 
     #[test]
-    fn malformed_lines_are_told() {
+    fn malformed_lines_are_reported() {
         assert_eq!(read("0 0 1\n1 0\n").unwrap_err(), MapError::Columns { line: 2, found: 2, expected: 3 }.into());
         for (line, column, text) in [("one 0 1", 1, "one"), ("1 nan 1", 2, "nan"), ("1 0 inf", 3, "inf")] {
             let wanted = MapError::NotNumeric { line: 2, column, text: text.into() };

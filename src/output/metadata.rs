@@ -1,10 +1,10 @@
-//! What a file of results says about where they come from.
+//! The description of a run in its files.
 
 use crate::ViscoelasticContact;
 use crate::output::Field;
 use crate::output::json::Object;
 
-/// Units of what is written beside the fields.
+/// Units of the values written besides the fields.
 const UNITS: [(&str, &str); 7] = [
     ("time", "s"),
     ("x1", "m"),
@@ -16,40 +16,40 @@ const UNITS: [(&str, &str); 7] = [
 ];
 
 const CONVENTIONS: &str = "pressure is positive in compression, displacement positive into the bodies, the gap \
-                           positive when open and infinite where there is nothing to touch; one value a cell";
+                           positive when open and infinite where there is nothing to touch; one value per cell";
 
-/// A description of a run that is written into each of its files: a title and notes of your own, and what the
-/// contact knows of itself.
+/// The description of a run that is written into each of its files: your title and notes, and what the contact knows of
+/// itself.
 ///
 /// ```
-/// use viscocontact::{output::Scene, prelude::*};
+/// use viscocontact::{output::Metadata, prelude::*};
 ///
 /// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
 ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
 ///     .build()?;
-/// let scene = Scene::new("Ball on rubber").note("radius", "10 mm").note("batch", "B-12");
-/// let json = scene.json(&contact);
+/// let metadata = Metadata::new("Ball on rubber").note("radius", "10 mm").note("batch", "B-12");
+/// let json = metadata.json(&contact);
 /// assert!(json.starts_with(r#"{"title": "Ball on rubber", "notes": {"radius": "10 mm", "batch": "B-12"}"#));
 /// assert!(json.contains(r#""cells": [16, 16]"#));
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Scene {
+pub struct Metadata {
     title: String,
     notes: Vec<(String, String)>,
 }
 
-impl Scene {
-    /// A scene of this title, without notes.
-    pub fn new(title: impl Into<String>) -> Scene {
-        Scene { title: title.into(), notes: Vec::new() }
+impl Metadata {
+    /// Metadata with a title, without notes.
+    pub fn new(title: impl Into<String>) -> Metadata {
+        Metadata { title: title.into(), notes: Vec::new() }
     }
 
-    /// Adds a note: what the contact cannot know, as the shape of the bodies, the specimen, or who ran it. A
+    /// Adds a note on what the contact cannot know, such as the shape of the bodies, the specimen or the operator. A
     /// note of the same key is replaced.
     #[must_use]
-    pub fn note(mut self, key: impl Into<String>, value: impl Into<String>) -> Scene {
+    pub fn note(mut self, key: impl Into<String>, value: impl Into<String>) -> Metadata {
         let (key, value) = (key.into(), value.into());
         match self.notes.iter_mut().find(|(other, _)| *other == key) {
             Some((_, old)) => *old = value,
@@ -63,14 +63,14 @@ impl Scene {
         &self.title
     }
 
-    /// The notes, key and value, in the order in which they were given.
+    /// Keys and values of the notes in the order given.
     pub fn notes(&self) -> impl Iterator<Item = (&str, &str)> {
         self.notes.iter().map(|(key, value)| (&key[..], &value[..]))
     }
 
     /// The whole description as JSON on a single line: `title`, `notes`, `crate` and `version`, `grid` (`cells`,
-    /// `spacing` and `lengths` \[m\]), `bodies`, `kernel`, `settings` and `material` (as Rust prints them), `units` of all
-    /// that is written, and `conventions`.
+    /// `spacing` and `lengths` \[m\]), `bodies`, `kernel`, `settings` and `material` (as Rust prints them), `units` of
+    /// all values written, and `conventions`.
     pub fn json(&self, contact: &ViscoelasticContact) -> String {
         let notes = self.notes.iter().fold(Object::default(), |notes, (key, value)| notes.text(key, value));
         let grid = contact.grid();
@@ -102,8 +102,8 @@ mod tests {
 
     #[test]
     fn a_note_of_the_same_key_is_replaced() {
-        let scene = Scene::new("t").note("a", "1").note("b", "2").note("a", "3");
-        assert_eq!(scene.title(), "t");
-        assert_eq!(scene.notes().collect::<Vec<_>>(), [("a", "3"), ("b", "2")]);
+        let metadata = Metadata::new("t").note("a", "1").note("b", "2").note("a", "3");
+        assert_eq!(metadata.title(), "t");
+        assert_eq!(metadata.notes().collect::<Vec<_>>(), [("a", "3"), ("b", "2")]);
     }
 }

@@ -1,4 +1,4 @@
-//! Surfaces as sums of waves.
+//! Surfaces as Fourier series.
 
 use std::f64::consts::{PI, TAU};
 
@@ -6,43 +6,43 @@ use num_complex::Complex64;
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 
-/// The waves of a real field on `cells` points: amplitudes `a` of exp(2πi (k1 i/n1 + k2 j/n2)), normalised so
-/// that their sum is the field. Only those with k2 ≥ 0 are kept; the others are their conjugates.
+/// Fourier coefficients of a real field on `cells` points: amplitudes of exp(2πi (k1 i/n1 + k2 j/n2)), normalised so
+/// that the sum of all waves is the field. Only those with k2 ≥ 0 are stored; the others are their conjugates.
 #[derive(Debug, Clone)]
-pub(super) struct Spectrum {
+pub(super) struct HeightSpectrum {
     cells: [usize; 2],
-    /// k2 from 0 to half of n2, and for each all k1, negative ones after the positive.
+    /// For each k2 from 0 to n2/2 all k1, the negative ones after the positive.
     amplitudes: Vec<Complex64>,
 }
 
-/// One wave of a [`Spectrum`].
+/// One wave of a [`HeightSpectrum`].
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Wave {
-    /// Its place in the spectrum.
-    pub(super) place: usize,
-    /// Waves along the whole of each axis.
+    /// Index of its amplitude.
+    pub(super) index: usize,
+    /// Number of periods along each axis.
     pub(super) number: [i64; 2],
-    /// How many waves of the field it stands for: 2 with its conjugate, or 1.
+    /// Number of waves of the field that it represents: 2 with its conjugate, otherwise 1.
     pub(super) count: f64,
 }
 
-impl Spectrum {
-    /// Bytes of one on so many cells.
+impl HeightSpectrum {
+    /// Bytes of the coefficients of a field on `cells` points.
     pub(super) fn bytes(cells: [usize; 2]) -> u128 {
         size_of::<Complex64>() as u128 * (cells[1] as u128 / 2 + 1) * cells[0] as u128
     }
 
-    /// Of no waves.
-    pub(super) fn zero(cells: [usize; 2]) -> Spectrum {
-        Spectrum { cells, amplitudes: vec![Complex64::ZERO; (cells[1] / 2 + 1) * cells[0]] }
+    /// All coefficients zero.
+    pub(super) fn zero(cells: [usize; 2]) -> HeightSpectrum {
+        HeightSpectrum { cells, amplitudes: vec![Complex64::ZERO; (cells[1] / 2 + 1) * cells[0]] }
     }
 
-    /// Of a field without missing values, one value a point.
-    pub(super) fn of(cells: [usize; 2], field: &[f64]) -> Spectrum {
+    /// The coefficients of a field without missing values, one value per point.
+    pub(super) fn of(cells: [usize; 2], field: &[f64]) -> HeightSpectrum {
         let [n1, n2] = cells;
         let along2 = RealFftPlanner::new().plan_fft_forward(n2);
         let (mut input, mut output) = (along2.make_input_vec(), along2.make_output_vec());
-        let mut spectrum = Spectrum::zero(cells);
+        let mut spectrum = HeightSpectrum::zero(cells);
         for (i, row) in field.chunks_exact(n2).enumerate() {
             input.copy_from_slice(row);
             let done = along2.process(&mut input, &mut output);
@@ -55,7 +55,7 @@ impl Spectrum {
         spectrum
     }
 
-    /// The field.
+    /// The field, by the inverse transform.
     pub(super) fn heights(mut self) -> Vec<f64> {
         let [n1, n2] = self.cells;
         FftPlanner::new().plan_fft_inverse(n1).process(&mut self.amplitudes);
@@ -66,7 +66,7 @@ impl Spectrum {
             for (k2, value) in input.iter_mut().enumerate() {
                 *value = self.amplitudes[k2 * n1 + i];
                 if k2 == 0 || 2 * k2 == n2 {
-                    // Real but for rounding, which the transform takes amiss.
+                    // Real except for rounding, which the transform would reject.
                     value.im = 0.0;
                 }
             }
@@ -76,42 +76,42 @@ impl Spectrum {
         field
     }
 
-    /// All waves kept.
+    /// All waves stored.
     pub(super) fn waves(&self) -> impl Iterator<Item = Wave> + use<> {
         let [n1, n2] = self.cells;
-        (0..(n2 / 2 + 1) * n1).map(move |place| {
-            let (k1, k2) = (place % n1, place / n1);
+        (0..(n2 / 2 + 1) * n1).map(move |index| {
+            let (k1, k2) = (index % n1, index / n1);
             let k1 = if 2 * k1 <= n1 { k1 as i64 } else { k1 as i64 - n1 as i64 };
-            Wave { place, number: [k1, k2 as i64], count: if k2 == 0 || 2 * k2 == n2 { 1.0 } else { 2.0 } }
+            Wave { index, number: [k1, k2 as i64], count: if k2 == 0 || 2 * k2 == n2 { 1.0 } else { 2.0 } }
         })
     }
 
     /// Amplitude of a wave.
     pub(super) fn at(&self, wave: Wave) -> Complex64 {
-        self.amplitudes[wave.place]
+        self.amplitudes[wave.index]
     }
 
-    /// Gives a wave, and its conjugate where that is kept too, an amplitude.
+    /// Sets the amplitude of a wave, and that of its conjugate if it is stored.
     pub(super) fn set(&mut self, number: [i64; 2], amplitude: Complex64) {
         let n1 = self.cells[0] as i64;
-        let place = |k1: i64| (number[1] * n1 + k1.rem_euclid(n1)) as usize;
-        self.amplitudes[place(number[0])] = amplitude;
+        let index = |k1: i64| (number[1] * n1 + k1.rem_euclid(n1)) as usize;
+        self.amplitudes[index(number[0])] = amplitude;
         if number[1] == 0 {
-            self.amplitudes[place(-number[0])] = amplitude.conj();
+            self.amplitudes[index(-number[0])] = amplitude.conj();
         }
     }
 
-    /// All amplitudes times `factor`.
+    /// Multiplies all amplitudes by `factor`.
     pub(super) fn scale(&mut self, factor: f64) {
         self.amplitudes.iter_mut().for_each(|amplitude| *amplitude *= factor);
     }
 
-    /// Moves the field so that each point gets the value that was at its index plus `by`.
+    /// Shifts the field: each point gets the value at its index plus `by`.
     pub(super) fn shift(&mut self, by: [f64; 2]) {
         let cells = self.cells;
         let factor = |axis: usize, k: i64| {
             let n = cells[axis] as i64;
-            // The shortest wave of an even number of points has no direction: what is left of it is its real part.
+            // The Nyquist wave of an even number of points has no direction: only its real part remains.
             if 2 * k == n {
                 Complex64::from((PI * by[axis]).cos())
             } else {
@@ -127,7 +127,7 @@ impl Spectrum {
     }
 }
 
-/// Wave numbers of a wave on the given lengths \[rad/m\].
+/// Wave numbers \[rad/m\] of the wave with `number` periods along the `lengths` \[m\].
 pub(super) fn wave_numbers(number: [i64; 2], lengths: [f64; 2]) -> [f64; 2] {
     [0, 1].map(|axis| TAU * number[axis] as f64 / lengths[axis])
 }
@@ -137,18 +137,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn amplitudes_match_the_naive_sum_and_lead_back() {
+    fn amplitudes_match_the_naive_sum_and_transform_back() {
         for cells in [[4, 6], [5, 3], [1, 4], [3, 1], [2, 2]] {
             let [n1, n2] = cells;
             let field: Vec<f64> = (0..n1 * n2).map(|k| ((k * k) as f64 * 0.37).sin()).collect();
-            let spectrum = Spectrum::of(cells, &field);
+            let spectrum = HeightSpectrum::of(cells, &field);
             let mut energy = 0.0;
             for wave in spectrum.waves() {
                 let naive: Complex64 = (0..n1 * n2)
                     .map(|k| {
                         let [a, b] = wave.number.map(|k| k as f64);
-                        let turns = a * (k / n2) as f64 / n1 as f64 + b * (k % n2) as f64 / n2 as f64;
-                        field[k] * Complex64::cis(-TAU * turns) / (n1 * n2) as f64
+                        let periods = a * (k / n2) as f64 / n1 as f64 + b * (k % n2) as f64 / n2 as f64;
+                        field[k] * Complex64::cis(-TAU * periods) / (n1 * n2) as f64
                     })
                     .sum();
                 assert!((spectrum.at(wave) - naive).norm() < 1e-14, "{wave:?}");
@@ -163,13 +163,13 @@ mod tests {
     }
 
     #[test]
-    fn a_wave_that_is_set_is_a_cosine() {
+    fn a_real_amplitude_is_a_cosine() {
         for number in [[-2, 1], [2, 0]] {
-            let mut spectrum = Spectrum::zero([6, 5]);
+            let mut spectrum = HeightSpectrum::zero([6, 5]);
             spectrum.set(number, Complex64::from(0.5));
             for (k, z) in spectrum.heights().iter().enumerate() {
-                let turns = number[0] as f64 * (k / 5) as f64 / 6.0 + number[1] as f64 * (k % 5) as f64 / 5.0;
-                assert!((z - (TAU * turns).cos()).abs() < 1e-14);
+                let periods = number[0] as f64 * (k / 5) as f64 / 6.0 + number[1] as f64 * (k % 5) as f64 / 5.0;
+                assert!((z - (TAU * periods).cos()).abs() < 1e-14);
             }
         }
     }

@@ -1,11 +1,11 @@
-//! Whole small contacts at random.
+//! Random small contacts.
 
 use std::sync::Arc;
 
 use proptest::prelude::*;
 use proptest::strategy::Union;
 
-use super::strategies::{AnyGeometry, around, built, spectra};
+use super::{AnyGeometry, around, built, spectra};
 use crate::contact::{Builder, Settings};
 use crate::error::Result;
 use crate::geometry::{Cone, Ellipsoid, FlatPunch, Shifted, Sphere, Sum, Wavy};
@@ -13,41 +13,41 @@ use crate::load::Load;
 use crate::rheology::{CreepSpectrum, Material};
 use crate::{Grid, ViscoelasticContact};
 
-/// A small contact and what is done to it, in parts that a test may change: scale, mirror, move, split.
+/// A small contact and its steps, in parts that a test may change: scale, mirror, move, split.
 ///
 /// ```
 /// use proptest::prelude::*;
-/// use viscocontact::laws::strategies::scenes;
+/// use viscocontact::laws::strategies::scenarios;
 /// use viscocontact::prelude::*;
 ///
-/// proptest!(ProptestConfig::with_cases(8), |(scene in scenes())| {
-///     let contact = scene.run(Settings::default())?;
+/// proptest!(ProptestConfig::with_cases(8), |(scenario in scenarios())| {
+///     let contact = scenario.run(Settings::default())?;
 ///     let Load::Force { normal, .. } = contact.load() else { unreachable!() };
 ///     prop_assert!((contact.force() - normal).abs() <= 1e-12 * normal);
 /// });
 /// ```
 #[derive(Debug, Clone)]
-#[expect(clippy::exhaustive_structs, reason = "tests make their own from parts of others")]
-pub struct Scene {
-    /// Where it is computed.
+#[expect(clippy::exhaustive_structs, reason = "tests construct variants from parts of others")]
+pub struct Scenario {
+    /// The grid.
     pub grid: Grid,
     /// The indenter.
     pub shape: AnyGeometry,
-    /// J(t) of an incompressible body.
+    /// Creep compliance J(t) of an incompressible body.
     pub creep: CreepSpectrum,
     /// The length of each step \[s\], and the load at its end.
     pub steps: Vec<(f64, Load)>,
 }
 
-impl Scene {
-    /// The parts, for a test to add its own to.
+impl Scenario {
+    /// A builder of the contact, to which a test may add.
     pub fn builder(&self) -> Builder {
         ViscoelasticContact::builder(self.grid.clone())
             .geometry(&self.shape)
             .material(Material::incompressible(self.creep.clone()))
     }
 
-    /// All of its steps.
+    /// Builds the contact and takes all steps.
     ///
     /// # Errors
     /// If the contact cannot be built or a step fails.
@@ -59,17 +59,17 @@ impl Scene {
         Ok(contact)
     }
 
-    /// The time at the end \[s\].
+    /// Total time of the steps \[s\].
     pub fn duration(&self) -> f64 {
         self.steps.iter().map(|step| step.0).sum()
     }
 }
 
-/// How far contact may reach from the axis of the indenter, of half the shorter side.
-const REACH: f64 = 0.35;
+/// Greatest contact radius relative to half the shorter side of the grid.
+const MAX_RADIUS: f64 = 0.35;
 
-/// Indenters that reach no farther than they should under the force that brings a sphere of radius `radius` to a contact of
-/// radius `reach` \[m\].
+/// Indenters whose contact radius is about `reach` \[m\] at most under the force at which that of a sphere of radius
+/// `radius` \[m\] is `reach`.
 fn indenters(radius: f64, reach: f64) -> BoxedStrategy<AnyGeometry> {
     let share = 0.4..1.0_f64;
     let any = |geometry: Result<AnyGeometry>| geometry;
@@ -77,10 +77,10 @@ fn indenters(radius: f64, reach: f64) -> BoxedStrategy<AnyGeometry> {
         built(share.clone(), move |part| any(Ok(Arc::new(Sphere::new(part * radius)?)))),
         built([share.clone(), share.clone()], move |[a, b]| any(Ok(Arc::new(Ellipsoid::new(a * radius, b * radius)?)))),
         built(1.0..2.5_f64, move |part| any(Ok(Arc::new(Cone::new(part * reach / radius)?)))),
-        // large enough to hold the centre of a cell
+        // large enough to contain the centre of a cell
         built(0.8..1.0_f64, move |part| any(Ok(Arc::new(FlatPunch::circular(part * reach)?)))),
         built((share, 0.02..0.3_f64, 0.5..2.0_f64), move |(part, height, wave)| {
-            // waves low enough for the troughs not to spread the contact beyond its bounds
+            // waves low enough that their crests do not extend the contact
             let wavy = Wavy::new(0.1 * height * reach * reach / radius, wave * reach)?;
             any(Ok(Arc::new(Sum::new(Sphere::new(part * radius)?, wavy))))
         }),
@@ -88,15 +88,15 @@ fn indenters(radius: f64, reach: f64) -> BoxedStrategy<AnyGeometry> {
     .boxed()
 }
 
-/// Scenes of 8 to 24 cells a side, not square in general, 1 mm to 10 cm long; single indenters off the middle by up to two
-/// cells, or not at all; creep spectra with an elastic response, of 10 kPa to 10 GPa and 1 ms to 1000 s; a jump, then 2 to 7
-/// steps of time or jumps, under forces that may vanish. Contact stays off the edge of the grid.
-pub fn scenes() -> impl Strategy<Value = Scene> {
+/// Scenarios with 10 to 24 cells per side, not square in general, 1 mm to 10 cm long; single indenters up to two cells
+/// off centre, or centred; creep spectra with an elastic response, of 10 kPa to 10 GPa and 1 ms to 1000 s; a jump, then
+/// 2 to 7 time steps or jumps, under forces that may vanish. The contact does not reach the edge of the grid.
+pub fn scenarios() -> impl Strategy<Value = Scenario> {
     let scales = (around(1e-2), -2.0..2.0_f64, -2.0..2.0_f64);
     let cells = [10_usize..=24, 10_usize..=24];
     (scales, cells, 0.8..1.25_f64).prop_flat_map(|((length, modulus, time), cells, aspect)| {
         let (modulus, time) = (1e7 * 10f64.powf(modulus), 10f64.powf(time));
-        let reach = 0.5 * REACH * length * aspect.min(1.0);
+        let reach = 0.5 * MAX_RADIUS * length * aspect.min(1.0);
         let radius = around(10.0 * length)
             .prop_flat_map(move |radius| indenters(radius, reach).prop_map(move |shape| (radius, shape)));
         let off = prop_oneof![Just([0.0; 2]), [-1.0..1.0_f64, -1.0..1.0_f64]];
@@ -107,12 +107,12 @@ pub fn scenes() -> impl Strategy<Value = Scene> {
             let grid = Grid::new(cells, [length, aspect * length])?;
             let by = [0, 1].map(|axis| off[axis] * grid.spacing()[axis].min(0.1 * length));
             let until = time * steps.iter().map(|step| step.0).sum::<f64>();
-            // a sphere of this radius reaches so far: F = 4 a³ E*/3 R
+            // force at which a sphere of this radius has this contact radius: F = 4 a³ E*/3 R
             let most = 4.0 * reach.powi(3) / (3.0 * radius * 0.25 * creep.compliance(until));
             let load = |part: f64| Load::force(part * most);
             let rest = steps.into_iter().map(|(dt, part)| (dt * time, load(part)));
             let steps = std::iter::once((0.0, load(first))).chain(rest).collect();
-            Ok(Scene { grid, shape: Arc::new(Shifted::new(shape, by)?), creep, steps })
+            Ok(Scenario { grid, shape: Arc::new(Shifted::new(shape, by)?), creep, steps })
         })
     })
 }

@@ -1,16 +1,15 @@
-//! Loads and histories at random.
+//! Random loads and load histories.
 
 use std::sync::Arc;
 
 use proptest::prelude::*;
 use proptest::strategy::Union;
 
-use super::strategies::built;
+use super::built;
 use crate::error::Result;
 use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
 
-/// A load history of any kind.
-/// A load history of any kind.
+/// A load history of any type.
 pub type AnyHistory = Arc<dyn LoadHistory>;
 
 /// Loads of every kind: forces up to `force` \[N\], approaches within `depth` \[m\], tilts within `tilt` \[rad\], load
@@ -40,8 +39,8 @@ fn history<I: std::fmt::Debug + 'static, H: LoadHistory + 'static>(
     built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as AnyHistory))
 }
 
-/// Histories of a force on an upright body, up to `force` \[N\], in which things happen over `duration` \[s\]: held, ramped,
-/// tables with corners and jumps, oscillating, closures with and without corners.
+/// Histories of a force up to `force` \[N\] on a body that does not tilt, varying over `duration` \[s\]: constant,
+/// ramps, tables with corners and jumps, oscillations, closures with and without corners.
 pub fn histories(force: f64, duration: f64) -> impl Strategy<Value = AnyHistory> {
     let load = move || (0.0..1.0_f64).prop_map(move |part| Load::force(part * force));
     let time = move || (0.05..1.0_f64).prop_map(move |part| part * duration);

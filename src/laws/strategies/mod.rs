@@ -1,7 +1,7 @@
-//! Valid models at random, as strategies of [`proptest`](mod@proptest).
+//! Random valid models, as strategies of [`proptest`](mod@proptest).
 //!
-//! Each takes the scales of what it makes, finite, positive, and not beyond 1e±50, so that its models suit the scene of a test. The simplest ones come first, and
-//! that is where failures shrink to.
+//! Each takes the scales of its models, finite, positive and within 1e±50, so that they suit the scenario of a test.
+//! The simplest models come first: failures shrink towards them.
 
 use std::f64::consts::FRAC_PI_4;
 use std::sync::Arc;
@@ -18,21 +18,24 @@ use crate::rheology::{
     KelvinVoigt, Kww, LogCreep, Maxwell, PowerLaw, Rheology, SlowCreep, Zener,
 };
 
-pub use super::histories::{AnyHistory, histories, loads};
-pub use super::scenes::scenes;
+mod histories;
+mod scenarios;
 
-/// A rheology of any kind.
+pub use histories::{AnyHistory, histories, loads};
+pub use scenarios::{Scenario, scenarios};
+
+/// A rheology of any type.
 pub type AnyRheology = Arc<dyn Rheology>;
-/// A geometry of any kind.
+/// A geometry of any type.
 pub type AnyGeometry = Arc<dyn Geometry>;
 
-/// Up to a decade around `scale`, in its unit.
-pub(super) fn around(scale: f64) -> impl Strategy<Value = f64> + Clone {
+/// Values within a decade of `scale`, in its unit.
+fn around(scale: f64) -> impl Strategy<Value = f64> + Clone {
     (-1.0..1.0_f64).prop_map(move |exponent| scale * 10f64.powf(exponent))
 }
 
-/// Leaves out what a constructor refuses: scales too far apart for it.
-pub(super) fn built<I, T>(
+/// The models that a constructor accepts: it may refuse scales that are too far apart.
+fn built<I, T>(
     numbers: impl Strategy<Value = I> + 'static,
     build: impl Fn(I) -> Result<T> + 'static,
 ) -> BoxedStrategy<T>
@@ -57,24 +60,24 @@ fn shape<I: std::fmt::Debug + 'static, G: Geometry + 'static>(
     built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as AnyGeometry))
 }
 
-/// Every rheology of the crate that has a formula, its moduli around `modulus` \[Pa\], its times around `time` \[s\].
+/// Every rheology of the crate that has a formula, with moduli around `modulus` \[Pa\] and times around `time` \[s\].
 pub fn rheologies(modulus: f64, time: f64) -> impl Strategy<Value = AnyRheology> {
     let (g, t, exponent) = (around(modulus), around(time), 0.05..0.95_f64);
     let eta = around(modulus * time);
     let compliance = around(1.0 / modulus);
     let kelvin = prop::collection::vec((compliance.clone(), t.clone()), 1..5);
     let maxwell = prop::collection::vec((g.clone(), t.clone()), 1..5);
-    let none_or = |some: f64| prop_oneof![Just(0.0), around(some)];
+    let zero_or = |scale: f64| prop_oneof![Just(0.0), around(scale)];
     Union::new([
         body(g.clone(), Elastic::new),
         body((g.clone(), eta.clone()), |(g, eta)| Maxwell::new(g, eta)),
         body((g.clone(), eta.clone()), |(g, eta)| KelvinVoigt::new(g, eta)),
         body((g.clone(), g.clone(), eta.clone()), |(g, slow, eta)| Zener::new(g, slow, eta)),
         body((g.clone(), eta.clone(), g.clone(), eta), |(g, eta, slow, own)| Burgers::new(g, eta, slow, own)),
-        body((none_or(1.0 / modulus), none_or(1.0 / (modulus * time)), kelvin), |(glassy, flow, terms)| {
+        body((zero_or(1.0 / modulus), zero_or(1.0 / (modulus * time)), kelvin), |(glassy, flow, terms)| {
             GeneralizedKelvin::new(glassy, flow, &terms)
         }),
-        body((none_or(modulus), maxwell), |(rest, terms)| GeneralizedMaxwell::new(rest, &terms)),
+        body((zero_or(modulus), maxwell), |(rest, terms)| GeneralizedMaxwell::new(rest, &terms)),
         body((compliance.clone(), t.clone(), exponent.clone()), |(j, t, n)| PowerLaw::new(j, t, n)),
         body((g.clone(), around(modulus * time.powf(0.5)), exponent.clone()), |(g, v, n)| {
             FractionalMaxwell::new(g, v, n)
@@ -100,8 +103,8 @@ pub fn spectra(modulus: f64, time: f64) -> impl Strategy<Value = CreepSpectrum> 
     })
 }
 
-/// Indenters with a formula, alone, on top of each other, moved and repeated, that touch within `length` \[m\] of the
-/// origin, and as high as a tenth of it or so at that distance.
+/// Indenters with a formula, alone, superposed, shifted and repeated, that touch within `length` \[m\] of the origin.
+/// At that distance their gap is up to about a tenth of it.
 pub fn geometries(length: f64) -> impl Strategy<Value = AnyGeometry> {
     let radius = around(5.0 * length);
     let wave = (around(1e-3 * length), (0.3..3.0_f64).prop_map(move |part| part * length));
@@ -132,8 +135,8 @@ pub fn geometries(length: f64) -> impl Strategy<Value = AnyGeometry> {
     prop_oneof![4 => single, 1 => moved, 1 => repeated]
 }
 
-/// Maps of random heights up to `height` \[m\] on the points of a grid of 1 to 24 points a side, a square of `length`
-/// \[m\], half of them periodic.
+/// Maps of random heights within ±`height` \[m\] on 1 to 24 points per side of a square of `length` \[m\], half of them
+/// periodic.
 pub fn height_maps(length: f64, height: f64) -> impl Strategy<Value = HeightMap> {
     ([1_usize..24, 1_usize..24], any::<bool>()).prop_flat_map(move |(cells, periodic)| {
         let heights = prop::collection::vec((-1.0..1.0_f64).prop_map(move |part| part * height), cells[0] * cells[1]);
