@@ -130,11 +130,21 @@ impl Exponential {
         field.chunks(BLOCK).zip(pieces).for_each(|(values, piece)| self.fields[piece].copy_from_slice(values));
     }
 
-    /// The same past, settled, on `cells` other cells; `carry` says what each field is there.
-    pub(crate) fn carried(&self, cells: usize, mut carry: impl FnMut(usize) -> Vec<f64>) -> Exponential {
-        let mut carried = self.undisturbed_on(cells);
-        (0..self.branches()).for_each(|i| carried.write_branch(i, &carry(i)));
+    /// The same past, settled, on `to` instead of `from` cells; `carry` returns each field there.
+    pub(crate) fn carried(
+        &self,
+        to: usize,
+        from: usize,
+        mut carry: impl FnMut(usize, &[f64]) -> Vec<f64>,
+    ) -> Exponential {
+        let mut carried = self.undisturbed_on(to);
+        (0..self.branches()).for_each(|i| carried.write_branch(i, &carry(i, &self.branch(i, from))));
         carried
+    }
+
+    /// Bytes per cell.
+    pub(crate) fn bytes_per_cell(&self) -> usize {
+        8 * self.branches()
     }
 
     /// Whether there is a past: an elastic body has none.

@@ -113,7 +113,7 @@ impl MovingFrame {
         let count = cells[0] * cells[1];
         let [source, remainder] = [&mut self.source, &mut self.remainder].map(|field| {
             field.settle();
-            field.carried(count, |_, own| carry(own))
+            field.carried(count, &carry)
         });
         MovingFrame { cells, periodic: self.periodic, source, remainder, scratch: vec![0.0; count] }
     }

@@ -1,7 +1,5 @@
 //! A field that follows the recursion of the displacement.
 
-use std::borrow::Cow;
-
 use crate::hereditary::exponential::Exponential;
 use crate::rheology::CreepSpectrum;
 
@@ -17,31 +15,14 @@ pub(crate) struct RememberedField<R = Exponential> {
     pub(super) trial: Vec<f64>,
 }
 
-/// A field that transfers between grids: the remembered one itself, or that of a relaxation time.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Part {
-    Now,
-    Branch(usize),
-}
-
 impl<R> RememberedField<R> {
     pub(super) fn undisturbed(recursion: R, cells: usize) -> RememberedField<R> {
         RememberedField { recursion, now: vec![0.0; cells], trial: vec![0.0; cells] }
     }
 
-    /// The field at the start of the step.
-    pub(crate) fn now(&self) -> &[f64] {
-        &self.now
-    }
-
     /// The field at the end of the step being tried; between steps that before the last one.
     pub(crate) fn trial(&self) -> &[f64] {
         &self.trial
-    }
-
-    /// Both of them, the latter to be changed.
-    pub(crate) fn now_and_trial(&mut self) -> (&[f64], &mut [f64]) {
-        (&self.now, &mut self.trial)
     }
 
     pub(super) fn copy_fields_from(&mut self, other: &RememberedField<R>) {
@@ -68,7 +49,7 @@ impl RememberedField {
 
     /// Bytes per cell that the recursion takes.
     pub(crate) fn bytes_per_cell(&self) -> usize {
-        8 * self.recursion.branches()
+        self.recursion.bytes_per_cell()
     }
 
     /// Writes what the past makes of the end of a step to the trial, and returns the compliance c of the step.
@@ -98,18 +79,10 @@ impl RememberedField {
         self.copy_fields_from(other);
     }
 
-    /// One of its fields.
-    pub(super) fn part(&self, part: Part) -> Cow<'_, [f64]> {
-        match part {
-            Part::Now => Cow::Borrowed(&self.now),
-            Part::Branch(i) => Cow::Owned(self.recursion.branch(i, self.now.len())),
-        }
-    }
-
-    /// The same past on `cells` other cells, once settled; `carry` says what each of its fields is there.
-    pub(super) fn carried(&self, cells: usize, mut carry: impl FnMut(Part, &[f64]) -> Vec<f64>) -> RememberedField {
-        let recursion = self.recursion.carried(cells, |i| carry(Part::Branch(i), &self.part(Part::Branch(i))));
-        RememberedField { recursion, now: carry(Part::Now, &self.now), trial: vec![0.0; cells] }
+    /// The same past on `cells` other cells, once settled; `carry` returns each of its fields there.
+    pub(super) fn carried(&self, cells: usize, mut carry: impl FnMut(&[f64]) -> Vec<f64>) -> RememberedField {
+        let recursion = self.recursion.carried(cells, self.now.len(), |_, branch| carry(branch));
+        RememberedField { recursion, now: carry(&self.now), trial: vec![0.0; cells] }
     }
 
     /// Whether its fields have so many cells.
