@@ -46,4 +46,4 @@ pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use snapshot::Snapshot;
 pub use state_within_step::StateWithinStep;
 pub use viscoelastic::ViscoelasticContact;
-pub use warning::{IntoIter as WarningsIter, Warning, Warnings};
+pub use warning::{Warning, Warnings};

@@ -129,43 +129,18 @@ impl Warnings {
     }
 }
 
-/// The warnings of a set, one after the other; made by iterating over [`Warnings`].
-#[derive(Debug, Clone)]
-pub struct IntoIter {
-    left: Warnings,
-}
-
-impl Iterator for IntoIter {
-    type Item = Warning;
-
-    fn next(&mut self) -> Option<Warning> {
-        let next = self.left.iter().next()?;
-        self.left.bits &= !next.bit();
-        Some(next)
-    }
-}
-
 impl FromIterator<Warning> for Warnings {
     fn from_iter<I: IntoIterator<Item = Warning>>(warnings: I) -> Warnings {
         warnings.into_iter().fold(Warnings::default(), |set, warning| set.with(warning, true))
     }
 }
 
-impl IntoIterator for &Warnings {
-    type Item = Warning;
-    type IntoIter = IntoIter;
-
-    fn into_iter(self) -> IntoIter {
-        IntoIter { left: *self }
-    }
-}
-
 impl IntoIterator for Warnings {
     type Item = Warning;
-    type IntoIter = IntoIter;
+    type IntoIter = std::iter::Flatten<std::array::IntoIter<Option<Warning>, 9>>;
 
-    fn into_iter(self) -> IntoIter {
-        IntoIter { left: self }
+    fn into_iter(self) -> Self::IntoIter {
+        Warning::ALL.map(|warning| self.contains(warning).then_some(warning)).into_iter().flatten()
     }
 }
 

@@ -281,9 +281,8 @@ impl Memory {
                 Recursion::MovingFrame(Box::new(own.carried(cells, |own| transfer.confined(own))))
             }
         };
-        let now = transfer.induced(now, self.far_source());
-        let far = self.far.as_ref().filter(|_| !transfer.covers());
-        let far = far.map(|far| far.carried(now.len(), |own| transfer.confined(own)));
+        let now = transfer.induced(now, far.map(|far| &far.now[..]));
+        let far = far.filter(|_| !transfer.covers()).map(|far| far.carried(now.len(), |own| transfer.confined(own)));
         let displacement = RememberedField { recursion, trial: vec![0.0; now.len()], now };
         Memory { displacement, far, before_is_kept: false }
     }

@@ -7,20 +7,25 @@ use crate::contact::scene::Scene;
 use crate::contact::settings::Settings;
 use crate::error::CheckpointError;
 
-/// A scene, as far as it must not change. How steps are solved may: solver, tolerance, limits.
+/// What is compared in words.
+const CHOICES: [&str; 7] = [
+    "number of rigid bodies",
+    "kernel",
+    "Settings::time_rule",
+    "Settings::frame",
+    "Settings::symmetry",
+    "Settings::window",
+    "Settings::series_tolerance",
+];
+
+/// A scene, as far as it must not change. Solver, tolerance and limits may.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Fingerprint {
     cells: [usize; 2],
     spacing: [f64; 2],
-    bodies: usize,
-    kernel: String,
-    /// Sums over its influence.
+    choices: [String; 7],
+    /// Sums over the influence of the kernel.
     influence: Vec<f64>,
-    time_rule: String,
-    frame: String,
-    symmetry: bool,
-    window: bool,
-    series_tolerance: f64,
     creep: Creep,
     shape: Vec<f64>,
     owners: Owners,
@@ -32,56 +37,48 @@ impl Fingerprint {
         Fingerprint {
             cells: scene.grid.cells(),
             spacing: scene.grid.spacing(),
-            bodies: scene.bodies,
-            kernel: scene.kernel.to_string(),
+            choices: [
+                scene.bodies.to_string(),
+                scene.kernel.to_string(),
+                format!("{time_rule:?}"),
+                format!("{frame:?}"),
+                symmetry.to_string(),
+                window.to_string(),
+                format!("{series_tolerance:e}"),
+            ],
             influence: scene.kernel.mark(),
-            time_rule: format!("{time_rule:?}"),
-            frame: format!("{frame:?}"),
-            symmetry,
-            window,
-            series_tolerance,
             creep: scene.built.creep(&scene.material).clone(),
             shape: scene.built.shape.clone(),
             owners: scene.built.owners.clone(),
         }
     }
 
-    /// Refuses another scene, and says what differs first.
+    /// Rejects another scene, and reports the first difference.
     pub(super) fn require(&self, built: &Fingerprint) -> Result<(), CheckpointError> {
-        let differs = |what: &'static str, saved: String, built: String| {
-            if saved == built { Ok(()) } else { Err(CheckpointError::OtherScene { what, saved, built }) }
-        };
-        let numbers = |what: &'static str, saved: &[f64], built: &[f64]| match difference(saved, built) {
-            Some(k) => {
-                let entry = |numbers: &[f64]| numbers.get(k).map_or("another".into(), |x| format!("one of {x:e}"));
-                Err(CheckpointError::OtherScene { what, saved: entry(saved), built: entry(built) })
-            }
-            None => Ok(()),
-        };
-        let grid = |mark: &Fingerprint| {
-            format!("{} × {} cells of {:e} m × {:e} m", mark.cells[0], mark.cells[1], mark.spacing[0], mark.spacing[1])
+        let differ =
+            |what: &'static str, [saved, built]: [String; 2]| Err(CheckpointError::OtherScene { what, saved, built });
+        let numbers = |what: &'static str, saved: &[f64], built: &[f64]| {
+            let Some(k) = difference(saved, built) else { return Ok(()) };
+            let entry = |numbers: &[f64]| numbers.get(k).map_or("another".into(), |x| format!("one of {x:e}"));
+            differ(what, [saved, built].map(entry))
         };
         if self.cells != built.cells || difference(&self.spacing, &built.spacing).is_some() {
-            return Err(CheckpointError::OtherScene { what: "grid", saved: grid(self), built: grid(built) });
+            let grid = |Fingerprint { cells: [n1, n2], spacing: [d1, d2], .. }: &Fingerprint| {
+                format!("{n1} × {n2} cells of {d1:e} m × {d2:e} m")
+            };
+            return differ("grid", [self, built].map(grid));
         }
-        differs("number of rigid bodies", self.bodies.to_string(), built.bodies.to_string())?;
-        differs("kernel", self.kernel.clone(), built.kernel.clone())?;
+        if let Some(k) = (0..CHOICES.len()).find(|&k| self.choices[k] != built.choices[k]) {
+            return differ(CHOICES[k], [self, built].map(|scene| scene.choices[k].clone()));
+        }
         numbers("influence", &self.influence, &built.influence)?;
-        differs("Settings::time_rule", self.time_rule.clone(), built.time_rule.clone())?;
-        differs("Settings::frame", self.frame.clone(), built.frame.clone())?;
-        differs("Settings::symmetry", self.symmetry.to_string(), built.symmetry.to_string())?;
-        differs("Settings::window", self.window.to_string(), built.window.to_string())?;
-        let tolerance = |mark: &Fingerprint| format!("{:e}", mark.series_tolerance);
-        differs("Settings::series_tolerance", tolerance(self), tolerance(built))?;
         if let Some(entry) = self.creep.difference(&built.creep) {
-            let [saved, built] = [&self.creep, &built.creep].map(|creep| creep.entry(entry));
-            return Err(CheckpointError::OtherScene { what: "contact compliance", saved, built });
+            return differ("contact compliance", [self, built].map(|scene| scene.creep.entry(entry)));
         }
         numbers("geometry", &self.shape, &built.shape)?;
-        if self.owners != built.owners {
-            let [saved, built] = self.owners.difference(&built.owners);
-            return Err(CheckpointError::OtherScene { what: "assignment of cells to rigid bodies", saved, built });
+        if self.owners == built.owners {
+            return Ok(());
         }
-        Ok(())
+        differ("assignment of cells to rigid bodies", self.owners.difference(&built.owners))
     }
 }
