@@ -67,7 +67,7 @@ fn a_map_shows_each_cell_where_it_is() {
         // the light end of the scale fills the rest of the map
         let (mut left, mut right, mut top, mut bottom) = (f64::INFINITY, 0.0_f64, f64::INFINITY, 0.0_f64);
         for (k, p) in picture.rgb().chunks_exact(3).enumerate().filter(|(k, _)| k % width < 838) {
-            if p == [253, 231, 37] || p == [r, g, b] {
+            if p == [254, 232, 37] || p == [r, g, b] {
                 let (x, y) = ((k % width) as f64, (k / width) as f64);
                 (left, right, top, bottom) = (left.min(x), right.max(x), top.min(y), bottom.max(y));
             }
