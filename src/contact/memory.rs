@@ -25,7 +25,7 @@ use crate::memory;
 /// and for each cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are several
 /// bodies. Transforms have tables as long as they are, which counts in line contacts: 144 bytes a cell.
 ///
-/// Counted allocations agree to 5 % and a few kB (`tests/memory.rs`). Not in it: the displacement where not all cells are computed, made
+/// Counted allocations agree to 5 % and a few kB (`tests/allocations`). Not in it: the displacement where not all cells are computed, made
 /// when it is first asked for, with a kernel for the whole grid; the relaxation times of a series that the first step
 /// fits; 8 bytes a computed cell for the first load that tilts, or presses several bodies, and 24 for the fall-back of the solver, which
 /// few contacts need; [snapshots](crate::contact::Snapshot); the old state, kept during a step that moves to a larger window.
