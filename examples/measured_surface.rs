@@ -145,11 +145,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
         .geometry(&Sum::new(Sphere::new(args.radius)?, roughness.clone()))
         .material(rubber.clone())
         .build()?;
-    // the library writes over nothing: what an earlier run of this example left goes first
-    let table = args.output.join("history.csv");
-    if table.exists() {
-        fs::remove_file(&table)?;
-    }
+    let table = support::cleared(args.output.join("history.csv"))?;
     let scene = Scene::new("Rough ball on rubber").note("radius", format!("{} m", args.radius));
     let mut history = CsvHistory::create(&table, &scene, &contact, &["patches", "smooth ball: contact area [m2]"])?;
 

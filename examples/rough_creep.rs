@@ -321,28 +321,18 @@ struct Files {
 
 impl Files {
     fn create(args: &Args, scene: &Scene, contact: &ViscoelasticContact) -> Result<Files, Box<dyn Error>> {
-        // the library writes over nothing: what an earlier run of this example left goes first
-        let table = args.output.join("history.csv");
-        if table.exists() {
-            fs::remove_file(&table)?;
-        }
-        #[cfg(any(feature = "npy", feature = "vtk"))]
-        for folder in ["npz", "vtk"].map(|name| args.output.join(name)) {
-            if folder.exists() {
-                fs::remove_dir_all(&folder)?;
-            }
-        }
+        let table = support::cleared(args.output.join("history.csv"))?;
         Ok(Files {
             history: CsvHistory::create(&table, scene, contact, &[])?,
             #[cfg(feature = "npy")]
             npz: viscocontact::output::NpzSeries::create(
-                args.output.join("npz"),
+                support::cleared(args.output.join("npz"))?,
                 scene.clone(),
                 &viscocontact::output::Field::ALL,
             )?,
             #[cfg(feature = "vtk")]
             vtk: viscocontact::output::VtkSeries::create(
-                args.output.join("vtk"),
+                support::cleared(args.output.join("vtk"))?,
                 scene.clone(),
                 &viscocontact::output::Field::ALL,
             )?,
