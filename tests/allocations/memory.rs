@@ -56,8 +56,8 @@ fn scene(random: &mut ChaCha8Rng) -> Scene {
     };
     let frame = one_of(random, &[Frame::Bodies, Frame::Bodies, Frame::Bodies, Frame::Indenter]);
     let rules =
-        [TimeRule::Automatic, TimeRule::Automatic, TimeRule::Automatic, TimeRule::Backward, TimeRule::Rectangle];
-    let time_rule = if frame == Frame::Indenter { TimeRule::Automatic } else { one_of(random, &rules) };
+        [TimeRule::Exponential, TimeRule::Exponential, TimeRule::Exponential, TimeRule::Backward, TimeRule::Rectangle];
+    let time_rule = if frame == Frame::Indenter { TimeRule::Exponential } else { one_of(random, &rules) };
     let solver = one_of(random, &[Solver::ActiveSet, Solver::ActiveSet, Solver::PolonskyKeer]);
     let (symmetry, window) = (one_of(random, &[true, false]), one_of(random, &[true, false]));
     Scene {

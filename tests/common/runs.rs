@@ -5,7 +5,7 @@ use std::sync::Arc;
 use viscocontact::prelude::*;
 
 use super::bodies::{power_law, three_times};
-use super::spheres::{sphere, sphere_on};
+use super::spheres::{builder_on, sphere, sphere_on};
 
 pub type Build = Box<dyn Fn() -> ViscoelasticContact>;
 pub type Step = Box<dyn Fn(&mut ViscoelasticContact, u32) -> StepReport>;
@@ -78,7 +78,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
         ),
         (
             "fitted",
-            Box::new(move || sphere_on(grid(), power_law(), Settings::default())),
+            Box::new(move || builder_on(grid(), power_law()).times(2e-4..=2e4).build().unwrap()),
             Box::new(|c, k| c.step(0.02, Load::force(0.1 + 0.01 * f64::from(k % 9))).unwrap()),
         ),
         ("line, rolling", Box::new(line), Box::new(rolling)),

@@ -31,12 +31,12 @@ struct Scale {
 fn settings(source: &mut Source) -> Settings {
     let frame = if source.chance(0.2) { Frame::Indenter } else { Frame::Bodies };
     let rules =
-        [TimeRule::Automatic, TimeRule::Automatic, TimeRule::Exponential, TimeRule::Rectangle, TimeRule::Backward];
+        [TimeRule::Exponential, TimeRule::Exponential, TimeRule::Exponential, TimeRule::Rectangle, TimeRule::Backward];
     Settings {
         tolerance: source.scale(1e-10, 1e-2),
         max_iterations: source.choose(&[1, 3, 30, 200, 200, 200, 0]),
         solver: source.choose(&[Solver::ActiveSet, Solver::ActiveSet, Solver::PolonskyKeer]),
-        time_rule: if frame == Frame::Indenter { TimeRule::Automatic } else { source.choose(&rules) },
+        time_rule: if frame == Frame::Indenter { TimeRule::Exponential } else { source.choose(&rules) },
         edge: source.choose(&[Edge::Allow, Edge::Allow, Edge::Refuse]),
         series_tolerance: source.scale(1e-4, 1e-1),
         history_limit: source.choose(&[2 << 30, 2 << 30, 2 << 30, 4000]),
@@ -62,7 +62,7 @@ fn build(source: &mut Source, fitted: bool, settings: Settings) -> viscocontact:
     if source.chance(0.6) {
         builder = builder.kernel(Arc::new(models::kernel(source, &grid)?));
     }
-    if fitted && source.chance(0.5) {
+    if fitted {
         let first = source.scale(1e-4, 1.0);
         let times = first..=first * source.scale(1.0, 1e6);
         if !models::is_long_fit(&times) {
@@ -221,7 +221,7 @@ fn follow(source: &mut Source) -> Verdict {
 
 fn moving(source: &mut Source) -> Verdict {
     let frame = source.choose(&[Frame::Bodies, Frame::Indenter, Frame::Indenter]);
-    let settings = Settings { frame, time_rule: TimeRule::Automatic, ..settings(source) };
+    let settings = Settings { frame, time_rule: TimeRule::Exponential, ..settings(source) };
     let Ok(Scale { mut contact, length, softness }) = build(source, false, settings) else {
         return Ok(Outcome::Refused);
     };

@@ -3,7 +3,7 @@
 mod scenes;
 
 use crate::common::bodies::{power_law, three_times};
-use crate::common::spheres::sphere_on;
+use crate::common::spheres::{builder_on, sphere_on};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -53,7 +53,10 @@ fn runs_go_on() {
     let load = PiecewiseLinear::new(&corners.map(|(t, f)| (t, Load::force(f)))).unwrap();
     for material in [three_times(), power_law()] {
         for stepping in [Stepping::fixed(0.07), Stepping::adaptive(1e-2)] {
-            let build = || sphere_on(Grid::square(32, 4.0e-3).unwrap(), material.clone(), Settings::default());
+            let build = || {
+                let builder = builder_on(Grid::square(32, 4.0e-3).unwrap(), material.clone());
+                builder.times(7e-4..=7e4).build().unwrap()
+            };
             for saved_after in [1, 5, 13] {
                 let mut contact = build();
                 let mut run = contact.follow(&load, stepping, 3.0);
@@ -171,7 +174,7 @@ fn other_scenes_are_refused_by_what_differs() {
     assert_eq!(what(sphere_on(grid(), three_times(), whole)), "Settings::window");
     let summed = Settings { time_rule: TimeRule::Backward, ..Settings::default() };
     assert_eq!(what(sphere_on(grid(), three_times(), summed)), "Settings::time_rule");
-    assert_eq!(what(sphere_on(grid(), power_law(), Settings::default())), "contact compliance");
+    assert_eq!(what(builder_on(grid(), power_law()).times(1e-3..=1e3).build().unwrap()), "contact compliance");
     let builder =
         || ViscoelasticContact::builder(grid()).geometry(&Sphere::new(10.0e-3).unwrap()).material(three_times());
     let periodic = builder().kernel(Arc::new(InfluenceKernel::periodic(&grid()).unwrap()));

@@ -84,7 +84,7 @@ fn ringing_is_mirrored() {
     contact.step(0.0, Load::force(0.1)).unwrap();
     for (dt, rings) in [(0.5, false), (1.5, true)] {
         let report = contact.step(dt, Load::force(0.1)).unwrap();
-        assert_eq!((report.rings, report.warnings.contains(Warning::Rings)), (rings, rings));
+        assert_eq!(report.warnings.contains(Warning::Rings), rings);
     }
 }
 

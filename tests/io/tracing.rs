@@ -1,6 +1,6 @@
 //! Events for subscribers of `tracing`.
 
-use crate::common::spheres::sphere_on;
+use crate::common::spheres::{builder_on, sphere_on};
 use std::sync::{Arc, Mutex};
 use std::thread::ThreadId;
 
@@ -48,11 +48,8 @@ fn steps_regions_and_series_are_told() {
     let kept = Kept(Arc::default(), std::thread::current().id());
     tracing::subscriber::set_global_default(kept.clone()).unwrap();
     {
-        let mut contact = sphere_on(
-            Grid::square(48, 4.0e-3).unwrap(),
-            Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt()))),
-            Settings::default(),
-        );
+        let body = Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt())));
+        let mut contact = builder_on(Grid::square(48, 4.0e-3).unwrap(), body).times(1e-3..=1e5).build().unwrap();
         contact.step(0.0, Load::force(0.1)).unwrap();
         contact.step(0.1, Load::force(0.5)).unwrap();
         contact.step(0.1, Load::force(500.0)).unwrap_err();

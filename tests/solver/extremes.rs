@@ -4,6 +4,7 @@ use crate::common::bodies::{elastic, maxwell, zener};
 use crate::common::noise::uniform;
 use crate::common::spheres::{RADIUS, builder_on};
 use viscocontact::Error;
+use viscocontact::contact::Warning;
 use viscocontact::prelude::*;
 
 fn builder(cells: usize, width: f64, material: Material) -> viscocontact::contact::Builder {
@@ -34,7 +35,8 @@ fn every_length_of_step() {
                     Ok(report) => {
                         worst = worst.max((report.approach / held(&maxwell, 1.0, report.time) - 1.0).abs());
                         // what a step would ring at is said
-                        assert_eq!(report.rings, time_rule == TimeRule::Rectangle && exponent >= 0);
+                        let rings = report.warnings.contains(Warning::Rings);
+                        assert_eq!(rings, time_rule == TimeRule::Rectangle && exponent >= 0);
                     }
                     Err(_) => worst = f64::INFINITY,
                 }
@@ -293,7 +295,7 @@ fn steps_at_the_ends_are_numbers_or_refused() {
     for material in &materials {
         for width in [1.0e-90, 1.0e-3, 1.0e90] {
             for (time_rule, size) in
-                [(TimeRule::Automatic, 1e200), (TimeRule::Backward, 1e300), (TimeRule::Automatic, 1e307)]
+                [(TimeRule::Exponential, 1e200), (TimeRule::Backward, 1e300), (TimeRule::Exponential, 1e307)]
             {
                 for load in
                     [Load::force(size), Load::force(1.0 / size), Load::approach(size), Load::approach(1e-3 * width)]

@@ -2,7 +2,7 @@
 //! threads, the answer is the same.
 
 use crate::common::bodies::{elastic, maxwell};
-use crate::common::spheres::{RADIUS, sphere_on};
+use crate::common::spheres::{RADIUS, builder_on};
 use crate::common::step_loaded_sphere::StepLoadedSphere;
 use proptest::prelude::*;
 use viscocontact::prelude::*;
@@ -126,11 +126,17 @@ fn other_homes_of_the_past() {
     let body = || Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.powf(0.4))));
     for rule in [TimeRule::Backward, TimeRule::Rectangle, TimeRule::Exponential] {
         let mut contacts = [true, false].map(|symmetry| {
-            sphere_on(
-                Grid::square(32, 3.0e-3).unwrap(),
-                body(),
-                Settings { tolerance: 1e-11, symmetry, time_rule: rule, ..Settings::default() },
-            )
+            builder_on(Grid::square(32, 3.0e-3).unwrap(), body())
+                .times(1e-3..=1e5)
+                .settings(Settings {
+                    tolerance: 1e-11,
+                    symmetry,
+                    window: false,
+                    time_rule: rule,
+                    ..Settings::default()
+                })
+                .build()
+                .unwrap()
         });
         for step in 0..6 {
             for contact in &mut contacts {

@@ -2,7 +2,7 @@
 //! without elastic response.
 
 use crate::common::protocol::Protocol;
-use crate::common::spheres::sphere_on;
+use crate::common::spheres::builder_on;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::Error;
@@ -11,6 +11,8 @@ use viscocontact::prelude::*;
 
 const LENGTH: f64 = 4.0e-3;
 const DT: f64 = 0.1;
+/// Over which times bodies without an exact series are wanted [s].
+const TIMES: std::ops::RangeInclusive<f64> = 1e-3..=1e5;
 /// Depths \[m\] and forces \[N\] of a contact that stays on the grid.
 const DEPTH: f64 = 6.0e-5;
 const FORCE: f64 = 0.3;
@@ -67,6 +69,7 @@ impl Scene {
         ViscoelasticContact::builder(Grid::new([20, 18], [LENGTH, 0.9 * LENGTH]).unwrap())
             .geometry(&self.geometry())
             .material(material)
+            .times(TIMES)
             .settings(self.settings)
             .build()
             .unwrap()
@@ -79,7 +82,7 @@ fn scenes() -> impl Strategy<Value = Scene> {
         edge: Edge::Allow,
         symmetry,
         window,
-        time_rule: if rule == 0 { TimeRule::Backward } else { TimeRule::Automatic },
+        time_rule: if rule == 0 { TimeRule::Backward } else { TimeRule::Exponential },
         ..Settings::default()
     });
     let datum = prop_oneof![Just(0.0), -1.0e-3..1.0e-3_f64];
@@ -279,7 +282,7 @@ proptest! {
     ) {
         scene.settings.tolerance = 1e-8;
         // sums over the whole past are first order: their steps are many
-        scene.settings.time_rule = TimeRule::Automatic;
+        scene.settings.time_rule = TimeRule::Exponential;
         let protocol = |wait: &dyn Fn(usize) -> Load| {
             let mut protocol = Protocol::default();
             for (k, rise) in rises.iter().enumerate() {
@@ -320,6 +323,7 @@ proptest! {
                 .geometry(&at(-1.5e-3))
                 .another_body(&at(1.5e-3))
                 .material(material(scene.body, scene.scale))
+                .times(TIMES)
                 .settings(scene.settings)
                 .build()
                 .unwrap()
@@ -384,13 +388,10 @@ fn lifted_indenters_move_at_once() {
 #[test]
 fn creep_and_recovery_of_a_springpot_and_a_voigt_body() {
     for (body, rule) in
-        [(1, TimeRule::Automatic), (1, TimeRule::Backward), (2, TimeRule::Automatic), (2, TimeRule::Backward)]
+        [(1, TimeRule::Exponential), (1, TimeRule::Backward), (2, TimeRule::Exponential), (2, TimeRule::Backward)]
     {
-        let mut contact = sphere_on(
-            Grid::square(20, LENGTH).unwrap(),
-            material(body, [1.0; 2]),
-            Settings { time_rule: rule, ..Settings::default() },
-        );
+        let builder = builder_on(Grid::square(20, LENGTH).unwrap(), material(body, [1.0; 2])).times(TIMES);
+        let mut contact = builder.settings(Settings { time_rule: rule, ..Settings::default() }).build().unwrap();
         let [lifted, touching] = [-DEPTH, 0.0].map(Load::approach);
         let [none, full] = [0.0, FORCE].map(Load::force);
         let protocol = Protocol::default()
