@@ -183,7 +183,7 @@ fn contacts_are_refused_before_they_are_filled() {
 
 /// The scene of 65535² cells: 0.8 TB.
 #[test]
-fn four_thousand_million_cells() {
+fn four_thousand_million_cells_are_refused_with_their_bytes() {
     let grid = Grid::square(65535, 1.0).unwrap();
     if granted(8 * grid.len() as u128) {
         return; // a machine that has room for its fields would fill them

@@ -22,7 +22,7 @@ fn file(name: &str) -> PathBuf {
 
 /// Every scene, saved after each of several numbers of steps, none included: the steps after it are the same to the last bit.
 #[test]
-fn the_same_continuation() {
+fn every_scene_continues_from_its_file_bit_by_bit() {
     for (name, build, step) in scenes() {
         let path = file("continuation");
         for steps in [0, 1, 2, 9, 70] {
@@ -47,7 +47,7 @@ fn the_same_continuation() {
 
 /// Runs along histories, equal steps and steps chosen by their error, saved and resumed in the middle: the same steps.
 #[test]
-fn runs_go_on() {
+fn runs_along_a_history_continue_with_the_same_steps() {
     let path = file("runs");
     let corners = [(0.0, 0.0), (1.0, 0.5), (1.5, 0.1), (3.0, 0.4)];
     let load = PiecewiseLinear::new(&corners.map(|(t, f)| (t, Load::force(f)))).unwrap();
@@ -83,7 +83,7 @@ fn runs_go_on() {
 
 /// Written by one number of threads, continued by another.
 #[test]
-fn any_number_of_threads() {
+fn a_file_is_continued_by_any_number_of_threads() {
     let path = file("threads");
     let whole = Settings { window: false, symmetry: false, ..Settings::default() };
     let build = || sphere_on(Grid::square(192, 4.0e-3).unwrap(), three_times(), whole);
@@ -357,8 +357,8 @@ const EVERY: Duration = Duration::from_millis(5);
 
 /// The run that is killed: it goes on from its file, notes when it took each step, and leaves the last state when it is over.
 #[test]
-#[ignore = "started by fifty_killed_runs"]
-fn child() {
+#[ignore = "started by fifty_killed_runs_end_with_the_same_bits"]
+fn a_run_that_is_killed() {
     let folder = PathBuf::from(std::env::var("CHECKPOINT_FOLDER").unwrap());
     let (saved, done) = (folder.join("run.checkpoint"), folder.join("done"));
     let mut contact = sphere_on(Grid::square(64, 6.0e-3).unwrap(), three_times(), Settings::default());
@@ -382,7 +382,7 @@ fn child() {
 /// Starts the run in a folder; kills it after a while, if told so. Whether it came to its end.
 fn start(folder: &Path, kill_after: Option<Duration>) -> bool {
     let mut child = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "checkpoint::child", "--ignored"])
+        .args(["--exact", "checkpoint::a_run_that_is_killed", "--ignored"])
         .env("CHECKPOINT_FOLDER", folder)
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -429,7 +429,7 @@ fn losses(log: &str) -> Vec<(f64, Duration, Duration)> {
 
 /// Killed at fifty random moments, run after run to its end: not a bit differs, and no more is lost than the interval.
 #[test]
-fn fifty_killed_runs() {
+fn fifty_killed_runs_end_with_the_same_bits() {
     let folder = |name: &str| {
         let folder = file(name);
         let _ = fs::remove_dir_all(&folder);

@@ -22,7 +22,7 @@ fn a_good_step_has_no_warnings() {
 }
 
 #[test]
-fn contact_near_the_edge_is_told_before_it_touches() {
+fn contact_near_the_edge_is_warned_of_before_it_touches() {
     for (symmetry, window) in [(true, true), (false, true), (false, false)] {
         let settings = Settings { symmetry, window, ..Settings::default() };
         let mut contact = contact(32, maxwell(), settings);
@@ -46,7 +46,7 @@ fn contact_near_the_edge_is_told_before_it_touches() {
 }
 
 #[test]
-fn few_cells_are_told() {
+fn few_cells_are_warned_of() {
     let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 0.1).unwrap();
     for (cells, few) in [(8, true), (16, true), (64, false)] {
         let mut contact = contact(cells, maxwell(), Settings::default());
@@ -59,7 +59,7 @@ fn few_cells_are_told() {
 }
 
 #[test]
-fn material_beyond_its_data_is_told() {
+fn material_beyond_its_data_is_warned_of() {
     let times = [0.1, 0.3, 1.0, 3.0, 10.0];
     let table = TabulatedCreep::new(&times, &times.map(|t: f64| 1.0e-6 * (1.0 + 0.1 * t.ln_1p()))).unwrap();
     assert_eq!(table.measured(), [0.1, 10.0]);
@@ -79,7 +79,7 @@ fn material_beyond_its_data_is_told() {
 }
 
 #[test]
-fn ringing_is_mirrored() {
+fn a_step_that_rings_is_warned_of() {
     let mut contact = contact(48, maxwell(), Settings { time_rule: TimeRule::Rectangle, ..Settings::default() });
     contact.step(0.0, Load::force(0.1)).unwrap();
     for (dt, rings) in [(0.5, false), (1.5, true)] {
@@ -164,7 +164,7 @@ fn few_cells_are_warned_of_where_errors_are_large() {
 
 /// Where hardly anything of the pressure is left and the body may turn, rounding of the gap hides it: that is told.
 #[test]
-fn rounding_is_told() {
+fn rounding_is_warned_of() {
     let mut contact = ViscoelasticContact::builder(Grid::square(40, 4.0e-3).unwrap())
         .geometry(&FlatPunch::circular(1.2e-3).unwrap())
         .material(maxwell())

@@ -165,7 +165,7 @@ mod npy {
     }
 
     #[test]
-    fn single_fields() {
+    fn single_fields_are_read_back_bit_by_bit() {
         let folder = Folder::new("npy");
         let path = folder.0.join("field.npy");
         let grid = Grid::new([2, 3], [1.0, 1.0]).unwrap();

@@ -7,7 +7,7 @@ use viscocontact::prelude::*;
 
 /// Every scene, back and forth in between: into new memory and into old, from its own contact and from a clone.
 #[test]
-fn the_same_steps_again() {
+fn restored_states_take_the_same_steps_again() {
     for (name, build, step) in scenes() {
         let mut contact = build();
         let mut snapshot = contact.snapshot();

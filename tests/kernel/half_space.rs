@@ -35,7 +35,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2011), ..ProptestConfig::with_cases(64) })]
 
     #[test]
-    fn fast_is_naive(
+    fn the_fast_convolution_is_the_naive_sum(
         n1 in 1_usize..24,
         n2 in 1_usize..24,
         aspect in -2.0..2.0_f64,
@@ -52,7 +52,7 @@ proptest! {
 }
 
 #[test]
-fn reciprocity() {
+fn influence_is_reciprocal() {
     let grid = Grid::new([20, 31], [1.0, 2.0]).unwrap();
     let impulse = |k: usize| {
         let mut field = vec![0.0; grid.len()];

@@ -29,7 +29,7 @@ fn assert_close(found: &[f64], exact: &[f64], tolerance: f64) {
 
 /// Westergaard's waves, on lengths of period even, odd and not smooth.
 #[test]
-fn periodic_waves() {
+fn periodic_bodies_displace_waves_as_westergaard_says() {
     for cells in [[16, 24], [15, 22], [11, 1], [1, 32], [64, 2]] {
         let grid = Grid::new(cells, [2.0, 3.0]).unwrap();
         let kernel = InfluenceKernel::periodic(&grid).unwrap();
@@ -49,7 +49,7 @@ fn periodic_waves() {
 
 /// Against the sum over the line's own logarithms, and the closed form of a uniform pressure.
 #[test]
-fn line_loads() {
+fn lines_are_sums_of_logarithms() {
     let (grid, datum) = (Grid::new([75, 1], [1.5, 2.0]).unwrap(), 4.0);
     let kernel = InfluenceKernel::line(&grid, datum).unwrap();
     let side = grid.spacing()[0];
@@ -137,7 +137,7 @@ fn strips_are_rows_of_images() {
 
 /// A half-space made of its own coefficients, and of its own waves, is the half-space.
 #[test]
-fn users_may_bring_their_own() {
+fn users_may_bring_their_own_coefficients() {
     let grid = Grid::new([12, 9], [1.0, 0.8]).unwrap();
     let half_space = InfluenceKernel::half_space(&grid).unwrap();
     let mut unit = vec![0.0; grid.len()];

@@ -372,7 +372,7 @@ mod csv {
 
 /// What tables may not be, what they may, and how long a fit takes: the findings of those who tried.
 #[test]
-fn tables_as_they_come() {
+fn tables_as_they_come_are_fitted_or_refused_for_a_reason() {
     // printed with three digits, on a plateau
     let zener = Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap();
     let times = log_spaced(1e-3, 1e3, 27);

@@ -77,7 +77,7 @@ fn every_model_evaluates_its_formula() {
 }
 
 #[test]
-fn a_hundred_terms_over_thirty_decades_close() {
+fn a_hundred_terms_over_thirty_decades_are_reciprocal() {
     let terms: Vec<(f64, f64)> =
         (0..100).map(|k| (1.0 + (k * k % 17) as f64, 10f64.powf(-15.0 + 30.0 * k as f64 / 99.0))).collect();
     for (glassy, fluidity) in [(1.0, 0.0), (1.0, 1e-12), (0.0, 0.0), (0.0, 1e3)] {
@@ -86,7 +86,7 @@ fn a_hundred_terms_over_thirty_decades_close() {
 }
 
 #[test]
-fn clustered_repeated_and_weak_terms() {
+fn clustered_repeated_and_weak_terms_are_reciprocal() {
     for gap in [1e-15, 1e-13, 1e-10, 1e-8, 3e-7, 2e-6, 1e-5, 1e-3] {
         let near: Vec<(f64, f64)> = (0..8).map(|k| (1.0, 1.0 + gap * k as f64)).collect();
         assert_reciprocal(&CreepSpectrum::new(1.0, 0.0, &near).unwrap());
@@ -140,7 +140,7 @@ proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2011), ..ProptestConfig::with_cases(256) })]
 
     #[test]
-    fn random_spectra_close(creep in spectra()) {
+    fn random_spectra_are_reciprocal(creep in spectra()) {
         assert_reciprocal(&creep);
     }
 

@@ -258,7 +258,7 @@ fn a_viscoelastic_run_keeps_the_conditions() {
 
 /// Let go and come back: the surface recovers freely in between, and both solvers tell the same story.
 #[test]
-fn separation_recovery_and_contact_again() {
+fn bodies_separate_recover_and_touch_again() {
     let scene = StepLoadedSphere::zener();
     let run = |solver| {
         let mut contact = scene.contact(64, Settings { tolerance: 1e-9, solver, ..Settings::default() }).unwrap();
@@ -296,7 +296,7 @@ fn work_is_what_the_documents_say() {
 
 /// Mirrored scene, mirrored answer; shifted by whole cells, shifted answer.
 #[test]
-fn symmetry_and_shift() {
+fn mirrored_and_shifted_scenes_have_such_answers() {
     let grid = Grid::new([40, 32], [4.0e-3, 3.2e-3]).unwrap();
     let solve = |shape: &dyn Geometry| {
         let mut contact = ViscoelasticContact::builder(grid.clone())
@@ -327,7 +327,7 @@ fn symmetry_and_shift() {
 
 /// A thousand isolated spots, and what their neighbours make of them.
 #[test]
-fn a_thousand_spots() {
+fn a_thousand_spots_keep_the_conditions() {
     let grid = Grid::square(256, 1.0).unwrap();
     let wave = |x: f64| (32.0 * std::f64::consts::TAU * x).cos();
     let bumps = FnGeometry::new(move |x, y| 1.0e-3 * (wave(x) + wave(y) + x + 0.3 * y));

@@ -18,7 +18,7 @@ fn held(material: &Material, force: f64, t: f64) -> f64 {
 
 /// Eight steps of Δ after a jump, Δ/τ from 1e-12 to 1e12, every rule: the table of docs/accuracy.md.
 #[test]
-fn every_length_of_step() {
+fn every_length_of_step_errs_by_no_more_than_its_rule() {
     println!("| Δ/τ | exponential | backward | rectangle (paper) |\n|---|---|---|---|");
     for exponent in (-12..=12).step_by(3) {
         let dt = 10f64.powi(exponent);
@@ -113,7 +113,7 @@ fn the_default_rule_is_of_second_order() {
 
 /// Thirty decades of relaxation times in one body.
 #[test]
-fn thirty_decades_in_one_body() {
+fn thirty_decades_in_one_body_are_followed() {
     let terms: Vec<_> = (-15..=15).map(|k| (0.2e-6, 10f64.powi(k))).collect();
     let material = Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &terms).unwrap());
     let width = 2.4 * (0.75 * RADIUS * material.contact_compliance(1e17)).cbrt();
@@ -169,7 +169,7 @@ fn units_do_not_matter() {
 }
 
 #[test]
-fn every_poissons_ratio_and_shape_of_cell() {
+fn every_poissons_ratio_and_shape_of_cell_gives_hertz() {
     for nu in [0.0, 0.5, -0.9] {
         let material = Material::constant_poisson(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap(), nu).unwrap();
         let width = 2.5 * (0.75 * RADIUS * material.contact_compliance(1e3)).cbrt();
@@ -241,7 +241,7 @@ fn a_million_steps_do_not_drift() {
 }
 
 #[test]
-fn a_load_removed_and_restored_a_thousand_times() {
+fn a_load_removed_and_restored_a_thousand_times_leaves_nothing() {
     let mut contact = builder(32, 4.0e-3, zener()).build().unwrap();
     for _ in 0..1000 {
         contact.step(1e-3, Load::force(0.5)).unwrap();
@@ -265,7 +265,7 @@ fn a_load_removed_and_restored_a_thousand_times() {
 
 /// From next to no load, on one cell, to all of them.
 #[test]
-fn from_one_cell_to_all() {
+fn contact_grows_from_one_cell_to_all() {
     let settings = Settings { edge: Edge::Allow, ..Settings::default() };
     let mut contact = builder(16, 1.0e-3, zener()).settings(settings).build().unwrap();
     let mut cells = Vec::new();
@@ -416,7 +416,7 @@ fn a_held_approach_relaxes_by_many_decades() {
 
 /// A flat punch on an elastic body is pressed in proportion to its approach, however much deeper it was before.
 #[test]
-fn small_approaches_after_great_ones() {
+fn small_approaches_after_great_ones_press_in_proportion() {
     let mut dice = uniform(3);
     let mut between = |low: f64, high: f64| low + (high - low) * dice();
     for scene in 0..30 {

@@ -67,7 +67,7 @@ fn bodies() -> [Material; 3] {
 
 /// A small contact that grows, jumps, is let go and comes again.
 #[test]
-fn contacts_that_grow_and_vanish() {
+fn sparing_cells_changes_nothing_where_contacts_grow_and_vanish() {
     for material in bodies() {
         for cells in [[64, 64], [45, 64], [30, 51]] {
             let mut contacts = pair(cells, 8.0e-3, &Sphere::new(RADIUS).unwrap(), &material);
@@ -85,7 +85,7 @@ fn contacts_that_grow_and_vanish() {
 
 /// Loads and shapes that were symmetric, and are no longer.
 #[test]
-fn symmetry_that_is_lost() {
+fn sparing_cells_changes_nothing_where_symmetry_is_lost() {
     for material in bodies() {
         let mut contacts = pair([48, 64], 8.0e-3, &Sphere::new(RADIUS).unwrap(), &material);
         let mut step = |what: &str, dt: f64, load: Load, geometry: Option<&dyn Geometry>| {
@@ -122,7 +122,7 @@ fn symmetry_that_is_lost() {
 
 /// Direct sums and fitted series are computed whole or folded.
 #[test]
-fn other_homes_of_the_past() {
+fn direct_sums_and_fitted_series_are_the_same_whole_or_folded() {
     let body = || Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.powf(0.4))));
     for rule in [TimeRule::Backward, TimeRule::Rectangle, TimeRule::Exponential] {
         let mut contacts = [true, false].map(|symmetry| {
@@ -172,7 +172,7 @@ proptest! {
 
     /// Random paraboloids, anywhere, under random loads and steps.
     #[test]
-    fn random_scenes(
+    fn sparing_cells_changes_nothing_in_random_scenes(
         n1 in 8_usize..40, n2 in 8_usize..40,
         curvature in 0.3..3.0_f64, shift in prop_oneof![Just([0.0; 2]), [-1.0e-3..1.0e-3, -1.0e-3..1.0e-3]],
         body in 0_usize..3,

@@ -57,7 +57,7 @@ fn area_is_proportional_to_small_loads() {
 
 /// Half of the surface in contact: what a solve takes, and that the paper's solver takes many times as much.
 #[test]
-fn solves_at_half_load() {
+fn half_full_contact_takes_a_quarter_of_the_other_solvers_work() {
     let (grid, shape) = rough(256, 8.0, 1);
     let work = |solver| {
         let mut contact = pressed(&grid, &shape, elastic(), Settings { solver, ..Settings::default() });

@@ -133,7 +133,7 @@ fn foundation_driven_by_its_own_approach() {
 }
 
 #[test]
-fn ellipse_limits() {
+fn ellipses_tend_to_the_circle_and_the_line() {
     let circle = Hertz::new(RADIUS, 4.0e6, 1.0).unwrap();
     let nearly = HertzEllipse::new([RADIUS, RADIUS * (1.0 + 1e-9)], 4.0e6, 1.0).unwrap();
     assert!((nearly.greatest_pressure() / circle.greatest_pressure() - 1.0).abs() < 1e-8);

@@ -23,7 +23,7 @@ fn sphere_errors(cells: usize) -> [f64; 2] {
 }
 
 #[test]
-fn sphere_on_512_cells() {
+fn a_sphere_on_512_cells_is_hertzs() {
     let [pressure, approach] = sphere_errors(512);
     println!("central pressure {pressure:e}, approach {approach:e}");
     assert!(pressure.abs() < 2e-5);
@@ -39,7 +39,7 @@ fn approach_converges_with_the_mesh_at_second_order_on_average() {
 }
 
 #[test]
-fn ellipsoid() {
+fn an_ellipsoid_is_hertzs() {
     let exact = HertzEllipse::new([20.0e-3, 5.0e-3], E_STAR, 1.0).unwrap();
     let [a1, a2] = exact.semi_axes();
     let grid = Grid::new([192, 128], [2.5 * a1, 2.5 * a2]).unwrap();
@@ -53,7 +53,7 @@ fn ellipsoid() {
 
 /// The mesh of a punch converges at first order: its pressure is infinite on the rim.
 #[test]
-fn flat_punch() {
+fn a_flat_punch_converges_to_its_closed_form() {
     let (radius, force) = (1.0e-3, 2.0);
     let exact = RigidPunch::new(radius, E_STAR, force, 0.0).unwrap();
     let errors = [64, 128, 256].map(|cells| {
@@ -76,7 +76,7 @@ fn flat_punch() {
 }
 
 #[test]
-fn cone_against_the_one_dimensional_foundation() {
+fn a_cone_is_the_one_dimensional_foundations() {
     let (slope, force) = (0.1, 1.0);
     let body = elastic();
     let mut foundation = AxisymmetricContact::new(&Profile::cone(slope).unwrap(), &body, 20000, 4.0e-3).unwrap();

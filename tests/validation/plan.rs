@@ -60,7 +60,7 @@ fn check(name: &str, accuracy: Accuracy, outcome: &Outcome) {
 const PRESETS: [Accuracy; 3] = [Accuracy::Coarse, Accuracy::Standard, Accuracy::Fine];
 
 #[test]
-fn held_spheres() {
+fn held_spheres_are_as_accurate_as_planned() {
     let sphere = Sphere::new(RADIUS).unwrap();
     let load = StepLoad::new(Load::force(1.0)).unwrap();
     let maxwell = maxwell();
@@ -106,7 +106,7 @@ fn a_planned_run_is_a_thousand_times_less_work_than_the_papers() {
 }
 
 #[test]
-fn loads_that_come_and_go() {
+fn loads_that_come_and_go_are_as_accurate_as_planned() {
     let sphere = Sphere::new(RADIUS).unwrap();
     let zener = Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap());
     let four = Material::incompressible(four_terms());

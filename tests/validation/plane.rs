@@ -19,7 +19,7 @@ fn contact(grid: &Grid, kernel: InfluenceKernel, shape: &dyn Geometry, settings:
 /// A wavy surface under less than the pressure of full contact, against H. M. Westergaard, J. Appl. Mech. 6 (1939):
 /// p = 2 p̄ cos(πx/λ) √(sin²(πa/λ) − sin²(πx/λ)) / sin²(πa/λ), where p̄ = π E* Δ/λ sin²(πa/λ).
 #[test]
-fn wavy_surface_in_partial_contact() {
+fn a_wavy_surface_in_partial_contact_is_westergaards() {
     let (wavelength, amplitude, cells) = (1.0e-3, 1.0e-6, 512);
     let grid = Grid::new([cells, 1], [wavelength, 1.0]).unwrap();
     let shape = FnGeometry::new(move |x1, _| amplitude * (1.0 - (2.0 * PI * x1 / wavelength).cos()));
@@ -51,7 +51,7 @@ fn wavy_surface_in_partial_contact() {
 /// Beyond Westergaard's pressure the contact is full, and the pressure a wave; the approach at which it becomes full is the
 /// mean gap, and no approach exceeds it.
 #[test]
-fn wavy_surface_in_full_contact() {
+fn a_wavy_surface_in_full_contact_is_westergaards() {
     let grid = Grid::new([64, 1], [1.0, 1.0]).unwrap();
     let shape = FnGeometry::new(|x1, _| 1e-3 * (1.0 - (2.0 * PI * x1).cos()));
     let mut contact = contact(&grid, InfluenceKernel::periodic(&grid).unwrap(), &shape, Settings::default());
@@ -76,7 +76,7 @@ fn wavy_surface_in_full_contact() {
 /// Hertz's line contact: a² = 4 P R/(π E*), p0 = 2P/(πa), P the force on a unit of length; the approach to a depth d is
 /// P/(π E*) (2 ln(2d/a) + 1) (K. L. Johnson, Contact Mechanics, 1985, sections 4.2 and 5.6).
 #[test]
-fn cylinder_in_line_contact() {
+fn a_cylinder_in_line_contact_is_hertzs() {
     let (radius, per_length, length) = (0.02, 500.0, 0.25);
     let half_width = (4.0 * per_length * radius / (PI * E_STAR)).sqrt();
     let peak = 2.0 * per_length / (PI * half_width);
@@ -104,7 +104,7 @@ fn cylinder_in_line_contact() {
 
 /// A uniform pressure displaces nothing on bodies whose mean is held: flat on flat is solved all the same, and let go.
 #[test]
-fn flat_on_flat() {
+fn flat_on_flat_is_solved_and_let_go() {
     for cells in [[16, 16], [15, 9], [64, 1], [7, 1]] {
         for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
             for ripple in [0.0, 1e-15] {

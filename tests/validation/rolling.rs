@@ -63,7 +63,7 @@ fn roll(scene: &RollingCylinder, direction: f64, behind: f64) -> Rolled {
 
 /// Five speeds over four decades, forth or back: peak pressure, width, both ends of contact, friction.
 #[test]
-fn steady_rolling() {
+fn rolling_ends_in_the_steady_state_of_the_reference() {
     for (speed, direction) in [(0.01, 1.0), (0.1, -1.0), (1.0, 1.0), (10.0, -1.0), (100.0, 1.0)] {
         let scene = scene(speed);
         let (glassy, relaxed) = (scene.hertz(scene.glassy).0, scene.hertz(scene.glassy + scene.delayed).0);
@@ -86,7 +86,7 @@ fn steady_rolling() {
 
 /// So slow that the body has time to relax, and so fast that it has none: Hertz, twice.
 #[test]
-fn limits_of_speed() {
+fn very_slow_and_very_fast_rolling_is_hertzs() {
     for (speed, compliance) in [(1e-4, 0.25 / G + 0.25 / G_K), (1e6, 0.25 / G)] {
         let scene = scene(speed);
         let (half_width, peak) = scene.hertz(compliance);
@@ -99,7 +99,7 @@ fn limits_of_speed() {
 }
 
 #[test]
-fn exponential_integrals_of_the_reference() {
+fn exponential_integrals_of_the_reference_are_the_tabulated_ones() {
     // Abramowitz & Stegun, tables 5.1 and 5.2
     let cases = [(1.0, 0.219_383_934_395_520_3), (2.0, 0.048_900_510_708_061_1), (0.5, 0.559_773_594_776_160_2)];
     cases.iter().for_each(|&(z, e1): &(f64, f64)| assert!((scaled_e1(z) / z.exp() / e1 - 1.0).abs() < 1e-12));

@@ -16,18 +16,18 @@ fn assert_figures(scene: &StepLoadedSphere) -> f64 {
 }
 
 #[test]
-fn maxwell_256_cells_100_steps() {
+fn maxwell_on_256_cells_in_100_steps_is_table_1() {
     let work = assert_figures(&StepLoadedSphere::maxwell());
     assert!(work < 6.0, "{work} convolution equivalents a step");
 }
 
 #[test]
-fn zener_256_cells_100_steps() {
+fn zener_on_256_cells_in_100_steps_is_table_1() {
     assert_figures(&StepLoadedSphere::zener());
 }
 
 #[test]
-fn zener_with_unequal_moduli() {
+fn zener_with_unequal_moduli_is_the_closed_form() {
     for g_k in [0.3e6, 5.0e6] {
         let scene = StepLoadedSphere::zener_with(g_k);
         let (contact, _) = scene.run(128, 100, Settings::default()).unwrap();
@@ -37,7 +37,7 @@ fn zener_with_unequal_moduli() {
 }
 
 #[test]
-fn a_generalized_body_with_three_times() {
+fn a_generalized_body_with_three_times_is_the_closed_form() {
     let terms = [(0.4e-6, 0.02), (0.3e-6, 0.3), (0.6e-6, 4.0)];
     let body = GeneralizedKelvin::new(1.0e-6, 0.2e-6, &terms).unwrap();
     let scene = StepLoadedSphere { material: Material::incompressible(body), ..StepLoadedSphere::maxwell() };
@@ -48,7 +48,7 @@ fn a_generalized_body_with_three_times() {
 
 /// The paper's algorithm whole solves the same scene, at its own (first) order in time.
 #[test]
-fn the_paper_itself() {
+fn the_papers_own_algorithm_agrees_at_more_work() {
     let scene = StepLoadedSphere::maxwell();
     let (contact, work) = scene.run(64, 100, Settings::paper()).unwrap();
     let error = errors(&contact, &scene.reference().unwrap());

@@ -9,7 +9,7 @@ use viscocontact::prelude::*;
 
 /// 2a under a sphere, whatever is computed of it.
 #[test]
-fn circles() {
+fn stiffness_of_a_circle_is_its_diameter() {
     for (window, symmetry) in [(true, true), (false, true), (true, false), (false, false)] {
         let mut contact = sphere_on(
             Grid::square(128, 4.0e-3).unwrap(),
@@ -26,7 +26,7 @@ fn circles() {
 
 /// dW/dω of a rough surface, by differences of the approach, on a plane and on periodic bodies.
 #[test]
-fn slope_of_the_force() {
+fn stiffness_is_the_slope_of_the_force() {
     let grid = Grid::square(64, 1.0e-3).unwrap();
     let spec = self_affine(0.5e-3, 0.1e-3, 3);
     for kernel in [InfluenceKernel::periodic(&grid), InfluenceKernel::half_space(&grid)] {

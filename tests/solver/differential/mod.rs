@@ -82,7 +82,7 @@ fn a_load_may_jump_beyond_the_contact() {
 
 /// Advice that is followed helps: a step that ran out of iterations is done with more of them.
 #[test]
-fn more_iterations_help() {
+fn more_iterations_help_where_the_error_advises_them() {
     let (mut short, mut solved) = (0, 0);
     for seed in 1..wanted("ADVICE_SCENES", 60) as u64 {
         let scene = Scene::eccentric(seed, STEPS);
