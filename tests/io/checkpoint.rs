@@ -266,13 +266,16 @@ fn materials_are_not_asked_for_what_they_do_not_know() {
     fs::remove_file(path).unwrap();
 }
 
-/// A contact that has stepped goes back to a file as a new one does: its material is fitted again over the times of the file, or
-/// waits for its first step again.
+/// A material is fitted over the times of the builder: a contact of the same times goes on bit by bit, whatever steps it took
+/// before, and one of other times is another scene.
+// new contract
 #[test]
 fn materials_are_fitted_as_they_were() {
     let path = file("fitted");
+    let build = |times| builder_on(Grid::square(16, 4.0e-3).unwrap(), power_law()).times(times).build().unwrap();
+    let fresh = || build(1.0e-4..=1.0e5);
     let stepped = |dt: f64| {
-        let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), power_law(), Settings::default());
+        let mut contact = fresh();
         contact.step(dt, Load::force(0.1)).unwrap();
         contact
     };
@@ -285,7 +288,6 @@ fn materials_are_fitted_as_they_were() {
     }
     assert_eq!(contact.pressure(), other.pressure());
 
-    let fresh = || sphere_on(Grid::square(16, 4.0e-3).unwrap(), power_law(), Settings::default());
     fresh().save(&path).unwrap();
     let (mut one, mut other) = (fresh(), stepped(0.1));
     other.resume(&path).unwrap();
@@ -294,6 +296,8 @@ fn materials_are_fitted_as_they_were() {
         assert_eq!(one.step(1.0e-3, Load::force(0.2)), other.step(1.0e-3, Load::force(0.2)));
     }
     assert_eq!(one.pressure(), other.pressure());
+    let error = refused(&mut build(1.0e-3..=1.0e4), &path);
+    assert!(matches!(error, CheckpointError::OtherScene { what: "contact compliance", .. }), "{error}");
     fs::remove_file(path).unwrap();
 }
 

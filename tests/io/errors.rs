@@ -1,7 +1,7 @@
 //! Bad input gets its own error, and a failed step leaves the contact as it was.
 
 use crate::common::bodies::maxwell;
-use crate::common::spheres::{sphere, sphere_on};
+use crate::common::spheres::{builder_on, sphere, sphere_on};
 use std::sync::Arc;
 
 use viscocontact::prelude::*;
@@ -74,7 +74,13 @@ fn build_says_what_a_material_cannot_do() {
     assert!(matches!(build(voigt(), TimeRule::Rectangle), Err(Error::NoElasticResponse { .. })));
     assert_eq!(build(voigt(), TimeRule::Backward), Ok(()));
     let closure = || Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 + t.sqrt())));
-    assert_eq!(build(closure(), TimeRule::Exponential), Ok(()));
+    // new contract
+    let error = build(closure(), TimeRule::Exponential).unwrap_err();
+    assert!(
+        matches!(error, Error::NoExponentialSeries { .. }) && error.to_string().contains("Builder::times"),
+        "{error}"
+    );
+    assert_eq!(build(closure(), TimeRule::Backward), Ok(()));
     let error = viscocontact::analytic::GrowingSphere::step(10.0e-3, &closure(), 1.0).unwrap_err();
     let Error::NoExponentialSeries { rheology, what: "the solution for a growing contact" } = error else { panic!() };
     assert!(rheology.starts_with("FnRheology"), "{rheology}");
@@ -87,12 +93,16 @@ fn build_says_what_a_material_cannot_do() {
     }
     for series_tolerance in [0.0, 1e-9, 0.2, f64::NAN] {
         let settings = Settings { series_tolerance, ..Settings::default() };
-        let builder = ViscoelasticContact::builder(grid()).geometry(&sphere()).material(closure());
+        let builder = ViscoelasticContact::builder(grid()).geometry(&sphere()).material(closure()).times(1e-3..=1e3);
         let error = builder.settings(settings).build().map(drop).unwrap_err();
         assert!(matches!(error, Error::OutOfRange { field: "Settings::series_tolerance", .. }), "{error}");
     }
     let negative = Material::incompressible(FnRheology::new(|t| t - 1.0));
-    assert!(matches!(build(negative, TimeRule::Exponential), Err(Error::InvalidCompliance { .. })));
+    for rule in [TimeRule::Exponential, TimeRule::Backward] {
+        let settings = Settings { time_rule: rule, ..Settings::default() };
+        let builder = builder_on(grid(), negative.clone()).times(1e-3..=1e3).settings(settings);
+        assert!(matches!(builder.build().map(drop), Err(Error::InvalidCompliance { .. })), "{rule:?}");
+    }
 }
 
 #[test]
@@ -150,7 +160,10 @@ fn running_out_of_iterations_is_an_error_with_numbers() {
 #[test]
 fn an_impossible_closure_is_caught_when_it_is_used() {
     let falling = Material::incompressible(FnRheology::new(|t| 1.0e-6 * (1.0 - 0.1 * t).max(0.5)));
-    let mut contact = contact_with(falling, Settings::default());
+    // new contract: a series is fitted at the build, and a direct sum asks the closure itself
+    let error = builder_on(grid(), falling.clone()).times(1e-2..=1e2).build().unwrap_err();
+    assert!(matches!(error, Error::InvalidCompliance { .. }), "{error}");
+    let mut contact = contact_with(falling, Settings { time_rule: TimeRule::Backward, ..Settings::default() });
     contact.step(0.0, Load::force(0.1)).unwrap();
     let error = assert_untouched(&mut contact, 1.0, Load::force(0.1));
     assert!(matches!(error, Error::InvalidCompliance { .. }), "{error}");

@@ -152,13 +152,15 @@ fn a_power_law_sphere_grows_by_its_law() {
     }
 }
 
-/// Without times the first step chooses them, and says so in the material.
+/// A body without an exact series is fitted when it is built, over the times given there, and the material says how well.
+// new contract
 #[test]
-fn the_first_step_may_choose_the_times() {
+fn a_body_without_an_exact_series_is_fitted_over_the_times_it_is_wanted_for() {
     let closure = || Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
     let exact = |t: f64| 3.0 / 16.0 * RADIUS * FORCE * 1.0e-6 * (1.0 + t.sqrt());
-    let mut contact = builder(64, 0.25e-6 * (1.0 + 10f64.sqrt())).material(closure()).build().unwrap();
-    assert_eq!(contact.material().fit_reports().count(), 0);
+    let wide = builder(64, 0.25e-6 * (1.0 + 10f64.sqrt()));
+    let mut contact = wide.material(closure()).times(1e-3..=1e5).build().unwrap();
+    assert_eq!(contact.material().fit_reports().count(), 1);
     contact.step(0.0, Load::force(FORCE)).unwrap();
     let jump = cubed_radius(&contact) / exact(0.0) - 1.0;
     assert!(jump.abs() < 5e-3, "{jump:e}");
@@ -178,28 +180,20 @@ fn the_first_step_may_choose_the_times() {
     assert_eq!(before, (contact.time(), contact.approach()));
     contact.step(0.1, Load::force(FORCE)).unwrap();
 
-    // a run knows its end
-    let mut contact = builder(64, 0.25e-6 * (1.0 + 1e4)).material(closure()).build().unwrap();
-    let load = StepLoad::new(Load::force(FORCE)).unwrap();
-    let mut run = contact.follow(&load, Stepping::fixed(1e-3), 1e8);
-    run.next_step().unwrap();
-    run.next_step().unwrap();
-    let [_, last] = contact.material().fit_reports().next().unwrap().range().unwrap();
-    assert!((last / 1e8 - 1.0).abs() < 1e-12);
-
-    // a failed first step leaves it open
-    let mut contact = builder(64, 0.5e-6).material(closure()).build().unwrap();
+    // nor does a failed first step change what was fitted
+    let mut contact = builder(64, 0.5e-6).material(closure()).times(1e-5..=1e10).build().unwrap();
     contact.step(0.0, Load::force(FORCE)).unwrap();
     assert!(matches!(contact.step(1e9, Load::force(1e6 * FORCE)), Err(Error::ContactAtEdge { .. })));
-    assert_eq!(contact.material().fit_reports().count(), 0);
     contact.step(1e-3, Load::force(FORCE)).unwrap();
     let [first, _] = contact.material().fit_reports().next().unwrap().range().unwrap();
     assert!((first / 1e-5 - 1.0).abs() < 1e-12);
 
-    // without an elastic response there is no jump before the times are known
-    let power = || Material::incompressible(PowerLaw::new(1.0e-6, 1.0, 0.5).unwrap());
-    let mut contact = builder(64, 0.5e-6).material(power()).build().unwrap();
-    assert!(matches!(contact.step(0.0, Load::force(FORCE)), Err(Error::NoElasticResponse { .. })));
+    // without an elastic response, what it has crept by the shortest time counts as immediate
+    let body = PowerLaw::new(1.0e-6, 1.0, 0.5).unwrap();
+    let mut contact = builder(64, 0.5e-6).material(Material::incompressible(body)).times(1e-2..=1e2).build().unwrap();
+    contact.step(0.0, Load::force(FORCE)).unwrap();
+    let at_first = 3.0 / 16.0 * RADIUS * FORCE * body.creep_compliance(1e-2);
+    assert!(contact.contact_cells() > 0 && cubed_radius(&contact) < 1.01 * at_first);
     contact.step(0.5, Load::force(FORCE)).unwrap();
     // what no series can be fitted to
     let arched = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t * t)));
@@ -207,21 +201,75 @@ fn the_first_step_may_choose_the_times() {
     assert!(matches!(error, Error::PoorFit { tolerance, misfit, .. } if tolerance == 1e-4 && misfit > 1e-2), "{error}");
 }
 
-/// Waiting without load decides nothing, and steps shorter than what the first one chose are refused.
+/// Without times it is not built, and the error names what is missing; a direct sum needs none.
+// new contract
 #[test]
-fn waiting_chooses_no_times() {
+fn a_body_without_an_exact_series_is_not_built_without_times() {
+    let bodies = || {
+        let closure = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
+        [closure, Material::incompressible(PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap())]
+    };
+    for body in bodies() {
+        let built = builder(16, 0.5e-6).material(body.clone());
+        for error in [built.memory().unwrap_err(), built.build().unwrap_err()] {
+            assert!(matches!(error, Error::NoExponentialSeries { .. }), "{error}");
+            assert!(error.to_string().contains("Builder::times"), "{error}");
+        }
+        // nor as one of two bodies, of which the other has a series
+        let error = builder(16, 0.5e-6).material(maxwell()).counter_body(body.clone()).build().unwrap_err();
+        assert!(matches!(error, Error::NoExponentialSeries { .. }), "{error}");
+        let settings = Settings { time_rule: TimeRule::Backward, ..Settings::default() };
+        builder(16, 0.5e-6).material(body).settings(settings).build().unwrap();
+    }
+    // where there is a series, nothing is asked
+    builder(16, 0.5e-6).material(maxwell()).build().unwrap();
+}
+
+/// A load history and its end say over which times a body is wanted.
+// new contract
+#[test]
+fn a_history_and_its_end_give_the_times() {
+    let closure = || Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
+    let load = StepLoad::new(Load::force(FORCE)).unwrap();
+    let wide = builder(64, 0.25e-6 * (1.0 + 1e4));
+    let mut contact = wide.material(closure()).times_of(&load, 1e8).build().unwrap();
+    let [_, last] = contact.material().fit_reports().next().unwrap().range().unwrap();
+    assert!((last / 1e8 - 1.0).abs() < 1e-12);
+    let mut run = contact.follow(&load, Stepping::fixed(1e-3), 1e8);
+    run.next_step().unwrap();
+    run.next_step().unwrap();
+    // what happens between corners of the load is resolved
+    let corners = [(0.0, 0.0), (1.0, 1.0), (1.01, 0.5), (10.0, 0.5)];
+    let table = PiecewiseLinear::new(&corners.map(|(time, force)| (time, Load::force(force * FORCE)))).unwrap();
+    let mut contact = builder(32, 0.25e-6 * 5.0).material(closure()).times_of(&table, 10.0).build().unwrap();
+    let [first, last] = contact.material().fit_reports().next().unwrap().range().unwrap();
+    assert!(first <= 0.01 && (last / 10.0 - 1.0).abs() < 1e-12, "{first:e} {last:e}");
+    let mut run = contact.follow(&table, Stepping::adaptive(1e-3), 10.0);
+    while run.next_step().unwrap().is_some() {}
+    assert_eq!(contact.time(), 10.0);
+    for end in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = builder(16, 0.5e-6).material(closure()).times_of(&load, end).build().unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { .. }), "{end}: {error}");
+    }
+}
+
+/// Waiting without load changes nothing that follows, and steps may be as short as the times and shorter.
+// new contract
+#[test]
+fn waiting_changes_nothing_that_follows() {
     let power = || Material::incompressible(PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap());
     let grid = || builder(32, 0.05e-6);
-    let mut waited = grid().material(power()).build().unwrap();
+    let built = || grid().material(power()).times(1e-8..=1e4).build().unwrap();
+    let mut waited = built();
     waited.step(1.0, Load::force(0.0)).unwrap();
     waited.step(1e-5, Load::force(0.01)).unwrap();
-    let mut told = grid().material(power()).times(1e-8..=1e4).build().unwrap();
+    let mut told = built();
     told.step(1e-5, Load::force(0.01)).unwrap();
     assert!((waited.approach() / told.approach() - 1.0).abs() < 2e-2, "{} {}", waited.approach(), told.approach());
-    let error = waited.step(1e-8, Load::force(0.01)).unwrap_err();
-    assert!(matches!(error, Error::BelowMaterial { .. }), "{error}");
+    waited.step(1e-8, Load::force(0.01)).unwrap();
+    waited.step(1e-10, Load::force(0.01)).unwrap();
     // a run with an impossible end leaves no mark
-    let mut contact = grid().material(power()).build().unwrap();
+    let mut contact = built();
     let load = StepLoad::new(Load::force(0.01)).unwrap();
     assert!(contact.follow(&load, Stepping::fixed(1.0), f64::INFINITY).next_step().is_err());
     contact.step(1e-3, Load::force(0.01)).unwrap();

@@ -182,6 +182,21 @@ fn plans_find_the_domain_whatever_its_size() {
     }
 }
 
+/// A body without an exact series is wanted over the times of the run that is planned: nobody has to say so.
+// new contract
+#[test]
+fn plans_give_the_times_over_which_a_body_is_wanted() {
+    let material = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
+    let (sphere, load) = (Sphere::new(RADIUS).unwrap(), StepLoad::new(Load::force(1.0)).unwrap());
+    let plan = Plan::new(&sphere, &material, &load, 10.0, Accuracy::Coarse).unwrap();
+    let contact = plan.builder().build().unwrap();
+    let [first, last] = contact.material().fit_reports().next().unwrap().range().unwrap();
+    assert!(first < 0.1 && (last / 10.0 - 1.0).abs() < 1e-12, "{first:e} {last:e}");
+    let held = |t: f64| (0.75 * RADIUS * material.contact_compliance(t)).powf(2.0 / 3.0) / RADIUS;
+    let outcome = deliver(&sphere, &material, &load, 10.0, Accuracy::Coarse, |t, _| (held(t), None));
+    check("held on a closure", Accuracy::Coarse, &outcome);
+}
+
 #[test]
 fn accuracies_out_of_range_are_refused() {
     let (shape, load) = (Sphere::new(10.0e-3).unwrap(), StepLoad::new(Load::force(1.0)).unwrap());
