@@ -1,10 +1,10 @@
 //! Times of the parts and of the whole: cold solve, warm step, scene.
 
-#[path = "../tests/common/mod.rs"]
-mod common;
+#[path = "../tests/common/step_loaded_sphere.rs"]
+mod step_loaded_sphere;
 
-use common::StepLoadedSphere;
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
+use step_loaded_sphere::StepLoadedSphere;
 use viscocontact::prelude::*;
 
 /// What is computed, and how.

@@ -145,11 +145,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
         .geometry(&Sum::new(Sphere::new(args.radius)?, roughness.clone()))
         .material(rubber.clone())
         .build()?;
-    // the library writes over nothing: what an earlier run of this example left goes first
-    let table = args.output.join("history.csv");
-    if table.exists() {
-        fs::remove_file(&table)?;
-    }
+    let table = support::cleared(args.output.join("history.csv"))?;
     let scene = Metadata::new("Rough ball on rubber").note("radius", format!("{} m", args.radius));
     let mut history = CsvHistory::create(&table, &scene, &contact, &["patches", "smooth ball: contact area [m2]"])?;
 
@@ -165,7 +161,7 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
     let (mut steps, mut work, mut maps) = (0, 0.0, Vec::new());
     let load = StepLoad::new(Load::force(args.load))?;
     let progress = ProgressBar::new(shown.len() as u64);
-    let mut run = contact.follow(&load, Stepping::adaptive(1e-3), last).landing_on(&shown)?;
+    let mut run = contact.follow(&load, Stepping::adaptive(1e-3), last).stop_at(&shown)?;
     while let Some(report) = run.next_step()? {
         let contact = run.contact();
         (steps, work) = (steps + 1, work + report.convolution_equivalents());

@@ -161,7 +161,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let (mut work, mut worst) = ((0, 0.0), 0.0_f64);
     let progress = ProgressBar::new(shown.len() as u64);
     let history = StepLoad::new(Load::force(force))?;
-    let mut follow = contact.follow(&history, Stepping::adaptive(args.error), args.to).landing_on(&shown)?;
+    let mut follow = contact.follow(&history, Stepping::adaptive(args.error), args.to).stop_at(&shown)?;
     while let Some(report) = follow.next_step()? {
         let contact = follow.contact();
         work = (work.0 + 1, work.1 + report.convolution_equivalents());
@@ -321,28 +321,18 @@ struct Files {
 
 impl Files {
     fn create(args: &Args, scene: &Metadata, contact: &ViscoelasticContact) -> Result<Files, Box<dyn Error>> {
-        // the library writes over nothing: what an earlier run of this example left goes first
-        let table = args.output.join("history.csv");
-        if table.exists() {
-            fs::remove_file(&table)?;
-        }
-        #[cfg(any(feature = "npy", feature = "vtk"))]
-        for folder in ["npz", "vtk"].map(|name| args.output.join(name)) {
-            if folder.exists() {
-                fs::remove_dir_all(&folder)?;
-            }
-        }
+        let table = support::cleared(args.output.join("history.csv"))?;
         Ok(Files {
             history: CsvHistory::create(&table, scene, contact, &[])?,
             #[cfg(feature = "npy")]
             npz: viscocontact::output::NpzSeries::create(
-                args.output.join("npz"),
+                support::cleared(args.output.join("npz"))?,
                 scene.clone(),
                 &viscocontact::output::Field::ALL,
             )?,
             #[cfg(feature = "vtk")]
             vtk: viscocontact::output::VtkSeries::create(
-                args.output.join("vtk"),
+                support::cleared(args.output.join("vtk"))?,
                 scene.clone(),
                 &viscocontact::output::Field::ALL,
             )?,

@@ -155,10 +155,7 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     #[cfg(feature = "vtk")]
     {
         use viscocontact::output::{Field, Metadata, VtkSeries};
-        let folder = output.join("vtk");
-        if folder.exists() {
-            fs::remove_dir_all(&folder)?; // a series is never written over
-        }
+        let folder = support::cleared(output.join("vtk"))?;
         let scene = Metadata::new("Sphere sliding steadily").note("friction", friction.to_string());
         VtkSeries::create(folder, scene, &Field::ALL)?.write(&contact)?;
     }
@@ -185,10 +182,7 @@ fn there_and_back(bodies: &Bodies, cells: usize, output: &File) -> Result<(), Bo
         .build()?;
     contact.step(0.0, bodies.load)?;
     let scene = viscocontact::output::Metadata::new("Sphere sliding there and back");
-    let history = output.join("there_and_back.csv");
-    if history.exists() {
-        fs::remove_file(&history)?; // a history is never written over
-    }
+    let history = support::cleared(output.join("there_and_back.csv"))?;
     let columns = ["position [m]", "lateral force [N]", "power [W]"];
     let mut table = viscocontact::output::CsvHistory::create(&history, &scene, &contact, &columns)?;
     let (mut friction, mut sinking) = (Vec::new(), Vec::new());

@@ -3,8 +3,8 @@
 //!
 //! `cargo run --release --example step_loaded_sphere` takes no argument; `-- --help` lists them.
 
-#[path = "../tests/common/mod.rs"]
-mod common;
+#[path = "../tests/common/step_loaded_sphere.rs"]
+mod scene;
 mod support;
 
 use std::error::Error;
@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::{Parser, ValueEnum};
-use common::{Errors, StepLoadedSphere, errors};
 use indicatif::{ProgressBar, ProgressStyle};
+use scene::{Errors, StepLoadedSphere, errors};
 use viscocontact::analytic::{GrowingSphere, Hertz};
 use viscocontact::plot::{COLORS, Chart, Color, Legend, Scale, Style};
 use viscocontact::prelude::*;

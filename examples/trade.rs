@@ -203,7 +203,7 @@ impl Scene {
             (false, None) => Stepping::fixed(self.until / asked),
             (false, Some(_)) => Stepping::fixed(2.0 * self.until),
         };
-        let mut run = contact.follow(&*self.history, stepping, self.until).landing_on(&landings)?;
+        let mut run = contact.follow(&*self.history, stepping, self.until).stop_at(&landings)?;
         loop {
             match run.next_step() {
                 Ok(Some(report)) => {

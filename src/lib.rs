@@ -94,7 +94,7 @@
 //!
 //! # Features
 //!
-//! `checkpoint`: saves the state to a file and resumes from it ([`contact::Follow`]`::keeping`,
+//! `checkpoint`: saves the state to a file and resumes from it ([`contact::Follow`]`::autosave_to`,
 //! `ViscoelasticContact::save` and `resume`).
 //!
 //! `csv` (on by default): tables of measured data from CSV files.

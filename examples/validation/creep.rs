@@ -8,9 +8,9 @@ use viscocontact::plot::Legend;
 use viscocontact::prelude::*;
 
 use crate::claim::{Checked, Outcome};
-use crate::common::{StepLoadedSphere, errors};
 use crate::elastic::{G, along_x1, between};
 use crate::rolling::RollingCylinder;
+use crate::step_loaded_sphere::{StepLoadedSphere, errors};
 
 pub fn step_loaded(scene: &StepLoadedSphere, name: &'static str) -> Outcome {
     let reference = scene.reference()?;

@@ -4,12 +4,12 @@
 //! `cargo run --release --example validation`
 
 mod claim;
-#[path = "../../tests/common/mod.rs"]
-mod common;
 mod creep;
 mod elastic;
 #[path = "../../tests/common/rolling.rs"]
 mod rolling;
+#[path = "../../tests/common/step_loaded_sphere.rs"]
+mod step_loaded_sphere;
 #[path = "../support/mod.rs"]
 mod support;
 
@@ -20,8 +20,8 @@ use std::path::{Path, PathBuf};
 
 use claim::{Checked, Claim, Outcome};
 use clap::Parser;
-use common::StepLoadedSphere;
 use indicatif::ProgressBar;
+use step_loaded_sphere::StepLoadedSphere;
 use viscocontact::plot::{COLORS, Chart, Legend, Picture, Scale, Style};
 
 /// Computes every claim against its reference.

@@ -27,7 +27,7 @@ use crate::memory;
 /// and per cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are several
 /// bodies. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.
 ///
-/// Counted allocations agree to 5 % and a few kB (a test asserts it). Not included: the displacement where not all cells are
+/// Counted allocations agree to 5 % and a few kB (`tests/allocations`). Not included: the displacement where not all cells are
 /// computed, made on first use, with a kernel for the whole grid; 8 bytes per computed cell from the first load that tilts,
 /// or presses several bodies; [snapshots](crate::contact::Snapshot); the old state during a step that moves to a larger
 /// window.

@@ -137,7 +137,7 @@ fn eliminate(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
 }
 
 /// e^z E1(z) for z > 0: the series of E1 or its continued fraction (Abramowitz & Stegun 5.1.11, 5.1.22).
-fn scaled_e1(z: f64) -> f64 {
+pub fn scaled_e1(z: f64) -> f64 {
     if z < 2.0 {
         let (mut sum, mut term) = (0.0, 1.0);
         for n in 1..60 {
@@ -156,7 +156,7 @@ fn scaled_e1(z: f64) -> f64 {
 }
 
 /// e^(−z) Ei(z) for z > 0: its series, or where that is long the asymptotic one.
-fn scaled_ei(z: f64) -> f64 {
+pub fn scaled_ei(z: f64) -> f64 {
     if z < 40.0 {
         let (mut sum, mut term) = (0.0, 1.0);
         for n in 1..200 {
@@ -174,16 +174,3 @@ fn scaled_ei(z: f64) -> f64 {
 }
 
 const EULER: f64 = 0.577_215_664_901_532_9;
-
-#[test]
-fn exponential_integrals_of_the_reference() {
-    // Abramowitz & Stegun, tables 5.1 and 5.2
-    let cases = [(1.0, 0.219_383_934_395_520_3), (2.0, 0.048_900_510_708_061_1), (0.5, 0.559_773_594_776_160_2)];
-    cases.iter().for_each(|&(z, e1): &(f64, f64)| assert!((scaled_e1(z) / z.exp() / e1 - 1.0).abs() < 1e-12));
-    assert!((scaled_e1(10.0) / 0.915_633_339_397_880_8 * 10.0 - 1.0).abs() < 1e-9);
-    assert!((scaled_ei(1.0) * 1f64.exp() / 1.895_117_816_355_936_8 - 1.0).abs() < 1e-12);
-    // scipy.special.expi, either side of where the series changes
-    assert!((scaled_ei(39.9) / 0.025_724_918_815_090_737 - 1.0).abs() < 1e-12);
-    assert!((scaled_ei(40.1) / 0.025_593_145_386_960_604 - 1.0).abs() < 1e-12);
-    assert!((scaled_ei(100.0) / 0.010_102_062_527_748_357 - 1.0).abs() < 1e-12);
-}

@@ -1,30 +1,14 @@
 //! Runs of all kinds, for tests of what must not change their course.
-#![allow(dead_code, reason = "each user takes what it needs")]
 
 use std::sync::Arc;
 
 use viscocontact::prelude::*;
 
+use super::bodies::{power_law, three_times};
+use super::spheres::{builder_on, sphere, sphere_on};
+
 pub type Build = Box<dyn Fn() -> ViscoelasticContact>;
 pub type Step = Box<dyn Fn(&mut ViscoelasticContact, u32) -> StepReport>;
-
-pub fn sphere_on(grid: Grid, material: Material, settings: Settings) -> ViscoelasticContact {
-    ViscoelasticContact::builder(grid)
-        .geometry(&Sphere::new(10.0e-3).unwrap())
-        .material(material)
-        .settings(settings)
-        .build()
-        .unwrap()
-}
-
-pub fn three_times() -> Material {
-    let terms = [(1.0e6, 0.03), (0.5e6, 0.3), (0.5e6, 3.0)];
-    Material::incompressible(GeneralizedMaxwell::new(0.1e6, &terms).unwrap())
-}
-
-pub fn power_law() -> Material {
-    Material::constant_poisson(PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap(), 0.3).unwrap()
-}
 
 /// A load that rises, falls and rises, with a jump now and then.
 pub fn wandering(contact: &mut ViscoelasticContact, k: u32) -> StepReport {
@@ -54,7 +38,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
     let strip = || {
         let grid = Grid::new([64, 24], [8.0e-3, 3.0e-3]).unwrap();
         ViscoelasticContact::builder(grid.clone())
-            .geometry(&Sphere::new(10.0e-3).unwrap())
+            .geometry(&sphere())
             .material(three_times())
             .kernel(Arc::new(InfluenceKernel::periodic_along(&grid, 1, 1.0).unwrap()))
             .build()
@@ -62,7 +46,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
     };
     let sliding = |contact: &mut ViscoelasticContact, k: u32| {
         let path = Straight::new([0.0; 2], [0.004, 0.003]).unwrap();
-        let travel = Travel::new(Repeated::new(Sphere::new(10.0e-3).unwrap(), [f64::INFINITY, 3.0e-3]).unwrap(), path);
+        let travel = Travel::new(Repeated::new(sphere(), [f64::INFINITY, 3.0e-3]).unwrap(), path);
         contact.step_along(&travel, if k == 0 { 0.0 } else { 5.0e-3 }, Load::force(0.1)).unwrap().step
     };
     let tilting = |contact: &mut ViscoelasticContact, k: u32| {
@@ -70,7 +54,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
         contact.step(0.02, Load::eccentric_force(0.3, at)).unwrap()
     };
     let two = || {
-        let at = |x: f64| Shifted::new(Sphere::new(10.0e-3).unwrap(), [x, 0.0]).unwrap();
+        let at = |x: f64| Shifted::new(sphere(), [x, 0.0]).unwrap();
         ViscoelasticContact::builder(Grid::new([96, 48], [8.0e-3, 4.0e-3]).unwrap())
             .geometry(&at(-2.0e-3))
             .another_body(&at(2.0e-3))
@@ -94,7 +78,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
         ),
         (
             "fitted",
-            Box::new(move || sphere_on(grid(), power_law(), Settings::default())),
+            Box::new(move || builder_on(grid(), power_law()).times(2e-4..=2e4).build().unwrap()),
             Box::new(|c, k| c.step(0.02, Load::force(0.1 + 0.01 * f64::from(k % 9))).unwrap()),
         ),
         ("line, rolling", Box::new(line), Box::new(rolling)),

@@ -21,7 +21,7 @@ fn plan(source: &mut Source) -> Verdict {
         Plan::new(&geometry, &material, &*history, source.scale(0.3, 3.0), accuracy)
     });
     judged(made, |plan| {
-        let (error, [reach1, reach2]) = (plan.spatial_error(), plan.reach());
+        let (error, [reach1, reach2]) = (plan.mesh_error(), plan.reach());
         let numbers = [reach1, reach2, plan.convolutions(), error.approach, error.greatest_pressure, error.area];
         finite("plan", numbers.into_iter().chain([error.singular]))?;
         let text = plan.to_string();

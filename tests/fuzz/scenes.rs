@@ -31,12 +31,12 @@ struct Scale {
 fn settings(source: &mut Source) -> Settings {
     let frame = if source.chance(0.2) { Frame::Indenter } else { Frame::Bodies };
     let rules =
-        [TimeRule::Automatic, TimeRule::Automatic, TimeRule::Exponential, TimeRule::Rectangle, TimeRule::Backward];
+        [TimeRule::Exponential, TimeRule::Exponential, TimeRule::Exponential, TimeRule::Rectangle, TimeRule::Backward];
     Settings {
         tolerance: source.scale(1e-10, 1e-2),
         max_iterations: source.choose(&[1, 3, 30, 200, 200, 200, 0]),
         solver: source.choose(&[Solver::ActiveSet, Solver::ActiveSet, Solver::PolonskyKeer]),
-        time_rule: if frame == Frame::Indenter { TimeRule::Automatic } else { source.choose(&rules) },
+        time_rule: if frame == Frame::Indenter { TimeRule::Exponential } else { source.choose(&rules) },
         edge: source.choose(&[Edge::Allow, Edge::Allow, Edge::Refuse]),
         series_tolerance: source.scale(1e-4, 1e-1),
         history_limit: source.choose(&[2 << 30, 2 << 30, 2 << 30, 4000]),
@@ -62,7 +62,7 @@ fn build(source: &mut Source, fitted: bool, settings: Settings) -> viscocontact:
     if source.chance(0.6) {
         builder = builder.kernel(Arc::new(models::kernel(source, &grid)?));
     }
-    if fitted && source.chance(0.5) {
+    if fitted {
         let first = source.scale(1e-4, 1.0);
         let times = first..=first * source.scale(1.0, 1e6);
         if !models::is_long_fit(&times) {
@@ -100,7 +100,7 @@ pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Sou
         finite("body", [body.approach, body.force].into_iter().chain(body.tilt))?;
         finite("moment of a body", body.moment)?;
     }
-    let space = contact.spatial_error();
+    let space = contact.mesh_error();
     known("error of the mesh", [space.approach, space.greatest_pressure, space.area, space.singular])?;
     known("pressures", [contact.mean_pressure(), contact.greatest_pressure()])?;
     if let Ok(patches) = contact.patches() {
@@ -195,7 +195,7 @@ fn follow(source: &mut Source) -> Verdict {
     let landings = [source.between(0.0, 1.0) * until, source.between(0.0, 1.0) * until];
     let mut reports = Vec::new();
     {
-        let Ok(mut run) = contact.follow(&*history, stepping, until).landing_on(&landings) else {
+        let Ok(mut run) = contact.follow(&*history, stepping, until).stop_at(&landings) else {
             return Ok(Outcome::Refused);
         };
         // no more than these, or the slowest scenes take for ever
@@ -211,7 +211,7 @@ fn follow(source: &mut Source) -> Verdict {
             }
         }
         let budget = run.error_budget();
-        known("error budget", [budget.time, budget.space.approach, budget.solver])?;
+        known("error budget", [budget.time, budget.mesh.approach, budget.solver])?;
     }
     if reports.windows(2).any(|pair| pair[1].time < pair[0].time) {
         return Err("time runs backwards".to_owned());
@@ -221,7 +221,7 @@ fn follow(source: &mut Source) -> Verdict {
 
 fn moving(source: &mut Source) -> Verdict {
     let frame = source.choose(&[Frame::Bodies, Frame::Indenter, Frame::Indenter]);
-    let settings = Settings { frame, time_rule: TimeRule::Automatic, ..settings(source) };
+    let settings = Settings { frame, time_rule: TimeRule::Exponential, ..settings(source) };
     let Ok(Scale { mut contact, length, softness }) = build(source, false, settings) else {
         return Ok(Outcome::Refused);
     };

@@ -1,0 +1,23 @@
+//! What is allocated, counted: by steps nothing, by a contact what its builder announces.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod memory;
+mod steps;
+
+use std::alloc::System;
+
+use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+// Without the test harness, whose own threads would be counted: the allocator counts the whole process.
+fn main() {
+    steps::steps_allocate_nothing();
+    println!("steps allocate nothing: ok");
+    steps::tilting_steps_allocate_nothing();
+    println!("tilting steps allocate nothing: ok");
+    memory::builders_announce_what_is_counted();
+    println!("builders announce what is counted: ok");
+}

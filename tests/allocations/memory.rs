@@ -1,0 +1,158 @@
+//! What a builder tells of memory, against what is counted.
+
+use crate::common::bodies::elastic;
+use std::alloc::System;
+use std::sync::Arc;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use stats_alloc::Region;
+use viscocontact::contact::Memory;
+use viscocontact::prelude::*;
+
+use crate::ALLOCATOR;
+
+/// What a contact keeps beside its fields: names, plans of transforms, traces of the solver.
+const SMALL: f64 = 16.0e3;
+/// What the threads of a fit keep for the next one, now and then.
+const OF_FITS: f64 = 64.0e3;
+
+/// Bytes taken since, and not given back.
+fn taken(region: &Region<'_, System>) -> f64 {
+    let change = region.change();
+    change.bytes_allocated as f64 - change.bytes_deallocated as f64
+}
+
+struct Scene {
+    grid: Grid,
+    kernel: fn(&Grid) -> Result<InfluenceKernel>,
+    bodies: usize,
+    lopsided: bool,
+    terms: usize,
+    fitted: bool,
+    settings: Settings,
+}
+
+fn one_of<T: Copy>(random: &mut ChaCha8Rng, of: &[T]) -> T {
+    of[random.next_u32() as usize % of.len()]
+}
+
+fn scene(random: &mut ChaCha8Rng) -> Scene {
+    type Kernel = fn(&Grid) -> Result<InfluenceKernel>;
+    let line: Kernel = |grid| InfluenceKernel::line(grid, 10.0);
+    let kernels: [Kernel; 6] = [
+        InfluenceKernel::half_space,
+        InfluenceKernel::half_space,
+        InfluenceKernel::periodic,
+        |grid| InfluenceKernel::periodic_along(grid, 1, 10.0),
+        line,
+        |grid| InfluenceKernel::from_coefficients(grid, |i, j| (-0.1 * f64::hypot(i as f64, j as f64)).exp()),
+    ];
+    let which = random.next_u32() as usize % kernels.len();
+    let sizes = [32, 45, 64, 96, 128, 150, 200, 256, 384, 512];
+    let cells = match which {
+        4 => [one_of(random, &[32, 45, 150, 256, 512, 1000, 4096, 5000, 16384, 30000, 65536]), 1],
+        _ => [one_of(random, &sizes), one_of(random, &sizes)],
+    };
+    let frame = one_of(random, &[Frame::Bodies, Frame::Bodies, Frame::Bodies, Frame::Indenter]);
+    let rules =
+        [TimeRule::Exponential, TimeRule::Exponential, TimeRule::Exponential, TimeRule::Backward, TimeRule::Rectangle];
+    let time_rule = if frame == Frame::Indenter { TimeRule::Exponential } else { one_of(random, &rules) };
+    let solver = one_of(random, &[Solver::ActiveSet, Solver::ActiveSet, Solver::PolonskyKeer]);
+    let (symmetry, window) = (one_of(random, &[true, false]), one_of(random, &[true, false]));
+    Scene {
+        grid: Grid::new(cells, cells.map(|cells| 1.0e-5 * cells as f64)).unwrap(),
+        kernel: kernels[which],
+        bodies: one_of(random, &[1, 1, 2, 3]),
+        lopsided: one_of(random, &[true, false, false]),
+        terms: one_of(random, &[0, 1, 2, 5, 12]),
+        fitted: one_of(random, &[true, false, false]),
+        settings: Settings { solver, time_rule, frame, symmetry, window, edge: Edge::Allow, ..Settings::default() },
+    }
+}
+
+impl Scene {
+    fn builder(&self, kernel: &Arc<InfluenceKernel>) -> Builder {
+        let [length, _] = self.grid.lengths();
+        let aside = if self.lopsided { 0.013 * length } else { 0.0 };
+        let sphere = || Sphere::new(10.0e-3).unwrap();
+        let mut builder = ViscoelasticContact::builder(self.grid.clone())
+            .geometry(&Shifted::new(sphere(), [aside, 0.5 * aside]).unwrap())
+            .kernel(Arc::clone(kernel))
+            .settings(self.settings);
+        for body in 1..self.bodies {
+            let beside = if body == 1 { 0.3 } else { -0.3 };
+            builder = builder.another_body(&Shifted::new(sphere(), [beside * length, 0.0]).unwrap());
+        }
+        let terms: Vec<_> = (0..self.terms).map(|k| (1.0e6, 10f64.powf(0.5 * k as f64))).collect();
+        if self.fitted {
+            let body = PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap();
+            return builder.material(Material::incompressible(body)).times(1.0e-2..=1.0e1);
+        }
+        builder.material(match terms.len() {
+            0 => elastic(),
+            _ => Material::incompressible(GeneralizedMaxwell::new(1.0e6, &terms).unwrap()),
+        })
+    }
+}
+
+pub fn builders_announce_what_is_counted() {
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    // threads and what fits keep for the next are taken once
+    let warm = Scene { fitted: true, bodies: 1, settings: Settings::default(), ..scene(&mut random) };
+    let warm = Scene { grid: Grid::square(256, 1.0e-2).unwrap(), kernel: InfluenceKernel::half_space, ..warm };
+    drop(warm.builder(&Arc::new((warm.kernel)(&warm.grid).unwrap())).build().unwrap());
+    #[cfg(feature = "rayon")]
+    rayon::broadcast(|_| ());
+    let (mut equal, mut bounded, mut grown) = (0, 0, 0);
+    for number in 0..300 {
+        let scene = scene(&mut random);
+        let kernel = Arc::new((scene.kernel)(&scene.grid).unwrap());
+        // what coefficients and their proof took is the user's
+        let region = Region::new(ALLOCATOR);
+        let builder = scene.builder(&kernel);
+        let asked = Region::new(ALLOCATOR);
+        let memory: Memory = match builder.memory() {
+            Ok(memory) => memory,
+            Err(error) => {
+                assert!(scene.fitted || matches!(error, Error::NoElasticResponse { .. }), "{error}");
+                assert_eq!(builder.build().unwrap_err().to_string(), error.to_string());
+                continue;
+            }
+        };
+        let small = SMALL + if scene.fitted { OF_FITS } else { 0.0 };
+        assert!(taken(&asked).abs() < small, "{number}: {} bytes stay after the question", taken(&asked));
+        let contact = builder.build().unwrap();
+        let (counted, told) = (taken(&region), memory.total() as f64);
+        let what = format!(
+            "{number}: {counted} counted, {told} told, {:?} cells of {}, {} bodies, {} terms, {:?}: {memory}",
+            scene.grid.cells(),
+            contact.kernel(),
+            scene.bodies,
+            scene.terms,
+            scene.settings
+        );
+        assert!(counted <= 1.05 * told + small, "{what}");
+        // a window is as small as the contact at first, and may grow
+        let on_half_space = contact.kernel().to_string() == "half-space";
+        let recursive = scene.settings.frame == Frame::Bodies && memory.each_step == 0;
+        let least = if scene.settings.window && on_half_space && recursive { 0.0 } else { 0.95 };
+        assert!(counted >= least * told - small, "{what}");
+        if least > 0.0 {
+            equal += 1;
+            continue;
+        }
+        // which is when it takes the most; contact at the edge of the grid is no matter here
+        let mut contact = contact;
+        for force in [1.0e-3, 1.0e-1, 10.0] {
+            let stepped = contact.step_each(0.0, &vec![Load::force(force); scene.bodies]);
+            grown += usize::from(stepped.is_ok_and(|_| taken(&region) > 2.0 * counted));
+            // what the solver makes for several bodies when it first needs it
+            let late = if scene.bodies > 1 { 32.0 * memory.computed_cells as f64 } else { 0.0 };
+            assert!(taken(&region) <= 1.05 * told + small + late, "{} after a step: {what}", taken(&region));
+        }
+        bounded += 1;
+    }
+    println!("{equal} {bounded} {grown}");
+    assert!(equal > 200 && bounded > 10 && grown > 20, "{equal} {bounded} {grown}");
+}

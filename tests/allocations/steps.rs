@@ -1,0 +1,217 @@
+//! A step allocates nothing: every buffer is made when the contact is built.
+
+use crate::ALLOCATOR;
+use crate::common::step_loaded_sphere::StepLoadedSphere;
+use stats_alloc::Region;
+use viscocontact::prelude::*;
+
+/// Steps of tilting bodies and of several bodies, from the third on, whatever becomes of them: warm steps, cold starts after
+/// a jump of the load, and the fall-back. Returns how many steps there were with iterations of the fall-back.
+fn count_tilting_steps<const N: usize>(mut contact: ViscoelasticContact, loads: impl Fn(usize) -> [Load; N]) -> usize {
+    let mut fallback = 0;
+    for step in 0..600 {
+        let (dt, loads) = (if step % 5 == 0 { 0.0 } else { 0.1 }, loads(step));
+        let region = Region::new(ALLOCATOR);
+        let Ok(report) = contact.step_each(dt, &loads) else { continue };
+        let change = region.change();
+        assert!(step < 2 || (change.allocations, change.reallocations) == (0, 0), "{step} {loads:?}: {change:?}");
+        fallback += usize::from(report.fallback_iterations > 0);
+    }
+    fallback
+}
+
+pub fn tilting_steps_allocate_nothing() {
+    let side = 4.0e-3;
+    let random = |step: usize, kind: u64| {
+        let mut state = (step as u64 * 31 + kind + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        state = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        state = (state ^ (state >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((state ^ (state >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    let rough = |x: f64, y: f64| 50.0 * (x * x + y * y) + 1.0e-6 * (9.0e3 * x + 1.0).sin() * (7.0e3 * y + 2.0).cos();
+    let half = |centre: f64| {
+        let own = move |x: f64| (x - centre).abs() < 0.24 * side;
+        FnGeometry::new(move |x, y| if own(x) { rough(x - centre, y) } else { f64::INFINITY })
+    };
+    let at = |step: usize, reach: f64| [0, 1].map(|axis| reach * (random(step, axis) - 0.5) * side);
+    let wandering = |step: usize| [Load::eccentric_force(1.0, [0.1e-3 + 1.0e-6 * step as f64, 0.05e-3])];
+    let jumping = |step: usize| [Load::eccentric_force(10f64.powf(3.0 * random(step, 2) - 3.0), at(step, 0.4))];
+    let pivoted = |step: usize| {
+        let tilt = at(step, 0.6).map(|at| Tilt::Free { at });
+        [Load::Approach { approach: 3.0e-5 * (random(step, 2) - 0.2), tilt }]
+    };
+    let beside = |step: usize| {
+        [-0.25, 0.25].map(|centre| {
+            let [x, y] = at(step, 0.2);
+            Load::eccentric_force(0.5 + 0.4 * random(step, 3), [x + centre * side, y])
+        })
+    };
+    let mut fallback = [0; 5];
+    for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
+        let builder = || {
+            ViscoelasticContact::builder(Grid::new([24, 30], [side, side]).unwrap())
+                .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
+                .settings(Settings { solver, window: false, edge: Edge::Allow, ..Settings::default() })
+        };
+        let punch = || builder().geometry(&FlatPunch::circular(1.4e-3).unwrap()).build().unwrap();
+        let bowl = || builder().geometry(&FnGeometry::new(rough)).build().unwrap();
+        let two = || builder().geometry(&half(-0.25 * side)).another_body(&half(0.25 * side)).build().unwrap();
+        let counts = [
+            count_tilting_steps(punch(), wandering),
+            count_tilting_steps(punch(), jumping),
+            count_tilting_steps(bowl(), jumping),
+            count_tilting_steps(bowl(), pivoted),
+            count_tilting_steps(two(), beside),
+        ];
+        fallback.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
+    }
+    println!("steps with the fall-back: {fallback:?}");
+    assert!(fallback.iter().sum::<usize>() > 0, "no step needs the fall-back");
+}
+
+pub fn steps_allocate_nothing() {
+    let scene = StepLoadedSphere::zener();
+    for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
+        for (cells, symmetry) in [(32, true), (32, false), (45, true)] {
+            let whole = Settings { solver, symmetry, window: false, ..Settings::default() };
+            let mut contact = scene.contact(cells, whole).unwrap();
+            let region = Region::new(ALLOCATOR);
+            contact.step(0.0, Load::force(1.0)).unwrap();
+            for step in 0..80 {
+                contact.step(0.02, Load::force(1.0 - 0.01 * step as f64)).unwrap();
+            }
+            let change = region.change();
+            assert_eq!((change.allocations, change.reallocations), (0, 0), "{solver:?} on {cells}²: {change:?}");
+
+            // a window takes memory while it grows, and then no more
+            let wide = Grid::square(3 * cells, 3.0 * scene.grid(cells).unwrap().lengths()[0]).unwrap();
+            let mut contact = scene.contact_on(wide, Settings { solver, symmetry, ..Settings::default() }).unwrap();
+            contact.step(0.0, Load::force(1.0)).unwrap();
+            let region = Region::new(ALLOCATOR);
+            for step in 0..80 {
+                contact.step(0.02, Load::force(1.0 - 0.012 * step as f64)).unwrap();
+            }
+            let change = region.change();
+            assert_eq!((change.allocations, change.reallocations), (0, 0), "{solver:?} on {cells}²: {change:?}");
+        }
+    }
+
+    // nor do steps over the bodies, on any kernel, with several relaxation times
+    let body = || {
+        let terms = [(1.0e6, 0.1), (1.0e6, 1.0), (1.0e6, 10.0)];
+        Material::incompressible(GeneralizedMaxwell::new(1.0e6, &terms).unwrap())
+    };
+    let (line, plane) = (Grid::new([256, 1], [8.0e-3, 1.0]).unwrap(), Grid::square(48, 8.0e-3).unwrap());
+    let kernels = [
+        (InfluenceKernel::line(&line, 1.0), 100.0),
+        (InfluenceKernel::half_space(&plane), 0.5),
+        (InfluenceKernel::periodic(&plane), 0.5),
+        (InfluenceKernel::periodic_along(&plane, 0, 1.0), 0.5),
+    ];
+    for (kernel, force) in kernels {
+        let kernel = std::sync::Arc::new(kernel.unwrap());
+        let mut contact = ViscoelasticContact::builder(kernel.grid().clone())
+            .geometry(&Ellipsoid::new(10.0e-3, 10.0e-3).unwrap())
+            .material(body())
+            .kernel(kernel)
+            .settings(Settings { frame: Frame::Indenter, symmetry: false, ..Settings::default() })
+            .build()
+            .unwrap();
+        let region = Region::new(ALLOCATOR);
+        contact.step(0.0, Load::force(force)).unwrap();
+        for _ in 0..40 {
+            contact.step_over([1, 0], 0.02, Load::force(force)).unwrap();
+        }
+        let change = region.change();
+        assert_eq!((change.allocations, change.reallocations), (0, 0), "{:?}: {change:?}", contact.kernel());
+    }
+
+    // nor, after the first, do steps along a path, with and without something that stays in place
+    let plane = Grid::square(48, 8.0e-3).unwrap();
+    let path = || Straight::new([-1.0e-3, 0.0], [0.01, 0.0]).unwrap();
+    let sphere = || Sphere::new(10.0e-3).unwrap();
+    let ways = [Travel::new(sphere(), path()), Travel::new(sphere(), path()).over(Wavy::new(1.0e-6, 1.0e-3).unwrap())];
+    for travel in ways {
+        let mut contact = ViscoelasticContact::builder(plane.clone())
+            .geometry(&sphere())
+            .material(body())
+            .settings(Settings { window: false, ..Settings::default() })
+            .build()
+            .unwrap();
+        contact.step_along(&travel, 0.0, Load::force(0.5)).unwrap();
+        let region = Region::new(ALLOCATOR);
+        for _ in 0..40 {
+            contact.step_along(&travel, 5.0e-3, Load::force(0.5)).unwrap();
+        }
+        let change = region.change();
+        assert_eq!((change.allocations, change.reallocations), (0, 0), "{change:?}");
+    }
+
+    // nor do snapshots, taken into the memory of one before, and restored
+    for frame in [Frame::Bodies, Frame::Indenter] {
+        let mut contact = ViscoelasticContact::builder(plane.clone())
+            .geometry(&sphere())
+            .material(body())
+            .settings(Settings { window: false, frame, ..Settings::default() })
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(0.5)).unwrap();
+        let mut snapshot = contact.snapshot();
+        let region = Region::new(ALLOCATOR);
+        for _ in 0..20 {
+            contact.step(0.01, Load::force(0.5)).unwrap();
+            contact.snapshot_into(&mut snapshot);
+            contact.step(0.01, Load::force(0.4)).unwrap();
+            contact.restore(&snapshot).unwrap();
+        }
+        let change = region.change();
+        assert_eq!((change.allocations, change.reallocations), (0, 0), "{frame:?}: {change:?}");
+    }
+
+    // a line contact takes what its cells do, and the tables of its transforms, which are as long as the line
+    let region = Region::new(ALLOCATOR);
+    let contact = ViscoelasticContact::builder(Grid::new([16384, 1], [8.0e-3, 1.0]).unwrap())
+        .geometry(&Cylinder::new(10.0e-3).unwrap())
+        .material(scene.material.clone())
+        .kernel(std::sync::Arc::new(
+            InfluenceKernel::line(&Grid::new([16384, 1], [8.0e-3, 1.0]).unwrap(), 1.0).unwrap(),
+        ))
+        .settings(Settings { symmetry: false, ..Settings::default() })
+        .build()
+        .unwrap();
+    let change = region.change();
+    let line = (change.bytes_allocated - change.bytes_deallocated) as f64 / 16384.0;
+    drop(contact);
+    println!("{line:.1} bytes a cell of a line");
+    assert!(line < 400.0, "{line} bytes a cell");
+
+    // memory of a built contact: a constant a cell, and one field of 8 bytes for each relaxation time
+    let bytes = |terms: &[(f64, f64)], symmetry: bool| {
+        let body = Material::incompressible(GeneralizedMaxwell::new(1.0e6, terms).unwrap());
+        let scene = StepLoadedSphere { material: body, ..scene.clone() };
+        let region = Region::new(ALLOCATOR);
+        let contact = scene.contact(128, Settings { symmetry, window: false, ..Settings::default() }).unwrap();
+        let change = region.change();
+        drop(contact);
+        (change.bytes_allocated as isize + change.bytes_reallocated - change.bytes_deallocated as isize) as f64
+            / 16384.0
+    };
+    let times = [(1.0e6, 1.0), (1.0e6, 2.0), (1.0e6, 3.0)];
+    let (one, three) = (bytes(&times[..1], false), bytes(&times, false));
+    println!("{one:.1} bytes a cell with one relaxation time, {three:.1} with three");
+    let folded = bytes(&times[..1], true);
+    println!("{folded:.1} bytes a cell where a quarter is computed");
+    assert!(folded < 80.0, "{folded} bytes a cell");
+    assert!(one < 200.0, "{one} bytes a cell");
+    assert!((three - one - 16.0).abs() < 0.1, "{} bytes a cell for two more relaxation times", three - one);
+
+    // the exponential rule keeps one field for each relaxation time, the direct sums one for each step
+    let mut contact = scene.contact(32, Settings { time_rule: TimeRule::Backward, ..Settings::default() }).unwrap();
+    let region = Region::new(ALLOCATOR);
+    for _ in 0..64 {
+        contact.step(0.02, Load::force(1.0)).unwrap();
+    }
+    let kept = region.change().bytes_allocated - region.change().bytes_deallocated;
+    let fields = 64 * 8 * 256; // a quarter of the cells is computed
+    assert!((fields..fields + 8192).contains(&kept), "{kept} bytes for 64 steps of 256 cells");
+}

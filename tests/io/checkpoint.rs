@@ -1,0 +1,565 @@
+//! Runs that go on from a file as if nothing had happened; files that are refused; fifty runs that were killed.
+
+mod scenes;
+
+use crate::common::bodies::{power_law, three_times};
+use crate::common::spheres::{builder_on, sphere_on};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use crate::common::noise::uniform;
+use crate::common::runs::{scenes, wandering};
+use viscocontact::contact::CheckpointError;
+use viscocontact::prelude::*;
+
+/// A file of this test's own.
+fn file(name: &str) -> PathBuf {
+    std::env::temp_dir().join(format!("viscocontact-{name}-{}", std::process::id()))
+}
+
+/// Every scene, saved after each of several numbers of steps, none included: the steps after it are the same to the last bit.
+#[test]
+fn every_scene_continues_from_its_file_bit_by_bit() {
+    for (name, build, step) in scenes() {
+        let path = file("continuation");
+        for steps in [0, 1, 2, 9, 70] {
+            let mut contact = build();
+            (0..steps).for_each(|k| _ = step(&mut contact, k));
+            contact.save(&path).unwrap();
+            let mut resumed = build();
+            resumed.resume(&path).unwrap();
+            assert_eq!((contact.time(), contact.load()), (resumed.time(), resumed.load()));
+            assert_eq!((contact.pressure(), contact.displacement()), (resumed.pressure(), resumed.displacement()));
+            assert_eq!((contact.approach(), contact.tilt()), (resumed.approach(), resumed.tilt()));
+            for k in steps..steps + 8 {
+                let (one, other) = (step(&mut contact, k), step(&mut resumed, k));
+                assert_eq!(one, other, "{name}, saved after {steps}, step {k}");
+                assert_eq!(contact.pressure(), resumed.pressure(), "{name}, saved after {steps}, step {k}");
+                assert_eq!(contact.displacement(), resumed.displacement(), "{name}, saved after {steps}, step {k}");
+            }
+        }
+        fs::remove_file(path).unwrap();
+    }
+}
+
+/// Runs along histories, equal steps and steps chosen by their error, saved and resumed in the middle: the same steps.
+#[test]
+fn runs_along_a_history_continue_with_the_same_steps() {
+    let path = file("runs");
+    let corners = [(0.0, 0.0), (1.0, 0.5), (1.5, 0.1), (3.0, 0.4)];
+    let load = PiecewiseLinear::new(&corners.map(|(t, f)| (t, Load::force(f)))).unwrap();
+    for material in [three_times(), power_law()] {
+        for stepping in [Stepping::fixed(0.07), Stepping::adaptive(1e-2)] {
+            let build = || {
+                let builder = builder_on(Grid::square(32, 4.0e-3).unwrap(), material.clone());
+                builder.times(7e-4..=7e4).build().unwrap()
+            };
+            for saved_after in [1, 5, 13] {
+                let mut contact = build();
+                let mut run = contact.follow(&load, stepping, 3.0);
+                for _ in 0..saved_after {
+                    run.next_step().unwrap();
+                }
+                run.save(&path).unwrap();
+                let mut rest = Vec::new();
+                rest.extend(std::iter::from_fn(|| run.next_step().unwrap()));
+                let budget = run.error_budget();
+
+                let mut resumed = build();
+                resumed.resume(&path).unwrap();
+                let mut run = resumed.follow(&load, stepping, 3.0);
+                let again: Vec<_> = std::iter::from_fn(|| run.next_step().unwrap()).collect();
+                assert_eq!(again, rest, "{stepping:?}");
+                assert_eq!(run.error_budget(), budget);
+                assert_eq!(contact.pressure(), resumed.pressure());
+            }
+        }
+    }
+    fs::remove_file(path).unwrap();
+}
+
+/// Written by one number of threads, continued by another.
+#[test]
+fn a_file_is_continued_by_any_number_of_threads() {
+    let path = file("threads");
+    let whole = Settings { window: false, symmetry: false, ..Settings::default() };
+    let build = || sphere_on(Grid::square(192, 4.0e-3).unwrap(), three_times(), whole);
+    let in_pool = |threads: usize, f: &(dyn Fn() -> Vec<f64> + Sync)| {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(f)
+    };
+    let written = in_pool(2, &|| {
+        let mut contact = build();
+        (0..6).for_each(|k| _ = wandering(&mut contact, k));
+        contact.save(&path).unwrap();
+        (6..12).for_each(|k| _ = wandering(&mut contact, k));
+        contact.pressure().to_vec()
+    });
+    for threads in [1, 3] {
+        let again = in_pool(threads, &|| {
+            let mut contact = build();
+            contact.resume(&path).unwrap();
+            (6..12).for_each(|k| _ = wandering(&mut contact, k));
+            contact.pressure().to_vec()
+        });
+        assert!(again == written, "{threads} threads");
+    }
+    fs::remove_file(path).unwrap();
+}
+
+fn refused(contact: &mut ViscoelasticContact, path: &Path) -> CheckpointError {
+    match contact.resume(path).unwrap_err() {
+        Error::Checkpoint { source, .. } => source,
+        other => panic!("unexpected {other}"),
+    }
+}
+
+/// Cut short anywhere, a bit turned anywhere, from the future, from elsewhere: refused, and the contact is as it was.
+#[test]
+fn damaged_files_are_refused() {
+    let (path, damaged) = (file("whole"), file("damaged"));
+    let build = || sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), Settings::default());
+    let mut contact = build();
+    (0..3).for_each(|k| _ = wandering(&mut contact, k));
+    contact.save(&path).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    let before = contact.pressure().to_vec();
+    let mut refuse = |bytes: &[u8]| {
+        fs::write(&damaged, bytes).unwrap();
+        let error = refused(&mut contact, &damaged);
+        assert_eq!(contact.pressure(), before);
+        error
+    };
+    for length in (0..bytes.len()).step_by(7).chain(0..30).chain([bytes.len() - 1]) {
+        let error = refuse(&bytes[..length]);
+        assert!(matches!(error, CheckpointError::Size { .. } | CheckpointError::Foreign), "{length}: {error}");
+    }
+    for k in (0..bytes.len()).step_by(11).chain(0..24) {
+        let mut turned = bytes.clone();
+        turned[k] ^= 1 << (k % 8);
+        let error = refuse(&turned);
+        assert!(!matches!(error, CheckpointError::Malformed { .. }), "the checksum guards byte {k}: {error}");
+    }
+    let mut newer = bytes.clone();
+    newer[8] = 99;
+    assert_eq!(refuse(&newer), CheckpointError::Newer { found: 99, known: 2 });
+    newer[8] = 1;
+    assert_eq!(refuse(&newer), CheckpointError::Older { found: 1, known: 2 });
+    assert_eq!(refuse(b"PK\x03\x04 an archive of something else"), CheckpointError::Foreign);
+    let longer = [&bytes[..], &[0]].concat();
+    assert!(matches!(refuse(&longer), CheckpointError::Size { .. }));
+    let error = contact.resume(file("nowhere")).unwrap_err();
+    assert!(matches!(error, Error::Checkpoint { source: CheckpointError::Unreadable { .. }, .. }), "{error}");
+    assert!(error.to_string().contains("nowhere") && error.to_string().contains("cannot be read"), "{error}");
+    fs::remove_file(path).unwrap();
+    fs::remove_file(damaged).unwrap();
+}
+
+#[test]
+fn other_scenes_are_refused_by_what_differs() {
+    let path = file("scene");
+    let grid = || Grid::square(16, 4.0e-3).unwrap();
+    let mut contact = sphere_on(grid(), three_times(), Settings::default());
+    wandering(&mut contact, 1);
+    contact.save(&path).unwrap();
+    let what = |mut other: ViscoelasticContact| match refused(&mut other, &path) {
+        CheckpointError::OtherScene { what, .. } => what,
+        error => panic!("unexpected {error}"),
+    };
+    let larger = Grid::square(16, 4.1e-3).unwrap();
+    assert_eq!(what(sphere_on(larger, three_times(), Settings::default())), "grid");
+    let whole = Settings { window: false, ..Settings::default() };
+    assert_eq!(what(sphere_on(grid(), three_times(), whole)), "Settings::window");
+    let summed = Settings { time_rule: TimeRule::Backward, ..Settings::default() };
+    assert_eq!(what(sphere_on(grid(), three_times(), summed)), "Settings::time_rule");
+    assert_eq!(what(builder_on(grid(), power_law()).times(1e-3..=1e3).build().unwrap()), "contact compliance");
+    let builder =
+        || ViscoelasticContact::builder(grid()).geometry(&Sphere::new(10.0e-3).unwrap()).material(three_times());
+    let periodic = builder().kernel(Arc::new(InfluenceKernel::periodic(&grid()).unwrap()));
+    assert_eq!(what(periodic.build().unwrap()), "kernel");
+    let cone = ViscoelasticContact::builder(grid()).geometry(&Cone::new(0.1).unwrap()).material(three_times());
+    assert_eq!(what(cone.build().unwrap()), "geometry");
+    let aside = Shifted::new(Sphere::new(10.0e-3).unwrap(), [1.0e-4, 0.0]).unwrap();
+    let aside = ViscoelasticContact::builder(grid()).geometry(&aside).material(three_times());
+    assert_eq!(what(aside.build().unwrap()), "geometry");
+    let own = |scale: f64| {
+        let kernel = InfluenceKernel::from_spectrum(&grid(), move |_, _| scale).unwrap();
+        builder().kernel(Arc::new(kernel)).build().unwrap()
+    };
+    own(1.0e-4).save(&path).unwrap();
+    let mut other = own(2.0e-4);
+    assert!(matches!(refused(&mut other, &path), CheckpointError::OtherScene { what: "influence", .. }));
+    // the same on the diagonal is not the same
+    let layered = |reach: f64| {
+        let coefficient = move |i: isize, j: isize| match i * i + j * j {
+            0 => 1.0e-4,
+            square => 0.3e-4 / (square as f64).sqrt() * (-(square as f64).sqrt() / reach).exp(),
+        };
+        builder().kernel(Arc::new(InfluenceKernel::from_coefficients(&grid(), coefficient).unwrap())).build().unwrap()
+    };
+    layered(3.0).save(&path).unwrap();
+    layered(3.0).resume(&path).unwrap();
+    assert!(matches!(refused(&mut layered(1.0), &path), CheckpointError::OtherScene { what: "influence", .. }));
+    // closures that differ between the powers of ten
+    let closure = |bump: f64| {
+        let creep = move |t: f64| 1.0e-6 * (1.0 + t.max(0.0).powf(0.3) + bump * (t > 3.0 && t < 7.0) as u32 as f64);
+        let material = Material::incompressible(FnRheology::new(creep));
+        sphere_on(grid(), material, Settings { time_rule: TimeRule::Backward, ..Settings::default() })
+    };
+    closure(0.0).save(&path).unwrap();
+    closure(0.0).resume(&path).unwrap();
+    assert!(matches!(
+        refused(&mut closure(0.1), &path),
+        CheckpointError::OtherScene { what: "contact compliance", .. }
+    ));
+    fs::remove_file(path).unwrap();
+}
+
+/// What only says how steps are solved may be another one: a run that did not converge goes on with more iterations.
+#[test]
+fn other_ways_to_solve_are_taken() {
+    let path = file("solve");
+    let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), Settings::default());
+    wandering(&mut contact, 1);
+    contact.save(&path).unwrap();
+    for settings in [
+        Settings { tolerance: 1e-9, max_iterations: 5000, ..Settings::default() },
+        Settings { solver: Solver::PolonskyKeer, ..Settings::default() },
+        Settings { edge: Edge::Allow, time_rule: TimeRule::Exponential, ..Settings::default() },
+    ] {
+        let mut other = sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), settings);
+        other.resume(&path).unwrap();
+        let (one, two) = (wandering(&mut contact.clone(), 2), wandering(&mut other, 2));
+        assert!((one.approach / two.approach - 1.0).abs() < 1e-5, "{} {}", one.approach, two.approach);
+    }
+    fs::remove_file(path).unwrap();
+}
+
+/// A material that is known for ten seconds, and says so by a panic.
+#[derive(Debug)]
+struct Known;
+
+impl Rheology for Known {
+    fn creep_compliance(&self, t: f64) -> f64 {
+        assert!(t <= 10.0, "evaluated at {t} s");
+        1.0e-6 * (1.0 + t)
+    }
+
+    fn known_until(&self) -> f64 {
+        10.0
+    }
+}
+
+#[test]
+fn materials_are_not_asked_for_what_they_do_not_know() {
+    let path = file("known");
+    let build = || {
+        let settings = Settings { time_rule: TimeRule::Backward, ..Settings::default() };
+        sphere_on(Grid::square(16, 4.0e-3).unwrap(), Material::incompressible(Known), settings)
+    };
+    let mut contact = build();
+    contact.step(1.0, Load::force(0.1)).unwrap();
+    contact.save(&path).unwrap();
+    build().resume(&path).unwrap();
+    fs::remove_file(path).unwrap();
+}
+
+/// A material is fitted over the times of the builder: a contact of the same times goes on bit by bit, whatever steps it took
+/// before, and one of other times is another scene.
+// new contract
+#[test]
+fn materials_are_fitted_as_they_were() {
+    let path = file("fitted");
+    let build = |times| builder_on(Grid::square(16, 4.0e-3).unwrap(), power_law()).times(times).build().unwrap();
+    let fresh = || build(1.0e-4..=1.0e5);
+    let stepped = |dt: f64| {
+        let mut contact = fresh();
+        contact.step(dt, Load::force(0.1)).unwrap();
+        contact
+    };
+    let mut contact = stepped(0.1);
+    contact.save(&path).unwrap();
+    let mut other = stepped(1.0e-6);
+    other.resume(&path).unwrap();
+    for _ in 0..3 {
+        assert_eq!(contact.step(0.2, Load::force(0.2)), other.step(0.2, Load::force(0.2)));
+    }
+    assert_eq!(contact.pressure(), other.pressure());
+
+    fresh().save(&path).unwrap();
+    let (mut one, mut other) = (fresh(), stepped(0.1));
+    other.resume(&path).unwrap();
+    assert_eq!(other.time(), 0.0);
+    for _ in 0..3 {
+        assert_eq!(one.step(1.0e-3, Load::force(0.2)), other.step(1.0e-3, Load::force(0.2)));
+    }
+    assert_eq!(one.pressure(), other.pressure());
+    let error = refused(&mut build(1.0e-3..=1.0e4), &path);
+    assert!(matches!(error, CheckpointError::OtherScene { what: "contact compliance", .. }), "{error}");
+    fs::remove_file(path).unwrap();
+}
+
+/// A contact whose region has grown goes back to a file of a smaller one: nothing of the larger is left to be seen.
+#[test]
+fn nothing_is_left_of_a_larger_contact() {
+    let path = file("larger");
+    let mut contact = sphere_on(Grid::square(64, 4.0e-3).unwrap(), three_times(), Settings::default());
+    contact.step(0.0, Load::force(0.01)).unwrap();
+    contact.save(&path).unwrap();
+    let (pressure, area) = (contact.pressure().to_vec(), contact.contact_area());
+    contact.step(0.0, Load::force(1.0)).unwrap();
+    contact.resume(&path).unwrap();
+    assert_eq!((contact.pressure(), contact.contact_area()), (&pressure[..], area));
+    fs::remove_file(path).unwrap();
+}
+
+/// A step whose file cannot be written is reported by the call that writes it.
+#[test]
+fn no_step_is_lost_with_its_file() {
+    let folder = file("medium");
+    let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), Settings::default());
+    let load = StepLoad::new(Load::force(0.1)).unwrap();
+    let mut run = contact.follow(&load, Stepping::fixed(0.1), 0.2).autosave_to(folder.join("run"), Duration::ZERO);
+    let mut times = Vec::new();
+    loop {
+        match run.next_step() {
+            Ok(Some(report)) => times.push(report.time),
+            Ok(None) => break,
+            Err(error) => {
+                assert!(matches!(error, Error::Output { .. }), "{error}");
+                fs::create_dir_all(&folder).unwrap();
+                continue;
+            }
+        }
+        fs::remove_dir_all(&folder).unwrap();
+    }
+    assert_eq!(times, [0.0, 0.1, 0.2]);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+/// A run to before where the file is, is refused, the first time as well.
+#[test]
+fn runs_that_are_over_do_not_begin() {
+    let path = file("over");
+    let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), Settings::default());
+    let load = StepLoad::new(Load::force(0.1)).unwrap();
+    let mut run = contact.follow(&load, Stepping::fixed(0.1), 1.0).autosave_to(&path, Duration::ZERO);
+    while run.next_step().unwrap().is_some() {}
+    contact.resume(&path).unwrap();
+    for _ in 0..2 {
+        assert!(contact.follow(&load, Stepping::fixed(0.1), 0.5).next_step().is_err());
+    }
+    contact.resume(&path).unwrap();
+    assert_eq!(contact.follow(&load, Stepping::fixed(0.1), 1.0).next_step(), Ok(None));
+    fs::remove_file(path).unwrap();
+}
+
+const STEPS: f64 = 400.0;
+const EVERY: Duration = Duration::from_millis(5);
+
+/// The run that is killed: it goes on from its file, notes when it took each step, and leaves the last state when it is over.
+#[test]
+#[ignore = "started by fifty_killed_runs_end_with_the_same_bits"]
+fn a_run_that_is_killed() {
+    let folder = PathBuf::from(std::env::var("CHECKPOINT_FOLDER").unwrap());
+    let (saved, done) = (folder.join("run.checkpoint"), folder.join("done"));
+    let mut contact = sphere_on(Grid::square(64, 6.0e-3).unwrap(), three_times(), Settings::default());
+    if saved.exists() {
+        contact.resume(&saved).unwrap();
+    }
+    let mut log = fs::OpenOptions::new().create(true).append(true).open(folder.join("log")).unwrap();
+    use std::io::Write;
+    let begun = Instant::now();
+    writeln!(log, "\nresumed {:e}", contact.time()).unwrap(); // the line before may be cut
+    let load = Sinusoid::new(Load::force(0.3), Load::force(0.2), 1.0).unwrap();
+    let mut run = contact.follow(&load, Stepping::fixed(0.01), 0.01 * STEPS).autosave_to(&saved, EVERY);
+    while let Some(report) = run.next_step().unwrap() {
+        writeln!(log, "{:e} {}", report.time, begun.elapsed().as_micros()).unwrap();
+    }
+    let bits: Vec<u8> = contact.pressure().iter().chain(contact.displacement()).flat_map(|x| x.to_le_bytes()).collect();
+    fs::write(folder.join("part"), bits).unwrap();
+    fs::rename(folder.join("part"), done).unwrap();
+}
+
+/// Starts the run in a folder; kills it after a while, if told so. Whether it came to its end.
+fn start(folder: &Path, kill_after: Option<Duration>) -> bool {
+    let mut child = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "checkpoint::a_run_that_is_killed", "--ignored"])
+        .env("CHECKPOINT_FOLDER", folder)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    if let Some(after) = kill_after {
+        // counted from the first sign of life, so that there is something to kill
+        let (log, begun, patience) = (folder.join("log"), Instant::now(), Duration::from_secs(20));
+        let length = || fs::metadata(&log).map_or(0, |log| log.len());
+        let before = length();
+        while length() == before && begun.elapsed() < patience && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        std::thread::sleep(after);
+        child.kill().unwrap();
+    }
+    child.wait().unwrap();
+    folder.join("done").exists()
+}
+
+/// For each resumption: where it was, how much of the work of the run before it was lost, and the longest time that a step
+/// of that run and what was saved with it took.
+fn losses(log: &str) -> Vec<(f64, Duration, Duration)> {
+    let (mut losses, mut steps) = (Vec::new(), Vec::<(f64, u64)>::new());
+    for line in log.lines() {
+        let Some(time) = line.strip_prefix("resumed ") else {
+            // the last line of a run that was killed may be cut, and its numbers too small
+            let step = line.split_once(' ').and_then(|(time, at)| time.parse().ok().zip(at.parse().ok()));
+            let last = steps.last().copied().unwrap_or_default();
+            steps.extend(step.filter(|&(time, at)| time > last.0 && at >= last.1));
+            continue;
+        };
+        let resumed: f64 = time.parse().unwrap();
+        let lost: Vec<_> = steps.iter().filter(|(time, _)| *time > resumed).map(|(_, at)| *at).collect();
+        if let (Some(first), Some(last)) = (lost.first(), lost.last()) {
+            let gaps = steps.windows(2).map(|pair| pair[1].1.saturating_sub(pair[0].1));
+            let slowest = gaps.max().unwrap_or(0).max(steps[0].1);
+            losses.push((resumed, Duration::from_micros(last - first), Duration::from_micros(slowest)));
+        }
+        steps.clear();
+    }
+    losses
+}
+
+/// Killed at fifty random moments, run after run to its end: not a bit differs, and no more is lost than the interval.
+#[test]
+fn fifty_killed_runs_end_with_the_same_bits() {
+    let folder = |name: &str| {
+        let folder = file(name);
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        folder
+    };
+    let undisturbed = folder("undisturbed");
+    assert!(start(&undisturbed, None));
+    let exact = fs::read(undisturbed.join("done")).unwrap();
+    let (mut kills, mut runs, mut differing, mut longest) = (0, 0, 0, Duration::ZERO);
+    let mut random = uniform(1);
+    while kills < 50 {
+        let killed = folder("killed");
+        loop {
+            let after = Duration::from_secs_f64(0.5e-3 + 30.0e-3 * random());
+            if start(&killed, (kills < 50).then_some(after)) {
+                break;
+            }
+            kills += 1;
+        }
+        runs += 1;
+        differing += usize::from(fs::read(killed.join("done")).unwrap() != exact);
+        let log = fs::read_to_string(killed.join("log")).unwrap();
+        for (at, lost, slowest) in losses(&log) {
+            longest = longest.max(lost);
+            assert!(
+                lost <= EVERY + slowest,
+                "at {at}: {lost:?} of work lost, no step and save took more than {slowest:?}"
+            );
+        }
+        fs::remove_dir_all(killed).unwrap();
+    }
+    fs::remove_dir_all(undisturbed).unwrap();
+    println!("{kills} kills in {runs} runs, {differing} answers differ, {longest:?} of work lost at most");
+    assert_eq!(differing, 0);
+}
+
+/// The checksum of the format: CRC-32 of IEEE 802.3, bit by bit.
+fn crc(bytes: impl Iterator<Item = u8>) -> u32 {
+    !bytes.fold(!0, |crc: u32, byte| {
+        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg()))
+    })
+}
+
+/// Files whose checksum is right and whose content is not: refused, or resumed to a contact that steps or says why not.
+#[test]
+fn forged_files_do_no_harm() {
+    let path = file("forged");
+    let whole = Settings { window: false, ..Settings::default() };
+    let scenes: [(Settings, Material); 3] = [
+        (Settings::default(), three_times()),
+        (Settings { time_rule: TimeRule::Backward, ..whole }, three_times()),
+        (Settings { frame: Frame::Indenter, ..whole }, three_times()),
+    ];
+    let (mut number, mut refused) = (uniform(7), 0);
+    let mut random = move |below: usize| (number() * below as f64) as usize;
+    for (settings, material) in scenes {
+        let build = || sphere_on(Grid::square(8, 4.0e-3).unwrap(), material.clone(), settings);
+        let mut contact = build();
+        (0..3).for_each(|k| _ = wandering(&mut contact, k + 1));
+        contact.save(&path).unwrap();
+        let bytes = fs::read(&path).unwrap();
+        for _ in 0..1500 {
+            let mut forged = bytes.clone();
+            for _ in 0..=random(3) {
+                let at = 24 + random(forged.len() - 24);
+                match random(3) {
+                    0 => forged[at] = random(256) as u8,
+                    1 => forged[at] ^= 1 << random(8),
+                    _ => forged[at..].iter_mut().take(8).for_each(|byte| *byte = 0xff),
+                }
+            }
+            let checksum = crc(forged[..20].iter().chain(&forged[24..]).copied());
+            forged[20..24].copy_from_slice(&checksum.to_le_bytes());
+            fs::write(&path, &forged).unwrap();
+            let mut contact = build();
+            if contact.resume(&path).is_err() {
+                refused += 1;
+                continue;
+            }
+            for k in 1..3 {
+                let _ = contact.step(0.01 * f64::from(k), Load::force(0.3));
+            }
+            let _ = (contact.contact_area(), contact.displacement().len(), contact.moment());
+        }
+    }
+    println!("{refused} of 4500 refused");
+    fs::remove_file(path).unwrap();
+}
+
+/// Of several bodies a file says which one each cell belongs to: a body that there is none of is refused.
+#[test]
+fn forged_bodies_do_no_harm() {
+    let path = file("forged-bodies");
+    let build = || {
+        let at = |x: f64| Shifted::new(Sphere::new(10.0e-3).unwrap(), [x, 0.0]).unwrap();
+        ViscoelasticContact::builder(Grid::square(8, 4.0e-3).unwrap())
+            .geometry(&at(-1.0e-3))
+            .another_body(&at(1.0e-3))
+            .material(three_times())
+            .settings(Settings { window: false, edge: Edge::Allow, ..Settings::default() })
+            .build()
+            .unwrap()
+    };
+    let loads = [Load::force(0.02), Load::force(0.03)];
+    let mut contact = build();
+    contact.step_each(0.1, &loads).unwrap();
+    contact.save(&path).unwrap();
+    let bytes = fs::read(&path).unwrap();
+    let (mut refused, mut resumed) = (0, 0);
+    for at in (24..bytes.len()).step_by(5) {
+        let mut forged = bytes.clone();
+        forged[at] = 0x42;
+        let checksum = crc(forged[..20].iter().chain(&forged[24..]).copied());
+        forged[20..24].copy_from_slice(&checksum.to_le_bytes());
+        fs::write(&path, &forged).unwrap();
+        let mut contact = build();
+        match contact.resume(&path) {
+            Ok(()) => {
+                let _ = contact.step_each(0.1, &loads);
+                let _ = (contact.body(1), contact.contact_area());
+                resumed += 1;
+            }
+            Err(_) => refused += 1,
+        }
+    }
+    fs::remove_file(path).unwrap();
+    assert!(refused > 10 && resumed > 10, "{refused} refused, {resumed} resumed");
+}

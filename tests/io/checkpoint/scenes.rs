@@ -1,0 +1,187 @@
+//! Random scenes and those that differ from them; files that many write.
+
+use crate::common::bodies::three_times;
+use std::fs;
+
+use viscocontact::contact::CheckpointError;
+use viscocontact::prelude::*;
+
+use super::{file, refused};
+use crate::common::noise::uniform;
+
+const OWNERS: &str = "assignment of cells to rigid bodies";
+
+/// A body at random, which can be built again, turned, or changed a little.
+#[derive(Clone, Copy, Debug)]
+struct Body {
+    kind: usize,
+    size: [f64; 2],
+    at: [f64; 2],
+    height: f64,
+}
+
+impl Body {
+    fn geometry(self) -> Box<dyn Geometry> {
+        let [a, b] = self.size;
+        let height = self.height;
+        match self.kind {
+            0 => Box::new(Shifted::new(Sphere::new(a).unwrap(), self.at).unwrap()),
+            1 => Box::new(Shifted::new(Ellipsoid::new(a, b).unwrap(), self.at).unwrap()),
+            2 => Box::new(Shifted::new(FlatPunch::rectangular([0.1 * a, 0.1 * b]).unwrap(), self.at).unwrap()),
+            _ => {
+                let [x, y] = self.at;
+                Box::new(FnGeometry::new(move |x1, x2| {
+                    height + ((x1 - x).powi(2) / a + (x2 - y).powi(2) / b).sqrt() * 1e-2
+                }))
+            }
+        }
+    }
+}
+
+/// The scene, or none if a body has no cell to touch.
+fn build(grid: &Grid, bodies: &[Box<dyn Geometry>]) -> Option<ViscoelasticContact> {
+    let builder = ViscoelasticContact::builder(grid.clone()).geometry(&bodies[0]).material(three_times());
+    let builder = bodies[1..].iter().fold(builder, |builder, body| builder.another_body(body));
+    builder.settings(Settings { edge: Edge::Allow, ..Settings::default() }).build().ok()
+}
+
+fn gap(contact: &ViscoelasticContact) -> Vec<f64> {
+    let mut gap = vec![0.0; contact.grid().len()];
+    contact.gap_into(&mut gap).unwrap();
+    gap
+}
+
+#[test]
+fn random_scenes_are_told_apart() {
+    let path = file("random-scenes");
+    let (mut accepted, mut swapped, mut reshaped, mut recut) = (0, 0, 0, 0);
+    for seed in 0..300 {
+        let mut number = uniform(seed);
+        let mut random = move || number();
+        let side = 4.0e-3;
+        let cells = [8, 12, 16][(3.0 * random()) as usize];
+        let square = random() < 0.5;
+        let grid = Grid::new([cells, if square { cells } else { cells + 3 }], [side, side]).unwrap();
+        let bodies: Vec<Body> = (0..1 + (3.0 * random()) as usize)
+            .map(|_| Body {
+                kind: (4.0 * random()) as usize,
+                size: [5.0e-3 + 10.0e-3 * random(), 5.0e-3 + 10.0e-3 * random()],
+                // centred bodies have more symmetry
+                at: if random() < 0.2 { [0.0; 2] } else { [side * (random() - 0.5), side * (random() - 0.5)] },
+                height: 1.0e-5 * random(),
+            })
+            .collect();
+        let all = |bodies: &[Body]| -> Vec<Box<dyn Geometry>> { bodies.iter().map(|body| body.geometry()).collect() };
+        let Some(mut contact) = build(&grid, &all(&bodies)) else { continue };
+        let undisturbed = gap(&contact);
+        let loads = vec![Load::force(0.02); bodies.len()];
+        for _ in 0..2 {
+            let _ = contact.step_each(0.1, &loads);
+        }
+        contact.save(&path).unwrap();
+        build(&grid, &all(&bodies)).unwrap().resume(&path).unwrap_or_else(|error| panic!("seed {seed}: {error}"));
+        accepted += 1;
+
+        // in another order
+        for first in 1..bodies.len() {
+            let mut other = bodies.clone();
+            other.swap(0, first);
+            // of two flat punches one may be left without a cell
+            let Some(mut other) = build(&grid, &all(&other)) else { continue };
+            let error = refused(&mut other, &path);
+            let CheckpointError::OtherScene { what: OWNERS, saved, built } = &error else {
+                panic!("seed {seed}: {error}")
+            };
+            assert_ne!(saved, built, "seed {seed}");
+            swapped += 1;
+        }
+        // moved, turned, mirrored, larger, a part of it: another geometry unless no cell sees it
+        let changed = (random() * bodies.len() as f64) as usize;
+        let body = bodies[changed];
+        let ([a, b], [x, y]) = (body.size, body.at);
+        for other in [
+            Body { at: [x + 1e-3 * grid.spacing()[0], y], ..body },
+            Body { at: [x, y - 0.7 * grid.spacing()[1]], ..body },
+            Body { at: [-x, y], ..body },
+            Body { at: [y, x], size: [b, a], ..body },
+            Body { size: [b, a], ..body },
+            Body { size: [a * (1.0 + 1e-5), b], ..body },
+            Body { height: 2.0 * body.height, ..body },
+            Body { kind: (body.kind + 1) % 4, ..body },
+        ] {
+            let mut scene = bodies.clone();
+            scene[changed] = other;
+            let Some(mut other) = build(&grid, &all(&scene)) else { continue };
+            if gap(&other) == undisturbed {
+                continue;
+            }
+            let error = refused(&mut other, &path);
+            let named = matches!(error, CheckpointError::OtherScene { what: "geometry" | OWNERS, .. });
+            assert!(named, "seed {seed}, {:?} of {bodies:?}: {error}", scene[changed]);
+            reshaped += 1;
+        }
+        // one shape cut into bodies at another line, between the same cells or not
+        let cut = |at: f64| -> Vec<Box<dyn Geometry>> {
+            [-1.0, 1.0]
+                .map(|side| -> Box<dyn Geometry> {
+                    let whole = body.geometry();
+                    let part =
+                        move |x1, x2| if (x1 - at) * side > 0.0 { whole.initial_gap(x1, x2) } else { f64::INFINITY };
+                    Box::new(FnGeometry::new(part))
+                })
+                .into()
+        };
+        let spacing = grid.spacing()[0];
+        let at = |k: usize| grid.center(k, 0)[0] + 0.5 * spacing;
+        let middle = cells / 2;
+        let (Some(one), Some(mut other)) = (build(&grid, &cut(at(middle))), build(&grid, &cut(at(middle - 1)))) else {
+            continue;
+        };
+        one.save(&path).unwrap();
+        build(&grid, &cut(at(middle) + 0.3 * spacing)).unwrap().resume(&path).unwrap();
+        // only where there is something to touch on the column between
+        let column = middle * grid.cells()[1]..(middle + 1) * grid.cells()[1];
+        if gap(&one)[column].iter().any(|gap| gap.is_finite()) {
+            let error = refused(&mut other, &path);
+            let named = matches!(error, CheckpointError::OtherScene { what: OWNERS, .. });
+            assert!(named, "seed {seed}: {error}");
+            recut += 1;
+        }
+    }
+    fs::remove_file(path).unwrap();
+    println!("{accepted} accepted, {swapped} swapped, {reshaped} reshaped, {recut} cut elsewhere");
+    assert!(accepted > 150 && swapped > 100 && reshaped > 800 && recut > 100);
+}
+
+/// Contacts of several threads save to one path: no save fails, the file is one of theirs at any time, and nothing else is left.
+#[test]
+fn many_save_to_one_path() {
+    let folder = file("many");
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    let path = folder.join("run");
+    let body = || [Box::new(Sphere::new(10.0e-3).unwrap()) as Box<dyn Geometry>];
+    let grid = Grid::square(32, 4.0e-3).unwrap();
+    std::thread::scope(|scope| {
+        for writer in 0..6_u32 {
+            let (path, grid) = (&path, &grid);
+            scope.spawn(move || {
+                let mut contact = build(grid, &body()).unwrap();
+                let mut reader = contact.clone();
+                contact.step(f64::from(writer), Load::force(0.1)).unwrap();
+                for _ in 0..20 {
+                    contact.save(path).unwrap();
+                    reader.resume(path).unwrap();
+                    assert!(reader.time() < 6.0);
+                }
+            });
+        }
+    });
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+
+    // what is no file is not replaced
+    fs::create_dir(folder.join("folder")).unwrap();
+    let error = build(&grid, &body()).unwrap().save(folder.join("folder")).unwrap_err();
+    assert!(matches!(error, Error::NotAFile { kind: "a folder", .. }), "{error}");
+    fs::remove_dir_all(folder).unwrap();
+}

@@ -1,0 +1,186 @@
+//! What a step tells of its own quality, and a failed one of why.
+
+use crate::common::bodies::{elastic, maxwell};
+use crate::common::spheres::sphere_on;
+use viscocontact::contact::Warning;
+use viscocontact::prelude::*;
+use viscocontact::{Error, Trend};
+
+fn contact(cells: usize, material: Material, settings: Settings) -> ViscoelasticContact {
+    sphere_on(Grid::square(cells, 4.0e-3).unwrap(), material, settings)
+}
+
+#[test]
+fn a_good_step_has_no_warnings() {
+    for (symmetry, window) in [(true, true), (false, true), (true, false), (false, false)] {
+        let settings = Settings { symmetry, window, ..Settings::default() };
+        let mut contact = contact(64, maxwell(), settings);
+        let report = contact.step(0.0, Load::force(0.5)).unwrap();
+        assert!(report.warnings.is_empty(), "{:?}", report.warnings);
+        assert!(contact.step(0.1, Load::force(0.5)).unwrap().warnings.is_empty());
+    }
+}
+
+#[test]
+fn contact_near_the_edge_is_warned_of_before_it_touches() {
+    for (symmetry, window) in [(true, true), (false, true), (false, false)] {
+        let settings = Settings { symmetry, window, ..Settings::default() };
+        let mut contact = contact(32, maxwell(), settings);
+        let (mut near, mut clear, mut force) = (0, 0, 0.1);
+        loop {
+            match contact.step(0.0, Load::force(force)) {
+                Ok(report) if report.warnings.contains(Warning::NearEdge) => near += 1,
+                Ok(_) => {
+                    assert_eq!(near, 0, "{force} N");
+                    clear += 1;
+                }
+                Err(error) => {
+                    assert!(matches!(error, Error::ContactAtEdge { .. }), "{error}");
+                    break;
+                }
+            }
+            force *= 1.1;
+        }
+        assert!(near > 0 && clear > 0, "{near} {clear}");
+    }
+}
+
+#[test]
+fn few_cells_are_warned_of() {
+    let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 0.1).unwrap();
+    for (cells, few) in [(8, true), (16, true), (64, false)] {
+        let mut contact = contact(cells, maxwell(), Settings::default());
+        let report = contact.step(0.0, Load::force(0.1)).unwrap();
+        assert_eq!(report.warnings.contains(Warning::FewCells), few, "{cells}");
+        let approach = (report.approach / hertz.approach() - 1.0).abs();
+        let peak = (contact.greatest_pressure() / hertz.greatest_pressure() - 1.0).abs();
+        println!("{} cells in contact: approach {approach:.1e}, peak {peak:.1e}", report.contact_cells);
+    }
+}
+
+#[test]
+fn material_beyond_its_data_is_warned_of() {
+    let times = [0.1, 0.3, 1.0, 3.0, 10.0];
+    let table = TabulatedCreep::new(&times, &times.map(|t: f64| 1.0e-6 * (1.0 + 0.1 * t.ln_1p()))).unwrap();
+    assert_eq!(table.measured(), [0.1, 10.0]);
+    let mut honest = contact(48, Material::incompressible(table.clone()), Settings::default());
+    honest.step(0.0, Load::force(0.1)).unwrap();
+    let warnings = |contact: &mut ViscoelasticContact, dt: f64| contact.step(dt, Load::force(0.1)).unwrap().warnings;
+    assert!(warnings(&mut honest, 0.01).contains(Warning::FasterThanMaterial));
+    assert!(!warnings(&mut honest, 1.0).contains(Warning::NearEndOfMaterial));
+    assert!(warnings(&mut honest, 5.0).contains(Warning::NearEndOfMaterial));
+    assert!(matches!(honest.step(5.0, Load::force(0.1)), Err(Error::BeyondMaterial { .. })));
+
+    let mut bold = contact(48, Material::incompressible(table.extrapolated()), Settings::default());
+    bold.step(0.0, Load::force(0.1)).unwrap();
+    assert!(!warnings(&mut bold, 9.0).contains(Warning::Extrapolated));
+    let later = warnings(&mut bold, 5.0);
+    assert!(later.contains(Warning::Extrapolated) && !later.contains(Warning::NearEndOfMaterial));
+}
+
+#[test]
+fn a_step_that_rings_is_warned_of() {
+    let mut contact = contact(48, maxwell(), Settings { time_rule: TimeRule::Rectangle, ..Settings::default() });
+    contact.step(0.0, Load::force(0.1)).unwrap();
+    for (dt, rings) in [(0.5, false), (1.5, true)] {
+        let report = contact.step(dt, Load::force(0.1)).unwrap();
+        assert_eq!(report.warnings.contains(Warning::Rings), rings);
+    }
+}
+
+#[test]
+fn a_failed_solve_says_what_to_do() {
+    let failure = |settings: Settings| {
+        let error = contact(48, maxwell(), settings).step(0.0, Load::force(0.5)).unwrap_err();
+        let text = error.to_string();
+        let Error::NotConverged { iterations, residual, convergence, .. } = error else { panic!("{error}") };
+        let (first, last) = (convergence.residuals()[0], *convergence.residuals().last().unwrap());
+        assert!(convergence.residuals().len() <= 33 && first.0 == 0 && last == (iterations, residual));
+        (convergence, text)
+    };
+    for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
+        let settings = Settings { tolerance: 1e-13, max_iterations: 5, solver, ..Settings::default() };
+        let (convergence, text) = failure(settings);
+        assert_eq!(convergence.trend(), Trend::Falling, "{convergence:?}");
+        assert!(text.contains("raise Settings::max_iterations"), "{text}");
+        let (convergence, _) = failure(Settings { max_iterations: 1, ..settings });
+        assert_eq!(convergence.trend(), Trend::TooFew);
+    }
+}
+
+/// A state that is not admissible is no solution, however small its residual.
+#[test]
+fn no_pressure_is_negative_when_iterations_run_out() {
+    let wavy = Wavy::new(2.0e-6, 0.4e-3).unwrap();
+    for max_iterations in 1..12 {
+        for tolerance in [1e-1, 1e-2, 1e-3] {
+            let mut contact = ViscoelasticContact::builder(Grid::square(24, 4.0e-3).unwrap())
+                .geometry(&Sum::new(Sphere::new(10.0e-3).unwrap(), wavy))
+                .material(maxwell())
+                .settings(Settings { max_iterations, tolerance, ..Settings::default() })
+                .build()
+                .unwrap();
+            for force in [0.5, 0.2, 0.05, 0.01, 0.3] {
+                if contact.step(0.05, Load::force(force)).is_ok() {
+                    assert!(contact.pressure().iter().all(|&p| p >= 0.0), "{max_iterations} {tolerance}");
+                    assert!((contact.force() / force - 1.0).abs() < 1e-9, "{max_iterations} {tolerance}");
+                }
+            }
+        }
+    }
+}
+
+/// What the warning of few cells stands for: below it, errors of per cents; from 8 cells across on, less.
+#[test]
+fn few_cells_are_warned_of_where_errors_are_large() {
+    let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 1.0).unwrap();
+    let a = hertz.contact_radius();
+    // the greatest errors of approach, peak and area over places of the sphere within a cell; whether each was warned of
+    let worst = |across: f64| {
+        let side = 2.0 * a / across;
+        let (mut errors, mut warned) = ([0.0_f64; 3], 0);
+        for k in 0..10 {
+            let off = [0.137, 0.311].map(|part| (f64::from(k) * part).fract() * side);
+            let mut contact = ViscoelasticContact::builder(Grid::square(24, 24.0 * side).unwrap())
+                .geometry(&Shifted::new(Sphere::new(10.0e-3).unwrap(), off).unwrap())
+                .material(elastic())
+                .build()
+                .unwrap();
+            let report = contact.step(0.0, Load::force(1.0)).unwrap();
+            warned += u32::from(report.warnings.contains(Warning::FewCells));
+            let found = [contact.approach(), contact.greatest_pressure(), contact.contact_area()];
+            let exact = [hertz.approach(), hertz.greatest_pressure(), std::f64::consts::PI * a * a];
+            errors = [0, 1, 2].map(|i| errors[i].max((found[i] / exact[i] - 1.0).abs()));
+        }
+        (errors, warned)
+    };
+    let ([approach, peak, area], warned) = worst(4.0);
+    println!("4 cells across: {approach:.1e} {peak:.1e} {area:.1e}");
+    assert!(warned == 10 && approach > 5e-3 && peak > 2e-2 && area > 5e-2);
+    let ([approach, peak, area], warned) = worst(8.2);
+    println!("8 cells across: {approach:.1e} {peak:.1e} {area:.1e}");
+    assert!(warned == 0 && approach < 5e-3 && peak < 2e-2 && area < 3e-2);
+}
+
+/// Where hardly anything of the pressure is left and the body may turn, rounding of the gap hides it: that is told.
+#[test]
+fn rounding_is_warned_of() {
+    let mut contact = ViscoelasticContact::builder(Grid::square(40, 4.0e-3).unwrap())
+        .geometry(&FlatPunch::circular(1.2e-3).unwrap())
+        .material(maxwell())
+        .build()
+        .unwrap();
+    let held = Load::Approach { approach: 1.0e-5, tilt: [Tilt::Free { at: 0.1e-3 }, Tilt::Fixed(0.0)] };
+    let force = {
+        let report = contact.step(0.0, held).unwrap();
+        assert!(!report.warnings.contains(Warning::Rounding), "{report}");
+        report.force
+    };
+    for dt in [5.0, 30.0] {
+        let report = contact.step(dt, held).unwrap();
+        let error = (report.force / (force * (-report.time).exp()) - 1.0).abs();
+        println!("{report}: force errs by {error:.1e}");
+        assert_eq!(report.warnings.contains(Warning::Rounding), dt > 10.0, "{report}");
+        assert!(dt > 10.0 || error < 1e-4, "{report}");
+    }
+}

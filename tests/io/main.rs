@@ -1,0 +1,18 @@
+//! Is what goes in checked, and what comes out whole: errors, warnings, saved states, files, pictures, documents?
+
+mod absurd_sizes;
+#[cfg(feature = "checkpoint")]
+mod checkpoint;
+#[path = "../common/mod.rs"]
+mod common;
+mod diagnosis;
+mod documents;
+mod errors;
+mod invalid_loads;
+#[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
+mod output;
+#[cfg(feature = "plot")]
+mod plot;
+mod snapshot;
+#[cfg(feature = "tracing")]
+mod tracing;

@@ -1,0 +1,450 @@
+//! Files of results are read back bit by bit, by readers that share no code with the writers.
+#![cfg_attr(
+    not(all(feature = "csv", feature = "npy", feature = "vtk")),
+    allow(dead_code, reason = "not every format needs every helper")
+)]
+
+use crate::common::bodies::maxwell;
+use crate::common::spheres::sphere_on;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use viscocontact::output::{Field, Metadata};
+use viscocontact::prelude::*;
+
+/// A folder of its own for each test, removed when the test is over.
+struct Folder(PathBuf);
+
+impl Folder {
+    fn new(name: &str) -> Folder {
+        let path = std::env::temp_dir().join(format!("viscocontact-output-{name}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&path);
+        fs::create_dir_all(&path).unwrap();
+        Folder(path)
+    }
+
+    fn names(&self) -> Vec<String> {
+        let mut names: Vec<String> =
+            fs::read_dir(&self.0).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+/// A punch that is off the origin and of another number of cells along x1 than along x2, so that no two axes,
+/// signs or orders can be mixed up unseen; there is nothing to touch off its face.
+fn punch() -> ViscoelasticContact {
+    let face = Shifted::new(FlatPunch::circular(0.6e-3).unwrap(), [0.2e-3, -0.1e-3]).unwrap();
+    ViscoelasticContact::builder(Grid::new([24, 17], [3.0e-3, 2.0e-3]).unwrap())
+        .geometry(&face)
+        .material(maxwell())
+        .build()
+        .unwrap()
+}
+
+fn scene() -> Metadata {
+    Metadata::new("A \"punch\" <on> & µm, \u{1d11e}").note("line\nend", "\\ tab\t").note("operator", "-->]]>")
+}
+
+/// The jump and two steps of a hold; `after` sees the state after each.
+fn run(contact: &mut ViscoelasticContact, mut after: impl FnMut(&ViscoelasticContact, &StepReport)) {
+    for dt in [0.0, 0.3, 0.1] {
+        let report = contact.step(dt, Load::force(0.7)).unwrap();
+        after(contact, &report);
+    }
+}
+
+fn values(contact: &ViscoelasticContact, field: Field) -> Vec<f64> {
+    match field {
+        Field::Pressure => contact.pressure().to_vec(),
+        Field::Displacement => contact.displacement().to_vec(),
+        _ => {
+            let mut gap = vec![0.0; contact.grid().len()];
+            contact.gap_into(&mut gap).unwrap();
+            gap
+        }
+    }
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|value| value.to_bits()).collect()
+}
+
+fn text_of(path: &Path) -> String {
+    fs::read_to_string(path).unwrap()
+}
+
+#[cfg(feature = "npy")]
+mod npy {
+    use std::io::Read;
+
+    use viscocontact::output::{NpzSeries, write_npy};
+
+    use super::*;
+
+    struct Archive(zip::ZipArchive<fs::File>);
+
+    impl Archive {
+        fn bytes(&mut self, name: &str) -> Vec<u8> {
+            let mut bytes = Vec::new();
+            self.0.by_name(&format!("{name}.npy")).unwrap().read_to_end(&mut bytes).unwrap();
+            bytes
+        }
+
+        fn numbers(&mut self, name: &str) -> (Vec<u64>, Vec<f64>) {
+            let bytes = self.bytes(name);
+            let file = npyz::NpyFile::new(&bytes[..]).unwrap();
+            (file.shape().to_vec(), file.into_vec().unwrap())
+        }
+    }
+
+    #[test]
+    fn archives_hold_what_was_computed() {
+        let folder = Folder::new("npz");
+        let mut series = NpzSeries::create(&folder.0, scene(), &Field::ALL).unwrap();
+        let mut contact = punch();
+        run(&mut contact, |contact, _| {
+            let path = series.write(contact).unwrap();
+            let mut archive = Archive(zip::ZipArchive::new(fs::File::open(path).unwrap()).unwrap());
+            assert_eq!(archive.0.len(), 11);
+            for field in Field::ALL {
+                let (shape, found) = archive.numbers(field.name());
+                assert_eq!(shape, [24, 17]);
+                assert_eq!(bits(&found), bits(&values(contact, field)), "{field:?}");
+            }
+            let [tilt1, tilt2] = contact.tilt();
+            let scalars: [(&str, &[u64], &[f64]); 5] = [
+                ("time", &[], &[contact.time()]),
+                ("approach", &[], &[contact.approach()]),
+                ("force", &[], &[contact.force()]),
+                ("tilt", &[2], &[tilt1, tilt2]),
+                ("contact_area", &[], &[contact.contact_area()]),
+            ];
+            for (name, shape, expected) in scalars {
+                let (found_shape, found) = archive.numbers(name);
+                assert_eq!((&found_shape[..], bits(&found)), (shape, bits(expected)), "{name}");
+            }
+            let (shape, x2) = archive.numbers("x2");
+            assert_eq!(shape, [17]);
+            assert!((0..17).all(|j| x2[j] == contact.grid().center(0, j)[1]));
+            let bytes = archive.bytes("metadata");
+            let text = npyz::NpyFile::new(&bytes[..]).unwrap().into_vec::<String>().unwrap();
+            assert_eq!(text, [scene().json(contact)]);
+        });
+        assert_eq!(series.frames(), 3);
+        assert_eq!(folder.names(), ["frame_000000.npz", "frame_000001.npz", "frame_000002.npz"]);
+    }
+
+    #[test]
+    fn earlier_runs_are_not_overwritten() {
+        let folder = Folder::new("npz-again");
+        let mut series = NpzSeries::create(&folder.0, scene(), &[Field::Gap]).unwrap();
+        series.write(&punch()).unwrap();
+        let error = NpzSeries::create(&folder.0, scene(), &[Field::Gap]).unwrap_err();
+        assert!(matches!(&error, Error::Output { what, .. } if what.contains("frame_000000.npz")), "{error}");
+        let twice = NpzSeries::create(folder.0.join("b"), scene(), &[Field::Gap, Field::Gap]).unwrap_err();
+        assert!(twice.to_string().contains("gap is requested twice"), "{twice}");
+    }
+
+    #[test]
+    fn a_frame_that_fails_is_not_there_and_not_counted() {
+        let folder = Folder::new("npz-fails");
+        let mut series = NpzSeries::create(folder.0.join("run"), scene(), &[Field::Pressure]).unwrap();
+        fs::remove_dir_all(folder.0.join("run")).unwrap();
+        let error = series.write(&punch()).unwrap_err();
+        assert!(matches!(&error, Error::Output { path, .. } if path.ends_with("frame_000000.npz")), "{error}");
+        assert_eq!(series.frames(), 0);
+        fs::create_dir(folder.0.join("run")).unwrap();
+        assert!(series.write(&punch()).unwrap().ends_with("frame_000000.npz"));
+    }
+
+    #[test]
+    fn single_fields_are_read_back_bit_by_bit() {
+        let folder = Folder::new("npy");
+        let path = folder.0.join("field.npy");
+        let grid = Grid::new([2, 3], [1.0, 1.0]).unwrap();
+        let field = [0.1, -0.0, f64::INFINITY, 5e-324, f64::MAX, f64::NAN];
+        write_npy(&path, &grid, &field).unwrap();
+        let file = npyz::NpyFile::new(fs::File::open(&path).unwrap()).unwrap();
+        assert_eq!((file.shape(), file.order()), (&[2, 3][..], npyz::Order::C));
+        assert_eq!(bits(&file.into_vec::<f64>().unwrap()), bits(&field));
+        assert!(matches!(write_npy(&path, &grid, &[0.0; 5]), Err(Error::WrongLength { expected: 6, .. })));
+        assert!(matches!(write_npy(folder.0.join("no/field.npy"), &grid, &field), Err(Error::Output { .. })));
+    }
+}
+
+#[cfg(feature = "vtk")]
+mod vtk {
+    use viscocontact::output::VtkSeries;
+
+    use super::*;
+
+    /// An image, by a reader that knows no more than the tags it looks for.
+    struct Image {
+        head: String,
+        data: Vec<u8>,
+    }
+
+    impl Image {
+        fn open(path: &Path) -> Image {
+            let bytes = fs::read(path).unwrap();
+            let mark = b"<AppendedData encoding=\"raw\">";
+            let start = bytes.windows(mark.len()).position(|window| window == mark).unwrap() + mark.len();
+            let start = start + bytes[start..].iter().position(|&byte| byte == b'_').unwrap() + 1;
+            Image { head: String::from_utf8(bytes[..start].to_vec()).unwrap(), data: bytes[start..].to_vec() }
+        }
+
+        /// An attribute of the first tag that holds `mark`.
+        fn attribute(&self, mark: &str, name: &str) -> String {
+            let tag = self.head.split('<').find(|tag| tag.contains(mark)).unwrap();
+            let value = tag.split(&format!(" {name}=\"")).nth(1).unwrap();
+            value.split('"').next().unwrap().to_owned()
+        }
+
+        fn array(&self, name: &str) -> &[u8] {
+            let offset: usize = self.attribute(&format!("Name=\"{name}\""), "offset").parse().unwrap();
+            let size = u64::from_le_bytes(self.data[offset..offset + 8].try_into().unwrap()) as usize;
+            &self.data[offset + 8..offset + 8 + size]
+        }
+
+        fn numbers(&self, name: &str) -> Vec<f64> {
+            let (numbers, rest) = self.array(name).as_chunks::<8>();
+            assert!(rest.is_empty());
+            numbers.iter().map(|&bytes| f64::from_le_bytes(bytes)).collect()
+        }
+
+        fn triple(&self, name: &str) -> Vec<f64> {
+            self.attribute("ImageData WholeExtent", name).split(' ').map(|text| text.parse().unwrap()).collect()
+        }
+    }
+
+    #[test]
+    fn images_hold_what_was_computed() {
+        let folder = Folder::new("vtk");
+        let mut series = VtkSeries::create(&folder.0, scene(), &Field::ALL).unwrap();
+        let mut contact = punch();
+        let mut listed = Vec::new();
+        run(&mut contact, |contact, _| {
+            let image = Image::open(&series.write(contact).unwrap());
+            assert_eq!(image.attribute("ImageData WholeExtent", "WholeExtent"), "0 24 0 17 0 0");
+            assert_eq!(image.attribute("Piece", "Extent"), "0 24 0 17 0 0");
+            let ([x1, x2], [d1, d2]) = (contact.grid().center(0, 0), contact.grid().spacing());
+            assert_eq!(image.triple("Origin"), [x1 - 0.5 * d1, x2 - 0.5 * d2, 0.0]);
+            assert_eq!(image.triple("Spacing")[..2], [d1, d2]);
+            for field in Field::ALL {
+                let found = image.numbers(&format!("{} [{}]", field.name(), field.unit()));
+                let expected = values(contact, field);
+                for i in 0..24 {
+                    for j in 0..17 {
+                        assert_eq!(found[j * 24 + i].to_bits(), expected[i * 17 + j].to_bits(), "{field:?} {i} {j}");
+                    }
+                }
+            }
+            assert_eq!(image.numbers("TimeValue"), [contact.time()]);
+            assert_eq!(image.numbers("approach [m]"), [contact.approach()]);
+            assert_eq!(image.numbers("force [N]"), [contact.force()]);
+            assert_eq!(image.numbers("tilt [rad]"), contact.tilt());
+            assert_eq!(image.numbers("contact area [m2]"), [contact.contact_area()]);
+            let (end, text) = image.array("metadata").split_last().unwrap();
+            assert_eq!((*end, text), (0, scene().json(contact).as_bytes()));
+
+            // the collection is complete after every frame
+            let (time, number) = (contact.time(), listed.len());
+            listed.push(format!("timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"frame_{number:06}.vti\""));
+            let collection = text_of(&folder.0.join("series.pvd"));
+            assert!(collection.ends_with("</VTKFile>\n"));
+            let lines = collection.lines().filter_map(|line| line.trim().strip_prefix("<DataSet ")?.strip_suffix("/>"));
+            assert_eq!(lines.collect::<Vec<_>>(), listed);
+        });
+        assert_eq!(folder.names(), ["frame_000000.vti", "frame_000001.vti", "frame_000002.vti", "series.pvd"]);
+        assert!(matches!(VtkSeries::create(&folder.0, scene(), &[]), Err(Error::Output { .. })));
+    }
+
+    #[test]
+    fn fields_are_chosen() {
+        let folder = Folder::new("vtk-few");
+        let mut series = VtkSeries::create(&folder.0, scene(), &[Field::Gap]).unwrap();
+        let image = Image::open(&series.write(&punch()).unwrap());
+        assert!(image.head.contains("gap [m]") && !image.head.contains("pressure"));
+        assert!(image.numbers("gap [m]").contains(&f64::INFINITY));
+    }
+}
+
+#[cfg(feature = "csv")]
+mod csv {
+    use viscocontact::output::CsvHistory;
+
+    use super::*;
+
+    #[test]
+    fn histories_hold_a_row_a_step() {
+        let folder = Folder::new("csv");
+        let path = folder.0.join("history.csv");
+        let mut contact = punch();
+        let mut history = CsvHistory::create(&path, &scene(), &contact, &["energy, total [J]", "odd"]).unwrap();
+        let mut steps = 0;
+        run(&mut contact, |contact, report| {
+            history.write(contact, report, &[0.1 * report.force, f64::NAN]).unwrap();
+            steps += 1;
+            // read while the writer is still at work
+            let text = text_of(&path);
+            let json = text.lines().next().unwrap().strip_prefix("# ").unwrap();
+            assert_eq!(json, scene().json(contact));
+            let mut table = ::csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
+            let names = table.headers().unwrap().clone();
+            let rows: Vec<_> = table.records().map(Result::unwrap).collect();
+            assert_eq!(rows.len(), steps);
+            let value = |name: &str| -> f64 {
+                let column = names.iter().position(|other| other == name).unwrap();
+                rows[steps - 1][column].parse().unwrap()
+            };
+            assert_eq!(value("time [s]"), contact.time());
+            assert_eq!(value("step length [s]"), report.dt);
+            assert_eq!(value("force [N]"), contact.force());
+            assert_eq!(value("approach [m]"), contact.approach());
+            assert_eq!([value("tilt 1 [rad]"), value("tilt 2 [rad]")], contact.tilt());
+            assert_eq!([value("moment 1 [N m]"), value("moment 2 [N m]")], contact.moment());
+            assert_eq!(value("contact area [m2]"), contact.contact_area());
+            assert_eq!(value("contact cells"), contact.contact_cells() as f64);
+            assert_eq!(value("mean pressure [Pa]"), contact.mean_pressure());
+            assert_eq!(value("greatest pressure [Pa]"), contact.greatest_pressure());
+            assert_eq!(value("iterations"), report.iterations as f64);
+            assert_eq!(value("convolutions"), report.convolutions as f64);
+            assert_eq!(value("preconditioner applications"), report.preconditioner_applications as f64);
+            assert_eq!(value("residual"), report.residual);
+            assert_eq!(value("time error"), report.time_error);
+            assert_eq!(value("energy, total [J]"), 0.1 * report.force);
+            assert!(value("odd").is_nan());
+        });
+        let report = contact.step(0.1, Load::force(0.7)).unwrap();
+        assert!(matches!(history.write(&contact, &report, &[]), Err(Error::WrongLength { expected: 2, .. })));
+        assert_eq!(text_of(&path).lines().count(), 5);
+    }
+
+    #[test]
+    fn bad_histories_are_refused() {
+        let folder = Folder::new("csv-bad");
+        let (path, contact) = (folder.0.join("history.csv"), punch());
+        for names in [&["a", "a"][..], &["time [s]"], &[""], &["a#b"], &["a\nb"], &["\"a\""]] {
+            let error = CsvHistory::create(&path, &scene(), &contact, names).unwrap_err();
+            assert!(matches!(&error, Error::Output { what, .. } if what.contains("column")), "{error}");
+        }
+        assert!(folder.names().is_empty());
+        fs::write(&path, "years of work").unwrap();
+        assert!(CsvHistory::create(&path, &scene(), &contact, &[]).is_err());
+        assert_eq!(text_of(&path), "years of work");
+    }
+}
+
+/// Writes a run, and beside it the same values as bare numbers, for `tests/read_back.py`.
+#[cfg(all(feature = "csv", feature = "npy", feature = "vtk"))]
+#[test]
+#[ignore = "tests/read_back.sh runs it"]
+fn a_run_for_other_readers() {
+    use viscocontact::output::{CsvHistory, NpzSeries, VtkSeries, write_npy};
+
+    let folder = PathBuf::from(std::env::var_os("READ_BACK_FOLDER").expect("READ_BACK_FOLDER names a folder"));
+    let mut contact = punch();
+    let mut archives = NpzSeries::create(&folder, scene(), &Field::ALL).unwrap();
+    let mut images = VtkSeries::create(&folder, scene(), &Field::ALL).unwrap();
+    let mut history =
+        CsvHistory::create(folder.join("history.csv"), &scene(), &contact, &["twice, force [N]"]).unwrap();
+    let mut frame = 0;
+    run(&mut contact, |contact, report| {
+        archives.write(contact).unwrap();
+        images.write(contact).unwrap();
+        history.write(contact, report, &[2.0 * report.force]).unwrap();
+        let dump = |name: &str, values: &[f64]| {
+            let bytes: Vec<u8> = values.iter().flat_map(|value| value.to_le_bytes()).collect();
+            fs::write(folder.join(format!("frame_{frame:06}.{name}.raw")), bytes).unwrap();
+        };
+        for field in Field::ALL {
+            dump(field.name(), &values(contact, field));
+        }
+        dump("time", &[contact.time()]);
+        dump("approach", &[contact.approach()]);
+        dump("force", &[contact.force()]);
+        dump("tilt", &contact.tilt());
+        dump("contact_area", &[contact.contact_area()]);
+        let ([n1, n2], grid) = (contact.grid().cells(), contact.grid());
+        dump("x1", &(0..n1).map(|i| grid.center(i, 0)[0]).collect::<Vec<_>>());
+        dump("x2", &(0..n2).map(|j| grid.center(0, j)[1]).collect::<Vec<_>>());
+        write_npy(folder.join(format!("frame_{frame:06}.npy")), grid, &values(contact, Field::Gap)).unwrap();
+        fs::write(folder.join("scene.json"), scene().json(contact)).unwrap();
+        frame += 1;
+    });
+    fs::write(
+        folder.join("shape.txt"),
+        format!("{} {} {frame}\n", contact.grid().cells()[0], contact.grid().cells()[1]),
+    )
+    .unwrap();
+}
+
+/// What the test below runs with room for 32 KiB in a file: rows and frames until one is refused.
+#[cfg(all(unix, feature = "csv", feature = "npy", feature = "vtk"))]
+#[test]
+#[ignore = "full_disks_leave_whole_files_and_no_word runs it"]
+fn a_run_without_room() {
+    use viscocontact::output::{CsvHistory, NpzSeries, VtkSeries, write_npy};
+
+    let folder = PathBuf::from(std::env::var_os("FULL_FOLDER").expect("FULL_FOLDER names a folder"));
+    let mut contact = sphere_on(Grid::square(96, 4.0e-3).unwrap(), maxwell(), Settings::default());
+    let mut history = CsvHistory::create(folder.join("history.csv"), &scene(), &contact, &[]).unwrap();
+    let report = contact.step(0.0, Load::force(0.1)).unwrap();
+    let rows = (0..1000).take_while(|_| history.write(&contact, &report, &[]).is_ok()).count();
+    for _ in 0..20 {
+        assert!(matches!(history.write(&contact, &report, &[]), Err(Error::Output { .. })));
+    }
+    drop(history);
+    fs::write(folder.join("rows"), rows.to_string()).unwrap();
+    // all fields of 73 KB, and none, which is small enough
+    let mut archives = NpzSeries::create(folder.join("npz"), scene(), &Field::ALL).unwrap();
+    let mut images = VtkSeries::create(folder.join("vtk"), scene(), &Field::ALL).unwrap();
+    for _ in 0..2 {
+        assert!(matches!(archives.write(&contact), Err(Error::Output { .. })));
+        assert!(matches!(images.write(&contact), Err(Error::Output { .. })));
+        let written = write_npy(folder.join("field.npy"), contact.grid(), contact.pressure());
+        assert!(matches!(written, Err(Error::Output { .. })));
+    }
+    assert_eq!((archives.frames(), images.frames()), (0, 0));
+    let mut few = NpzSeries::create(folder.join("few"), scene(), &[]).unwrap();
+    few.write(&contact).unwrap();
+}
+
+/// On a full disk: each row that was reported as written is whole in the file and no other is there at all, no part of a frame is
+/// left, and nothing is printed.
+#[cfg(all(unix, feature = "csv", feature = "npy", feature = "vtk"))]
+#[test]
+fn full_disks_leave_whole_files_and_no_word() {
+    let folder = Folder::new("full");
+    // writes beyond 64 blocks of 512 bytes fail in the child, which is not killed for them
+    let child = std::process::Command::new("sh")
+        .args([
+            "-c",
+            "trap '' XFSZ; ulimit -f 64; exec \"$0\" --exact output::a_run_without_room --ignored --nocapture",
+        ])
+        .arg(std::env::current_exe().unwrap())
+        .env("FULL_FOLDER", &folder.0)
+        .output()
+        .unwrap();
+    let told = String::from_utf8_lossy(&child.stderr);
+    assert!(child.status.success() && told.is_empty(), "{told}");
+    let (text, rows) =
+        (text_of(&folder.0.join("history.csv")), text_of(&folder.0.join("rows")).parse::<usize>().unwrap());
+    assert!(rows > 50 && text.len() <= 32768, "{rows} rows, {} bytes", text.len());
+    let (head, lines): (Vec<_>, Vec<_>) = (text.lines().take(2).collect(), text.lines().skip(2).collect());
+    assert_eq!((head.len(), lines.len()), (2, rows));
+    assert!(text.ends_with('\n') && lines.iter().all(|line| *line == lines[0]));
+    assert_eq!(folder.names(), ["few", "history.csv", "npz", "rows", "vtk"]);
+    assert_eq!(
+        fs::read_dir(folder.0.join("npz")).unwrap().count() + fs::read_dir(folder.0.join("vtk")).unwrap().count(),
+        0
+    );
+    assert_eq!(fs::read_dir(folder.0.join("few")).unwrap().count(), 1);
+}

@@ -1,0 +1,344 @@
+//! Pictures: what they show, that files are whole, and that no data make them fail otherwise than by an error.
+
+use crate::common::bodies::maxwell;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use proptest::prelude::*;
+use viscocontact::observe::Axis;
+use viscocontact::output::Field;
+use viscocontact::plot::{
+    Animation, COLORS, Chart, Color, History, Legend, Map, Observed, Picture, Quantity, Scale, Style,
+};
+use viscocontact::prelude::*;
+
+/// A ball on a Maxwell body under force; on 32 × 24 cells, so that axes are not mixed up.
+fn ball() -> ViscoelasticContact {
+    let mut contact = ViscoelasticContact::builder(Grid::new([32, 24], [4.0e-3, 3.0e-3]).unwrap())
+        .geometry(&Shifted::new(Sphere::new(10.0e-3).unwrap(), [0.5e-3, -0.3e-3]).unwrap())
+        .material(maxwell())
+        .build()
+        .unwrap();
+    contact.step(0.0, Load::force(0.3)).unwrap();
+    contact
+}
+
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("viscocontact-plot-{name}-{}", std::process::id()));
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Pixels of a colour: how many, and their mean column and row.
+fn center(picture: &Picture, is: impl Fn([u8; 3]) -> bool) -> (usize, [f64; 2]) {
+    let width = picture.size()[0] as usize;
+    let (mut count, mut sum) = (0, [0.0; 2]);
+    for (k, pixel) in picture.rgb().chunks_exact(3).enumerate() {
+        if is([pixel[0], pixel[1], pixel[2]]) {
+            count += 1;
+            sum[0] += (k % width) as f64;
+            sum[1] += (k / width) as f64;
+        }
+    }
+    (count, sum.map(|s| s / count as f64))
+}
+
+#[test]
+fn a_map_shows_each_cell_where_it_is() {
+    // one cell of the greatest value, to the right and above
+    let grid = Grid::new([8, 4], [8.0, 4.0]).unwrap();
+    for (cell, at) in [([6, 3], [0.8125, 0.125]), ([0, 0], [0.0625, 0.875])] {
+        let mut values = vec![0.0; 32];
+        values[cell[0] * 4 + cell[1]] = 1.0;
+        let picture = Map::new(&grid, values, "q").unwrap().draw().unwrap();
+        // the colour bar has pixels of the dark end too: it stands to the right of 840
+        let Color(r, g, b) = Color(68, 1, 84);
+        let width = picture.size()[0] as usize;
+        let mut on_map = picture.rgb().chunks_exact(3).enumerate().filter(|(k, _)| k % width < 838);
+        let (mut count, mut low, mut high) = (0, [f64::INFINITY; 2], [0.0_f64; 2]);
+        for (k, _) in on_map.by_ref().filter(|(_, p)| p == &[r, g, b]) {
+            count += 1;
+            for (axis, v) in [(k % width) as f64, (k / width) as f64].into_iter().enumerate() {
+                (low[axis], high[axis]) = (low[axis].min(v), high[axis].max(v));
+            }
+        }
+        // a cell is an eighth of 730 pixels wide
+        assert!((count as f64 / (730.0_f64 / 8.0).powi(2) - 1.0).abs() < 0.1, "{count}");
+        // the light end of the scale fills the rest of the map
+        let (mut left, mut right, mut top, mut bottom) = (f64::INFINITY, 0.0_f64, f64::INFINITY, 0.0_f64);
+        for (k, p) in picture.rgb().chunks_exact(3).enumerate().filter(|(k, _)| k % width < 838) {
+            if p == [254, 232, 37] || p == [r, g, b] {
+                let (x, y) = ((k % width) as f64, (k / width) as f64);
+                (left, right, top, bottom) = (left.min(x), right.max(x), top.min(y), bottom.max(y));
+            }
+        }
+        let share =
+            [(0.5 * (low[0] + high[0]) - left) / (right - left), (0.5 * (low[1] + high[1]) - top) / (bottom - top)];
+        for axis in 0..2 {
+            assert!((share[axis] - at[axis]).abs() < 0.01, "{share:?}, not {at:?}");
+        }
+    }
+}
+
+#[test]
+fn pressure_is_blank_out_of_contact() {
+    let contact = ball();
+    let map = Map::pressure(&contact).unwrap();
+    let known = map.values().iter().filter(|p| p.is_finite()).count();
+    assert_eq!(known, contact.contact_cells());
+    assert_eq!(map.range, [0.0, contact.greatest_pressure()]);
+    assert_eq!(map.title, "t = 0 s");
+    let gap = Map::gap(&contact).unwrap();
+    assert_eq!([gap.range[0], gap.values().len() as f64], [0.0, 768.0]);
+    // the outline: black pixels about the contact, which lies to the right of the middle and below it
+    let plain = Map::displacement(&contact).unwrap().outline(Vec::new());
+    assert!(matches!(plain, Err(Error::WrongLength { field: "cells of an outline", len: 0, expected: 768, .. })));
+    let outlined = Map::displacement(&contact).unwrap().draw().unwrap();
+    let without = Map::displacement(&contact).unwrap().outline(vec![false; 768]).unwrap().draw().unwrap();
+    let differs = |k: usize| outlined.rgb()[3 * k..3 * k + 3] != without.rgb()[3 * k..3 * k + 3];
+    let width = outlined.size()[0] as usize;
+    let changed: Vec<usize> = (0..outlined.rgb().len() / 3).filter(|&k| differs(k)).collect();
+    let mean = |of: &dyn Fn(usize) -> usize| changed.iter().map(|&k| of(k) as f64).sum::<f64>() / changed.len() as f64;
+    let pixels = 730.0 / 4.0e-3;
+    let cell = 0.125e-3 * pixels;
+    // 95 pixels are left of the map; its middle is 365 further
+    assert!((mean(&|k| k % width) - (95.0 + 365.0 + 0.5e-3 * pixels)).abs() < cell);
+    assert!(changed.len() > 200);
+}
+
+#[test]
+fn profiles_and_histories_hold_the_state() {
+    let mut contact = ball();
+    let mut history = History::new();
+    assert!(history.chart(Observed::Force).unwrap().draw().is_err(), "nothing to draw yet");
+    for _ in 0..3 {
+        history.add(&contact);
+        contact.step(0.5, Load::force(0.3)).unwrap();
+    }
+    assert_eq!(history.times(), [0.0, 0.5, 1.0]);
+    assert!(history.column(Observed::ContactArea).windows(2).all(|w| w[1] > w[0]));
+    for observed in Observed::ALL {
+        assert_eq!(history.column(observed).len(), 3);
+        history.chart(observed).unwrap().draw().unwrap();
+    }
+    let short = Chart::history("", history.times(), "q", &[("a", &[1.0, 2.0])]);
+    assert!(matches!(short, Err(Error::WrongLength { field: "column of a history", len: 2, expected: 3, .. })));
+    Chart::profile(&contact, Axis::X2, 0.5e-3).unwrap().draw().unwrap();
+    assert!(matches!(Chart::profile(&contact, Axis::X2, 1.0), Err(Error::OutOfRange { .. })));
+}
+
+#[test]
+fn charts_draw_series_in_their_colours() {
+    let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
+    chart.add("", COLORS[0], Style::Line, vec![(0.0, 0.0), (1.0, 1.0), (f64::NAN, 0.0), (3.0, 1.0), (4.0, 0.0)]);
+    chart.add("", COLORS[1], Style::Dots, vec![(4.0, 1.0)]);
+    let picture = chart.draw().unwrap();
+    let (line, _) = center(&picture, |p| p == [0, 114, 178]);
+    let (dot, [x, y]) = center(&picture, |p| p == [213, 94, 0]);
+    assert!(line > 500 && (60..130).contains(&dot), "{line} {dot}");
+    assert!(x > 1000.0 && y < 100.0, "the dot is in the upper right corner, not at {x}, {y}");
+    // the line is broken: nothing of it crosses the middle
+    let width = picture.size()[0] as usize;
+    let middle = 115 + (width - 155) / 2;
+    let crossing =
+        picture.rgb().chunks_exact(3).enumerate().filter(|(k, p)| k % width == middle && *p == [0, 114, 178]);
+    assert_eq!(crossing.count(), 0);
+}
+
+/// A thick line that turns back sharply has no spike out of the axes.
+#[test]
+fn lines_that_turn_back_stay_where_they_are() {
+    let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
+    chart.add("", COLORS[0], Style::Line, vec![(0.0, 0.0), (0.2, 0.5), (1.0, 0.50), (0.1, 0.503), (1.0, 1.0)]);
+    let picture = chart.draw().unwrap();
+    let width = picture.size()[0] as usize;
+    let left = picture.rgb().chunks_exact(3).enumerate().filter(|(_, p)| *p == [0, 114, 178]).map(|(k, _)| k % width);
+    assert!(left.min().unwrap() >= 110, "a pixel of the line stands left of the axis");
+}
+
+/// A logarithmic axis has numbers, however little its values differ: the strip left of it is not empty.
+#[test]
+fn narrow_logarithmic_axes_have_numbers() {
+    for y in [2.8e-3, 1.0, 0.97e5] {
+        let mut chart = Chart::new("", "x", "", Legend::UpperLeft);
+        chart.scale = Scale::LogY;
+        chart.add("", COLORS[0], Style::Line, vec![(0.0, y), (1.0, 1.01 * y)]);
+        let picture = chart.draw().unwrap();
+        let width = picture.size()[0] as usize;
+        let dark =
+            picture.rgb().chunks_exact(3).enumerate().filter(|(k, p)| k % width < 105 && p.iter().all(|&c| c < 100));
+        let rows: std::collections::BTreeSet<usize> = dark.map(|(k, _)| k / width).collect();
+        let [low, high] = [*rows.first().unwrap(), *rows.last().unwrap()];
+        assert!(high - low > 300, "{y}: numbers from row {low} to row {high}");
+    }
+}
+
+#[test]
+fn bad_pictures_are_refused_by_name() {
+    let field = |result: Result<Picture>| match result.unwrap_err() {
+        Error::OutOfRange { field, .. } | Error::CountOutOfRange { field, .. } | Error::WrongLength { field, .. } => {
+            field
+        }
+        other => panic!("unexpected {other}"),
+    };
+    let grid = Grid::square(2, 1.0).unwrap();
+    let map = Map::new(&grid, vec![1.0, 2.0, f64::NAN, 4.0], "q").unwrap();
+    assert_eq!(map.range, [1.0, 4.0]);
+    for range in [[1.0, 1.0], [2.0, 1.0], [f64::NAN, 1.0], [0.0, f64::INFINITY]] {
+        let mut map = map.clone();
+        map.range = range;
+        assert!(field(map.draw()).ends_with("end of the colour scale"));
+    }
+    assert_eq!(field(Map::draw_row(&[])), "maps of a row");
+    assert_eq!(field(Map::draw_row(&vec![map; 40])), "pixels along a side of a picture");
+    assert!(Map::new(&grid, vec![0.0; 3], "q").is_err());
+    assert!(Map::new(&grid, vec![1e101; 4], "q").is_err());
+    let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
+    assert_eq!(field(chart.draw()), "points to draw in the chart");
+    chart.add("", COLORS[0], Style::Line, vec![(1.0, 1e200)]);
+    assert_eq!(field(chart.draw()), "y of a point in a chart");
+    let saved = Chart::profile(&ball(), Axis::X1, 0.0).unwrap().save(Path::new("/no/such/folder/a.png"));
+    assert!(matches!(saved, Err(Error::Output { .. })));
+}
+
+#[test]
+fn animations_play_back() {
+    let folder = folder("animation");
+    let path = folder.join("run.gif");
+    let mut contact = ball();
+    let mut animation = Animation::create(&path, Field::Pressure, [0.0, 0.4e6], 0.05).unwrap();
+    let mut last = None;
+    for _ in 0..4 {
+        animation.add(&contact).unwrap();
+        let mut map = Map::pressure(&contact).unwrap().outline_contact(&contact).unwrap();
+        map.range = [0.0, 0.4e6];
+        last = Some(map.draw().unwrap());
+        contact.step(0.2, Load::force(0.3)).unwrap();
+    }
+    let other = Map::draw_row(&[Map::pressure(&contact).unwrap(), Map::gap(&contact).unwrap()]).unwrap();
+    let refused = animation.add_picture(&other).unwrap_err();
+    assert!(matches!(refused, Error::CountOutOfRange { field: "width of a frame", .. }));
+    assert_eq!(animation.frames(), 4);
+    assert!(!path.exists(), "it is not there before it is whole");
+    animation.finish().unwrap();
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+
+    // put together again, frame by frame, the last is what was drawn, but for the nearest colours
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::Indexed);
+    let mut decoder = options.read_info(fs::File::open(&path).unwrap()).unwrap();
+    let palette = decoder.global_palette().unwrap().to_vec();
+    let width = usize::from(decoder.width());
+    let last = last.unwrap();
+    assert_eq!([u32::from(decoder.width()), u32::from(decoder.height())], last.size());
+    let (mut screen, mut frames) = (vec![0_u8; last.rgb().len()], 0);
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        assert_eq!(frame.delay, 5);
+        for (k, &index) in frame.buffer.iter().enumerate() {
+            let (across, down) = (usize::from(frame.left), usize::from(frame.top));
+            let (x, y) = (across + k % usize::from(frame.width), down + k / usize::from(frame.width));
+            let color = 3 * usize::from(index);
+            screen[3 * (y * width + x)..][..3].copy_from_slice(&palette[color..color + 3]);
+        }
+        frames += 1;
+    }
+    assert_eq!(frames, 4);
+    let off = screen.iter().zip(last.rgb()).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>() / screen.len() as f64;
+    assert!(off < 0.5, "mean distance of a colour {off}");
+
+    for (range, seconds) in [([1.0, 0.0], 0.1), ([0.0, 1.0], 0.001), ([0.0, 1.0], f64::NAN), ([f64::NAN, 1.0], 0.1)] {
+        let refused = Animation::create(folder.join("b.gif"), Field::Gap, range, seconds);
+        assert!(matches!(refused, Err(Error::OutOfRange { .. })));
+    }
+    let empty = Animation::create(folder.join("b.gif"), Field::Gap, [0.0, 1.0], 0.1).unwrap();
+    assert!(matches!(empty.finish(), Err(Error::WrongLength { .. })));
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+    fs::remove_dir_all(&folder).unwrap();
+}
+
+/// Numbers of every size, and those that are none.
+fn number() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        Just(0.0),
+        Just(f64::NAN),
+        Just(f64::INFINITY),
+        (-1.0..1.0_f64),
+        (-1.0..1.0_f64, -120..120).prop_map(|(m, e)| m * 10f64.powi(e)),
+        any::<f64>(),
+        (0..8).prop_map(|k| 1.0 + f64::from(k) * f64::EPSILON),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn no_series_makes_a_chart_panic(
+        points in prop::collection::vec((number(), number()), 0..6),
+        scale in prop_oneof![Just(Scale::Linear), Just(Scale::LogX), Just(Scale::LogY), Just(Scale::LogLog)],
+        label in ".{0,12}",
+    ) {
+        let mut chart = Chart::new(label.clone(), Quantity::of(label.clone(), "m"), "y", Legend::LowerLeft);
+        chart.scale = scale;
+        chart.add(label, COLORS[2], Style::LineAndDots, points);
+        let _ = chart.draw();
+    }
+
+    #[test]
+    fn no_field_makes_a_map_panic(
+        values in prop::collection::vec(number(), 6),
+        lengths in (1e-9..1e9_f64, 1e-9..1e9_f64),
+        range in prop::option::of((number(), number())),
+    ) {
+        let grid = Grid::new([2, 3], [lengths.0, lengths.1]).unwrap();
+        if let Ok(mut map) = Map::new(&grid, values, Quantity::of("q", "Pa")) {
+            if let Some((low, high)) = range {
+                map.range = [low, high];
+            }
+            let _ = map.outline(vec![true, false, true, true, false, false]).unwrap().draw();
+        }
+    }
+}
+
+/// What the test below runs with room for 32 KiB in a file.
+#[cfg(unix)]
+#[test]
+#[ignore = "a_frame_without_room_leaves_no_trace runs it"]
+fn frames_until_there_is_no_room() {
+    let folder = std::path::PathBuf::from(std::env::var_os("FULL_FOLDER").expect("FULL_FOLDER names a folder"));
+    let mut contact = ball();
+    let mut animation = Animation::create(folder.join("run.gif"), Field::Pressure, [0.0, 0.4e6], 0.05).unwrap();
+    let length = || fs::read_dir(&folder).unwrap().next().unwrap().unwrap().metadata().unwrap().len();
+    let mut before = length();
+    for _ in 0..1000 {
+        contact.step(0.2, Load::force(0.1 + 0.2 * (contact.time() % 0.7))).unwrap();
+        match animation.add(&contact) {
+            Ok(()) => before = length(),
+            Err(error) => {
+                assert!(matches!(error, Error::Output { .. }), "{error}");
+                assert!(animation.frames() > 0 && length() == before && before <= 32768);
+                return;
+            }
+        }
+    }
+    panic!("{} frames in {before} bytes", animation.frames());
+}
+
+/// A frame that the disk has no room for leaves nothing in the file.
+#[cfg(unix)]
+#[test]
+fn a_frame_without_room_leaves_no_trace() {
+    let folder = folder("full");
+    let child = std::process::Command::new("sh")
+        .args([
+            "-c",
+            "trap '' XFSZ; ulimit -f 64; exec \"$0\" --exact plot::frames_until_there_is_no_room --ignored --nocapture",
+        ])
+        .arg(std::env::current_exe().unwrap())
+        .env("FULL_FOLDER", &folder)
+        .output()
+        .unwrap();
+    assert!(child.status.success(), "{}", String::from_utf8_lossy(&child.stderr));
+    assert!(String::from_utf8_lossy(&child.stdout).contains("1 passed"), "the test above has run");
+    fs::remove_dir_all(folder).unwrap();
+}

@@ -1,0 +1,4 @@
+//! Does a pressure displace the surface as the theory says, on every kind of body?
+
+mod half_space;
+mod other_bodies;

@@ -1,0 +1,269 @@
+//! The kernels beside the half-space's, each against its closed form and a sum of its own.
+
+use std::f64::consts::{FRAC_2_PI, PI, TAU};
+
+use viscocontact::{Error, Grid, InfluenceKernel, KernelError};
+
+fn convolve(kernel: &InfluenceKernel, pressure: &[f64]) -> Vec<f64> {
+    let mut displacement = vec![f64::NAN; pressure.len()];
+    kernel.convolve(pressure, &mut displacement, &mut kernel.workspace().unwrap()).unwrap();
+    displacement
+}
+
+fn field(grid: &Grid, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    let n2 = grid.cells()[1];
+    (0..grid.len()).map(|k| grid.center(k / n2, k % n2)).map(|[x1, x2]| f(x1, x2)).collect()
+}
+
+/// Any pressure, the same every time.
+fn noise(cells: usize) -> Vec<f64> {
+    (0..cells).map(|k| ((k * k) as f64 * 0.37 + 1.0).sin()).collect()
+}
+
+fn assert_close(found: &[f64], exact: &[f64], tolerance: f64) {
+    let scale = exact.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    for (k, (a, b)) in found.iter().zip(exact).enumerate() {
+        assert!((a - b).abs() <= tolerance * scale, "{k}: {a} {b}");
+    }
+}
+
+/// Westergaard's waves, on lengths of period even, odd and not smooth.
+#[test]
+fn periodic_bodies_displace_waves_as_westergaard_says() {
+    for cells in [[16, 24], [15, 22], [11, 1], [1, 32], [64, 2]] {
+        let grid = Grid::new(cells, [2.0, 3.0]).unwrap();
+        let kernel = InfluenceKernel::periodic(&grid).unwrap();
+        assert_eq!(kernel.periodic_axes(), [true; 2]);
+        for [m1, m2] in [[1, 0], [0, 1], [3, 2], [5, 7], [0, 0]] {
+            if 2 * m1 >= cells[0] || 2 * m2 >= cells[1] {
+                continue;
+            }
+            let q = [TAU * m1 as f64 / 2.0, TAU * m2 as f64 / 3.0];
+            let wave = field(&grid, |x1, x2| (q[0] * x1 + q[1] * x2 + 0.3).cos());
+            let factor = if (m1, m2) == (0, 0) { 0.0 } else { 2.0 / q[0].hypot(q[1]) };
+            let found = convolve(&kernel, &wave);
+            assert!(found.iter().zip(&wave).all(|(v, p)| (v - factor * p).abs() < 1e-13), "{cells:?} {m1} {m2}");
+        }
+    }
+}
+
+/// Against the sum over the line's own logarithms, and the closed form of a uniform pressure.
+#[test]
+fn lines_are_sums_of_logarithms() {
+    let (grid, datum) = (Grid::new([75, 1], [1.5, 2.0]).unwrap(), 4.0);
+    let kernel = InfluenceKernel::line(&grid, datum).unwrap();
+    let side = grid.spacing()[0];
+    let primitive = |x: f64| x * (x.abs() / datum).ln() - x;
+    let cell = |x: f64| -FRAC_2_PI * (primitive(x + 0.5 * side) - primitive(x - 0.5 * side));
+    let pressure = noise(75);
+    let naive: Vec<f64> =
+        (0..75).map(|i| (0..75).map(|k| cell((i as f64 - k as f64) * side) * pressure[k]).sum()).collect();
+    assert_close(&convolve(&kernel, &pressure), &naive, 1e-13);
+    let under = convolve(&kernel, &[1.0; 75])[37];
+    let exact = -FRAC_2_PI * 1.5 * ((0.75 / datum).ln() - 1.0);
+    assert!((under / exact - 1.0).abs() < 1e-13, "{under} {exact}");
+    // at the datum the surface stays where it was: a load in the middle, seen from far away
+    let far = Grid::new([2001, 1], [8.004, 1.0]).unwrap();
+    let kernel = InfluenceKernel::line(&far, 8.004).unwrap();
+    let mut load = vec![0.0; 2001];
+    load[0] = 1.0;
+    assert!((convolve(&kernel, &load)[2000] + FRAC_2_PI * 0.004 * (8.0_f64 / 8.004).ln()).abs() < 1e-9);
+}
+
+/// Waves that end across the strip are, in its middle, Westergaard's; uniform ones are lines; and both axes do it.
+#[test]
+fn strips_are_periodic_along_one_axis() {
+    let (cells, lengths) = ([96, 20], [12.0, 2.5]);
+    for axis in [1, 0] {
+        let turn = |pair: [usize; 2]| if axis == 1 { pair } else { [pair[1], pair[0]] };
+        let grid = Grid::new(turn(cells), if axis == 1 { lengths } else { [lengths[1], lengths[0]] }).unwrap();
+        let kernel = InfluenceKernel::periodic_along(&grid, axis, 20.0).unwrap();
+        assert_eq!(kernel.periodic_axes(), [axis == 0, axis == 1]);
+        let kappa = TAU * 2.0 / 2.5;
+        let along = |x: [f64; 2]| (kappa * x[axis]).cos();
+        let wave = field(&grid, |x1, x2| along([x1, x2]));
+        let found = convolve(&kernel, &wave);
+        for j in 0..20 {
+            let [i, j] = turn([48, j]);
+            let k = i * grid.cells()[1] + j;
+            // what is left out beyond ± 6 is K0's tail: e^(−κ 6)/…
+            assert!((found[k] - 2.0 / kappa * wave[k]).abs() < 1e-12, "{k}: {} {}", found[k], wave[k]);
+        }
+        let line = InfluenceKernel::line(&Grid::new([96, 1], [12.0, 1.0]).unwrap(), 20.0).unwrap();
+        let profile = noise(96);
+        let uniform: Vec<f64> =
+            (0..grid.len()).map(|k| profile[[k / grid.cells()[1], k % grid.cells()[1]][1 - axis]]).collect();
+        let (found, exact) = (convolve(&kernel, &uniform), convolve(&line, &profile));
+        for (k, value) in found.iter().enumerate() {
+            let own = exact[[k / grid.cells()[1], k % grid.cells()[1]][1 - axis]];
+            assert!((value - own).abs() < 1e-13 * exact[0].abs().max(1.0), "{k}: {value} {own}");
+        }
+    }
+}
+
+/// Far from a point load a strip is a row of half-spaces: differences of the displacement are those of the sum over
+/// the images.
+#[test]
+fn strips_are_rows_of_images() {
+    let (grid, period) = (Grid::new([80, 80], [4.0, 4.0]).unwrap(), 4.0);
+    let kernel = InfluenceKernel::periodic_along(&grid, 1, 4.0).unwrap();
+    // a smooth load: the waves of a cell's corners are not resolved
+    let bump = |x: f64, y: f64| (-(x * x + y * y) / 0.08).exp();
+    let v = convolve(&kernel, &field(&grid, bump));
+    let half_space = InfluenceKernel::half_space(&grid).unwrap();
+    let near = convolve(&half_space, &field(&grid, bump));
+    let force = field(&grid, bump).iter().sum::<f64>() * grid.cell_area();
+    // a Gaussian of the width σ² = 0.04 is, far away, a point load and a Laplacian of its potential
+    let far = |x: f64, y: f64| {
+        let r = x.hypot(y);
+        force / PI * (1.0 / r + 0.5 * 0.04 / r.powi(3))
+    };
+    let images = |[x, y]: [f64; 2]| {
+        (1..4000)
+            .map(|m| f64::from(m) * period)
+            .map(|d| far(x, y - d) + far(x, y + d) - 2.0 * force / (PI * d))
+            .sum::<f64>()
+    };
+    let (a, b) = ([60, 44], [42, 10]);
+    let at = |[i, j]: [usize; 2]| (i * 80 + j, grid.center(i, j));
+    let ((ka, xa), (kb, xb)) = (at(a), at(b));
+    let (found, exact) = (v[ka] - v[kb], near[ka] - near[kb] + images(xa) - images(xb));
+    assert!(
+        (found - exact).abs() < 3e-4 * near[ka] && (images(xa) - images(xb)).abs() > 0.01 * near[ka],
+        "{found} {exact} {}",
+        near[ka]
+    );
+}
+
+/// A half-space made of its own coefficients, and of its own waves, is the half-space.
+#[test]
+fn users_may_bring_their_own_coefficients() {
+    let grid = Grid::new([12, 9], [1.0, 0.8]).unwrap();
+    let half_space = InfluenceKernel::half_space(&grid).unwrap();
+    let mut unit = vec![0.0; grid.len()];
+    unit[0] = 1.0;
+    let love = convolve(&half_space, &unit);
+    let own = InfluenceKernel::from_coefficients(&grid, |i, j| love[i.unsigned_abs() * 9 + j.unsigned_abs()]).unwrap();
+    let pressure = noise(grid.len());
+    assert_close(&convolve(&own, &pressure), &convolve(&half_space, &pressure), 1e-14);
+    let periodic = InfluenceKernel::periodic(&grid).unwrap();
+    let waves = InfluenceKernel::from_spectrum(&grid, |q1, q2| if q1 + q2 > 0.0 { 2.0 / q1.hypot(q2) } else { 0.0 });
+    assert_close(&convolve(&waves.unwrap(), &pressure), &convolve(&periodic, &pressure), 1e-14);
+}
+
+#[test]
+fn impossible_bodies_are_refused() {
+    let grid = Grid::new([12, 8], [1.0, 1.0]).unwrap();
+    let coefficient = |f: &dyn Fn(isize, isize) -> f64| InfluenceKernel::from_coefficients(&grid, f).unwrap_err();
+    assert!(matches!(coefficient(&|_, _| f64::NAN), Error::Kernel(KernelError::InvalidInfluence { at: [0, 0], .. })));
+    let lopsided = coefficient(&|i, j| (-(i * i + j * j) as f64).exp() + 1e-3 * i as f64);
+    assert!(matches!(lopsided, Error::Kernel(KernelError::InvalidInfluence { at: [-1, 0], .. })), "{lopsided}");
+    // the neighbours sink in more than the loaded cell
+    let unstable = coefficient(&|i, j| if (i, j) == (0, 0) { 1.0 } else { 2.0 / (1 + i * i + j * j) as f64 });
+    assert!(
+        matches!(unstable, Error::Kernel(KernelError::NotPositiveDefinite { least, .. }) if least < -0.1),
+        "{unstable}"
+    );
+    // positive though its embedding in a period is not: the half-space, which many a grid has
+    assert!(InfluenceKernel::from_coefficients(&grid, |i, j| 1.0 / (1.0 + (i * i + j * j) as f64)).is_ok());
+    let wave = |f: fn(f64, f64) -> f64| InfluenceKernel::from_spectrum(&grid, f).unwrap_err();
+    assert!(matches!(wave(|_, _| -1.0), Error::Kernel(KernelError::InvalidInfluence { of: "wave", at: [0, 0], .. })));
+    assert!(matches!(wave(|q1, _| 7.0 - q1), Error::Kernel(KernelError::InvalidInfluence { at: [2, 0], .. })));
+    let field = |result: Result<InfluenceKernel, Error>| match result.unwrap_err() {
+        Error::OutOfRange { field, .. } | Error::CountOutOfRange { field, .. } => field,
+        other => panic!("unexpected {other}"),
+    };
+    let line = Grid::new([12, 1], [1.0, 1.0]).unwrap();
+    assert_eq!(field(InfluenceKernel::line(&grid, 2.0)), "cells along x2 of a line contact");
+    assert_eq!(field(InfluenceKernel::line(&line, 0.5)), "datum of a line load");
+    assert_eq!(field(InfluenceKernel::line(&line, f64::NAN)), "datum of a line load");
+    assert_eq!(field(InfluenceKernel::periodic_along(&grid, 2, 2.0)), "periodic axis");
+    assert_eq!(field(InfluenceKernel::periodic(&Grid::square(1, 1.0).unwrap())), "cells of a periodic grid");
+}
+
+/// Cells whose coefficients `f64` cannot represent are refused by what is wrong with them; up to there K p is a number.
+#[test]
+fn cells_beyond_numbers_are_refused() {
+    let field = |result: Result<InfluenceKernel, Error>| match result.unwrap_err() {
+        Error::OutOfRange { field, .. } => field,
+        other => panic!("unexpected {other}"),
+    };
+    type Make = fn(&Grid) -> Result<InfluenceKernel, Error>;
+    let kernels: [Make; 4] = [
+        InfluenceKernel::half_space,
+        InfluenceKernel::periodic,
+        |grid| InfluenceKernel::periodic_along(grid, 0, grid.lengths()[1]),
+        |grid| InfluenceKernel::periodic_along(grid, 1, 1.0e120),
+    ];
+    let sides = |d1: f64, d2: f64| Grid::new([4, 3], [4.0 * d1, 3.0 * d2]).unwrap();
+    for make in kernels {
+        assert_eq!(field(make(&sides(1.0e-101, 1.0))), "cell side along x1");
+        assert_eq!(field(make(&sides(1.0, 1.0e110))), "cell side along x2");
+        assert_eq!(field(make(&sides(1.0e-60, 1.0e60))), "aspect ratio of the cells");
+        for (d1, d2) in [(1.0e-99, 1.0), (1.0, 1.0e-99), (1.0e-40, 1.0e40), (1.0e99, 1.0e99), (1.0e-99, 1.0e-99)] {
+            let grid = sides(d1, d2);
+            let Ok(kernel) = make(&grid) else { continue };
+            let found = convolve(&kernel, &noise(12));
+            assert!(found.iter().all(|value| value.is_finite()), "{d1:e} {d2:e} {kernel}: {found:?}");
+        }
+    }
+    let line = Grid::new([4, 1], [1.0, 1.0]).unwrap();
+    assert_eq!(field(InfluenceKernel::line(&line, 1.0e121)), "datum of a line load");
+    let grid = sides(1.0, 1.0);
+    let beyond = |result: Result<InfluenceKernel, Error>| {
+        matches!(result, Err(Error::Kernel(KernelError::InvalidInfluence { .. })))
+    };
+    assert!(beyond(InfluenceKernel::from_coefficients(&grid, |i, j| if i == 0 && j == 0 { 1e101 } else { 0.0 })));
+    assert!(beyond(InfluenceKernel::from_spectrum(&grid, |_, _| 1e101)));
+}
+
+/// Slender cells far beyond those that the coefficients are proved for: of a unit pressure everywhere, K p on a row of cells
+/// is that of one cell of the same outline.
+#[test]
+fn slender_cells_add_up_to_one() {
+    for aspect in [1e3, 1e6, 1e20, 1e90] {
+        let grid = Grid::new([1, 3], [aspect, 3.0]).unwrap();
+        let row = convolve(&InfluenceKernel::half_space(&grid).unwrap(), &[1.0; 3]);
+        let one = Grid::new([1, 1], [aspect, 3.0]).unwrap();
+        let whole = convolve(&InfluenceKernel::half_space(&one).unwrap(), &[1.0]);
+        assert!((row[1] / whole[0] - 1.0).abs() < 1e-12, "{aspect:e}: {:e} {:e}", row[1], whole[0]);
+    }
+}
+
+/// What cannot be told as a number is not told.
+#[test]
+fn products_beyond_numbers_are_refused() {
+    let field = |kernel: &InfluenceKernel, pressure: &[f64]| {
+        let mut out = vec![0.0; pressure.len()];
+        match kernel.convolve(pressure, &mut out, &mut kernel.workspace().unwrap()).unwrap_err() {
+            Error::OutOfRange { field, .. } => field,
+            other => panic!("unexpected {other}"),
+        }
+    };
+    for cells in [[4, 3], [12, 1], [1, 12]] {
+        let grid = Grid::new(cells, [1.0e3, 1.0e3]).unwrap();
+        for kernel in [InfluenceKernel::half_space(&grid), InfluenceKernel::periodic_along(&grid, 1, 1.0e9)] {
+            let kernel = kernel.unwrap();
+            assert_eq!(field(&kernel, &[1e308; 12]), "K p");
+            for bad in [f64::NAN, f64::INFINITY] {
+                let mut pressure = [1.0; 12];
+                pressure[7] = bad;
+                assert_eq!(field(&kernel, &pressure), "pressure");
+            }
+        }
+    }
+}
+
+/// The transform of a line meets numbers that are none before anyone else does, and must not be what stops the program.
+#[test]
+fn a_line_leaves_it_to_the_caller_to_say_what_is_no_number() {
+    for cells in [2, 12, 17] {
+        let grid = Grid::new([cells, 1], [1.0, 1.0]).unwrap();
+        let kernel = InfluenceKernel::line(&grid, 10.0).unwrap();
+        let mut out = vec![0.0; cells];
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            let refused = kernel.convolve(&vec![bad; cells], &mut out, &mut kernel.workspace().unwrap()).unwrap_err();
+            assert!(matches!(refused, Error::OutOfRange { field: "pressure", .. }), "{refused}");
+        }
+    }
+}

@@ -1,0 +1,412 @@
+//! Tables of measured data: fits, noise, what is refused, and files.
+
+#[cfg(feature = "csv")]
+mod dialects;
+
+use crate::common::noise::noise;
+use crate::common::spheres::sphere_on;
+use viscocontact::Error;
+use viscocontact::prelude::*;
+use viscocontact::rheology::{CreepSpectrum, Isotherm, MasterCurve, Place, TableError, TimeTemperature};
+
+fn log_spaced(first: f64, last: f64, a_decade: usize) -> Vec<f64> {
+    let count = ((last / first).log10() * a_decade as f64).round() as usize;
+    (0..=count).map(|k| first * (last / first).powf(k as f64 / count as f64)).collect()
+}
+
+/// 3 and 6 retardation times, solids and fluids.
+fn truths() -> Vec<(&'static str, CreepSpectrum)> {
+    let three = [(1.0e-6, 0.02), (3.0e-6, 1.0), (2.0e-6, 40.0)];
+    let six = [(1.0e-9, 2e-3), (2.0e-9, 3e-2), (5.0e-9, 0.5), (2.0e-8, 4.0), (8.0e-8, 50.0), (3.0e-7, 900.0)];
+    vec![
+        ("three, solid", CreepSpectrum::new(1.0e-6, 0.0, &three).unwrap()),
+        ("three, fluid", CreepSpectrum::new(1.0e-6, 2.0e-8, &three).unwrap()),
+        ("six, solid", CreepSpectrum::new(1.0e-9, 0.0, &six).unwrap()),
+        ("six, fluid", CreepSpectrum::new(1.0e-9, 1.0e-10, &six).unwrap()),
+    ]
+}
+
+/// Greatest relative error of J over the measured range.
+fn worst(fitted: &dyn Rheology, truth: &CreepSpectrum, [first, last]: [f64; 2]) -> f64 {
+    let times = log_spaced(first, last, 53);
+    times.iter().map(|&t| (fitted.creep_compliance(t) / truth.compliance(t) - 1.0).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn clean_creep_is_recovered() {
+    for (name, truth) in truths() {
+        let times = log_spaced(1e-4, 1e4, 20);
+        let compliances: Vec<f64> = times.iter().map(|&t| truth.compliance(t)).collect();
+        let body = TabulatedCreep::new(&times, &compliances).unwrap();
+        let error = worst(&body, &truth, [1e-4, 1e4]);
+        println!("{name}: {error:.1e}; {}", body.report());
+        assert!(error <= 1e-4, "{name}: {error:e}");
+        assert_eq!(body.report().terms(), truth.terms().len(), "{name}: sparse");
+        assert_eq!(body.report().samples().len(), times.len());
+    }
+}
+
+/// Twenty tables with 2 % noise of each truth, discrete and continuous. What p parameters can be known to from m values
+/// is 2 % √(p/m) in the root mean square (Cramér and Rao), 0.45 % and 0.6 % for three and six times; no fit can promise
+/// the worst point of every table.
+#[test]
+fn noisy_creep_is_smoothed() {
+    let mut bodies: Vec<(&str, Box<dyn Rheology>, usize)> = Vec::new();
+    for (name, truth) in truths() {
+        let terms = truth.terms().len();
+        bodies.push((name, Box::new(truth), terms + 2));
+    }
+    bodies.push(("fractional Zener", Box::new(FractionalZener::new(1.0e9, 1.0e6, 0.1, 0.45).unwrap()), 12));
+    bodies.push(("logarithmic", Box::new(LogCreep::new(1.0e-9, 1.0e-10, 0.1).unwrap()), 8));
+    for (name, truth, most_terms) in bodies {
+        let mut errors = Vec::new();
+        for seed in 0..20 {
+            let mut noise = noise(seed);
+            let times = log_spaced(1e-4, 1e4, 20);
+            let measured = |&t: &f64| truth.creep_compliance(t) * (1.0 + 0.02 * noise());
+            let compliances: Vec<f64> = times.iter().map(measured).collect();
+            let body = TabulatedCreep::new(&times, &compliances).unwrap();
+            let terms = body.report().terms();
+            assert!(terms <= most_terms, "{name}, {seed}: {terms} terms");
+            let check = log_spaced(1e-4, 1e4, 53);
+            let misfit = |t: f64| body.creep_compliance(t.min(1e4)) / truth.creep_compliance(t) - 1.0;
+            let rms = (check.iter().map(|&t| misfit(t).powi(2)).sum::<f64>() / check.len() as f64).sqrt();
+            assert!(rms < 0.01, "{name}, {seed}: {rms}");
+            assert!((0.016..0.022).contains(&body.report().rms_misfit()), "{name}: the noise is seen for what it is");
+            errors.push((check.iter().map(|&t| misfit(t).abs()).fold(0.0, f64::max), rms));
+        }
+        errors.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let rms = errors.iter().map(|(_, rms)| rms).sum::<f64>() / 20.0;
+        let [least, median, most] = [0, 10, 19].map(|k| 100.0 * errors[k].0);
+        println!("{name}: rms {:.2} %, worst point {least:.2} … {median:.2} … {most:.2} %", 100.0 * rms);
+        assert!(rms < 0.0075 && median < 2.2, "{name}");
+    }
+}
+
+#[test]
+fn relaxation_and_dynamic_tables_give_the_same_body() {
+    for (name, truth) in truths() {
+        let relaxation = truth.relaxation();
+        // a fluid forgets everything in the end
+        let mut times = log_spaced(1e-5, 1e6, 10);
+        times.retain(|&t| relaxation.modulus(t) > 1e-6 * relaxation.modulus(0.0));
+        let last = times[times.len() - 1];
+        let moduli: Vec<f64> = times.iter().map(|&t| relaxation.modulus(t)).collect();
+        let relaxed = TabulatedRelaxation::new(&times, &moduli).unwrap();
+        let omega: Vec<f64> = times.iter().map(|t| 1.0 / t).collect();
+        let storage: Vec<f64> = omega.iter().map(|&omega| relaxation.storage_modulus(omega)).collect();
+        let loss: Vec<f64> = omega.iter().map(|&omega| relaxation.loss_modulus(omega)).collect();
+        let dynamic = TabulatedDynamic::new(&omega, &storage, &loss).unwrap();
+        assert!((dynamic.known_until() / last - 1.0).abs() < 1e-12);
+        assert_eq!(relaxed.known_until(), last);
+        for (kind, body) in [("relaxation", &relaxed as &dyn Rheology), ("dynamic", &dynamic)] {
+            let error = worst(body, &truth, [1e-4, 0.1 * last]);
+            println!("{name}, {kind}: {error:.1e}");
+            assert!(error < 1e-4, "{name}, {kind}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn beyond_the_data_is_refused_or_chosen() {
+    let times = log_spaced(1e-2, 1e2, 5);
+    let compliances: Vec<f64> = times.iter().map(|t| 1.0e-6 * (1.0 + t / (1.0 + t))).collect();
+    let body = TabulatedCreep::new(&times, &compliances).unwrap();
+    assert_eq!(body.known_until(), 1e2);
+    assert!(body.creep_compliance(1e2).is_finite() && body.creep_compliance(101.0).is_nan());
+    let mut contact = sphere(Material::incompressible(body.clone()));
+    contact.step(0.0, Load::force(0.1)).unwrap();
+    contact.step(100.0, Load::force(0.1)).unwrap();
+    let error = contact.step(1.0, Load::force(0.1)).unwrap_err();
+    assert_eq!(error, Error::BeyondMaterial { time: 101.0, age: 101.0, known_until: 100.0 });
+    assert_eq!(contact.time(), 100.0);
+    // time at rest does not count
+    let mut contact = sphere(Material::incompressible(body.clone()));
+    contact.step(1e6, Load::force(0.0)).unwrap();
+    contact.step(0.0, Load::force(0.1)).unwrap();
+    contact.step(50.0, Load::force(0.1)).unwrap();
+    contact.step(51.0, Load::force(0.1)).unwrap_err();
+    // the choice
+    let trusted = body.extrapolated();
+    assert!(trusted.creep_compliance(150.0).is_finite());
+    let mut contact = sphere(Material::incompressible(trusted));
+    contact.step(0.0, Load::force(0.1)).unwrap();
+    contact.step(150.0, Load::force(0.1)).unwrap();
+}
+
+fn sphere(material: Material) -> ViscoelasticContact {
+    sphere_on(Grid::square(24, 4.0e-3).unwrap(), material, Settings::default())
+}
+
+fn table_error(times: &[f64], compliances: &[f64]) -> TableError {
+    match TabulatedCreep::new(times, compliances).unwrap_err() {
+        Error::Table(error) => error,
+        other => panic!("{other}"),
+    }
+}
+
+#[test]
+fn bad_data_are_told_apart() {
+    let good = [1.0, 2.0, 3.0, 4.0, 5.0];
+    assert_eq!(table_error(&[], &[]), TableError::Empty { table: "creep" });
+    assert!(matches!(table_error(&[1.0, 2.0], &[1.0, 2.0]), TableError::TooFew { rows: 2, least: 4, .. }));
+    let error = table_error(&[1.0, f64::NAN, 3.0, 4.0, 5.0], &good);
+    assert!(matches!(error, TableError::NotFinite { place: Place::Entry(1), column: "time", .. }), "{error}");
+    let error = table_error(&good, &[1.0, 2.0, 3.0, f64::INFINITY, 5.0]);
+    assert!(matches!(error, TableError::NotFinite { place: Place::Entry(3), column: "creep compliance", .. }));
+    let error = table_error(&[1.0, -2.0, 3.0, 4.0, 5.0], &good);
+    assert!(matches!(error, TableError::Abscissa { place: Place::Entry(1), value: -2.0, .. }), "{error}");
+    let error = table_error(&good, &[0.0, 2.0, 3.0, 4.0, 5.0]);
+    assert!(matches!(error, TableError::NotPositive { place: Place::Entry(0), .. }), "{error}");
+    let error = table_error(&[5.0, 1.0, 2.0, 5.0, 4.0], &good);
+    let TableError::Duplicate { place: Place::Entry(3), earlier: Place::Entry(0), value, .. } = error else {
+        panic!("{error}")
+    };
+    assert_eq!(value, 5.0);
+    let error = table_error(&good, &[1.0, 2.0, 3.0, 1.5, 5.0]);
+    assert!(matches!(error, TableError::WrongWay { place: Place::Entry(3), .. }), "{error}");
+    assert_eq!(
+        TabulatedCreep::new(&good, &[1.0]).unwrap_err(),
+        Error::WrongLength { field: "creep compliances", len: 1, expected: 5, exact: true }
+    );
+    let error = TabulatedDynamic::new(&[0.0, 1.0, 2.0, 3.0], &good[..4], &good[..4]).unwrap_err();
+    assert!(matches!(error, Error::Table(TableError::Abscissa { column: "angular frequency", .. })), "{error}");
+    let error = TabulatedRelaxation::new(&good, &good).unwrap_err();
+    assert!(matches!(error, Error::Table(TableError::WrongWay { .. })), "{error}");
+
+    // a slow slip of 3 % in clean data is no noise; the same within 2 % noise is
+    let times = log_spaced(1e-2, 1e2, 20);
+    let clean: Vec<f64> = times.iter().map(|t| 1.0 + 0.03 / (1.0 + t)).collect();
+    assert!(matches!(table_error(&times, &clean), TableError::WrongWay { .. }));
+    let mut noise = noise(7);
+    let noisy: Vec<f64> = clean.iter().map(|value| value * (1.0 + 0.02 * noise())).collect();
+    let body = TabulatedCreep::new(&times, &noisy).unwrap();
+    assert!(body.report().wrong_way() > 0.01, "{}", body.report());
+}
+
+#[test]
+fn tables_may_be_small_large_and_far_from_one() {
+    // nothing creeps
+    let elastic = TabulatedCreep::new(&[1.0, 2.0, 3.0, 4.0], &[2.0e-9; 4]).unwrap();
+    assert!((elastic.creep_compliance(2.5) / 2.0e-9 - 1.0).abs() < 1e-12 && elastic.report().terms() == 0);
+    // a fluid from the start, with the time of loading itself
+    let viscous = TabulatedCreep::new(&[0.0, 1.0, 2.0, 3.0, 9.0], &[1.0, 2.0, 3.0, 4.0, 10.0]).unwrap();
+    assert!((viscous.creep_compliance(5.0) / 6.0 - 1.0).abs() < 1e-6, "{viscous:?}");
+    // the same body in other units is the same body
+    let times = log_spaced(1e-3, 1e3, 7);
+    let values: Vec<f64> = times.iter().map(|t| 1.0 + t.powf(0.4)).collect();
+    let body = TabulatedCreep::new(&times, &values).unwrap();
+    for (time, value) in [(1e-40, 1e-30), (1e40, 1e30), (1e20, 1e-40)] {
+        let scaled = TabulatedCreep::new(
+            &times.iter().map(|t| time * t).collect::<Vec<_>>(),
+            &values.iter().map(|j| value * j).collect::<Vec<_>>(),
+        )
+        .unwrap();
+        assert_eq!(scaled.report().terms(), body.report().terms());
+        for t in log_spaced(1e-3, 1e3, 3) {
+            let t = t.min(1e3);
+            let relative = scaled.creep_compliance(time * t) / value / body.creep_compliance(t) - 1.0;
+            assert!(relative.abs() < 1e-5, "{time:e} {value:e} {t:e}: {relative:e}");
+        }
+    }
+}
+
+/// Isotherms of one body that shifts by a law, three decades each.
+fn isotherms(law: &TimeTemperature, temperatures: &[f64]) -> Vec<Isotherm> {
+    let body = FractionalZener::new(1.0e9, 1.0e6, 1.0e3, 0.4).unwrap();
+    let times = log_spaced(1.0, 1e3, 10);
+    let isotherm = |&temperature: &f64| {
+        let slow = law.shift_factor(temperature).unwrap();
+        let compliances: Vec<f64> = times.iter().map(|t| body.creep_compliance(t / slow)).collect();
+        Isotherm::creep(temperature, &times, &compliances).unwrap()
+    };
+    temperatures.iter().map(isotherm).collect()
+}
+
+#[test]
+fn master_curves_find_the_law_behind_them() {
+    let temperatures = [360.0, 363.0, 366.0, 369.0, 373.15, 378.0, 383.0, 390.0];
+    let law = TimeTemperature::wlf(17.44, 51.6, 373.15).unwrap();
+    let master = MasterCurve::new(373.15, isotherms(&law, &temperatures)).unwrap();
+    for (temperature, factor) in master.shift_factors() {
+        let expected = law.shift_factor(temperature).unwrap();
+        assert!((factor / expected).log10().abs() < 0.02, "{temperature}: {factor:e} {expected:e}");
+    }
+    let [c1, c2] = master.wlf().unwrap().wlf_constants().unwrap();
+    println!("WLF {c1:.3} {c2:.2}");
+    assert!((c1 / 17.44 - 1.0).abs() < 0.03 && (c2 / 51.6 - 1.0).abs() < 0.03, "{c1} {c2}");
+    // eleven decades from three: against the body itself
+    let body = FractionalZener::new(1.0e9, 1.0e6, 1.0e3, 0.4).unwrap();
+    let curve = master.creep().unwrap();
+    println!("{}", curve.report());
+    let [first, last] = curve.report().range().unwrap();
+    assert!(last / first > 1e10, "{first:e} … {last:e}");
+    for t in log_spaced(first, last, 10) {
+        let t = t.min(last);
+        let relative = curve.creep_compliance(t) / body.creep_compliance(t) - 1.0;
+        assert!(relative.abs() < 0.02, "{t:e}: {relative:e}");
+    }
+
+    let law = TimeTemperature::arrhenius(200.0e3, 373.15).unwrap();
+    let master = MasterCurve::new(373.15, isotherms(&law, &temperatures)).unwrap();
+    let energy = master.arrhenius().unwrap().activation_energy().unwrap();
+    assert!((energy / 200.0e3 - 1.0).abs() < 0.01, "{energy}");
+    let known = MasterCurve::with_law(&law, isotherms(&law, &temperatures)).unwrap();
+    for ((_, a), (_, b)) in known.shift_factors().into_iter().zip(master.shift_factors()) {
+        assert!((a / b).ln().abs() < 0.02);
+    }
+    // what cannot be joined
+    let error = MasterCurve::new(300.0, isotherms(&law, &temperatures)).unwrap_err();
+    assert!(matches!(error, Error::OutOfRange { field: "reference temperature", .. }), "{error}");
+    let far = TimeTemperature::arrhenius(4000.0e3, 373.15).unwrap();
+    let error = MasterCurve::new(373.15, isotherms(&far, &[373.15, 383.15])).unwrap_err();
+    assert!(matches!(error, Error::Table(TableError::NoOverlap { .. })), "{error}");
+    let twice = isotherms(&law, &[373.15, 373.15]);
+    assert!(matches!(MasterCurve::new(373.15, twice), Err(Error::OutOfOrder { .. })));
+    let relaxation = Isotherm::relaxation(360.0, &[1.0, 2.0, 3.0, 4.0], &[4.0, 3.0, 2.5, 2.2]).unwrap();
+    let mixed = [isotherms(&law, &[373.15]), vec![relaxation]].concat();
+    assert!(matches!(MasterCurve::new(373.15, mixed), Err(Error::Table(TableError::MixedIsotherms { .. }))));
+    assert!(matches!(known.relaxation(), Err(Error::Table(TableError::MixedIsotherms { .. }))));
+}
+
+#[test]
+fn temperatures_shift_time() {
+    let wlf = TimeTemperature::wlf(17.44, 51.6, 373.15).unwrap();
+    let zener = Zener::new(1.0e9, 1.0e6, 1.0e6).unwrap();
+    let warm = wlf.at(zener.clone(), 380.0).unwrap();
+    let factor = warm.shift_factor();
+    assert!(factor < 0.1);
+    let exact = warm.creep_spectrum().unwrap();
+    for t in log_spaced(1e-6, 1e3, 4) {
+        assert_eq!(warm.creep_compliance(t), zener.creep_compliance(t / factor));
+        assert!((exact.compliance(t) / warm.creep_compliance(t) - 1.0).abs() < 1e-13);
+    }
+    for bad in [0.0, -1.0, f64::NAN, 320.0, 373.15 - 51.6] {
+        assert!(matches!(wlf.shift_factor(bad), Err(Error::OutOfRange { .. })), "{bad}");
+    }
+    assert!(matches!(wlf.shift_factor(322.0), Err(Error::OutOfRange { field: "shift factor", .. })));
+}
+
+#[cfg(feature = "csv")]
+mod csv {
+    use super::*;
+    use viscocontact::rheology::{MaterialFunction, Units};
+
+    fn read(text: &str) -> Result<TabulatedCreep> {
+        TabulatedCreep::from_csv_reader(text.as_bytes(), Units::SI)
+    }
+
+    #[test]
+    fn files_come_in_many_shapes() {
+        let plain = TabulatedCreep::new(&[1.0, 10.0, 100.0, 1000.0], &[1.0e-9, 1.1e-9, 1.3e-9, 1.4e-9]).unwrap();
+        for text in [
+            "1,1e-9\n10,1.1e-9\n100,1.3e-9\n1000,1.4e-9\n",
+            "time,J\n1,1e-9\n10,1.1e-9\n100,1.3e-9\n1000,1.4e-9",
+            "\u{feff}# creep of nothing\r\nTime [s];Compliance [1/Pa]\r\n\r\n1000;1.4e-9\r\n# a remark\r\n10;1.1e-9\r\n1;1e-9\r\n100;1.3e-9\r\n",
+            "J (1/Pa)\tspecimen\tt (s)\n1e-9\tA\t1\n1.1e-9\tA\t10\n1.3e-9\tB\t100\n1.4e-9\tB\t1000\n",
+            "   1   1e-9\n  10   1.1e-9\n 100   1.3e-9\n1000   1.4e-9\n",
+            "first,second\n1,1e-9\n10,1.1e-9\n100,1.3e-9\n1000,1.4e-9",
+        ] {
+            assert_eq!(read(text).unwrap(), plain, "{text:?}");
+        }
+        // minutes and 1/GPa
+        let units = Units { abscissa: 60.0, value: 1e-9 };
+        let body = TabulatedCreep::from_csv_reader("1,1\n2,1.1\n4,1.3\n8,1.4\n".as_bytes(), units).unwrap();
+        assert_eq!(body.known_until(), 480.0);
+        assert!((body.creep_compliance(240.0) / 1.3e-9 - 1.0).abs() < 0.05);
+        // Hz and MPa, columns by name
+        let hertz = Units { abscissa: std::f64::consts::TAU, value: 1e6 };
+        let text = "Frequency [Hz],Loss modulus [MPa],Storage modulus [MPa]\n0.1,0.2,1.0\n1,0.4,1.5\n10,0.4,2.2\n100,0.1,2.5\n";
+        let body = TabulatedDynamic::from_csv_reader(text.as_bytes(), hertz).unwrap();
+        assert_eq!(body.report().samples()[0].function, MaterialFunction::Storage);
+        assert_eq!(body.report().samples()[0].given, 1.0e6);
+        assert!((body.report().samples()[0].x - 0.1 * std::f64::consts::TAU).abs() < 1e-15);
+    }
+
+    #[test]
+    fn errors_name_the_line() {
+        let error = |text: &str| match read(text).unwrap_err() {
+            Error::Table(error) => error,
+            other => panic!("{other}"),
+        };
+        let bad = error("# c\ntime,J\n1,1e-9\n2,oops\n");
+        assert_eq!(bad, TableError::NotNumeric { line: 4, column: 2, text: "oops".into() });
+        let bad = error("1,1e-9\n2\n");
+        assert!(matches!(bad, TableError::Columns { line: 2, found: 1, expected: 2, .. }), "{bad}");
+        let bad = error("time,T,J\n1,1,1\n");
+        assert!(matches!(bad, TableError::Heading { line: 1, column: "time", .. }), "{bad}");
+        let bad = error("time,J\n1,1e-9\n\n2,1.1e-9\n1,1.2e-9\n3,2e-9\n");
+        let TableError::Duplicate { place: Place::Line(5), earlier: Place::Line(2), .. } = bad else { panic!("{bad}") };
+        let bad = error("time,J\n1,1e-9\n2,-1.1e-9\n3,1.2e-9\n");
+        assert!(matches!(bad, TableError::NotPositive { place: Place::Line(3), .. }), "{bad}");
+        let bad = error("time,J\n1,1e-9\n2,NaN\n3,1.2e-9\n");
+        assert!(matches!(bad, TableError::NotFinite { place: Place::Line(3), .. }), "{bad}");
+        // columns that are something else, decimal commas, frequencies in Hz
+        let bad = error("time,creep strain [%]\n1,2\n");
+        assert!(matches!(bad, TableError::Heading { column: "creep compliance", .. }), "{bad}");
+        let bad = error("time,J\n1,5,1,1\n2,5,2,2\n");
+        assert!(matches!(bad, TableError::Columns { line: 2, found: 4, expected: 2, .. }), "{bad}");
+        let dynamic = |text: &str| match TabulatedDynamic::from_csv_reader(text.as_bytes(), Units::SI).unwrap_err() {
+            Error::Table(error) => error,
+            other => panic!("{other}"),
+        };
+        let bad = dynamic("frequency,storage modulus,loss factor\n1,1e6,0.1\n");
+        assert!(matches!(bad, TableError::Heading { column: "loss modulus", .. }), "{bad}");
+        let bad = dynamic("f [Hz],G',G''\n1,1e6,1e5\n");
+        assert!(matches!(bad, TableError::Hertz { line: 1, .. }), "{bad}");
+        // remarks in any encoding
+        let latin: &[u8] = b"# 23 \xb0C\n1,1\n2,1.1\n3,1.2\n4,1.3\n";
+        assert!(TabulatedCreep::from_csv_reader(latin, Units::SI).is_ok());
+        for empty in ["", "\n\n", "# nothing\n", "time,J\n"] {
+            assert_eq!(error(empty), TableError::Empty { table: "creep" }, "{empty:?}");
+        }
+        let Error::Table(missing) = TabulatedCreep::from_csv("no/such/file.csv", Units::SI).unwrap_err() else {
+            panic!()
+        };
+        assert!(matches!(missing, TableError::Unreadable { .. }) && missing.to_string().contains("no/such/file.csv"));
+        let binary: &[u8] = &[0xff, 0xfe, 0x00, 0x31];
+        let Err(Error::Table(binary)) = TabulatedCreep::from_csv_reader(binary, Units::SI) else { panic!() };
+        assert!(matches!(binary, TableError::Unreadable { .. }), "{binary}");
+    }
+}
+
+/// What tables may not be, what they may, and how long a fit takes: the findings of those who tried.
+#[test]
+fn tables_as_they_come_are_fitted_or_refused_for_a_reason() {
+    // printed with three digits, on a plateau
+    let zener = Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap();
+    let times = log_spaced(1e-3, 1e3, 27);
+    for seed in 0..50 {
+        let mut noise = noise(seed);
+        let printed = |&t: &f64| format!("{:.2e}", zener.creep_compliance(t) * (1.0 + 3e-4 * noise())).parse().unwrap();
+        let values: Vec<f64> = times.iter().map(printed).collect();
+        TabulatedCreep::new(&times, &values).unwrap_or_else(|error| panic!("{seed}: {error}"));
+    }
+    // not those of a linear body
+    let rows = [1.0, 2.0, 3.0, 4.0];
+    for values in [vec![1.0, 10.0, 100.0, 1000.0], vec![1.0, 1.0, 1.0e6, 1.0e6]] {
+        let error = TabulatedCreep::new(&rows, &values).unwrap_err();
+        assert!(matches!(error, Error::Table(TableError::Inconsistent { rms, .. }) if rms > 0.1), "{error}");
+    }
+    let tertiary: Vec<f64> = times.iter().map(|t| 1.0 + 0.1 * t.powf(0.3) + (t / 100.0).powi(4)).collect();
+    let error = TabulatedCreep::new(&times, &tertiary).unwrap_err();
+    assert!(matches!(error, Error::Table(TableError::Inconsistent { .. })), "{error}");
+    // a few noisy rows are not met exactly
+    for seed in 0..50 {
+        let mut noise = noise(seed);
+        let rows = log_spaced(0.1, 10.0, 3);
+        let values: Vec<f64> = rows.iter().map(|&t| zener.creep_compliance(t) * (1.0 + 0.01 * noise())).collect();
+        if let Ok(body) = TabulatedCreep::new(&rows, &values) {
+            assert!(2 * body.report().terms() < rows.len(), "{seed}: {}", body.report());
+        }
+    }
+    // large tables are gathered before they are fitted
+    let clock = std::time::Instant::now();
+    let times = log_spaced(1e-6, 1e6, 2000);
+    let body = FractionalZener::new(1.0e9, 1.0e6, 1.0, 0.4).unwrap();
+    let values: Vec<f64> = times.iter().map(|&t| body.creep_compliance(t)).collect();
+    let fitted = TabulatedCreep::new(&times, &values).unwrap();
+    println!("{} in {:.2} s", fitted.report(), clock.elapsed().as_secs_f64());
+    assert!(fitted.report().max_misfit() < 1e-3 && fitted.report().samples().len() == times.len());
+    assert_eq!(Material::incompressible(fitted).fit_reports().count(), 1);
+}

@@ -1,0 +1,282 @@
+//! Tables of few rows: smooth bodies over four to eight decades, with and without noise. What is fitted is compared with the
+//! exact model at the rows and between them.
+
+use crate::common::noise::{noise, uniform};
+use crate::common::spheres::sphere_on;
+use viscocontact::contact::Warning;
+use viscocontact::prelude::*;
+use viscocontact::rheology::{CreepSpectrum, FitReport, FitWarning, RelaxationSpectrum};
+
+/// Rows of the tables of a body. 10 are every other one of 19, these of 37.
+const ROWS: [usize; 6] = [10, 13, 19, 25, 37, 60];
+const SEEDS: u64 = 3;
+/// Tables are told apart by their rows a decade, from these on.
+const CLASSES: [f64; 7] = [1.0, 1.5, 2.0, 2.5, 3.5, 5.0, 8.0];
+
+fn log_spaced(decades: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|k| 10f64.powf(decades * k as f64 / (count - 1) as f64)).collect()
+}
+
+/// A body that creeps from 1 s on, for so many decades.
+struct Body {
+    name: String,
+    decades: f64,
+    creep: Box<dyn Rheology>,
+}
+
+impl Body {
+    fn new(kind: usize, seed: u64) -> Body {
+        let mut random = uniform(1000 * seed + kind as u64 + 17);
+        for _ in 0..5 {
+            random();
+        }
+        let decades = 4.0 + (8.0 * random()).round() / 2.0;
+        let mut between = |low: f64, high: f64| low + (high - low) * random();
+        let mut time = |low, high| 10f64.powf(decades * between(low, high));
+        let exponent = 0.1 + 0.6 * time(0.0, 1.0).log10() / decades;
+        let steep = 0.25 + 0.55 * (exponent - 0.1) / 0.6;
+        let size = 10f64.powf(time(0.0, 1.0).log10() / decades * 2.0 - 1.0);
+        let creep: Box<dyn Rheology> = match kind {
+            0 => Box::new(LogCreep::new(1.0, 0.3 * size, time(-0.1, 0.5)).unwrap()),
+            1 => Box::new(FractionalMaxwell::findley(1.0, 0.3 * size, exponent).unwrap()),
+            2 => Box::new(PowerLaw::new(1.0, 1.0, exponent).unwrap()),
+            3 => Box::new(Kww::new(1.0, 10.0 * size, time(0.2, 0.8), steep).unwrap()),
+            4 => Box::new(FractionalZener::new(1.0, 0.05 / size, time(0.2, 0.8), steep).unwrap()),
+            _ => {
+                let count = if kind == 5 { 3 } else { 6 };
+                let term = |k: usize| {
+                    let strength = 2f64.powi(k as i32) * time(-0.5, 0.5).powf(1.0 / decades);
+                    let place = (k as f64 + time(0.2, 0.8).log10() / decades) / count as f64;
+                    (strength, 10f64.powf(decades * place))
+                };
+                let terms: Vec<(f64, f64)> = (0..count).map(term).collect();
+                Box::new(GeneralizedKelvin::new(1.0, 0.0, &terms).unwrap())
+            }
+        };
+        Body { name: format!("{creep:?}, {decades} decades"), decades, creep }
+    }
+
+    fn all() -> impl Iterator<Item = Body> {
+        (0..SEEDS).flat_map(|seed| (0..7).map(move |kind| Body::new(kind, seed)))
+    }
+
+    /// What has a relaxation in closed form: the body itself, or a series within 2e-6 of it.
+    fn spectrum(&self) -> CreepSpectrum {
+        let times = 1e-2..=10f64.powf(self.decades + 1.0);
+        self.creep.creep_spectrum().unwrap_or_else(|| self.creep.series(times, 2e-6).unwrap().spectrum().clone())
+    }
+}
+
+/// What a fit is worth: the greatest error and that in the root mean square, and its report.
+struct Fitted {
+    worst: f64,
+    rms: f64,
+    report: FitReport,
+}
+
+impl Fitted {
+    fn new(errors: impl Iterator<Item = f64>, report: &FitReport) -> Fitted {
+        let errors: Vec<f64> = errors.collect();
+        let worst = errors.iter().map(|error| error.abs()).fold(0.0, f64::max);
+        let rms = (errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64).sqrt();
+        Fitted { worst, rms, report: report.clone() }
+    }
+}
+
+/// What is measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Kind {
+    Creep,
+    Relaxation,
+    Dynamic,
+}
+
+/// All tables of a kind of every body; `look` gets name, rows a decade, and fits, from the fewest rows to the most.
+fn tables(kind: Kind, deviation: f64, mut look: impl FnMut(&str, &[(f64, Fitted)])) {
+    for (index, body) in Body::all().enumerate() {
+        let truth = if kind == Kind::Creep { None } else { Some(body.spectrum().relaxation()) };
+        let fits: Vec<(f64, Fitted)> = ROWS
+            .iter()
+            .map(|&rows| {
+                let mut noise = noise(77 * (index as u64 / 7) + rows as u64);
+                let measured = |value: f64| value * (1.0 + deviation * noise());
+                let times = log_spaced(body.decades, rows);
+                let check = log_spaced(body.decades, (53.0 * body.decades) as usize);
+                let check: Vec<f64> = check.iter().map(|t| t.min(times[rows - 1])).collect();
+                let fitted = match &truth {
+                    None => creep(&body, &times, &check, measured),
+                    Some(truth) if kind == Kind::Relaxation => relaxation(truth, &times, &check, measured),
+                    Some(truth) => dynamic(truth, &times, &check, measured),
+                };
+                ((rows - 1) as f64 / body.decades, fitted)
+            })
+            .collect();
+        look(&body.name, &fits);
+    }
+}
+
+fn creep(body: &Body, times: &[f64], check: &[f64], mut measured: impl FnMut(f64) -> f64) -> Fitted {
+    let values: Vec<f64> = times.iter().map(|&t| measured(body.creep.creep_compliance(t))).collect();
+    let table = TabulatedCreep::new(times, &values).unwrap_or_else(|error| panic!("{}: {error}", body.name));
+    let error = |&t: &f64| table.creep_compliance(t) / body.creep.creep_compliance(t) - 1.0;
+    Fitted::new(check.iter().map(error), table.report())
+}
+
+fn relaxation(
+    truth: &RelaxationSpectrum,
+    times: &[f64],
+    check: &[f64],
+    mut measured: impl FnMut(f64) -> f64,
+) -> Fitted {
+    let values: Vec<f64> = times.iter().map(|&t| measured(truth.modulus(t))).collect();
+    let table = TabulatedRelaxation::new(times, &values).unwrap();
+    let fitted = table.spectrum().relaxation();
+    Fitted::new(check.iter().map(|&t| fitted.modulus(t) / truth.modulus(t) - 1.0), table.report())
+}
+
+fn dynamic(truth: &RelaxationSpectrum, times: &[f64], check: &[f64], mut measured: impl FnMut(f64) -> f64) -> Fitted {
+    let omega: Vec<f64> = times.iter().rev().map(|t| 1.0 / t).collect();
+    let storage: Vec<f64> = omega.iter().map(|&omega| measured(truth.storage_modulus(omega))).collect();
+    let loss: Vec<f64> = omega.iter().map(|&omega| measured(truth.loss_modulus(omega))).collect();
+    let table = TabulatedDynamic::new(&omega, &storage, &loss).unwrap();
+    let fitted = table.spectrum().relaxation();
+    let errors = check.iter().map(|t| 1.0 / t).flat_map(|omega| {
+        let storage = fitted.storage_modulus(omega) / truth.storage_modulus(omega) - 1.0;
+        [storage, fitted.loss_modulus(omega) / truth.loss_modulus(omega) - 1.0]
+    });
+    Fitted::new(errors, table.report())
+}
+
+/// Without noise: within half a percent from 2.5 rows a decade on; where fewer rows do worse, they say so; more rows never do
+/// worse, but for a tenth of a percent; the terms stay few.
+fn clean(kind: Kind) {
+    let mut classes: [Vec<(f64, usize)>; CLASSES.len()] = Default::default();
+    tables(kind, 0.0, |name, fits| {
+        for (a_decade, Fitted { worst, report, .. }) in fits {
+            let what = format!("{kind:?} of {name}, {a_decade:.1} rows a decade: {worst:.1e}; {report}");
+            assert!(*worst < 5e-3 || *a_decade < 2.5 && report.warning().is_some(), "{what}");
+            assert!(kind != Kind::Creep || *a_decade < 2.5 || report.warning().is_none(), "no reason to warn: {what}");
+            let class = CLASSES.iter().rposition(|least| *a_decade >= least - 1e-9).unwrap();
+            classes[class].push((*worst, report.terms()));
+        }
+        for (half, all) in [(0, 2), (2, 4)] {
+            let (few, many) = (fits[half].1.worst, fits[all].1.worst);
+            assert!(
+                many <= few.max(1e-3),
+                "{kind:?} of {name}, {} rows for {}: {few:.1e} -> {many:.1e}",
+                ROWS[all],
+                ROWS[half]
+            );
+        }
+    });
+    for (least, mut class) in CLASSES.iter().zip(classes) {
+        class.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let terms = class.iter().map(|(_, terms)| terms).sum::<usize>() as f64 / class.len() as f64;
+        let [median, most] = [class.len() / 2, class.len() - 1].map(|k| 100.0 * class[k].0);
+        println!(
+            "{kind:?} from {least} rows a decade: {median:.3} % in the median, {most:.3} % at most, {terms:.1} terms"
+        );
+    }
+}
+
+#[test]
+fn clean_creep_is_met_between_the_rows() {
+    clean(Kind::Creep);
+}
+
+#[test]
+fn clean_relaxation_is_met_between_the_rows() {
+    clean(Kind::Relaxation);
+}
+
+#[test]
+fn clean_dynamic_moduli_are_met_between_the_rows() {
+    clean(Kind::Dynamic);
+}
+
+/// With 2 % noise: the error in the root mean square, in percent and the mean of a class, is at most `most`.
+fn noisy(kind: Kind, most: [f64; CLASSES.len()]) {
+    let mut classes: [Vec<f64>; CLASSES.len()] = Default::default();
+    let mut systematic = 0;
+    tables(kind, 0.02, |_, fits| {
+        for (a_decade, Fitted { rms, report, .. }) in fits {
+            systematic += usize::from(matches!(report.warning(), Some(FitWarning::Systematic { .. })));
+            let class = CLASSES.iter().rposition(|least| *a_decade >= least - 1e-9).unwrap();
+            classes[class].push(100.0 * rms);
+        }
+    });
+    for ((least, class), most) in CLASSES.iter().zip(classes).zip(most) {
+        let mean = class.iter().sum::<f64>() / class.len() as f64;
+        println!("{kind:?} with 2 % noise from {least} rows a decade: {mean:.3} % rms, at most {most}");
+        assert!(mean <= most, "{kind:?} from {least} rows a decade: {mean}");
+    }
+    println!("{kind:?}: misfits of {systematic} tables taken for systematic");
+    assert!(systematic <= 2, "{systematic}");
+}
+
+#[test]
+fn noise_is_smoothed_in_few_rows() {
+    noisy(Kind::Creep, [3.0, 2.0, 1.6, 1.3, 1.1, 1.1, 1.0]);
+    noisy(Kind::Relaxation, [3.5, 2.3, 2.0, 1.5, 1.2, 1.2, 1.08]);
+    noisy(Kind::Dynamic, [3.5, 2.2, 1.6, 1.2, 1.1, 1.0, 0.95]);
+}
+
+/// The tables that came out badly: six decades of logarithmic creep, of a power law with and without glassy compliance.
+#[test]
+fn more_rows_are_no_worse() {
+    type Creep = fn(f64) -> f64;
+    let bodies: [(&str, Creep); 3] = [
+        ("logarithmic", |t| 1.0 + 0.1 * (1.0 + t).ln()),
+        ("Findley", |t| 1.0 + 0.1 * t.powf(0.3)),
+        ("power law", |t| t.powf(0.3)),
+    ];
+    for (name, creep) in bodies {
+        for rows in [15, 19, 31] {
+            let times = log_spaced(6.0, rows);
+            let values: Vec<f64> = times.iter().map(|&t| creep(t)).collect();
+            let table = TabulatedCreep::new(&times, &values).unwrap();
+            let check = log_spaced(6.0, 400);
+            let error = |&t: &f64| table.creep_compliance(t.min(times[rows - 1])) / creep(t) - 1.0;
+            let fitted = Fitted::new(check.iter().map(error), table.report());
+            println!("{name}, {rows} rows: {:.1e}; {}", fitted.worst, fitted.report);
+            assert!(fitted.worst < 1e-3, "{name}, {rows} rows: {:e}", fitted.worst);
+        }
+    }
+}
+
+/// Doubts of a table reach the steps of a contact.
+#[test]
+fn doubtful_tables_are_told() {
+    let step = |table: &TabulatedCreep| {
+        let mut contact =
+            sphere_on(Grid::square(24, 4.0e-3).unwrap(), Material::incompressible(table.clone()), Settings::default());
+        contact.step(0.0, Load::force(0.1)).unwrap();
+        contact.step(1.0, Load::force(0.1)).unwrap().warnings.contains(Warning::UncertainMaterial)
+    };
+    let table = |decades: f64, rows, creep: &dyn Fn(f64) -> f64| {
+        let times = log_spaced(decades, rows);
+        TabulatedCreep::new(&times, &times.iter().map(|&t| creep(t)).collect::<Vec<_>>()).unwrap()
+    };
+    let slow = |t: f64| 1.0e-6 * (1.0 + t.powf(0.3));
+    let good = table(6.0, 19, &slow);
+    assert!(good.report().warning().is_none() && !step(&good), "{}", good.report());
+    let few = table(8.0, 6, &slow);
+    assert!(matches!(few.report().warning(), Some(FitWarning::FewSamples { uncertainty }) if uncertainty > 5e-3));
+    assert!(step(&few) && few.report().to_string().contains("too few samples"), "{}", few.report());
+    // creep that speeds up at the end
+    let tertiary = table(3.0, 31, &|t| slow(t) * (1.0 + (t / 1200.0).powi(3)));
+    assert!(
+        matches!(tertiary.report().warning(), Some(FitWarning::Systematic { rms }) if rms > 5e-3),
+        "{}",
+        tertiary.report()
+    );
+    assert!(step(&tertiary) && tertiary.report().to_string().contains("any linear body"));
+    // noise is no reason, neither is a function
+    let mut noise = noise(5);
+    let times = log_spaced(6.0, 61);
+    let values: Vec<f64> = times.iter().map(|&t| slow(t) * (1.0 + 0.02 * noise())).collect();
+    let scattered = TabulatedCreep::new(&times, &values).unwrap();
+    assert!(scattered.report().warning().is_none() && !step(&scattered), "{}", scattered.report());
+    let series = PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap().series(1e-3..=1e3, 1e-2).unwrap();
+    assert!(series.report().warning().is_none() && series.report().uncertainty() == 0.0);
+}

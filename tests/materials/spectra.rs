@@ -1,0 +1,193 @@
+//! Creep, relaxation, and the passage between them.
+
+use crate::common::spectra::spectra;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use viscocontact::Error;
+use viscocontact::prelude::*;
+use viscocontact::rheology::{CreepSpectrum, RelaxationSpectrum};
+
+/// s Ĵ(s) · s Ĝ(s) − 1 at a real s, from the definitions of both series.
+fn carson_defect(creep: &CreepSpectrum, relaxation: &RelaxationSpectrum, s: f64) -> f64 {
+    let branch = |&(c, lambda): &(f64, f64)| c / (1.0 + s * lambda);
+    let j = creep.glassy() + creep.fluidity() / s + creep.terms().iter().map(branch).sum::<f64>();
+    let branch = |&(g, tau): &(f64, f64)| g * (s * tau / (1.0 + s * tau));
+    let g = relaxation.equilibrium() + s * relaxation.viscosity() + relaxation.terms().iter().map(branch).sum::<f64>();
+    j * g - 1.0
+}
+
+fn assert_reciprocal(creep: &CreepSpectrum) {
+    let relaxation = creep.relaxation();
+    let back = relaxation.creep();
+    for exponent in -80..=80 {
+        let s = 10f64.powf(0.25 * exponent as f64);
+        let defect = carson_defect(creep, &relaxation, s);
+        assert!(defect.abs() < 1e-12, "s = {s:e}: {defect:e}\n{creep:?}\n{relaxation:?}");
+        let round_trip = back.compliance(1.0 / s) / creep.compliance(1.0 / s) - 1.0;
+        assert!(round_trip.abs() < 1e-10, "t = {:e}: {round_trip:e}\n{creep:?}", 1.0 / s);
+    }
+    // signs: both are sums of positive terms
+    assert!(relaxation.terms().iter().all(|&(g, tau)| g >= 0.0 && tau > 0.0));
+}
+
+#[test]
+fn simple_models_have_their_textbook_relaxation() {
+    let maxwell = Maxwell::new(2.0e6, 3.0e6).unwrap().creep_spectrum().unwrap().relaxation();
+    assert_eq!((maxwell.equilibrium(), maxwell.viscosity()), (0.0, 0.0));
+    let [(modulus, tau)] = maxwell.terms() else { panic!() };
+    assert!((modulus / 2.0e6 - 1.0).abs() < 1e-14 && (tau / 1.5 - 1.0).abs() < 1e-14);
+
+    let voigt = KelvinVoigt::new(2.0e6, 3.0e6).unwrap().creep_spectrum().unwrap().relaxation();
+    assert!(voigt.terms().is_empty());
+    assert!((voigt.equilibrium() / 2.0e6 - 1.0).abs() < 1e-14 && (voigt.viscosity() / 3.0e6 - 1.0).abs() < 1e-14);
+
+    // G∞ = G G_K/(G + G_K), τ = λ G_K/(G + G_K)
+    let zener = Zener::new(3.0e6, 1.0e6, 4.0e6).unwrap().creep_spectrum().unwrap().relaxation();
+    let [(modulus, tau)] = zener.terms() else { panic!() };
+    assert!((zener.equilibrium() / 0.75e6 - 1.0).abs() < 1e-14);
+    assert!((modulus / 2.25e6 - 1.0).abs() < 1e-14 && (tau - 1.0).abs() < 1e-14);
+
+    let elastic = Elastic::new(5.0).unwrap().creep_spectrum().unwrap().relaxation();
+    assert!((elastic.equilibrium() - 5.0).abs() < 1e-15 && elastic.terms().is_empty());
+}
+
+#[test]
+fn every_model_evaluates_its_formula() {
+    let t: f64 = 0.7;
+    let kelvin = |g: f64, eta: f64| (1.0 - (-t * g / eta).exp()) / g;
+    let cases: [(&dyn Rheology, f64); 7] = [
+        (&Elastic::new(2.0).unwrap(), 0.5),
+        (&Maxwell::new(2.0, 5.0).unwrap(), 0.5 + t / 5.0),
+        (&KelvinVoigt::new(2.0, 5.0).unwrap(), kelvin(2.0, 5.0)),
+        (&Zener::new(2.0, 3.0, 4.0).unwrap(), 0.5 + kelvin(3.0, 4.0)),
+        (&Burgers::new(2.0, 5.0, 3.0, 4.0).unwrap(), 0.5 + t / 5.0 + kelvin(3.0, 4.0)),
+        (&GeneralizedKelvin::new(0.5, 0.2, &[(1.0 / 3.0, 4.0 / 3.0)]).unwrap(), 0.5 + 0.2 * t + kelvin(3.0, 4.0)),
+        (&FnRheology::new(|t| 1.0 + t), 1.7),
+    ];
+    for (model, expected) in cases {
+        assert!((model.creep_compliance(t) / expected - 1.0).abs() < 1e-14, "{model:?}");
+        if let Some(spectrum) = model.creep_spectrum() {
+            assert_eq!(spectrum.compliance(t), model.creep_compliance(t), "{model:?}");
+        }
+    }
+    // a generalized Maxwell body with one element is a Zener body: G = G∞ + G1, same relaxation
+    let prony = GeneralizedMaxwell::new(0.75, &[(2.25, 1.0)]).unwrap();
+    let zener = Zener::new(3.0, 1.0, 4.0).unwrap();
+    assert!((prony.creep_compliance(t) / zener.creep_compliance(t) - 1.0).abs() < 1e-14);
+}
+
+#[test]
+fn a_hundred_terms_over_thirty_decades_are_reciprocal() {
+    let terms: Vec<(f64, f64)> =
+        (0..100).map(|k| (1.0 + (k * k % 17) as f64, 10f64.powf(-15.0 + 30.0 * k as f64 / 99.0))).collect();
+    for (glassy, fluidity) in [(1.0, 0.0), (1.0, 1e-12), (0.0, 0.0), (0.0, 1e3)] {
+        assert_reciprocal(&CreepSpectrum::new(glassy, fluidity, &terms).unwrap());
+    }
+}
+
+#[test]
+fn clustered_repeated_and_weak_terms_are_reciprocal() {
+    for gap in [1e-15, 1e-13, 1e-10, 1e-8, 3e-7, 2e-6, 1e-5, 1e-3] {
+        let near: Vec<(f64, f64)> = (0..8).map(|k| (1.0, 1.0 + gap * k as f64)).collect();
+        assert_reciprocal(&CreepSpectrum::new(1.0, 0.0, &near).unwrap());
+    }
+    let repeated = CreepSpectrum::new(1.0, 0.0, &[(1.0, 2.0), (2.0, 2.0), (3.0, 1.0)]).unwrap();
+    assert_eq!(repeated.terms(), [(3.0, 1.0), (3.0, 2.0)]);
+    assert_reciprocal(&repeated);
+    let weak = [(1e-30, 1.0), (1.0, 1.5), (1e-20, 1.5000001), (1e-18, 7.0), (1.0, 1e4)];
+    assert_reciprocal(&CreepSpectrum::new(1.0, 1e-25, &weak).unwrap());
+}
+
+#[test]
+fn bad_parameters_are_refused_by_name() {
+    let field = |error: Error| match error {
+        Error::OutOfRange { field, .. } | Error::WrongLength { field, .. } => field,
+        other => panic!("unexpected {other}"),
+    };
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(field(Elastic::new(bad).unwrap_err()), "shear modulus");
+        assert_eq!(field(Maxwell::new(bad, 1.0).unwrap_err()), "shear modulus");
+        assert_eq!(field(Maxwell::new(1.0, bad).unwrap_err()), "shear viscosity");
+        assert_eq!(field(KelvinVoigt::new(bad, 1.0).unwrap_err()), "shear modulus");
+        assert_eq!(field(KelvinVoigt::new(1.0, bad).unwrap_err()), "shear viscosity");
+        assert_eq!(field(Zener::new(1.0, bad, 1.0).unwrap_err()), "Kelvin–Voigt modulus");
+        assert_eq!(field(Zener::new(1.0, 1.0, bad).unwrap_err()), "Kelvin–Voigt viscosity");
+        assert_eq!(field(Burgers::new(1.0, bad, 1.0, 1.0).unwrap_err()), "shear viscosity");
+        assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(1.0, bad)]).unwrap_err()), "retardation time");
+        assert_eq!(field(GeneralizedMaxwell::new(1.0, &[(1.0, bad)]).unwrap_err()), "relaxation time");
+    }
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        assert_eq!(field(GeneralizedKelvin::new(bad, 0.0, &[]).unwrap_err()), "glassy compliance");
+        assert_eq!(field(GeneralizedKelvin::new(1.0, bad, &[]).unwrap_err()), "fluidity");
+        assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(bad, 1.0)]).unwrap_err()), "retarded compliance");
+        assert_eq!(field(GeneralizedMaxwell::new(bad, &[(1.0, 1.0)]).unwrap_err()), "equilibrium modulus");
+        assert_eq!(field(RelaxationSpectrum::new(1.0, bad, &[]).unwrap_err()), "immediate viscosity");
+    }
+    // reciprocals and products stay numbers
+    assert_eq!(field(Maxwell::new(1e-150, 1e170).unwrap_err()), "glassy compliance");
+    assert_eq!(field(GeneralizedMaxwell::new(1e-310, &[(1.0, 1.0)]).unwrap_err()), "equilibrium modulus");
+    assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(1.0, 1e-200)]).unwrap_err()), "retardation time");
+    assert_eq!(field(CreepSpectrum::new(0.0, 0.0, &[(0.0, 1.0)]).unwrap_err()), "creep spectrum");
+    assert_eq!(field(GeneralizedMaxwell::new(1.0, &[]).unwrap_err()), "Maxwell elements");
+    assert_eq!(field(GeneralizedMaxwell::new(0.0, &[(0.0, 1.0)]).unwrap_err()), "relaxation spectrum");
+    for nu in [-1.0, 0.51, f64::NAN] {
+        let error = Material::constant_poisson(Elastic::new(1.0).unwrap(), nu).unwrap_err();
+        assert_eq!(field(error), "Poisson's ratio");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2011), ..ProptestConfig::with_cases(256) })]
+
+    #[test]
+    fn random_spectra_are_reciprocal(creep in spectra()) {
+        assert_reciprocal(&creep);
+    }
+
+    #[test]
+    fn creep_never_decreases(creep in spectra(), t in 1e-10..1e10_f64, more in 1.0..10.0_f64) {
+        prop_assert!(creep.compliance(t) >= creep.glassy());
+        prop_assert!(creep.compliance(t * more) >= creep.compliance(t));
+        // concave: the rate does not grow
+        prop_assert!(creep.rate(t * more) <= creep.rate(t));
+    }
+}
+
+/// Coefficients and times from one end of their range to the other: what comes out are numbers.
+#[test]
+fn spectra_between_the_ends_of_their_range_have_numbers_for_reciprocals() {
+    let sizes = [1e-100, 1e-95, 1.0, 1e95, 1e100];
+    for glassy in [0.0, 1e-100, 1.0, 1e100] {
+        for fluidity in [0.0, 1e-100, 1.0, 1e100] {
+            for one in sizes {
+                for other in sizes {
+                    for (short, long) in [(1e-100, 1e100), (1e-95, 1e95), (1.0, 1e100), (1e-100, 1.0)] {
+                        let creep = CreepSpectrum::new(glassy, fluidity, &[(one, short), (other, long)]).unwrap();
+                        let relaxation = creep.relaxation();
+                        let terms = relaxation.terms().iter().flat_map(|&(g, tau)| [g, tau]);
+                        let numbers = terms.chain([relaxation.equilibrium(), relaxation.viscosity()]);
+                        assert!(numbers.clone().all(|x| x.is_finite() && x >= 0.0), "{relaxation:?} of {creep:?}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A term too weak to count, at the very time at which the others have a zero: the reciprocal must not notice it.
+#[test]
+fn a_hair_on_a_zero_changes_nothing() {
+    for weak in [1e-10, 1e-15, 1e-17, 1e-20, 1e-28, 1e-34, 1e-60, 1e-100] {
+        // 1 + 1/(1 + s) vanishes at s = −2
+        let creep = CreepSpectrum::new(1.0, 0.0, &[(1.0, 1.0), (weak, 0.5)]).unwrap();
+        let relaxation = creep.relaxation();
+        assert!((relaxation.modulus(0.0) - 1.0).abs() < 1e-7, "{weak:e}: {relaxation:?}");
+        for s in [1e-3, 0.3, 1.0, 2.0, 30.0, 1e4] {
+            let defect = carson_defect(&creep, &relaxation, s);
+            assert!(defect.abs() < 1e-7, "{weak:e}, s = {s}: {defect:e}");
+        }
+    }
+    // as between the ends of the range
+    let creep = CreepSpectrum::new(1.0, 0.0, &[(1e-100, 1.0), (1e100, 1e100)]).unwrap();
+    assert!((creep.relaxation().modulus(0.0) - 1.0).abs() < 1e-12, "{:?}", creep.relaxation());
+}

@@ -1,0 +1,242 @@
+//! What must hold between the answers of related scenes, whatever the scene: of the same instant.
+
+use std::sync::Arc;
+
+use crate::common::related::{TIGHT, assert_ends_like, assert_same, end, field, forces, pressures, tight};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+use viscocontact::laws::Scenario;
+use viscocontact::laws::strategies::scenarios;
+use viscocontact::prelude::*;
+
+/// A scene with another shape.
+fn reshaped(scene: &Scenario, gap: impl Fn(f64, f64) -> f64 + Send + Sync + 'static) -> Scenario {
+    Scenario { shape: Arc::new(FnGeometry::new(gap)), ..scene.clone() }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2031), max_shrink_iters: 64, ..ProptestConfig::with_cases(250) })]
+
+    /// Lengths, pressures and times in other units.
+    #[test]
+    fn units_do_not_matter(scene in scenarios(), powers in [-4.0..4.0_f64, -4.0..4.0_f64, -4.0..4.0_f64]) {
+        let [length, stress, time] = powers.map(|power| 10f64.powf(power));
+        let (grid, shape) = (&scene.grid, Arc::clone(&scene.shape));
+        let steps = scene.steps.iter().map(|&(dt, load)| match load {
+            Load::Force { normal, tilt } => (dt * time, Load::Force { normal: normal * stress * length * length, tilt }),
+            other => (dt, other),
+        });
+        let other = Scenario {
+            grid: Grid::new(grid.cells(), grid.lengths().map(|side| side * length)).unwrap(),
+            shape: Arc::new(FnGeometry::new(move |x1, x2| length * shape.initial_gap(x1 / length, x2 / length))),
+            creep: scene.creep.scaled(1.0 / stress).unwrap().slowed(time).unwrap(),
+            steps: steps.collect(),
+        };
+        let (one, other) = (end(&scene, tight()), other.run(tight()).unwrap());
+        let (pressure, displacement) = (field(other.pressure(), 1.0 / stress), field(other.displacement(), 1.0 / length));
+        assert_ends_like(&one, &pressure, &displacement, other.approach() / length)?;
+    }
+
+    /// Turned over along either axis, or the axes exchanged.
+    #[test]
+    fn mirrored_scenes_have_mirrored_answers(scene in scenarios(), turn in [any::<bool>(), any::<bool>()], exchange in any::<bool>()) {
+        let sign = turn.map(|turn| if turn { -1.0 } else { 1.0 });
+        let shape = Arc::clone(&scene.shape);
+        let mut other = reshaped(&scene, move |x1, x2| {
+            let [a, b] = if exchange { [x2, x1] } else { [x1, x2] };
+            shape.initial_gap(sign[0] * a, sign[1] * b)
+        });
+        let ([n1, n2], [l1, l2]) = (scene.grid.cells(), scene.grid.lengths());
+        if exchange {
+            other.grid = Grid::new([n2, n1], [l2, l1]).unwrap();
+        }
+        let (one, other) = (end(&scene, tight()), other.run(tight()).unwrap());
+        let place = |i: usize, j: usize| {
+            let (i, j) = (if turn[0] { n1 - 1 - i } else { i }, if turn[1] { n2 - 1 - j } else { j });
+            if exchange { j * n1 + i } else { i * n2 + j }
+        };
+        let back = |field: &[f64]| (0..n1 * n2).map(|k| field[place(k / n2, k % n2)]).collect::<Vec<_>>();
+        assert_ends_like(&one, &back(other.pressure()), &back(other.displacement()), other.approach())?;
+    }
+
+    /// On a wider grid, off the middle by whole cells.
+    #[test]
+    fn shifted_scenes_have_shifted_answers(scene in scenarios(), shift in [-4_i32..=4, -4_i32..=4]) {
+        let ([n1, n2], spacing) = (scene.grid.cells(), scene.grid.spacing());
+        let by = [0, 1].map(|axis| f64::from(shift[axis]) * spacing[axis]);
+        let wide = [n1 + 8, n2 + 8];
+        let moved = Scenario {
+            grid: Grid::new(wide, [0, 1].map(|axis| wide[axis] as f64 * spacing[axis])).unwrap(),
+            shape: Arc::new(Shifted::new(Arc::clone(&scene.shape), by).unwrap()),
+            ..scene.clone()
+        };
+        let (one, other) = (end(&scene, tight()), moved.run(tight()).unwrap());
+        let here = |field: &[f64]| (0..n1 * n2).map(|k| {
+            let [i, j] = [(k / n2) as i32 + 4 + shift[0], (k % n2) as i32 + 4 + shift[1]];
+            field[i as usize * wide[1] + j as usize]
+        }).collect::<Vec<_>>();
+        assert_ends_like(&one, &here(other.pressure()), &here(other.displacement()), other.approach())?;
+    }
+
+    /// A gap that is wider everywhere is approached by as much more.
+    #[test]
+    fn a_wider_gap_is_a_longer_way(scene in scenarios(), wider in -1.0..1.0_f64) {
+        let (shape, wider) = (Arc::clone(&scene.shape), wider * 1e-2 * scene.grid.lengths()[0]);
+        let other = reshaped(&scene, move |x1, x2| shape.initial_gap(x1, x2) + wider);
+        let (one, other) = (end(&scene, tight()), other.run(tight()).unwrap());
+        let scale = one.contact.approach().abs().max(wider.abs()).max(one.displacement);
+        assert_same("pressure", one.contact.pressure(), other.pressure(), one.pressure, 1e-6)?;
+        assert_same("approach", &[one.contact.approach()], &[other.approach() - wider], scale, 1e-8)?;
+    }
+
+    /// Both solvers, with and without windows and symmetry.
+    #[test]
+    fn settings_choose_the_work_not_the_answer(scene in scenarios()) {
+        let one = end(&scene, tight());
+        let others = [
+            Settings { solver: Solver::PolonskyKeer, max_iterations: 5000, ..tight() },
+            Settings { window: false, ..tight() },
+            Settings { symmetry: false, ..tight() },
+        ];
+        for settings in others {
+            let other = scene.run(settings).unwrap();
+            assert_ends_like(&one, other.pressure(), other.displacement(), other.approach())?;
+        }
+    }
+
+    /// Two bodies that creep are one body that creeps as both.
+    #[test]
+    fn two_bodies_are_one(scene in scenarios(), share in 0.05..0.95_f64) {
+        let part = |share: f64| Material::incompressible(scene.creep.scaled(share).unwrap());
+        let builder = scene.builder().material(part(share)).counter_body(part(1.0 - share));
+        let mut both = builder.settings(tight()).build().unwrap();
+        for &(dt, load) in &scene.steps {
+            both.step(dt, load).unwrap();
+        }
+        let one = end(&scene, tight());
+        assert_ends_like(&one, both.pressure(), both.displacement(), both.approach())?;
+    }
+
+    /// The approaches that forces lead to lead to the forces.
+    #[test]
+    fn force_and_approach_are_two_sides_of_one(scene in scenarios()) {
+        let mut one = scene.builder().settings(tight()).build().unwrap();
+        let mut other = scene.builder().settings(tight()).build().unwrap();
+        let (most, deepest) = (forces(&scene).fold(0.0, f64::max), end(&scene, tight()).displacement);
+        for &(dt, load) in &scene.steps {
+            let report = one.step(dt, load).unwrap();
+            if report.force == 0.0 {
+                // how far away it is taken does not matter
+                other.step(dt, Load::approach(report.approach - 0.1 * deepest)).unwrap();
+                prop_assert_eq!(other.force(), 0.0);
+                continue;
+            }
+            let replayed = other.step(dt, Load::approach(report.approach)).unwrap();
+            prop_assert!((replayed.force - report.force).abs() <= 1e-5 * most, "{} {}", replayed.force, report.force);
+        }
+    }
+
+    /// After the same past, the deeper the greater the force, and the pressure of an upright body nowhere less than none.
+    #[test]
+    fn force_grows_with_approach(scene in scenarios(), dt in prop_oneof![Just(0.0), 0.01..1.0_f64], depths in [-0.5..2.0_f64, 0.01..0.5_f64]) {
+        let before = scene.run(tight()).unwrap();
+        let scale = before.approach().abs().max(1e-9 * scene.grid.lengths()[0]);
+        let settings = Settings { edge: Edge::Allow, ..tight() };
+        let deep = |depth: f64| {
+            let mut contact = scene.builder().settings(settings).build().unwrap();
+            for &(dt, load) in &scene.steps {
+                contact.step(dt, load).unwrap();
+            }
+            contact.step(dt * scene.duration(), Load::approach(depth * scale)).unwrap().force
+        };
+        let (less, more) = (deep(depths[0]), deep(depths[0] + depths[1]));
+        prop_assert!(more > less || (more == 0.0 && less == 0.0), "{more} after {less}");
+        prop_assert!(less >= 0.0);
+    }
+}
+
+/// A face that never lifts off is linear in the force; a body in full contact is in its shape, too.
+mod superposition {
+    use super::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2032), max_shrink_iters: 64, ..ProptestConfig::with_cases(250) })]
+
+        #[test]
+        fn of_forces_on_a_face(
+            scene in scenarios(), face in 0.3..0.9_f64,
+            parts in prop::collection::vec((0.02..1.0_f64, 0.1..1.0_f64, 0.1..1.0_f64), 2..6),
+        ) {
+            let side = scene.grid.lengths().into_iter().fold(f64::INFINITY, f64::min);
+            let punch = Arc::new(FlatPunch::circular(0.5 * face * side).unwrap());
+            // forces that only grow, so that the rim stays down
+            let run = |weights: [f64; 2]| {
+                let mut force = 0.0;
+                let steps = parts.iter().map(|&(dt, first, second)| {
+                    force += weights[0] * first + weights[1] * second;
+                    (dt * scene.duration().max(1e-3), Load::force(force))
+                });
+                let steps = steps.collect();
+                pressures(&Scenario { shape: Arc::clone(&punch) as _, steps, ..scene.clone() }.run(tight()).unwrap())
+            };
+            let (first, second, both) = (run([1.0, 0.0]), run([0.0, 1.0]), run([2.0, 0.5]));
+            let sum: Vec<f64> = first.iter().zip(&second).map(|(a, b)| 2.0 * a + 0.5 * b).collect();
+            assert_same("pressure", &sum, &both, 0.0, 1e-6)?;
+        }
+
+        #[test]
+        fn of_shapes_in_full_contact(
+            scene in scenarios(), heights in [0.1..1.0_f64, 0.1..1.0_f64], numbers in [1_usize..3, 1_usize..3],
+            loads in prop::collection::vec((0.02..1.0_f64, 1.0..3.0_f64), 1..6),
+        ) {
+            let (grid, [l1, l2]) = (&scene.grid, scene.grid.lengths());
+            let kernel = Arc::new(InfluenceKernel::periodic(grid).unwrap());
+            let wave = |weights: [f64; 2]| move |x1: f64, x2: f64| {
+                let phase = [numbers[0] as f64 * x1 / l1, numbers[1] as f64 * x2 / l2].map(|p| (std::f64::consts::TAU * p).cos());
+                1e-6 * l1 * (weights[0] * heights[0] * phase[0] + weights[1] * heights[1] * phase[1])
+            };
+            // enough to flatten both waves at the modulus of the first instant: p* = π E* A/λ, each of them
+            let flat = 20.0 * 1e-6 * l1 / (l1.min(l2) * 0.25 * scene.creep.glassy()) * l1 * l2;
+            let run = |weights: [f64; 2], share: f64| {
+                let builder = scene.builder().kernel(Arc::clone(&kernel)).geometry(&FnGeometry::new(wave(weights)));
+                let settings = Settings { edge: Edge::Allow, ..tight() };
+                let mut contact = builder.settings(settings).build().unwrap();
+                for &(dt, part) in &loads {
+                    contact.step(dt * scene.duration().max(1e-3), Load::force(share * part * flat)).unwrap();
+                    assert_eq!(contact.contact_cells(), grid.len());
+                }
+                pressures(&contact)
+            };
+            let (first, second, both) = (run([1.0, 0.0], 0.5), run([0.0, 1.0], 1.0), run([1.0, 1.0], 1.5));
+            let sum: Vec<f64> = first.iter().zip(&second).map(|(a, b)| a + b).collect();
+            assert_same("pressure", &sum, &both, 0.0, 10.0 * TIGHT)?;
+        }
+    }
+}
+
+/// On grids that threads share, their number changes no bit.
+#[cfg(feature = "rayon")]
+mod threads {
+    use super::*;
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2033), max_shrink_iters: 0, ..ProptestConfig::with_cases(4) })]
+
+        #[test]
+        fn any_number_gives_the_same_bits(scene in scenarios()) {
+            let grid = Grid::new([192, 176], scene.grid.lengths()).unwrap();
+            let steps = scene.steps.iter().copied().take(3).collect();
+            let fine = Scenario { grid, steps, ..scene };
+            let run = |threads: usize| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let whole = Settings { symmetry: false, window: false, ..Settings::default() };
+                pool.install(|| {
+                    let contact = fine.run(whole).unwrap();
+                    [contact.pressure(), contact.displacement()].concat().iter().map(|x| x.to_bits()).collect::<Vec<_>>()
+                })
+            };
+            let one = run(1);
+            prop_assert!(run(2) == one && run(3) == one);
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! The whole stepper on random scenes, against a dense reference that shares no code with it.
+
+mod quadratic;
+mod reference;
+mod scenes;
+
+use crate::common::bodies::elastic;
+use crate::common::spheres::sphere_on;
+use reference::Reference;
+use scenes::Scene;
+use viscocontact::prelude::*;
+
+/// A number from the environment, for longer runs by hand.
+fn wanted(variable: &str, usual: usize) -> usize {
+    std::env::var(variable).ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
+}
+
+/// Steps of one scene.
+const STEPS: usize = 8;
+
+#[test]
+fn eccentric_loads_may_jump() {
+    let (count, first) = (wanted("ECCENTRIC_STEPS", 2000), wanted("ECCENTRIC_SEED", 1));
+    let settings = Settings { edge: Edge::Allow, ..Settings::default() };
+    let (mut taken, mut refused, mut failed, mut warm, mut work, mut fallback) = (0, 0, 0, 0, 0.0, 0);
+    let mut seed = first as u64 * 1_000_000;
+    let mut costs = Vec::new();
+    while taken < count {
+        seed += 1;
+        let scene = Scene::eccentric(seed, STEPS);
+        let mut contact = scene.contact(settings).unwrap();
+        for (step, (dt, loads)) in scene.steps.iter().enumerate() {
+            match contact.step_each(*dt, loads) {
+                Ok(report) => {
+                    taken += 1;
+                    let cost = report.convolution_equivalents();
+                    costs.push(cost);
+                    fallback += usize::from(report.fallback_iterations > 0);
+                    if step > 0 {
+                        warm += 1;
+                        work += cost;
+                    }
+                }
+                Err(Error::LoadOutsideHull { .. }) => refused += 1,
+                Err(error) => {
+                    taken += 1;
+                    failed += 1;
+                    println!("{} step {step} dt {dt:.2e}: {error} {loads:?}", scene.name);
+                }
+            }
+        }
+    }
+    costs.sort_by(f64::total_cmp);
+    let at = |share: f64| costs[((costs.len() - 1) as f64 * share) as usize];
+    let mean = work / warm as f64;
+    println!("{taken} steps, {refused} refused, {failed} failed, {fallback} with the fall-back, seed {first}");
+    println!("equivalents: {mean:.2} a warm step, percentiles {:?}", [0.5, 0.99, 0.999, 1.0].map(at));
+    assert_eq!(failed, 0);
+    assert!(mean < 12.0, "{mean}");
+}
+
+/// A small window of an upright contact, and a load that jumps out of it.
+#[test]
+fn a_load_may_jump_beyond_the_contact() {
+    for x in [0.6e-3, 1.4e-3] {
+        let contact = || {
+            sphere_on(
+                Grid::square(64, 4.0e-3).unwrap(),
+                elastic(),
+                Settings { edge: Edge::Allow, ..Settings::default() },
+            )
+        };
+        let (mut warm, mut fresh) = (contact(), contact());
+        warm.step(0.0, Load::force(0.01)).unwrap();
+        let jump = Load::eccentric_force(0.01, [x, 0.0]);
+        warm.step(0.0, jump).unwrap();
+        fresh.step(0.0, jump).unwrap();
+        assert!(distance(warm.pressure(), fresh.pressure()) < 1e-4);
+        assert!((warm.moment()[0] / (0.01 * x) - 1.0).abs() < 1e-9);
+    }
+}
+
+/// Advice that is followed helps: a step that ran out of iterations is done with more of them.
+#[test]
+fn more_iterations_help_where_the_error_advises_them() {
+    let (mut short, mut solved) = (0, 0);
+    for seed in 1..wanted("ADVICE_SCENES", 60) as u64 {
+        let scene = Scene::eccentric(seed, STEPS);
+        let settings = Settings { edge: Edge::Allow, ..Settings::default() };
+        let (mut hasty, mut patient) =
+            (scene.contact(Settings { max_iterations: 6, ..settings }).unwrap(), scene.contact(settings).unwrap());
+        for (dt, loads) in &scene.steps {
+            if let Err(Error::NotConverged { convergence, .. }) = hasty.step_each(*dt, loads) {
+                short += 1;
+                assert!(
+                    convergence.to_string().contains("raise Settings::max_iterations"),
+                    "{}: {convergence}",
+                    scene.name
+                );
+            }
+            solved += usize::from(patient.step_each(*dt, loads).is_ok());
+            if hasty.time() != patient.time() {
+                break; // the histories part
+            }
+        }
+    }
+    assert!(short > 20 && solved > short, "{short} {solved}");
+}
+
+/// Sums of differences over sums.
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let sum: f64 = b.iter().map(|b| b.abs()).sum();
+    let difference: f64 = a.iter().zip(b).map(|(a, b)| (a - b).abs()).sum();
+    if sum > 0.0 { difference / sum } else { difference }
+}
+
+#[test]
+fn a_dense_reference_agrees() {
+    let (count, first) = (wanted("DIFFERENTIAL_SCENES", 500), wanted("DIFFERENTIAL_SEED", 1));
+    let (mut steps, mut refused, mut unsolved, mut worst) = (0, 0, 0, [0.0_f64; 3]);
+    for seed in (first as u64 * 1_000_000..).take(count) {
+        let scene = Scene::any(seed, 6);
+        let settings = Settings { edge: Edge::Allow, tolerance: 1e-10, ..Settings::default() };
+        let mut contact = match scene.contact(settings) {
+            Err(Error::NothingToTouch { .. }) => continue, // no cell's centre lies under a body
+            contact => contact.unwrap(),
+        };
+        let mut reference = Reference::new(&scene.grid, &scene.shapes, &scene.rheology);
+        for (step, (dt, loads)) in scene.steps.iter().enumerate() {
+            match contact.step_each(*dt, loads) {
+                Ok(_) => {}
+                Err(Error::LoadOutsideHull { .. }) => {
+                    refused += 1;
+                    continue;
+                }
+                Err(error) => panic!("{} step {step}: {error} {loads:?}", scene.name),
+            }
+            if !reference.step(*dt, loads) {
+                unsolved += 1;
+                println!("unsolved {} step {step} {loads:?}", scene.name);
+                break; // what follows would start from elsewhere
+            }
+            steps += 1;
+            let mut errors = [distance(contact.pressure(), &reference.pressure), 0.0, 0.0];
+            for (body, &motion) in reference.motions.iter().enumerate() {
+                let state = contact.body(body).unwrap();
+                let force = reference.force(body);
+                errors[1] += (state.force - force).abs() / reference.total_force().max(1e-12);
+                if motion[0].is_finite() && force > 0.0 {
+                    let size = reference.deepest();
+                    errors[2] += (state.approach - motion[0]).abs() / size;
+                    errors[2] += 1e-3 * (state.tilt[0] - motion[1]).abs().max((state.tilt[1] - motion[2]).abs()) / size;
+                }
+            }
+            if errors.iter().any(|e| *e > 1e-6) {
+                println!("{} step {step}: {errors:?} {dt:.2e} {loads:?} {:?}", scene.name, scene.rheology);
+            }
+            (0..3).for_each(|k| worst[k] = worst[k].max(errors[k]));
+        }
+    }
+    println!(
+        "{steps} steps agree to {worst:?} in pressure, force, motion; {refused} refused, {unsolved} unsolved by the reference"
+    );
+    assert!(worst.iter().all(|worst| *worst < 1e-5), "{worst:?}");
+    assert!(unsolved * 100 < steps);
+}

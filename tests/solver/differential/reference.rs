@@ -1,0 +1,267 @@
+//! A contact stepper of its own: dense matrices, an interior-point method, and the hereditary integral of a relaxation
+//! spectrum found by bisection. Slow, for a hundred cells or two, and sure.
+
+use std::f64::consts::PI;
+
+use viscocontact::prelude::*;
+
+use super::scenes::Body;
+
+/// E(t) = `equilibrium` + Σ E e^(−t/τ) + `dashpot` δ(t), the inverse of the contact compliance C = J/4.
+#[derive(Debug, Clone)]
+struct Relaxation {
+    equilibrium: f64,
+    dashpot: f64,
+    /// (E, 1/τ).
+    terms: Vec<(f64, f64)>,
+}
+
+impl Relaxation {
+    /// With x = −s, s·Ĉ(s) = C0 − f/x + Σ C/(1 − xλ) rises from −∞ to +∞ between its poles; its zeros are 1/τ.
+    fn of(body: &Body) -> Relaxation {
+        let (c0, f) = (0.25 * body.glassy, 0.25 * body.fluidity);
+        let mut terms: Vec<(f64, f64)> = body.terms.iter().map(|&(c, lambda)| (0.25 * c, lambda)).collect();
+        terms.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let value = |x: f64| c0 - f / x + terms.iter().map(|(c, l)| c / (1.0 - x * l)).sum::<f64>();
+        let slope =
+            |x: f64| f / (x * x) + terms.iter().map(|(c, l)| c * l / ((1.0 - x * l) * (1.0 - x * l))).sum::<f64>();
+        let mut poles: Vec<f64> = terms.iter().map(|(_, lambda)| 1.0 / lambda).collect();
+        if f > 0.0 {
+            poles.insert(0, 0.0);
+        }
+        let mut zeros = Vec::new();
+        for (k, &pole) in poles.iter().enumerate() {
+            let end = match poles.get(k + 1) {
+                Some(&next) => next,
+                None if c0 > 0.0 => {
+                    let mut far = 2.0 * pole.max(f / c0);
+                    while value(far) < 0.0 {
+                        far *= 2.0;
+                    }
+                    far
+                }
+                None => break,
+            };
+            let (mut low, mut high) = (pole, end);
+            for _ in 0..200 {
+                let middle = 0.5 * (low + high);
+                if value(middle) < 0.0 { low = middle } else { high = middle }
+            }
+            let x = 0.5 * (low + high);
+            zeros.push((1.0 / (x * slope(x)), x));
+        }
+        let held: f64 = c0 + terms.iter().map(|(c, _)| c).sum::<f64>();
+        let rate: f64 = f + terms.iter().map(|(c, lambda)| c / lambda).sum::<f64>();
+        Relaxation {
+            equilibrium: if f > 0.0 { 0.0 } else { 1.0 / held },
+            dashpot: if c0 > 0.0 { 0.0 } else { 1.0 / rate },
+            terms: zeros,
+        }
+    }
+}
+
+/// What is known of one rigid body in a step.
+#[derive(Debug, Clone)]
+struct Motion {
+    /// Functions of the cell that are free to it, with the sums of pressure that they ask for.
+    modes: Vec<(Vec<f64>, f64)>,
+    /// Prescribed lowering of each cell.
+    prescribed: Vec<f64>,
+    released: bool,
+}
+
+/// The state of the reference.
+pub struct Reference {
+    grid: Grid,
+    /// K(i, j) from cell to cell.
+    influence: Vec<f64>,
+    relaxation: Relaxation,
+    /// Gap, and the body that each cell belongs to.
+    gap: Vec<f64>,
+    owner: Vec<usize>,
+    bodies: usize,
+    displacement: Vec<f64>,
+    branches: Vec<Vec<f64>>,
+    pub pressure: Vec<f64>,
+    /// Approach at the origin and tilts of each body; NaN where nothing determines them.
+    pub motions: Vec<[f64; 3]>,
+}
+
+impl Reference {
+    pub fn new(grid: &Grid, shapes: &[Box<dyn Geometry>], body: &Body) -> Reference {
+        let cells = grid.len();
+        let centre = |k: usize| grid.center(k / grid.cells()[1], k % grid.cells()[1]);
+        // of the bodies over a cell the lowest
+        let over = |k: usize| {
+            let [x1, x2] = centre(k);
+            let heights = shapes.iter().enumerate().map(|(body, shape)| (shape.initial_gap(x1, x2), body));
+            heights.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
+        };
+        let influence = (0..cells * cells).map(|at| {
+            let (a, b) = (centre(at / cells), centre(at % cells));
+            love([a[0] - b[0], a[1] - b[1]], grid.spacing())
+        });
+        let relaxation = Relaxation::of(body);
+        Reference {
+            influence: influence.collect(),
+            gap: (0..cells).map(|k| over(k).0).collect(),
+            owner: (0..cells).map(|k| over(k).1).collect(),
+            bodies: shapes.len(),
+            displacement: vec![0.0; cells],
+            branches: vec![vec![0.0; cells]; relaxation.terms.len()],
+            pressure: vec![0.0; cells],
+            motions: vec![[f64::NAN; 3]; shapes.len()],
+            grid: grid.clone(),
+            relaxation,
+        }
+    }
+
+    /// One step; false if the interior-point method finds no answer.
+    pub fn step(&mut self, dt: f64, loads: &[Load]) -> bool {
+        let Relaxation { equilibrium, dashpot, terms } = &self.relaxation;
+        // u linear in time over the step: mean of e^(−t/τ) over it, and what is left of the past at its end
+        let mean = |x: f64| if x * dt > 0.0 { -(-x * dt).exp_m1() / (x * dt) } else { 1.0 };
+        let stiffness = equilibrium
+            + terms.iter().map(|&(e, x)| e * mean(x)).sum::<f64>()
+            + if dt > 0.0 { dashpot / dt } else { 0.0 };
+        let c = 1.0 / stiffness;
+        let past: Vec<f64> = (0..self.grid.len())
+            .map(|k| {
+                let u = self.displacement[k];
+                let kept: f64 = terms.iter().zip(&self.branches).map(|(&(_, x), q)| (-x * dt).exp() * q[k]).sum();
+                u - c * (equilibrium * u + kept)
+            })
+            .collect();
+        let motions: Vec<Motion> = loads.iter().enumerate().map(|(body, load)| self.motion(body, load)).collect();
+        let Some((pressure, found)) = self.solve(c, &past, &motions) else { return false };
+        self.pressure = pressure;
+        for (body, load) in loads.iter().enumerate() {
+            self.motions[body] = physical(load, &found[body], motions[body].released);
+        }
+        let n = self.grid.len();
+        for k in 0..n {
+            let kp: f64 = (0..n).map(|l| self.influence[k * n + l] * self.pressure[l]).sum();
+            let u = past[k] + c * kp;
+            for (&(e, x), q) in self.relaxation.terms.iter().zip(&mut self.branches) {
+                q[k] = (-x * dt).exp() * q[k] + e * mean(x) * (u - self.displacement[k]);
+            }
+            self.displacement[k] = u;
+        }
+        true
+    }
+
+    pub fn force(&self, body: usize) -> f64 {
+        let own = self.pressure.iter().zip(&self.owner).filter(|(_, owner)| **owner == body);
+        own.map(|(p, _)| p).sum::<f64>() * self.grid.cell_area()
+    }
+
+    pub fn total_force(&self) -> f64 {
+        (0..self.bodies).map(|body| self.force(body)).sum()
+    }
+
+    /// The greatest displacement.
+    pub fn deepest(&self) -> f64 {
+        self.displacement.iter().copied().fold(0.0, f64::max)
+    }
+
+    fn motion(&self, body: usize, load: &Load) -> Motion {
+        let n2 = self.grid.cells()[1];
+        let own = |k: usize| self.owner[k] == body;
+        let field = |f: &dyn Fn([f64; 2]) -> f64| -> Vec<f64> {
+            (0..self.grid.len()).map(|k| if own(k) { f(self.grid.center(k / n2, k % n2)) } else { 0.0 }).collect()
+        };
+        let mut modes = Vec::new();
+        let mut lowered = [0.0; 3];
+        let mut released = false;
+        match *load {
+            Load::Force { normal, .. } => {
+                released = normal == 0.0;
+                modes.push((field(&|_| 1.0), normal / self.grid.cell_area()));
+            }
+            Load::Approach { approach, .. } => lowered[0] = approach,
+            _ => unreachable!(),
+        }
+        for (axis, tilt) in load.tilt().into_iter().enumerate() {
+            match tilt {
+                // in millimetres, so that all modes are of like size
+                Tilt::Free { at } => modes.push((field(&|x| (x[axis] - at) / 1.0e-3), 0.0)),
+                Tilt::Fixed(angle) => lowered[1 + axis] = angle,
+            }
+        }
+        let prescribed = field(&|x| lowered[0] + lowered[1] * x[0] + lowered[2] * x[1]);
+        Motion { modes, prescribed, released }
+    }
+
+    /// Pressure, and the coefficient of each mode of each body.
+    fn solve(&self, c: f64, past: &[f64], motions: &[Motion]) -> Option<(Vec<f64>, Vec<Vec<f64>>)> {
+        let n = self.grid.len();
+        let cells: Vec<usize> =
+            (0..n).filter(|&k| self.gap[k].is_finite() && !motions[self.owner[k]].released).collect();
+        let gap: Vec<f64> =
+            cells.iter().map(|&k| self.gap[k] + past[k] - motions[self.owner[k]].prescribed[k]).collect();
+        let modes: Vec<&(Vec<f64>, f64)> =
+            motions.iter().filter(|motion| !motion.released).flat_map(|motion| &motion.modes).collect();
+        let mut pressure = vec![0.0; n];
+        let mut found: Vec<Vec<f64>> = motions.iter().map(|motion| vec![f64::NAN; motion.modes.len()]).collect();
+        if cells.is_empty() {
+            return Some((pressure, found));
+        }
+        // in units of the load, and of what it does to a cell
+        let load: f64 = modes.iter().map(|mode| mode.1).sum();
+        let own = c * self.influence[0];
+        let deepest = gap.iter().copied().fold(0.0, |deepest, h: f64| f64::max(deepest, -h));
+        let unit = if load > 0.0 { load / cells.len() as f64 } else { deepest / own };
+        if unit <= 0.0 {
+            return Some((pressure, found)); // nothing reaches the surface
+        }
+        let h = own * unit;
+        let m = cells.len();
+        let stiff = |a: usize, b: usize| self.influence[cells[a] * n + cells[b]] / self.influence[0];
+        let matrix: Vec<f64> = (0..m * m).map(|at| stiff(at / m, at % m)).collect();
+        let gap: Vec<f64> = gap.iter().map(|g| g / h).collect();
+        let columns: Vec<Vec<f64>> = modes.iter().map(|mode| cells.iter().map(|&k| mode.0[k]).collect()).collect();
+        let right: Vec<f64> = modes.iter().map(|mode| mode.1 / unit).collect();
+        let (p, y) = super::quadratic::minimum(&matrix, &gap, &columns, &right)?;
+        cells.iter().zip(&p).for_each(|(&k, p)| pressure[k] = unit * p);
+        let mut y = y.iter().map(|y| h * y);
+        for (found, _) in found.iter_mut().zip(motions).filter(|(_, motion)| !motion.released) {
+            found.iter_mut().for_each(|found| *found = y.next().unwrap());
+        }
+        Some((pressure, found))
+    }
+}
+
+/// Approach at the origin and tilts.
+fn physical(load: &Load, modes: &[f64], released: bool) -> [f64; 3] {
+    if released {
+        return [f64::NAN; 3];
+    }
+    let mut modes = modes.iter();
+    let mut motion = [0.0; 3];
+    motion[0] = match *load {
+        Load::Approach { approach, .. } => approach,
+        _ => *modes.next().unwrap(),
+    };
+    for (axis, tilt) in load.tilt().into_iter().enumerate() {
+        match tilt {
+            Tilt::Fixed(angle) => motion[1 + axis] = angle,
+            Tilt::Free { at } => {
+                motion[1 + axis] = modes.next().unwrap() / 1.0e-3;
+                motion[0] -= motion[1 + axis] * at;
+            }
+        }
+    }
+    motion
+}
+
+/// Love's closed form: the displacement at a distance from a cell under unit pressure, over the contact compliance.
+fn love(x: [f64; 2], side: [f64; 2]) -> f64 {
+    let corner = |x: f64, y: f64| {
+        let term = |x: f64, y: f64| if x == 0.0 { 0.0 } else { x * (y / x.abs()).asinh() };
+        term(x, y) + term(y, x)
+    };
+    let [a, b] = [0.5 * side[0], 0.5 * side[1]];
+    let sum = corner(x[0] + a, x[1] + b) - corner(x[0] - a, x[1] + b) - corner(x[0] + a, x[1] - b)
+        + corner(x[0] - a, x[1] - b);
+    sum / PI
+}

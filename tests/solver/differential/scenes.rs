@@ -1,0 +1,233 @@
+//! Random scenes: any body, any shape, loads that jump from place to place.
+
+use viscocontact::prelude::*;
+
+use crate::common::noise::uniform;
+
+/// Numbers that choose the parts of a scene.
+pub struct Dice(Box<dyn FnMut() -> f64>);
+
+impl Dice {
+    pub fn new(seed: u64) -> Dice {
+        let mut next = uniform(seed);
+        // the first numbers of neighbouring seeds resemble each other
+        for _ in 0..8 {
+            next();
+        }
+        Dice(Box::new(next))
+    }
+
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.0)()
+    }
+
+    /// Evenly on a logarithmic axis.
+    pub fn decades(&mut self, low: f64, high: f64) -> f64 {
+        low * (high / low).powf((self.0)())
+    }
+
+    pub fn below(&mut self, count: usize) -> usize {
+        ((self.0)() * count as f64) as usize
+    }
+
+    /// Up to four retardation times.
+    fn terms(&mut self, j: f64) -> Vec<(f64, f64)> {
+        (0..=self.below(4)).map(|_| (self.decades(0.1, 10.0) * j, self.decades(1e-3, 1e3))).collect()
+    }
+
+    pub fn chance(&mut self, share: f64) -> bool {
+        (self.0)() < share
+    }
+}
+
+/// A contact and the steps it takes.
+pub struct Scene {
+    pub name: String,
+    pub grid: Grid,
+    /// The initial gap of each rigid body.
+    pub shapes: Vec<Box<dyn Geometry>>,
+    pub rheology: Body,
+    /// The length of each step \[s\], and the loads at its end.
+    pub steps: Vec<(f64, Vec<Load>)>,
+}
+
+/// What the creeping body is made of: J(t) = `glassy` + `fluidity` t + Σ c (1 − e^(−t/λ)).
+#[derive(Debug, Clone)]
+pub struct Body {
+    pub glassy: f64,
+    pub fluidity: f64,
+    pub terms: Vec<(f64, f64)>,
+}
+
+impl Body {
+    pub fn random(dice: &mut Dice) -> Body {
+        let j = 1.0e-6;
+        match dice.below(6) {
+            0 => Body { glassy: j, fluidity: 0.0, terms: Vec::new() },
+            1 => Body { glassy: 0.0, fluidity: 0.0, terms: vec![(j, 1.0)] },
+            2 => Body { glassy: j, fluidity: 0.0, terms: vec![(dice.decades(0.3, 30.0) * j, 1.0)] },
+            3 => Body { glassy: j, fluidity: j, terms: Vec::new() },
+            4 => Body { glassy: j, fluidity: 0.0, terms: dice.terms(j) },
+            _ => Body { glassy: j * dice.between(0.0, 1.0), fluidity: j, terms: dice.terms(j) },
+        }
+    }
+
+    pub fn material(&self) -> Material {
+        let Body { glassy, fluidity, ref terms } = *self;
+        Material::incompressible(GeneralizedKelvin::new(glassy, fluidity, terms).unwrap())
+    }
+
+    /// Whether it answers a jump of the load.
+    pub fn is_elastic_at_first(&self) -> bool {
+        self.glassy > 0.0
+    }
+}
+
+const SIDE: f64 = 4.0e-3;
+
+/// A shape whose face holds the square |x1|, |x2| < 1.2 mm, or what it may touch does.
+fn shape(dice: &mut Dice) -> (&'static str, Box<dyn Geometry>) {
+    let radius = 10.0e-3;
+    match dice.below(6) {
+        0 => ("sphere", Box::new(Sphere::new(radius).unwrap())),
+        1 => ("cone", Box::new(Cone::new(dice.decades(0.02, 0.3)).unwrap())),
+        2 => ("ellipsoid", Box::new(Ellipsoid::new(radius, dice.decades(0.2, 5.0) * radius).unwrap())),
+        3 => ("round punch", Box::new(FlatPunch::circular(dice.between(0.8e-3, 1.8e-3)).unwrap())),
+        4 => {
+            let sides = [dice.between(1.0e-3, 3.4e-3), dice.between(1.0e-3, 3.4e-3)];
+            ("square punch", Box::new(FlatPunch::rectangular(sides).unwrap()))
+        }
+        _ => {
+            // a bowl with waves in any direction
+            let waves: Vec<[f64; 4]> = (0..12)
+                .map(|_| {
+                    let q = dice.decades(1.0e3, 1.0e4);
+                    let angle = dice.between(0.0, 6.3);
+                    [2.0e-3 / q * dice.between(0.2, 1.0), q * angle.cos(), q * angle.sin(), dice.between(0.0, 6.3)]
+                })
+                .collect();
+            let height = move |x: f64, y: f64| {
+                let rough: f64 = waves.iter().map(|[a, q1, q2, phase]| a * (q1 * x + q2 * y + phase).cos()).sum();
+                (x * x + y * y) / (2.0 * radius) + rough
+            };
+            ("rough", Box::new(FnGeometry::new(height)))
+        }
+    }
+}
+
+impl Scene {
+    /// One or two bodies under forces whose points jump by up to 2 mm.
+    pub fn eccentric(seed: u64, steps: usize) -> Scene {
+        let mut dice = Dice::new(seed);
+        let dice = &mut dice;
+        let cells = [9 + dice.below(40), 9 + dice.below(40)];
+        let grid = Grid::new(cells, [SIDE, SIDE * dice.decades(0.7, 1.4)]).unwrap();
+        let (first, one) = shape(dice);
+        let two = dice.chance(0.2);
+        let mut name = format!("seed {seed}: {}x{} {first}", cells[0], cells[1]);
+        let shapes: Vec<Box<dyn Geometry>> = if two {
+            // beside each other, half as large
+            let (second, other) = shape(dice);
+            name += &format!(" and {second}");
+            let half = |shape: Box<dyn Geometry>, x: f64| -> Box<dyn Geometry> {
+                Box::new(FnGeometry::new(move |x1, x2| {
+                    let own = (x1 - x).abs() < 0.24 * SIDE;
+                    if own { 0.5 * shape.initial_gap(2.0 * (x1 - x), x2) } else { f64::INFINITY }
+                }))
+            };
+            vec![half(one, -0.25 * SIDE), half(other, 0.25 * SIDE)]
+        } else {
+            vec![one]
+        };
+        let centres: &[f64] = if two { &[-0.25 * SIDE, 0.25 * SIDE] } else { &[0.0] };
+        let body = Body::random(dice);
+        let reach = if two { 0.4e-3 } else { 1.0e-3 };
+        let both = dice.chance(0.7);
+        // an upright beginning is computed on a small window, by symmetry on a quarter of it
+        let upright_first = dice.chance(0.5);
+        let steps = (0..steps)
+            .map(|k| {
+                let dt = if body.is_elastic_at_first() && (k == 0 || dice.chance(0.3)) {
+                    0.0
+                } else {
+                    dice.decades(1.0e-3, 10.0)
+                };
+                let loads = centres.iter().map(|x| {
+                    let force = dice.between(0.005, 0.055);
+                    if upright_first && k == 0 {
+                        return Load::force(force);
+                    }
+                    let at = [x + dice.between(-reach, reach), dice.between(-1.0e-3, 1.0e-3)];
+                    if both {
+                        Load::eccentric_force(force, at)
+                    } else {
+                        Load::Force { normal: force, tilt: [Tilt::Free { at: at[0] }, Tilt::Fixed(0.0)] }
+                    }
+                });
+                (dt, loads.collect())
+            })
+            .collect();
+        Scene { name, grid, shapes, rheology: body, steps }
+    }
+
+    /// Few cells, one to three bodies, and loads of every kind.
+    pub fn any(seed: u64, steps: usize) -> Scene {
+        let mut dice = Dice::new(seed);
+        let dice = &mut dice;
+        let cells = [5 + dice.below(8), 5 + dice.below(8)];
+        let grid = Grid::new(cells, [SIDE, SIDE * dice.decades(0.5, 2.0)]).unwrap();
+        let bodies = [1, 1, 1, 2, 3][dice.below(5)];
+        let mut name = format!("seed {seed}: {}x{}", cells[0], cells[1]);
+        let width = SIDE / bodies as f64;
+        let centres: Vec<f64> = (0..bodies).map(|body| (body as f64 + 0.5) * width - 0.5 * SIDE).collect();
+        let shapes: Vec<Box<dyn Geometry>> = centres
+            .iter()
+            .map(|&centre| {
+                let (kind, shape) = shape(dice);
+                name += &format!(" {kind}");
+                let lift = dice.between(0.0, 1.0e-6);
+                let own = FnGeometry::new(move |x1, x2| {
+                    if bodies == 1 {
+                        return shape.initial_gap(x1, x2);
+                    }
+                    let own = (x1 - centre).abs() < 0.499 * width;
+                    if own { lift + shape.initial_gap(x1 - centre, x2) } else { f64::INFINITY }
+                });
+                Box::new(own) as Box<dyn Geometry>
+            })
+            .collect();
+        let body = Body::random(dice);
+        let steps = (0..steps)
+            .map(|k| {
+                let jumps = body.is_elastic_at_first() && (k == 0 || dice.chance(0.3));
+                let dt = if jumps { 0.0 } else { dice.decades(1.0e-3, 1.0e2) };
+                let loads = centres.iter().map(|&centre| {
+                    let reach = 0.3 * width;
+                    let tilt = |dice: &mut Dice, at: f64| match dice.below(3) {
+                        0 => Tilt::Fixed(0.0),
+                        1 => Tilt::Fixed(dice.between(-2.0e-3, 2.0e-3)),
+                        _ => Tilt::Free { at },
+                    };
+                    let at = [centre + dice.between(-reach, reach), dice.between(-1.0e-3, 1.0e-3)];
+                    let tilt = at.map(|at| tilt(dice, at));
+                    match dice.below(8) {
+                        0 => Load::Force { normal: 0.0, tilt },
+                        1 | 2 => Load::Approach { approach: dice.between(-1.0e-6, 2.0e-5), tilt },
+                        _ => Load::Force { normal: dice.decades(0.001, 1.0), tilt },
+                    }
+                });
+                (dt, loads.collect())
+            })
+            .collect();
+        Scene { name, grid, shapes, rheology: body, steps }
+    }
+
+    pub fn contact(&self, settings: Settings) -> Result<ViscoelasticContact> {
+        let mut builder = ViscoelasticContact::builder(self.grid.clone()).material(self.rheology.material());
+        builder = builder.geometry(&*self.shapes[0]);
+        for shape in &self.shapes[1..] {
+            builder = builder.another_body(&**shape);
+        }
+        builder.settings(settings).build()
+    }
+}

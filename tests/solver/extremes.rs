@@ -1,0 +1,446 @@
+//! Steps, times, moduli, lengths and loads at the ends of their ranges.
+
+use crate::common::bodies::{elastic, maxwell, zener};
+use crate::common::noise::uniform;
+use crate::common::spheres::{RADIUS, builder_on};
+use viscocontact::Error;
+use viscocontact::contact::Warning;
+use viscocontact::prelude::*;
+
+fn builder(cells: usize, width: f64, material: Material) -> viscocontact::contact::Builder {
+    builder_on(Grid::square(cells, width).unwrap(), material)
+}
+
+/// Exact approach of a held force: a³ = ¾ R W C(t), ω = a²/R.
+fn held(material: &Material, force: f64, t: f64) -> f64 {
+    (0.75 * RADIUS * force * material.contact_compliance(t)).powf(2.0 / 3.0) / RADIUS
+}
+
+/// Eight steps of Δ after a jump, Δ/τ from 1e-12 to 1e12, every rule: the table of docs/accuracy.md.
+#[test]
+fn every_length_of_step_errs_by_no_more_than_its_rule() {
+    println!("| Δ/τ | exponential | backward | rectangle (paper) |\n|---|---|---|---|");
+    for exponent in (-12..=12).step_by(3) {
+        let dt = 10f64.powi(exponent);
+        let mut row = format!("| 1e{exponent} |");
+        for time_rule in [TimeRule::Exponential, TimeRule::Backward, TimeRule::Rectangle] {
+            let maxwell = Material::incompressible(Zener::new(1.0e6, 2.0e5, 2.0e5).unwrap());
+            let settings = Settings { time_rule, tolerance: 1e-9, edge: Edge::Allow, ..Settings::default() };
+            let width = 2.4 * (0.75 * RADIUS * 6.0 * 0.25e-6_f64).cbrt();
+            let mut contact = builder(32, width, maxwell.clone()).settings(settings).build().unwrap();
+            contact.step(0.0, Load::force(1.0)).unwrap();
+            let mut worst = 0.0_f64;
+            for _ in 0..8 {
+                match contact.step(dt, Load::force(1.0)) {
+                    Ok(report) => {
+                        worst = worst.max((report.approach / held(&maxwell, 1.0, report.time) - 1.0).abs());
+                        // what a step would ring at is said
+                        let rings = report.warnings.contains(Warning::Rings);
+                        assert_eq!(rings, time_rule == TimeRule::Rectangle && exponent >= 0);
+                    }
+                    Err(_) => worst = f64::INFINITY,
+                }
+            }
+            row += &if worst.is_finite() { format!(" {worst:.0e} |") } else { " fails |".to_owned() };
+            match time_rule {
+                // short and long steps see nothing or everything; in between the rule's own error
+                TimeRule::Exponential => assert!(worst < if exponent == 0 { 0.1 } else { 3e-3 }, "{row}"),
+                TimeRule::Backward => assert!(worst < if exponent == 0 { 0.4 } else { 3e-3 }, "{row}"),
+                _ => {}
+            }
+        }
+        println!("{row}");
+    }
+}
+
+/// After a huge step nothing rings: the pressure stays where it is, and of one sign.
+#[test]
+fn huge_steps_do_not_ring() {
+    for material in [zener(), maxwell()] {
+        for dt in [3.0, 30.0, 1e3] {
+            let width = 2.6 * (0.75 * RADIUS * 0.01 * material.contact_compliance(12.0 * dt)).cbrt();
+            let mut contact = builder(32, width, material.clone()).build().unwrap();
+            contact.step(0.0, Load::force(0.01)).unwrap();
+            let mut centers = Vec::new();
+            for _ in 0..10 {
+                contact.step(dt, Load::force(0.01)).unwrap();
+                centers.push(contact.pressure()[16 * 32 + 16]);
+            }
+            // creep only spreads the force
+            for pair in centers.windows(2) {
+                assert!(pair[1] < pair[0] * (1.0 + 1e-4), "Δ = {dt}: {centers:?}");
+            }
+        }
+    }
+}
+
+/// Second order for a smooth load on any rheology with an elastic response, once steps resolve its fastest relaxation (a
+/// power law resolved from 0.3 s on); first order without.
+#[test]
+fn the_default_rule_is_of_second_order() {
+    let power = FractionalMaxwell::findley(0.5e-6, 0.5e-6, 0.4).unwrap().series(0.3..=10.0, 1e-2).unwrap();
+    let bodies: Vec<(&str, Material)> = vec![
+        ("Maxwell", maxwell()),
+        ("Zener", zener()),
+        ("Kelvin–Voigt", Material::incompressible(KelvinVoigt::new(1.0e6, 0.3e6).unwrap())),
+        ("Burgers", Material::incompressible(Burgers::new(1.0e6, 3.0e6, 1.0e6, 0.5e6).unwrap())),
+        ("power law", Material::incompressible(power)),
+        ("elastic bulk", Material::elastic_bulk(Zener::new(2.0e6, 1.0e6, 1.0e6).unwrap(), 3.0e6).unwrap()),
+    ];
+    // on a punch nothing but the rule is there to see: no cell comes or goes
+    let punch = FlatPunch::circular(0.8e-3).unwrap();
+    let force = |t: f64| (0.5 * std::f64::consts::PI * t).sin().powi(2);
+    for (name, material) in bodies {
+        let approach = |steps: u32| {
+            let settings = Settings { tolerance: 1e-12, ..Settings::default() };
+            let mut contact =
+                builder(24, 2.2e-3, material.clone()).geometry(&punch).settings(settings).build().unwrap();
+            for k in 1..=steps {
+                let t = 0.8 * f64::from(k) / f64::from(steps);
+                contact.step(0.8 / f64::from(steps), Load::force(force(t))).unwrap();
+            }
+            contact.approach()
+        };
+        let fine = approach(8192);
+        let errors = [64, 128, 256].map(|steps| (approach(steps) / fine - 1.0).abs());
+        let order = (errors[0] / errors[2]).log2() / 2.0;
+        println!("{name}: errors {errors:?}, order {order:.2}");
+        // an immediate dashpot answers with the slope of u at the end of a step, which a straight line knows to first order
+        let immediate = material.contact_compliance(0.0) == 0.0;
+        assert!(if immediate { order > 0.95 } else { order >= 1.95 }, "{name}: {errors:?}");
+    }
+}
+
+/// Thirty decades of relaxation times in one body.
+#[test]
+fn thirty_decades_in_one_body_are_followed() {
+    let terms: Vec<_> = (-15..=15).map(|k| (0.2e-6, 10f64.powi(k))).collect();
+    let material = Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &terms).unwrap());
+    let width = 2.4 * (0.75 * RADIUS * material.contact_compliance(1e17)).cbrt();
+    let load = StepLoad::new(Load::force(1.0)).unwrap();
+    let mut contact = builder(48, width, material.clone()).build().unwrap();
+    let mut run = contact.follow(&load, Stepping::adaptive(1e-3), 1e17);
+    let (mut steps, mut worst) = (0, 0.0_f64);
+    while let Some(report) = run.next_step().unwrap() {
+        steps += 1;
+        if report.contact_cells > 150 {
+            worst = worst.max((report.approach / held(&material, 1.0, report.time) - 1.0).abs());
+        }
+    }
+    println!("{steps} steps from 1e-17 s to 1e17 s: {worst:.1e}");
+    assert!(worst < 3e-3 && steps < 500, "{worst:e} {steps}");
+}
+
+/// The same dimensionless scene in any units: bit by bit for powers of two, else to rounding.
+#[test]
+fn units_do_not_matter() {
+    let run = |length: f64, modulus: f64, time: f64, tolerance: f64| {
+        let body = Zener::new(1.0e6 * modulus, 0.5e6 * modulus, 0.5e6 * modulus * time).unwrap();
+        let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3 * length).unwrap())
+            .geometry(&Sphere::new(RADIUS * length).unwrap())
+            .material(Material::incompressible(body))
+            .settings(Settings { tolerance, ..Settings::default() })
+            .build()
+            .unwrap();
+        let force = |share: f64| Load::force(share * modulus * length * length);
+        for (dt, share) in [(0.0, 0.3), (0.1, 0.5), (0.3, 0.6), (1.0, 0.2), (0.2, 0.0), (0.1, 0.4)] {
+            contact.step(dt * time, force(share)).unwrap();
+        }
+        let pressure: Vec<f64> = contact.pressure().iter().map(|p| p / modulus).collect();
+        (pressure, contact.approach() / length)
+    };
+    let (pressure, approach) = run(1.0, 1.0, 1.0, 1e-6);
+    for (length, modulus, time) in [(-33, 0, 0), (0, -40, 0), (0, 30, 0), (27, 30, 40), (-30, -40, -40)] {
+        let two = |exponent: i32| 2f64.powi(exponent);
+        let (scaled, deep) = run(two(length), two(modulus), two(time), 1e-6);
+        assert!(scaled == pressure && deep == approach, "2^{length} m, 2^{modulus} Pa, 2^{time} s");
+    }
+    // other factors round otherwise, and iterations take other ways to the same answer
+    let (pressure, approach) = run(1.0, 1.0, 1.0, 1e-13);
+    let peak = pressure.iter().copied().fold(0.0, f64::max);
+    for (length, modulus, time) in
+        [(1e-8, 1.0, 1.0), (1e8, 1.0, 1.0), (1.0, 1e-12, 1.0), (1.0, 1e9, 1.0), (1e-8, 1e3, 1e-9), (1e8, 1e-12, 1e9)]
+    {
+        let (scaled, deep) = run(length, modulus, time, 1e-13);
+        assert!((deep / approach - 1.0).abs() < 1e-12, "{length:e} {modulus:e} {time:e}: {:e}", deep / approach - 1.0);
+        let far = scaled.iter().zip(&pressure).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / peak;
+        assert!(far < 1e-10, "{length:e} {modulus:e} {time:e}: pressure {far:e}");
+    }
+}
+
+#[test]
+fn every_poissons_ratio_and_shape_of_cell_gives_hertz() {
+    for nu in [0.0, 0.5, -0.9] {
+        let material = Material::constant_poisson(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap(), nu).unwrap();
+        let width = 2.5 * (0.75 * RADIUS * material.contact_compliance(1e3)).cbrt();
+        let mut contact = builder(48, width, material.clone()).build().unwrap();
+        contact.step(0.0, Load::force(1.0)).unwrap();
+        contact.step(100.0, Load::force(1.0)).unwrap();
+        let relative = contact.approach() / held(&material, 1.0, 100.0) - 1.0;
+        assert!(relative.abs() < 2e-3, "ν = {nu}: {relative:e}");
+    }
+    // cells a thousand times as long as wide, under a body of the same proportions
+    let ellipsoid = Ellipsoid::new(1.0e-3, 1.0e3).unwrap();
+    let hertz = viscocontact::analytic::HertzEllipse::new([1.0e-3, 1.0e3], 4.0e6, 1.0).unwrap();
+    let [a, b] = hertz.semi_axes();
+    let mut contact = ViscoelasticContact::builder(Grid::new([48, 48], [2.4 * a, 2.4 * b]).unwrap())
+        .geometry(&ellipsoid)
+        .material(elastic())
+        .build()
+        .unwrap();
+    let [d1, d2] = contact.grid().spacing();
+    contact.step(0.0, Load::force(1.0)).unwrap();
+    let relative = contact.approach() / hertz.approach() - 1.0;
+    println!("cells 1 : {:.0}: approach {relative:.1e}", d2 / d1);
+    assert!(d2 / d1 > 1000.0 && relative.abs() < 5e-3, "{relative:e}");
+}
+
+/// K p is carried from guess to guess: on an elastic body u = C K p shows whether it is still K p.
+fn drift(contact: &ViscoelasticContact, fresh: &mut [f64]) -> f64 {
+    let kernel = contact.kernel();
+    kernel.convolve(contact.pressure(), fresh, &mut kernel.workspace().unwrap()).unwrap();
+    let scale = fresh.iter().copied().fold(0.0, f64::max);
+    let c = contact.material().contact_compliance(0.0);
+    contact.displacement().iter().zip(fresh.iter()).map(|(u, v)| (u / c - v).abs()).fold(0.0, f64::max) / scale
+}
+
+fn elastic_sphere(cells: usize) -> ViscoelasticContact {
+    builder(cells, 4.0e-3, elastic()).build().unwrap()
+}
+
+/// Steps that grow carry the rounding of K p along, larger each time: it must be computed afresh in time.
+#[test]
+fn growing_steps_do_not_lose_k_p() {
+    for growth in [1.0, 1.2, 1.5, 2.0, 2.9] {
+        let mut contact = elastic_sphere(24);
+        let mut fresh = vec![0.0; contact.grid().len()];
+        let (mut dt, mut worst) = (1e-60, 0.0_f64);
+        for step in 0..250_u32 {
+            contact.step(dt, Load::force(0.6 + 0.3 * (0.01 * f64::from(step)).sin())).unwrap();
+            dt *= growth;
+            worst = worst.max(drift(&contact, &mut fresh));
+        }
+        println!("growth {growth}: {worst:.1e}");
+        assert!(worst < 1e-10, "growth {growth}: {worst:e}");
+    }
+}
+
+#[test]
+fn a_million_steps_do_not_drift() {
+    let mut contact = elastic_sphere(8);
+    let mut fresh = vec![0.0; contact.grid().len()];
+    let mut worst = 0.0_f64;
+    for step in 0..1_000_000_u32 {
+        contact.step(1e-4, Load::force(0.6 + 0.3 * (0.01 * f64::from(step)).sin())).unwrap();
+        if step % 997 == 0 {
+            worst = worst.max(drift(&contact, &mut fresh));
+        }
+    }
+    println!("K p after a million steps: {worst:.1e}");
+    assert!(worst < 1e-10, "{worst:e}");
+}
+
+#[test]
+fn a_load_removed_and_restored_a_thousand_times_leaves_nothing() {
+    let mut contact = builder(32, 4.0e-3, zener()).build().unwrap();
+    for _ in 0..1000 {
+        contact.step(1e-3, Load::force(0.5)).unwrap();
+        contact.step(1e-3, Load::force(0.0)).unwrap();
+        assert_eq!(contact.contact_cells(), 0);
+    }
+    // half the time loaded, until everything is in equilibrium: the mean displacement is half the relaxed one
+    contact.step(0.0, Load::force(0.5)).unwrap();
+    assert!((contact.force() / 0.5 - 1.0).abs() < 1e-12 && contact.contact_cells() > 50);
+    contact.step(0.0, Load::force(0.0)).unwrap();
+    let left = contact.displacement().iter().copied().fold(0.0, f64::max);
+    // a step of many relaxation times leaves τ/Δ, the next one that of it
+    let mut forgotten = left;
+    for _ in 0..3 {
+        contact.step(1e3, Load::force(0.0)).unwrap();
+        let now = contact.displacement().iter().map(|u| u.abs()).fold(0.0, f64::max);
+        assert!(now < 1e-3 * forgotten, "{forgotten:e} {now:e}");
+        forgotten = now;
+    }
+}
+
+/// From next to no load, on one cell, to all of them.
+#[test]
+fn contact_grows_from_one_cell_to_all() {
+    let settings = Settings { edge: Edge::Allow, ..Settings::default() };
+    let mut contact = builder(16, 1.0e-3, zener()).settings(settings).build().unwrap();
+    let mut cells = Vec::new();
+    for exponent in -200..=2 {
+        contact.step(1e-3, Load::force(10f64.powi(exponent))).unwrap();
+        assert!((contact.force() / 10f64.powi(exponent) - 1.0).abs() < 1e-12);
+        cells.push(contact.contact_cells());
+    }
+    assert!(
+        cells[0] <= 4 && cells.windows(2).all(|pair| pair[1] >= pair[0]) && cells[cells.len() - 1] == 256,
+        "{cells:?}"
+    );
+    // and what cannot be represented is said
+    let error = contact.step(0.0, Load::force(1e-323)).and_then(|_| contact.step(0.0, Load::force(1e308))).unwrap_err();
+    assert!(matches!(error, Error::Overflow { .. }), "{error}");
+}
+
+/// Loads and steps at the ends of the range: whatever a step accepts is a number.
+#[test]
+fn steps_at_the_ends_are_numbers_or_refused() {
+    let materials = [
+        maxwell(),
+        Material::incompressible(GeneralizedKelvin::new(1.0e-90, 1.0e90, &[(1.0e90, 1.0e-90)]).unwrap()),
+        Material::incompressible(Elastic::new(1.0e-95).unwrap()),
+    ];
+    let (mut accepted, mut refused) = (0, 0);
+    for material in &materials {
+        for width in [1.0e-90, 1.0e-3, 1.0e90] {
+            for (time_rule, size) in
+                [(TimeRule::Exponential, 1e200), (TimeRule::Backward, 1e300), (TimeRule::Exponential, 1e307)]
+            {
+                for load in
+                    [Load::force(size), Load::force(1.0 / size), Load::approach(size), Load::approach(1e-3 * width)]
+                {
+                    let settings = Settings { edge: Edge::Allow, time_rule, ..Settings::default() };
+                    let mut contact = ViscoelasticContact::builder(Grid::square(4, width).unwrap())
+                        .geometry(&Sphere::new(width).unwrap())
+                        .material(material.clone())
+                        .settings(settings)
+                        .build()
+                        .unwrap();
+                    for dt in [0.0, 1e-300, 1e3, 1e90, 1e300] {
+                        match contact.step(dt, load) {
+                            Ok(_) => accepted += 1,
+                            Err(_) => refused += 1,
+                        }
+                        let numbers = [contact.force(), contact.approach(), contact.moment()[0], contact.moment()[1]];
+                        let fields = contact.pressure().iter().chain(contact.displacement());
+                        let finite = numbers.iter().chain(fields).all(|value| value.is_finite());
+                        assert!(finite, "{dt:e} s, {load:?}, {width:e} m: {contact:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(accepted > 50 && refused > 50, "{accepted} {refused}");
+}
+
+/// A force that is a number on an arm that makes its moment none.
+#[test]
+fn moments_beyond_numbers_are_refused() {
+    let mut contact = ViscoelasticContact::builder(Grid::square(8, 1.0e90).unwrap())
+        .geometry(&Shifted::new(Sphere::new(1.0e90).unwrap(), [0.3e90, 0.0]).unwrap())
+        .material(Material::incompressible(Elastic::new(1.0e50).unwrap()))
+        .build()
+        .unwrap();
+    let error = contact.step(0.0, Load::force(1.0e220)).unwrap_err();
+    assert!(matches!(error, Error::Overflow { what: "the moment of the force", .. }), "{error}");
+    contact.step(0.0, Load::force(1.0e215)).unwrap();
+    assert!((contact.moment()[0] / 0.3e305 - 1.0).abs() < 0.1, "{:e}", contact.moment()[0]);
+}
+
+/// Pressures so small that their squares vanish: a pull among them is still a pull.
+#[test]
+fn the_least_pressures_do_not_pull() {
+    let (mut accepted, mut refused) = (0, 0);
+    for dt in [f64::MAX, 1e300, 1e250, 1e200] {
+        for k in 0..40 {
+            let tilt = [Tilt::Fixed(0.0), Tilt::Fixed(2.4e-4 * f64::from(k))];
+            for (cells, load) in [
+                ([12, 1], Load::Approach { approach: 2.0e-8, tilt }),
+                ([6, 5], Load::Approach { approach: 5.0e-8, tilt }),
+            ] {
+                let grid = Grid::new(cells, [3.1e-6, 3.9e-6]).unwrap();
+                let wavy = Wavy::new(1.0e-8 * (1.0 + 0.1 * f64::from(k)), 1.1e-6).unwrap();
+                let mut contact = ViscoelasticContact::builder(grid)
+                    .geometry(&Sum::new(Sphere::new(1.0e-4).unwrap(), wavy))
+                    .material(maxwell())
+                    .settings(Settings { edge: Edge::Allow, tolerance: 4.5e-8, ..Settings::default() })
+                    .build()
+                    .unwrap();
+                match contact.step(dt, load) {
+                    Ok(_) => accepted += 1,
+                    Err(_) => refused += 1,
+                }
+                let pulls = contact.pressure().iter().filter(|&&p| p < 0.0).count();
+                assert_eq!(pulls, 0, "{dt:e} s, {k}, {cells:?}: {:?}", contact.pressure());
+            }
+        }
+    }
+    assert!(accepted > 50, "{accepted} accepted, {refused} refused");
+}
+
+/// Bodies that are held relax: on a Maxwell body all that happens to the pressure is the factor e^(−t/τ), in steps of any
+/// length, as long as numbers last.
+#[test]
+fn a_held_approach_relaxes_by_many_decades() {
+    let mut dice = uniform(7);
+    let mut between = |low: f64, high: f64| low + (high - low) * dice();
+    for scene in 0..40 {
+        let shapes: [Box<dyn Geometry>; 4] = [
+            Box::new(Sphere::new(between(5.0e-3, 20.0e-3)).unwrap()),
+            Box::new(Ellipsoid::new(between(5.0e-3, 20.0e-3), between(5.0e-3, 20.0e-3)).unwrap()),
+            Box::new(Cone::new(between(0.01, 0.1)).unwrap()),
+            Box::new(FlatPunch::circular(between(0.5e-3, 1.5e-3)).unwrap()),
+        ];
+        let cells = [24 + (between(0.0, 24.0) as usize), 24 + (between(0.0, 24.0) as usize)];
+        let mut contact = ViscoelasticContact::builder(Grid::new(cells, [4.0e-3; 2]).unwrap())
+            .geometry(&shapes[scene % 4])
+            .material(maxwell())
+            .build()
+            .unwrap();
+        let held = Load::approach_and_tilt(between(0.2e-5, 3.0e-5), [between(0.0, 1.0e-3), 0.0]);
+        // held where it is, or where a force has brought it
+        let held = if scene % 3 == 0 {
+            contact.step(0.0, Load::force(between(0.01, 0.3))).unwrap();
+            Load::approach(contact.approach())
+        } else {
+            contact.step(0.0, held).unwrap();
+            held
+        };
+        let (start, force) = (contact.pressure().to_vec(), contact.force());
+        for _ in 0..4 {
+            // in one step, or in several
+            let dt = between(0.1, 60.0);
+            let report = contact.step(dt, held).unwrap();
+            let left = (-report.time).exp();
+            assert!((contact.force() / (left * force) - 1.0).abs() < 1e-5, "scene {scene}, {dt}: {report}");
+            let errors = contact.pressure().iter().zip(&start).map(|(p, p0)| (p - left * p0).abs());
+            assert!(errors.sum::<f64>() < 1e-5 * left * start.iter().sum::<f64>(), "scene {scene}, {dt}: {report}");
+            assert!(report.residual <= contact.settings().tolerance);
+        }
+        // beyond the range of numbers there is nothing left
+        contact.step(1.0e6, held).unwrap();
+        assert_eq!(contact.force(), 0.0);
+    }
+}
+
+/// A flat punch on an elastic body is pressed in proportion to its approach, however much deeper it was before.
+#[test]
+fn small_approaches_after_great_ones_press_in_proportion() {
+    let mut dice = uniform(3);
+    let mut between = |low: f64, high: f64| low + (high - low) * dice();
+    for scene in 0..30 {
+        let cells = 24 + between(0.0, 48.0) as usize;
+        let mut contact = ViscoelasticContact::builder(Grid::square(cells, 4.0e-3).unwrap())
+            .geometry(&FlatPunch::circular(between(0.5e-3, 1.5e-3)).unwrap())
+            .material(elastic())
+            .settings(Settings {
+                tolerance: 1e-8,
+                symmetry: scene % 2 == 0,
+                window: scene % 3 == 0,
+                ..Settings::default()
+            })
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::approach(1.0e-5)).unwrap();
+        let whole = contact.pressure().to_vec();
+        for _ in 0..6 {
+            let approach = 10f64.powf(between(-19.0, -5.0));
+            contact.step(0.0, Load::approach(approach)).unwrap();
+            let share = approach / 1.0e-5;
+            let errors = contact.pressure().iter().zip(&whole).map(|(p, whole)| (p - share * whole).abs());
+            let sum: f64 = whole.iter().sum();
+            assert!(errors.sum::<f64>() < 1e-5 * share * sum, "scene {scene}, {approach:e} m");
+        }
+    }
+}

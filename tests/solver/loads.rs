@@ -1,0 +1,307 @@
+//! Loads that tilt, prescribe the approach, let go and come back, on elastic and creeping bodies.
+
+use crate::common::bodies::{E_STAR, elastic};
+use viscocontact::analytic::{AxisymmetricContact, Hertz, Profile, RigidPunch};
+use viscocontact::load::LoadError;
+use viscocontact::prelude::*;
+
+const RADIUS: f64 = 1.0e-3;
+
+fn zener(nu: f64) -> Material {
+    Material::constant_poisson(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap(), nu).unwrap()
+}
+
+fn contact(grid: Grid, shape: &dyn Geometry, material: Material, tolerance: f64) -> ViscoelasticContact {
+    let settings = Settings { tolerance, ..Settings::default() };
+    ViscoelasticContact::builder(grid).geometry(shape).material(material).settings(settings).build().unwrap()
+}
+
+fn punch(cells: usize) -> ViscoelasticContact {
+    let grid = Grid::square(cells, 2.1 * RADIUS).unwrap();
+    contact(grid, &FlatPunch::circular(RADIUS).unwrap(), elastic(), 1e-7)
+}
+
+/// Lur'e's punch on a 2.1 R square: pressure for r < 0.8 R, approach and tilt, and the work they took.
+fn lure_errors(cells: usize, e: f64) -> [f64; 3] {
+    let exact = RigidPunch::new(RADIUS, E_STAR, 1.0, e * RADIUS).unwrap();
+    let mut contact = punch(cells);
+    let report = contact.step(0.0, Load::eccentric_force(1.0, [e * RADIUS, 0.0])).unwrap();
+    assert!(report.convolution_equivalents() <= 12.0, "e = {e} R: {} equivalents", report.convolution_equivalents());
+    assert!((contact.force() - 1.0).abs() < 1e-12);
+    assert!((contact.moment()[0] - e * RADIUS).abs() < 1e-12 * RADIUS && contact.moment()[1].abs() < 1e-12 * RADIUS);
+    let mut pressure: f64 = 0.0;
+    for i in 0..cells {
+        for j in 0..cells {
+            let [x1, x2] = contact.grid().center(i, j);
+            if x1.hypot(x2) < 0.8 * RADIUS {
+                pressure = pressure.max((contact.pressure()[i * cells + j] / exact.pressure(x1, x2) - 1.0).abs());
+            }
+        }
+    }
+    [pressure, (contact.approach() / exact.approach() - 1.0).abs(), (contact.tilt()[0] / exact.tilt() - 1.0).abs()]
+}
+
+#[test]
+fn eccentric_punch_is_lures() {
+    for e in [0.1, 0.2, 0.3] {
+        let [pressure, approach, tilt] = lure_errors(256, e);
+        println!("e = {e} R: pressure {pressure:.2e}, approach {approach:.2e}, tilt {tilt:.2e}");
+        assert!(pressure < 6e-3 && approach < 1.5e-3 && tilt < 3.5e-3);
+    }
+}
+
+#[test]
+fn approach_and_tilt_converge_at_first_order() {
+    let [coarse, fine] = [64, 256].map(|cells| lure_errors(cells, 0.2));
+    for (name, coarse, fine) in [("approach", coarse[1], fine[1]), ("tilt", coarse[2], fine[2])] {
+        let order = (coarse / fine).log2() / 2.0;
+        println!("{name}: {coarse:.2e} → {fine:.2e}, order {order:.2}");
+        assert!(order > 0.9, "{name}: order {order}");
+    }
+}
+
+/// Beyond R/3 the contact opens on the far side; the work stays bounded.
+#[test]
+fn eccentric_punch_opens() {
+    let mut cells = usize::MAX;
+    let mut tilt = 0.0;
+    for e in [0.35, 0.45, 0.6, 0.75, 0.9] {
+        let mut contact = punch(256);
+        let report = contact.step(0.0, Load::eccentric_force(1.0, [0.0, -e * RADIUS])).unwrap();
+        assert!(report.convolution_equivalents() <= 35.0, "e = {e} R: {}", report.convolution_equivalents());
+        assert_eq!(report.fallback_iterations, 0);
+        assert!(report.contact_cells < cells && -report.tilt[1] > tilt);
+        assert!(report.tilt[0].abs() < 1e-6 * -report.tilt[1], "the load is on the axis");
+        (cells, tilt) = (report.contact_cells, -report.tilt[1]);
+        assert!((contact.moment()[1] + e * RADIUS).abs() < 1e-12 * RADIUS);
+    }
+}
+
+#[test]
+fn iterations_hardly_grow_with_the_mesh() {
+    let cold = |cells: usize| {
+        let exact = Hertz::new(10.0e-3, E_STAR, 1.0).unwrap();
+        let grid = Grid::square(cells, 2.6 * exact.contact_radius()).unwrap();
+        // off the centre of a cell, so that the guess is not the answer
+        let shape = Shifted::new(Sphere::new(10.0e-3).unwrap(), [0.11e-3, -0.07e-3]).unwrap();
+        let sphere = contact(grid, &shape, elastic(), 1e-7).step(0.0, Load::force(0.9)).unwrap().iterations as f64;
+        let report = punch(cells).step(0.0, Load::eccentric_force(1.0, [0.2 * RADIUS, 0.0])).unwrap();
+        [sphere, report.iterations as f64]
+    };
+    let (coarse, fine) = (cold(128), cold(1024));
+    println!("iterations at 128² {coarse:?}, at 1024² {fine:?}");
+    for (coarse, fine) in coarse.into_iter().zip(fine) {
+        assert!(fine <= 1.3 * coarse, "{coarse} → {fine}");
+    }
+}
+
+/// Triangular load, unload, reload on a Zener body against the one-dimensional foundation.
+#[test]
+fn load_unload_reload_is_the_foundations() {
+    let (radius, cells) = (10.0e-3, 256);
+    let mut reference = AxisymmetricContact::new(&Profile::sphere(radius).unwrap(), &zener(0.3), 8000, 2.2e-3).unwrap();
+    let mut contact = contact(Grid::square(cells, 4.4e-3).unwrap(), &Sphere::new(radius).unwrap(), zener(0.3), 1e-6);
+    let force = |t: f64| {
+        if t <= 1.0 {
+            t
+        } else if t <= 1.9 {
+            2.0 - t
+        } else {
+            t - 1.8
+        }
+    };
+    let (steps, fine) = (56, 16);
+    let mut worst = [0.0_f64; 2];
+    for step in 1..=steps {
+        let t = 2.8 * step as f64 / steps as f64;
+        contact.step(2.8 / steps as f64, Load::force(force(t))).unwrap();
+        for k in 1..=fine {
+            let t = 2.8 * ((step - 1) * fine + k) as f64 / (steps * fine) as f64;
+            reference.press(2.8 / (steps * fine) as f64, force(t)).unwrap();
+        }
+        if step % 2 == 0 && contact.contact_cells() > 2000 {
+            let radius = (contact.contact_area() / std::f64::consts::PI).sqrt();
+            worst[0] = worst[0].max((contact.approach() / reference.approach() - 1.0).abs());
+            worst[1] = worst[1].max((radius / reference.contact_radius() - 1.0).abs());
+        }
+    }
+    println!("approach {:.2e}, contact radius {:.2e}", worst[0], worst[1]);
+    assert!(worst[0] < 1e-3 && worst[1] < 1e-2);
+}
+
+/// Ramp, hold and retract under displacement control, until the bodies part.
+#[test]
+fn approach_driven_force_is_the_foundations() {
+    let radius = 10.0e-3;
+    let mut reference = AxisymmetricContact::new(&Profile::sphere(radius).unwrap(), &zener(0.3), 8000, 2.0e-3).unwrap();
+    let mut contact = contact(Grid::square(192, 3.2e-3).unwrap(), &Sphere::new(radius).unwrap(), zener(0.3), 1e-6);
+    let depth = |t: f64| {
+        0.2e-3
+            * if t <= 1.0 {
+                t
+            } else if t <= 2.0 {
+                1.0
+            } else {
+                3.0 - t
+            }
+    };
+    let (steps, fine) = (60, 16);
+    let (mut worst, mut peak) = (0.0_f64, 0.0_f64);
+    for step in 1..=steps {
+        let t = 3.0 * step as f64 / steps as f64;
+        let report = contact.step(3.0 / steps as f64, Load::approach(depth(t))).unwrap();
+        assert_eq!(report.fallback_iterations, 0);
+        for k in 1..=fine {
+            let t = 3.0 * ((step - 1) * fine + k) as f64 / (steps * fine) as f64;
+            reference.indent(3.0 / (steps * fine) as f64, depth(t)).unwrap();
+        }
+        worst = worst.max((contact.force() - reference.force()).abs());
+        peak = peak.max(reference.force());
+    }
+    println!("force {:.2e} of its peak", worst / peak);
+    assert!(worst < 3e-3 * peak);
+    // the surface has not come back: the withdrawn indenter lets go before it is out
+    assert_eq!((contact.force(), contact.contact_cells()), (0.0, 0));
+}
+
+/// Force and approach describe the same states, and may take turns.
+#[test]
+fn controls_take_turns() {
+    let shape = Ellipsoid::new(8.0e-3, 14.0e-3).unwrap();
+    let new = || contact(Grid::square(64, 4.0e-3).unwrap(), &shape, zener(0.3), 1e-9);
+    let (mut forced, mut driven) = (new(), new());
+    for (step, force) in [0.2, 0.5, 0.9, 0.6, 0.3, 0.7].into_iter().enumerate() {
+        forced.step(0.1, Load::eccentric_force(force, [0.05e-3, -0.02e-3])).unwrap();
+        let (approach, tilt) = (forced.approach(), forced.tilt());
+        let load = match step % 3 {
+            0 => Load::approach_and_tilt(approach, tilt),
+            1 => Load::force_and_tilt(force, tilt),
+            _ => Load::Approach {
+                approach: approach + tilt[0] * 0.05e-3,
+                tilt: [Tilt::Free { at: 0.05e-3 }, Tilt::Fixed(tilt[1])],
+            },
+        };
+        driven.step(0.1, load).unwrap();
+        assert!((driven.force() / force - 1.0).abs() < 1e-6, "step {step}: {}", driven.force());
+        assert!((driven.approach() / approach - 1.0).abs() < 1e-6);
+        assert!((driven.tilt()[0] - tilt[0]).abs() < 1e-6 * tilt[0].abs());
+        let peak = forced.pressure().iter().copied().fold(0.0, f64::max);
+        for (a, b) in forced.pressure().iter().zip(driven.pressure()) {
+            assert!((a - b).abs() < 1e-5 * peak, "step {step}");
+        }
+    }
+}
+
+/// Under a steady eccentric force the tilt of a punch creeps as the compliance does.
+#[test]
+fn tilt_creeps() {
+    let grid = Grid::square(64, 2.1 * RADIUS).unwrap();
+    let body = Maxwell::new(1.0e6, 1.0e6).unwrap();
+    let mut contact = contact(grid, &FlatPunch::circular(RADIUS).unwrap(), Material::incompressible(body), 1e-9);
+    let load = Load::eccentric_force(1.0, [0.1 * RADIUS, 0.2 * RADIUS]);
+    contact.step(0.0, load).unwrap();
+    let (tilt, approach) = (contact.tilt(), contact.approach());
+    for k in 1..=10 {
+        contact.step(0.2, load).unwrap();
+        // closed contact: everything is J(t)/J(0) times the elastic answer, and the pressure does not change
+        let growth = 1.0 + 0.2 * k as f64;
+        assert!((contact.approach() / (growth * approach) - 1.0).abs() < 1e-7);
+        assert!((contact.tilt()[0] / (growth * tilt[0]) - 1.0).abs() < 1e-6);
+        assert!((contact.tilt()[1] / (growth * tilt[1]) - 1.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn loads_that_would_topple_are_refused_at_once() {
+    let mut contact = punch(64);
+    let error = contact.step(0.0, Load::eccentric_force(1.0, [1.1 * RADIUS, 0.0])).unwrap_err();
+    let Error::LoadOutsideHull { body: 0, at, .. } = error else { panic!("{error}") };
+    assert_eq!(at, [1.1 * RADIUS, 0.0]);
+    // what cannot tilt cannot topple
+    contact.step(0.0, Load::Force { normal: 1.0, tilt: [Tilt::Fixed(0.0), Tilt::Free { at: 0.0 }] }).unwrap();
+    let hinge = Load::Force { normal: 1.0, tilt: [Tilt::Free { at: 1.1 * RADIUS }, Tilt::Fixed(0.0)] };
+    assert!(matches!(contact.step(0.0, hinge), Err(Error::LoadOutsideHull { .. })));
+    // two feet hold what lies between them
+    let feet = FnGeometry::new(|x: f64, _| if x.abs() > 0.5e-3 { 0.0 } else { f64::INFINITY });
+    let settings = Settings { edge: Edge::Allow, ..Settings::default() };
+    let mut table = ViscoelasticContact::builder(Grid::square(32, 2.0e-3).unwrap())
+        .geometry(&feet)
+        .material(elastic())
+        .settings(settings)
+        .build()
+        .unwrap();
+    table.step(0.0, Load::eccentric_force(1.0, [0.2e-3, 0.1e-3])).unwrap();
+    assert!(table.tilt()[0] > 0.0);
+}
+
+/// Two punches side by side, each with its own load: far apart they do not feel each other, near they do.
+#[test]
+fn several_bodies_carry_their_own_loads() {
+    let foot = |center: f64| Shifted::new(FlatPunch::circular(0.3e-3).unwrap(), [center, 0.0]).unwrap();
+    let pair = |distance: f64, solver| {
+        let mut contact = ViscoelasticContact::builder(Grid::new([256, 64], [8.0e-3, 2.0e-3]).unwrap())
+            .geometry(&foot(-0.5 * distance))
+            .another_body(&foot(0.5 * distance))
+            .material(elastic())
+            .settings(Settings { tolerance: 1e-9, solver, ..Settings::default() })
+            .build()
+            .unwrap();
+        let loads = [Load::force(2.0), Load::eccentric_force(0.5, [0.5 * distance + 0.05e-3, 0.0])];
+        let report = contact.step_each(0.0, &loads).unwrap();
+        assert!((report.force - 2.5).abs() < 1e-11);
+        let [left, right] = [0, 1].map(|body| contact.body(body).unwrap());
+        assert!((left.force - 2.0).abs() < 1e-11 && (right.force - 0.5).abs() < 1e-11);
+        assert!((right.moment[0] / right.force - 0.5 * distance - 0.05e-3).abs() < 1e-12);
+        assert!(contact.body(2).is_none() && contact.bodies() == 2);
+        (left, right)
+    };
+    let (far_left, far_right) = pair(6.0e-3, Solver::ActiveSet);
+    let alone = RigidPunch::new(0.3e-3, E_STAR, 2.0, 0.0).unwrap();
+    // a neighbour at distance d sinks a punch by about its W/(π E* d)
+    let induced = 0.5 / (std::f64::consts::PI * E_STAR * 6.0e-3);
+    let expected = alone.approach() + induced;
+    assert!((far_left.approach / expected - 1.0).abs() < 2e-2, "{} {expected}", far_left.approach);
+    let (near_left, near_right) = pair(0.8e-3, Solver::ActiveSet);
+    assert!(near_left.approach > far_left.approach && near_right.approach > far_right.approach);
+    // the heavy neighbour tilts the light one towards itself
+    assert!(near_right.tilt[0] < far_right.tilt[0]);
+    let (reference, _) = pair(0.8e-3, Solver::PolonskyKeer);
+    assert!((reference.approach / near_left.approach - 1.0).abs() < 1e-7);
+}
+
+#[test]
+fn bodies_and_loads_are_counted() {
+    let mut contact = punch(16);
+    let error = contact.step_each(0.0, &[Load::force(1.0), Load::force(1.0)]).unwrap_err();
+    assert_eq!(error, Error::WrongNumberOfLoads { loads: 2, bodies: 1 });
+    let shape = FlatPunch::circular(RADIUS).unwrap();
+    let error = contact.set_geometries(&[&shape, &shape]).unwrap_err();
+    assert_eq!(error, Error::WrongNumberOfBodies { given: 2, bodies: 1 });
+    for (load, field) in [
+        (Load::approach(f64::NAN), "approach"),
+        (Load::eccentric_force(1.0, [f64::INFINITY, 0.0]), "load point along x1"),
+        (Load::approach_and_tilt(0.0, [0.0, f64::NAN]), "tilt along x2"),
+    ] {
+        let Err(Error::OutOfRange { field: named, .. }) = contact.step(0.0, load) else { panic!() };
+        assert_eq!(named, field);
+    }
+    let mixed = Ramp::new(Load::force(1.0), Load::approach(1.0), 1.0).unwrap_err();
+    assert!(matches!(mixed, Error::Load(LoadError::MixedKinds { .. })), "{mixed}");
+}
+
+/// More cycles than there are numbers for are a load all the same.
+#[test]
+fn a_sinusoid_of_endless_cycles_stays_between_its_ends() {
+    for (frequency, t) in [(1e300, 1e10), (f64::MAX, f64::MAX), (1e200, 1e200), (1e-300, f64::MAX)] {
+        let swing = Sinusoid::new(Load::force(1.0), Load::force(3.0), frequency).unwrap();
+        let Load::Force { normal, .. } = swing.at(t) else { panic!("a force") };
+        assert!((1.0..=3.0).contains(&normal), "{normal} at {t:e} s, {frequency:e} Hz");
+    }
+}
+
+#[test]
+fn loads_are_told_in_words() {
+    let hinge = Load::Force { normal: 5.0, tilt: [Tilt::Free { at: 1.0e-3 }, Tilt::Fixed(0.1)] };
+    assert_eq!(hinge.to_string(), "a force of 5 N, at x1 = 0.001 m, tilt along x2 0.1 rad");
+    assert_eq!(Load::approach(2.0e-6).to_string(), "an approach of 0.000002 m");
+}

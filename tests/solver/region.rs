@@ -1,0 +1,190 @@
+//! What is computed is a matter of speed alone: on the cells that contact can reach, on a quarter of them, on any number of
+//! threads, the answer is the same.
+
+use crate::common::bodies::{elastic, maxwell};
+use crate::common::spheres::{RADIUS, builder_on};
+use crate::common::step_loaded_sphere::StepLoadedSphere;
+use proptest::prelude::*;
+use viscocontact::prelude::*;
+
+/// The same scene with and without what spares cells.
+fn pair(cells: [usize; 2], side: f64, geometry: &dyn Geometry, material: &Material) -> [ViscoelasticContact; 2] {
+    [true, false].map(|sparing| {
+        let [n1, n2] = cells;
+        let settings =
+            Settings { tolerance: 1e-11, symmetry: sparing, window: sparing, edge: Edge::Allow, ..Settings::default() };
+        ViscoelasticContact::builder(Grid::new(cells, [side, side * n2 as f64 / n1 as f64]).unwrap())
+            .geometry(geometry)
+            .material(material.clone())
+            .settings(settings)
+            .build()
+            .unwrap()
+    })
+}
+
+/// The greatest differences of pressure, displacement, gap, approach and tilt, relative to their greatest values.
+fn assert_same(contacts: &[ViscoelasticContact; 2], tolerance: f64, when: &str) {
+    let [a, b] = contacts;
+    let size = |field: &[f64]| field.iter().filter(|x| x.is_finite()).fold(0.0_f64, |size, x| size.max(x.abs()));
+    let gap = |contact: &ViscoelasticContact| {
+        let mut gap = vec![0.0; contact.grid().len()];
+        contact.gap_into(&mut gap).unwrap();
+        gap
+    };
+    // what is left of a displacement that went, or of a gap that closed, is rounding
+    let least = size(b.displacement()).max(1e-3 * size(&gap(b)));
+    let compare = |what: &str, a: &[f64], b: &[f64]| {
+        let is_length = what.contains("displacement") || what == "gap" || what == "approach";
+        let scale = size(b).max(if is_length { least } else { f64::MIN_POSITIVE });
+        for (k, (a, b)) in a.iter().zip(b).enumerate() {
+            assert!(a == b || (a - b).abs() <= tolerance * scale, "{when}, {what} of cell {k}: {a} {b}, scale {scale}");
+        }
+    };
+    compare("pressure", a.pressure(), b.pressure());
+    compare("displacement", a.displacement(), b.displacement());
+    compare("gap", &gap(a), &gap(b));
+    compare("approach", &[a.approach()], &[b.approach()]);
+    compare("force", &[a.force()], &[b.force()]);
+    assert_eq!(a.contact_cells(), b.contact_cells(), "{when}");
+    let area = (a.contact_area() / b.contact_area().max(f64::MIN_POSITIVE) - 1.0).abs();
+    assert!(a.contact_cells() == 0 || area < 1e-5, "{when}: contact area off by {area:e}");
+    assert!((0..2).all(|axis| (a.tilt()[axis] - b.tilt()[axis]).abs() < 1e-9), "{when}: {:?} {:?}", a.tilt(), b.tilt());
+    // half way within the last step
+    if let (Ok(a), Ok(b)) = (a.within_step(a.time() - 0.01), b.within_step(b.time() - 0.01)) {
+        let field = |state: &viscocontact::contact::StateWithinStep<'_>| {
+            let mut field = vec![0.0; contacts[0].grid().len()];
+            state.displacement_into(&mut field).unwrap();
+            field
+        };
+        compare("displacement within the step", &field(&a), &field(&b));
+    }
+}
+
+fn bodies() -> [Material; 3] {
+    let two = GeneralizedMaxwell::new(1.0e5, &[(1.0e6, 0.1), (5.0e5, 3.0)]).unwrap();
+    [maxwell(), Material::incompressible(two), elastic()]
+}
+
+/// A small contact that grows, jumps, is let go and comes again.
+#[test]
+fn sparing_cells_changes_nothing_where_contacts_grow_and_vanish() {
+    for material in bodies() {
+        for cells in [[64, 64], [45, 64], [30, 51]] {
+            let mut contacts = pair(cells, 8.0e-3, &Sphere::new(RADIUS).unwrap(), &material);
+            let forces = [0.05, 0.05, 0.3, 0.3, 1.5, 0.4, 0.0, 0.0, 0.2, 1.0];
+            for (step, force) in forces.into_iter().enumerate() {
+                let dt = if step % 3 == 0 { 0.0 } else { 0.2 };
+                for contact in &mut contacts {
+                    contact.step(dt, Load::force(force)).unwrap();
+                }
+                assert_same(&contacts, 1e-8, &format!("{cells:?}, step {step} to {force} N"));
+            }
+        }
+    }
+}
+
+/// Loads and shapes that were symmetric, and are no longer.
+#[test]
+fn sparing_cells_changes_nothing_where_symmetry_is_lost() {
+    for material in bodies() {
+        let mut contacts = pair([48, 64], 8.0e-3, &Sphere::new(RADIUS).unwrap(), &material);
+        let mut step = |what: &str, dt: f64, load: Load, geometry: Option<&dyn Geometry>| {
+            for contact in &mut contacts {
+                if let Some(geometry) = geometry {
+                    contact.set_geometry(geometry).unwrap();
+                    assert!(contact.within_step(contact.time() - 0.01).is_ok(), "{what}: the last step is still known");
+                }
+                contact.step(dt, load).unwrap();
+            }
+            assert_same(&contacts, 1e-8, what);
+        };
+        step("pressed", 0.0, Load::force(0.3), None);
+        step("held", 0.3, Load::force(0.3), None);
+        let moved = Shifted::new(Sphere::new(RADIUS).unwrap(), [0.7e-3, 0.0]).unwrap();
+        step("moved along x1", 0.1, Load::force(0.3), Some(&moved));
+        let moved = Shifted::new(Sphere::new(RADIUS).unwrap(), [0.9e-3, -0.6e-3]).unwrap();
+        step("moved along both", 0.1, Load::force(0.3), Some(&moved));
+        step("by its approach", 0.1, Load::approach(2.0e-5), None);
+        step("lifted", 0.1, Load::approach(-1.0e-5), None);
+        step("pressed again", 0.0, Load::force(0.5), None);
+    }
+    let punch = FlatPunch::circular(1.0e-3).unwrap();
+    for material in bodies() {
+        let mut contacts = pair([40, 40], 5.0e-3, &punch, &material);
+        for (step, at) in [[0.0, 0.0], [0.0, 0.1e-3], [0.2e-3, 0.1e-3], [0.0, 0.0]].into_iter().enumerate() {
+            for contact in &mut contacts {
+                contact.step(if step == 0 { 0.0 } else { 0.2 }, Load::eccentric_force(1.0, at)).unwrap();
+            }
+            assert_same(&contacts, 1e-8, &format!("punch, step {step}"));
+        }
+    }
+}
+
+/// Direct sums and fitted series are computed whole or folded.
+#[test]
+fn direct_sums_and_fitted_series_are_the_same_whole_or_folded() {
+    let body = || Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.powf(0.4))));
+    for rule in [TimeRule::Backward, TimeRule::Rectangle, TimeRule::Exponential] {
+        let mut contacts = [true, false].map(|symmetry| {
+            builder_on(Grid::square(32, 3.0e-3).unwrap(), body())
+                .times(1e-3..=1e5)
+                .settings(Settings {
+                    tolerance: 1e-11,
+                    symmetry,
+                    window: false,
+                    time_rule: rule,
+                    ..Settings::default()
+                })
+                .build()
+                .unwrap()
+        });
+        for step in 0..6 {
+            for contact in &mut contacts {
+                if step == 4 {
+                    contact.set_geometry(&Shifted::new(Sphere::new(RADIUS).unwrap(), [0.1e-3, 0.0]).unwrap()).unwrap();
+                }
+                contact.step(if step == 0 { 0.0 } else { 0.1 }, Load::force(0.2)).unwrap();
+            }
+            assert_same(&contacts, 1e-8, &format!("{rule:?}, step {step}"));
+        }
+    }
+}
+
+/// Threads share transforms; what they return does not depend on their number.
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let whole = Settings { symmetry: false, window: false, ..Settings::default() };
+            let (contact, _) = StepLoadedSphere::zener().run(192, 5, whole).unwrap();
+            contact.pressure().to_vec()
+        })
+    };
+    let one = run(1);
+    for threads in [2, 3, 5] {
+        assert!(run(threads) == one, "{threads} threads");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
+
+    /// Random paraboloids, anywhere, under random loads and steps.
+    #[test]
+    fn sparing_cells_changes_nothing_in_random_scenes(
+        n1 in 8_usize..40, n2 in 8_usize..40,
+        curvature in 0.3..3.0_f64, shift in prop_oneof![Just([0.0; 2]), [-1.0e-3..1.0e-3, -1.0e-3..1.0e-3]],
+        body in 0_usize..3,
+        steps in prop::collection::vec((prop_oneof![Just(0.0), 0.01..1.0_f64], prop_oneof![Just(0.0), 0.01..0.6_f64]), 1..6),
+    ) {
+        let shape = Shifted::new(Ellipsoid::new(RADIUS, curvature * RADIUS).unwrap(), shift).unwrap();
+        let mut contacts = pair([n1, n2], 8.0e-3, &shape, &bodies()[body]);
+        for (step, (dt, force)) in steps.into_iter().enumerate() {
+            for contact in &mut contacts {
+                contact.step(dt, Load::force(force)).unwrap();
+            }
+            assert_same(&contacts, 1e-7, &format!("step {step}: {dt} s, {force} N"));
+        }
+    }
+}

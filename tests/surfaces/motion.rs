@@ -1,0 +1,352 @@
+//! Indenters that move: two frames that must agree, energy, what is rough where, and steps that fail.
+
+use crate::common::bodies::elastic;
+use crate::common::spheres::sphere_on;
+use std::sync::Arc;
+
+use crate::common::rough::self_affine;
+use viscocontact::prelude::*;
+use viscocontact::rheology::MaterialError;
+
+fn zener() -> Material {
+    Material::incompressible(Zener::new(1.0e6, 0.4e6, 0.02e6).unwrap())
+}
+
+fn builder(grid: &Grid, shape: &dyn Geometry, frame: Frame) -> viscocontact::contact::Builder {
+    let settings = Settings { frame, tolerance: 1e-9, ..Settings::default() };
+    ViscoelasticContact::builder(grid.clone()).geometry(shape).material(zener()).settings(settings)
+}
+
+/// Of two fields, the second seen from so many cells further on, the greatest difference over the greatest value.
+fn difference(grid: &Grid, fixed: &[f64], moving: &[f64], by: [isize; 2]) -> f64 {
+    let [n1, n2] = grid.cells().map(|n| n as isize);
+    let mut difference: f64 = 0.0;
+    for i in 0..n1 {
+        for j in 0..n2 {
+            let (from, to) = ([i + by[0], j + by[1]], [i, j]);
+            let index = |cell: [isize; 2]| (cell[0].rem_euclid(n1) * n2 + cell[1].rem_euclid(n2)) as usize;
+            difference = difference.max((fixed[index(from)] - moving[index(to)]).abs());
+        }
+    }
+    difference / fixed.iter().copied().fold(0.0, f64::max)
+}
+
+/// A ball on endless periodic bodies, diagonally, several times around: over the grid, and with it.
+#[test]
+fn frames_agree_on_periodic_bodies() {
+    let grid = Grid::new([40, 32], [4.0e-3, 3.2e-3]).unwrap();
+    let ball = || Repeated::new(Sphere::new(5.0e-3).unwrap(), [4.0e-3, 3.2e-3]).unwrap();
+    let kernel = Arc::new(InfluenceKernel::periodic(&grid).unwrap());
+    let (load, dt, stride) = (Load::force(0.3), 4.0e-3, [3, -2]);
+    let velocity = [0, 1].map(|axis| f64::from(stride[axis]) * grid.spacing()[axis] / dt);
+    let travel = Travel::new(ball(), Straight::new([0.0; 2], velocity).unwrap());
+    let mut fixed = builder(&grid, &ball(), Frame::Bodies).kernel(Arc::clone(&kernel)).build().unwrap();
+    let mut moving = builder(&grid, &ball(), Frame::Indenter).kernel(kernel).build().unwrap();
+    fixed.step(0.0, load).unwrap();
+    moving.step(0.0, load).unwrap();
+    for step in 1..=30 {
+        let report = fixed.step_along(&travel, dt, load).unwrap();
+        moving.step_over(stride.map(|cells| cells as isize), dt, load).unwrap();
+        let by = stride.map(|cells| (cells * step) as isize);
+        let apart = difference(&grid, fixed.pressure(), moving.pressure(), by);
+        assert!(apart < 1e-5, "step {step}: {apart}");
+        let u = difference(&grid, fixed.displacement(), moving.displacement(), by);
+        assert!(u < 1e-7, "step {step}: {u}");
+        assert!((fixed.approach() / moving.approach() - 1.0).abs() < 1e-7);
+        let (here, there) = (report.lateral_force, moving.lateral_force(&ball()));
+        assert!((0..2).all(|axis| (here[axis] - there[axis]).abs() < 1e-6 * 0.3), "{here:?} {there:?}");
+        assert!(step < 4 || report.power > 0.0);
+    }
+}
+
+/// A ball on a half-space: with the grid it comes upon bodies that the grid did not know, and forgets none it still feels.
+#[test]
+fn frames_agree_on_a_half_space() {
+    let track = Grid::new([96, 24], [9.6e-3, 2.4e-3]).unwrap();
+    let grid = Grid::new([64, 24], [6.4e-3, 2.4e-3]).unwrap();
+    let at = |x1: f64| Shifted::new(Sphere::new(5.0e-3).unwrap(), [x1, 0.0]).unwrap();
+    let (load, dt) = (Load::force(0.1), 2.0e-3);
+    // both begin with the ball at the 20th cell from the front of the smaller grid
+    let travel = Travel::new(Sphere::new(5.0e-3).unwrap(), Straight::new([-3.35e-3, 0.0], [0.1e-3 / dt, 0.0]).unwrap());
+    let mut fixed = builder(&track, &travel.shape_at(0.0).unwrap(), Frame::Bodies).build().unwrap();
+    let mut moving = builder(&grid, &at(1.25e-3), Frame::Indenter).build().unwrap();
+    fixed.step(0.0, load).unwrap();
+    moving.step(0.0, load).unwrap();
+    for step in 1..=30 {
+        fixed.step_along(&travel, dt, load).unwrap();
+        moving.step_over([1, 0], dt, load).unwrap();
+        let offset = 14 + step - 44;
+        for i in 0..64_isize {
+            let k = i + offset;
+            let rows = |contact: &ViscoelasticContact, i: usize| contact.pressure()[i * 24..(i + 1) * 24].to_vec();
+            let here = rows(&moving, i as usize);
+            let there = usize::try_from(k).map_or(vec![0.0; 24], |k| rows(&fixed, k));
+            let greatest = fixed.greatest_pressure();
+            assert!(here.iter().zip(&there).all(|(a, b)| (a - b).abs() < 1e-5 * greatest), "step {step}, row {i}");
+        }
+        assert!((fixed.approach() / moving.approach() - 1.0).abs() < 1e-7, "{step}");
+    }
+    assert!(moving.lateral_force(&at(1.25e-3))[0] > 0.01 * moving.force());
+}
+
+/// What force and lateral force do at a contact is what the pressure does at the surface: Σ p Δu = W Δω + F Δs, to second
+/// order in the step.
+#[test]
+fn work_is_done_on_the_bodies() {
+    let grid = Grid::new([128, 1], [8.0e-3, 1.0]).unwrap();
+    let errors = [16, 32, 64].map(|steps: usize| {
+        let (load, dt) = (Load::force(150.0), 0.016 / steps as f64);
+        let path = FnPath::new(|t: f64| [1.0e-3 * (200.0 * t).sin(), 0.0]);
+        let travel = Travel::new(Cylinder::new(8.0e-3).unwrap(), path);
+        let mut contact = builder(&grid, &travel.shape_at(0.0).unwrap(), Frame::Bodies)
+            .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+            .build()
+            .unwrap();
+        contact.step(0.0, load).unwrap();
+        let (mut inside, mut outside) = (0.0, 0.0);
+        let state = |contact: &ViscoelasticContact| (contact.pressure().to_vec(), contact.displacement().to_vec());
+        for _ in 0..steps {
+            let (p, u) = state(&contact);
+            let before = (contact.lateral_force(&travel.shape_at(contact.time()).unwrap()), contact.approach());
+            let from = travel.position(contact.time()).unwrap();
+            let report = contact.step_along(&travel, dt, load).unwrap();
+            let (q, w) = state(&contact);
+            let pairs = p.iter().zip(&q).zip(u.iter().zip(&w));
+            inside += pairs.map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum::<f64>() * grid.cell_area();
+            outside += 150.0 * (contact.approach() - before.1)
+                + 0.5 * (report.lateral_force[0] + before.0[0]) * (report.position[0] - from[0]);
+        }
+        assert!(outside > 0.0);
+        (inside / outside - 1.0).abs()
+    });
+    println!("{errors:?}");
+    assert!(errors[0] < 0.05 && errors[2] < 0.35 * errors[1] && errors[1] < 0.4 * errors[0], "{errors:?}");
+}
+
+/// Elastic bodies give back what they take, cell by cell or in between: over a period of the track the lateral force is zero
+/// on average, and the state where it was.
+#[test]
+fn elastic_bodies_dissipate_nothing() {
+    let grid = Grid::square(48, 1.0e-3).unwrap();
+    let spec = self_affine(0.5e-3, 0.1e-3, 3);
+    let slider = Rough::new(&grid, spec).unwrap();
+    let travel = Travel::new(slider.clone(), Straight::new([0.0; 2], [1.0e-3, 0.0]).unwrap());
+    let track = Rough::new(&grid, RoughSpec { seed: 4, ..spec }).unwrap();
+    let mut contact = ViscoelasticContact::builder(grid.clone())
+        .geometry(&Sum::new(slider, track.clone()))
+        .material(elastic())
+        .kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()))
+        .build()
+        .unwrap();
+    let travel = travel.over(track);
+    contact.step(0.0, Load::force(0.02)).unwrap();
+    let (approach, pressure) = (contact.approach(), contact.pressure().to_vec());
+    let (mut sum, mut greatest) = (0.0, 0.0_f64);
+    for _ in 0..100 {
+        let report = contact.step_along(&travel, 0.01, Load::force(0.02)).unwrap();
+        sum += report.lateral_force[0];
+        greatest = greatest.max(report.lateral_force[0].abs());
+    }
+    assert!(greatest > 1e-4, "the surfaces are rough: {greatest}");
+    assert!((sum / 100.0).abs() < 0.02 * greatest, "{sum} {greatest}");
+    assert!((contact.approach() / approach - 1.0).abs() < 1e-6);
+    let most = pressure.iter().copied().fold(0.0, f64::max);
+    assert!(contact.pressure().iter().zip(&pressure).all(|(a, b)| (a - b).abs() < 1e-3 * most));
+}
+
+/// Roughness of the creeping body stays where it is, that of a slider wanders: the same at the start, not thereafter.
+#[test]
+fn it_matters_what_is_rough() {
+    let grid = Grid::new([128, 1], [8.0e-3, 1.0]).unwrap();
+    let waves = || Wavy::new(2.0e-6, 1.0e-3).unwrap();
+    let cylinder = || Cylinder::new(10.0e-3).unwrap();
+    let path = Straight::new([-1.0e-3, 0.0], [0.1, 0.0]).unwrap();
+    let sliding = Travel::new(Sum::new(cylinder(), waves()), path);
+    let rolling = Travel::new(cylinder(), path).over(waves());
+    let end = |travel: &Travel| {
+        let start = Sum::new(Shifted::new(cylinder(), [-1.0e-3, 0.0]).unwrap(), waves());
+        let mut contact = builder(&grid, &start, Frame::Bodies)
+            .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(60.0)).unwrap();
+        // to a place where the waves of both lie alike again
+        for _ in 0..40 {
+            contact.step_along(travel, 5.0e-4, Load::force(60.0)).unwrap();
+        }
+        contact
+    };
+    let (sliding, rolling) = (end(&sliding), end(&rolling));
+    let pairs = sliding.pressure().iter().zip(rolling.pressure());
+    let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / rolling.greatest_pressure();
+    assert!(apart > 0.01, "{apart}");
+}
+
+#[test]
+fn steps_that_fail_leave_the_indenter_where_it_was() {
+    let grid = Grid::square(32, 4.0e-3).unwrap();
+    let sphere = || Sphere::new(5.0e-3).unwrap();
+    let load = Load::force(0.1);
+    let travel = Travel::new(sphere(), Straight::new([0.0; 2], [0.01, 0.0]).unwrap());
+    let mut contact = builder(&grid, &sphere(), Frame::Bodies).build().unwrap();
+    contact.step(0.0, load).unwrap();
+    contact.step_along(&travel, 0.01, load).unwrap();
+    let mut twin = contact.clone();
+    // over the edge, and nowhere
+    assert!(matches!(contact.step_along(&travel, 0.2, load), Err(Error::ContactAtEdge { .. })));
+    let lost = Travel::new(sphere(), FnPath::new(|_| [f64::NAN, 0.0]));
+    assert!(matches!(contact.step_along(&lost, 0.01, load), Err(Error::OutOfRange { field: "position along x1", .. })));
+    contact.step(0.01, load).unwrap();
+    twin.step(0.01, load).unwrap();
+    let pairs = contact.pressure().iter().zip(twin.pressure());
+    let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-6 * twin.greatest_pressure(), "{apart}");
+
+    assert!(matches!(contact.step_over([1, 0], 0.01, load), Err(Error::WrongFrame { .. })));
+    let mut moving = builder(&grid, &sphere(), Frame::Indenter).build().unwrap();
+    assert!(matches!(moving.step_along(&travel, 0.01, load), Err(Error::WrongFrame { .. })));
+    moving.step(0.0, load).unwrap();
+    moving.step_over([2, 0], 0.01, load).unwrap();
+    let mut twin = moving.clone();
+    let error = moving.step_over([2, 0], 0.01, Load::eccentric_force(0.1, [1.0, 0.0])).unwrap_err();
+    assert!(matches!(error, Error::LoadOutsideHull { .. }));
+    assert!(matches!(moving.step_over([2, 0], 0.01, Load::force(30.0)), Err(Error::ContactAtEdge { .. })));
+    moving.step_over([1, 0], 0.01, load).unwrap();
+    twin.step_over([1, 0], 0.01, load).unwrap();
+    let pairs = moving.pressure().iter().zip(twin.pressure());
+    let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(apart < 1e-6 * twin.greatest_pressure(), "{apart}");
+
+    let direct = Settings { frame: Frame::Indenter, time_rule: TimeRule::Backward, ..Settings::default() };
+    let built = builder(&grid, &sphere(), Frame::Indenter).settings(direct).build();
+    assert!(matches!(built, Err(Error::WrongFrame { .. })));
+    let closure = Material::incompressible(FnRheology::new(|t: f64| 1e-6 * (1.0 + t.powf(0.3))));
+    let built = builder(&grid, &sphere(), Frame::Indenter).material(closure).build();
+    assert!(matches!(built, Err(Error::Material(MaterialError::NoExponentialSeries { .. }))));
+    let motion = SteadyMotion { axis: 0, velocity: 0.0, load, tolerance: 1e-3 };
+    assert!(matches!(moving.toward_steady(motion), Err(Error::OutOfRange { field: "velocity", .. })));
+}
+
+/// A step along a path costs what a step in place does, and a guess that goes on is worth having.
+#[test]
+fn sliding_steps_are_warm() {
+    let grid = Grid::new([192, 64], [12.0e-3, 4.0e-3]).unwrap();
+    let travel = Travel::new(Sphere::new(10.0e-3).unwrap(), Straight::new([-4.0e-3, 0.0], [0.1, 0.0]).unwrap());
+    let mut contact = ViscoelasticContact::builder(grid.clone())
+        .geometry(&travel.shape_at(0.0).unwrap())
+        .material(zener())
+        .build()
+        .unwrap();
+    contact.step(0.0, Load::force(0.5)).unwrap();
+    let mut work = 0;
+    for _ in 0..60 {
+        work += contact.step_along(&travel, 0.7 * grid.spacing()[0] / 0.1, Load::force(0.5)).unwrap().step.convolutions;
+    }
+    println!("{} convolutions a step", f64::from(work as u32) / 60.0);
+    assert!(work < 60 * 9, "{work}");
+}
+
+/// A step of no length under the same load changes nothing, however stiff it is beside the hold before it: what the solver
+/// left over in the hold is laid on the rigid body, in both frames.
+#[test]
+fn holds_leave_nothing_over() {
+    let grid = Grid::square(48, 4.0e-3).unwrap();
+    for stiff in [1e2, 1e4] {
+        for frame in [Frame::Bodies, Frame::Indenter] {
+            let mut contact = sphere_on(
+                grid.clone(),
+                Material::incompressible(Zener::new(1.0e5 * stiff, 1.0e5, 1.0e3).unwrap()),
+                Settings { frame, ..Settings::default() },
+            );
+            contact.step(1.0e6, Load::force(0.02)).unwrap();
+            let before = contact.pressure().to_vec();
+            contact.step(0.0, Load::force(0.02)).unwrap();
+            let pairs = contact.pressure().iter().zip(&before);
+            let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / contact.greatest_pressure();
+            assert!(apart < 1e-4, "{frame:?} {stiff}: {apart}");
+        }
+    }
+}
+
+/// What presses on the rim of a face has no slope, but does work all the same.
+#[test]
+fn power_counts_the_rim_of_a_punch() {
+    let grid = Grid::new([256, 1], [16.0e-3, 1.0]).unwrap();
+    let punch = || FlatPunch::rectangular([3.0e-3, 3.0]).unwrap();
+    let travel = Travel::new(punch(), Straight::new([-3.0e-3, 0.0], [0.05, 0.0]).unwrap());
+    let mut contact = builder(&grid, &travel.shape_at(0.0).unwrap(), Frame::Bodies)
+        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+        .build()
+        .unwrap();
+    contact.step(0.0, Load::force(100.0)).unwrap();
+    let (mut along, mut inside, start) = (0.0, 0.0, contact.approach());
+    for _ in 0..40 {
+        let (p, u) = (contact.pressure().to_vec(), contact.displacement().to_vec());
+        let dt = grid.spacing()[0] / 0.05;
+        let report = contact.step_along(&travel, dt, Load::force(100.0)).unwrap();
+        along += report.power * dt;
+        let ends = p.iter().zip(contact.pressure()).zip(u.iter().zip(contact.displacement()));
+        inside += ends.map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum::<f64>() * grid.cell_area();
+        assert_eq!(report.lateral_force[0], 0.0);
+    }
+    let pressed = 100.0 * (contact.approach() - start);
+    assert!(along > 0.05 * inside && ((along + pressed) / inside - 1.0).abs() < 1e-9, "{along} {pressed} {inside}");
+}
+
+/// Steps that are refused cost nothing afterwards, and change not a bit: neither symmetry nor window is lost.
+#[test]
+fn refused_steps_along_a_path_leave_every_bit() {
+    let grid = Grid::square(32, 4.0e-3).unwrap();
+    let travel = Travel::new(Sphere::new(5.0e-3).unwrap(), Straight::new([0.0; 2], [0.01, 0.0]).unwrap());
+    for window in [true, false] {
+        let mut contact = builder(&grid, &Sphere::new(5.0e-3).unwrap(), Frame::Bodies)
+            .settings(Settings { window, ..Settings::default() })
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(0.1)).unwrap();
+        contact.step(0.01, Load::force(0.1)).unwrap();
+        let mut twin = contact.clone();
+        assert!(contact.step_along(&travel, -1.0, Load::force(0.1)).is_err());
+        assert!(matches!(contact.step_along(&travel, 0.2, Load::force(0.1)), Err(Error::ContactAtEdge { .. })));
+        assert!(contact.step_along(&travel, 0.01, Load::force(f64::NAN)).is_err());
+        let (report, same) = (contact.step(0.02, Load::force(0.12)), twin.step(0.02, Load::force(0.12)));
+        assert_eq!(report, same);
+        assert_eq!((contact.pressure(), contact.displacement()), (twin.pressure(), twin.displacement()));
+    }
+}
+
+#[test]
+fn motions_without_contact_end_in_words() {
+    let grid = Grid::new([64, 1], [4.0e-3, 1.0]).unwrap();
+    let cylinder = Cylinder::new(5.0e-3).unwrap();
+    let motion = |load| SteadyMotion { axis: 0, velocity: 0.1, load, tolerance: 1e-3 };
+    for load in [Load::force(0.0), Load::approach(-1.0e-6)] {
+        for pressed in [false, true] {
+            let mut contact = builder(&grid, &cylinder, Frame::Indenter)
+                .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+                .build()
+                .unwrap();
+            if pressed {
+                contact.step(0.0, Load::force(20.0)).unwrap();
+            }
+            let ended = contact.toward_steady(motion(load)).unwrap().run();
+            assert!(matches!(ended, Err(Error::NoContact { .. })), "{load:?}: {ended:?}");
+        }
+    }
+    let mut fixed = builder(&grid, &cylinder, Frame::Bodies).build().unwrap();
+    assert!(matches!(fixed.toward_steady(motion(Load::force(1.0))), Err(Error::WrongFrame { .. })));
+    // several bodies move together
+    let grid = Grid::new([128, 1], [8.0e-3, 1.0]).unwrap();
+    let at = |x: f64| Shifted::new(Cylinder::new(5.0e-3).unwrap(), [x, 0.0]).unwrap();
+    let mut two = builder(&grid, &at(-1.0e-3), Frame::Indenter)
+        .another_body(&at(2.0e-3))
+        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
+        .build()
+        .unwrap();
+    let loads = [Load::force(15.0), Load::force(10.0)];
+    for _ in 0..40 {
+        two.step_each_over([1, 0], 1.0e-3, &loads).unwrap();
+    }
+    assert!((two.body(1).unwrap().force / 10.0 - 1.0).abs() < 1e-9);
+    assert!(matches!(two.step_over([1, 0], 1.0e-3, loads[0]), Err(Error::WrongNumberOfLoads { .. })));
+}

@@ -1,0 +1,117 @@
+//! Rough surfaces on periodic bodies: what they cost, and what is known of them.
+
+use crate::common::bodies::{E_STAR, G, elastic};
+use std::sync::Arc;
+
+use crate::common::rough::self_affine;
+use viscocontact::prelude::*;
+
+const LENGTH: f64 = 1.0e-3;
+const SLOPE: f64 = 0.05;
+
+fn rough(cells: usize, shortest: f64, seed: u64) -> (Grid, Rough) {
+    let grid = Grid::square(cells, LENGTH).unwrap();
+    let spec = self_affine(LENGTH / 4.0, shortest * LENGTH / cells as f64, seed);
+    let shape = Rough::new(&grid, spec).unwrap();
+    (grid, shape)
+}
+
+fn pressed(grid: &Grid, shape: &Rough, material: Material, settings: Settings) -> ViscoelasticContact {
+    ViscoelasticContact::builder(grid.clone())
+        .geometry(shape)
+        .material(material)
+        .kernel(Arc::new(InfluenceKernel::periodic(grid).unwrap()))
+        .settings(settings)
+        .build()
+        .unwrap()
+}
+
+/// The force of a mean pressure of so many E* times the rms slope.
+fn force(share: f64) -> f64 {
+    share * E_STAR * SLOPE * LENGTH * LENGTH
+}
+
+fn share_of_cells(contact: &ViscoelasticContact) -> f64 {
+    contact.contact_cells() as f64 / contact.grid().len() as f64
+}
+
+/// At small loads the area is κ p̄/(E* h′): Persson's theory has κ = √(8/π) = 1.6, that of Bush, Gibson & Thomas
+/// √(2π) = 2.5; computations lie between them (Hyun et al., Phys. Rev. E 70, 2004: 1.8 … 2.2).
+#[test]
+fn area_is_proportional_to_small_loads() {
+    let (load, mut kappas) = (0.03, Vec::new());
+    for seed in 0..10 {
+        let (grid, shape) = rough(1024, 8.0, seed);
+        let mut contact = pressed(&grid, &shape, elastic(), Settings { tolerance: 1e-4, ..Settings::default() });
+        contact.step(0.0, Load::force(force(load))).unwrap();
+        kappas.push(contact.contact_area() / (LENGTH * LENGTH) / load);
+        let counted = share_of_cells(&contact) / load;
+        println!("seed {seed}: κ = {:.3}, counting cells {counted:.3}", kappas[seed as usize]);
+        assert!((1.6..2.3).contains(&kappas[seed as usize]) && (1.6..2.4).contains(&counted), "{kappas:?} {counted}");
+    }
+    let mean = kappas.iter().sum::<f64>() / 10.0;
+    let spread = (kappas.iter().map(|kappa| (kappa - mean).powi(2)).sum::<f64>() / 9.0).sqrt();
+    println!("κ = {mean:.3} ± {spread:.3}");
+    assert!(spread < 0.15, "{spread}");
+}
+
+/// Half of the surface in contact: what a solve takes, and that the paper's solver takes many times as much.
+#[test]
+fn half_full_contact_takes_a_quarter_of_the_other_solvers_work() {
+    let (grid, shape) = rough(256, 8.0, 1);
+    let work = |solver| {
+        let mut contact = pressed(&grid, &shape, elastic(), Settings { solver, ..Settings::default() });
+        let report = contact.step(0.0, Load::force(force(0.27))).unwrap();
+        assert!((0.47..0.53).contains(&share_of_cells(&contact)), "{}", share_of_cells(&contact));
+        println!(
+            "{solver:?}: {} convolutions, {} preconditioners",
+            report.convolutions, report.preconditioner_applications
+        );
+        report.convolutions + report.preconditioner_applications
+    };
+    // nothing is padded: a preconditioner costs as much as a convolution
+    let (active_set, polonsky_keer) = (work(Solver::ActiveSet), work(Solver::PolonskyKeer));
+    assert!(active_set <= 60 && 4 * active_set <= polonsky_keer, "{active_set} {polonsky_keer}");
+}
+
+/// Nearly all of the surface in contact, where pressures close to zero are many, and the mean says nothing.
+#[test]
+fn nearly_full_contact_converges() {
+    let (grid, shape) = rough(2048, 8.0, 1);
+    let mut contact = pressed(&grid, &shape, elastic(), Settings::default());
+    let report = contact.step(0.0, Load::force(force(1.25))).unwrap();
+    println!("{} of the cells: {report:?}", share_of_cells(&contact));
+    assert!((0.985..0.995).contains(&share_of_cells(&contact)), "{}", share_of_cells(&contact));
+    assert!(report.convolutions <= 40 && report.fallback_iterations == 0, "{report:?}");
+}
+
+/// After the load drops to a constant, the area grows, if it changes at all (Li, Brenner & Frérot 2025): what the bodies remember
+/// of the greater load does not open the contact again.
+#[test]
+fn area_never_falls_in_a_hold() {
+    let material = Material::incompressible(
+        GeneralizedMaxwell::new(0.2 * G, &[(0.4 * G, 0.1), (0.3 * G, 1.0), (0.1 * G, 10.0)]).unwrap(),
+    );
+    for seed in 0..20 {
+        let (grid, shape) = rough(96, 6.0, seed);
+        let mut contact = pressed(&grid, &shape, material.clone(), Settings { tolerance: 1e-7, ..Settings::default() });
+        contact.step(0.0, Load::force(force(0.06))).unwrap();
+        for _ in 0..10 {
+            contact.step(0.2, Load::force(force(0.06))).unwrap();
+        }
+        let loaded = contact.contact_cells();
+        let drop = [0.2, 0.5, 0.8][seed as usize % 3];
+        contact.step(0.0, Load::force(force(0.06 * drop))).unwrap();
+        let mut area = contact.contact_cells();
+        assert!(area < loaded, "{seed}");
+        let (first, mut dt) = (area, 1e-3);
+        for step in 0..40 {
+            contact.step(dt, Load::force(force(0.06 * drop))).unwrap();
+            let now = contact.contact_cells();
+            assert!(now >= area, "seed {seed}, drop to {drop}, step {step}: {area} {now}");
+            (area, dt) = (now, dt * 1.25);
+        }
+        println!("seed {seed}, to {drop}: {loaded} {first} {area} cells");
+        assert!(area > first);
+    }
+}

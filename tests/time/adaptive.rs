@@ -1,0 +1,283 @@
+//! Steps chosen by their error: what they deliver, what they cost, and what they may not miss.
+
+use crate::common::bodies::{elastic, maxwell};
+use crate::common::histories::{Scene, scenes};
+use crate::common::spheres::{RADIUS, builder_on};
+use viscocontact::Error;
+use viscocontact::prelude::*;
+
+const CELLS: usize = 48;
+
+/// Time, approach and force after each step, the equivalents of the whole run, and steps rejected.
+struct Run {
+    history: Vec<[f64; 3]>,
+    work: f64,
+    rejected: u64,
+}
+
+fn run(scene: &Scene, tolerance: f64, land: &[f64]) -> Run {
+    let mut contact = scene.contact(CELLS, (1e-3 * tolerance).max(1e-9));
+    let mut follow = contact.follow(&*scene.history, Stepping::adaptive(tolerance), scene.until).stop_at(land).unwrap();
+    let (mut history, mut work) = (Vec::new(), 0.0);
+    while let Some(report) = follow.next_step().unwrap() {
+        assert!(report.time_error <= tolerance);
+        history.push([report.time, report.approach, report.force]);
+        work += report.convolution_equivalents();
+    }
+    Run { history, work, rejected: follow.rejected_steps() }
+}
+
+/// True error in time over the one asked for: greatest error of the approach, or of the force where the approach is given,
+/// relative to its greatest value, against a run with a far smaller tolerance that meets the same times.
+#[test]
+fn errors_are_what_was_asked_for() {
+    const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
+    for scene in scenes() {
+        let runs = TOLERANCES.map(|tolerance| run(&scene, tolerance, &[]));
+        let times: Vec<f64> = runs.iter().flat_map(|run| run.history.iter().map(|state| state[0])).collect();
+        let fine = run(&scene, 2e-6, &times);
+        let greatest = [1, 2].map(|which| fine.history.iter().map(|state| state[which].abs()).fold(0.0, f64::max));
+        let by_approach = scene.name.contains("approach");
+        let mut line = String::new();
+        for (tolerance, run) in TOLERANCES.into_iter().zip(&runs) {
+            let mut worst = [0.0_f64; 2];
+            for state in run.history.iter().filter(|state| state[0] > 0.0) {
+                let near = fine.history.partition_point(|exact| exact[0] < state[0]);
+                let exact = fine.history[near];
+                assert_eq!(exact[0], state[0], "the fine run meets every time");
+                for which in [0, 1] {
+                    worst[which] = worst[which].max((state[which + 1] - exact[which + 1]).abs() / greatest[which]);
+                }
+            }
+            let error = worst[usize::from(by_approach)] / tolerance;
+            line += &format!(
+                "  {tolerance:e}: {} steps, {} rejected, {:.0} equivalents, error {error:.2}",
+                run.history.len(),
+                run.rejected,
+                run.work
+            );
+            // the approach of a held force on a Maxwell body is exact whatever the steps: u is linear in C(t)
+            if scene.name != "Maxwell, held" {
+                assert!((0.02..2.0).contains(&error), "{} at {tolerance:e}: {error}", scene.name);
+            } else {
+                assert!(error < 2.0);
+            }
+        }
+        println!("{}:{line}", scene.name);
+    }
+}
+
+#[test]
+fn twelve_decades_of_creep_take_few_steps() {
+    let scene = scenes().into_iter().find(|scene| scene.name.starts_with("power law")).unwrap();
+    let steps = run(&scene, 1e-3, &[]).history.len();
+    println!("{steps} steps from 1e-6 s to 1e6 s");
+    assert!(steps <= 150, "{steps}");
+}
+
+#[test]
+fn steps_end_on_corners_and_on_the_times_asked_for() {
+    let scene = scenes().into_iter().find(|scene| scene.name.contains("unload")).unwrap();
+    let land = [0.1, 0.77, 1.5, 3.1, 3.5];
+    let run = run(&scene, 1e-2, &land);
+    for time in land.into_iter().chain([1.0, 2.0, 2.5, 3.5]) {
+        assert!(run.history.iter().any(|state| state[0] == time), "{time}");
+    }
+    assert!(run.history.windows(2).all(|pair| pair[1][0] >= pair[0][0]));
+}
+
+/// Closures say nothing of their corners: a short pulse and a corner are found all the same.
+#[test]
+fn closures_are_watched() {
+    let pulse = FnHistory::new(|t: f64| Load::force(0.2 + 0.8 * (-((t - 3.0) / 0.05).powi(2)).exp()));
+    let scene = scenes().into_iter().find(|scene| scene.name == "Zener, held").unwrap();
+    let mut contact = scene.contact(32, 1e-6);
+    let mut follow = contact.follow(&pulse, Stepping::adaptive(1e-3), 5.0);
+    let (mut peak, mut steps) = (0.0_f64, 0);
+    while let Some(report) = follow.next_step().unwrap() {
+        peak = peak.max(report.force);
+        steps += 1;
+    }
+    println!("{steps} steps, greatest force {peak:.4}");
+    assert!(peak > 0.99, "{peak}");
+    let corner = FnHistory::new(|t: f64| Load::force(0.2 + (t - 1.234_567).max(0.0)));
+    let mut contact = scene.contact(32, 1e-6);
+    let mut follow = contact.follow(&corner, Stepping::adaptive(1e-3), 1.8);
+    let mut nearest = f64::INFINITY;
+    while let Some(report) = follow.next_step().unwrap() {
+        nearest = nearest.min((report.time - 1.234_567_f64).abs());
+    }
+    assert!(nearest < 0.02, "{nearest}");
+}
+
+/// A run that rejects steps goes on exactly as one that never tried them.
+#[test]
+fn rejected_steps_leave_no_trace() {
+    let scene = scenes().into_iter().find(|scene| scene.name.contains("unload")).unwrap();
+    let mut contact = scene.contact(32, 1e-7);
+    let mut follow = contact.follow(&*scene.history, Stepping::adaptive(1e-3), scene.until);
+    let mut times = Vec::new();
+    while let Some(report) = follow.next_step().unwrap() {
+        times.push(report.time);
+    }
+    assert!(follow.rejected_steps() > 0);
+    // the same steps, given; the solver's tolerance is that of the adaptive run
+    let mut again = scene.contact(32, 1e-3 * 0.02);
+    let mut follow = again.follow(&*scene.history, Stepping::fixed(10.0), scene.until).stop_at(&times).unwrap();
+    while follow.next_step().unwrap().is_some() {}
+    assert!(again.pressure() == contact.pressure() && again.displacement() == contact.displacement());
+}
+
+#[test]
+fn the_state_inside_a_step_is_second_order() {
+    let scene = scenes().into_iter().find(|scene| scene.name == "Zener, held").unwrap();
+    let mut errors = Vec::new();
+    for steps in [8, 16, 32] {
+        let mut contact = scene.contact(32, 1e-10);
+        let mut fine = scene.contact(32, 1e-10);
+        contact.step(0.0, Load::force(1.0)).unwrap();
+        fine.step(0.0, Load::force(1.0)).unwrap();
+        let dt = 2.0 / f64::from(steps);
+        for _ in 0..steps / 2 {
+            contact.step(dt, Load::force(1.0)).unwrap();
+        }
+        let middle = contact.time() - 0.5 * dt;
+        for _ in 0..512 {
+            fine.step(middle / 512.0, Load::force(1.0)).unwrap();
+        }
+        let between = contact.within_step(middle).unwrap();
+        let mut pressure = vec![0.0; contact.grid().len()];
+        between.pressure_into(&mut pressure).unwrap();
+        assert!((between.force() - 1.0).abs() < 1e-12 && pressure.iter().all(|&p| p >= 0.0));
+        let mut displacement = pressure.clone();
+        between.displacement_into(&mut displacement).unwrap();
+        let far = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let u = far(&displacement, fine.displacement()) / fine.approach();
+        errors.push([(between.approach() / fine.approach() - 1.0).abs(), u]);
+    }
+    println!("{errors:?}");
+    for pair in errors.windows(2) {
+        assert!(pair[0][0] / pair[1][0] > 3.5, "{errors:?}");
+    }
+    // its ends are the states themselves
+    let mut contact = scene.contact(32, 1e-8);
+    contact.step(0.0, Load::force(0.5)).unwrap();
+    let before = contact.pressure().to_vec();
+    contact.step(0.3, Load::force(1.0)).unwrap();
+    let mut pressure = vec![0.0; contact.grid().len()];
+    contact.within_step(0.0).unwrap().pressure_into(&mut pressure).unwrap();
+    assert_eq!(pressure, before);
+    contact.within_step(0.3).unwrap().pressure_into(&mut pressure).unwrap();
+    assert_eq!(pressure, contact.pressure());
+    assert!(matches!(contact.within_step(0.3).unwrap().pressure_into(&mut [0.0]), Err(Error::WrongLength { .. })));
+    for outside in [-0.1, 0.31, f64::NAN] {
+        assert!(matches!(contact.within_step(outside), Err(Error::OutOfRange { .. })), "{outside}");
+    }
+}
+
+#[test]
+fn tolerances_and_impossible_loads_are_refused() {
+    let scene = &scenes()[0];
+    for tolerance in [0.0, -1.0, 1e-10, 0.2, f64::NAN] {
+        let mut contact = scene.contact(16, 1e-6);
+        let error = contact.follow(&*scene.history, Stepping::adaptive(tolerance), 1.0).next_step().unwrap_err();
+        assert!(matches!(error, Error::OutOfRange { field: "tolerance of the adaptive steps", .. }), "{error}");
+    }
+    // faster than time is resolved
+    let noise = FnHistory::new(|t: f64| Load::force(if t < 0.5 { 0.5 } else { 0.5 + 0.4 * (t * 1e18).sin() }));
+    let mut contact = scene.contact(16, 1e-6);
+    let mut follow = contact.follow(&noise, Stepping::adaptive(1e-3), 1.0);
+    let error = loop {
+        match follow.next_step() {
+            Ok(Some(_)) => {}
+            Ok(None) => panic!("noise cannot be followed"),
+            Err(error) => break error,
+        }
+    };
+    assert!(matches!(error, Error::StepTooShort { .. }), "{error}");
+
+    // nor where the series of the body resolves longer times only: an end, not a step tried for ever; new contract
+    let body = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
+    let mut contact = builder_on(Grid::square(16, 4.0e-3).unwrap(), body).times(1e-2..=1e4).build().unwrap();
+    let mut follow = contact.follow(&noise, Stepping::adaptive(1e-3), 1.0);
+    let error = loop {
+        match follow.next_step() {
+            Ok(step) => assert!(step.is_some()),
+            Err(error) => break error,
+        }
+    };
+    assert!(matches!(error, Error::StepTooShort { .. }), "{error}");
+}
+
+/// Area by p² extrapolated to the edge, against Hertz, wherever the contact lies on the mesh.
+#[test]
+fn areas_are_known_to_a_part_of_a_cell() {
+    for (cells, allowed) in [(64, 3e-3), (256, 5e-4)] {
+        let mut worst = [0.0_f64; 2];
+        for k in 0..12 {
+            let share = |x: f64| (f64::from(k) * x).fract();
+            let radius = 0.5e-3 * (0.5 + 0.25 * share(0.618));
+            let side = 1.0e-3 / cells as f64;
+            let sphere = Shifted::new(Sphere::new(RADIUS).unwrap(), [side * share(0.37), side * share(0.71)]).unwrap();
+            let mut contact = ViscoelasticContact::builder(Grid::square(cells, 1.0e-3).unwrap())
+                .geometry(&sphere)
+                .material(Material::incompressible(Elastic::new(0.25e6).unwrap()))
+                .build()
+                .unwrap();
+            contact.step(0.0, Load::force(4.0e6 * radius.powi(3) / (3.0 * RADIUS))).unwrap();
+            let exact = std::f64::consts::PI * radius * radius;
+            let counted = contact.contact_cells() as f64 * contact.grid().cell_area();
+            for (worst, area) in worst.iter_mut().zip([contact.contact_area(), counted]) {
+                *worst = worst.max((area / exact - 1.0).abs());
+            }
+        }
+        println!("{cells}²: {:.1e}, counted cells {:.1e}", worst[0], worst[1]);
+        assert!(worst[0] < allowed, "{cells}: {:e}", worst[0]);
+    }
+    // a square punch ends with its cells
+    let mut contact = ViscoelasticContact::builder(Grid::square(64, 1.0e-3).unwrap())
+        .geometry(&FlatPunch::rectangular([0.5e-3, 0.25e-3]).unwrap())
+        .material(elastic())
+        .build()
+        .unwrap();
+    contact.step(0.0, Load::force(1.0)).unwrap();
+    let exact = contact.contact_cells() as f64 * contact.grid().cell_area();
+    assert!((contact.contact_area() / exact - 1.0).abs() < 2e-3, "{}", contact.contact_area() / exact);
+}
+
+/// A load that jumps where it names no corner, by little more than the tolerance: the step before it is shortened to the last
+/// digit of the time, where it rounds to itself, and must not be tried for ever.
+#[test]
+fn steps_of_the_last_digit_come_to_an_end() {
+    use std::sync::atomic::{AtomicU32, Ordering};
+    let sphere = Sphere::new(10.0e-3).unwrap();
+    let body = maxwell();
+    let mut stopped = 0;
+    for jump in [1.006, 1.008, 1.01, 1.012, 1.015, 1.02, 1.04, 1.2] {
+        for at in [0.3, 0.0123, 0.77, 3.3e-5] {
+            let asked = AtomicU32::new(0);
+            let history = FnHistory::new(move |t| {
+                assert!(asked.fetch_add(1, Ordering::Relaxed) < 1_000_000, "it is tried for ever");
+                Load::force(if t < at { 0.5 } else { 0.5 * jump })
+            });
+            let mut contact = ViscoelasticContact::builder(Grid::square(8, 4.0e-3).unwrap())
+                .geometry(&sphere)
+                .material(body.clone())
+                .build()
+                .unwrap();
+            let mut run = contact.follow(&history, Stepping::adaptive(5e-3), 1.0);
+            let end = loop {
+                match run.next_step() {
+                    Ok(Some(_)) => {}
+                    other => break other,
+                }
+            };
+            match end {
+                Ok(_) => {}
+                Err(Error::StepTooShort { time, .. }) if (time / at - 1.0).abs() < 1e-9 => stopped += 1,
+                Err(error) => panic!("{jump} at {at} s: {error}"),
+            }
+        }
+    }
+    assert!(stopped > 0);
+}

@@ -1,0 +1,8 @@
+//! Does the answer depend on the steps, on the rule, or on how a load history is followed?
+
+mod adaptive;
+#[path = "../common/mod.rs"]
+mod common;
+mod follow;
+mod protocols;
+mod time_rules;

@@ -1,0 +1,266 @@
+//! The reference solutions against each other and against textbook forms.
+
+use crate::common::bodies::{maxwell, zener};
+use crate::common::spheres::RADIUS;
+use std::f64::consts::PI;
+
+use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Hertz, HertzEllipse, Profile, RigidPunch};
+use viscocontact::prelude::*;
+
+/// Table 1 of the source paper with its integral by the midpoint rule on a fine raster.
+fn table_1(g: f64, exponent: f64, creep: impl Fn(f64) -> f64, r: f64, t: f64) -> f64 {
+    let depth = |s: f64| {
+        let a = (3.0 / 16.0 * RADIUS * creep(s)).cbrt();
+        (a * a - r * r).max(0.0).sqrt()
+    };
+    let panels = 400_000;
+    let h = t / panels as f64;
+    let integral: f64 = (0..panels).map(|k| (k as f64 + 0.5) * h).map(|s| (exponent * (s - t)).exp() * depth(s)).sum();
+    8.0 * g / (PI * RADIUS) * (depth(t) - h * integral)
+}
+
+#[test]
+fn growing_sphere_is_table_1() {
+    let scene = GrowingSphere::step(RADIUS, &maxwell(), 1.0).unwrap();
+    let zener = zener();
+    let zener = GrowingSphere::step(RADIUS, &zener, 1.0).unwrap();
+    for t in [0.0, 0.5, 1.0, 2.0] {
+        for r in [0.0, 0.4e-3, 1.0e-3, 1.25e-3, 1.4e-3, 1.7e-3] {
+            let exact = table_1(1.0e6, 1.0, |s| 1e-6 * (1.0 + s), r, t);
+            assert!(
+                (scene.pressure(r, t) - exact).abs() < 1.0,
+                "Maxwell r {r} t {t}: {} {exact}",
+                scene.pressure(r, t)
+            );
+            let exact = table_1(1.0e6, 2.0, |s| 1e-6 * (2.0 - (-s).exp()), r, t);
+            assert!((zener.pressure(r, t) - exact).abs() < 1.0, "Zener r {r} t {t}: {} {exact}", zener.pressure(r, t));
+        }
+    }
+}
+
+/// ∫ p dA = W at every time, for bodies with several times.
+#[test]
+fn pressures_carry_the_force() {
+    let prony = GeneralizedMaxwell::new(0.2e6, &[(1.0e6, 0.01), (0.5e6, 1.0), (0.3e6, 30.0)]).unwrap();
+    let prony = Material::constant_poisson(prony, 0.3).unwrap();
+    let ramp = Ramp::new(Load::force(0.0), Load::force(1.0), 2.0).unwrap();
+    let scenes = [
+        GrowingSphere::step(RADIUS, &maxwell(), 1.0).unwrap(),
+        GrowingSphere::step(RADIUS, &prony, 1.0).unwrap(),
+        GrowingSphere::new(RADIUS, &prony, ramp).unwrap(),
+    ];
+    for (scene, times) in scenes.iter().zip([[0.0, 0.3, 5.0], [0.0, 0.3, 100.0], [2.0, 2.5, 50.0]]) {
+        for t in times {
+            let a = scene.contact_radius(t);
+            // r = a sin θ smooths the rim
+            let n = 150;
+            let sum: f64 = (0..n)
+                .map(|k| (k as f64 + 0.5) / n as f64 * PI / 2.0)
+                .map(|angle| scene.pressure(a * angle.sin(), t) * a * a * angle.sin() * angle.cos())
+                .sum();
+            let force = 2.0 * PI * sum * PI / 2.0 / n as f64;
+            assert!((force - 1.0).abs() < 2e-5, "t = {t}: {force}");
+        }
+    }
+}
+
+#[test]
+fn lee_radok_for_a_step_is_ting() {
+    let step = GrowingSphere::step(RADIUS, &maxwell(), 1.0).unwrap();
+    let history = GrowingSphere::new(RADIUS, &maxwell(), StepLoad::new(Load::force(1.0)).unwrap()).unwrap();
+    for t in [0.0, 0.1, 1.0, 20.0] {
+        assert!((history.contact_radius(t) / step.contact_radius(t) - 1.0).abs() < 1e-12);
+    }
+    assert!((history.pressure(1.3e-3, 1.0) / step.pressure(1.3e-3, 1.0) - 1.0).abs() < 1e-8);
+}
+
+/// A ramp on a Maxwell body in closed form: a³ = (3R/4)(W′/4G)(t + t²/2τ).
+#[test]
+fn lee_radok_for_a_ramp() {
+    let ramp = Ramp::new(Load::force(0.0), Load::force(5.0), 5.0).unwrap();
+    let scene = GrowingSphere::new(RADIUS, &maxwell(), ramp).unwrap();
+    for t in [0.1_f64, 1.0, 4.0] {
+        let exact = (0.75 * RADIUS * 0.25e-6 * (t + 0.5 * t * t)).cbrt();
+        assert!((scene.contact_radius(t) / exact - 1.0).abs() < 1e-12, "{t}");
+    }
+}
+
+/// The one-dimensional foundation against Ting, second order in time and in space.
+#[test]
+fn foundation_converges_to_ting() {
+    let exact = GrowingSphere::step(RADIUS, &maxwell(), 1.0).unwrap();
+    let errors = |elements: usize, steps: usize| {
+        let mut foundation =
+            AxisymmetricContact::new(&Profile::sphere(RADIUS).unwrap(), &maxwell(), elements, 2.0e-3).unwrap();
+        foundation.press(0.0, 1.0).unwrap();
+        for _ in 0..steps {
+            foundation.press(2.0 / steps as f64, 1.0).unwrap();
+        }
+        assert!((foundation.force() - 1.0).abs() < 1e-12);
+        [
+            foundation.approach() / exact.approach(2.0) - 1.0,
+            foundation.contact_radius() / exact.contact_radius(2.0) - 1.0,
+            foundation.pressure(0.5e-3) / exact.pressure(0.5e-3, 2.0) - 1.0,
+        ]
+    };
+    let [approach, radius, pressure] = errors(20_000, 400);
+    assert!(
+        approach.abs() < 1e-7 && radius.abs() < 1e-6 && pressure.abs() < 2e-6,
+        "{approach:e} {radius:e} {pressure:e}"
+    );
+    let [coarse, fine] = [10, 40].map(|steps| errors(20_000, steps)[2].abs());
+    assert!(coarse / fine > 12.0, "order in time: {coarse:e} {fine:e}");
+    let [coarse, fine] = [100, 1600].map(|elements| errors(elements, 400)[0].abs());
+    assert!(coarse / fine > 60.0, "order in space: {coarse:e} {fine:e}");
+}
+
+/// Unloading: force- and approach-driven runs of the same history are the same run.
+#[test]
+fn foundation_driven_by_its_own_approach() {
+    let zener = Material::constant_poisson(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap(), 0.3).unwrap();
+    let new = || AxisymmetricContact::new(&Profile::sphere(RADIUS).unwrap(), &zener, 2000, 3.0e-3).unwrap();
+    let (mut pressed, mut indented) = (new(), new());
+    for step in 1..=200 {
+        let t = 0.01 * step as f64;
+        pressed.press(0.01, 1.0 - (t - 1.0).abs()).unwrap();
+        indented.indent(0.01, pressed.approach()).unwrap();
+        assert!((indented.force() - pressed.force()).abs() < 1e-9, "{t}");
+        assert!((indented.contact_radius() - pressed.contact_radius()).abs() < 1e-9);
+    }
+    // let go: the surface has not recovered, so the bodies touch deeper than they did at first
+    assert_eq!(pressed.force(), 0.0);
+    assert!(pressed.approach() > 0.0);
+}
+
+#[test]
+fn ellipses_tend_to_the_circle_and_the_line() {
+    let circle = Hertz::new(RADIUS, 4.0e6, 1.0).unwrap();
+    let nearly = HertzEllipse::new([RADIUS, RADIUS * (1.0 + 1e-9)], 4.0e6, 1.0).unwrap();
+    assert!((nearly.greatest_pressure() / circle.greatest_pressure() - 1.0).abs() < 1e-8);
+    assert!(nearly.semi_axes()[1] > nearly.semi_axes()[0]);
+    // Johnson 1985, eq. 4.28: for moderate ratios a/b ≈ (R_long/R_short)^(2/3)
+    let moderate = HertzEllipse::new([2.0 * RADIUS, RADIUS], 4.0e6, 1.0).unwrap();
+    let [a, b] = moderate.semi_axes();
+    assert!(((a / b) / 2f64.powf(2.0 / 3.0) - 1.0).abs() < 2e-2);
+    // W = (2π/3) p0 a b, and p(0) = p0
+    assert!((2.0 * PI / 3.0 * moderate.greatest_pressure() * a * b - 1.0).abs() < 1e-12);
+    assert_eq!(moderate.pressure(0.0, 0.0), moderate.greatest_pressure());
+    // very slender: the short axis is that of a line contact under the peak line load, b = 2 p0 R/E*
+    let slender = HertzEllipse::new([1e8 * RADIUS, RADIUS], 4.0e6, 1.0).unwrap();
+    let line = 2.0 * slender.greatest_pressure() * RADIUS / 4.0e6;
+    assert!((slender.semi_axes()[1] / line - 1.0).abs() < 1e-4);
+}
+
+/// Force and moment of the punch by quadrature over its face.
+#[test]
+fn punch_carries_force_and_moment() {
+    let (radius, e) = (1.0e-3, 0.25e-3);
+    let punch = RigidPunch::new(radius, 4.0e6, 3.0, e).unwrap();
+    let (n, m) = (400, 64);
+    let (mut force, mut moment) = (0.0, 0.0);
+    for k in 0..n {
+        // r = R sin θ cancels the singular rim
+        let angle = (k as f64 + 0.5) / n as f64 * PI / 2.0;
+        let r = radius * angle.sin();
+        for l in 0..m {
+            let turn = 2.0 * PI * l as f64 / m as f64;
+            let weight = radius * angle.cos() * (PI / 2.0 / n as f64) * r * (2.0 * PI / m as f64);
+            let p = punch.pressure(r * turn.cos(), r * turn.sin());
+            force += p * weight;
+            moment += p * weight * r * turn.cos();
+        }
+    }
+    assert!((force / 3.0 - 1.0).abs() < 1e-5, "{force}");
+    assert!((moment / (3.0 * e) - 1.0).abs() < 1e-5, "{moment}");
+    assert!(matches!(
+        RigidPunch::new(radius, 4.0e6, 3.0, 0.34e-3),
+        Err(Error::OutOfRange { field: "eccentricity", .. })
+    ));
+}
+
+/// Radii, moduli and forces at the ends of the range: numbers, or refused.
+#[test]
+fn references_at_the_ends_are_numbers_or_refused() {
+    let ends = [5e-324, 1e-310, 1e-200, 1e-100, 1e-3, 1.0, 1e6, 1e100, 1e200, 1e300, 1.7e308];
+    let all = |numbers: &[f64], what: &dyn std::fmt::Debug| {
+        assert!(numbers.iter().all(|value| value.is_finite()), "{numbers:?} of {what:?}");
+    };
+    let (mut made, mut refused) = ([0; 4], [0; 4]);
+    let mut count = |which: usize, ok: bool| if ok { made[which] += 1 } else { refused[which] += 1 };
+    for radius in ends {
+        for modulus in ends {
+            for force in ends {
+                let hertz = Hertz::new(radius, modulus, force);
+                count(0, hertz.is_ok());
+                if let Ok(hertz) = hertz {
+                    all(
+                        &[hertz.contact_radius(), hertz.greatest_pressure(), hertz.approach(), hertz.pressure(0.0)],
+                        &hertz,
+                    );
+                }
+                let ellipse = HertzEllipse::new([radius, 3.0 * radius.min(5e307)], modulus, force);
+                count(1, ellipse.is_ok());
+                if let Ok(ellipse) = ellipse {
+                    let [a, b] = ellipse.semi_axes();
+                    all(&[a, b, ellipse.greatest_pressure(), ellipse.approach(), ellipse.pressure(0.0, 0.0)], &ellipse);
+                }
+                let punch = RigidPunch::new(radius, modulus, force, 0.3 * radius);
+                count(2, punch.is_ok());
+                if let Ok(punch) = punch {
+                    all(&[punch.approach(), punch.tilt(), punch.pressure(0.0, 0.0)], &punch);
+                }
+            }
+        }
+        // a foundation of a stiff and of a soft body
+        for modulus in [1e-95, 1e6, 1e95] {
+            let body = Material::incompressible(Maxwell::new(modulus, modulus).unwrap());
+            let Ok(profile) = Profile::sphere(radius) else { continue };
+            let Ok(mut foundation) = AxisymmetricContact::new(&profile, &body, 20, radius) else { continue };
+            for (dt, force) in [(0.0, 1e300), (1.0, 1e-300), (1e300, 1.0), (1e-300, 1e200), (0.0, 1.0)] {
+                count(3, foundation.press(dt, force).is_ok());
+                count(3, foundation.indent(dt, 1e-3 * force).is_ok());
+                all(&[foundation.force(), foundation.approach(), foundation.contact_radius()], &foundation);
+            }
+        }
+    }
+    for which in 0..4 {
+        assert!(made[which] > 5 && refused[which] > 5, "{made:?} made, {refused:?} refused");
+    }
+}
+
+/// A growing contact between the ends of the range, at times to the last: its radius is a number or infinite, and where it is a
+/// number, so is the pressure.
+#[test]
+fn growing_spheres_stay_numbers() {
+    let bodies = [
+        Material::incompressible(Maxwell::new(1e95, 1e-95).unwrap()),
+        Material::incompressible(Maxwell::new(1e-95, 1e95).unwrap()),
+        Material::incompressible(GeneralizedKelvin::new(1e-95, 1e95, &[(1e95, 1e-95), (1e-95, 1e95)]).unwrap()),
+    ];
+    let mut endless = 0;
+    for body in &bodies {
+        for radius in [1e-100, 1e-3, 1e100] {
+            for force in [5e-324, 1e-100, 1.0, 1e100] {
+                let sphere = GrowingSphere::step(radius, body, force).unwrap();
+                for t in [0.0, 1e-300, 1.0, 1e100, 1e308] {
+                    let a = sphere.contact_radius(t);
+                    assert!(a >= 0.0 && sphere.approach(t) >= 0.0, "{a} {sphere:?}");
+                    if a == f64::INFINITY {
+                        endless += 1;
+                        continue;
+                    }
+                    for r in [0.0, 1e-300, 0.5 * a, 1e300] {
+                        let pressure = sphere.pressure(r, t);
+                        assert!(!pressure.is_nan(), "{r:e} m, {t:e} s: {pressure} of {sphere:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(endless > 0);
+    let refused = |radius: f64, force: f64| GrowingSphere::step(radius, &bodies[0], force).unwrap_err();
+    assert!(matches!(refused(1e101, 1.0), Error::OutOfRange { field: "sphere radius", .. }));
+    assert!(matches!(refused(1.0, 1e200), Error::OutOfRange { field: "force", .. }));
+    let long = AxisymmetricContact::new(&Profile::punch(1.0).unwrap(), &bodies[1], 1, 1.7e308).unwrap_err();
+    assert!(matches!(long, Error::OutOfRange { field: "reach of the foundation", .. }), "{long}");
+}

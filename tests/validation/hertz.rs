@@ -1,0 +1,137 @@
+//! Elastic contacts against their closed forms, and how fast the mesh converges to them.
+
+use crate::common::bodies::{E_STAR, elastic};
+use viscocontact::analytic::{AxisymmetricContact, Hertz, HertzEllipse, Profile, RigidPunch};
+use viscocontact::prelude::*;
+
+fn press(grid: Grid, shape: &dyn Geometry, force: f64, settings: Settings) -> ViscoelasticContact {
+    let mut contact =
+        ViscoelasticContact::builder(grid).geometry(shape).material(elastic()).settings(settings).build().unwrap();
+    contact.step(0.0, Load::force(force)).unwrap();
+    contact
+}
+
+/// Relative errors of central pressure and approach of a sphere on a grid 2.6 contact radii wide.
+fn sphere_errors(cells: usize) -> [f64; 2] {
+    let exact = Hertz::new(10.0e-3, E_STAR, 1.0).unwrap();
+    let grid = Grid::square(cells, 2.6 * exact.contact_radius()).unwrap();
+    let contact = press(grid, &Sphere::new(10.0e-3).unwrap(), 1.0, Settings { tolerance: 1e-8, ..Settings::default() });
+    assert!((contact.force() - 1.0).abs() < 1e-12, "force closure {:e}", contact.force() - 1.0);
+    let [x1, x2] = contact.grid().center(cells / 2, cells / 2);
+    let center = contact.pressure()[cells / 2 * cells + cells / 2];
+    [center / exact.pressure(x1.hypot(x2)) - 1.0, contact.approach() / exact.approach() - 1.0]
+}
+
+#[test]
+fn a_sphere_on_512_cells_is_hertzs() {
+    let [pressure, approach] = sphere_errors(512);
+    println!("central pressure {pressure:e}, approach {approach:e}");
+    assert!(pressure.abs() < 2e-5);
+    assert!(approach.abs() < 1e-5);
+}
+
+#[test]
+fn approach_converges_with_the_mesh_at_second_order_on_average() {
+    let errors = [16, 32, 64, 128, 256].map(|cells| sphere_errors(cells)[1].abs());
+    println!("{errors:?}");
+    let order = (errors[0] / errors[4]).log2() / 4.0;
+    assert!(order > 1.7, "order {order}: {errors:?}");
+}
+
+#[test]
+fn an_ellipsoid_is_hertzs() {
+    let exact = HertzEllipse::new([20.0e-3, 5.0e-3], E_STAR, 1.0).unwrap();
+    let [a1, a2] = exact.semi_axes();
+    let grid = Grid::new([192, 128], [2.5 * a1, 2.5 * a2]).unwrap();
+    let contact = press(grid, &Ellipsoid::new(20.0e-3, 5.0e-3).unwrap(), 1.0, Settings::default());
+    let center = contact.pressure()[96 * 128 + 64];
+    assert!((center / exact.greatest_pressure() - 1.0).abs() < 4e-4);
+    assert!((contact.approach() / exact.approach() - 1.0).abs() < 2e-4);
+    let area = std::f64::consts::PI * a1 * a2;
+    assert!((contact.contact_area() / area - 1.0).abs() < 1e-2);
+}
+
+/// The mesh of a punch converges at first order: its pressure is infinite on the rim.
+#[test]
+fn a_flat_punch_converges_to_its_closed_form() {
+    let (radius, force) = (1.0e-3, 2.0);
+    let exact = RigidPunch::new(radius, E_STAR, force, 0.0).unwrap();
+    let errors = [64, 128, 256].map(|cells| {
+        let grid = Grid::square(cells, 2.1 * radius).unwrap();
+        let contact = press(grid, &FlatPunch::circular(radius).unwrap(), force, Settings::default());
+        let pressure = contact.pressure();
+        for i in 0..cells {
+            for j in 0..cells {
+                let [x1, x2] = contact.grid().center(i, j);
+                if x1.hypot(x2) < 0.8 * radius {
+                    let error = pressure[i * cells + j] / exact.pressure(x1, x2) - 1.0;
+                    assert!(error.abs() < 2.0 / cells as f64, "{cells}: {error:e} at {x1:e}, {x2:e}");
+                }
+            }
+        }
+        (contact.approach() / exact.approach() - 1.0).abs()
+    });
+    println!("{errors:?}");
+    assert!(errors[2] < 2e-3, "{errors:?}");
+}
+
+#[test]
+fn a_cone_is_the_one_dimensional_foundations() {
+    let (slope, force) = (0.1, 1.0);
+    let body = elastic();
+    let mut foundation = AxisymmetricContact::new(&Profile::cone(slope).unwrap(), &body, 20000, 4.0e-3).unwrap();
+    foundation.press(0.0, force).unwrap();
+    let a = foundation.contact_radius();
+    // Love 1939: W = (π/2) a² E* tan β
+    assert!((force / (0.5 * std::f64::consts::PI * a * a * E_STAR * slope) - 1.0).abs() < 1e-6);
+    let contact = press(Grid::square(256, 2.4 * a).unwrap(), &Cone::new(slope).unwrap(), force, Settings::default());
+    assert!((contact.approach() / foundation.approach() - 1.0).abs() < 2e-3);
+    assert!(((contact.contact_area() / std::f64::consts::PI).sqrt() / a - 1.0).abs() < 5e-3);
+}
+
+/// In the middle of a long cylinder peak pressure and line load are those of a line contact,
+/// p0² = W′ E*/(πR). (Its sharp ends carry more, so the mean line load is not that of the middle.)
+#[test]
+fn cylinder_is_a_line_contact_in_the_middle() {
+    let radius = 10.0e-3;
+    let grid = Grid::new([128, 128], [2.5e-3, 80.0e-3]).unwrap();
+    let settings = Settings { edge: Edge::Allow, ..Settings::default() };
+    let contact = press(grid, &Cylinder::new(radius).unwrap(), 25.0, settings);
+    let column: Vec<f64> = (0..128).map(|i| contact.pressure()[i * 128 + 64]).collect();
+    let line_load = column.iter().sum::<f64>() * contact.grid().spacing()[0];
+    let exact = (line_load * E_STAR / (std::f64::consts::PI * radius)).sqrt();
+    assert!((column[64] / exact - 1.0).abs() < 2e-3, "{:e} {exact:e}", column[64]);
+}
+
+/// The same scene in other units: bitwise for powers of two, to rounding otherwise.
+#[test]
+fn units_do_not_matter() {
+    let run = |length: f64, stress: f64| {
+        let force = stress * length * length;
+        let mut contact = ViscoelasticContact::builder(Grid::square(48, 4.0e-3 * length).unwrap())
+            .geometry(&Sphere::new(10.0e-3 * length).unwrap())
+            .material(Material::incompressible(Maxwell::new(1.0e6 * stress, 1.0e6 * stress).unwrap()))
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(force)).unwrap();
+        for _ in 0..5 {
+            contact.step(0.1, Load::force(force)).unwrap();
+        }
+        let pressure: Vec<f64> = contact.pressure().iter().map(|p| p / stress).collect();
+        (contact.approach() / length, pressure)
+    };
+    let (approach, pressure) = run(1.0, 1.0);
+    for (length, stress) in [(2f64.powi(-30), 2f64.powi(20)), (2f64.powi(20), 2f64.powi(-20))] {
+        let scaled = run(length, stress);
+        assert_eq!(scaled.0, approach);
+        assert_eq!(scaled.1, pressure);
+    }
+    let peak = pressure.iter().copied().fold(0.0, f64::max);
+    for (length, stress) in [(1e-7, 1e9), (1e6, 1e-6), (3.7e-3, 1e3)] {
+        let scaled = run(length, stress);
+        assert!((scaled.0 / approach - 1.0).abs() < 1e-12, "{length} {stress}");
+        for (a, b) in scaled.1.iter().zip(&pressure) {
+            assert!((a - b).abs() < 1e-11 * peak, "{length} {stress}: {a} {b}");
+        }
+    }
+}

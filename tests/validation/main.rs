@@ -1,0 +1,11 @@
+//! Does it agree with closed forms, with other formulations, and with what it promises itself?
+
+mod analytic;
+#[path = "../common/mod.rs"]
+mod common;
+mod hertz;
+mod plan;
+mod plane;
+mod rolling;
+mod step_loaded_sphere;
+mod stiffness;

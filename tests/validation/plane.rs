@@ -1,0 +1,155 @@
+//! Contacts in plane strain against Westergaard's and Hertz's closed forms.
+
+use crate::common::bodies::{E_STAR, elastic};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use viscocontact::prelude::*;
+
+fn contact(grid: &Grid, kernel: InfluenceKernel, shape: &dyn Geometry, settings: Settings) -> ViscoelasticContact {
+    ViscoelasticContact::builder(grid.clone())
+        .geometry(shape)
+        .material(elastic())
+        .kernel(Arc::new(kernel))
+        .settings(settings)
+        .build()
+        .unwrap()
+}
+
+/// A wavy surface under less than the pressure of full contact, against H. M. Westergaard, J. Appl. Mech. 6 (1939):
+/// p = 2 p̄ cos(πx/λ) √(sin²(πa/λ) − sin²(πx/λ)) / sin²(πa/λ), where p̄ = π E* Δ/λ sin²(πa/λ).
+#[test]
+fn a_wavy_surface_in_partial_contact_is_westergaards() {
+    let (wavelength, amplitude, cells) = (1.0e-3, 1.0e-6, 512);
+    let grid = Grid::new([cells, 1], [wavelength, 1.0]).unwrap();
+    let shape = FnGeometry::new(move |x1, _| amplitude * (1.0 - (2.0 * PI * x1 / wavelength).cos()));
+    for share in [0.1_f64, 0.3, 0.6, 0.9] {
+        for symmetry in [true, false] {
+            let settings = Settings { symmetry, ..Settings::default() };
+            let mut contact = contact(&grid, InfluenceKernel::periodic(&grid).unwrap(), &shape, settings);
+            let mean = share * PI * E_STAR * amplitude / wavelength;
+            contact.step(0.0, Load::force(mean * wavelength)).unwrap();
+            let (half_width, sine) = (share.sqrt().asin() / PI * wavelength, share.sqrt());
+            let exact = |x: f64| {
+                let (s, c) = (PI * x / wavelength).sin_cos();
+                2.0 * mean / share * c * (sine * sine - s * s).max(0.0).sqrt()
+            };
+            let peak = contact.pressure().iter().copied().fold(0.0, f64::max);
+            assert!((peak / exact(0.0) - 1.0).abs() < 5e-4, "{share}: {peak} {}", exact(0.0));
+            // the width in cells
+            let side = wavelength / cells as f64;
+            let (width, exact_width) = (contact.contact_area() / side, 2.0 * half_width / side);
+            assert!((width - exact_width).abs() < 0.6, "{share}: {width} {exact_width}");
+            assert!((contact.contact_cells() as f64 - exact_width).abs() < 2.0);
+            let pairs = contact.pressure().iter().enumerate();
+            let l1 = pairs.map(|(i, p)| (p - exact(grid.center(i, 0)[0])).abs()).sum::<f64>() / cells as f64 / mean;
+            assert!(l1 < 4e-3, "{share}: {l1}");
+        }
+    }
+}
+
+/// Beyond Westergaard's pressure the contact is full, and the pressure a wave; the approach at which it becomes full is the
+/// mean gap, and no approach exceeds it.
+#[test]
+fn a_wavy_surface_in_full_contact_is_westergaards() {
+    let grid = Grid::new([64, 1], [1.0, 1.0]).unwrap();
+    let shape = FnGeometry::new(|x1, _| 1e-3 * (1.0 - (2.0 * PI * x1).cos()));
+    let mut contact = contact(&grid, InfluenceKernel::periodic(&grid).unwrap(), &shape, Settings::default());
+    let (amplitude, mean) = (PI * E_STAR * 1e-3, 1.5 * PI * E_STAR * 1e-3);
+    let report = contact.step(0.0, Load::force(mean)).unwrap();
+    assert!(report.convolutions <= 4, "the preconditioner is the inverse: {report:?}");
+    for (i, p) in contact.pressure().iter().enumerate() {
+        let exact = mean + amplitude * (2.0 * PI * grid.center(i, 0)[0]).cos();
+        assert!((p / exact - 1.0).abs() < 1e-5, "{i}: {p} {exact}");
+    }
+    assert!((contact.approach() / 1e-3 - 1.0).abs() < 1e-9);
+    assert_eq!(contact.contact_area(), 1.0);
+    let error = contact.step(0.0, Load::approach(1.1e-3)).unwrap_err();
+    let Error::BeyondFullContact { greatest, .. } = error else { panic!("{error}") };
+    assert!((greatest / 1e-3 - 1.0).abs() < 1e-9);
+    contact.step(0.0, Load::approach(0.5e-3)).unwrap();
+    assert!(contact.contact_cells() < 64);
+    let tilted = contact.step(0.0, Load::eccentric_force(1.0, [0.1, 0.0])).unwrap_err();
+    assert!(matches!(tilted, Error::TiltOfPeriodic { axis: 0, .. }), "{tilted}");
+}
+
+/// Hertz's line contact: a² = 4 P R/(π E*), p0 = 2P/(πa), P the force on a unit of length; the approach to a depth d is
+/// P/(π E*) (2 ln(2d/a) + 1) (K. L. Johnson, Contact Mechanics, 1985, sections 4.2 and 5.6).
+#[test]
+fn a_cylinder_in_line_contact_is_hertzs() {
+    let (radius, per_length, length) = (0.02, 500.0, 0.25);
+    let half_width = (4.0 * per_length * radius / (PI * E_STAR)).sqrt();
+    let peak = 2.0 * per_length / (PI * half_width);
+    for symmetry in [true, false] {
+        let grid = Grid::new([512, 1], [4.0 * half_width, length]).unwrap();
+        let datum = 0.5;
+        let kernel = InfluenceKernel::line(&grid, datum).unwrap();
+        let shape = Cylinder::new(radius).unwrap();
+        let settings = Settings { symmetry, ..Settings::default() };
+        let mut contact = contact(&grid, kernel, &shape, settings);
+        let report = contact.step(0.0, Load::force(per_length * length)).unwrap();
+        assert!(report.convolutions <= 25, "{report:?}");
+        // the contact reaches both ends of the line, which are none
+        let found = 0.5 * contact.contact_area() / length;
+        assert!((found / half_width - 1.0).abs() < 2e-3, "{found} {half_width}");
+        let greatest = contact.pressure().iter().copied().fold(0.0, f64::max);
+        assert!((greatest / peak - 1.0).abs() < 2e-4, "{greatest} {peak}");
+        let approach = per_length / (PI * E_STAR) * (2.0 * (2.0 * datum / half_width).ln() + 1.0);
+        assert!((contact.approach() / approach - 1.0).abs() < 1e-4, "{} {approach}", contact.approach());
+        // and by its approach it carries the same force again
+        contact.step(0.0, Load::approach(approach)).unwrap();
+        assert!((contact.force() / (per_length * length) - 1.0).abs() < 1e-3);
+    }
+}
+
+/// A uniform pressure displaces nothing on bodies whose mean is held: flat on flat is solved all the same, and let go.
+#[test]
+fn flat_on_flat_is_solved_and_let_go() {
+    for cells in [[16, 16], [15, 9], [64, 1], [7, 1]] {
+        for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
+            for ripple in [0.0, 1e-15] {
+                let grid = Grid::new(cells, [1.0, 1.0]).unwrap();
+                let shape = FnGeometry::new(move |x1, _| ripple * (2.0 * PI * x1).cos());
+                let settings = Settings { solver, ..Settings::default() };
+                let mut contact = contact(&grid, InfluenceKernel::periodic(&grid).unwrap(), &shape, settings);
+                contact.step(0.0, Load::force(1.0)).unwrap();
+                assert!(contact.pressure().iter().all(|p| (p - 1.0).abs() < 0.05), "{cells:?} {solver:?}");
+                contact.step(0.0, Load::approach(-1.0e-6)).unwrap();
+                assert_eq!(contact.contact_cells(), 0);
+            }
+        }
+    }
+    let grid = Grid::square(16, 1.0).unwrap();
+    let mut two = ViscoelasticContact::builder(grid.clone())
+        .geometry(&FnGeometry::new(|x1, _| if x1 < 0.0 { 0.0 } else { f64::INFINITY }))
+        .another_body(&FnGeometry::new(|x1, _| if x1 < 0.0 { f64::INFINITY } else { 0.0 }))
+        .material(elastic())
+        .kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()))
+        .build()
+        .unwrap();
+    let error = two.step_each(0.0, &[Load::approach(1.0); 2]).unwrap_err();
+    assert!(matches!(error, Error::BeyondFullContact { .. }), "{error}");
+}
+
+/// The estimate of the mesh's error falls with the mesh, and is zero where there is no rim.
+#[test]
+fn errors_of_the_mesh_are_estimated_on_lines() {
+    let estimates = [64, 256, 1024].map(|cells| {
+        let grid = Grid::new([cells, 1], [0.04, 1.0]).unwrap();
+        let kernel = InfluenceKernel::line(&grid, 1.0).unwrap();
+        let shape = Cylinder::new(0.02).unwrap();
+        let mut contact = contact(&grid, kernel, &shape, Settings { tolerance: 1e-9, ..Settings::default() });
+        contact.step(0.0, Load::force(2.0e4)).unwrap();
+        let half_width = (4.0 * 2.0e4 * 0.02 / (PI * E_STAR)).sqrt();
+        let error = (contact.greatest_pressure() / (2.0 * 2.0e4 / (PI * half_width)) - 1.0).abs();
+        let estimate = contact.mesh_error().greatest_pressure;
+        assert!((0.2 * error..20.0 * error).contains(&estimate), "{cells}: {estimate} {error}");
+        estimate
+    });
+    assert!(estimates[1] < 0.1 * estimates[0] && estimates[2] < 0.1 * estimates[1], "{estimates:?}");
+    let grid = Grid::square(8, 1.0).unwrap();
+    let flat = FnGeometry::new(|_, _| 0.0);
+    let mut full = contact(&grid, InfluenceKernel::periodic(&grid).unwrap(), &flat, Settings::default());
+    full.step(0.0, Load::force(1.0)).unwrap();
+    assert_eq!(full.mesh_error(), Default::default());
+}

@@ -1,0 +1,112 @@
+//! A cylinder rolling over a standard solid, step by step to its steady state, against a formulation that has no steps.
+
+use std::sync::Arc;
+
+use crate::common::rolling::{RollingCylinder, scaled_e1, scaled_ei};
+use viscocontact::prelude::*;
+
+const G: f64 = 1.0e6;
+const G_K: f64 = 0.5e6;
+const TAU: f64 = 1.0;
+/// Cells on half the width of the glassy contact.
+const FINE: f64 = 32.0;
+
+/// J = 1/G + (1 − e^(−t/τ))/G_K, C = J/4; `speed` is v τ over half the width of the glassy contact.
+fn scene(speed: f64) -> RollingCylinder {
+    let mut scene =
+        RollingCylinder { radius: 0.02, per_length: 500.0, glassy: 0.25 / G, delayed: 0.25 / G_K, reach: 1.0 };
+    scene.reach = speed * scene.hertz(scene.glassy).0;
+    scene
+}
+
+struct Rolled {
+    contact: ViscoelasticContact,
+    shape: Shifted,
+    /// Axis of the cylinder.
+    at: f64,
+}
+
+impl Rolled {
+    fn peak(&self) -> f64 {
+        self.contact.pressure().iter().copied().fold(0.0, f64::max)
+    }
+
+    fn friction(&self) -> f64 {
+        self.contact.lateral_force(&self.shape)[0] / self.contact.force()
+    }
+
+    fn width(&self) -> f64 {
+        self.contact.contact_area()
+    }
+}
+
+/// On a grid that reaches `behind` the contact, to a change of `tolerance`.
+fn roll(scene: &RollingCylinder, direction: f64, behind: f64) -> Rolled {
+    let side = scene.hertz(scene.glassy).0 / FINE;
+    let relaxed = scene.hertz(scene.glassy + scene.delayed).0;
+    let cells = ((behind + 3.0 * relaxed) / side) as usize;
+    let grid = Grid::new([cells, 1], [cells as f64 * side, 1.0]).unwrap();
+    let at = direction * (0.5 * cells as f64 * side - 2.0 * relaxed);
+    let shape = Shifted::new(Cylinder::new(scene.radius).unwrap(), [at, 0.0]).unwrap();
+    let mut contact = ViscoelasticContact::builder(grid.clone())
+        .geometry(&shape)
+        .material(Material::incompressible(Zener::new(G, G_K, G_K * TAU).unwrap()))
+        .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0e3).unwrap()))
+        .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
+        .build()
+        .unwrap();
+    let velocity = direction * scene.reach / TAU;
+    let motion = SteadyMotion { axis: 0, velocity, load: Load::force(scene.per_length), tolerance: 2e-4 };
+    contact.toward_steady(motion).unwrap().run().unwrap();
+    Rolled { contact, shape, at }
+}
+
+/// Five speeds over four decades, forth or back: peak pressure, width, both ends of contact, friction.
+#[test]
+fn rolling_ends_in_the_steady_state_of_the_reference() {
+    for (speed, direction) in [(0.01, 1.0), (0.1, -1.0), (1.0, 1.0), (10.0, -1.0), (100.0, 1.0)] {
+        let scene = scene(speed);
+        let (glassy, relaxed) = (scene.hertz(scene.glassy).0, scene.hertz(scene.glassy + scene.delayed).0);
+        let (side, steady) = (glassy / FINE, scene.steady(600));
+        let rolled = roll(&scene, direction, (5.0 * scene.reach).clamp(4.0 * relaxed, 300.0 * glassy));
+        let (peak, [behind, ahead]) = (rolled.peak() / steady.peak() - 1.0, steady.ends());
+        let friction = direction * rolled.friction() / steady.friction(scene.radius) - 1.0;
+        let width = (rolled.width() - (ahead - behind)) / side;
+        println!("v τ/a = {speed}: peak {peak:.1e}, width {width:.2} cells, friction {friction:.1e}");
+        assert!(peak.abs() < 1e-3, "{speed}: {peak}");
+        assert!(width.abs() < 0.8, "{speed}: {width}");
+        assert!(friction.abs() < 0.012, "{speed}: {friction}");
+        let grid = rolled.contact.grid();
+        let touched = (0..grid.len()).filter(|&i| rolled.contact.pressure()[i] > 0.0);
+        let ends = touched.map(|i| direction * (grid.center(i, 0)[0] - rolled.at));
+        let found = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+        assert!((found[0] - behind).abs() < 1.5 * side && (found[1] - ahead).abs() < 1.5 * side, "{speed}: {found:?}");
+    }
+}
+
+/// So slow that the body has time to relax, and so fast that it has none: Hertz, twice.
+#[test]
+fn very_slow_and_very_fast_rolling_is_hertzs() {
+    for (speed, compliance) in [(1e-4, 0.25 / G + 0.25 / G_K), (1e6, 0.25 / G)] {
+        let scene = scene(speed);
+        let (half_width, peak) = scene.hertz(compliance);
+        let rolled = roll(&scene, 1.0, 4.0 * scene.hertz(scene.glassy + scene.delayed).0);
+        let (peak, width) = (rolled.peak() / peak - 1.0, 0.5 * rolled.width() / half_width - 1.0);
+        println!("v τ/a = {speed}: peak {peak:.1e}, width {width:.1e}, friction {:.1e}", rolled.friction());
+        assert!(peak.abs() < 3e-3 && width.abs() < 6e-3, "{speed}: {peak} {width}");
+        assert!(rolled.friction().abs() < 1e-3 * half_width / scene.radius);
+    }
+}
+
+#[test]
+fn exponential_integrals_of_the_reference_are_the_tabulated_ones() {
+    // Abramowitz & Stegun, tables 5.1 and 5.2
+    let cases = [(1.0, 0.219_383_934_395_520_3), (2.0, 0.048_900_510_708_061_1), (0.5, 0.559_773_594_776_160_2)];
+    cases.iter().for_each(|&(z, e1): &(f64, f64)| assert!((scaled_e1(z) / z.exp() / e1 - 1.0).abs() < 1e-12));
+    assert!((scaled_e1(10.0) / 0.915_633_339_397_880_8 * 10.0 - 1.0).abs() < 1e-9);
+    assert!((scaled_ei(1.0) * 1f64.exp() / 1.895_117_816_355_936_8 - 1.0).abs() < 1e-12);
+    // scipy.special.expi, either side of where the series changes
+    assert!((scaled_ei(39.9) / 0.025_724_918_815_090_737 - 1.0).abs() < 1e-12);
+    assert!((scaled_ei(40.1) / 0.025_593_145_386_960_604 - 1.0).abs() < 1e-12);
+    assert!((scaled_ei(100.0) / 0.010_102_062_527_748_357 - 1.0).abs() < 1e-12);
+}

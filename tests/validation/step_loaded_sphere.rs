@@ -1,0 +1,60 @@
+//! The paper's scene against its Table 1: the figures that the README claims.
+
+use crate::common::step_loaded_sphere::{StepLoadedSphere, errors};
+use viscocontact::prelude::*;
+
+fn assert_figures(scene: &StepLoadedSphere) -> f64 {
+    let (contact, work) = scene.run(256, 100, Settings::default()).unwrap();
+    let error = errors(&contact, &scene.reference().unwrap());
+    println!("{}: {error:?}, {work:.2} convolution equivalents a step", scene.name);
+    assert!(error.central_pressure.abs() < 1e-4, "{error:?}");
+    assert!(error.l1 < 1.5e-3, "{error:?}");
+    assert!(error.contact_radius.abs() < 5e-3, "{error:?}");
+    assert!(error.approach.abs() < 1e-3, "{error:?}");
+    assert!((contact.force() / scene.force - 1.0).abs() < 1e-12);
+    work
+}
+
+#[test]
+fn maxwell_on_256_cells_in_100_steps_is_table_1() {
+    let work = assert_figures(&StepLoadedSphere::maxwell());
+    assert!(work < 6.0, "{work} convolution equivalents a step");
+}
+
+#[test]
+fn zener_on_256_cells_in_100_steps_is_table_1() {
+    assert_figures(&StepLoadedSphere::zener());
+}
+
+#[test]
+fn zener_with_unequal_moduli_is_the_closed_form() {
+    for g_k in [0.3e6, 5.0e6] {
+        let scene = StepLoadedSphere::zener_with(g_k);
+        let (contact, _) = scene.run(128, 100, Settings::default()).unwrap();
+        let error = errors(&contact, &scene.reference().unwrap());
+        assert!(error.central_pressure.abs() < 2e-4 && error.approach.abs() < 1e-3, "{g_k}: {error:?}");
+    }
+}
+
+#[test]
+fn a_generalized_body_with_three_times_is_the_closed_form() {
+    let terms = [(0.4e-6, 0.02), (0.3e-6, 0.3), (0.6e-6, 4.0)];
+    let body = GeneralizedKelvin::new(1.0e-6, 0.2e-6, &terms).unwrap();
+    let scene = StepLoadedSphere { material: Material::incompressible(body), ..StepLoadedSphere::maxwell() };
+    let (contact, _) = scene.run(128, 200, Settings::default()).unwrap();
+    let error = errors(&contact, &scene.reference().unwrap());
+    assert!(error.central_pressure.abs() < 5e-4 && error.approach.abs() < 5e-4, "{error:?}");
+}
+
+/// The paper's algorithm whole solves the same scene, at its own (first) order in time.
+#[test]
+fn the_papers_own_algorithm_agrees_at_more_work() {
+    let scene = StepLoadedSphere::maxwell();
+    let (contact, work) = scene.run(64, 100, Settings::paper()).unwrap();
+    let error = errors(&contact, &scene.reference().unwrap());
+    assert!((1e-3..1e-2).contains(&error.central_pressure.abs()), "{error:?}");
+    assert!(error.approach.abs() < 1e-3, "{error:?}");
+    let (_, ours) = scene.run(64, 100, Settings::default()).unwrap();
+    println!("Polonsky–Keer {work:.1}, active set {ours:.1} convolution equivalents a step");
+    assert!(work > 3.0 * ours);
+}

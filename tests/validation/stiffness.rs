@@ -1,0 +1,56 @@
+//! Contact stiffness against closed forms, and against the slope of force over approach.
+
+use crate::common::bodies::{G, elastic};
+use crate::common::spheres::sphere_on;
+use std::sync::Arc;
+
+use crate::common::rough::self_affine;
+use viscocontact::prelude::*;
+
+/// 2a under a sphere, whatever is computed of it.
+#[test]
+fn stiffness_of_a_circle_is_its_diameter() {
+    for (window, symmetry) in [(true, true), (false, true), (true, false), (false, false)] {
+        let mut contact = sphere_on(
+            Grid::square(128, 4.0e-3).unwrap(),
+            elastic(),
+            Settings { window, symmetry, ..Settings::default() },
+        );
+        assert_eq!(contact.stiffness_over_modulus().unwrap(), 0.0);
+        contact.step(0.0, Load::force(0.5)).unwrap();
+        let radius = (contact.contact_area() / std::f64::consts::PI).sqrt();
+        let stiffness = contact.stiffness_over_modulus().unwrap();
+        assert!((stiffness / (2.0 * radius) - 1.0).abs() < 0.01, "{stiffness} {radius}");
+    }
+}
+
+/// dW/dω of a rough surface, by differences of the approach, on a plane and on periodic bodies.
+#[test]
+fn stiffness_is_the_slope_of_the_force() {
+    let grid = Grid::square(64, 1.0e-3).unwrap();
+    let spec = self_affine(0.5e-3, 0.1e-3, 3);
+    for kernel in [InfluenceKernel::periodic(&grid), InfluenceKernel::half_space(&grid)] {
+        let mut contact = ViscoelasticContact::builder(grid.clone())
+            .geometry(&Rough::new(&grid, spec).unwrap())
+            .material(elastic())
+            .kernel(Arc::new(kernel.unwrap()))
+            .settings(Settings { edge: Edge::Allow, tolerance: 1e-10, ..Settings::default() })
+            .build()
+            .unwrap();
+        let mut at = |force: f64| {
+            contact.step(0.0, Load::force(force)).unwrap();
+            (contact.approach(), contact.stiffness_over_modulus().unwrap())
+        };
+        let (low, high, middle) = (at(0.02 * 0.999), at(0.02 * 1.001), at(0.02));
+        let slope = 0.02 * 2e-3 / (high.0 - low.0) / (4.0 * G);
+        assert!((slope / middle.1 - 1.0).abs() < 2e-3, "{slope} {}", middle.1);
+    }
+    let mut full = ViscoelasticContact::builder(grid.clone())
+        .geometry(&Wavy::new(1.0e-6, 1.0e-3).unwrap())
+        .material(elastic())
+        .kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()))
+        .build()
+        .unwrap();
+    full.step(0.0, Load::force(1.0)).unwrap();
+    assert_eq!(full.stiffness_over_modulus().unwrap(), f64::INFINITY);
+}
