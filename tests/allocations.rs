@@ -77,7 +77,7 @@ fn tilting_steps_allocate_nothing() {
             count_tilting_steps(bowl(), pivoted),
             count_tilting_steps(two(), beside),
         ];
-        [0, 1, 2, 3, 4].map(|k| fallback[k] += counts[k]);
+        (0..5).for_each(|k| fallback[k] += counts[k]);
     }
     println!("steps with the fall-back: {fallback:?}");
     assert!(fallback.iter().sum::<usize>() > 0, "no step needs the fall-back");
