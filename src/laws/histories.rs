@@ -40,8 +40,8 @@ fn history<I: std::fmt::Debug + 'static, H: LoadHistory + 'static>(
     built(numbers, move |numbers| Ok(Arc::new(build(numbers)?) as AnyHistory))
 }
 
-/// Histories of a force on an upright body, up to `force` \[N\], in which things happen over `duration` \[s\]: held, ramped,
-/// tables with corners and jumps, oscillating, closures with and without corners.
+/// Histories of a force on an upright body, up to `force` \[N\], in which things happen over `duration` \[s\]: held,
+/// ramped, tables with corners and jumps, oscillating, closures with and without corners.
 pub fn histories(force: f64, duration: f64) -> impl Strategy<Value = AnyHistory> {
     let load = move || (0.0..1.0_f64).prop_map(move |part| Load::force(part * force));
     let time = move || (0.05..1.0_f64).prop_map(move |part| part * duration);

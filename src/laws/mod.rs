@@ -8,8 +8,8 @@
 //! | [`LoadHistory`](crate::load::LoadHistory) | [`load`] | [`strategies::histories`], [`strategies::loads`] |
 //! | a whole contact | | [`strategies::scenes`] |
 //!
-//! The laws themselves need no feature; the strategies are [`proptest`](mod@proptest)'s. The models of the crate pass through the very
-//! same functions.
+//! The laws themselves need no feature; the strategies are [`proptest`](mod@proptest)'s. The models of the crate pass
+//! through the very same functions.
 //!
 //! ```
 //! use proptest::prelude::*;

@@ -68,8 +68,8 @@ impl Scene {
 /// How far contact may reach from the axis of the indenter, of half the shorter side.
 const REACH: f64 = 0.35;
 
-/// Indenters that reach no farther than they should under the force that brings a sphere of radius `radius` to a contact of
-/// radius `reach` \[m\].
+/// Indenters that reach no farther than they should under the force that brings a sphere of radius `radius` to a
+/// contact of radius `reach` \[m\].
 fn indenters(radius: f64, reach: f64) -> BoxedStrategy<AnyGeometry> {
     let share = 0.4..1.0_f64;
     let any = |geometry: Result<AnyGeometry>| geometry;
@@ -88,9 +88,9 @@ fn indenters(radius: f64, reach: f64) -> BoxedStrategy<AnyGeometry> {
     .boxed()
 }
 
-/// Scenes of 8 to 24 cells a side, not square in general, 1 mm to 10 cm long; single indenters off the middle by up to two
-/// cells, or not at all; creep spectra with an elastic response, of 10 kPa to 10 GPa and 1 ms to 1000 s; a jump, then 2 to 7
-/// steps of time or jumps, under forces that may vanish. Contact stays off the edge of the grid.
+/// Scenes of 8 to 24 cells a side, not square in general, 1 mm to 10 cm long; single indenters off the middle by up to
+/// two cells, or not at all; creep spectra with an elastic response, of 10 kPa to 10 GPa and 1 ms to 1000 s; a jump,
+/// then 2 to 7 steps of time or jumps, under forces that may vanish. Contact stays off the edge of the grid.
 pub fn scenes() -> impl Strategy<Value = Scene> {
     let scales = (around(1e-2), -2.0..2.0_f64, -2.0..2.0_f64);
     let cells = [10_usize..=24, 10_usize..=24];

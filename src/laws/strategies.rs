@@ -1,7 +1,7 @@
 //! Valid models at random, as strategies of [`proptest`](mod@proptest).
 //!
-//! Each takes the scales of what it makes, finite, positive, and not beyond 1e±50, so that its models suit the scene of a test. The simplest ones come first, and
-//! that is where failures shrink to.
+//! Each takes the scales of what it makes, finite, positive, and not beyond 1e±50, so that its models suit the scene of
+//! a test. The simplest ones come first, and that is where failures shrink to.
 
 use std::f64::consts::FRAC_PI_4;
 use std::sync::Arc;

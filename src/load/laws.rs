@@ -1,13 +1,13 @@
-//! What every [`LoadHistory`] must obey: one function for each law, for the tests of those who write one.
+//! The laws that every [`LoadHistory`] obeys: one function per law, to test implementations of the trait.
 //!
-//! Each takes the history and ascending times \[s\] at which to look, two or more, and says where a law is broken, and by
-//! what; the breakpoints between the times are looked at as well. [`all`] asks for every one.
+//! Each takes the history and two or more ascending times \[s\] of the check, and reports where the law is violated and
+//! by how much; breakpoints between the times are checked as well. [`all`] checks every law.
 //!
 //! ```
 //! use viscocontact::load::{Load, LoadHistory, laws};
 //!
 //! #[derive(Debug)]
-//! struct Knock; // a jump that nobody is told of
+//! struct Knock; // a jump without a breakpoint
 //!
 //! impl LoadHistory for Knock {
 //!     fn at(&self, t: f64) -> Load {
@@ -22,29 +22,29 @@
 
 use crate::load::{Load, LoadHistory, Tilt};
 
-/// A law that does not hold.
+/// A violation of a law.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{law}: {quantity} at t = {t:e} s found {found:e}, expected {expected:e}")]
 #[non_exhaustive]
 pub struct Violation {
-    /// Which law.
+    /// The law.
     pub law: &'static str,
-    /// Of what: force \[N\], approach \[m\], a tilt \[rad\], a load point \[m\], or a breakpoint \[s\].
+    /// The quantity: force \[N\], approach \[m\], a tilt \[rad\], a load point \[m\], or a breakpoint \[s\].
     pub quantity: &'static str,
-    /// When \[s\].
+    /// Time \[s\].
     pub t: f64,
-    /// What was found.
+    /// The value found.
     pub found: f64,
-    /// What the law asks for; where it is an inequality, its bound.
+    /// The value expected; the bound of an inequality.
     pub expected: f64,
 }
 
-/// The law holds, or where it does not.
+/// Whether a law holds; otherwise the violation.
 pub type Verdict = Result<(), Violation>;
 
-/// Agreement of formulas that are the same but for rounding, of the greatest value.
+/// Difference allowed between formulas that are equal but for rounding, relative to the greatest value.
 const SAME: f64 = 1e-10;
-/// More breakpoints than that between the times are not looked at.
+/// Greatest number of breakpoints between the times that are checked.
 const MOST_BREAKPOINTS: usize = 10_000;
 /// What bends less, of the greatest value, bends by rounding.
 const STRAIGHT: f64 = 1e-12;
@@ -60,7 +60,7 @@ const IS_A_LOAD: &str = "every load is one that a step accepts";
 /// Every law, at ascending `times` \[s\].
 ///
 /// # Errors
-/// The first law that is broken; or if the times are fewer than two, or do not ascend.
+/// The first violation; or if the times are fewer than two, or not ascending.
 pub fn all(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     let law = "(asked for) two times to look at, or more, ascend";
     let refused = |t: f64, found: f64, expected: f64| Err(Violation { law, quantity: "time", t, found, expected });
@@ -150,7 +150,8 @@ fn verdict(law: &'static str, t: f64, difference: Option<(&'static str, f64, f64
     }
 }
 
-/// Breakpoints are later than the time asked after, and finite; asked after any time before it, the next one is the same.
+/// Breakpoints are later than the time asked after, and finite; asked after any time before it, the next one is the
+/// same.
 ///
 /// # Errors
 /// Where they are not.
@@ -179,7 +180,8 @@ pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict
     Ok(())
 }
 
-/// The loads are ones that a step can be given: finite, forces not negative, before jumps and after them, and between the times.
+/// The loads are ones that a step can be given: finite, forces not negative, before jumps and after them, and between
+/// the times.
 ///
 /// # Errors
 /// Where they are not.
@@ -210,7 +212,8 @@ pub fn repeats_itself(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     Ok(())
 }
 
-/// Whether the load tends to `limit` towards `t` from a `side`, from as far as `room`: ever nearer, it must differ less.
+/// Whether the load tends to `limit` towards `t` from a `side`, from as far as `room`: ever nearer, it must differ
+/// less.
 fn tends(history: &dyn LoadHistory, t: f64, side: f64, room: f64, limit: &Load, scale: [f64; 3]) -> Verdict {
     let far = (1e-6 * room).max(1e-9 * t.abs());
     if far >= 0.5 * room {
