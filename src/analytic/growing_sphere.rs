@@ -43,7 +43,7 @@ pub struct GrowingSphere {
 /// Number of panels graded towards a singular end, each a tenth of the one before.
 const GRADES: i32 = 12;
 /// Decay times after which an exponential kernel is negligible: e^(−45) < 3e-20.
-const NEGLIGIBLE: f64 = 45.0;
+const MAX_DECAY_TIMES: f64 = 45.0;
 
 /// Greatest radius and force: with these and the range of spectra, products do not overflow.
 const MOST: f64 = 1e100;
@@ -161,7 +161,7 @@ impl GrowingSphere {
     /// × e^(−(to − s)/decay): Gauss–Legendre on panels graded towards `from`, cut at the corners and
     /// doubling in length away from `to`.
     fn integrate(&self, from: f64, to: f64, decay: f64, f: &dyn Fn(f64) -> f64) -> f64 {
-        let start = from.max(to - NEGLIGIBLE * decay);
+        let start = from.max(to - MAX_DECAY_TIMES * decay);
         if start >= to {
             return 0.0;
         }

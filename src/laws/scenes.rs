@@ -65,8 +65,8 @@ impl Scene {
     }
 }
 
-/// How far contact may reach from the axis of the indenter, of half the shorter side.
-const REACH: f64 = 0.35;
+/// Greatest contact radius, relative to half the shorter side of the grid.
+const MAX_CONTACT_RADIUS: f64 = 0.35;
 
 /// Indenters that reach no farther than they should under the force that brings a sphere of radius `radius` to a
 /// contact of radius `reach` \[m\].
@@ -96,7 +96,7 @@ pub fn scenes() -> impl Strategy<Value = Scene> {
     let cells = [10_usize..=24, 10_usize..=24];
     (scales, cells, 0.8..1.25_f64).prop_flat_map(|((length, modulus, time), cells, aspect)| {
         let (modulus, time) = (1e7 * 10f64.powf(modulus), 10f64.powf(time));
-        let reach = 0.5 * REACH * length * aspect.min(1.0);
+        let reach = 0.5 * MAX_CONTACT_RADIUS * length * aspect.min(1.0);
         let radius = around(10.0 * length)
             .prop_flat_map(move |radius| indenters(radius, reach).prop_map(move |shape| (radius, shape)));
         let off = prop_oneof![Just([0.0; 2]), [-1.0..1.0_f64, -1.0..1.0_f64]];

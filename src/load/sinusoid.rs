@@ -26,7 +26,7 @@ impl Sinusoid {
 impl LoadHistory for Sinusoid {
     fn at(&self, t: f64) -> Load {
         let (t, cycles) = (t.max(0.0), self.frequency * t.max(0.0));
-        // more cycles than there are numbers for: what is left of the last one
+        // if the number of cycles overflows, the fraction of the last one
         let cycles = if cycles.is_finite() { cycles } else { t % (1.0 / self.frequency) * self.frequency };
         let phase = cycles.fract();
         self.low.towards(&self.high, 0.5 + 0.5 * (TAU * phase).sin())

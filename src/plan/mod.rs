@@ -48,13 +48,13 @@ pub struct Plan {
 }
 
 /// Cells along a side of the coarse runs.
-const COARSE: usize = 24;
+const COARSE_CELLS: usize = 24;
 /// Ratio of the domain to the rectangle of the contact.
-const MARGIN: f64 = 1.12;
+const DOMAIN_TO_CONTACT: f64 = 1.12;
 /// Greatest number of domains tried, each at most ten times as large or as small as the last.
-const TRIES: usize = 60;
+const MAX_DOMAINS: usize = 60;
 /// A domain is accepted if the contact spans a fraction of it in this range.
-const FILLED: [f64; 2] = [0.45, 0.92];
+const CONTACT_FRACTION: [f64; 2] = [0.45, 0.92];
 /// Cells along a side of a plan: fewer do not resolve a contact, more exceed a workstation.
 const LEAST_CELLS: usize = 16;
 const MOST_CELLS: usize = 1 << 13;
@@ -76,19 +76,19 @@ impl Plan {
         Accuracy::target_of(accuracy.target())?;
         let coarse = Coarse { geometry, material, history, until, accuracy };
         let (reach, found) = coarse.domain()?;
-        let lengths = reach.map(|half| 2.0 * MARGIN * half);
+        let lengths = reach.map(|half| 2.0 * DOMAIN_TO_CONTACT * half);
 
-        // error(n) = second (COARSE/n)² + first COARSE/n
+        // error(n) = second (COARSE_CELLS/n)² + first COARSE_CELLS/n
         let (first, target) = (found.error.singular, accuracy.space());
         let second = (found.error.approach.max(found.error.greatest_pressure) - first).max(0.0);
         let shrink = (first + (first * first + 4.0 * second * target).sqrt()) / (2.0 * target);
-        let wanted = (COARSE as f64 * shrink).ceil();
+        let wanted = (COARSE_CELLS as f64 * shrink).ceil();
         if wanted > MOST_CELLS as f64 {
             let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
             return Err(Error::CountOutOfRange { field, value: wanted.min(1e18) as usize, allowed });
         }
         let cells = smooth_size((wanted as usize).max(LEAST_CELLS));
-        let ratio = COARSE as f64 / cells as f64;
+        let ratio = COARSE_CELLS as f64 / cells as f64;
         let grid = Grid::new([cells; 2], lengths)?;
         let finer = |error: f64| (error - first) * ratio * ratio + first * ratio;
         let error = SpatialError {
@@ -199,17 +199,17 @@ impl Coarse<'_> {
     /// Runs on domains until the contact fills one well; returns its extent.
     fn domain(&self) -> Result<([f64; 2], Found)> {
         let mut lengths = [self.first_length()?; 2];
-        for _ in 0..TRIES {
+        for _ in 0..MAX_DOMAINS {
             match self.run(lengths) {
                 Err(Error::ContactAtEdge { .. }) => lengths = lengths.map(|length| 1.7 * length),
                 Err(Error::NothingToTouch { .. }) => lengths = lengths.map(|length| 0.3 * length),
                 Err(error) => return Err(error),
                 Ok(found) => {
                     let filled = [0, 1].map(|axis| 2.0 * found.reach[axis] / lengths[axis]);
-                    if filled.iter().all(|part| (FILLED[0]..=FILLED[1]).contains(part)) {
+                    if filled.iter().all(|part| (CONTACT_FRACTION[0]..=CONTACT_FRACTION[1]).contains(part)) {
                         return Ok((found.reach, found));
                     }
-                    let least = 2.0 / COARSE as f64;
+                    let least = 2.0 / COARSE_CELLS as f64;
                     lengths = [0, 1].map(|axis| lengths[axis] * (filled[axis].max(least) * 1.3).clamp(0.1, 1.7));
                 }
             }
@@ -218,7 +218,7 @@ impl Coarse<'_> {
     }
 
     fn run(&self, lengths: [f64; 2]) -> Result<Found> {
-        let grid = Grid::new([COARSE; 2], lengths)?;
+        let grid = Grid::new([COARSE_CELLS; 2], lengths)?;
         let mut contact = self.builder(grid).build()?;
         let mut found =
             Found { reach: [0.0; 2], steps: 0, convolutions: 0.0, error: SpatialError::default(), terms: 0 };
