@@ -1,11 +1,11 @@
-//! What is told to `tracing`, with the feature of that name; nothing without it.
+//! Events for `tracing`, with the feature of that name; nothing without it.
 
 #[cfg(feature = "tracing")]
 use tracing::{debug, warn};
 
 use crate::Error;
 
-/// A step was found too long, and is tried again, shorter.
+/// A step was too long, and is repeated with a shorter one.
 #[inline]
 pub(crate) fn rejected(time: f64, dt: f64, error: f64, tolerance: f64) {
     #[cfg(feature = "tracing")]
@@ -23,7 +23,7 @@ pub(crate) fn failed(time: f64, dt: f64, error: &Error) {
     let _ = (time, dt, error);
 }
 
-/// Another part of the grid is computed.
+/// The computed part of the grid changed.
 #[inline]
 pub(crate) fn moved(from: [usize; 2], to: [usize; 2]) {
     #[cfg(feature = "tracing")]

@@ -2,12 +2,12 @@
 
 use crate::error::{Error, Result, positive};
 
-/// Most cells a grid may have: a field of 8 bytes a cell can be addressed.
+/// Greatest number of cells of a grid: a field of 8 bytes per cell can be addressed.
 const MOST_CELLS: usize = isize::MAX as usize / size_of::<f64>();
 
 /// A rectangular grid of equal cells in the common plane of contact, centred on the origin.
 ///
-/// Fields hold one value a cell, constant over the cell, row-major with x2 fastest: the cell
+/// Fields hold one value per cell, constant over the cell, row-major with x2 fastest: the cell
 /// `[i, j]` is entry `i * cells()[1] + j`.
 ///
 /// ```
@@ -23,7 +23,8 @@ const MOST_CELLS: usize = isize::MAX as usize / size_of::<f64>();
 pub struct Grid {
     cells: [usize; 2],
     spacing: [f64; 2],
-    /// Twice the coordinate of the first cell's centre in units of the spacing: 1 − cells, unless it is a part of a grid.
+    /// Twice the coordinate of the centre of the first cell, in units of the spacing: 1 − cells, unless this is a part
+    /// of a grid.
     start: [i64; 2],
 }
 
@@ -31,8 +32,8 @@ impl Grid {
     /// A grid of `cells[0]` × `cells[1]` cells on a rectangle of `lengths[0]` × `lengths[1]` \[m\].
     ///
     /// # Errors
-    /// If a count is zero or there are so many cells that a field of 8 bytes a cell cannot be addressed, more than 2⁶⁰ − 1
-    /// where addresses have 64 bits, or a length is not finite and positive.
+    /// If a count is zero or there are so many cells that a field of 8 bytes per cell cannot be addressed, more than
+    /// 2⁶⁰ − 1 on 64-bit systems, or a length is not finite and positive.
     pub fn new(cells: [usize; 2], lengths: [f64; 2]) -> Result<Grid> {
         for (field, count) in [("cells along x1", cells[0]), ("cells along x2", cells[1])] {
             if count == 0 {
@@ -41,7 +42,7 @@ impl Grid {
         }
         if cells[0].checked_mul(cells[1]).is_none_or(|all| all > MOST_CELLS) {
             let value = cells[0].saturating_mul(cells[1]);
-            let allowed = "few enough for a field of 8 bytes a cell to be addressed (2^60 - 1 with 64 bits)";
+            let allowed = "few enough for a field of 8 bytes per cell to be addressed (2^60 - 1 on 64-bit systems)";
             return Err(Error::CountOutOfRange { field: "cells of the grid", value, allowed });
         }
         positive("length along x1", lengths[0])?;
@@ -51,19 +52,20 @@ impl Grid {
             positive("cell side along x2", lengths[1] / cells[1] as f64)?,
         ];
         positive("cell area", spacing[0] * spacing[1])?;
-        // as they are told, cell side times count, which may round beyond the range
+        // as `lengths` computes them: side times count may overflow by rounding
         positive("length along x1", spacing[0] * cells[0] as f64)?;
         positive("length along x2", spacing[1] * cells[1] as f64)?;
         Ok(Grid { cells, spacing, start: cells.map(|count| 1 - count as i64) })
     }
 
-    /// The rectangle of `cells` that begins with the cell `first`, as a grid of its own; coordinates are those of the whole.
+    /// The rectangle of `cells` that begins at the cell `first`, as a grid of its own with the coordinates of the
+    /// whole.
     pub(crate) fn part(&self, first: [usize; 2], cells: [usize; 2]) -> Grid {
         let start = [0, 1].map(|axis| self.start[axis] + 2 * first[axis] as i64);
         Grid { cells, spacing: self.spacing, start }
     }
 
-    /// The centred grid of cells known to be valid ones, as those of another grid.
+    /// The centred grid of cells known to be valid, as those of another grid are.
     pub(crate) fn of_spacing(cells: [usize; 2], spacing: [f64; 2]) -> Grid {
         Grid { cells, spacing, start: cells.map(|count| 1 - count as i64) }
     }
@@ -113,7 +115,7 @@ impl Grid {
     }
 }
 
-/// How a grid is kept in a file of the crate's own, which is checked as a whole; users' grids are made by [`Grid::new`].
+/// The grid in a checkpoint, which is validated as a whole; other grids are made by [`Grid::new`].
 #[cfg(feature = "checkpoint")]
 pub(crate) mod saved {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -144,9 +146,9 @@ mod tests {
         assert_eq!(grid.center(0, 3), [-0.4, 0.75]);
     }
 
-    /// The side of a cell may round up, and the sum of all of them beyond the range.
+    /// The side of a cell may round up, so that the sum of all of them overflows.
     #[test]
-    fn lengths_are_numbers_however_they_round() {
+    fn lengths_are_finite_however_they_round() {
         let (mut made, mut refused) = (0, 0);
         for cells in 1..200 {
             match Grid::new([cells, 1], [f64::MAX, 1e-10]) {
@@ -164,7 +166,7 @@ mod tests {
     }
 
     #[test]
-    fn bad_grids_are_refused_by_name() {
+    fn invalid_grids_are_rejected_by_name() {
         let field = |result: Result<Grid>| match result.unwrap_err() {
             Error::OutOfRange { field, .. } | Error::CountOutOfRange { field, .. } => field,
             other => panic!("unexpected {other}"),

@@ -1,4 +1,5 @@
-//! Sums in lanes: additions need not wait for each other, and rounding grows less with the number of values.
+//! Sums in lanes: additions are independent of each other, and rounding errors grow more slowly with the number of
+//! values.
 
 const LANES: usize = 8;
 
@@ -38,8 +39,8 @@ pub(crate) fn sum_of_pairs(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) ->
     lanes.into_iter().sum::<f64>() + a_rest.iter().zip(b_rest).map(|(&a, &b)| f(a, b)).sum::<f64>()
 }
 
-/// Sums over a field that tell one from another: of its absolute values, these weighted along x1 and x2, their squares, and the
-/// absolute values with weights that have no symmetry, so that a field that is turned or mirrored is another one.
+/// Fingerprint of a field: the sums of its absolute values, of these weighted along x1 and x2, of their squares, and of
+/// the absolute values with weights without symmetry, which distinguishes a field from its rotated or mirrored copies.
 #[cfg(feature = "checkpoint")]
 pub(crate) fn moments(field: impl Iterator<Item = f64>, columns: usize) -> Vec<f64> {
     let mut sums = vec![0.0; 5];
@@ -63,7 +64,7 @@ mod tests {
     #[cfg(feature = "checkpoint")]
     #[test]
     fn fields_that_are_turned_or_mirrored_are_told_apart() {
-        // bars through the middle: all other sums are the same
+        // bars through the middle: only the last sum differs
         for (long, short) in [(3, 1), (5, 1), (5, 3), (9, 1), (9, 7), (15, 3)] {
             let bar = |half1: i32, half2: i32| {
                 let inside = move |k: i32| (k / 31 - 15).abs() <= half1 && (k % 31 - 15).abs() <= half2;

@@ -7,7 +7,7 @@ use crate::hereditary::RememberedField;
 use crate::memory;
 use crate::rheology::{Material, is_known};
 
-/// The profile g(x) of a one-dimensional foundation that stands for an axisymmetric indenter f(r):
+/// The profile g(x) on a one-dimensional foundation that is equivalent to an axisymmetric indenter f(r):
 /// g(x) = |x| ∫ f′(r)/√(x² − r²) dr over 0 < r < |x|.
 #[derive(Clone)]
 pub struct Profile {
@@ -64,7 +64,7 @@ impl fmt::Debug for Profile {
 /// the profile g(x). Force, approach and contact radius are those of the three-dimensional contact, as
 /// long as that is a single circle; the pressure follows from the line load q by Abel's integral.
 /// In time it advances by the exponential rule, second order in the step; in space it is second order
-/// in the width of the elements: take both fine.
+/// in the width of the elements: choose both fine.
 ///
 /// ```
 /// use viscocontact::analytic::{AxisymmetricContact, Hertz, Profile};
@@ -90,7 +90,7 @@ pub struct AxisymmetricContact {
     displacement: RememberedField,
     /// Line load q \[N/m\].
     load: Vec<f64>,
-    /// g + u_old: the approach at which each element is touched; of the last step, and of the one being tried.
+    /// g + u_old: the approach at which each element comes into contact, in the last step and in the current one.
     touch: Vec<f64>,
     trial_touch: Vec<f64>,
 }
@@ -99,8 +99,8 @@ impl AxisymmetricContact {
     /// A foundation of `elements` elements from the axis to `reach` \[m\], undisturbed and without load.
     ///
     /// # Errors
-    /// If there are no elements, the reach is not positive or more than 1e300 m, no value of the profile is finite or one is NaN or
-    /// −∞, or the material has no exponential series. If there is no memory for the elements.
+    /// If there are no elements, the reach is not positive or more than 1e300 m, no value of the profile is finite or
+    /// one is NaN or −∞, or the material has no exponential series. If there is not enough memory for the elements.
     pub fn new(profile: &Profile, material: &Material, elements: usize, reach: f64) -> Result<AxisymmetricContact> {
         if elements == 0 {
             return Err(Error::CountOutOfRange { field: "elements", value: 0, allowed: "1 or more" });

@@ -6,7 +6,7 @@ use crate::load::{Load, LoadHistory, StepLoad};
 use crate::quadrature::GaussLegendre;
 use crate::rheology::{CreepSpectrum, Material, RelaxationSpectrum};
 
-/// A sphere pressed onto a viscoelastic half-space by a force that never lets the contact shrink.
+/// A sphere on a viscoelastic half-space under a force for which the contact never shrinks.
 ///
 /// While the contact grows, the elastic solution holds with its moduli replaced by hereditary operators
 /// (Lee & Radok, J. Appl. Mech. 27, 1960; Ting, J. Appl. Mech. 33, 1966):
@@ -35,34 +35,34 @@ pub struct GrowingSphere {
     creep: CreepSpectrum,
     relaxation: RelaxationSpectrum,
     load: Arc<dyn LoadHistory>,
-    /// The force of a step load, for which the hereditary integral is closed.
+    /// The force of a step load, whose hereditary integral has a closed form.
     step: Option<f64>,
     rule: GaussLegendre,
 }
 
-/// Panels by which an integral is graded towards a singular end, each a tenth of the one before.
+/// Number of panels graded towards a singular end, each a tenth of the one before.
 const GRADES: i32 = 12;
-/// Decay times after which an exponential kernel is spent: e^(−45) < 3e-20.
-const SPENT: f64 = 45.0;
+/// Decay times after which an exponential kernel is negligible: e^(−45) < 3e-20.
+const MAX_DECAY_TIMES: f64 = 45.0;
 
-/// With radii and forces up to this, and spectra as they are, what is multiplied stays a number.
+/// Greatest radius and force: with these and the range of spectra, products do not overflow.
 const MOST: f64 = 1e100;
 
 impl GrowingSphere {
     /// A sphere of `radius` \[m\] under `force` \[N\] applied at t = 0 and held.
     ///
     /// # Errors
-    /// If the radius is not in \[1e-100, 1e100\] m, the force not in (0, 1e100] N, the material has no exponential series, or
-    /// no elastic response.
+    /// If the radius is not in \[1e-100, 1e100\] m, the force not in (0, 1e100] N, the material has no exponential
+    /// series, or no elastic response.
     pub fn step(radius: f64, material: &Material, force: f64) -> Result<GrowingSphere> {
         positive("force", force)?;
-        within("force", force, force <= MOST, "1e100 N at most")?;
+        within("force", force, force <= MOST, "at most 1e100 N")?;
         let load = StepLoad::new(Load::force(force))?;
         Ok(GrowingSphere { step: Some(force), ..GrowingSphere::new(radius, material, load)? })
     }
 
-    /// A sphere of `radius` \[m\] under the forces of `load` from t = 0 on, nothing before. The answer is
-    /// right at the times up to which the contact radius has never decreased.
+    /// A sphere of `radius` \[m\] under the force of `load` from t = 0 on, and none before. The
+    /// solution is valid up to the time at which the contact radius first decreases.
     ///
     /// # Errors
     /// If the radius is not in \[1e-100, 1e100\] m, the material has no exponential series or no elastic
@@ -83,8 +83,8 @@ impl GrowingSphere {
         Ok(GrowingSphere { radius, creep, relaxation, load: Arc::new(load), step: None, rule: GaussLegendre::new(20) })
     }
 
-    /// Contact radius a \[m\] at time `t` \[s\], 0 before t = 0; NaN where the history gives no finite force, +∞ where it has
-    /// crept beyond the range of `f64`.
+    /// Contact radius a \[m\] at time `t` \[s\], 0 before t = 0; NaN where the force of the history is not finite, +∞
+    /// where the creep overflows.
     pub fn contact_radius(&self, t: f64) -> f64 {
         if t < 0.0 {
             return 0.0;
@@ -112,7 +112,7 @@ impl GrowingSphere {
     }
 
     /// Pressure \[Pa\] at the distance `r` ≥ 0 from the centre \[m\] and time `t` \[s\]; NaN where the contact
-    /// radius is no finite number.
+    /// radius is not finite.
     pub fn pressure(&self, r: f64, t: f64) -> f64 {
         let now = self.contact_radius(t);
         if !now.is_finite() {
@@ -131,7 +131,7 @@ impl GrowingSphere {
             .relaxation
             .terms()
             .iter()
-            // the quotient of a modulus and a time may be no number, that of the integral and the time is a depth
+            // the quotient of a modulus and a time may overflow, that of the integral and the time is a depth
             .map(|&(e, tau)| e * (self.integrate(entry, t, tau, &|s| depth(s) * ((s - t) / tau).exp()) / tau))
             .sum();
         2.0 / (PI * self.radius) * (glassy * depth(t) - relaxed)
@@ -144,7 +144,7 @@ impl GrowingSphere {
         }
     }
 
-    /// When the contact first reached `r`.
+    /// The time at which the contact first reached `r`.
     fn entry_time(&self, r: f64, t: f64) -> f64 {
         if self.contact_radius(0.0) >= r {
             return 0.0;
@@ -161,11 +161,11 @@ impl GrowingSphere {
     /// × e^(−(to − s)/decay): Gauss–Legendre on panels graded towards `from`, cut at the corners and
     /// doubling in length away from `to`.
     fn integrate(&self, from: f64, to: f64, decay: f64, f: &dyn Fn(f64) -> f64) -> f64 {
-        let start = from.max(to - SPENT * decay);
+        let start = from.max(to - MAX_DECAY_TIMES * decay);
         if start >= to {
             return 0.0;
         }
-        // (edge, whether the integrand may start like a root there)
+        // (edge, whether the integrand may behave like a square root there)
         let mut edges = vec![(start, start == from), (to, false)];
         let mut age = decay;
         while age < to - start {

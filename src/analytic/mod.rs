@@ -1,4 +1,4 @@
-//! Reference solutions, for tests and for users who want to check a scene.
+//! Reference solutions, for tests and to verify a scene.
 //!
 //! | solution | scene |
 //! |---|---|

@@ -36,7 +36,7 @@ impl RigidPunch {
         positive("contact modulus", modulus)?;
         non_negative("force", force)?;
         let inside = eccentricity.abs() <= radius / 3.0;
-        within("eccentricity", eccentricity, inside, "in [-R/3, R/3], else the contact opens")?;
+        within("eccentricity", eccentricity, inside, "in [-R/3, R/3], otherwise the contact opens")?;
         Ok(RigidPunch {
             radius,
             eccentricity,

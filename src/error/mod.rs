@@ -226,20 +226,6 @@ pub enum Error {
         known_until: f64,
     },
 
-    /// A step is shorter than the times that the series of the material was fitted over, which the first step chose by
-    /// its own length. Say from the start which times matter: [`Builder::times`](crate::contact::Builder::times).
-    #[error(
-        "at t = {time} s: a step of {dt:e} s is shorter than the material's series resolves, {known_from:e} s, as the first step chose it: say with Builder::times which times matter"
-    )]
-    BelowMaterial {
-        /// End of the step \[s\].
-        time: f64,
-        /// Length of the step \[s\].
-        dt: f64,
-        /// Shortest time that the series was fitted to \[s\].
-        known_from: f64,
-    },
-
     /// The history of a direct sum would exceed [`Settings::history_limit`](crate::contact::Settings). Raise the limit,
     /// or use [`TimeRule::Exponential`](crate::contact::TimeRule::Exponential), whose memory does not grow.
     #[error(

@@ -3,9 +3,9 @@
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 
-/// What can be cut back to a length, to go on from there.
+/// A writer that can be truncated, to continue from there.
 pub(crate) trait Cut: Write {
-    /// Drops everything behind `length` bytes.
+    /// Truncates to `length` bytes.
     fn cut(&mut self, length: u64) -> io::Result<()>;
 }
 
@@ -16,12 +16,12 @@ impl Cut for File {
     }
 }
 
-/// A file of whole pieces: one whose write fails, as on a full disk, leaves the file as it was before.
+/// A file of complete pieces: a write that fails, as on a full disk, leaves the file unchanged.
 #[derive(Debug)]
 pub(crate) struct Appending<F> {
     file: F,
     length: u64,
-    /// Whether a part of a failed piece could not be cut off yet.
+    /// Whether a part of a failed piece is still to be cut off.
     torn: bool,
 }
 
@@ -31,7 +31,7 @@ impl<F: Cut> Appending<F> {
         Appending { file, length: 0, torn: false }
     }
 
-    /// Writes a piece and hands it to the system, or fails and leaves nothing of it in the file.
+    /// Writes and flushes a piece, or fails and leaves nothing of it in the file.
     pub(crate) fn append(&mut self, piece: &[u8]) -> io::Result<()> {
         if self.torn {
             self.file.cut(self.length)?;
@@ -43,7 +43,7 @@ impl<F: Cut> Appending<F> {
                 Ok(())
             }
             Err(error) => {
-                // what cannot be cut off now is cut off before the next piece
+                // if this fails, the part is cut off before the next piece
                 self.torn = self.file.cut(self.length).is_err();
                 Err(error)
             }
@@ -61,7 +61,7 @@ impl<F: Cut> Appending<F> {
 mod tests {
     use super::*;
 
-    /// A file in memory on a disk with room for `room` bytes, which may also refuse to be cut.
+    /// A file in memory on a disk with room for `room` bytes, whose truncation may also fail.
     #[derive(Default)]
     struct Disk {
         bytes: Vec<u8>,
@@ -97,7 +97,7 @@ mod tests {
         }
     }
 
-    /// Disks that are full, for a while, from any byte on: the file holds the pieces that were reported as written.
+    /// Disks that are temporarily full, from any byte on: the file holds the pieces that were reported as written.
     #[test]
     fn the_file_holds_what_was_reported_as_written() {
         let (mut failures, mut recoveries) = (0, 0);

@@ -1,4 +1,4 @@
-//! Files that are either complete or not there, and files that grow by whole pieces.
+//! Files that are written completely or not at all, and files that grow by complete pieces.
 
 use std::fmt::Display;
 use std::path::Path;
@@ -17,7 +17,7 @@ pub(crate) use part::Part;
 #[cfg(any(feature = "checkpoint", feature = "npy", feature = "plot", feature = "vtk"))]
 pub(crate) use part::replace;
 
-/// The error of a file.
+/// The error of writing a file.
 pub(crate) fn failed(path: &Path, what: impl Display) -> Error {
     Error::Output { path: path.display().to_string(), what: what.to_string() }
 }

@@ -1,4 +1,4 @@
-//! A file under another name until it is complete.
+//! A file that has a temporary name until it is complete.
 
 use std::fs::{self, File, FileType};
 use std::io::{self, BufWriter, ErrorKind, IntoInnerError};
@@ -9,10 +9,10 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use super::failed;
 use crate::error::{Error, Result};
 
-/// Tells the files that this process is writing from each other.
+/// Distinguishes the files that this process is writing.
 static NUMBER: AtomicU64 = AtomicU64::new(0);
 
-/// A file that is being written: its name has the number of the process and `.part` behind that of the file to be, so
+/// A file that is being written. Its name is that of the final file, followed by the process number and `.part`, so
 /// that no two writers share it.
 #[derive(Debug)]
 pub(crate) struct Part {
@@ -21,12 +21,12 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// Creates the file beside the one that it will replace, a link followed. Whatever is no regular file is not
+    /// Creates the file in the folder of the one that it will replace; links are followed. Only regular files are
     /// replaced: [`Error::NotAFile`].
     pub(crate) fn create(path: &Path) -> Result<(Part, File)> {
-        path.file_name().ok_or_else(|| failed(path, "it names no file"))?;
+        path.file_name().ok_or_else(|| failed(path, "the path has no file name"))?;
         check_regular(path)?;
-        // a link stays, and the file that it leads to is replaced
+        // a link remains, and its target is replaced
         let path = match path.is_symlink() {
             true => fs::canonicalize(path).map_err(|error| failed(path, error))?,
             false => path.to_owned(),
@@ -37,34 +37,35 @@ impl Part {
             let part = path.with_file_name(name);
             match File::create_new(&part) {
                 Ok(file) => return Ok((Part { path, part }, file)),
-                // left by a killed process of the same number
+                // left by a killed process with the same number
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(failed(&path, error)),
             }
         }
     }
 
-    /// Gives the complete file its name, once it is on the medium.
+    /// Syncs the complete file and renames it to its final name.
     pub(crate) fn place(&self, file: File) -> Result<()> {
         let unusable = |error: io::Error| failed(&self.path, error);
         file.sync_all().map_err(unusable)?;
-        drop(file); // some systems rename no open file
+        drop(file); // some systems do not rename open files
         check_regular(&self.path)?;
         fs::rename(&self.part, &self.path).map_err(unusable)?;
-        // the new name is on the medium when its folder is, on systems that can say so; the file is complete in any case
+        // the new name is durable once its folder is synced, where the system can do so; the file is complete in any
+        // case
         let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let _ = File::open(folder).and_then(|folder| folder.sync_all());
         Ok(())
     }
 
-    /// Removes it after an error, which matters more than that of the removal.
+    /// Removes the file after an error, ignoring errors of the removal.
     pub(crate) fn remove(&self) {
         let _ = fs::remove_file(&self.part);
     }
 }
 
-/// Writes a file under another name and gives it its own when it is complete and on the medium. The file that was of this
-/// name before is replaced then, and not touched if anything fails; of several writers at once the last one to finish wins.
+/// Writes a file under a temporary name, syncs it and renames it to `path`. A file of this name is replaced then, and
+/// is unchanged if anything fails; of several concurrent writers the last one to finish wins.
 pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
     let (part, file) = Part::create(path)?;
     let mut writer = BufWriter::with_capacity(1 << 18, file);
@@ -76,7 +77,7 @@ pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> i
     placed
 }
 
-/// Refuses a path at which there is something other than a regular file, or a link to one.
+/// Rejects a path at which there is something other than a regular file, or a link to one.
 fn check_regular(path: &Path) -> Result<()> {
     let kind = match fs::metadata(path) {
         Ok(found) if found.is_file() => return Ok(()),
@@ -101,7 +102,7 @@ fn kind(found: FileType) -> &'static str {
             return kind;
         }
     }
-    if found.is_dir() { "a folder" } else { "something else than a file" }
+    if found.is_dir() { "a folder" } else { "a special file" }
 }
 
 #[cfg(test)]
@@ -197,7 +198,7 @@ mod tests {
         assert!(fs::metadata("/dev/null").unwrap().file_type().is_char_device());
         assert_eq!(count(), before);
 
-        // a link stays, and leads to the new file; the part is made where that is
+        // a link remains and leads to the new file; the part is created beside that
         fs::write(at("folder/file"), b"old").unwrap();
         symlink("folder/file", at("link")).unwrap();
         symlink("link", at("again")).unwrap();

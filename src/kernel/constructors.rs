@@ -1,4 +1,4 @@
-//! The kernels there are.
+//! Constructors of the kernels.
 
 use std::sync::Arc;
 
@@ -7,20 +7,21 @@ use super::layout::{Ends, Layout};
 use super::love::Love;
 use super::positive::least_eigenvalue;
 use super::strip::{Strip, wave_number};
-use super::{InfluenceKernel, MAKING};
+use super::{InfluenceKernel, MEMORY_WHILE_MADE};
 use crate::Grid;
 use crate::error::{Error, KernelError, Result, within};
 use crate::memory;
 
-/// How unequal mirrored coefficients may be, of the greatest.
+/// Greatest difference of mirrored coefficients, relative to the greatest coefficient.
 const UNEQUAL: f64 = 1e-12;
-/// Energy that a pressure may gain by rounding, of the most that any spends.
+/// Negative eigenvalues below this are rounding, relative to the greatest eigenvalue.
 const ROUNDING: f64 = 1e-10;
-/// Lengths of a half-space \[m\], and aspect ratios of its cells: with these, coefficients and their sums are numbers.
+/// Sides of the cells of a half-space \[m\], and their ratios: within these, coefficients and their sums do not
+/// overflow.
 const RANGE: std::ops::RangeInclusive<f64> = 1e-100..=1e100;
-/// Greatest influence of a user's kernel \[m\].
+/// Greatest influence of a user-defined kernel \[m\].
 const GREATEST: f64 = 1e100;
-/// Greatest datum of a line load \[m\]: no grid with such cells is longer.
+/// Greatest datum of a line load \[m\]: no grid of such cells is longer.
 const FARTHEST_DATUM: f64 = 1e120;
 
 impl InfluenceKernel {
@@ -32,10 +33,11 @@ impl InfluenceKernel {
     /// and for cells of any aspect ratio up to 1000, zero-padded so that the convolution is
     /// linear.
     ///
-    /// Cost, at the first use: one Love integral a cell and one transform.
+    /// Cost, at the first use: one Love integral per cell and one transform.
     ///
     /// # Errors
-    /// If a side of a cell, or their ratio, is not in \[1e-100, 1e100\] (m): the coefficients would leave the range of `f64`.
+    /// If a side of a cell, or their ratio, is not in \[1e-100, 1e100\] (m): the coefficients would leave the range of
+    /// `f64`.
     pub fn half_space(grid: &Grid) -> Result<InfluenceKernel> {
         representable(grid)?;
         Ok(InfluenceKernel::new(grid, Influence::HalfSpace(Love::new(grid.spacing()))))
@@ -44,10 +46,10 @@ impl InfluenceKernel {
     /// A half-space that is periodic along both axes, the grid being one period: Westergaard's K p = 2p/|q| for each
     /// wave q of the pressure (Trans. ASME J. Appl. Mech. 6, 1939).
     ///
-    /// The mean of the displacement has no meaning on an endless surface; it is the datum, and zero: the approach is
-    /// measured from where a rigid plane rests on the mean of the undeformed surface. It cannot exceed that of full contact.
-    /// Nothing is padded: a convolution costs a third of the half-space's. On a grid of N × 1 cells this is the periodic
-    /// contact in plane strain.
+    /// The mean displacement of an endless surface is undetermined; it is the datum, and zero: the approach is measured
+    /// from a rigid plane at the mean of the undeformed surface. It cannot exceed that of full contact. Without
+    /// padding, a convolution costs a third of the half-space's. On a grid of N × 1 cells this is the periodic contact
+    /// in plane strain.
     ///
     /// ```
     /// use viscocontact::{Grid, InfluenceKernel};
@@ -74,16 +76,16 @@ impl InfluenceKernel {
         Ok(InfluenceKernel::new(grid, Influence::Periodic))
     }
 
-    /// A half-space that is periodic along `axis` (0 is x1, 1 is x2), the grid being one period, and loaded on the grid only
-    /// along the other: K0(κ |x|) for each wave κ along the axis, as for a line load for the mean.
+    /// A half-space that is periodic along `axis` (0 is x1, 1 is x2), the grid being one period, and loaded on the grid
+    /// only along the other: K0(κ |x|) for each wave κ along the axis, as for a line load for the mean.
     ///
-    /// A load on an endless line displaces a half-space without end. `datum` \[m\] is the distance from the line at which
-    /// the surface counts as unmoved, and from which the approach is measured: twice as far, and the approach is
-    /// greater by (2 ln 2/π) C times the force on a unit of length.
+    /// The displacement of a half-space under a load on an endless line is unbounded. `datum` \[m\] is the distance
+    /// from the line at which the displacement is zero, and from which the approach is measured: with twice the
+    /// distance the approach is greater by (2 ln 2/π) C times the force per unit length.
     ///
     /// # Errors
-    /// If `axis` is neither 0 nor 1, or `datum` is not finite, or less than the length of the grid along the other axis, or more
-    /// than 1e120 m; if a side of a cell, or their ratio, is not in \[1e-100, 1e100\] (m).
+    /// If `axis` is neither 0 nor 1, or `datum` is not finite, or less than the length of the grid along the other
+    /// axis, or more than 1e120 m; if a side of a cell, or their ratio, is not in \[1e-100, 1e100\] (m).
     pub fn periodic_along(grid: &Grid, axis: usize, datum: f64) -> Result<InfluenceKernel> {
         if axis > 1 {
             return Err(Error::CountOutOfRange { field: "periodic axis", value: axis, allowed: "0 (x1) or 1 (x2)" });
@@ -95,14 +97,14 @@ impl InfluenceKernel {
     /// A line contact, in plane strain: a grid of N × 1 cells, and pressures that do not depend on x2,
     /// (K p)(x) = −(2/π) ∫ ln(|x − s|/d) p(s) ds (K. L. Johnson, Contact Mechanics, 1985, section 2.3).
     ///
-    /// What is uniform along x2 is periodic there, and has no edge. The length of the grid along x2 is that on which the force acts: with 1 m, forces are forces on a metre. `datum` is
-    /// the distance d \[m\] from a line load at which the surface counts as unmoved, from which the approach is measured:
-    /// pressures and gaps do not depend on it.
+    /// A contact uniform along x2 is periodic there, and has no edge. The force acts on the length of the grid along
+    /// x2: with 1 m, forces are forces per metre. `datum` is the distance d \[m\] from a line load at which the
+    /// displacement is zero, and from which the approach is measured: pressures and gaps do not depend on it.
     ///
     /// # Errors
-    /// If the grid has more than one cell along x2, or `datum` is not finite, or less than the length of the grid along x1: a
-    /// pressure would pull the surface up. If it is more than 1e120 m, or a side of a cell, or their ratio, is not in
-    /// \[1e-100, 1e100\] (m).
+    /// If the grid has more than one cell along x2, or `datum` is not finite, or less than the length of the grid along
+    /// x1: a pressure would pull the surface up. If it is more than 1e120 m, or a side of a cell, or their ratio, is
+    /// not in \[1e-100, 1e100\] (m).
     pub fn line(grid: &Grid, datum: f64) -> Result<InfluenceKernel> {
         if grid.cells()[1] != 1 {
             let field = "cells along x2 of a line contact";
@@ -111,28 +113,28 @@ impl InfluenceKernel {
         Ok(InfluenceKernel::new(grid, Influence::Strip { periodic: 1, strip: strip(grid, 0, datum)? }))
     }
 
-    /// A body of the user's: `coefficient(i, j)` \[m\] is the displacement, over C, of a cell under a unit of pressure on the
-    /// cell i cells away along x1 and j along x2. Asked for all |i|, |j| below the number of cells.
+    /// A user-defined body: `coefficient(i, j)` \[m\] is the displacement, over C, of a cell under a unit pressure
+    /// on the cell i cells away along x1 and j along x2. It is called for all |i|, |j| below the number of cells.
     ///
-    /// A layer, a coating, a point load of another resolution: whatever answers a pressure in proportion, everywhere
-    /// alike, and mirrored when the load is.
+    /// A layer, a coating, a point load of another resolution: any body whose response is linear, the same at every
+    /// point, and mirrored when the load is.
     ///
     /// # Errors
-    /// If a coefficient is not finite, or beyond ±1e100 m, or not that of its mirror images, or if a pressure is found that would gain energy: the
-    /// spectrum of K is positive, or else its least eigenvalue is sought by Lanczos' method, which finds any that is
-    /// far below zero. If there is no memory for coefficients and spectrum.
+    /// If a coefficient is not finite, or beyond ±1e100 m, or differs from those of its mirror images, or if K is not
+    /// positive definite: unless its spectrum is positive, its least eigenvalue is estimated by the Lanczos method,
+    /// which detects any far below zero. If there is not enough memory for coefficients and spectrum.
     pub fn from_coefficients(grid: &Grid, coefficient: impl Fn(isize, isize) -> f64) -> Result<InfluenceKernel> {
         let [n1, n2] = grid.cells();
         let layout = Layout { cells: grid.cells(), ends: [Ends::Free; 2], folded: [false; 2] };
         let coefficients = (grid.len() * size_of::<f64>()) as u128;
-        memory::check("a kernel of coefficients", 2 * coefficients + MAKING * layout.operator_bytes())?;
+        memory::check("a kernel of coefficients", 2 * coefficients + MEMORY_WHILE_MADE * layout.operator_bytes())?;
         let mut values = Vec::with_capacity(grid.len());
         for i in 0..n1 as isize {
             for j in 0..n2 as isize {
                 let value = coefficient(i, j);
-                // NaN is neither
+                // also rejects NaN
                 if !(-GREATEST..=GREATEST).contains(&value) {
-                    let allowed = "finite, and 1e100 m in absolute value at most";
+                    let allowed = "finite, and at most 1e100 m in absolute value";
                     return Err(KernelError::InvalidInfluence { of: "coefficient", at: [i, j], value, allowed }.into());
                 }
                 values.push(value);
@@ -157,7 +159,7 @@ impl InfluenceKernel {
         let symbol = kernel.influence.symbol(grid, layout);
         let mut waves = (0..=layout.period(0) / 2).flat_map(|k1| (0..=layout.period(1) / 2).map(move |k2| (k1, k2)));
         if !waves.all(|(k1, k2)| symbol(k1, k2) > 0.0) {
-            memory::check("the search for a pressure that gains energy", layout.workspace_bytes() + 3 * coefficients)?;
+            memory::check("the check that a kernel is positive definite", layout.workspace_bytes() + 3 * coefficients)?;
             let (least, most) = least_eigenvalue(whole, grid.len());
             let positive = least > -ROUNDING * most;
             if !positive {
@@ -167,11 +169,12 @@ impl InfluenceKernel {
         Ok(kernel)
     }
 
-    /// A body of the user's that is periodic along both axes, the grid being one period: `compliance(q1, q2)` \[m\] is the
-    /// displacement, over C, under a unit wave of pressure cos(q1 x1) cos(q2 x2), wave numbers \[1/m\] ≥ 0. The half-space has 2/|q|.
+    /// A user-defined body that is periodic along both axes, the grid being one period: `compliance(q1, q2)` \[m\] is
+    /// the displacement, over C, under a unit wave of pressure cos(q1 x1) cos(q2 x2), wave numbers \[1/m\] ≥ 0. The
+    /// half-space has 2/|q|.
     ///
-    /// Zero at q = 0 holds the mean of the displacement, as [`InfluenceKernel::periodic`] does; a body on a foundation gives way
-    /// to a uniform pressure, too.
+    /// Zero at q = 0 fixes the mean displacement, as in [`InfluenceKernel::periodic`]; a body on a foundation is
+    /// displaced by a uniform pressure, too.
     ///
     /// ```
     /// use viscocontact::{Grid, InfluenceKernel};
@@ -191,8 +194,8 @@ impl InfluenceKernel {
     /// ```
     ///
     /// # Errors
-    /// If the compliance of a wave is not positive, or that of the mean negative, or either is more than 1e100 m. If there is no
-    /// memory for them.
+    /// If the compliance of a wave is not positive, that of the mean is negative, or either is more than 1e100 m; if
+    /// there is not enough memory for them.
     pub fn from_spectrum(grid: &Grid, compliance: impl Fn(f64, f64) -> f64) -> Result<InfluenceKernel> {
         let [half1, half2] = grid.cells().map(|cells| cells / 2);
         let q = |axis: usize, k: usize| wave_number(k, grid.cells()[axis], grid.spacing()[axis]);
@@ -204,7 +207,7 @@ impl InfluenceKernel {
                 let value = compliance(q(0, k1), q(1, k2));
                 let mean = (k1, k2) == (0, 0);
                 if !(value <= GREATEST && (value > 0.0 || (mean && value == 0.0))) {
-                    let allowed = if mean { "in [0, 1e100] m" } else { "> 0, and 1e100 m at most" };
+                    let allowed = if mean { "in [0, 1e100] m" } else { "> 0, and at most 1e100 m" };
                     let at = [k1 as isize, k2 as isize];
                     return Err(KernelError::InvalidInfluence { of: "wave", at, value, allowed }.into());
                 }
@@ -219,7 +222,7 @@ impl InfluenceKernel {
     }
 }
 
-/// Refuses cells whose influence coefficients `f64` cannot represent.
+/// Rejects cells whose influence coefficients `f64` cannot represent.
 fn representable(grid: &Grid) -> Result<()> {
     let [d1, d2] = grid.spacing();
     for (field, side) in [("cell side along x1", d1), ("cell side along x2", d2)] {
@@ -234,6 +237,6 @@ fn strip(grid: &Grid, axis: usize, datum: f64) -> Result<Strip> {
     representable(grid)?;
     let reaches = datum >= grid.lengths()[axis];
     within("datum of a line load", datum, reaches, "finite, and no less than the length of the grid across the lines")?;
-    within("datum of a line load", datum, datum <= FARTHEST_DATUM, "1e120 m at most")?;
+    within("datum of a line load", datum, datum <= FARTHEST_DATUM, "at most 1e120 m")?;
     Ok(Strip::new(grid.spacing()[axis], datum))
 }

@@ -1,4 +1,4 @@
-//! What a unit of pressure does to the surface, for each kind of body.
+//! The displacement under a unit pressure, for each kind of body.
 
 use std::f64::consts::PI;
 use std::fmt;
@@ -13,22 +13,21 @@ use crate::Grid;
 /// A real even function of wave numbers.
 pub(super) type Symbol = Box<dyn Fn(usize, usize) -> f64>;
 
-/// Of a circulant approximation, waves that give way less than this part of the most yielding one are taken to give
-/// way so much.
-const STIFFEST: f64 = 1e-8;
+/// Least compliance of a wave in the approximate inverse, relative to the greatest of all waves.
+const LEAST_COMPLIANCE: f64 = 1e-8;
 
 /// The influence of a cell on another, or of a wave on itself.
 #[derive(Debug, Clone)]
 pub(super) enum Influence {
-    /// A half-space, loaded in cells.
+    /// A half-space, loaded on cells.
     HalfSpace(Love),
     /// A half-space, periodic along both axes: Westergaard's 2/|q|, the mean displacement being the datum.
     Periodic,
     /// A half-space, periodic along one axis; of a single cell along it: a line contact.
     Strip { periodic: usize, strip: Strip },
-    /// A user's coefficients, for the distances of the grid.
+    /// User-defined coefficients, for the distances of the grid.
     Coefficients { values: Arc<[f64]>, columns: usize },
-    /// A user's compliance of each wave, on the independent wave numbers of the period.
+    /// User-defined compliance of each wave, for the independent wave numbers of the period.
     Waves { values: Arc<[f64]>, columns: usize },
 }
 
@@ -43,7 +42,7 @@ impl Influence {
         }
     }
 
-    /// What the operator multiplies each wave of the layout by.
+    /// The factor by which the operator multiplies each wave of the layout.
     pub(super) fn symbol(&self, grid: &Grid, layout: Layout) -> Symbol {
         let spectrum = |coefficient: &dyn Fn(usize, usize) -> f64| -> Symbol {
             let spectrum = EvenSpectrum::of(layout, coefficient);
@@ -78,11 +77,12 @@ impl Influence {
         }
     }
 
-    /// A layout without padding, and what an approximate inverse of the operator multiplies each of its waves by.
+    /// A layout without padding, and the factor by which an approximate inverse of the operator multiplies each of its
+    /// waves.
     ///
-    /// A half-space answers the wave q by 2/|q| (Westergaard 1939), whatever its ends: its approximate inverse is |q|/2, but
-    /// for the mean, which is stiffened by what a uniform pressure does. Other bodies are inverted wave by wave, on the
-    /// grid made periodic (G. Strang, Stud. Appl. Math. 74, 1986).
+    /// The compliance of a half-space for the wave q is 2/|q| (Westergaard 1939), whatever its boundaries. Its
+    /// approximate inverse is |q|/2, except for the mean, whose stiffness is that against a uniform pressure. Other
+    /// bodies are inverted wave by wave, on the grid taken as periodic (G. Strang, Stud. Appl. Math. 74, 1986).
     pub(super) fn inverse(&self, grid: &Grid, cells: [usize; 2], folded: [bool; 2]) -> (Layout, Symbol) {
         let layout = Layout { cells, ends: self.ends(), folded }.wrapped();
         let lengths = [0, 1].map(|axis| grid.spacing()[axis] * (cells[axis] * if folded[axis] { 2 } else { 1 }) as f64);
@@ -93,10 +93,10 @@ impl Influence {
         let longest =
             || (0..2).map(|axis| wave_number(1, layout.period(axis), grid.spacing()[axis])).fold(f64::MAX, f64::min);
         let symbol = match self {
-            // a uniform pressure on a square of side L sinks it by 0.95 L p on average (Love)
+            // a uniform pressure p on a square of side L displaces it by 0.95 L p on average (Love)
             Influence::HalfSpace(_) => westergaard(1.05 / (lengths[0] * lengths[1]).sqrt()),
             Influence::Strip { periodic, strip } => westergaard(1.0 / strip.uniform(lengths[1 - periodic])),
-            // no pressure is worth the mean displacement, which is none: as if of the longest wave
+            // the mean displacement is fixed at zero: the mean gets the stiffness of the longest wave
             Influence::Periodic => westergaard(0.5 * longest()),
             Influence::Coefficients { .. } | Influence::Waves { .. } => {
                 let symbol = self.symbol(grid, layout);
@@ -104,16 +104,17 @@ impl Influence {
                     (0..=layout.period(0) / 2).flat_map(|k1| (0..=layout.period(1) / 2).map(move |k2| (k1, k2)));
                 let most = waves.map(|(k1, k2)| symbol(k1, k2)).fold(0.0, f64::max);
                 Box::new(move |k1, k2| {
-                    let yields = symbol(k1, k2);
-                    // a mean that gives no way is no stiffness either
-                    1.0 / if (k1, k2) == (0, 0) && yields == 0.0 { most } else { yields.abs().max(STIFFEST * most) }
+                    let compliance = symbol(k1, k2);
+                    // a mean of zero compliance is fixed, not infinitely stiff
+                    let fixed = (k1, k2) == (0, 0) && compliance == 0.0;
+                    1.0 / if fixed { most } else { compliance.abs().max(LEAST_COMPLIANCE * most) }
                 })
             }
         };
         (layout, symbol)
     }
 
-    /// The greatest compliance of a wave, where that of the mean is zero.
+    /// The greatest compliance of a wave, if that of the mean is zero.
     pub(super) fn softest_wave_if_mean_is_held(&self, grid: &Grid) -> Option<f64> {
         match self {
             // the longest wave: 2/q = L/π
@@ -126,7 +127,7 @@ impl Influence {
         }
     }
 
-    /// The coefficient of a cell on itself \[m\], where cells are what is known.
+    /// The coefficient of a cell on itself \[m\], if the kernel is given by coefficients.
     pub(super) fn on_itself(&self) -> Option<f64> {
         match self {
             Influence::HalfSpace(love) => Some(love.coefficient(0, 0)),
@@ -153,8 +154,8 @@ impl fmt::Display for Influence {
             Influence::Strip { periodic, strip } => {
                 write!(f, "half-space, periodic along x{}, datum {:e} m", periodic + 1, strip.datum())
             }
-            Influence::Coefficients { .. } => write!(f, "coefficients of the user's"),
-            Influence::Waves { .. } => write!(f, "waves of the user's, periodic along x1 and x2"),
+            Influence::Coefficients { .. } => write!(f, "user-defined coefficients"),
+            Influence::Waves { .. } => write!(f, "user-defined waves, periodic along x1 and x2"),
         }
     }
 }

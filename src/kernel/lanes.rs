@@ -1,24 +1,24 @@
-//! Loops over fields: compiled for the vector units of the machine they run on, shared between threads.
+//! Loops over fields: compiled for the vector units of the machine that runs them, and shared between threads.
 
 use pulp::{Arch, Simd, WithSimd};
 
-/// A piece of work that a thread does on its share of a field. Its `run` must be `#[inline(always)]`: only so is it
-/// compiled for wider vectors than every machine has. Arithmetic and its order stay the same, bit by bit.
+/// Work of a thread on its share of a field. `run` must be `#[inline(always)]`: only then is it compiled for vectors
+/// wider than the baseline. Arithmetic and its order stay the same, so that results are bitwise the same.
 pub(crate) trait Task {
-    /// What a thread needs of its own.
+    /// Buffers of one thread.
     type Lane;
     type Item;
 
-    /// Does the `k`-th share.
+    /// Computes the `k`-th share.
     fn run(&self, k: usize, lane: &mut Self::Lane, share: &mut [Self::Item]);
 }
 
-/// Does `task` with every lane and its share of `data`, `length` values each: in parallel if there are several lanes and
-/// the feature `rayon` is on.
-pub(crate) fn for_each_share<J: Task + Sync>(task: &J, lanes: &mut [J::Lane], data: &mut [J::Item], length: usize)
+/// Runs `task` on the shares of `data`, `length` values each, one lane per share: in parallel if there are several
+/// lanes and the feature `rayon` is on.
+pub(crate) fn for_each_share<T: Task + Sync>(task: &T, lanes: &mut [T::Lane], data: &mut [T::Item], length: usize)
 where
-    J::Lane: Send,
-    J::Item: Send,
+    T::Lane: Send,
+    T::Item: Send,
 {
     let arch = Arch::new();
     #[cfg(feature = "rayon")]
@@ -33,14 +33,14 @@ where
     }
 }
 
-struct Vectorised<'a, J: Task> {
-    task: &'a J,
+struct Vectorised<'a, T: Task> {
+    task: &'a T,
     k: usize,
-    lane: &'a mut J::Lane,
-    share: &'a mut [J::Item],
+    lane: &'a mut T::Lane,
+    share: &'a mut [T::Item],
 }
 
-impl<J: Task> WithSimd for Vectorised<'_, J> {
+impl<T: Task> WithSimd for Vectorised<'_, T> {
     type Output = ();
 
     #[inline(always)]
@@ -49,7 +49,7 @@ impl<J: Task> WithSimd for Vectorised<'_, J> {
     }
 }
 
-/// Does both jobs, in parallel if they are `shared` and the feature `rayon` is on.
+/// Runs both closures, in parallel if they are `shared` and the feature `rayon` is on.
 pub(crate) fn join(shared: bool, first: impl FnOnce() + Send, second: impl FnOnce() + Send) {
     #[cfg(feature = "rayon")]
     if shared {
@@ -61,16 +61,16 @@ pub(crate) fn join(shared: bool, first: impl FnOnce() + Send, second: impl FnOnc
     second();
 }
 
-/// Threads that may share the work on a field of so many cells.
+/// Number of threads that share the work on a field of `cells` cells.
 pub(crate) fn lanes(cells: usize) -> usize {
     #[cfg(feature = "rayon")]
-    if cells >= WORTH_SHARING {
+    if cells >= MIN_SHARED_CELLS {
         return rayon::current_num_threads();
     }
     let _ = cells;
     1
 }
 
-/// Fields with fewer cells are not worth a hand-over between threads.
+/// Below this number of cells the overhead of threads exceeds their gain.
 #[cfg(feature = "rayon")]
-const WORTH_SHARING: usize = 1 << 15;
+const MIN_SHARED_CELLS: usize = 1 << 15;

@@ -1,27 +1,27 @@
-//! What an operator is laid out for, and the lengths of its transforms.
+//! Cells, boundaries and symmetries of an operator, and the lengths of its transforms.
 
-/// How many cells each cell stands for where axes are folded.
+/// Number of mirror images of a cell, itself included, where axes are folded.
 pub(crate) fn images(folded: [bool; 2]) -> usize {
     folded.into_iter().map(|folded| if folded { 2 } else { 1 }).product()
 }
 
-/// What follows where the cells of an axis end.
+/// What follows beyond the cells of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ends {
     /// Nothing: padded with zeros, so that the convolution is linear.
     Free,
     /// The same cells again.
     Periodic,
-    /// The same cells again after as many more, zero, as make the transform fast: for what need not be exact.
+    /// The same cells again, after as many zeros as make the transform fast: for operators that need not be exact.
     Wrapped,
 }
 
-/// What an operator is laid out for.
+/// Cells, boundaries and symmetries of an operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Layout {
-    /// Cells along each axis; of a folded axis half of them.
+    /// Cells along each axis; half of them along a folded axis.
     pub(crate) cells: [usize; 2],
-    /// What follows where the cells of each axis end.
+    /// What follows beyond the cells of each axis.
     pub(crate) ends: [Ends; 2],
     /// Axes about whose beginning all fields are even.
     pub(crate) folded: [bool; 2],
@@ -39,18 +39,18 @@ impl Layout {
         }
     }
 
-    /// How many coefficients of a real line along an axis are independent: the others mirror them.
+    /// Number of independent coefficients of a real line along an axis: the others mirror them.
     pub(super) fn independent(&self, axis: usize) -> usize {
         if self.folded[axis] { self.line(axis) } else { self.line(axis) / 2 + 1 }
     }
 
-    /// The layout of what need not be exact: nothing is padded beyond what makes transforms fast.
+    /// The layout of an operator that need not be exact: no padding but for fast transforms.
     pub(super) fn wrapped(&self) -> Layout {
         let ends = self.ends.map(|end| if end == Ends::Free { Ends::Wrapped } else { end });
         Layout { ends, ..*self }
     }
 
-    /// What the symbol of a real even operator is on average over all wave numbers: the coefficient of a cell on itself.
+    /// The mean of the symbol of a real even operator over all wave numbers: the coefficient of a cell on itself.
     pub(crate) fn average(&self, symbol: impl Fn(usize, usize) -> f64) -> f64 {
         let [period1, period2] = [self.period(0), self.period(1)];
         let count = |k: usize, period: usize| if k == 0 || 2 * k == period { 1.0 } else { 2.0 };
@@ -67,8 +67,8 @@ impl Layout {
 
 /// The length ≥ `least` that is transformed fastest, of those whose only prime factors are 2, 3, 5 and 7.
 ///
-/// Measured with rustfft on one processor with AVX: n log₂ n takes 0.12 to 0.14 ns a unit for powers of two, 0.15 to 0.2 for
-/// multiples of 16, and up to 0.3 for others: 63 takes 1.7 times as long as 64, 500 2.3 times as long as 512.
+/// Measured with rustfft on one processor with AVX: n log₂ n takes 0.12 to 0.14 ns per unit for powers of two, 0.15 to
+/// 0.2 for multiples of 16, and up to 0.3 for others: 63 takes 1.7 times as long as 64, 500 2.3 times as long as 512.
 fn fast_length(least: usize) -> usize {
     let power = least.next_power_of_two();
     let step = if least > 32 { 16 } else { 4 };
@@ -76,8 +76,8 @@ fn fast_length(least: usize) -> usize {
     if 10 * power as u128 <= 12 * other as u128 { power } else { other }
 }
 
-/// The least number ≥ `least` whose only prime factors are 2, 3, 5 and 7: for all products of the odd ones that may be part
-/// of it, the least power of two that completes them. A search upwards would take for ever where numbers are large.
+/// The least number ≥ `least` whose only prime factors are 2, 3, 5 and 7: each product of the odd ones is completed by
+/// the least power of two. A search upwards would take too long for large numbers.
 fn least_smooth(least: usize) -> usize {
     let mut best = least.next_power_of_two();
     let mut sevens = 1_usize;
@@ -107,7 +107,7 @@ mod tests {
         assert!((1..3000).all(|n| fast_length(n) >= n && fast_length(n) <= n + n / 3 + 16));
         let plain = |least: usize| (least..).find(|n| [2, 3, 5, 7].iter().fold(*n, divided) == 1).unwrap();
         assert!((1..3000).all(|n| least_smooth(n) == plain(n)));
-        // the greatest period of a grid that may be, and numbers that a search upwards would not find
+        // the greatest period of any grid, and numbers that a search upwards would not reach
         for n in [(1 << 61) - 1, 1 << 61, (1 << 40) + 1, 3 << 50, 12_345_678_901_234_567] {
             let found = least_smooth(n);
             assert!(found >= n && (found - n) as f64 <= 0.01 * n as f64, "{n} {found}");

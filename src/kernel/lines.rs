@@ -1,12 +1,12 @@
-//! Transforms of lines of cells, two real lines at a time as the parts of complex ones.
+//! Transforms of lines of cells, two real lines at a time as the real and imaginary parts of a complex one.
 //!
 //! | axis | coefficients of x_n | transformed by |
 //! |---|---|---|
 //! | whole | Σ x_n e^(−2πi kn/P), 0 ≤ k < P | a complex transform of length P |
 //! | folded | Σ x_n cos(π k(2n+1)/2L), 0 ≤ k < L | a complex transform of length L (Makhoul, IEEE Trans. ASSP 28, 1980) |
 //!
-//! Half of a line that is even about its beginning is all there is of a folded one; its coefficients are those of the
-//! whole line, of period 2L. Lines shorter than their transform continue with zeros.
+//! A folded line is half of a line that is even about its beginning; its coefficients are those of the whole line, of
+//! period 2L. Lines shorter than their transform are padded with zeros.
 
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -21,7 +21,7 @@ pub(crate) struct Line {
     length: usize,
     forward: Arc<dyn Fft<f64>>,
     inverse: Arc<dyn Fft<f64>>,
-    /// Of a folded axis e^(−iπk/2L) for 0 ≤ k ≤ L/2; else empty.
+    /// e^(−iπk/2L) for 0 ≤ k ≤ L/2 of a folded axis; empty otherwise.
     twist: Vec<Complex64>,
 }
 
@@ -50,12 +50,12 @@ impl Line {
         self.forward.get_inplace_scratch_len().max(self.inverse.get_inplace_scratch_len())
     }
 
-    /// How many coefficients of a real line are independent: the others mirror them.
+    /// Number of independent coefficients of a real line: the others mirror them.
     pub(crate) fn independent(&self) -> usize {
         if self.is_folded() { self.len() } else { self.len() / 2 + 1 }
     }
 
-    /// Where the n-th value of a line belongs in the buffer of the transform: of a folded one even values come first,
+    /// The index of the n-th value of a line in the buffer of the transform: in a folded line even values come first,
     /// odd values from the end back.
     #[inline(always)]
     pub(crate) fn place(&self, n: usize) -> usize {
@@ -68,7 +68,7 @@ impl Line {
         }
     }
 
-    /// Puts zeros where no one of the first `cells` values belongs.
+    /// Fills the indices of all but the first `cells` values with zeros.
     #[inline(always)]
     pub(crate) fn pad(&self, buffer: &mut [Complex64], cells: usize) {
         let end = if self.is_folded() { self.len() - cells / 2 } else { self.len() };
@@ -76,7 +76,7 @@ impl Line {
         buffer[start..end].fill(Complex64::default());
     }
 
-    /// Puts the values of a line where they belong.
+    /// Writes the values of a line to their indices.
     #[inline(always)]
     pub(crate) fn fill(&self, buffer: &mut [Complex64], values: impl Iterator<Item = Complex64>) {
         if !self.is_folded() {
@@ -96,7 +96,7 @@ impl Line {
         }
     }
 
-    /// Takes the values of a line from where they are.
+    /// Reads the values of a line from their indices.
     #[inline(always)]
     pub(crate) fn read(&self, buffer: &[Complex64], out: &mut [f64], part: impl Fn(Complex64) -> f64) {
         if !self.is_folded() {
@@ -121,7 +121,7 @@ impl Line {
         if !self.is_folded() {
             return;
         }
-        // with a = w_k V_k and b = conj(w_k) V_(L−k): X_k = (a + b)/2, X_(L−k) = i (a − b)/2, the halves left out
+        // with a = w_k V_k and b = conj(w_k) V_(L−k): X_k = (a + b)/2, X_(L−k) = i (a − b)/2, without the factor ½
         buffer[0] = buffer[0] + buffer[0];
         for ((v, mirror), w) in pairs(buffer).zip(&self.twist[1..]) {
             let (a, b) = (*v * *w, *mirror * w.conj());
@@ -153,11 +153,11 @@ impl Line {
         self.inverse.process_with_scratch(buffer, scratch);
     }
 
-    /// Between transforms forth and back of a folded complex line with [`Line::bare_forward`] and [`Line::bare_inverse`]:
-    /// multiplies the coefficients by the real `spectrum`, all in one pass.
+    /// Multiplies the coefficients of a folded complex line by the real `spectrum` in one pass, between
+    /// [`Line::bare_forward`] and [`Line::bare_inverse`].
     #[inline(always)]
     pub(crate) fn multiply_folded(&self, buffer: &mut [Complex64], spectrum: &[f64]) {
-        // with X = a + b, a = w V_k, b = conj(w) V_(L−k), and the like for L − k, back again:
+        // with X = a + b, a = w V_k, b = conj(w) V_(L−k), the same for L − k, and the inverse:
         // V_k ← (S + S') V_k + (S − S') conj(w)² V_(L−k)
         let last = buffer.len();
         buffer[0] *= spectrum[0] + spectrum[0];
@@ -172,7 +172,7 @@ impl Line {
         }
     }
 
-    /// The same of a line whose real and imaginary parts are lines of their own, with a spectrum each.
+    /// [`Line::multiply_folded`] with separate spectra for the real and imaginary parts.
     #[inline(always)]
     pub(crate) fn multiply_folded_apart(&self, buffer: &mut [Complex64], first: &[f64], second: &[f64]) {
         let last = buffer.len();
@@ -192,19 +192,19 @@ impl Line {
         }
     }
 
-    /// The complex transform alone.
+    /// The complex forward transform, without the twist of folded lines.
     #[inline(always)]
     pub(crate) fn bare_forward(&self, buffer: &mut [Complex64], scratch: &mut [Complex64]) {
         self.forward.process_with_scratch(buffer, scratch);
     }
 
-    /// The complex transform back alone.
+    /// The complex inverse transform, without the twist of folded lines.
     #[inline(always)]
     pub(crate) fn bare_inverse(&self, buffer: &mut [Complex64], scratch: &mut [Complex64]) {
         self.inverse.process_with_scratch(buffer, scratch);
     }
 
-    /// What transforming forth and back multiplies a line by.
+    /// The factor by which a forward and an inverse transform multiply a line.
     pub(crate) fn norm(&self) -> f64 {
         self.len() as f64 * if self.is_folded() { 2.0 } else { 1.0 }
     }
@@ -268,7 +268,7 @@ mod tests {
         (0..cells).map(|n| Complex64::new(((n * n + 3) as f64).sin(), ((5 * n * n + 1) as f64).cos())).collect()
     }
 
-    /// Every coefficient against its definition, and the way back.
+    /// Every coefficient against its definition, and the inverse.
     #[test]
     fn lines_match_their_sums() {
         for folded in [false, true] {

@@ -13,7 +13,7 @@
 //! ln (r1 + r2 + L)/(r1 + r2 − L),
 //!
 //! written below without any cancellation, and by Gauss–Legendre quadrature along the shorter
-//! side. Every term is positive, so rounding cannot accumulate beyond a few units in the last
+//! side. Every term is positive, so that rounding errors do not accumulate beyond a few units in the last
 //! place, and the integrand is analytic in an ellipse that grows with the distance, so that the
 //! number of points falls from 24 beside the source to 3 far away.
 
@@ -26,12 +26,11 @@ use crate::quadrature::GaussLegendre;
 pub(crate) struct Love {
     /// Whether x1 is the longer side of the cell.
     long_first: bool,
-    /// Half sides of the cell in units of `scale`, longer one first.
+    /// Half sides of the cell in units of `scale`, the longer one first.
     half: [f64; 2],
     /// Half of the longer side \[m\].
     scale: f64,
-    /// Rules in the order of their number of points, with the distance from which each is exact to
-    /// rounding.
+    /// Quadrature rules by number of points, each with the distance from which it is exact to rounding.
     rules: Vec<(f64, GaussLegendre)>,
 }
 
@@ -86,7 +85,7 @@ mod tests {
     const BITS: usize = 320;
     const ROUND: RoundingMode = RoundingMode::ToEven;
 
-    /// Love's four-term closed form at 320 bits: the digits it cancels are there to spare.
+    /// Love's four-term closed form at 320 bits, enough for the digits that cancel.
     struct Oracle {
         constants: Consts,
     }

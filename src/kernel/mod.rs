@@ -1,5 +1,5 @@
 //! The influence of pressure on displacement: Boussinesq's half-space, discretised by Love and
-//! convolved by fast Fourier transforms; and its relatives.
+//! convolved by fast Fourier transforms; and related kernels.
 //!
 //! For an elastic body with contact compliance C = 1/E* the surface displacement is u = C K p with
 //! a purely geometric operator:
@@ -10,10 +10,10 @@
 //! | periodic along both axes | 2/\|q\| for each wave q, nothing for the mean |
 //! | periodic along one axis | (2/π) ∫ K0(κ \|x − s\|) p(s) ds for each wave κ along it, of the mean as for a line |
 //! | line contact | −(2/π) ∫ ln(\|x − s\|/d) p(s) ds |
-//! | a user's | coefficients from cell to cell, or the compliance of each wave |
+//! | user-defined | coefficients between cells, or the compliance of each wave |
 //!
-//! All behaviour of the material is in C. Normalisation: `convolve` returns K p in Pa·m, no factor
-//! of the transform is left to the caller.
+//! All material behaviour is in C. Normalisation: `convolve` returns K p in Pa·m, with no remaining
+//! factor of the transform.
 
 mod constructors;
 mod even_spectrum;
@@ -39,15 +39,17 @@ use crate::memory;
 use influence::Influence;
 use layout::{Ends, Layout};
 
-/// An operator takes so many times its bytes while it is made: the spectrum, and the transform it is gathered from.
-const MAKING: u128 = 3;
+/// Memory that making an operator takes, relative to that of the operator: its spectrum, and the transform that yields
+/// it.
+const MEMORY_WHILE_MADE: u128 = 3;
 
 /// The discrete influence operator K of a grid: immutable, shared by `Arc` between contacts and threads.
 ///
-/// Spectra are made when they are first needed, and kept: real and even, a quarter of the padded one is enough, about 8 bytes
-/// a cell. Where there is no memory for them, what needs them first says so ([`Error::OutOfMemory`]). A [`Workspace`] holds one complex row spectrum a row, about 16 bytes a cell, twice that if several
-/// threads share the work (feature `rayon`, grids of 2¹⁵ cells or more, as many as the thread pool has; the
-/// answer is the same bit by bit).
+/// Spectra are computed when first needed, and kept: being real and even, a quarter of the padded one is enough, about
+/// 8 bytes per cell. Without memory for them, the call that needs them first fails with [`Error::OutOfMemory`]. A
+/// [`Workspace`] holds one complex spectrum per row, about 16 bytes per cell, and twice that if several threads share
+/// the work (feature `rayon`, grids of 2¹⁵ cells or more, as many threads as the pool has; the answer is bitwise the
+/// same).
 ///
 /// ```
 /// use viscocontact::{Grid, InfluenceKernel};
@@ -67,9 +69,9 @@ const MAKING: u128 = 3;
 pub struct InfluenceKernel {
     grid: Grid,
     influence: Influence,
-    /// On the whole grid, for each choice of folded axes.
+    /// Operators on the whole grid, for each choice of folded axes.
     operators: [OnceLock<Arc<SpectralOperator>>; 4],
-    /// The influence of a cell on itself, where it is no coefficient.
+    /// The influence of a cell on itself, if the kernel is not given by coefficients.
     on_itself: OnceLock<f64>,
 }
 
@@ -99,7 +101,7 @@ impl InfluenceKernel {
     /// Buffers for [`InfluenceKernel::convolve`]: one for each thread that convolves.
     ///
     /// # Errors
-    /// If there is no memory for them, or for the spectrum, which is made here if it was not needed before.
+    /// If there is not enough memory for them, or for the spectrum, which is computed here if it was not needed before.
     pub fn workspace(&self) -> Result<Workspace> {
         memory::check("the workspace of a kernel", self.layout([false; 2]).workspace_bytes())?;
         Ok(Workspace { transform: self.whole_operator()?.workspace() })
@@ -109,9 +111,9 @@ impl InfluenceKernel {
     /// a body of contact compliance 1 Pa⁻¹.
     ///
     /// # Errors
-    /// If a field does not hold one value a cell, `work` was made by a kernel of another size, a pressure is not finite, or
-    /// K p leaves the range of `f64`; what `displacement` holds then is of no use. If `work` was made by another kernel, and there
-    /// is no memory for the spectrum of this one.
+    /// If a field does not hold one value per cell, `work` was made by a kernel of another size, a pressure is not
+    /// finite, or K p overflows; the contents of `displacement` are then undefined. If `work` was made by another
+    /// kernel, and there is not enough memory for the spectrum of this one.
     pub fn convolve(&self, pressure: &[f64], displacement: &mut [f64], work: &mut Workspace) -> Result<()> {
         exact_length("pressure", pressure.len(), self.grid.len())?;
         exact_length("displacement", displacement.len(), self.grid.len())?;
@@ -123,23 +125,23 @@ impl InfluenceKernel {
         if displacement.iter().all(|value| value.is_finite()) {
             return Ok(());
         }
-        // one look at the result is enough until something is wrong
+        // the pressure is checked only if the result is not finite
         pressure.iter().try_for_each(|&p| finite("pressure", p).map(drop))?;
         let value = displacement.iter().copied().find(|value| !value.is_finite()).unwrap_or(f64::NAN);
         Err(Error::OutOfRange { field: "K p", value, allowed: "finite: the pressure is too great for this kernel" })
     }
 
-    /// The operator on the whole grid, unfolded, if there is memory for it.
+    /// The operator on the whole grid, without folded axes; an error if there is not enough memory for it.
     fn whole_operator(&self) -> Result<&Arc<SpectralOperator>> {
         if self.operators[index([false; 2])].get().is_none() {
             let layout = self.layout([false; 2]);
-            memory::check("the spectrum of a kernel", MAKING * layout.operator_bytes())?;
+            memory::check("the spectrum of a kernel", MEMORY_WHILE_MADE * layout.operator_bytes())?;
         }
         Ok(self.operator([false; 2]))
     }
 
-    /// Bytes that the kernel takes on so many cells, operator and workspace, and those of the approximate inverse. An operator that
-    /// there is already takes none.
+    /// Bytes of the kernel on `cells`, operator and workspace, and those of the approximate inverse. An operator that
+    /// exists already counts zero.
     pub(crate) fn bytes_on(&self, cells: [usize; 2], folded: [bool; 2]) -> [u128; 2] {
         let (layout, whole) = (Layout { cells, ..self.layout(folded) }, self.layout(folded));
         let made = layout == whole && self.operators[index(folded)].get().is_some();
@@ -154,7 +156,7 @@ impl InfluenceKernel {
         self.operators[index(folded)].get_or_init(|| Arc::new(self.make(layout)))
     }
 
-    /// The whole grid, half or a quarter of it where axes are folded.
+    /// The layout of the whole grid, or of half or a quarter of it where axes are folded.
     fn layout(&self, folded: [bool; 2]) -> Layout {
         let cells = [0, 1].map(|axis| self.grid.cells()[axis] / if folded[axis] { 2 } else { 1 });
         Layout { cells, ends: self.influence.ends(), folded }
@@ -164,7 +166,8 @@ impl InfluenceKernel {
         SpectralOperator::from_symbol(layout, self.influence.symbol(&self.grid, layout))
     }
 
-    /// The kernel on a part of the grid and its mirror images along folded axes. Parts of periodic bodies are whole.
+    /// The kernel on a part of the grid and its mirror images along folded axes. Along periodic axes the part is the
+    /// whole.
     pub(crate) fn on(&self, part: &Grid, folded: [bool; 2]) -> LocalKernel {
         let layout = Layout { cells: part.cells(), ..self.layout(folded) };
         let operator =
@@ -186,7 +189,7 @@ impl InfluenceKernel {
         self.influence.on_itself().unwrap_or_else(|| *self.on_itself.get_or_init(average))
     }
 
-    /// Numbers that tell it from others of the same kind.
+    /// Fingerprint of the kernel among those of the same kind.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn mark(&self) -> Vec<f64> {
         let mut mark = vec![self.self_influence()];
@@ -201,13 +204,13 @@ impl InfluenceKernel {
         self.influence.ends().map(|end| end == Ends::Periodic)
     }
 
-    /// Whether the surface sinks in everywhere around a load, and no less than the half-space does.
+    /// Whether the body is a half-space, whose displacement is positive everywhere around a load.
     pub(crate) fn is_half_space(&self) -> bool {
         matches!(self.influence, Influence::HalfSpace(_))
     }
 }
 
-/// Says which body it is of: "half-space, periodic along x2, datum 1e0 m".
+/// The body: "half-space, periodic along x2, datum 1e0 m".
 impl fmt::Display for InfluenceKernel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.influence.fmt(f)
@@ -223,23 +226,23 @@ impl LocalKernel {
         &self.grid
     }
 
-    /// The greatest compliance of a wave \[m\], where that of the mean is zero.
+    /// The greatest compliance of a wave \[m\], if that of the mean is zero.
     pub(crate) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
         self.softest
     }
 
-    /// Whether a uniform pressure displaces nothing: then the approach cannot exceed that at which the gap is closed.
+    /// Whether the mean displacement is fixed: then the approach cannot exceed that of full contact.
     pub(crate) fn mean_is_held(&self) -> bool {
         self.softest.is_some()
     }
 
-    /// An approximate inverse, which multiplies the waves of a layout without padding.
+    /// An approximate inverse, on a layout without padding.
     pub(crate) fn inverse(&self) -> SpectralOperator {
         let (layout, symbol) = self.influence.inverse(&self.grid, self.grid.cells(), self.folded);
         SpectralOperator::from_symbol(layout, symbol)
     }
 
-    /// How many cells each cell stands for.
+    /// Number of mirror images of each cell, itself included.
     pub(crate) fn images(&self) -> f64 {
         images(self.folded) as f64
     }
@@ -253,7 +256,7 @@ impl LocalKernel {
         self.self_influence
     }
 
-    /// [`InfluenceKernel::convolve`] for fields known to fit.
+    /// [`InfluenceKernel::convolve`] for fields of the right length.
     pub(crate) fn apply(&self, pressure: &[f64], displacement: &mut [f64], work: &mut Workspace) {
         self.operator.apply(pressure, displacement, &mut work.transform);
     }

@@ -1,19 +1,19 @@
-//! Whether an operator spends energy on every pressure.
+//! Checks that an operator is positive definite.
 
 use faer::{Mat, Side};
 
 use super::transform::SpectralOperator;
 use crate::sum::sum_of_pairs;
 
-/// Lanczos steps: they find the ends of a spectrum first.
+/// Lanczos steps: the extreme eigenvalues converge first.
 const STEPS: usize = 60;
 
-/// Estimates of the least and the greatest eigenvalue of a symmetric operator on fields of `cells` values, from within, by
-/// Lanczos' method.
+/// The least and the greatest eigenvalue of a symmetric operator on fields of `cells` values, estimated from inside the
+/// spectrum by the Lanczos method.
 pub(super) fn least_eigenvalue(operator: &SpectralOperator, cells: usize) -> (f64, f64) {
     let mut work = operator.workspace();
     let (mut previous, mut image) = (vec![0.0; cells], vec![0.0; cells]);
-    // any field that has something of every wave
+    // a field with a component of every wave
     let mut vector: Vec<f64> = (0..cells).map(|k| ((k * k) as f64 * 0.7 + 1.0).sin()).collect();
     let norm = sum_of_pairs(&vector, &vector, |a, b| a * b).sqrt();
     vector.iter_mut().for_each(|value| *value /= norm);
@@ -34,7 +34,7 @@ pub(super) fn least_eigenvalue(operator: &SpectralOperator, cells: usize) -> (f6
         std::mem::swap(&mut previous, &mut vector);
         vector.iter_mut().zip(&image).for_each(|(vector, image)| *vector = image / next);
     }
-    // of numbers that are none the eigenvalues are sought in vain, and for long
+    // with NaN or overflow the eigenvalue solver would run long and find nothing
     if !diagonal.iter().chain(&beside).all(|value| value.is_finite()) {
         return (f64::NAN, f64::NAN);
     }

@@ -1,30 +1,30 @@
-//! Influence coefficients of a half-space whose pressure is a wave along one axis, and of one that is loaded in a plane.
+//! Influence coefficients of a half-space whose pressure is a wave along one axis, and of one in plane strain.
 //!
 //! A pressure p(x) cos κy displaces the surface by v(x) cos κy with
 //!
 //! v(x) = (2/π) ∫ K0(κ |x − s|) p(s) ds,
 //!
-//! K0 the modified Bessel function, the integral of cos κy / (π √(x² + y²)) over y. Where κ = 0 that is a line load, whose
-//! displacement has no end, but for a datum: at the distance d from the load the surface stays where it was,
+//! K0 the modified Bessel function, the integral of cos κy / (π √(x² + y²)) over y. For κ = 0 that is a line load,
+//! whose displacement is unbounded and needs a datum: at the distance d from the load it is zero,
 //!
 //! v(x) = −(2/π) ∫ ln(|x − s|/d) p(s) ds   (Johnson, Contact Mechanics, 1985, section 2.3).
 
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2};
 
-/// Step of the trapezoidal rule for ∫ f(cosh t) dt: the integrand being analytic up to π/2 from the real axis, its error is
-/// e^(−π²/step) of the coefficient of a cell on itself.
+/// Step of the trapezoidal rule for ∫ f(cosh t) dt: the integrand being analytic up to π/2 from the real axis, its
+/// error is e^(−π²/step) of the coefficient of a cell on itself.
 const STEP: f64 = 0.25;
-/// Where 1/cosh t is below rounding.
+/// End of the integration, where 1/cosh t is below rounding.
 const LAST: f64 = 42.0;
-/// e^(−x) is zero for larger x.
-const SPENT: f64 = 745.0;
+/// e^(−x) underflows for larger x.
+const UNDERFLOW: f64 = 745.0;
 
-/// Coefficients of cells of one length along the axis that is loaded piece by piece \[m\].
+/// Coefficients of cells of equal length along the axis along which the load varies \[m\].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Strip {
     /// Length of a cell \[m\].
     side: f64,
-    /// Where a line load leaves the surface where it was \[m\].
+    /// Distance from a line load at which the displacement is zero \[m\].
     datum: f64,
 }
 
@@ -48,13 +48,13 @@ impl Strip {
         if i == 0 {
             return FRAC_2_PI * self.side * (1.0 - (a / self.datum).ln());
         }
-        // (x + a) ln (x + a) − (x − a) ln (x − a) − 2a, taken from 2a ln x, so that nothing large cancels
+        // (x + a) ln (x + a) − (x − a) ln (x − a) − 2a, written as 2a ln x and a remainder free of cancellation
         let z = a / x;
         let excess = (1.0 + z) * z.ln_1p() - (1.0 - z) * (-z).ln_1p() - 2.0 * z;
         -FRAC_2_PI * (self.side * (x / self.datum).ln() + x * series_of_excess(z).unwrap_or(excess))
     }
 
-    /// (2/π) ∫ K0(κ |s|) ds over a cell, with K0(z) = ∫ e^(−z cosh t) dt over t > 0, the cell's integral taken first.
+    /// (2/π) ∫ K0(κ |s|) ds over a cell, with K0(z) = ∫ e^(−z cosh t) dt over t > 0, integrated over the cell first.
     fn wave(&self, i: usize, kappa: f64) -> f64 {
         let (far, width) = match i {
             0 => (0.0, 0.5 * kappa * self.side),
@@ -64,7 +64,7 @@ impl Strip {
         let mut sum = -0.5 * (-far).exp() * (-width).exp_m1();
         for step in 1..=(LAST / STEP) as usize {
             let cosh = (step as f64 * STEP).cosh();
-            if far * cosh > SPENT {
+            if far * cosh > UNDERFLOW {
                 break;
             }
             sum -= (-far * cosh).exp() * (-width * cosh).exp_m1() / cosh;
@@ -72,7 +72,7 @@ impl Strip {
         twice * FRAC_2_PI / kappa * STEP * sum
     }
 
-    /// What a uniform pressure on a length displaces it by on average, over the pressure \[m\].
+    /// The mean displacement of a length under a uniform pressure on it, divided by the pressure \[m\].
     pub(crate) fn uniform(&self, length: f64) -> f64 {
         FRAC_2_PI * length * (1.5 - (length / self.datum).ln())
     }
@@ -84,7 +84,7 @@ fn series_of_excess(z: f64) -> Option<f64> {
     (z < 0.0625).then(|| -(1..=7).map(|k| 2.0 * z.powi(2 * k + 1) / f64::from(2 * k * (2 * k + 1))).sum::<f64>())
 }
 
-/// The wave number \[1/m\] of a symbol's argument.
+/// The wave number \[1/m\] of the index `k` of a symbol.
 pub(crate) fn wave_number(k: usize, period: usize, side: f64) -> f64 {
     4.0 * FRAC_PI_2 * k as f64 / (period as f64 * side)
 }
@@ -101,11 +101,11 @@ mod tests {
         if i > 0 {
             return piece(i as f64 * side, 0.5 * side);
         }
-        // both halves, from the outside in, the last piece left out being nothing
+        // both halves, from the outside in; the last piece is negligible
         (2..120).map(|n| 2.0 * piece(1.5 * side * 0.5_f64.powi(n), 0.5 * side * 0.5_f64.powi(n))).sum()
     }
 
-    /// K0 by its integral, another way: Simpson's rule on e^(−z cosh t).
+    /// K0 by its integral with Simpson's rule on e^(−z cosh t).
     fn bessel_k0(z: f64) -> f64 {
         let (steps, last) = (4000, (800.0 / z).max(2.0).acosh());
         let h = last / f64::from(steps);
@@ -114,7 +114,7 @@ mod tests {
     }
 
     #[test]
-    fn bessel_of_the_tests_is_right() {
+    fn reference_bessel_function_is_right() {
         // Abramowitz & Stegun, table 9.8
         assert!((bessel_k0(1.0) / 0.421_024_438_240_708_3 - 1.0).abs() < 1e-12);
         assert!((bessel_k0(0.1) / 2.427_069_024_702_017 - 1.0).abs() < 1e-12);

@@ -19,14 +19,14 @@ pub struct FnHistory<F> {
 }
 
 impl<F: Fn(f64) -> Load + Send + Sync> FnHistory<F> {
-    /// Wraps the closure, taken to be smooth; its loads are checked by the steps they are given to.
+    /// Wraps the closure, taken to be smooth; each step checks its load.
     pub fn new(load: F) -> FnHistory<F> {
         FnHistory { load, breakpoints: Vec::new() }
     }
 
-    /// The same history with corners at `times` \[s\], in any order: steps end exactly on them. A closure has
-    /// one value a time, so that it cannot jump: a jump becomes a ramp over the step before. Implement
-    /// [`LoadHistory::before`], or use [`PiecewiseLinear`](crate::load::PiecewiseLinear), where it matters.
+    /// The same history with corners at `times` \[s\], in any order: steps end exactly there. A closure has one value
+    /// per time and cannot jump: a jump becomes a ramp over the step before. For jumps implement
+    /// [`LoadHistory::before`], or use [`PiecewiseLinear`](crate::load::PiecewiseLinear).
     ///
     /// # Errors
     /// If a time is not finite.

@@ -1,13 +1,13 @@
-//! What every [`LoadHistory`] must obey: one function for each law, for the tests of those who write one.
+//! The laws that every [`LoadHistory`] obeys: one function per law, to test implementations of the trait.
 //!
-//! Each takes the history and ascending times \[s\] at which to look, two or more, and says where a law is broken, and by
-//! what; the breakpoints between the times are looked at as well. [`all`] asks for every one.
+//! Each takes the history and two or more ascending times \[s\] of the check, and reports where the law is violated and
+//! by how much; breakpoints between the times are checked as well. [`all`] checks every law.
 //!
 //! ```
 //! use viscocontact::load::{Load, LoadHistory, laws};
 //!
 //! #[derive(Debug)]
-//! struct Knock; // a jump that nobody is told of
+//! struct Knock; // a jump without a breakpoint
 //!
 //! impl LoadHistory for Knock {
 //!     fn at(&self, t: f64) -> Load {
@@ -22,34 +22,34 @@
 
 use crate::load::{Load, LoadHistory, Tilt};
 
-/// A law that does not hold.
+/// A violation of a law.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{law}: {quantity} at t = {t:e} s found {found:e}, expected {expected:e}")]
 #[non_exhaustive]
 pub struct Violation {
-    /// Which law.
+    /// The law.
     pub law: &'static str,
-    /// Of what: force \[N\], approach \[m\], a tilt \[rad\], a load point \[m\], or a breakpoint \[s\].
+    /// The quantity: force \[N\], approach \[m\], a tilt \[rad\], a load point \[m\], or a breakpoint \[s\].
     pub quantity: &'static str,
-    /// When \[s\].
+    /// Time \[s\].
     pub t: f64,
-    /// What was found.
+    /// The value found.
     pub found: f64,
-    /// What the law asks for; where it is an inequality, its bound.
+    /// The value expected; the bound of an inequality.
     pub expected: f64,
 }
 
-/// The law holds, or where it does not.
+/// Whether a law holds; otherwise the violation.
 pub type Verdict = Result<(), Violation>;
 
-/// Agreement of formulas that are the same but for rounding, of the greatest value.
+/// Difference allowed between formulas that are equal but for rounding, relative to the greatest value.
 const SAME: f64 = 1e-10;
-/// More breakpoints than that between the times are not looked at.
+/// Greatest number of breakpoints between the times that are checked.
 const MOST_BREAKPOINTS: usize = 10_000;
-/// What bends less, of the greatest value, bends by rounding.
+/// Smaller second differences are rounding, relative to the greatest value.
 const STRAIGHT: f64 = 1e-12;
 
-/// So many times and one, evenly from `first` to `last` \[s\].
+/// `count` + 1 evenly spaced times from `first` to `last` \[s\].
 pub fn even_times(first: f64, last: f64, count: usize) -> Vec<f64> {
     let count = count.max(1);
     (0..=count).map(|k| first + (last - first) * (k as f64 / count as f64)).collect()
@@ -60,9 +60,9 @@ const IS_A_LOAD: &str = "every load is one that a step accepts";
 /// Every law, at ascending `times` \[s\].
 ///
 /// # Errors
-/// The first law that is broken; or if the times are fewer than two, or do not ascend.
+/// The first violation; or if the times are fewer than two, or not ascending.
 pub fn all(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
-    let law = "(asked for) two times to look at, or more, ascend";
+    let law = "(arguments) two or more times are ascending";
     let refused = |t: f64, found: f64, expected: f64| Err(Violation { law, quantity: "time", t, found, expected });
     if times.len() < 2 {
         return refused(times.first().copied().unwrap_or(0.0), times.len() as f64, 2.0);
@@ -78,7 +78,7 @@ pub fn all(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     smooth_between_breakpoints(history, times)
 }
 
-/// Force or approach, and what is known of the tilts.
+/// Force or approach, and for each tilt the angle or the load point.
 fn values(load: &Load) -> [f64; 3] {
     let main = match *load {
         Load::Force { normal, .. } => normal,
@@ -91,7 +91,7 @@ fn values(load: &Load) -> [f64; 3] {
     [main, first, second]
 }
 
-/// What the values are called.
+/// The names of the values.
 fn names(load: &Load) -> [&'static str; 3] {
     let main = if matches!(load, Load::Force { .. }) { "normal force" } else { "approach" };
     let tilt = load.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
@@ -125,7 +125,7 @@ fn and_between(moments: &[f64]) -> impl Iterator<Item = f64> {
     moments.iter().copied().chain(between)
 }
 
-/// The greatest of each value at the moments and between them: at its own corners a load may vanish.
+/// The greatest absolute value at and between the moments: a load may vanish at its corners.
 fn scales(history: &dyn LoadHistory, moments: &[f64]) -> [f64; 3] {
     and_between(moments).fold([0.0; 3], |most, t| {
         let (at, before) = (values(&history.at(t)), values(&history.before(t)));
@@ -150,10 +150,10 @@ fn verdict(law: &'static str, t: f64, difference: Option<(&'static str, f64, f64
     }
 }
 
-/// Breakpoints are later than the time asked after, and finite; asked after any time before it, the next one is the same.
+/// Breakpoints are finite and later than the argument; the next one is the same for every argument before it.
 ///
 /// # Errors
-/// Where they are not.
+/// The first violation.
 pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     let quantity = "breakpoint";
     let last = times.last().copied().unwrap_or(0.0);
@@ -169,7 +169,7 @@ pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict
                 let law = "the next breakpoint is the same until it is reached";
                 verdict(law, s, (again != next).then_some((quantity, again, next)))?;
             }
-            // those beyond the next time are met from there
+            // breakpoints beyond the next time are checked from there
             if next > times.get(k + 1).copied().unwrap_or(last) {
                 break;
             }
@@ -179,10 +179,10 @@ pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict
     Ok(())
 }
 
-/// The loads are ones that a step can be given: finite, forces not negative, before jumps and after them, and between the times.
+/// The loads are valid, finite with non-negative forces, before and after jumps and between the times.
 ///
 /// # Errors
-/// Where they are not.
+/// The first violation.
 pub fn is_a_load(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     for t in and_between(&moments(history, times)) {
         for load in [history.at(t), history.before(t)].iter().filter(|load| load.validate().is_err()) {
@@ -194,10 +194,10 @@ pub fn is_a_load(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     Ok(())
 }
 
-/// Asked again, in another order, it answers the same, bit by bit.
+/// Repeated evaluation in another order returns bitwise the same loads.
 ///
 /// # Errors
-/// Where it does not.
+/// The first violation.
 pub fn repeats_itself(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     let moments = moments(history, times);
     let first: Vec<[Load; 2]> = moments.iter().map(|&t| [history.at(t), history.before(t)]).collect();
@@ -210,11 +210,12 @@ pub fn repeats_itself(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     Ok(())
 }
 
-/// Whether the load tends to `limit` towards `t` from a `side`, from as far as `room`: ever nearer, it must differ less.
+/// Checks that the load tends to `limit` towards `t` from one `side`, within the distance `room`: the difference must
+/// decrease with the distance.
 fn tends(history: &dyn LoadHistory, t: f64, side: f64, room: f64, limit: &Load, scale: [f64; 3]) -> Verdict {
     let far = (1e-6 * room).max(1e-9 * t.abs());
     if far >= 0.5 * room {
-        return Ok(()); // too close for f64 to tell
+        return Ok(()); // below the resolution of f64
     }
     let (here, near) = (history.at(t + side * far), history.at(t + side * 1e-3 * far));
     let (a, b) = (values(&here), values(limit));
@@ -226,7 +227,7 @@ fn tends(history: &dyn LoadHistory, t: f64, side: f64, room: f64, limit: &Load, 
 /// At each time [`LoadHistory::at`] is the limit from later times.
 ///
 /// # Errors
-/// Where it is not.
+/// The first violation.
 pub fn right_continuous(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     let moments = moments(history, times);
     let scale = scales(history, &moments);
@@ -239,7 +240,7 @@ pub fn right_continuous(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
 /// At each time but the first [`LoadHistory::before`] is the limit from earlier times.
 ///
 /// # Errors
-/// Where it is not.
+/// The first violation.
 pub fn before_is_the_left_limit(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     let moments = moments(history, times);
     let scale = scales(history, &moments);
@@ -249,16 +250,17 @@ pub fn before_is_the_left_limit(history: &dyn LoadHistory, times: &[f64]) -> Ver
     Ok(())
 }
 
-/// Between breakpoints the load neither jumps nor has a corner, nor changes its kind. Looked for where it bends most.
+/// Between breakpoints the load has no jump and no corner, and does not change its kind. The search follows the
+/// greatest second difference.
 ///
 /// # Errors
-/// Where it does.
+/// The first violation.
 pub fn smooth_between_breakpoints(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     let moments = moments(history, times);
     let scale = scales(history, &moments);
     for pair in moments.windows(2) {
         let (start, end) = (pair[0], pair[1]);
-        // at a time that is no breakpoint nothing jumps
+        // at a time that is not a breakpoint there is no jump
         let is_breakpoint = history.next_breakpoint(start).is_some_and(|next| next <= end);
         if !is_breakpoint {
             let jump = difference(&history.before(end), &history.at(end), scale.map(|scale| SAME * scale));
@@ -283,8 +285,8 @@ pub fn smooth_between_breakpoints(history: &dyn LoadHistory, times: &[f64]) -> V
     Ok(())
 }
 
-/// Halves what bends most, again and again: what is smooth then bends by a quarter, a corner by half, a jump as much as
-/// before. Returns the law that is broken, and where.
+/// Repeatedly halves the interval of the greatest second difference, which then falls to a quarter where the load is
+/// smooth, to a half at a corner, and not at all at a jump. Returns the law that is violated, and the time.
 fn roughest(value: &dyn Fn(f64) -> f64, start: f64, end: f64, straight: f64) -> Option<(&'static str, f64)> {
     let bend = |[a, b]: [f64; 2]| (value(0.5 * (a + b)) - 0.5 * (value(a) + value(b))).abs();
     let mut window = [start, end];
@@ -292,7 +294,7 @@ fn roughest(value: &dyn Fn(f64) -> f64, start: f64, end: f64, straight: f64) -> 
     for _ in 0..40 {
         let [a, b] = window;
         let width = b - a;
-        // what the rounding of the times makes of a slope
+        // the rounding of the times, multiplied by the slope
         let local = value(a).abs().max(value(b).abs());
         let rounding = STRAIGHT * local + 1e-15 * (value(b) - value(a)).abs() / width * b.abs().max(a.abs());
         if width <= 1e-10 * b.abs().max(a.abs()) || bends.last().is_none_or(|last| *last <= straight + rounding) {

@@ -1,13 +1,13 @@
-//! What presses the bodies together, and how it changes with time.
+//! Loads, and how they change with time.
 //!
-//! A [`Load`] is what one step is given; a [`LoadHistory`] says it for every time, so that
-//! [`ViscoelasticContact::follow`](crate::ViscoelasticContact::follow) can drive the steps.
+//! A [`Load`] is the load of one step. A [`LoadHistory`] returns the load at every time, for
+//! [`ViscoelasticContact::follow`](crate::ViscoelasticContact::follow).
 //!
 //! | history | load |
 //! |---|---|
-//! | [`StepLoad`] | nothing, then a constant load |
-//! | [`Ramp`] | straight from one load to another, then held |
-//! | [`PiecewiseLinear`] | a table of corners and jumps |
+//! | [`StepLoad`] | none, then a constant load |
+//! | [`Ramp`] | linear from one load to another, then constant |
+//! | [`PiecewiseLinear`] | a table, linear in between, with jumps |
 //! | [`Sinusoid`] | oscillation between two loads |
 //! | [`FnHistory`] | any closure of time |
 
@@ -29,11 +29,11 @@ use std::fmt::{self, Debug};
 
 use crate::error::{Error, Result, finite, non_negative};
 
-/// What holds at the end of a step: the force or the approach of the rigid body, and its tilt.
+/// The load at the end of a step: the force or the approach of the rigid body, and its tilt.
 ///
-/// Either the normal force or the approach is given, and for each of the two tilts either the angle, or
-/// the coordinate at which the body is held and about which it turns freely. The constructors name the
-/// usual cases; the variants cover every mixture.
+/// Either the normal force or the approach is prescribed, and for each of the two tilts either the angle, or
+/// the coordinate of the pivot about which the body rotates freely. The constructors cover the usual cases;
+/// the variants cover every combination.
 ///
 /// ```
 /// use viscocontact::load::{Load, Tilt};
@@ -46,37 +46,37 @@ use crate::error::{Error, Result, finite, non_negative};
 #[non_exhaustive]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub enum Load {
-    /// The normal force is given, the approach follows.
+    /// The normal force is prescribed, the approach follows.
     Force {
         /// Normal force, ≥ 0 \[N\].
         normal: f64,
         /// Tilt along x1 and along x2.
         tilt: [Tilt; 2],
     },
-    /// The approach is given, the force follows.
+    /// The approach is prescribed, the force follows.
     Approach {
-        /// Approach \[m\] of the point that stays when the body tilts: the coordinates `at` of the free tilts,
-        /// the origin for those given.
+        /// Approach \[m\] of the point about which the body tilts: the coordinates `at` of the free tilts,
+        /// the origin along axes with a prescribed tilt.
         approach: f64,
         /// Tilt along x1 and along x2.
         tilt: [Tilt; 2],
     },
 }
 
-/// What is known of the tilt along one axis: the rotation by which the body lowers the surface by α x.
+/// The tilt along one axis: the rotation by which the body lowers the surface by α x.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub enum Tilt {
-    /// The angle is given \[rad\].
+    /// The angle is prescribed \[rad\].
     Fixed(f64),
-    /// The body turns freely until the pressure acts at this coordinate.
+    /// The body rotates freely: the resultant of the pressure acts at this coordinate.
     Free {
         /// Coordinate along the axis \[m\].
         at: f64,
     },
 }
 
-/// "a force of 5 N, at x1 = 0.001 m, tilt along x2 0.1 rad": what is given, an upright body's tilts left out.
+/// "a force of 5 N, at x1 = 0.001 m, tilt along x2 0.1 rad": prescribed values, without tilts of zero.
 impl fmt::Display for Load {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -97,17 +97,18 @@ impl fmt::Display for Load {
 const UPRIGHT: [Tilt; 2] = [Tilt::Fixed(0.0); 2];
 
 impl Load {
-    /// A normal force \[N\] that cannot tilt the body; 0 lets go.
+    /// A normal force \[N\] on a body that cannot tilt; 0 unloads.
     pub fn force(normal: f64) -> Load {
         Load::Force { normal, tilt: UPRIGHT }
     }
 
-    /// A normal force \[N\] that acts at the point `at` \[m\]: the body tilts freely until the pressure does too.
+    /// A normal force \[N\] at the point `at` \[m\]: the body tilts freely until the resultant of the pressure acts
+    /// there.
     pub fn eccentric_force(normal: f64, at: [f64; 2]) -> Load {
         Load::Force { normal, tilt: at.map(|at| Tilt::Free { at }) }
     }
 
-    /// A normal force \[N\] on a body held at given tilts \[rad\].
+    /// A normal force \[N\] on a body with prescribed tilts \[rad\].
     pub fn force_and_tilt(normal: f64, tilt: [f64; 2]) -> Load {
         Load::Force { normal, tilt: tilt.map(Tilt::Fixed) }
     }
@@ -129,7 +130,7 @@ impl Load {
         }
     }
 
-    /// Accepts loads that a step can be given.
+    /// Accepts loads with finite values and a force ≥ 0.
     pub(crate) fn validate(&self) -> Result<()> {
         match *self {
             Load::Force { normal, .. } => non_negative("normal force", normal)?,
@@ -148,7 +149,7 @@ impl Load {
         Ok(())
     }
 
-    /// Accepts what a history says for `time`, if a step can be given it.
+    /// [`Load::validate`] for the load that a history returned for `time`.
     pub(crate) fn validated_at(self, time: f64) -> Result<Load> {
         match self.validate() {
             Ok(()) => Ok(self),
@@ -159,22 +160,22 @@ impl Load {
         }
     }
 
-    /// What is given and what is free, in words.
+    /// The kind of load: prescribed and free quantities in words.
     fn kind(&self) -> &'static str {
         let free = self.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
         match (self, free) {
-            (Load::Force { .. }, [false, false]) => "a force, tilts given",
+            (Load::Force { .. }, [false, false]) => "a force, tilts prescribed",
             (Load::Force { .. }, [true, false]) => "a force, tilt along x1 free",
             (Load::Force { .. }, [false, true]) => "a force, tilt along x2 free",
             (Load::Force { .. }, [true, true]) => "a force, tilts free",
-            (Load::Approach { .. }, [false, false]) => "an approach, tilts given",
+            (Load::Approach { .. }, [false, false]) => "an approach, tilts prescribed",
             (Load::Approach { .. }, [true, false]) => "an approach, tilt along x1 free",
             (Load::Approach { .. }, [false, true]) => "an approach, tilt along x2 free",
             (Load::Approach { .. }, [true, true]) => "an approach, tilts free",
         }
     }
 
-    /// Accepts loads that can be interpolated: of one kind, and each one that a step accepts.
+    /// Accepts valid loads of one kind, which can be interpolated.
     pub(crate) fn validate_all(field: &'static str, loads: impl IntoIterator<Item = Load>) -> Result<()> {
         let mut kind = None;
         for load in loads {
@@ -195,11 +196,11 @@ impl Load {
         }
     }
 
-    /// How far `between` is from the load a fraction `s` of the way from `self` to `to`: force or approach relative
-    /// to `scale`, tilts and points relative to their own greatest.
-    pub(crate) fn straying(&self, to: &Load, s: f64, between: &Load, scale: f64) -> f64 {
+    /// The deviation of `between` from the linear interpolation at the fraction `s` from `self` to `to`: force or
+    /// approach relative to `scale`, tilts and points relative to their greatest value.
+    pub(crate) fn deviation(&self, to: &Load, s: f64, between: &Load, scale: f64) -> f64 {
         let straight = self.towards(to, s);
-        let relative = |far: f64, scale: f64| if far == 0.0 { 0.0 } else { far / scale };
+        let relative = |distance: f64, scale: f64| if distance == 0.0 { 0.0 } else { distance / scale };
         let main = match (straight, *between) {
             (Load::Force { normal: a, .. }, Load::Force { normal: b, .. })
             | (Load::Approach { approach: a, .. }, Load::Approach { approach: b, .. }) => {
@@ -218,7 +219,7 @@ impl Load {
         main.max(tilts[0]).max(tilts[1])
     }
 
-    /// The load a fraction `s` of the way from `self` to `to`, which is of the same kind.
+    /// Linear interpolation at the fraction `s` from `self` to `to`, which is of the same kind.
     pub(crate) fn towards(&self, to: &Load, s: f64) -> Load {
         let mix = |a: f64, b: f64| if s == 1.0 { b } else { a + s * (b - a) };
         let mix_tilt = |a: Tilt, b: Tilt| match (a, b) {
@@ -242,7 +243,7 @@ impl Load {
 /// ```
 /// use viscocontact::load::{Load, LoadHistory};
 ///
-/// /// Half a sine, then nothing.
+/// /// Half a sine, then no load.
 /// #[derive(Debug)]
 /// struct Knock;
 ///
@@ -257,24 +258,24 @@ impl Load {
 /// assert_eq!(Knock.at(0.5), Load::force(1.0));
 /// ```
 pub trait LoadHistory: Debug + Send + Sync {
-    /// The load at time `t` \[s\]; at a jump, the load after it (right-continuous). A run looks at the ends of steps, with
-    /// adaptive steps also between them, and ends with [`LoadError::OutOfRange`] wherever it
-    /// finds a load that no step can be given.
+    /// The load at time `t` \[s\]; at a jump, the load after it (right-continuous). A run evaluates the history at the
+    /// ends of steps, with adaptive steps also within them, and fails with [`LoadError::OutOfRange`] at a load that is
+    /// not allowed.
     fn at(&self, t: f64) -> Load;
 
-    /// The load just before time `t`: differs from [`LoadHistory::at`] only at a jump.
+    /// The load just before time `t`; it differs from [`LoadHistory::at`] only at a jump.
     fn before(&self, t: f64) -> Load {
         self.at(t)
     }
 
-    /// The first corner or jump later than `after` \[s\]; steps end exactly on it.
+    /// The first breakpoint (corner or jump) later than `after` \[s\]; steps end exactly there.
     fn next_breakpoint(&self, after: f64) -> Option<f64> {
         let _ = after;
         None
     }
 }
 
-/// What is owned, shared or chosen at run time behind a pointer serves like the thing itself.
+/// Forwards the trait through smart pointers.
 macro_rules! forward_load {
     ($($pointer:ty),*) => {$(
         impl<T: LoadHistory + ?Sized> LoadHistory for $pointer {

@@ -1,8 +1,8 @@
 use crate::error::{Error, Result, finite, least_length};
 use crate::load::{Load, LoadHistory};
 
-/// Loads at given times, joined by straight lines and held before the first and after the last. Two
-/// entries at the same time are a jump.
+/// Loads at given times, linear in between and constant before the first and after the last. Two entries at the
+/// same time are a jump.
 ///
 /// ```
 /// use viscocontact::load::{Load, LoadHistory, PiecewiseLinear};
@@ -24,7 +24,7 @@ impl PiecewiseLinear {
     ///
     /// # Errors
     /// If there are fewer than two entries, a time is not finite or earlier than the one before, three
-    /// entries share a time, a load is one no step accepts, or the loads are of different kinds.
+    /// entries share a time, a load is invalid, or the loads are of different kinds.
     pub fn new(table: &[(f64, Load)]) -> Result<PiecewiseLinear> {
         least_length("load table", table.len(), 2)?;
         for &(time, _) in table {
@@ -43,7 +43,7 @@ impl PiecewiseLinear {
                 return Err(disorder("not decrease"));
             }
             if index > 0 && pair[1].0 == table[index - 1].0 {
-                return Err(disorder("occur twice at most, where the load jumps"));
+                return Err(disorder("occur at most twice, where the load jumps"));
             }
         }
         Ok(PiecewiseLinear { table: table.to_vec() })

@@ -1,8 +1,8 @@
 use crate::error::{Result, positive};
 use crate::load::{Load, LoadHistory, PiecewiseLinear};
 
-/// A load that changes linearly from one value to another in a given time, starting at t = 0, and is
-/// held before and after.
+/// A load that changes linearly from one value to another in a given time from t = 0, and is constant before and
+/// after.
 ///
 /// ```
 /// use viscocontact::load::{Load, LoadHistory, Ramp};
@@ -21,8 +21,7 @@ impl Ramp {
     /// From `from` at t = 0 to `to` at t = `duration` \[s\].
     ///
     /// # Errors
-    /// If the duration is not finite and positive, a load is one no step accepts, or the loads are of
-    /// different kinds.
+    /// If the duration is not finite and positive, a load is invalid, or the loads are of different kinds.
     pub fn new(from: Load, to: Load, duration: f64) -> Result<Ramp> {
         positive("duration of the ramp", duration)?;
         Ok(Ramp { table: PiecewiseLinear::new(&[(0.0, from), (duration, to)])? })

@@ -1,7 +1,7 @@
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
 
-/// A load that is there from t = 0 on, and nothing before.
+/// A constant load from t = 0 on, and none before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepLoad {
     load: Load,
@@ -11,7 +11,7 @@ impl StepLoad {
     /// `load` applied at t = 0 and held.
     ///
     /// # Errors
-    /// If the load is one no step accepts: not finite, or a negative force.
+    /// If the load is not finite, or the force negative.
     pub fn new(load: Load) -> Result<StepLoad> {
         load.validate()?;
         Ok(StepLoad { load })

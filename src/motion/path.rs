@@ -2,9 +2,9 @@ use std::fmt;
 
 use crate::error::{Result, finite};
 
-/// Where an indenter is at each time.
+/// The position of an indenter as a function of time.
 pub trait Path: fmt::Debug + Send + Sync {
-    /// Where the origin of its shape is at time `t` \[s\], as (x1, x2) \[m\].
+    /// Position (x1, x2) \[m\] of the origin of the shape at time `t` \[s\].
     fn at(&self, t: f64) -> [f64; 2];
 }
 
@@ -24,10 +24,10 @@ pub struct Straight {
 }
 
 impl Straight {
-    /// From `start` \[m\] at t = 0 with `velocity` \[m/s\].
+    /// A path from `start` \[m\] at t = 0 with `velocity` \[m/s\].
     ///
     /// # Errors
-    /// If a number is not finite.
+    /// If a component is not finite.
     pub fn new(start: [f64; 2], velocity: [f64; 2]) -> Result<Straight> {
         Ok(Straight {
             start: [finite("start along x1", start[0])?, finite("start along x2", start[1])?],
@@ -42,7 +42,7 @@ impl Path for Straight {
     }
 }
 
-/// A path given by a closure of time: back and forth, round in circles, measured.
+/// A path given by a closure of time: oscillating, circular, measured.
 ///
 /// ```
 /// use viscocontact::motion::{FnPath, Path};
@@ -55,7 +55,7 @@ pub struct FnPath<F> {
 }
 
 impl<F: Fn(f64) -> [f64; 2] + Send + Sync> FnPath<F> {
-    /// Wraps the closure; its values are checked at each step.
+    /// Wraps the closure; each step checks its values.
     pub fn new(at: F) -> FnPath<F> {
         FnPath { at }
     }

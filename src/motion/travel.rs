@@ -5,7 +5,7 @@ use crate::error::{Result, finite};
 use crate::geometry::{Geometry, Shifted};
 use crate::motion::Path;
 
-/// A shape that travels along a path, perhaps over something that stays where it is.
+/// A shape that moves along a path, optionally over a fixed track.
 ///
 /// ```
 /// use viscocontact::motion::{Straight, Travel};
@@ -22,7 +22,7 @@ use crate::motion::Path;
 ///     let report = contact.step_along(&travel, 2.0e-3, load)?;
 ///     println!("{:.2e} m: {:.2e} N, {:.2e} W", report.position[0], report.lateral_force[0], report.power);
 /// }
-/// assert!(contact.asymmetry([2.0e-3, 0.0])?.unwrap().center_of_pressure[0] > 2.0e-3); // it leans forward
+/// assert!(contact.asymmetry([2.0e-3, 0.0])?.unwrap().center_of_pressure[0] > 2.0e-3); // the pressure is shifted forward
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -38,7 +38,7 @@ impl Travel {
         Travel { shape: Arc::new(shape), path: Arc::new(path), track: None }
     }
 
-    /// What stays where it is, its gap added to that of the moving shape: the roughness of the creeping body, or of a rolling
+    /// Adds the gap of a fixed track to that of the moving shape: the roughness of the creeping body, or of a rolling
     /// indenter.
     #[must_use]
     pub fn over(mut self, track: impl Geometry + 'static) -> Travel {
@@ -46,16 +46,16 @@ impl Travel {
         self
     }
 
-    /// Where the shape is at time `t` \[m\].
+    /// Position of the shape at time `t` \[s\], in m.
     ///
     /// # Errors
-    /// If the path returns what is not finite.
+    /// If the path returns a value that is not finite.
     pub fn position(&self, t: f64) -> Result<[f64; 2]> {
         let [x1, x2] = self.path.at(t);
         Ok([finite("position along x1", x1)?, finite("position along x2", x2)?])
     }
 
-    /// The moving shape where it is at time `t` \[s\], without what stays in place.
+    /// The moving shape at its position at time `t` \[s\], without the track.
     ///
     /// # Errors
     /// As [`Travel::position`].
@@ -63,7 +63,7 @@ impl Travel {
         Shifted::of(Arc::clone(&self.shape), self.position(t)?)
     }
 
-    /// The gap \[m\] at time `t` \[s\] on every cell, of the moving shape and what it moves over.
+    /// The gap \[m\] at time `t` \[s\] on every cell, of the moving shape and the track.
     pub(crate) fn fill_gap(&self, t: f64, grid: &Grid, gap: &mut [f64], scratch: &mut Vec<f64>) -> Result<()> {
         self.shape.fill_gap_at(grid, self.position(t)?, gap);
         if let Some(track) = &self.track {

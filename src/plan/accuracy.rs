@@ -1,8 +1,8 @@
 use crate::contact::{Settings, Stepping};
 use crate::error::{Result, within};
 
-/// How accurate an answer is wanted: approach, force and, where it is finite, peak pressure, relative to their greatest values.
-/// It sets steps, solver and, through a [`Plan`](crate::plan::Plan), mesh and domain together.
+/// The accuracy of a result: approach, force and, where it is finite, peak pressure, relative to their greatest values.
+/// It determines steps, solver and, through a [`Plan`](crate::plan::Plan), mesh and domain.
 ///
 /// ```
 /// use viscocontact::plan::Accuracy;
@@ -15,21 +15,21 @@ use crate::error::{Result, within};
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Accuracy {
-    /// 1e-2: to look.
+    /// 1e-2: for a first look.
     Coarse,
-    /// 1e-3: to design.
+    /// 1e-3: for design.
     #[default]
     Standard,
-    /// 1e-4: to compare with.
+    /// 1e-4: for reference solutions.
     Fine,
-    /// Any other target, in \[1e-6, 0.1\], made by [`Accuracy::target_of`]; a plan refuses others.
+    /// Any other target, in \[1e-6, 0.1\], made by [`Accuracy::target_of`]; a plan rejects others.
     Custom(f64),
 }
 
-/// Parts of the target that the error in time may take up, and that of the mesh. Measured (docs/accuracy.md).
+/// Shares of the error in time and of the mesh in the target, as measured (docs/accuracy.md).
 const TIME_SHARE: f64 = 0.36;
 const SPACE_SHARE: f64 = 0.8;
-/// The solver's part: its residual is relative to the displacement, and it is asked for far less than the rest.
+/// Share of the residual of the solver, relative to the displacement: far below the other shares.
 const SOLVER_SHARE: f64 = 0.01;
 
 impl Accuracy {
@@ -42,7 +42,7 @@ impl Accuracy {
         Ok(Accuracy::Custom(target))
     }
 
-    /// The relative error aimed at.
+    /// The target: a relative error.
     pub fn target(&self) -> f64 {
         match *self {
             Accuracy::Coarse => 1e-2,
@@ -52,18 +52,18 @@ impl Accuracy {
         }
     }
 
-    /// Adaptive steps that suit.
+    /// Adaptive steps for this accuracy.
     pub fn stepping(&self) -> Stepping {
         Stepping::adaptive((TIME_SHARE * self.target()).clamp(1e-9, 0.1))
     }
 
-    /// Settings that suit; change what else you like.
+    /// Settings for this accuracy; the others may be changed.
     pub fn settings(&self) -> Settings {
         let tolerance = (SOLVER_SHARE * self.target()).clamp(1e-12, 1e-3);
         Settings { tolerance, series_tolerance: (0.1 * self.target()).clamp(1e-7, 1e-2), ..Settings::default() }
     }
 
-    /// The error of the mesh that suits.
+    /// The error of the mesh for this accuracy.
     pub(crate) fn space(&self) -> f64 {
         SPACE_SHARE * self.target()
     }

@@ -1,4 +1,4 @@
-//! Mesh, domain and steps from the accuracy that is wanted.
+//! Mesh, domain and steps for a given accuracy.
 
 mod accuracy;
 
@@ -12,11 +12,11 @@ use crate::load::{Load, LoadHistory};
 use crate::observe::mesh_error::{AREA_ORDER, MeshError};
 use crate::rheology::Material;
 
-/// A scene planned for an accuracy: how far the contact will reach, the cells and steps that it takes, and what that costs.
+/// A scene planned for an accuracy: the extent of the contact, the cells and steps needed, and their cost.
 ///
-/// Cheap runs on a coarse mesh find the domain, the steps and the error of the mesh; the latter is extrapolated, with
-/// second order where the contact is smooth and first order at singular edges, to the cells that bring it to the target. The
-/// plan hands back a builder: look at it, change it, build it.
+/// Cheap runs on a coarse mesh find the domain, the steps and the error of the mesh. That error is extrapolated, with
+/// second order where the contact is smooth and first order at singular edges, to the number of cells that meets the
+/// target. The plan returns a builder, which can be changed before the contact is built.
 ///
 /// ```
 /// use viscocontact::plan::{Accuracy, Plan};
@@ -40,7 +40,7 @@ pub struct Plan {
     accuracy: Accuracy,
     builder: Builder,
     grid: Grid,
-    /// Half sides of the rectangle that holds the contact at all times.
+    /// Half sides of the rectangle that contains the contact at all times.
     reach: [f64; 2],
     steps: usize,
     convolutions: f64,
@@ -49,14 +49,14 @@ pub struct Plan {
 }
 
 /// Cells along a side of the coarse runs.
-const COARSE: usize = 24;
-/// The domain is this times the rectangle of the contact.
-const MARGIN: f64 = 1.12;
-/// Domains tried before giving up: each at most ten times as large or as small as the last.
-const TRIES: usize = 60;
-/// A domain is kept if the contact spans so much of it.
-const FILLED: [f64; 2] = [0.45, 0.92];
-/// Cells along a side of a plan: any fewer are no mesh, more are beyond a workstation.
+const COARSE_CELLS: usize = 24;
+/// Ratio of the domain to the rectangle of the contact.
+const DOMAIN_TO_CONTACT: f64 = 1.12;
+/// Greatest number of domains tried, each at most ten times as large or as small as the last.
+const MAX_DOMAINS: usize = 60;
+/// A domain is accepted if the contact spans a fraction of it in this range.
+const CONTACT_FRACTION: [f64; 2] = [0.45, 0.92];
+/// Cells along a side of a plan: fewer do not resolve a contact, more exceed a workstation.
 const LEAST_CELLS: usize = 16;
 const MOST_CELLS: usize = 1 << 13;
 
@@ -64,8 +64,8 @@ impl Plan {
     /// Plans a run of one body from rest to the time `until` \[s\].
     ///
     /// # Errors
-    /// If the time is not finite and positive, a part is invalid, no domain holds the contact, the coarse runs fail, or the
-    /// target needs more than 8192 cells along a side.
+    /// If the time is not finite and positive, a part is invalid, no domain holds the contact, the coarse runs fail, or
+    /// the target needs more than 8192 cells along a side.
     pub fn new(
         geometry: &dyn Geometry,
         material: &Material,
@@ -77,19 +77,19 @@ impl Plan {
         Accuracy::target_of(accuracy.target())?;
         let coarse = Coarse { geometry, material, history, until, accuracy };
         let (reach, found) = coarse.domain()?;
-        let lengths = reach.map(|half| 2.0 * MARGIN * half);
+        let lengths = reach.map(|half| 2.0 * DOMAIN_TO_CONTACT * half);
 
-        // error(n) = second (COARSE/n)² + first COARSE/n
+        // error(n) = second (COARSE_CELLS/n)² + first COARSE_CELLS/n
         let (first, target) = (found.error.singular, accuracy.space());
         let second = (found.error.approach.max(found.error.greatest_pressure) - first).max(0.0);
         let shrink = (first + (first * first + 4.0 * second * target).sqrt()) / (2.0 * target);
-        let wanted = (COARSE as f64 * shrink).ceil();
+        let wanted = (COARSE_CELLS as f64 * shrink).ceil();
         if wanted > MOST_CELLS as f64 {
-            let (field, allowed) = ("cells along a side for this accuracy", "8192 at most: ask for less accuracy");
+            let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
             return Err(Error::CountOutOfRange { field, value: wanted.min(1e18) as usize, allowed });
         }
         let cells = smooth_size((wanted as usize).max(LEAST_CELLS));
-        let ratio = COARSE as f64 / cells as f64;
+        let ratio = COARSE_CELLS as f64 / cells as f64;
         let grid = Grid::new([cells; 2], lengths)?;
         let finer = |error: f64| (error - first) * ratio * ratio + first * ratio;
         let error = MeshError {
@@ -100,53 +100,53 @@ impl Plan {
         };
         let builder = coarse.builder(grid.clone());
         let memory = builder.memory()?;
-        let slope = 8 * memory.computed_cells as u64; // that adaptive steps keep
+        let slope = 8 * memory.computed_cells as u64; // the rate that adaptive steps store
         let bytes = memory.total() + slope;
         Ok(Plan { accuracy, builder, grid, reach, steps: found.steps, convolutions: found.convolutions, error, bytes })
     }
 
-    /// A builder with grid, geometry, material and settings; what the plan chose can be replaced.
+    /// A builder with grid, geometry, material and settings, each of which can be replaced.
     pub fn builder(&self) -> Builder {
         self.builder.clone()
     }
 
-    /// The grid chosen.
+    /// The grid.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// Steps to take, for [`ViscoelasticContact::follow`].
+    /// The stepping, for [`ViscoelasticContact::follow`].
     pub fn stepping(&self) -> Stepping {
         self.accuracy.stepping()
     }
 
-    /// The accuracy planned for.
+    /// The accuracy.
     pub fn accuracy(&self) -> Accuracy {
         self.accuracy
     }
 
-    /// How far the contact will reach from the middle of the grid, along x1 and x2 \[m\].
+    /// Expected extent of the contact from the middle of the grid, along x1 and x2 \[m\].
     pub fn reach(&self) -> [f64; 2] {
         self.reach
     }
 
-    /// Steps that the run will take, about.
+    /// Approximate number of steps of the run.
     pub fn steps(&self) -> usize {
         self.steps
     }
 
-    /// Convolution equivalents that the whole run will take, about; each O(N log N) in the number of cells.
+    /// Approximate number of convolution equivalents of the run, each O(N log N) in the number of cells.
     pub fn convolutions(&self) -> f64 {
         self.convolutions
     }
 
-    /// Memory that the contact will take \[bytes\], about: [`Builder::memory`], what adaptive steps keep, and the series of the
-    /// material.
+    /// Approximate memory of the contact \[bytes\]: [`Builder::memory`], the fields of adaptive steps, and the series
+    /// of the material.
     pub fn bytes(&self) -> u64 {
         self.bytes
     }
 
-    /// Errors of the mesh to expect.
+    /// Expected errors of the mesh.
     pub fn mesh_error(&self) -> MeshError {
         self.error
     }
@@ -179,9 +179,9 @@ struct Coarse<'a> {
     accuracy: Accuracy,
 }
 
-/// What a coarse run found.
+/// The result of a coarse run.
 struct Found {
-    /// Half sides of the rectangle about the origin that held the contact.
+    /// Half sides of the rectangle about the origin that contained the contact.
     reach: [f64; 2],
     steps: usize,
     convolutions: f64,
@@ -195,20 +195,20 @@ impl Coarse<'_> {
         builder.settings(self.accuracy.settings()).times_of(self.history, self.until)
     }
 
-    /// Runs on domains until the contact fills one well, and tells how far it reached.
+    /// Runs on domains until the contact fills one well; returns its extent.
     fn domain(&self) -> Result<([f64; 2], Found)> {
         let mut lengths = [self.first_length()?; 2];
-        for _ in 0..TRIES {
+        for _ in 0..MAX_DOMAINS {
             match self.run(lengths) {
                 Err(Error::ContactAtEdge { .. }) => lengths = lengths.map(|length| 1.7 * length),
                 Err(Error::NothingToTouch { .. }) => lengths = lengths.map(|length| 0.3 * length),
                 Err(error) => return Err(error),
                 Ok(found) => {
                     let filled = [0, 1].map(|axis| 2.0 * found.reach[axis] / lengths[axis]);
-                    if filled.iter().all(|part| (FILLED[0]..=FILLED[1]).contains(part)) {
+                    if filled.iter().all(|part| (CONTACT_FRACTION[0]..=CONTACT_FRACTION[1]).contains(part)) {
                         return Ok((found.reach, found));
                     }
-                    let least = 2.0 / COARSE as f64;
+                    let least = 2.0 / COARSE_CELLS as f64;
                     lengths = [0, 1].map(|axis| lengths[axis] * (filled[axis].max(least) * 1.3).clamp(0.1, 1.7));
                 }
             }
@@ -217,7 +217,7 @@ impl Coarse<'_> {
     }
 
     fn run(&self, lengths: [f64; 2]) -> Result<Found> {
-        let grid = Grid::new([COARSE; 2], lengths)?;
+        let grid = Grid::new([COARSE_CELLS; 2], lengths)?;
         let mut contact = self.builder(grid).build()?;
         let mut found = Found { reach: [0.0; 2], steps: 0, convolutions: 0.0, error: MeshError::default() };
         let (mut deepest, mut highest, mut states) = (0.0_f64, 0.0_f64, Vec::new());
@@ -231,7 +231,7 @@ impl Coarse<'_> {
             let touched = run.contact().reach_of_contact();
             found.reach = [0, 1].map(|axis| found.reach[axis].max(touched[axis]));
         }
-        // errors relative to the greatest values of the run: a small contact may be coarse if it is not what matters
+        // errors relative to the greatest values of the run: a small contact may be coarse if its share is small
         for (approach, peak, error) in states {
             let (approach, peak) = ((approach / deepest).clamp(0.0, 1.0), peak / highest);
             if approach.is_nan() || peak.is_nan() {
@@ -247,8 +247,8 @@ impl Coarse<'_> {
         Ok(found)
     }
 
-    /// A length of the domain to start from: a contact of half width L/4 gives way by the rise of the gap there under
-    /// a force of about E* L times that rise.
+    /// Initial length of the domain: a contact of half width L/4 is indented by the gap there, under a force of about
+    /// E* L times that gap.
     fn first_length(&self) -> Result<f64> {
         let (mut force, mut approach) = (0.0_f64, 0.0_f64);
         for k in 0..=64 {
@@ -277,7 +277,7 @@ impl Coarse<'_> {
     }
 }
 
-/// The next number of cells whose double has no prime factor above 5, which transforms like.
+/// The next number of cells whose double has no prime factor above 5, for fast transforms.
 fn smooth_size(least: usize) -> usize {
     let smooth = |mut n: usize| {
         for factor in [2, 3, 5] {

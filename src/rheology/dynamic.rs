@@ -1,4 +1,4 @@
-//! The answer of a series to oscillation: complex moduli.
+//! Steady oscillation: complex moduli of a series.
 
 use num_complex::Complex64;
 

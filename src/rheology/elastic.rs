@@ -1,7 +1,7 @@
 use crate::error::{Result, positive};
 use crate::rheology::{CreepSpectrum, exponential_rheology};
 
-/// A body without memory: J = 1/G.
+/// An elastic body: J = 1/G.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Elastic {
     spectrum: CreepSpectrum,

@@ -4,8 +4,8 @@ use crate::rheology::power_law::fractional_order;
 
 /// A spring and a springpot in series: J(t) = 1/G + t^α/(V Γ(1 + α)).
 ///
-/// Elastic at first, then creep by a power law without end: Findley's law of polymers J = J₀ + m tⁿ, with
-/// α = n and V = 1/(m Γ(1 + n)), asphalt, cells. With α → 1 it becomes a Maxwell body of viscosity V.
+/// An elastic response, followed by unbounded power-law creep: asphalt, cells, and Findley's law of polymers J = J₀ + m
+/// tⁿ, with α = n and V = 1/(m Γ(1 + n)). For α → 1 it becomes a Maxwell body of viscosity V.
 ///
 /// ```
 /// use viscocontact::rheology::{FractionalMaxwell, Rheology};

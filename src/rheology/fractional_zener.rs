@@ -3,10 +3,10 @@ use crate::rheology::Rheology;
 use crate::rheology::mittag_leffler::mittag_leffler_rise;
 use crate::rheology::power_law::fractional_order;
 
-/// The standard linear solid with a springpot for its dashpot:
+/// The standard linear solid with a springpot in place of the dashpot:
 /// J(t) = 1/G + (1/G_K) [1 − E_α(−(t/λ)^α)], E_α the Mittag-Leffler function.
 ///
-/// Four parameters describe the whole passage of a rubber or a polymer from glassy to relaxed (the Cole–Cole form):
+/// Four parameters describe the whole transition of a rubber or a polymer from glassy to relaxed (the Cole–Cole form):
 /// G*(ω) has a broad, symmetric loss peak whose slopes are ±α.
 ///
 /// ```
@@ -27,7 +27,7 @@ pub struct FractionalZener {
 }
 
 impl FractionalZener {
-    /// A spring of shear modulus `g` \[Pa\] in series with a spring `g_k` \[Pa\] and a springpot side by side, whose
+    /// A spring of shear modulus `g` \[Pa\] in series with a spring `g_k` \[Pa\] and a springpot in parallel, whose
     /// retardation time is `time` λ \[s\] and order `exponent` α. The springpot has V = G_K λ^α.
     ///
     /// # Errors

@@ -4,14 +4,15 @@ use crate::rheology::Rheology;
 
 /// A rheology given by a closure J(t): shear creep compliance \[1/Pa\] at t ≥ 0 \[s\].
 ///
-/// It works in either of two ways:
+/// A contact uses it in one of two ways:
 ///
 /// * as an exponential series, the default: fitted over the times of the scene
-///   ([`Builder::times`](crate::contact::Builder::times)) to within
-///   [`Settings::series_tolerance`](crate::contact::Settings), the error reported by
-///   [`ViscoelasticContact::material`](crate::ViscoelasticContact::material). Second order in time; memory and work a step do not grow.
-/// * exactly, as a sum over the whole past: [`TimeRule::Backward`](crate::contact::TimeRule::Backward). First order in
-///   time; one field of 8 bytes a cell for each past step, up to
+///   ([`Builder::times`](crate::contact::Builder::times)) within
+///   [`Settings::series_tolerance`](crate::contact::Settings); the error is reported by
+///   [`ViscoelasticContact::material`](crate::ViscoelasticContact::material). Second order in time; memory and work per
+///   step do not grow.
+/// * exactly, by a direct sum over all past steps: [`TimeRule::Backward`](crate::contact::TimeRule::Backward). First
+///   order in time; one field of 8 bytes per cell for each past step, up to
 ///   [`Settings::history_limit`](crate::contact::Settings), all of them read at every step.
 ///
 /// ```
@@ -28,8 +29,7 @@ pub struct FnRheology<F> {
 }
 
 impl<F: Fn(f64) -> f64 + Send + Sync> FnRheology<F> {
-    /// Wraps the closure; its values are checked as they are used: they must be finite, ≥ 0 and
-    /// never decrease.
+    /// Wraps the closure. Its values are checked when used: they must be finite, ≥ 0 and non-decreasing.
     pub fn new(compliance: F) -> FnRheology<F> {
         FnRheology { compliance }
     }

@@ -2,7 +2,7 @@ use crate::error::{Result, least_length};
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum, exponential_rheology};
 
 /// A spring and any number of Maxwell elements in parallel (a Prony series):
-/// G(t) = G_∞ + Σ G_k e^(−t/τ_k). A solid if G_∞ > 0, else a fluid.
+/// G(t) = G_∞ + Σ G_k e^(−t/τ_k). A solid if G_∞ > 0, otherwise a fluid.
 ///
 /// ```
 /// use viscocontact::rheology::{GeneralizedMaxwell, Rheology};
@@ -22,7 +22,7 @@ impl GeneralizedMaxwell {
     /// time \[s\]).
     ///
     /// # Errors
-    /// As [`RelaxationSpectrum::new`]; without a term, or with all moduli zero, there is no body.
+    /// As [`RelaxationSpectrum::new`]; also without terms.
     pub fn new(equilibrium: f64, terms: &[(f64, f64)]) -> Result<GeneralizedMaxwell> {
         least_length("Maxwell elements", terms.len(), 1)?;
         Ok(GeneralizedMaxwell { spectrum: RelaxationSpectrum::new(equilibrium, 0.0, terms)?.creep() })

@@ -10,8 +10,8 @@
 //! reciprocal is then c′ + f′ s + Σ b_k s/(s + z_k) with b_k = 1/(z_k φ′(z_k)),
 //! c′ = 1/φ(0) (0 if f > 0) and f′ = 1/(f + Σ a_k p_k) (0 if c > 0).
 //!
-//! Read in σ = 1/s the reciprocal has the form of φ again, poles at the times 1/z_k: one function
-//! serves both ways.
+//! In σ = 1/s the reciprocal has the form of φ again, with poles at the times 1/z_k: one function
+//! converts both ways.
 
 /// The coefficients of c + f/s + Σ a p/(p + s): positive strengths a at ascending, distinct poles p.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,7 +22,7 @@ pub(crate) struct StieltjesSeries {
     pub(crate) terms: Vec<(f64, f64)>,
 }
 
-/// Poles closer than this, relative to their position, are taken for one at their mean, weighted by
+/// Poles closer than this, relative to their position, are replaced by one at their mean, weighted by
 /// strength. That changes the function by a relative 1e-13 at most (the square of the distance, over
 /// eight), while zeros in a narrower gap would be resolved to fewer than ten digits of its width.
 const SAME_POLE: f64 = 1e-6;
@@ -30,7 +30,7 @@ const SAME_POLE: f64 = 1e-6;
 /// The coefficients c′, f′ and (b_k, z_k) of the reciprocal c′ + f′ s + Σ b s/(s + z), zeros ascending.
 pub(crate) fn reciprocal(series: &StieltjesSeries) -> StieltjesSeries {
     let StieltjesSeries { constant, slope, .. } = *series;
-    let terms = counting(&merged(&series.terms), constant, slope);
+    let terms = significant(&merged(&series.terms), constant, slope);
     let total: f64 = terms.iter().map(|&(a, _)| a).sum();
     let rate: f64 = terms.iter().map(|&(a, p)| a * p).sum();
 
@@ -42,11 +42,11 @@ pub(crate) fn reciprocal(series: &StieltjesSeries) -> StieltjesSeries {
     let function = Secular { constant, poles };
 
     let mut zeros: Vec<(f64, f64)> = Vec::with_capacity(terms.len() + 1);
-    // a zero that is nearer to its pole than numbers tell belongs to a term too weak to count
+    // a zero that coincides with its pole in `f64` belongs to a negligible term
     for zero in function.zeros().filter(|zero| zero.offset != 0.0) {
         let (strength, at) = (function.residue(zero), function.position(zero));
         match zeros.last_mut() {
-            // zeros on either side of a very weak term may round to the same number
+            // zeros on both sides of a very weak term may round to the same number
             Some(last) if last.1 == at => last.0 += strength,
             _ => zeros.push((strength, at)),
         }
@@ -77,27 +77,27 @@ fn merged(terms: &[(f64, f64)]) -> Vec<(f64, f64)> {
     merged
 }
 
-/// A part of the function below this is rounding wherever it is.
+/// A relative contribution to the function below this is rounding.
 const ROUNDING: f64 = 0.5 * f64::EPSILON;
 
-/// The terms without those that are rounding beside the constant, the slope, or a stronger term of a higher or lower pole. Where
-/// the pole of such a term lies on a zero of the others, the zeros on its two sides cannot be told apart by numbers,
-/// and their strengths, which share that of the zero, would be anything.
-fn counting(terms: &[(f64, f64)], constant: f64, slope: f64) -> Vec<(f64, f64)> {
+/// The terms without those that are rounding relative to the constant, the slope, or a stronger term of a higher or
+/// lower pole. If the pole of such a term is at a zero of the others, the zeros on its two sides coincide in `f64`, and
+/// the division of the strength between them would be arbitrary.
+fn significant(terms: &[(f64, f64)], constant: f64, slope: f64) -> Vec<(f64, f64)> {
     // for p ≤ q, a p/(p + s) is at most a/b of b q/(q + s); for p ≥ q, a p/(b q) of it
     let mut highest = vec![constant; terms.len()];
     for k in (0..terms.len().saturating_sub(1)).rev() {
         highest[k] = highest[k + 1].max(terms[k + 1].0);
     }
     let mut lowest = slope;
-    let mut counting = Vec::with_capacity(terms.len());
+    let mut significant = Vec::with_capacity(terms.len());
     for (&(a, p), highest) in terms.iter().zip(highest) {
         if a > ROUNDING * highest && a * p > ROUNDING * lowest {
-            counting.push((a, p));
+            significant.push((a, p));
         }
         lowest = lowest.max(a * p);
     }
-    counting
+    significant
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -112,7 +112,7 @@ struct Secular {
     poles: Vec<Pole>,
 }
 
-/// A point given by its signed distance from a pole, so that a zero that all but coincides with the
+/// A point given by its signed distance from a pole, so that a zero that nearly coincides with the
 /// pole of a weak term keeps its full relative accuracy.
 #[derive(Debug, Clone, Copy)]
 struct Point {

@@ -3,7 +3,7 @@ use crate::rheology::{CreepSpectrum, exponential_rheology};
 
 /// A spring and a dashpot in parallel: J = (1 − e^(−t/λ))/G, λ = η/G.
 ///
-/// J(0) = 0: it has no elastic response and cannot follow a jump of the load that presses it; ramp it.
+/// J(0) = 0: it has no elastic response and cannot follow a jump to a non-zero load; ramp the load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KelvinVoigt {
     spectrum: CreepSpectrum,

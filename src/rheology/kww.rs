@@ -3,15 +3,15 @@ use crate::rheology::Rheology;
 
 /// Creep by a stretched exponential (Kohlrausch, Williams and Watts): J(t) = J_g + ΔJ [1 − e^(−(t/λ)^β)].
 ///
-/// Glassy polymers below their transition, amorphous solids, rubber near equilibrium. The shape is that of
-/// creep; for a *relaxation modulus* of this shape fit its values:
+/// Glassy polymers below their transition, amorphous solids, rubber near equilibrium. The stretched exponential is that
+/// of creep; for a *relaxation modulus* of this form fit its values:
 /// [`TabulatedRelaxation`](crate::rheology::TabulatedRelaxation).
 ///
 /// ```
 /// use viscocontact::rheology::{Kww, Rheology};
 ///
 /// let pvc = Kww::new(0.5e-9, 2.0e-9, 1.0e4, 0.33)?;
-/// let after = pvc.creep_compliance(1.0e4); // at t = λ all but 1/e has come
+/// let after = pvc.creep_compliance(1.0e4); // at t = λ, all but 1/e of ΔJ
 /// assert!((after / (0.5e-9 + 2.0e-9 * (1.0 - (-1.0_f64).exp())) - 1.0).abs() < 1e-14);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```

@@ -1,7 +1,7 @@
-//! What every [`Rheology`] must obey: one function for each law, for the tests of those who write one.
+//! The laws that every [`Rheology`] obeys: one function per law, to test implementations of the trait.
 //!
-//! Each takes the rheology and the times at which to look, and says where a law is broken, and by what. [`all`]
-//! asks for every one.
+//! Each takes the rheology and the times of the check, and reports where the law is violated and by how much. [`all`]
+//! checks every law.
 //!
 //! ```
 //! use viscocontact::rheology::{Rheology, laws};
@@ -22,29 +22,28 @@
 use crate::quadrature::GaussLegendre;
 use crate::rheology::{CreepSpectrum, Rheology, may_follow};
 
-/// A law that does not hold.
+/// A violation of a law.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("{law}: at t = {t:e} s found {found:e}, expected {expected:e}")]
 #[non_exhaustive]
 pub struct Violation {
-    /// Which law.
+    /// The law.
     pub law: &'static str,
-    /// Where \[s\].
+    /// Time \[s\].
     pub t: f64,
-    /// What was found.
+    /// The value found.
     pub found: f64,
-    /// What the law asks for; where it is an inequality, its bound.
+    /// The value expected; the bound of an inequality.
     pub expected: f64,
 }
 
-/// The law holds, or where it does not.
+/// Whether a law holds; otherwise the violation.
 pub type Verdict = Result<(), Violation>;
 
-/// Agreement of formulas that are the same but for rounding.
+/// Relative difference allowed between formulas that are equal but for rounding.
 const SAME: f64 = 1e-10;
 
-/// Eight times a decade from `first` to `last` \[s\], the times most laws are worth looking at; none unless
-/// 0 < `first` ≤ `last` < ∞.
+/// Eight times per decade from `first` to `last` \[s\], suitable for most laws; empty unless 0 < `first` ≤ `last` < ∞.
 pub fn log_times(first: f64, last: f64) -> Vec<f64> {
     if !(first > 0.0 && first <= last && last.is_finite()) {
         return Vec::new();
@@ -57,7 +56,7 @@ pub fn log_times(first: f64, last: f64) -> Vec<f64> {
 /// Every law, at ascending `times` > 0 \[s\], as far as J is known ([`Rheology::known_until`]).
 ///
 /// # Errors
-/// The first law that is broken; or if there are no times, or they do not ascend from above 0.
+/// The first violation; or if there are no times, or they are not positive and ascending.
 pub fn all(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     ascending(times)?;
     non_negative(rheology, times)?;
@@ -73,9 +72,9 @@ pub fn all(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     Ok(())
 }
 
-/// Whether there are times to look at.
+/// Checks that there are times, positive and ascending.
 fn ascending(times: &[f64]) -> Verdict {
-    let law = "(asked for) times to look at ascend from above 0";
+    let law = "(arguments) times are positive and ascending";
     verdict(law, 0.0, 0.0, 1.0, !times.is_empty())?;
     let mut previous = 0.0;
     for &t in times {
@@ -98,7 +97,7 @@ fn verdict(law: &'static str, t: f64, found: f64, expected: f64, holds: bool) ->
 /// J ≥ 0, and finite; > 0 after t = 0.
 ///
 /// # Errors
-/// Where it is not.
+/// The first violation.
 pub fn non_negative(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     for t in std::iter::once(0.0).chain(known(rheology, times)) {
         let found = rheology.creep_compliance(t);
@@ -111,7 +110,7 @@ pub fn non_negative(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
 /// J never decreases, at ascending `times`.
 ///
 /// # Errors
-/// Where it does.
+/// The first violation.
 pub fn non_decreasing(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     let mut previous = rheology.creep_compliance(0.0);
     for t in known(rheology, times) {
@@ -126,7 +125,7 @@ pub fn non_decreasing(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
 /// `times`.
 ///
 /// # Errors
-/// Where it does.
+/// The first violation.
 pub fn concave(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     let (mut before, mut value) = (0.0, rheology.creep_compliance(0.0));
     let mut slowest = (f64::INFINITY, 0.0);
@@ -142,10 +141,10 @@ pub fn concave(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     Ok(())
 }
 
-/// J tends to J(0) as t → 0: looked at below the first of `times`, the rise must shrink with t.
+/// J tends to J(0) as t → 0: below the first of `times` the rise must decrease with t.
 ///
 /// # Errors
-/// If it does not.
+/// The violation.
 pub fn starts_at_its_glassy_compliance(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     let (glassy, first) = (rheology.creep_compliance(0.0), times.first().copied().unwrap_or(1.0));
     let rise = |t: f64| rheology.creep_compliance(t) - glassy;
@@ -154,7 +153,7 @@ pub fn starts_at_its_glassy_compliance(rheology: &dyn Rheology, times: &[f64]) -
     verdict("creep starts at J(0)", far, found, 0.5 * here, found <= 0.5 * here + SAME * glassy)
 }
 
-/// The exact series, if there is one, is J.
+/// The exact series, if there is one, equals J.
 ///
 /// # Errors
 /// Where they differ by more than 1e-10.
@@ -171,7 +170,7 @@ pub fn spectrum_reproduces_creep(rheology: &dyn Rheology, times: &[f64]) -> Verd
 /// for a solid, φ·(viscosity of the whole) = 1 for a fluid.
 ///
 /// # Errors
-/// If they are not.
+/// The violation.
 pub fn limits(spectrum: &CreepSpectrum) -> Verdict {
     let relaxation = spectrum.relaxation();
     let check = |t: f64, found: f64| verdict("J G = 1 in the limits", t, found, 1.0, (found - 1.0).abs() <= SAME);
@@ -187,10 +186,10 @@ pub fn limits(spectrum: &CreepSpectrum) -> Verdict {
     }
 }
 
-/// A body that takes twice as long has J(t/2).
+/// A body with all times doubled has J(t/2).
 ///
 /// # Errors
-/// Where it has not.
+/// The first violation.
 pub fn time_scaling(spectrum: &CreepSpectrum, times: &[f64]) -> Verdict {
     let Ok(slow) = spectrum.slowed(2.0) else { return Ok(()) };
     for &t in times {
@@ -200,17 +199,16 @@ pub fn time_scaling(spectrum: &CreepSpectrum, times: &[f64]) -> Verdict {
     Ok(())
 }
 
-/// ∫ J(t − s) G(s) ds = t over 0 ≤ s ≤ t: what creep and relaxation are to each other, by quadrature of the
-/// two series.
+/// ∫ J(t − s) G(s) ds = t over 0 ≤ s ≤ t, the relation of creep and relaxation, by quadrature of the two series.
 ///
 /// # Errors
-/// Where they are not.
+/// The first violation.
 pub fn creep_convolved_with_relaxation_is_time(spectrum: &CreepSpectrum, times: &[f64]) -> Verdict {
     let relaxation = spectrum.relaxation();
     let rule = GaussLegendre::new(20);
     let fastest = |terms: &[(f64, f64)]| terms.first().map_or(f64::INFINITY, |&(_, time)| time);
     for &t in times {
-        // both functions vary over every scale of time near their own zero: panels that double away from it
+        // both functions vary on all time scales near their own zero: panels double away from it
         let graded = |shortest: f64, integrand: &dyn Fn(f64) -> f64| {
             let (mut sum, mut to) = (0.0, 0.5 * t);
             while to > 1e-3 * shortest && to > 1e-40 * t {

@@ -1,7 +1,7 @@
 //! Published materials, by name.
 //!
-//! Prony series as they were printed, each with its reference and where the digits were read. Temperatures,
-//! compounds and ageing make other specimens differ: take them for what real bodies look like, and measure your own.
+//! Prony series as printed, each with its reference and the source of the digits. Other specimens differ by
+//! temperature, compound and ageing: take these as examples of real bodies, and measure your own.
 //!
 //! ```
 //! use viscocontact::rheology::library;
@@ -18,7 +18,7 @@
 use crate::error::{MaterialError, Result};
 use crate::rheology::{GeneralizedMaxwell, Material, TimeTemperature};
 
-/// What a published series is a series of.
+/// The modulus of a published series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Measured {
@@ -34,7 +34,7 @@ pub struct Published {
     name: &'static str,
     description: &'static str,
     measured: Measured,
-    /// Modulus that the strengths of the terms are fractions of \[Pa\].
+    /// Modulus \[Pa\] of which the strengths of the terms are fractions.
     scale: f64,
     equilibrium: f64,
     terms: &'static [(f64, f64)],
@@ -46,12 +46,12 @@ pub struct Published {
 }
 
 impl Published {
-    /// Its name here.
+    /// Its name in this library.
     pub fn name(&self) -> &'static str {
         self.name
     }
 
-    /// What it is.
+    /// A description.
     pub fn description(&self) -> &'static str {
         self.description
     }
@@ -71,28 +71,28 @@ impl Published {
         self.terms.iter().map(|&(strength, time)| (strength * self.scale, time)).collect()
     }
 
-    /// Temperature at which it holds \[K\], if it is published.
+    /// Temperature of the measurement \[K\], if published.
     pub fn temperature(&self) -> Option<f64> {
         self.temperature
     }
 
-    /// Poisson's ratio, if it is published.
+    /// Poisson's ratio, if published.
     pub fn poisson(&self) -> Option<f64> {
         self.poisson
     }
 
-    /// How it shifts with temperature, if that is published.
+    /// The time–temperature law, if published.
     pub fn time_temperature(&self) -> Option<TimeTemperature> {
         let ([c1, c2], reference) = self.wlf.zip(self.temperature)?;
         TimeTemperature::wlf(c1, c2, reference).ok()
     }
 
-    /// Where it was published.
+    /// The publication.
     pub fn reference(&self) -> &'static str {
         self.reference
     }
 
-    /// Where the digits were read, and what to keep in mind.
+    /// The source of the digits, and remarks on their use.
     pub fn remark(&self) -> &'static str {
         self.remark
     }
@@ -123,10 +123,10 @@ pub fn all() -> &'static [Published] {
     &MATERIALS
 }
 
-/// The material of this name, in capitals or not.
+/// The material of this name, whatever the case.
 ///
 /// # Errors
-/// If there is none; the error lists those there are.
+/// If there is none; the error lists the known names.
 pub fn find(name: &str) -> Result<&'static Published> {
     MATERIALS.iter().find(|material| material.name.eq_ignore_ascii_case(name)).ok_or_else(|| {
         let known = MATERIALS.map(|material| material.name).join(", ");

@@ -3,9 +3,8 @@ use crate::rheology::Rheology;
 
 /// Logarithmic creep: J(t) = J_g + c ln(1 + t/λ).
 ///
-/// Metals and rocks at low temperature, paper, soft glasses, concrete over months: as much creep in every decade of
-/// time, c ln 10, once t exceeds λ; flow at the rate c/λ before. Its retardation spectrum is
-/// c e^(−λ/x)/x (over dx), so that it never ends.
+/// Metals and rocks at low temperature, paper, soft glasses, concrete over months: equal creep c ln 10 in every decade
+/// of time t > λ, and flow at the rate c/λ before. Its retardation spectrum is c e^(−λ/x)/x (over dx), and unbounded.
 ///
 /// ```
 /// use viscocontact::rheology::{LogCreep, Rheology};

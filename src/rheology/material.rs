@@ -4,8 +4,8 @@ use std::sync::Arc;
 use crate::error::{Error, MaterialError, Result, positive, within};
 use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, is_known, may_follow};
 
-/// A rheology and how it treats volume: together they give the contact creep compliance C(t), the
-/// surface's answer to pressure, with C = 1/E* = (1 − ν)/2G for an elastic body.
+/// A rheology in shear and the behaviour in volume: together they give the contact creep compliance C(t),
+/// with C = 1/E* = (1 − ν)/2G for an elastic body.
 ///
 /// | volume | C(t) |
 /// |---|---|
@@ -43,12 +43,12 @@ enum Volume {
 }
 
 impl Material {
-    /// A body that keeps its volume (ν = ½): C = J/4.
+    /// An incompressible body (ν = ½): C = J/4.
     pub fn incompressible(rheology: impl Rheology + 'static) -> Material {
         Material::with_volume(rheology, Volume::Proportional(0.25))
     }
 
-    /// A body whose Poisson's ratio `nu` does not change with time: C = (1 − ν) J/2.
+    /// A body with constant Poisson's ratio `nu`: C = (1 − ν) J/2.
     ///
     /// # Errors
     /// If `nu` is outside (−1, ½].
@@ -57,10 +57,10 @@ impl Material {
         Ok(Material::with_volume(rheology, Volume::Proportional(0.5 * (1.0 - nu))))
     }
 
-    /// A body that creeps in shear and is elastic in bulk, with `bulk_modulus` B \[Pa\], as most polymers nearly
-    /// are: its Poisson's ratio rises while it creeps. From (1 − ν)/2G = 1/(4G) + 3/(4 (3B + G)), which holds
+    /// A body that creeps in shear and is elastic in bulk, with `bulk_modulus` B \[Pa\], as most polymers approximately
+    /// are: Poisson's ratio rises during creep. From (1 − ν)/2G = 1/(4G) + 3/(4 (3B + G)), which holds
     /// for operators as for numbers, C is exactly J/4 + (3/4) K, K being the creep compliance of a body with
-    /// relaxation modulus 3B + G(t). It takes one more field for each relaxation time.
+    /// relaxation modulus 3B + G(t). It needs one more field for each relaxation time.
     ///
     /// ```
     /// use viscocontact::rheology::{Material, Zener};
@@ -89,7 +89,7 @@ impl Material {
         Material { bodies: vec![Body { rheology: Arc::new(rheology), volume }] }
     }
 
-    /// This body pressed against `other`, as one: both give way, C = C₁ + C₂.
+    /// This body pressed against `other`: both deform, C = C₁ + C₂.
     ///
     /// ```
     /// use viscocontact::rheology::{Elastic, Material, Maxwell};
@@ -111,12 +111,13 @@ impl Material {
         self.bodies.iter().map(|body| body.contact_compliance(t)).sum()
     }
 
-    /// The age \[s\] up to which the rheologies are known, +∞ for formulas.
+    /// The longest time \[s\] at which all rheologies are known, +∞ for formulas.
     pub fn known_until(&self) -> f64 {
         self.bodies.iter().map(|body| body.rheology.known_until()).fold(f64::INFINITY, f64::min)
     }
 
-    /// The times \[s\] over which all the rheologies were measured or fitted, (0, +∞) for formulas: [`Rheology::measured`].
+    /// The times \[s\] over which all the rheologies were measured or fitted, (0, +∞) for formulas:
+    /// [`Rheology::measured`].
     pub fn measured(&self) -> [f64; 2] {
         let all = self.bodies.iter().map(|body| body.rheology.measured());
         all.fold([0.0, f64::INFINITY], |[from, until], [first, last]| [from.max(first), until.min(last)])
@@ -138,8 +139,8 @@ impl Material {
         Ok(sum)
     }
 
-    /// The same material with an exponential series, over `times` \[s\] and to within the relative error
-    /// `tolerance`, in the place of every rheology that has no exact one: [`Rheology::series`].
+    /// The same material with an exponential series, fitted over `times` \[s\] within the relative error `tolerance`,
+    /// in place of every rheology without an exact one: [`Rheology::series`].
     ///
     /// # Errors
     /// As [`Rheology::series`].
@@ -154,13 +155,12 @@ impl Material {
         Ok(Material { bodies: self.bodies.iter().map(fit).collect::<Result<_>>()? })
     }
 
-    /// How well fitted series stand for tables, or for the rheologies that [`Material::fitted`] replaced; nothing for
-    /// those that have an exact one.
+    /// The errors of series fitted to tables, or by [`Material::fitted`]; none for exact series.
     pub fn fit_reports(&self) -> impl Iterator<Item = &FitReport> {
         self.bodies.iter().filter_map(|body| body.rheology.fit_report())
     }
 
-    /// Accepts rheologies whose times are numbers.
+    /// Accepts rheologies whose times are not NaN.
     pub(crate) fn validate(&self) -> Result<()> {
         for rheology in self.bodies.iter().map(|body| &body.rheology) {
             let (until, measured) = (rheology.known_until(), rheology.measured());
@@ -175,20 +175,20 @@ impl Material {
         Ok(())
     }
 
-    /// C at `age`, which must not be less than `younger` = C at `earlier`, an age no greater.
+    /// C at the loading time `age`, which must not be less than `younger`, that at the loading time `earlier` ≤ `age`.
     pub(crate) fn checked_compliance(&self, age: f64, (earlier, younger): (f64, f64)) -> Result<f64> {
         let value = self.contact_compliance(age);
         if may_follow(value, younger) {
             return Ok(value);
         }
-        // tell which J is to blame
+        // report the J that decreases
         let creep = |body: &Body| (body.rheology.creep_compliance(age), body.rheology.creep_compliance(earlier));
         let (value, previous) =
             self.bodies.iter().map(creep).find(|&(now, before)| !may_follow(now, before)).unwrap_or((value, younger));
         Err(MaterialError::InvalidCompliance { time: age, value, previous }.into())
     }
 
-    /// The error for what needs a series that a rheology does not have.
+    /// The error of `what`, which needs an exponential series that a rheology does not have.
     pub(crate) fn no_series(&self, what: &'static str) -> Error {
         match self.bodies.iter().find(|body| body.rheology.creep_spectrum().is_none()) {
             Some(lacking) => no_series(what, &lacking.rheology),

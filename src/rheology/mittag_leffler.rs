@@ -2,7 +2,7 @@
 
 use mittagleffler::MittagLeffler;
 
-/// 1 − E_α(−x) for 0 < α < 1 and x ≥ 0: from 0 rising to 1.
+/// 1 − E_α(−x) for 0 < α < 1 and x ≥ 0: it rises from 0 to 1.
 pub(crate) fn mittag_leffler_rise(alpha: f64, x: f64) -> f64 {
     if x < 0.3 {
         // x/Γ(1 + α) − x²/Γ(1 + 2α) + …, free of the cancellation
@@ -20,7 +20,7 @@ pub(crate) fn mittag_leffler_rise(alpha: f64, x: f64) -> f64 {
     if x == f64::INFINITY {
         return 1.0;
     }
-    // defined for every α in (0, 1); NaN would be refused as a compliance
+    // defined for every α in (0, 1); NaN would be rejected as a compliance
     (-x).mittag_leffler(alpha, 1.0).map_or(f64::NAN, |value| 1.0 - value.re)
 }
 

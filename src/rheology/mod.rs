@@ -8,7 +8,7 @@
 //! | [`Zener`] | 1/G + (1 − e^(−t/λ))/G_K, λ = η_K/G_K |
 //! | [`Burgers`] | 1/G + t/η + (1 − e^(−t/λ))/G_K |
 //! | [`GeneralizedKelvin`] | J_g + φ t + Σ J_k (1 − e^(−t/λ_k)) |
-//! | [`GeneralizedMaxwell`] | of the relaxation modulus G_∞ + Σ G_k e^(−t/τ_k) |
+//! | [`GeneralizedMaxwell`] | that of the relaxation modulus G_∞ + Σ G_k e^(−t/τ_k) |
 //! | [`PowerLaw`] | J₁ (t/t₁)^α |
 //! | [`FractionalMaxwell`] | 1/G + t^α/(V Γ(1 + α)); Findley's J₀ + m tⁿ |
 //! | [`FractionalZener`] | 1/G + [1 − E_α(−(t/λ)^α)]/G_K |
@@ -17,21 +17,21 @@
 //! | [`SlowCreep`] | J_g + c ln(1 + (t/λ)ⁿ) |
 //! | [`FnRheology`] | any closure |
 //! | [`TabulatedCreep`], [`TabulatedRelaxation`], [`TabulatedDynamic`] | fitted to measurements |
-//! | [`AtTemperature`] | of another model, at another temperature |
+//! | [`AtTemperature`] | that of another model, at another temperature |
 //!
 //! A [`Rheology`] describes shear; a [`Material`] adds what the volume does and yields the contact
-//! compliance C(t) that the surface responds with. Published materials are in [`library`], the laws that every
+//! compliance C(t) of the surface. Published materials are in [`library`], the laws that every
 //! rheology obeys in [`laws`].
 //!
 //! # Exponential series
 //!
-//! A contact remembers through an exponential series: one field for each relaxation time, however many steps came
-//! before. The models above the power law, the tables and what is made of them have an exact one
-//! ([`Rheology::creep_spectrum`]). For the others [`Rheology::series`] finds the fewest terms that stay within a
-//! tolerance over a range of times, and tells how well it did; contacts do so on their own
-//! ([`Builder::times`](crate::contact::Builder::times)). Measured with a tolerance of 1e-4:
+//! A contact stores its history as an exponential series: one field for each relaxation time, whatever the number of
+//! steps. The models above the power law, the tables, and models derived from them have an exact series
+//! ([`Rheology::creep_spectrum`]). For the others [`Rheology::series`] finds the fewest terms within a tolerance over a
+//! range of times, and reports the error; contacts fit the series over the times that
+//! [`Builder::times`](crate::contact::Builder::times) names. Measured with a tolerance of 1e-4:
 //!
-//! | J(t) | terms a decade |
+//! | J(t) | terms per decade |
 //! |---|---|
 //! | t^0.1 … t^0.9 over ten decades | 1.9 … 2.2 |
 //! | fractional Zener, α = 0.5 | 1.8 |
@@ -96,9 +96,9 @@ use crate::error::Result;
 
 /// The shear creep of a linear viscoelastic body.
 ///
-/// J(t) is the shear strain at time t after a unit shear stress was applied at t = 0. It is ≥ 0 and
-/// never decreases; J(0) = 1/G is the elastic response, 0 for a body without one. After t = 0 it is positive, and for every body of
-/// springs and dashpots it is concave, too: others have no series, and only direct sums take them ([`laws`]).
+/// J(t) is the shear strain at time t after a unit shear stress was applied at t = 0. It is ≥ 0 and never decreases;
+/// J(0) = 1/G is the elastic response, 0 for a body without one. After t = 0 it is positive, and concave for every body
+/// of springs and dashpots; other bodies have no series, and need a direct sum ([`laws`]).
 ///
 /// ```
 /// use viscocontact::rheology::Rheology;
@@ -124,50 +124,51 @@ pub trait Rheology: Debug + Send + Sync {
         None
     }
 
-    /// The age \[s\] up to which J is known, +∞ for a formula. A contact refuses to look further.
+    /// The longest time \[s\] at which J is known, +∞ for a formula. Steps beyond it fail.
     fn known_until(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// The shortest and the longest time \[s\] that J was measured, or fitted, over: (0, +∞) for a formula. It goes on below
-    /// and, where it was told to, above: there it is a guess, and a step says so
+    /// The shortest and the longest time \[s\] of the measurement or fit of J: (0, +∞) for a formula. J is extrapolated
+    /// below and, if so chosen, above; steps there have a warning
     /// ([`Warning::Extrapolated`](crate::contact::Warning::Extrapolated)).
     fn measured(&self) -> [f64; 2] {
         [0.0, self.known_until()]
     }
 
-    /// How well the series stands for what it was fitted to, if it was: a table, or another function.
+    /// The error of the series, if it was fitted to a table or another function.
     fn fit_report(&self) -> Option<&FitReport> {
         None
     }
 
     /// The exact exponential series of J, or else one fitted over `times` \[s\]: the fewest terms found whose
-    /// relative error is at most `tolerance`. With a series a step of a contact costs the same however many
-    /// went before.
+    /// relative error is at most `tolerance`. With a series, the cost of a step does not depend on the number of steps
+    /// before.
     ///
     /// # Errors
-    /// If the times are not in \[1e-90, 1e90\] and in order, a series must be fitted over more than 50 decades of them, the
-    /// tolerance is outside \[1e-8, 0.1\], J is not a creep compliance there, or no series found reaches the tolerance ([`MaterialError::PoorFit`]): J is
-    /// then not that of a body of springs and dashpots, or the tolerance is too small (below 1e-6).
+    /// If the times are not in \[1e-90, 1e90\] and in order, a series must be fitted over more than 50 decades of them,
+    /// the tolerance is outside \[1e-8, 0.1\], J is not a creep compliance there, or no series reaches the tolerance
+    /// ([`MaterialError::PoorFit`]): then J is not that of a body of springs and dashpots, or the tolerance is too
+    /// small (below 1e-6).
     fn series(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<CreepSeries> {
         CreepSeries::new(self, times, tolerance)
     }
 }
 
-/// Compliances that fall by less, relatively, do so by rounding.
+/// A smaller relative decrease of a compliance is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// Whether a rheology known until some time is known at `t`, which may miss the end by rounding.
+/// Whether `t` is within the range of a rheology known until `until`, but for rounding.
 pub(crate) fn is_known(t: f64, until: f64) -> bool {
     t <= until * (1.0 + 1e-9)
 }
 
-/// Whether a compliance may follow an earlier one: it is finite and has not fallen, but for rounding.
+/// Whether a compliance is finite and no less than an earlier one, but for rounding.
 fn may_follow(value: f64, earlier: f64) -> bool {
     value.is_finite() && value >= earlier * (1.0 - ROUNDING)
 }
 
-/// What is owned, shared or chosen at run time behind a pointer serves like the thing itself.
+/// Forwards the trait through smart pointers.
 macro_rules! forward_rheology {
     ($($pointer:ty),*) => {$(
         impl<T: Rheology + ?Sized> Rheology for $pointer {
@@ -199,7 +200,7 @@ macro_rules! forward_rheology {
 }
 forward_rheology!(Box<T>, std::sync::Arc<T>);
 
-/// [`Rheology`] for a model that holds its exact series in a field `spectrum`.
+/// [`Rheology`] for a model with its exact series in the field `spectrum`.
 macro_rules! exponential_rheology {
     ($model:ty) => {
         impl $crate::rheology::Rheology for $model {

@@ -3,7 +3,7 @@ use crate::rheology::Rheology;
 
 /// A springpot, the element of fractional calculus between spring and dashpot: J(t) = J₁ (t/t₁)^α.
 ///
-/// It has no elastic response and no time of its own. In terms of the quasi-property V of σ = V d^α γ/dt^α,
+/// It has no elastic response and no characteristic time. In terms of the quasi-property V of σ = V d^α γ/dt^α,
 /// J₁ = t₁^α/(V Γ(1 + α)). A power law with an elastic response is
 /// [`FractionalMaxwell`](crate::rheology::FractionalMaxwell).
 ///
@@ -36,7 +36,7 @@ impl PowerLaw {
     }
 }
 
-/// Accepts orders of fractional elements; 0 and 1 are spring and dashpot, which have models of their own.
+/// Accepts orders of fractional elements; 0 and 1 are spring and dashpot, which have separate models.
 pub(super) fn fractional_order(exponent: f64) -> Result<f64> {
     within("exponent", exponent, exponent > 0.0 && exponent < 1.0, "in (0, 1)")
 }

@@ -4,11 +4,11 @@ use crate::error::{MaterialError, Result, positive, within};
 use crate::rheology::fit::{FitReport, MaterialFunction, Sample, Search};
 use crate::rheology::{CreepSpectrum, Rheology, may_follow};
 
-/// The exponential series that stands for a creep compliance over a range of times, and its error.
+/// The exponential series that approximates a creep compliance over a range of times, and its error.
 ///
-/// Made by [`Rheology::series`]. It is a [`Rheology`] itself: exact at t = 0 where the body has an elastic
-/// response, within the tolerance over the range, known no further than its end. A body without elastic response gets
-/// one: what it has crept by the shortest time counts as immediate.
+/// Made by [`Rheology::series`]. It is a [`Rheology`] itself: exact at t = 0 if the body has an elastic response,
+/// within the tolerance over the range, and known up to its end. A body without elastic response gets one: its creep up
+/// to the shortest time counts as immediate.
 ///
 /// ```
 /// use viscocontact::rheology::{FnRheology, Rheology};
@@ -28,16 +28,16 @@ pub struct CreepSeries {
     measured: [f64; 2],
 }
 
-/// Samples a decade that a series is fitted to, and at which it is checked.
+/// Samples per decade to which a series is fitted, and at which it is checked.
 const FITTED: f64 = 16.0;
 const CHECKED: f64 = 67.0;
-/// Part of the tolerance that the fit may use, so that the check, which looks more closely, passes.
+/// Part of the tolerance that the fit may use, so that the finer check passes.
 const FITTED_SHARE: f64 = 0.9;
-/// Decades that a series may be fitted over. The time a fit takes grows with their fourth power: terms grow with the decades,
-/// each merger of two of them polishes all the others by least squares, which takes the square of their number for each
-/// sample. Fifty decades take three seconds with a tolerance of 1e-4, and seventeen with 1e-6.
+/// Greatest number of decades of a fit. The time of a fit grows with their fourth power: the number of terms grows with
+/// the decades, and each merger of two terms polishes all the others by least squares, which takes the square of their
+/// number for each sample. Fifty decades take three seconds with a tolerance of 1e-4, and seventeen with 1e-6.
 const MOST_DECADES: f64 = 50.0;
-/// How far terms reach beyond the range, as a factor.
+/// Factor by which the times of the terms extend beyond the range.
 const BEYOND: f64 = 10.0;
 
 impl CreepSeries {
@@ -60,12 +60,7 @@ impl CreepSeries {
             return Ok(CreepSeries { spectrum, report, known_until, measured });
         }
         let decades = (last / first).log10();
-        within(
-            "decades of a series",
-            decades,
-            decades <= MOST_DECADES,
-            "50 at most (Builder::times says which matter)",
-        )?;
+        within("decades of a series", decades, decades <= MOST_DECADES, "at most 50 (name fewer with Builder::times)")?;
 
         let glassy = checked(rheology, 0.0, 0.0)?;
         let samples = sampled(rheology, [first, last], FITTED, glassy)?;
@@ -92,13 +87,13 @@ impl CreepSeries {
         &self.spectrum
     }
 
-    /// How well it stands for the function, at some 70 times a decade.
+    /// The error of the series, at about 70 times per decade.
     pub fn report(&self) -> &FitReport {
         &self.report
     }
 }
 
-/// [`Rheology`] for what holds a `spectrum`, its `report`, the time it is `known_until`, and the times it was `measured` over.
+/// [`Rheology`] for types with the fields `spectrum`, `report`, `known_until` and `measured`.
 macro_rules! known_series {
     ($series:ty) => {
         impl $crate::rheology::Rheology for $series {
@@ -132,10 +127,10 @@ known_series!(CreepSeries);
 fn sampled<R: Rheology + ?Sized>(
     rheology: &R,
     [first, last]: [f64; 2],
-    a_decade: f64,
+    per_decade: f64,
     glassy: f64,
 ) -> Result<Vec<Sample>> {
-    let count = ((last / first).log10() * a_decade).ceil() as usize;
+    let count = ((last / first).log10() * per_decade).ceil() as usize;
     let mut previous = glassy;
     let mut samples = Vec::with_capacity(count + 1);
     for k in 0..=count {

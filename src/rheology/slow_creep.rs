@@ -4,7 +4,7 @@ use crate::rheology::Rheology;
 /// Log-power creep: J(t) = J_g + c ln(1 + (t/λ)ⁿ), a power law of exponent n up to the time λ, then logarithmic.
 ///
 /// The basic creep of concrete in the solidification theory of Bažant & Prasannan (J. Eng. Mech. 115, 1989), which
-/// model B3 uses with n = 0.1 and λ = 1 day; without ageing here. With n = 1 it is
+/// model B3 uses with n = 0.1 and λ = 1 day; here without ageing. With n = 1 it is
 /// [`LogCreep`](crate::rheology::LogCreep).
 ///
 /// ```

@@ -1,4 +1,4 @@
-//! Exponential series of creep and relaxation, and the exact passage from one to the other.
+//! Exponential series of creep and relaxation, and the exact conversion between them.
 
 use crate::error::{Result, least_length, positive, within};
 use crate::rheology::Rheology;
@@ -97,7 +97,7 @@ impl CreepSpectrum {
         CreepSpectrum::new(factor * self.glassy, factor * self.fluidity, &terms)
     }
 
-    /// The same body, everything taking `factor` times as long.
+    /// The same body with all times multiplied by `factor`.
     ///
     /// # Errors
     /// If the factor is not finite and positive, or a time or the fluidity leaves \[1e-100, 1e100\].
@@ -167,14 +167,14 @@ impl RelaxationSpectrum {
     /// The creep compliance of the same body, exactly: s Ĵ(s) · s Ĝ(s) = 1.
     pub fn creep(&self) -> CreepSpectrum {
         // In σ = 1/s the modulus reads s Ĝ = G_∞ + η/σ + Σ G_k τ_k/(τ_k + σ): the form of s Ĵ with
-        // times for rates, so that the same function serves both ways.
+        // times in place of rates, so that the same function converts both ways.
         let series = StieltjesSeries { constant: self.equilibrium, slope: self.viscosity, terms: self.terms.clone() };
         let StieltjesSeries { constant, slope, terms } = reciprocal(&series);
         CreepSpectrum { glassy: constant, fluidity: slope, terms }
     }
 }
 
-/// Coefficients and times of a series lie in this range, so that their reciprocals and products are numbers.
+/// Range of the coefficients and times of a series, so that their reciprocals and products do not overflow.
 const LEAST: f64 = 1e-100;
 const MOST: f64 = 1e100;
 

@@ -4,8 +4,8 @@ use crate::rheology::{CreepSpectrum, FitReport, Rheology};
 /// The gas constant \[J/(mol K)\] (exact since 2019).
 pub(crate) const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
 
-/// How the rate of creep depends on temperature: at T everything takes a_T times as long as at the reference
-/// temperature (thermorheologically simple bodies).
+/// The dependence of creep on temperature: at T all times are a_T times those at the reference temperature
+/// (thermorheologically simple bodies).
 ///
 /// ```
 /// use viscocontact::rheology::{Maxwell, Rheology, TimeTemperature};
@@ -72,7 +72,7 @@ impl TimeTemperature {
     /// a_T at `temperature` \[K\].
     ///
     /// # Errors
-    /// If the temperature is not finite and positive, not above T_ref − C₂ where the WLF law ends, or a_T leaves
+    /// If the temperature is not finite and positive, not above T_ref − C₂, where the WLF law ends, or a_T is outside
     /// \[1e-60, 1e60\].
     pub fn shift_factor(&self, temperature: f64) -> Result<f64> {
         positive("temperature", temperature)?;
@@ -102,7 +102,7 @@ impl TimeTemperature {
     }
 }
 
-/// A rheology at another temperature than it was measured at; made by [`TimeTemperature::at`].
+/// A rheology at another temperature than that of its measurement; made by [`TimeTemperature::at`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct AtTemperature<R> {
     rheology: R,
@@ -116,7 +116,7 @@ impl<R: Rheology> AtTemperature<R> {
         self.temperature
     }
 
-    /// How many times as long everything takes, a_T.
+    /// The shift factor a_T.
     pub fn shift_factor(&self) -> f64 {
         self.factor
     }
@@ -127,7 +127,7 @@ impl<R: Rheology> Rheology for AtTemperature<R> {
         self.rheology.creep_compliance(t / self.factor)
     }
 
-    /// `None` too where a time leaves the range of a [`CreepSpectrum`].
+    /// `None` also where a time leaves the range of a [`CreepSpectrum`].
     fn creep_spectrum(&self) -> Option<CreepSpectrum> {
         self.rheology.creep_spectrum()?.slowed(self.factor).ok()
     }
@@ -140,7 +140,7 @@ impl<R: Rheology> Rheology for AtTemperature<R> {
         self.rheology.measured().map(|time| time * self.factor)
     }
 
-    /// That of the rheology at its own temperature.
+    /// The report of the rheology at its own temperature.
     fn fit_report(&self) -> Option<&FitReport> {
         self.rheology.fit_report()
     }

@@ -143,7 +143,7 @@ impl StepControl {
         let mut most = 0.0_f64;
         for share in shares {
             let between = now + share * (time - now);
-            most = most.max(start.straying(&end, share, &history.at(between).validated_at(between)?, scale));
+            most = most.max(start.deviation(&end, share, &history.at(between).validated_at(between)?, scale));
         }
         Ok(most)
     }

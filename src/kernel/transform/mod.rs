@@ -36,7 +36,8 @@ pub(crate) struct SpectralOperator {
     layout: Layout,
     rows: Line,
     columns: Line,
-    /// For each coefficient of a row, the independent values of its column, divided by the normalisation of the transforms.
+    /// For each coefficient of a row, the independent values of its column, divided by the normalisation of the
+    /// transforms.
     spectrum: Vec<f64>,
     /// The transform of a single column, which has no tiles.
     column: Option<Column>,
@@ -66,8 +67,8 @@ impl SpectralOperator {
         self.layout.cells[0].div_ceil(self.rows_in_a_tile())
     }
 
-    /// Distance between the columns of a block: whole cache lines, but no power of two, which would map the columns to the
-    /// same cache sets.
+    /// Distance between the columns of a block: whole cache lines, but no power of two, which would map the columns to
+    /// the same cache sets.
     fn stride(&self) -> usize {
         self.columns.len().next_multiple_of(TILE) + TILE
     }
@@ -214,8 +215,8 @@ mod tests {
         sum
     }
 
-    /// The operator against its definition as a sum: even, odd and not smooth sizes, whole and folded axes, one thread and
-    /// three.
+    /// The operator against its definition as a sum: even, odd and not smooth sizes, whole and folded axes, one thread
+    /// and three.
     #[test]
     fn convolution_matches_the_sum() {
         for folded in FOLDS {

@@ -43,7 +43,8 @@ impl Task for RowsForward<'_> {
                     for (tile, piece) in tiles.chunks_exact_mut(AREA).zip(buffer.chunks(TILE)) {
                         let place = &mut tile[i * TILE..][..TILE];
                         place[..piece.len()].copy_from_slice(piece);
-                        // beyond the last coefficient: the second half of a complex column, if the number of coefficients is odd
+                        // beyond the last coefficient: the second half of a complex column, if the number of
+                        // coefficients is odd
                         place[piece.len()..].fill(Complex64::default());
                     }
                 } else {

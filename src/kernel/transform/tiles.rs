@@ -5,8 +5,8 @@ use num_complex::Complex64;
 use super::{AREA, SpectralOperator, TILE};
 
 impl SpectralOperator {
-    /// Copies the columns of a panel of tiles, which begin at `from`, one after the other into `block`. Columns of folded rows
-    /// are real: two are the real and imaginary parts of a complex one.
+    /// Copies the columns of a panel of tiles, which begin at `from`, one after the other into `block`. Columns of
+    /// folded rows are real: two are the real and imaginary parts of a complex one.
     #[inline(always)]
     pub(super) fn gather(&self, tiles: &[Complex64], from: impl Fn(usize) -> usize, block: &mut [Complex64]) {
         let (cells, line, stride) = (self.layout.cells[0], &self.columns, self.stride());

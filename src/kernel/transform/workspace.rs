@@ -13,9 +13,11 @@ use crate::kernel::layout::Layout;
 #[derive(Clone)]
 pub(crate) struct TransformWorkspace {
     layout: Layout,
-    /// Coefficients of the rows, in tiles: those of 8 rows side by side. A folded row holds the (real) coefficients of two.
+    /// Coefficients of the rows, in tiles: those of 8 rows side by side. A folded row holds the (real) coefficients of
+    /// two.
     pub(super) tiles: Vec<Complex64>,
-    /// The same after the columns, those of 8 columns below each other; empty for a single thread, which works in place.
+    /// The same after the columns, those of 8 columns below each other; empty for a single thread, which works in
+    /// place.
     pub(super) result: Vec<Complex64>,
     pub(super) lanes: Vec<Lane>,
     /// Replaces all of these where the operator has a single column.

@@ -1,6 +1,6 @@
 //! Material functions that are linear in the strengths of an exponential series.
 
-/// What a sample measures, as a function of its abscissa x: a time or an angular frequency.
+/// The material function that a sample is a value of; the abscissa x is a time or an angular frequency.
 ///
 /// Each is constant · a + slope · b(x) + Σ c_k φ(x, λ_k), with the coefficients of a creep series (glassy
 /// compliance, fluidity, retarded compliances) or of a relaxation series (equilibrium modulus,
@@ -19,12 +19,12 @@ pub enum MaterialFunction {
 }
 
 impl MaterialFunction {
-    /// What the constant contributes at `x`, per unit.
+    /// Contribution of a unit constant at `x`.
     pub(crate) fn constant(self) -> f64 {
         if self == MaterialFunction::Loss { 0.0 } else { 1.0 }
     }
 
-    /// What the slope contributes at `x`, per unit.
+    /// Contribution of a unit slope at `x`.
     pub(crate) fn slope(self, x: f64) -> f64 {
         match self {
             MaterialFunction::Creep | MaterialFunction::Loss => x,
@@ -43,7 +43,7 @@ impl MaterialFunction {
                 let z = x / lambda;
                 ((-z).exp(), z * (-z).exp())
             }
-            // with y = ωτ; its square is written so that neither end overflows
+            // y = ωτ; y² is avoided, so that neither end overflows
             MaterialFunction::Storage => {
                 let (stored, lost) = debye(x * lambda);
                 (stored, 2.0 * lost * lost)
@@ -68,14 +68,14 @@ pub(crate) struct Sample {
     pub(crate) function: MaterialFunction,
     pub(crate) x: f64,
     pub(crate) value: f64,
-    /// How many measurements it is the mean of.
+    /// Number of measurements of which it is the mean.
     pub(crate) weight: f64,
 }
 
 impl Sample {
-    /// Which of the equal parts of the logarithmic axis it lies in.
-    pub(crate) fn bin(&self, a_decade: f64) -> f64 {
-        (self.x.log10() * a_decade).floor()
+    /// Index of its bin on the logarithmic axis.
+    pub(crate) fn bin(&self, per_decade: f64) -> f64 {
+        (self.x.log10() * per_decade).floor()
     }
 }
 
@@ -91,7 +91,7 @@ pub(crate) struct FittedSeries {
 impl FittedSeries {
     pub(crate) fn value(&self, function: MaterialFunction, x: f64) -> f64 {
         let terms: f64 = self.terms.iter().map(|&(c, lambda)| c * function.term(x, lambda).0).sum();
-        // a slope of zero counts nothing even where its function is infinite
+        // a slope of zero contributes nothing even where its function is infinite
         let slope = if self.slope > 0.0 { self.slope * function.slope(x) } else { 0.0 };
         self.constant * function.constant() + slope + terms
     }
@@ -105,7 +105,7 @@ impl FittedSeries {
         samples.iter().map(|sample| self.misfit(sample).abs()).fold(0.0, f64::max)
     }
 
-    /// Σ misfit², each counted as often as it was measured.
+    /// Σ weight · misfit².
     pub(crate) fn squares(&self, samples: &[Sample]) -> f64 {
         samples.iter().map(|sample| sample.weight * self.misfit(sample).powi(2)).sum()
     }

@@ -1,9 +1,9 @@
 //! Series through measurements, which are noisy and may be few.
 //!
-//! The noise is what non-negative least squares leaves: that the strengths are positive already smooths. Where there are
-//! many values for each parameter, the sparsest series that predicts best is taken. Few values of little noise determine
-//! as many parameters as there are values, and between the rows the sparsest series ripples; there the smoothest
-//! spectrum is taken that explains the data, and then a sparse series that follows its curve.
+//! The noise is the residual of non-negative least squares: positive strengths already smooth the data. With many
+//! values per parameter, the sparsest series with the best prediction is chosen. With few values of little noise, which
+//! determine as many parameters as there are values, the sparsest series ripples between the rows; then the smoothest
+//! spectrum that explains the data is computed, and a sparse series is fitted to its curve.
 
 use faer::{Col, Mat};
 
@@ -12,51 +12,53 @@ use super::nnls::non_negative_least_squares;
 use super::polish::polish;
 use super::{LONG, Search};
 
-/// Misfits below this call for no further term: measurements are not that good.
+/// Misfits below this need no further term: no measurement is that accurate.
 const FLOOR: f64 = 3e-5;
-/// Times a decade on which strength is looked for.
+/// Times per decade of the first fit.
 const DENSITY: f64 = 6.0;
-/// Mergers tried, cheapest first. Noise makes a bad guide to the cheapest.
+/// Mergers tried, cheapest first: with noise the first-order cost is a poor estimate.
 const TRIES: usize = 6;
-/// With fewer values than this for each parameter a smooth spectrum is preferred to a sparse one.
+/// With fewer values per parameter than this a smooth spectrum is preferred to a sparse one.
 const VALUES_PER_PARAMETER: usize = 3;
 /// A smooth spectrum explains data within this misfit, in the root mean square, or their noise.
 const SMOOTH_MISFIT: f64 = 1e-4;
-/// Times a decade of a smooth spectrum, and how far it reaches beyond the times of the search, as a factor.
+/// Times per decade of a smooth spectrum.
 const SMOOTH_DENSITY: f64 = 4.0;
-/// The most of them: over more than twelve decades there are fewer a decade, since the cost grows with their third power.
+/// Greatest number of these times, since the cost grows with their third power: over more than twelve decades there are
+/// fewer per decade.
 const SMOOTH_TIMES: f64 = 48.0;
+/// Factor by which a smooth spectrum extends beyond the times of the search.
 const SMOOTH_BEYOND: f64 = 10.0;
-/// Weights of the curvature of a smooth spectrum: the first, each so many times the one before, and how many.
+/// Weights of the curvature of a smooth spectrum: the first, the ratio of successive ones, and their number.
 const WEIGHTS: (f64, f64, i32) = (1e3, 0.1, 16);
 /// A sparse series follows the curve of a smooth spectrum within this, or within this part of the noise, ...
 const FOLLOWS: f64 = 5e-4;
 const FOLLOWS_NOISE: f64 = 0.2;
-/// ... at so many points a decade.
+/// ... at this many points per decade.
 const FOLLOWED: f64 = 8.0;
-/// The most points between all samples of a table: one over many decades is followed more coarsely.
+/// Greatest number of points over all samples of a table: one over many decades is followed more coarsely.
 const FOLLOWED_IN_ALL: f64 = 64.0;
 
-/// What is found from measurements.
+/// A series fitted to measurements.
 #[derive(Debug, Clone)]
 pub(crate) struct Measured {
     pub(crate) series: FittedSeries,
-    /// How far, relatively, another series that meets the samples as well strays from it at or between them.
+    /// Relative deviation, at or between the samples, of another series that fits them equally well.
     pub(crate) uncertainty: f64,
 }
 
 impl Search {
-    /// The series that predicts best.
+    /// The series with the best prediction.
     pub(crate) fn measured(&self, samples: &[Sample]) -> Measured {
         let start = self.on_grid(samples, DENSITY);
-        // each strength that is not zero is a parameter of non-negative least squares (Meyer & Woodroofe, Ann. Statist. 28,
-        // 2000)
+        // each strength that is not zero is a parameter of non-negative least squares (Meyer & Woodroofe, Ann. Statist.
+        // 28, 2000)
         let parameters = ends(&start) + start.terms.len();
         let enough = |series: &FittedSeries| series.worst(samples) <= 0.1 * FLOOR;
         let start = polish(&start, samples, self.free(), LONG, &enough);
         let left = samples.len().saturating_sub(parameters).max(1) as f64;
         let noise = (start.squares(samples) / left).sqrt();
-        // what is called no misfit, as a deviation of one measurement: a mean of many is not met more closely
+        // the floor holds for single measurements: a mean of many is not fitted more closely
         let root = (samples.iter().map(|sample| sample.weight).sum::<f64>() / samples.len() as f64).sqrt();
         let few = samples.len() < VALUES_PER_PARAMETER * parameters;
         let smooth = if few { self.smooth(samples, noise.max(SMOOTH_MISFIT * root)) } else { None };
@@ -70,9 +72,9 @@ impl Search {
 
     /// The terms that improve the prediction, by the criterion of Mallows (Technometrics 15, 1973).
     ///
-    /// Criteria that ask for the true number of terms (Bayesian ones) find three or six times as surely, but of a
-    /// continuous spectrum they leave ripples: with 2 % noise, J of a fractional Zener body errs by 0.95 % instead of
-    /// 0.68 % rms, and of three retardation times by 0.38 % instead of 0.40 %.
+    /// Criteria for the true number of terms (Bayesian ones) identify three or six discrete times equally reliably, but
+    /// leave ripples in a continuous spectrum: with 2 % noise, the rms error of J of a fractional Zener body is 0.95 %
+    /// instead of 0.68 %, and of three retardation times 0.38 % instead of 0.40 %.
     fn sparse(&self, start: &FittedSeries, samples: &[Sample], noise: f64) -> FittedSeries {
         let criterion = |series: &FittedSeries| {
             series.squares(samples) / (noise * noise) + 2.0 * (ends(series) + 2 * series.terms.len()) as f64
@@ -82,7 +84,8 @@ impl Search {
         polish(&thinned, samples, self.free(), LONG, &|_| false)
     }
 
-    /// The smoothest spectrum that explains the samples; `None` if none does, as for a few discrete times without noise.
+    /// The smoothest spectrum that explains the samples; `None` if none does, as for a few discrete times without
+    /// noise.
     fn smooth(&self, samples: &[Sample], noise: f64) -> Option<FittedSeries> {
         let [first, last] = self.times;
         let wide = Search { times: [first / SMOOTH_BEYOND, last * SMOOTH_BEYOND], ..self.clone() };
@@ -103,7 +106,7 @@ impl Search {
     }
 
     /// Non-negative least squares of the misfit and of `weight` times the squared second differences of the strengths,
-    /// measured by the data at the same time: those of a power law have none.
+    /// relative to the data at the same time, so that those of a power law vanish.
     fn regularised(&self, samples: &[Sample], weight: f64) -> FittedSeries {
         let decades = (self.times[1] / self.times[0]).log10();
         let times = self.grid(SMOOTH_DENSITY.min(SMOOTH_TIMES / decades));
@@ -112,12 +115,12 @@ impl Search {
         let (rows, root) = (samples.len(), weight.sqrt());
         let matrix = Mat::from_fn(rows + times.len() - 2, ends + times.len(), |i, j| {
             if let Some(Sample { function, x, value, weight }) = samples.get(i) {
-                let function = match j {
+                let entry = match j {
                     0 => function.constant(),
                     _ if j < ends => function.slope(*x),
                     _ => levels[j - ends] * function.term(*x, times[j - ends]).0,
                 };
-                return function * weight.sqrt() / value;
+                return entry * weight.sqrt() / value;
             }
             match (j + rows).checked_sub(ends + i) {
                 Some(0 | 2) => root,
@@ -137,12 +140,12 @@ impl Search {
     }
 }
 
-/// How many of constant and slope a series has.
+/// Number of non-zero ends, constant and slope, of a series.
 fn ends(series: &FittedSeries) -> usize {
     usize::from(series.constant > 0.0) + usize::from(series.slope > 0.0)
 }
 
-/// What was measured first at `time`, a straight line between the samples in logarithms, and constant beyond them.
+/// The first material function of the samples at `time`: log-linear between the samples, and constant beyond them.
 fn level(samples: &[Sample], time: f64) -> f64 {
     let function = samples[0].function;
     let x = match function {

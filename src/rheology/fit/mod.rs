@@ -1,12 +1,12 @@
 //! Exponential series with positive coefficients through samples of a material function.
 //!
-//! Three stages. Non-negative least squares of the relative misfit on log-spaced times finds where there is
-//! strength at all; sums of exponentials being what they are, neighbouring times share what belongs to
-//! one in between. Neighbours are then merged, the pair that matters least first, and after every merger
-//! strengths and times are polished together, as long as the misfit allows it. What is left is sparse: a
-//! step of the contact pays for each term.
+//! Three stages. Non-negative least squares of the relative misfit on log-spaced times finds the times with
+//! non-zero strength; since exponentials are nearly dependent, neighbouring times share the strength of one in
+//! between. Neighbours are then merged, the pair of least effect first, and after every merger strengths and
+//! times are polished together, as long as the misfit allows it. The result is sparse: each term costs time in
+//! every step of a contact.
 //!
-//! Functions are fitted within a tolerance, [`Search::within`]; measurements as closely as their noise asks for,
+//! Functions are fitted within a tolerance, [`Search::within`]; measurements to within their noise,
 //! [`Search::measured`].
 
 mod basis;
@@ -23,10 +23,10 @@ pub use report::{FitReport, FitSample, FitWarning};
 use faer::{Col, Mat};
 use polish::{Free, polish};
 
-/// Which series to look for.
+/// The class of series to search.
 #[derive(Debug, Clone)]
 pub(crate) struct Search {
-    /// The constant, if it is known.
+    /// The constant, if known.
     pub(crate) constant: Option<f64>,
     /// Whether there may be a slope (flow, an immediate dashpot).
     pub(crate) slope: bool,
@@ -34,10 +34,10 @@ pub(crate) struct Search {
     pub(crate) times: [f64; 2],
 }
 
-/// Times a decade on which a function is tried: the trapezoidal rule in ln λ errs by about e^(−π²/h), so that two or three
-/// suffice for 1e-4.
+/// Times per decade tried for a function: the error of the trapezoidal rule in ln λ is about e^(−π²/h), so that two or
+/// three suffice for 1e-4.
 const DENSITIES: [f64; 4] = [2.0, 3.0, 5.0, 8.0];
-/// Mergers tried, cheapest first, before a series that stands for a function counts as the sparsest.
+/// Mergers tried, cheapest first, before the series of a function counts as the sparsest.
 const TRIES: usize = 3;
 /// Iterations of the polish between mergers, and at the end.
 const BRIEF: usize = 12;
@@ -61,7 +61,7 @@ impl Search {
         let found =
             best.unwrap_or(FittedSeries { constant: self.constant.unwrap_or(0.0), slope: 0.0, terms: Vec::new() });
         let thinned = self.thinned(found, samples, TRIES, &|trial, _| reached(trial));
-        // what was enough for a merger may not be all there is
+        // the polish of a merger stops early: complete it
         let polished = polish(&thinned, samples, self.free(), LONG, &|_| false);
         if polished.worst(samples) <= thinned.worst(samples) { polished } else { thinned }
     }
@@ -70,18 +70,18 @@ impl Search {
         Free { constant: self.constant.is_none(), slope: self.slope }
     }
 
-    /// Non-negative least squares with `density` times a decade.
+    /// Non-negative least squares with `density` times per decade.
     fn on_grid(&self, samples: &[Sample], density: f64) -> FittedSeries {
         let times = self.grid(density);
         let ends = usize::from(self.constant.is_none()) + usize::from(self.slope);
         let matrix = Mat::from_fn(samples.len(), ends + times.len(), |i, j| {
             let Sample { function, x, value, weight } = samples[i];
-            let function = match j {
+            let entry = match j {
                 0 if self.constant.is_none() => function.constant(),
                 _ if j < ends => function.slope(x),
                 _ => function.term(x, times[j - ends]).0,
             };
-            function * weight.sqrt() / value
+            entry * weight.sqrt() / value
         });
         let known = self.constant.unwrap_or(0.0);
         let right = Col::from_fn(samples.len(), |i| {
@@ -97,8 +97,8 @@ impl Search {
         }
     }
 
-    /// Merges terms as long as the series with one term less is preferred to the current one, trying as many of them as
-    /// `tries`, the cheapest first.
+    /// Merges terms while a series with one term fewer is preferred to the current one, trying the `tries` cheapest
+    /// mergers.
     fn thinned(
         &self,
         start: FittedSeries,
@@ -121,14 +121,14 @@ impl Search {
         }
     }
 
-    /// Log-spaced times, `density` a decade.
+    /// Log-spaced times, `density` per decade.
     fn grid(&self, density: f64) -> Vec<f64> {
         let [first, last] = self.times.map(f64::log10);
         let steps = ((last - first) * density).ceil().max(1.0) as usize;
         (0..=steps).map(|k| 10f64.powf(first + (last - first) * k as f64 / steps as f64)).collect()
     }
 
-    /// Every series with one term less, and what the merger costs to first order.
+    /// Every series with one term fewer, and the cost of the merger to first order.
     fn mergers(&self, series: &FittedSeries, samples: &[Sample]) -> Vec<(f64, FittedSeries)> {
         let mut mergers = Vec::new();
         let cost = |merged: &FittedSeries| {
@@ -143,8 +143,8 @@ impl Search {
             merged.terms[k - 1] = (strength + other, shorter * (lambda / shorter).powf(share));
             offer(merged);
         }
-        // at the ends, terms that are over before the first sample or have hardly begun at the last; what a
-        // constant or a slope stands for depends on the function
+        // terms faster than the first sample or slower than the last one become part of the constant or the slope,
+        // depending on the function
         if series.terms.is_empty() {
             return mergers;
         }

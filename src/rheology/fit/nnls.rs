@@ -4,10 +4,10 @@ use faer::linalg::solvers::SolveLstsqCore;
 use faer::{Col, Conj, Mat, Scale};
 
 /// Solves min |A x − b| over x ≥ 0 by the active set method of Lawson & Hanson (*Solving Least Squares
-/// Problems*, 1974, chapter 23). The answer is sparse: few of many similar columns are used.
+/// Problems*, 1974, chapter 23). The solution is sparse: few of many similar columns are used.
 pub(crate) fn non_negative_least_squares(a: &Mat<f64>, b: &Col<f64>) -> Vec<f64> {
     let columns = a.ncols();
-    // columns of length one, so that gradients compare
+    // columns are normalised, so that gradients are comparable
     let norms: Vec<f64> = (0..columns).map(|j| a.col(j).norm_l2()).collect();
     let mut x = vec![0.0; columns];
     let mut passive: Vec<usize> = Vec::new();
@@ -27,12 +27,12 @@ pub(crate) fn non_negative_least_squares(a: &Mat<f64>, b: &Col<f64>) -> Vec<f64>
         passive.push(entering);
         let mut solved = least_squares(a, &passive, b);
         if solved.last().is_none_or(|&value| value <= 0.0) || solved.iter().any(|value| !value.is_finite()) {
-            // by rounding: it belongs with zero, or depends on the others
+            // rounding: the strength is zero, or the column depends on the others
             passive.pop();
             refused[entering] = true;
             continue;
         }
-        // walk towards the unconstrained answer, leaving out what would turn negative
+        // move towards the unconstrained solution, removing columns that would turn negative
         while solved.iter().any(|&value| value <= 0.0) {
             let step = passive
                 .iter()
@@ -64,7 +64,7 @@ pub(crate) fn non_negative_least_squares(a: &Mat<f64>, b: &Col<f64>) -> Vec<f64>
     x
 }
 
-/// The least squares answer on some columns.
+/// The least squares solution on some columns.
 fn least_squares(a: &Mat<f64>, columns: &[usize], b: &Col<f64>) -> Vec<f64> {
     let part = Mat::from_fn(a.nrows(), columns.len(), |i, k| a[(i, columns[k])]);
     solve(&part, b)

@@ -1,14 +1,14 @@
-//! Moves strengths and times of a series together, to the least squares of its misfit.
+//! Optimises strengths and times of a series together, by least squares of the misfit.
 
 use faer::{Col, Mat};
 
 use super::basis::{FittedSeries, Sample};
 use super::nnls::solve;
 
-/// The farthest a parameter moves in one iteration, as a logarithm.
-const FARTHEST: f64 = 1.5;
+/// Greatest change of the logarithm of a parameter in one iteration.
+const MAX_CHANGE: f64 = 1.5;
 
-/// What of a series may move.
+/// The ends of a series that may change.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Free {
     pub(crate) constant: bool,
@@ -16,7 +16,7 @@ pub(crate) struct Free {
 }
 
 /// Levenberg–Marquardt in the logarithms of strengths and times, which keeps both positive. Ends after
-/// `iterations`, when `done`, or when the squares no longer fall.
+/// `iterations`, when `done`, or when the squares no longer decrease.
 pub(crate) fn polish(
     start: &FittedSeries,
     samples: &[Sample],
@@ -64,12 +64,12 @@ fn linearise(series: &FittedSeries, samples: &[Sample], free: Free) -> (Mat<f64>
         let weight = root / sample.value;
         misfits[i] = root * series.misfit(sample);
         let mut column = 0;
-        for (is_free, strength, function) in [
+        for (is_free, strength, value) in [
             (free.constant, series.constant, function.constant()),
             (free.slope, series.slope, function.slope(sample.x)),
         ] {
             if moves(is_free, strength) {
-                jacobian[(i, column)] = strength * function * weight;
+                jacobian[(i, column)] = strength * value * weight;
                 column += 1;
             }
         }
@@ -101,7 +101,7 @@ fn damped_step(jacobian: &Mat<f64>, misfits: &Col<f64>, damping: f64) -> Vec<f64
 }
 
 fn moved(series: &FittedSeries, free: Free, step: &[f64]) -> FittedSeries {
-    let mut step = step.iter().map(|d| d.clamp(-FARTHEST, FARTHEST).exp());
+    let mut step = step.iter().map(|d| d.clamp(-MAX_CHANGE, MAX_CHANGE).exp());
     let mut next = || step.next().unwrap_or(1.0);
     let mut moved = series.clone();
     if moves(free.constant, series.constant) {

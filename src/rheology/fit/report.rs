@@ -6,11 +6,11 @@ use super::basis::{FittedSeries, MaterialFunction, Sample};
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FitSample {
-    /// What the value is.
+    /// The material function.
     pub function: MaterialFunction,
     /// Time \[s\] or angular frequency \[rad/s\].
     pub x: f64,
-    /// The value given: \[1/Pa\] for creep, else \[Pa\].
+    /// The value given: \[1/Pa\] for creep, otherwise \[Pa\].
     pub given: f64,
     /// The value of the series.
     pub fitted: f64,
@@ -23,24 +23,24 @@ impl FitSample {
     }
 }
 
-/// Uncertainties and systematic misfits below this call for no warning.
+/// Uncertainties and systematic misfits below this need no warning.
 const TOLERABLE: f64 = 5e-3;
-/// An uncertainty of so many times the misfit is not the scatter of the samples.
+/// An uncertainty of more than this times the misfit is not due to the scatter of the samples.
 const OVER_SCATTER: f64 = 2.0;
-/// Mean square of the difference between neighbouring misfits over their mean square (von Neumann): 2 for noise, less for
-/// misfits that follow one another.
+/// Mean square of the difference between neighbouring misfits over their mean square (von Neumann): 2 for noise, less
+/// for misfits that follow one another.
 const SYSTEMATIC: f64 = 1.0;
 
-/// Why a series fitted to measurements should not be trusted without a look. `Display` tells it.
+/// Why a series fitted to measurements should be inspected before use. `Display` explains it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum FitWarning {
-    /// There are too few samples to tell how the curve runs between them: measure more of them a decade.
+    /// There are too few samples to determine the curve between them: measure more per decade.
     FewSamples {
         /// [`FitReport::uncertainty`].
         uncertainty: f64,
     },
-    /// No series meets the samples, and it is not their scatter: the body is not linear, it ages, or the specimen slipped.
+    /// No series fits the samples within their scatter: the body is not linear, it ages, or the specimen slipped.
     Systematic {
         /// [`FitReport::rms_misfit`].
         rms: f64,
@@ -53,14 +53,14 @@ impl fmt::Display for FitWarning {
             FitWarning::FewSamples { uncertainty } => {
                 write!(
                     f,
-                    "too few samples a decade: between them the curve is uncertain by {:.1} %",
+                    "too few samples per decade: between them the curve is uncertain by {:.1} %",
                     100.0 * uncertainty
                 )
             }
             FitWarning::Systematic { rms } => {
                 write!(
                     f,
-                    "the samples stray by {:.1} % rms from those of any linear body, and not by chance",
+                    "the samples deviate systematically from those of any linear body, by {:.1} % rms",
                     100.0 * rms
                 )
             }
@@ -68,8 +68,8 @@ impl fmt::Display for FitWarning {
     }
 }
 
-/// How well an exponential series stands for what it was fitted to. `Display` tells it in a line; the
-/// samples are there to be plotted.
+/// The error of an exponential series against the data or the function to which it was fitted. `Display` is one line;
+/// the samples are for plots.
 ///
 /// ```
 /// use viscocontact::rheology::{PowerLaw, Rheology};
@@ -108,12 +108,12 @@ impl FitReport {
         }
     }
 
-    /// Of a series that is the function itself.
+    /// The report of an exact series.
     pub(crate) fn exact(terms: usize) -> FitReport {
         FitReport { samples: Vec::new(), terms, exact: true, wrong_way: 0.0, uncertainty: 0.0, warning: None }
     }
 
-    /// The same, of measurements that turn back by so much and leave the curve uncertain by so much.
+    /// The report with the deviation from monotone and the uncertainty of measurements.
     pub(crate) fn of_measurements(self, wrong_way: f64, uncertainty: f64) -> FitReport {
         let rms = self.rms_misfit();
         let warning = if uncertainty > TOLERABLE.max(OVER_SCATTER * rms) {
@@ -134,7 +134,7 @@ impl FitReport {
         changes < SYSTEMATIC * pairs * self.rms_misfit().powi(2)
     }
 
-    /// Whether the series is the function itself and nothing was fitted.
+    /// Whether the series is exact and nothing was fitted.
     pub fn is_exact(&self) -> bool {
         self.exact
     }
@@ -168,25 +168,24 @@ impl FitReport {
         (least < f64::INFINITY).then(|| [least, positive().fold(0.0, f64::max)])
     }
 
-    /// How far the data stray, relatively, from the nearest curve that does not turn back, which was taken for
-    /// noise. 0 for monotone data.
+    /// Greatest relative deviation of the data from the nearest monotone curve, taken as noise. 0 for monotone data.
     pub fn wrong_way(&self) -> f64 {
         self.wrong_way
     }
 
-    /// How far, relatively, another series that meets the samples as well strays from this one at or between them. 0 for a
-    /// function, which is sampled as closely as it needs.
+    /// Relative deviation, at or between the samples, of another series that fits them equally well. 0 for a function,
+    /// which is sampled as finely as needed.
     pub fn uncertainty(&self) -> f64 {
         self.uncertainty
     }
 
-    /// What should be looked at, if anything; for measurements only. Steps of a contact whose material has one carry
+    /// The warning, if any; for measurements only. Steps of a contact with such a material have
     /// [`Warning::UncertainMaterial`](crate::contact::Warning::UncertainMaterial).
     pub fn warning(&self) -> Option<FitWarning> {
         self.warning
     }
 
-    /// Relaxation or retardation times that were kept.
+    /// Number of relaxation or retardation times.
     pub fn terms(&self) -> usize {
         self.terms
     }
@@ -212,7 +211,7 @@ impl fmt::Display for FitReport {
             worst.x
         )?;
         if self.wrong_way > 0.0 {
-            write!(f, "; the data turn back by {:.1e} at most, taken for noise", self.wrong_way)?;
+            write!(f, "; the data deviate from a monotone curve by at most {:.1e}, taken as noise", self.wrong_way)?;
         }
         if let Some(warning) = self.warning {
             write!(f, "; {warning}")?;

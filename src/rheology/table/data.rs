@@ -1,9 +1,9 @@
-//! Checks what was measured before anything is fitted to it.
+//! Checks of measured data before a fit.
 
 use crate::error::{Place, Result, TableError};
 use crate::rheology::fit::{MaterialFunction, Sample};
 
-/// One row of a table: where it stands, the abscissa, and one value for each column.
+/// One row of a table: its place, the abscissa, and one value for each column.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
     pub(crate) place: Place,
@@ -11,14 +11,14 @@ pub(crate) struct Row {
     pub(crate) values: Vec<f64>,
 }
 
-/// What a table holds.
+/// The columns of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Layout {
     pub(crate) table: &'static str,
     pub(crate) abscissa: &'static str,
     /// Name and meaning of each column.
     pub(crate) columns: &'static [(&'static str, MaterialFunction)],
-    /// Whether an abscissa of zero makes sense.
+    /// Whether an abscissa of zero is allowed.
     pub(crate) zero: bool,
 }
 
@@ -39,19 +39,19 @@ pub(crate) const DYNAMIC: Layout = Layout {
     zero: false,
 };
 
-/// Data may stray from a monotone curve by so many standard deviations of their scatter, ...
+/// Data may deviate from a monotone curve by this many standard deviations of their scatter, ...
 const DEVIATIONS: f64 = 6.0;
-/// ... but not beyond this, relatively; ...
+/// ... but by no more than this, relatively; ...
 const MOST_NOISE: f64 = 0.5;
-/// ... in short tables, whose scatter is hard to tell from their course, not even beyond this.
+/// ... in short tables, whose scatter is hard to distinguish from their trend, by no more than this.
 const MOST_NOISE_OF_FEW: f64 = 0.1;
 const FEW: usize = 12;
-/// Clean data may stray by the rounding of their digits; those printed with few digits, by one in the last.
+/// Data without noise may deviate by the rounding of their digits; those printed with few digits, by one in the last.
 const LEAST_NOISE: f64 = 1e-9;
-/// A fit of constant, slope and one term needs as many values.
+/// Number of values for a fit of constant, slope and one term.
 const LEAST_ROWS: usize = 4;
 
-/// The samples of a table, in ascending order, and how far at most they stray from a monotone curve.
+/// The samples of a table, in ascending order, and their greatest deviation from a monotone curve.
 pub(crate) fn validated(layout: Layout, mut rows: Vec<Row>) -> Result<(Vec<Sample>, f64)> {
     let Layout { table, abscissa, columns, zero } = layout;
     if rows.is_empty() {
@@ -83,7 +83,7 @@ pub(crate) fn validated(layout: Layout, mut rows: Vec<Row>) -> Result<(Vec<Sampl
     if rows.len() < LEAST_ROWS {
         return Err(TableError::TooFew { table, rows: rows.len(), least: LEAST_ROWS }.into());
     }
-    let mut deepest: f64 = 0.0;
+    let mut greatest: f64 = 0.0;
     for (index, &(column, function)) in columns.iter().enumerate() {
         let values: Vec<f64> = rows.iter().map(|row| row.values[index]).collect();
         let rising = match function {
@@ -93,23 +93,24 @@ pub(crate) fn validated(layout: Layout, mut rows: Vec<Row>) -> Result<(Vec<Sampl
         };
         let most = if rows.len() < FEW { MOST_NOISE_OF_FEW } else { MOST_NOISE };
         let noise = (DEVIATIONS * scatter(&rising)).max(1.5 * quantum(&rising)).clamp(LEAST_NOISE, most);
-        let strays = rising.iter().zip(never_falling(&rising)).map(|(value, curve)| (value / curve - 1.0).abs());
-        let Some((worst, change)) = strays.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
+        let deviations = rising.iter().zip(nearest_monotone(&rising)).map(|(value, curve)| (value / curve - 1.0).abs());
+        let Some((worst, change)) = deviations.enumerate().max_by(|a, b| a.1.total_cmp(&b.1)) else { continue };
         if change > noise {
             let (place, value) = (rows[worst].place, rows[worst].values[index]);
             return Err(TableError::WrongWay { table, place, column, value, change, noise }.into());
         }
-        deepest = deepest.max(change);
+        greatest = greatest.max(change);
     }
     let sample = |index: usize, function| {
         rows.iter().map(move |row| Sample { function, x: row.x, value: row.values[index], weight: 1.0 })
     };
     let samples = columns.iter().enumerate().flat_map(|(index, &(_, function))| sample(index, function));
-    Ok((samples.collect(), deepest))
+    Ok((samples.collect(), greatest))
 }
 
-/// The curve nearest to the values that never falls: neighbours that fall are pooled into their mean, until none do.
-fn never_falling(values: &[f64]) -> Vec<f64> {
+/// The non-decreasing curve nearest to the values: decreasing neighbours are pooled into their mean, until there are
+/// none.
+fn nearest_monotone(values: &[f64]) -> Vec<f64> {
     let mut pools: Vec<(f64, usize)> = Vec::with_capacity(values.len());
     for &value in values {
         pools.push((value, 1));
@@ -124,15 +125,15 @@ fn never_falling(values: &[f64]) -> Vec<f64> {
     pools.into_iter().flat_map(|(mean, count)| std::iter::repeat_n(mean, count)).collect()
 }
 
-/// The least relative step between neighbours that differ: where values are printed with few digits, one in the last.
+/// The least relative step between unequal neighbours: for values printed with few digits, one in the last.
 fn quantum(values: &[f64]) -> f64 {
     let steps = values.windows(2).map(|w| (w[1] / w[0] - 1.0).abs()).filter(|step| *step > 0.0);
     let least = steps.fold(f64::INFINITY, f64::min);
     if least.is_finite() { least } else { 0.0 }
 }
 
-/// Relative standard deviation of the scatter about a smooth curve, from the median of second differences, which
-/// a few outliers or a kink do not move.
+/// Relative standard deviation of the scatter about a smooth curve, from the median of second differences, which a few
+/// outliers or a kink do not change.
 fn scatter(values: &[f64]) -> f64 {
     let mut second: Vec<f64> =
         values.windows(3).map(|w| ((w[0] - 2.0 * w[1] + w[2]) / w[1]).abs() / 6f64.sqrt()).collect();

@@ -3,7 +3,7 @@ use crate::rheology::table::data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, vali
 use crate::rheology::table::{TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
 use crate::rheology::{MaterialFunction, TimeTemperature};
 
-/// What was measured at one temperature.
+/// A measurement at one temperature.
 ///
 /// ```
 /// use viscocontact::rheology::Isotherm;
@@ -50,7 +50,7 @@ impl Isotherm {
         within("temperature", temperature, temperature > 0.0, "finite and > 0 (kelvin)")?;
         let mut rows = super::rows(x, "values of an isotherm", columns)?;
         validated(layout, rows.clone())?;
-        rows.retain(|row| row.x > 0.0); // a time of zero stays zero at every temperature
+        rows.retain(|row| row.x > 0.0); // a time of zero cannot be shifted
         rows.sort_by(|a, b| a.x.total_cmp(&b.x));
         Ok(Isotherm { temperature, layout, rows })
     }
@@ -60,7 +60,7 @@ impl Isotherm {
         self.temperature
     }
 
-    /// ln of the range of times that it covers; frequencies count as their reciprocals.
+    /// ln of the range of times; frequencies count as their reciprocals.
     fn span(&self) -> [f64; 2] {
         let ends = [&self.rows[0], &self.rows[self.rows.len() - 1]].map(|row| self.log_time(row));
         [ends[0].min(ends[1]), ends[0].max(ends[1])]
@@ -84,8 +84,8 @@ impl Isotherm {
 /// Isotherms shifted along the axis of time (or frequency) until they form one curve at a reference
 /// temperature, which spans more decades than any of them (time–temperature superposition).
 ///
-/// The shift of each isotherm against its neighbour is the one that brings the logarithms of the values together
-/// where the two overlap, in the mean square. There are no vertical shifts.
+/// The shift of each isotherm relative to its neighbour minimises the mean square difference of the logarithms of the
+/// values where the two overlap. There are no vertical shifts.
 ///
 /// ```
 /// use viscocontact::rheology::{Isotherm, MasterCurve, Rheology, TimeTemperature};
@@ -120,9 +120,8 @@ impl MasterCurve {
     /// Finds the shift factors from the data alone. `reference` \[K\] must be the temperature of an isotherm.
     ///
     /// # Errors
-    /// If there is no isotherm, two have the same temperature, they measure different things, none is at the
-    /// reference temperature, or neighbours do not overlap in their values
-    /// ([`TableError::NoOverlap`]).
+    /// If there is no isotherm, two have the same temperature, they measure different quantities, none is at the
+    /// reference temperature, or neighbours do not overlap in their values ([`TableError::NoOverlap`]).
     pub fn new(reference: f64, isotherms: Vec<Isotherm>) -> Result<MasterCurve> {
         let isotherms = sorted(isotherms)?;
         let Some(center) = isotherms.iter().position(|isotherm| isotherm.temperature == reference) else {
@@ -142,8 +141,8 @@ impl MasterCurve {
     /// Shifts by a known `law`, to its reference temperature.
     ///
     /// # Errors
-    /// If there is no isotherm, two have the same temperature, they measure different things, or the law does not
-    /// hold at the temperature of one.
+    /// If there is no isotherm, two have the same temperature, they measure different quantities, or the law does
+    /// not hold at the temperature of one.
     pub fn with_law(law: &TimeTemperature, isotherms: Vec<Isotherm>) -> Result<MasterCurve> {
         let isotherms = sorted(isotherms)?;
         let log_shifts =
@@ -151,13 +150,13 @@ impl MasterCurve {
         Ok(MasterCurve { reference: law.reference(), isotherms, log_shifts })
     }
 
-    /// The temperature that it holds at \[K\].
+    /// The reference temperature \[K\].
     pub fn reference(&self) -> f64 {
         self.reference
     }
 
-    /// Temperature \[K\] and shift factor a_T of each isotherm, by temperature: at T everything takes a_T times
-    /// as long as at the reference.
+    /// Temperature \[K\] and shift factor a_T of each isotherm, by temperature: at T all times are a_T times
+    /// those at the reference.
     pub fn shift_factors(&self) -> Vec<(f64, f64)> {
         let pairs = self.isotherms.iter().zip(&self.log_shifts);
         pairs.map(|(isotherm, shift)| (isotherm.temperature, shift.exp())).collect()
@@ -202,7 +201,7 @@ impl MasterCurve {
         pairs.map(|(isotherm, &shift)| (isotherm.temperature, shift)).filter(|(t, _)| *t != self.reference)
     }
 
-    /// The points of the curve: reduced time \[s\] or angular frequency \[rad/s\], what it measures, value; from
+    /// The points of the curve: reduced time \[s\] or angular frequency \[rad/s\], material function, value; from
     /// the lowest temperature to the highest.
     pub fn points(&self) -> Vec<(f64, MaterialFunction, f64)> {
         let mut points = Vec::new();
@@ -220,7 +219,7 @@ impl MasterCurve {
         })
     }
 
-    /// The rows of the curve; points that fall on the same time are moved apart by rounding errors' worth.
+    /// The rows of the curve; points at the same time are separated by one unit in the last place.
     fn rows(&self) -> Vec<Row> {
         let mut rows: Vec<Row> = self.reduced().map(|(_, row)| row).collect();
         rows.sort_by(|a, b| a.x.total_cmp(&b.x));
@@ -236,7 +235,7 @@ impl MasterCurve {
     /// The body at the reference temperature, from creep isotherms.
     ///
     /// # Errors
-    /// If the isotherms measure something else, or the curve cannot be fitted ([`TabulatedCreep::new`]).
+    /// If the isotherms measure another quantity, or the curve cannot be fitted ([`TabulatedCreep::new`]).
     pub fn creep(&self) -> Result<TabulatedCreep> {
         self.measures(CREEP)?;
         TabulatedCreep::from_rows(self.rows())
@@ -245,7 +244,7 @@ impl MasterCurve {
     /// The body at the reference temperature, from relaxation isotherms.
     ///
     /// # Errors
-    /// If the isotherms measure something else, or the curve cannot be fitted.
+    /// If the isotherms measure another quantity, or the curve cannot be fitted.
     pub fn relaxation(&self) -> Result<TabulatedRelaxation> {
         self.measures(RELAXATION)?;
         TabulatedRelaxation::from_rows(self.rows())
@@ -254,7 +253,7 @@ impl MasterCurve {
     /// The body at the reference temperature, from dynamic isotherms.
     ///
     /// # Errors
-    /// If the isotherms measure something else, or the curve cannot be fitted.
+    /// If the isotherms measure another quantity, or the curve cannot be fitted.
     pub fn dynamic(&self) -> Result<TabulatedDynamic> {
         self.measures(DYNAMIC)?;
         TabulatedDynamic::from_rows(self.rows())
@@ -270,7 +269,7 @@ impl MasterCurve {
     }
 }
 
-/// Checks that isotherms belong together.
+/// Sorts isotherms by temperature, and checks that they measure the same quantity.
 fn sorted(mut isotherms: Vec<Isotherm>) -> Result<Vec<Isotherm>> {
     least_length("isotherms", isotherms.len(), 1)?;
     isotherms.sort_by(|a, b| a.temperature.total_cmp(&b.temperature));
@@ -296,14 +295,14 @@ fn sorted(mut isotherms: Vec<Isotherm>) -> Result<Vec<Isotherm>> {
 const COMPARED: usize = 60;
 /// Shifts tried before the best is refined.
 const TRIED: usize = 400;
-/// The part of the shorter isotherm that must overlap.
+/// Fraction of the shorter isotherm that must overlap.
 const LEAST_OVERLAP: f64 = 0.1;
 
-/// ln a of `warmer` against `colder`: the shift of least mean square distance where they overlap.
+/// ln a of `warmer` relative to `colder`: the shift of least mean square difference where they overlap.
 fn shift_between(colder: &Isotherm, warmer: &Isotherm) -> Result<f64> {
     let ([c0, c1], [w0, w1]) = (colder.span(), warmer.span());
     let least = LEAST_OVERLAP * (c1 - c0).min(w1 - w0);
-    // warmer at ln t belongs at ln t − shift of the colder's axis
+    // warmer at ln t is at ln t − shift on the axis of colder
     let distance = |shift: f64| {
         let (from, to) = ((w0 - shift).max(c0), (w1 - shift).min(c1));
         if to - from < least {
@@ -338,7 +337,7 @@ fn shift_between(colder: &Isotherm, warmer: &Isotherm) -> Result<f64> {
     if span(colder).min(span(warmer)) < 1e-6 {
         return Err(TableError::NothingToShift { temperatures: [colder.temperature, warmer.temperature] }.into());
     }
-    // overlapping by the least that was asked for means that the values of the two hardly meet
+    // at the least overlap allowed, the values of the two hardly overlap
     let apart = distance(shift).sqrt();
     let at_end = (shift - low).min(high - shift) < step;
     if at_end || apart > 0.2 {

@@ -15,31 +15,31 @@ use crate::rheology::series::known_series;
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 use data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
 
-/// A worse misfit, in the root mean square, is no fit.
+/// Greatest root mean square misfit of an accepted fit.
 const MOST_MISFIT: f64 = 0.1;
-/// Of denser tables so many means a decade are fitted, ...
-const GATHERED: f64 = 24.0;
-/// ... fewer if they span more decades than this.
+/// Denser tables are averaged to this many values per decade, ...
+const MEANS_PER_DECADE: f64 = 24.0;
+/// ... or fewer if they span more decades than this.
 const DECADES: f64 = 30.0;
-/// How far terms reach beyond the data, as a factor.
+/// Factor by which the times of the terms extend beyond the data.
 const BEYOND: f64 = 3.0;
 
-/// What the three kinds of table have in common.
+/// Methods common to the three kinds of table.
 macro_rules! tabulated {
     ($table:ident) => {
         impl $table {
-            /// The series that was fitted.
+            /// The fitted series.
             pub fn spectrum(&self) -> &CreepSpectrum {
                 &self.spectrum
             }
 
-            /// How well it stands for the data.
+            /// The error of the fit.
             pub fn report(&self) -> &FitReport {
                 &self.report
             }
 
-            /// The same body, its series trusted beyond the last time of the data. The choice is yours to
-            /// make: what comes later was not measured.
+            /// The same body, with its series extrapolated beyond the last time of the data, where nothing was
+            /// measured.
             #[must_use]
             pub fn extrapolated(self) -> $table {
                 $table { known_until: f64::INFINITY, ..self }
@@ -50,19 +50,19 @@ macro_rules! tabulated {
     };
 }
 
-/// A body known by its measured creep compliance: pairs of time \[s\] and J \[1/Pa\].
+/// A body given by its measured creep compliance: pairs of time \[s\] and J \[1/Pa\].
 ///
-/// The data are fitted by a series with positive coefficients, in the least squares of the relative
-/// misfit: a smooth curve through noise, with no more terms than it needs. [`TabulatedCreep::report`] tells how
-/// well, and holds what is needed to plot data and fit.
+/// The data are fitted by a series with positive coefficients, by least squares of the relative misfit: a smooth
+/// curve through noise, with no more terms than needed. [`TabulatedCreep::report`] has the error, and the values
+/// needed to plot data and fit.
 ///
-/// J of smooth creep without noise, four to eight decades of it, is met within 0.1 % at and between the rows from two rows a
-/// decade on. Fewer leave it open: within 0.3 % in most cases, by several percent at worst. Where the rows do not tell how J
-/// runs between them, [`FitReport::warning`] says so, and so do the steps of a contact
+/// Over four to eight decades of smooth creep without noise, the error of J at and between the rows is below 0.1 % with
+/// two rows per decade or more. With fewer it is below 0.3 % in most cases, and several percent at worst. Where the
+/// rows do not determine J between them, [`FitReport::warning`] reports it, as do the steps of a contact
 /// ([`Warning::UncertainMaterial`](crate::contact::Warning::UncertainMaterial)).
 ///
-/// Outside the data: what happens before the first time counts as elastic (the compliance stays between J_g of the
-/// fit and its value there). After the last time J is NaN, and a step of a contact fails with
+/// Outside the data: creep before the first time counts as elastic (the compliance is between J_g of the fit and its
+/// value there). After the last time J is NaN, and a step of a contact fails with
 /// [`Error::BeyondMaterial`](crate::Error::BeyondMaterial), unless you choose [`TabulatedCreep::extrapolated`].
 ///
 /// ```
@@ -107,10 +107,10 @@ impl TabulatedCreep {
 
 tabulated!(TabulatedCreep);
 
-/// A body known by its measured relaxation modulus: pairs of time \[s\] and G \[Pa\].
+/// A body given by its measured relaxation modulus: pairs of time \[s\] and G \[Pa\].
 ///
-/// Fitted as [`TabulatedCreep`] is, then converted to creep exactly. Known as long as the data last; what relaxes
-/// before the first time is not seen.
+/// Fitted as [`TabulatedCreep`] is, then converted to creep exactly. Known up to the last time of the data; relaxation
+/// before the first time is not resolved.
 ///
 /// ```
 /// use viscocontact::rheology::{Rheology, TabulatedRelaxation};
@@ -149,11 +149,11 @@ impl TabulatedRelaxation {
 
 tabulated!(TabulatedRelaxation);
 
-/// A body known by its measured dynamic moduli (DMA, rheometer): angular frequency \[rad/s\], storage and loss
+/// A body given by its measured dynamic moduli (DMA, rheometer): angular frequency \[rad/s\], storage and loss
 /// modulus G′, G″ \[Pa\].
 ///
 /// Both moduli are fitted together, each in its relative misfit, then converted to creep exactly. Known up to the
-/// time 1/ω of the lowest frequency; what is faster than the highest counts as elastic.
+/// time 1/ω of the lowest frequency; relaxation faster than the highest frequency counts as elastic.
 ///
 /// ```
 /// use viscocontact::rheology::{GeneralizedMaxwell, Rheology, TabulatedDynamic};
@@ -209,9 +209,9 @@ fn rows(x: &[f64], field: &'static str, columns: &[&[f64]]) -> Result<Vec<Row>> 
     Ok(x.iter().enumerate().map(row).collect())
 }
 
-/// The series that the data warrant.
+/// Fits a series to the rows.
 fn fitted(layout: Layout, rows: Vec<Row>, slope: bool) -> Result<(FittedSeries, FitReport)> {
-    let (samples, deepest) = validated(layout, rows)?;
+    let (samples, wrong_way) = validated(layout, rows)?;
     let times = |sample: &Sample| match layout.zero {
         true => sample.x,
         false => 1.0 / sample.x,
@@ -219,8 +219,8 @@ fn fitted(layout: Layout, rows: Vec<Row>, slope: bool) -> Result<(FittedSeries, 
     let positive = || samples.iter().map(times).filter(|t| *t > 0.0);
     let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
     let search = Search { constant: None, slope, times: [first / BEYOND, last * BEYOND] };
-    let Measured { series, uncertainty } = search.measured(&gathered(&samples, (last / first).log10()));
-    let report = FitReport::new(&series, &samples).of_measurements(deepest, uncertainty);
+    let Measured { series, uncertainty } = search.measured(&averaged(&samples, (last / first).log10()));
+    let report = FitReport::new(&series, &samples).of_measurements(wrong_way, uncertainty);
     match report.worst() {
         Some(worst) if report.rms_misfit() > MOST_MISFIT => {
             let (table, rms) = (layout.table, report.rms_misfit());
@@ -230,22 +230,24 @@ fn fitted(layout: Layout, rows: Vec<Row>, slope: bool) -> Result<(FittedSeries, 
     }
 }
 
-/// The samples with neighbours gathered into their geometric means where there are more than a fit can use.
-fn gathered(samples: &[Sample], decades: f64) -> Vec<Sample> {
-    let a_decade = GATHERED * (DECADES / decades).min(1.0);
-    let mut gathered: Vec<Sample> = Vec::new();
+/// Replaces neighbouring samples by their geometric means where there are more than a fit needs.
+fn averaged(samples: &[Sample], decades: f64) -> Vec<Sample> {
+    let per_decade = MEANS_PER_DECADE * (DECADES / decades).min(1.0);
+    let mut averaged: Vec<Sample> = Vec::new();
     for &sample in samples {
-        match gathered.last_mut() {
+        match averaged.last_mut() {
             Some(mean)
-                if mean.function == sample.function && mean.bin(a_decade) == sample.bin(a_decade) && mean.x > 0.0 =>
+                if mean.function == sample.function
+                    && mean.bin(per_decade) == sample.bin(per_decade)
+                    && mean.x > 0.0 =>
             {
                 let share = sample.weight / (mean.weight + sample.weight);
                 mean.x *= (sample.x / mean.x).powf(share);
                 mean.value *= (sample.value / mean.value).powf(share);
                 mean.weight += sample.weight;
             }
-            _ => gathered.push(sample),
+            _ => averaged.push(sample),
         }
     }
-    gathered
+    averaged
 }

@@ -1,4 +1,4 @@
-//! What the headings of a table say: which column holds what, in which unit.
+//! Headings of a table: the meaning and the unit of each column.
 
 use super::Units;
 use super::number::{resembles, shortened};
@@ -14,7 +14,7 @@ const RELAXATION_WORDS: &[&str] = &["g", "e", "relaxation", "modulus"];
 const STORAGE_WORDS: &[&str] = &["g'", "g′", "e'", "e′", "storage", "gp"];
 const LOSS_WORDS: &[&str] = &["g''", "g″", "g\"", "e''", "e″", "e\"", "loss", "gpp"];
 
-/// What a heading of something else says.
+/// Parts of headings of other quantities.
 const OTHERS: &[&str] = &["factor", "tan", "strain", "stress", "phase", "%"];
 
 fn words(column: &str) -> &'static [&'static str] {
@@ -37,7 +37,7 @@ pub(super) fn are_headings(fields: &[String]) -> bool {
     !fields.iter().any(|field| resembles(field))
 }
 
-/// Which columns hold what a table needs, in its order, or `None` if no heading says so.
+/// Indices of the columns that a table needs, in its order, or `None` if no heading names one.
 pub(super) fn columns(
     line: u64,
     headings: &[String],
@@ -72,7 +72,7 @@ pub(super) fn columns(
     names.iter().map(single).collect::<Result<_, _>>().map(Some)
 }
 
-/// Refuses headings with other units than those given; `order` tells which columns are read.
+/// Rejects headings with units other than those given; `order` has the indices of the columns that are read.
 pub(super) fn check_units(
     line: u64,
     headings: &[String],
@@ -106,9 +106,9 @@ pub(super) fn check_units(
             if right.clone().any(|reading| same(reading.1, given)) {
                 break;
             }
-            // G(s) is a function, and a last word may be no unit
+            // G(s) is a function, and a last word need not be a unit
             let clear = right.clone().next().is_some() || enclosed && text.chars().count() > 1;
-            // what stands in square brackets is a unit, known or not
+            // text in square brackets is a unit, known or not
             let square = heading.contains(&format!("[{text}")) && text.contains(char::is_alphabetic);
             if clear && !readings.is_empty() || square {
                 return refused(text);
@@ -118,13 +118,13 @@ pub(super) fn check_units(
     Ok(())
 }
 
-/// The word by which a heading says that its column holds logarithms.
+/// The word in a heading that marks a column of logarithms.
 fn logarithm(heading: &str) -> Option<&str> {
     let word = heading.trim().split(|c: char| !c.is_ascii_alphanumeric()).next()?;
     ["log", "log10", "lg", "ln"].contains(&word.to_ascii_lowercase().as_str()).then_some(word)
 }
 
-/// Where a heading may have its unit: in brackets, behind a slash, or as its last word; whether it is more than a word.
+/// Possible units in a heading: in brackets, after a slash, or its last word; and whether brackets or a slash mark it.
 fn unit_texts(heading: &str) -> Vec<(&str, bool)> {
     let mut texts = Vec::new();
     let mut outside = heading;
@@ -153,7 +153,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn logarithms_are_told() {
+    fn logarithms_are_recognised() {
         for (heading, word) in [("log t [s]", Some("log")), ("Log10(J)", Some("Log10")), ("ln_t", Some("ln"))] {
             assert_eq!(logarithm(heading), word);
         }
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn units_stand_in_brackets_behind_slashes_and_last() {
+    fn units_are_in_brackets_after_slashes_or_last() {
         assert_eq!(unit_texts("time [s]"), [("s", true)]);
         assert_eq!(unit_texts("J / (1/GPa)"), [("1/GPa", true), ("", true), ("/", false)]);
         assert_eq!(unit_texts("t/min"), [("min", true)]);

@@ -16,7 +16,7 @@ use headings::{are_headings, check_units, columns, names};
 use number::{Numbers, one_decimal, plain, resembles, shortened};
 use records::{Record, records, separator};
 
-/// What one unit of a file is in SI.
+/// The units of a file in SI.
 ///
 /// Needs the feature `csv`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,21 +42,21 @@ macro_rules! from_csv {
             /// Needs the feature `csv`.
             ///
             /// Rows may stand in any order. Columns too, where a first line names them (headings are recognised by
-            /// their first word or symbol, whatever the case and the unit behind it); without headings, or with
-            /// headings that say nothing, they are taken in the order above. A first line is one of headings if none of
+            /// their first word or symbol, whatever the case and the unit after it); without headings, or with
+            /// unknown ones, they are read in the order above. A first line is one of headings if none of
             /// its fields resembles a number. Headings with a unit (`t [min]`, `J (1/GPa)`, `E/MPa`) must agree with
-            /// `units`; words that are no known unit say nothing.
+            /// `units`; words that are not a known unit are ignored.
             ///
-            /// Values are separated by commas, semicolons, tabs or blanks; those with separators or line ends in them
-            /// are quoted. Numbers have an exponent with `e`, or `d` as in Fortran, and a decimal point; where commas do
-            /// not separate, all of a table may have decimal commas. Lines that start with `#` and empty lines are
-            /// skipped, nothing else is.
+            /// Values are separated by commas, semicolons, tabs or blanks; those that contain separators or line ends
+            /// are quoted. Numbers have an exponent with `e`, or `d` as in Fortran, and a decimal point; if commas are
+            /// not the separator, all numbers may have decimal commas. Only lines that start with `#` and empty lines
+            /// are skipped.
             ///
             /// # Errors
-            /// If the file cannot be read, the data cannot be fitted, or, each told with its line: too few or too many
-            /// columns ([`TableError::Columns`]), something that is not a number ([`TableError::NotNumeric`]), or that
-            /// can be read in two ways, as `1,5` in a line without headings ([`TableError::Ambiguous`]), columns that no
-            /// heading names ([`TableError::Heading`]), another unit ([`TableError::Unit`], [`TableError::Hertz`]).
+            /// If the file cannot be read, the data cannot be fitted, or, each reported with its line: too few or too
+            /// many columns ([`TableError::Columns`]), an entry that is not a number ([`TableError::NotNumeric`]) or is
+            /// ambiguous, as `1,5` in a line without headings ([`TableError::Ambiguous`]), columns that no heading
+            /// names ([`TableError::Heading`]), a unit that differs ([`TableError::Unit`], [`TableError::Hertz`]).
             pub fn from_csv(path: impl AsRef<Path>, units: Units) -> Result<$table> {
                 let path = path.as_ref();
                 let unreadable = |error: std::io::Error| TableError::Unreadable {
@@ -66,7 +66,7 @@ macro_rules! from_csv {
                 $table::from_csv_reader(File::open(path).map_err(unreadable)?, units)
             }
 
-            #[doc = concat!("[`", stringify!($table), "::from_csv`] from anything that can be read.")]
+            #[doc = concat!("[`", stringify!($table), "::from_csv`] from any reader.")]
             ///
             /// Needs the feature `csv`.
             ///
@@ -116,14 +116,14 @@ fn read(mut reader: impl Read, layout: Layout, units: Units) -> Result<Vec<Row>>
     if bytes.contains(&0) {
         return Err(unreadable("it is not a text file".into()).into());
     }
-    // remarks may be in any encoding, numbers are not
+    // comments may be in any encoding, numbers are ASCII
     let text = String::from_utf8_lossy(&bytes);
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text); // some spreadsheets mark UTF-8 so
+    let text = text.strip_prefix('\u{feff}').unwrap_or(&text); // byte order mark of some spreadsheets
     let separator = separator(text);
     let mut records = records(text, separator);
 
     let names = names(&layout);
-    // a table is as wide as its headings, and without any it holds nothing but what is needed
+    // the headings determine the number of columns; without headings there are only those needed
     let (mut order, mut width, mut named) = ((0..names.len()).collect::<Vec<_>>(), names.len(), false);
     if let Some(Record { line, fields, .. }) = records.first_mut() {
         drop_empty(fields, width);
@@ -138,7 +138,7 @@ fn read(mut reader: impl Read, layout: Layout, units: Units) -> Result<Vec<Row>>
         } else if fields.len() > width
             && let Some(column) = fields.iter().position(|field| resembles(field) && !plain(field))
         {
-            // headings but for this one, or numbers but for this one
+            // this entry is neither a heading nor a number like the others
             let text = shortened(&fields[column]);
             return Err(TableError::NotNumeric { line: *line, column: column + 1, text }.into());
         }
@@ -165,14 +165,14 @@ fn read(mut reader: impl Read, layout: Layout, units: Units) -> Result<Vec<Row>>
     Ok(rows)
 }
 
-/// Drops what separators at the end of a line leave beyond `width` fields.
+/// Drops empty fields beyond `width`, left by separators at the end of a line.
 fn drop_empty(fields: &mut Vec<String>, width: usize) {
     while fields.len() > width && fields.last().is_some_and(String::is_empty) {
         fields.pop();
     }
 }
 
-/// Refuses a row of fewer fields than `least`, or more than `most`.
+/// Rejects a row of fewer fields than `least`, or more than `most`.
 fn check_width(line: u64, fields: &[String], least: usize, most: usize, names: &[&str]) -> Result<()> {
     if (least..=most).contains(&fields.len()) {
         return Ok(());

@@ -1,18 +1,18 @@
-//! Numbers as programs and people write them.
+//! Numbers in the notations of programs and people.
 
 use crate::error::TableError;
 
-/// Reads the numbers of a table, whose decimals all have a point or all a comma.
+/// Reads the numbers of a table, which all have decimal points or all decimal commas.
 #[derive(Debug, Default)]
 pub(super) struct Numbers {
     point: bool,
     comma: bool,
-    /// The first number that may have a separator of thousands.
+    /// The error for the first number that may have a thousands separator.
     thousands: Option<TableError>,
 }
 
 impl Numbers {
-    /// The number in a field: with an `e`, or a `d` as Fortran writes it, before its exponent.
+    /// The number in a field; the exponent follows an `e`, or a `d` as in Fortran.
     pub(super) fn read(&mut self, line: u64, column: usize, text: &str) -> Result<f64, TableError> {
         let ambiguous = |readings| TableError::Ambiguous { line, column, text: shortened(text), readings };
         let number = parse(text).ok_or_else(|| TableError::NotNumeric { line, column, text: shortened(text) })?;
@@ -20,15 +20,15 @@ impl Numbers {
             let group = decimals.len() == 3 && decimals.bytes().all(|byte| byte.is_ascii_digit());
             let whole = whole.trim_start_matches(['+', '-']);
             if self.point {
-                return Err(ambiguous("a decimal comma or a separator of thousands beside decimal points"));
+                return Err(ambiguous("a decimal comma or a thousands separator beside decimal points"));
             } else if group && whole.len() <= 3 && !whole.starts_with('0') {
-                self.thousands.get_or_insert(ambiguous("a decimal comma or a separator of thousands"));
+                self.thousands.get_or_insert(ambiguous("a decimal comma or a thousands separator"));
             } else {
                 self.comma = true;
             }
         } else if text.contains('.') {
             if self.comma {
-                return Err(ambiguous("a decimal point or a separator of thousands beside decimal commas"));
+                return Err(ambiguous("a decimal point or a thousands separator beside decimal commas"));
             }
             self.point = true;
         }
@@ -38,7 +38,7 @@ impl Numbers {
         }
     }
 
-    /// Refuses numbers that may have had a separator of thousands, when all are read.
+    /// Rejects numbers that may have a thousands separator, once all are read.
     pub(super) fn finish(self) -> Result<(), TableError> {
         self.thousands.filter(|_| !self.comma).map_or(Ok(()), Err)
     }
@@ -68,11 +68,11 @@ pub(super) fn plain(text: &str) -> bool {
     text.bytes().any(|byte| byte.is_ascii_digit()) && parse(text).is_some()
 }
 
-/// Whether a text is a number, was meant to be one, or says that there is none: no heading.
+/// Whether a text is a number, resembles one, or marks a missing one, so that it is not a heading.
 pub(super) fn resembles(text: &str) -> bool {
     const MISSING: [&str; 8] = ["na", "n/a", "null", "nil", "none", "-", "--", "?"];
     let begin = text.trim_start_matches(|c: char| !c.is_alphanumeric() && !"[(".contains(c));
-    // 1/T begins with a digit and is none
+    // 1/T begins with a digit, but is not a number
     let reciprocal = begin.strip_prefix("1/").is_some_and(|rest| rest.starts_with(char::is_alphabetic));
     let text = text.trim_matches(['(', ')']);
     let outside = text.split(['(', '[']).next().unwrap_or_default();
@@ -83,17 +83,17 @@ pub(super) fn resembles(text: &str) -> bool {
         || decimals && outside.chars().filter(|c| c.is_alphabetic()).count() <= 2
 }
 
-/// Whether a row of two fields without quotes can also be one number with a decimal comma.
+/// Whether a row of two fields without quotes may also be one number with a decimal comma.
 pub(super) fn one_decimal(row: &str) -> bool {
     let Some((whole, rest)) = row.trim().trim_start_matches(['+', '-']).split_once(',') else { return false };
     let (decimals, exponent) = rest.split_once(['e', 'E', 'd', 'D']).map_or((rest, None), |(d, e)| (d, Some(e)));
     let digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    // one digit stands before the comma where there is an exponent
+    // with an exponent there is one digit before the comma
     let fits = exponent.is_none_or(|exponent| digits(exponent.trim_start_matches(['+', '-'])) && whole.len() == 1);
     digits(whole) && digits(decimals) && fits
 }
 
-/// A text as errors show it.
+/// A text, shortened for errors.
 pub(super) fn shortened(text: &str) -> String {
     const MOST: usize = 60;
     if text.chars().count() <= MOST { text.to_owned() } else { text.chars().take(MOST).chain("…".chars()).collect() }
@@ -110,7 +110,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_read_as_they_are_written() {
+    fn numbers_are_read_in_every_notation() {
         assert_eq!(
             all(&["1", "-1.5", ".5", "+1e3", "1.D0", "2d-3", "1.5D+02"]).unwrap(),
             [1.0, -1.5, 0.5, 1e3, 1.0, 2e-3, 150.0]
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn separators_of_thousands_are_no_decimals() {
+    fn thousands_separators_are_not_decimals() {
         for (texts, at) in [
             (&["1,000", "2,500"][..], 1),
             (&["1,000", "2.5"], 1),
@@ -138,7 +138,7 @@ mod tests {
     }
 
     #[test]
-    fn headings_resemble_no_numbers() {
+    fn headings_do_not_resemble_numbers() {
         for heading in ["time", "t [s]", "J [1/Pa]", "E1", "G' (23.5 °C)", "1/T", "[1/Pa]", "(1/Pa)", "T1", "", "10^-3"]
         {
             assert_eq!(resembles(heading), heading == "10^-3", "{heading}");

@@ -7,14 +7,14 @@ use super::number::plain;
 pub(super) struct Record<'a> {
     /// The line in which it begins, from 1.
     pub(super) line: u64,
-    /// Without blanks around them and the quotes that enclose them.
+    /// Without surrounding blanks and enclosing quotes.
     pub(super) fields: Vec<String>,
-    /// As it stands in the text.
+    /// The unparsed text.
     pub(super) raw: &'a str,
 }
 
-/// The rows of a text whose fields `separator` divides; blanks do so in any number. A quote that is not closed, or not followed by
-/// a separator, is part of its field.
+/// The rows of a text whose fields are separated by `separator`, or by any number of blanks. A quote that is not
+/// closed, or not followed by a separator, is part of its field.
 pub(super) fn records(text: &str, separator: char) -> Vec<Record<'_>> {
     let (mut records, mut rest, mut line) = (Vec::new(), text, 1);
     while !rest.is_empty() {
@@ -58,7 +58,7 @@ fn field(text: &str, separator: char) -> (String, &str) {
         while let Some(quote) = quoted[from..].find('"').map(|at| from + at) {
             let after = &quoted[quote + 1..];
             if after.starts_with('"') {
-                from = quote + 2; // stands for one quote
+                from = quote + 2; // an escaped quote
                 continue;
             }
             let after = after.trim_start_matches(blank);
@@ -72,8 +72,8 @@ fn field(text: &str, separator: char) -> (String, &str) {
     (text[..end].trim().to_owned(), &text[end..])
 }
 
-/// The separator of a text: the first of semicolon, tab and comma that half of its lines hold, or else blanks. Commas within
-/// numbers that blanks separate are decimal commas.
+/// The separator of a text: the first of semicolon, tab and comma that half of its lines contain, otherwise blanks.
+/// Commas in numbers separated by blanks are decimal commas.
 pub(super) fn separator(text: &str) -> char {
     let data = text.split(['\r', '\n']).map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));
     let lines: Vec<&str> = data.collect();
@@ -88,7 +88,7 @@ pub(super) fn separator(text: &str) -> char {
     if mark == ',' && half(&with_comma, &decimal) { ' ' } else { mark }
 }
 
-/// Whether half of the lines, and one at least, fit.
+/// Whether at least half of the lines, and at least one, fit.
 fn half(lines: &[&str], fits: &dyn Fn(&str) -> bool) -> bool {
     !lines.is_empty() && 2 * lines.iter().filter(|line| fits(line)).count() >= lines.len()
 }
@@ -98,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_are_taken_apart() {
+    fn rows_are_split_into_fields() {
         let rows = |text: &str, separator| -> Vec<(u64, Vec<String>)> {
             records(text, separator).into_iter().map(|record| (record.line, record.fields)).collect()
         };

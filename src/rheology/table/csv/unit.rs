@@ -1,6 +1,6 @@
-//! Units as headings write them.
+//! Units in the notations of headings.
 
-/// What a unit measures.
+/// The quantity of a unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Time,
@@ -9,7 +9,7 @@ pub(super) enum Kind {
     Compliance,
 }
 
-/// One unit in s, rad/s, Pa or 1/Pa.
+/// The quantity of a unit, and its size in s, rad/s, Pa or 1/Pa.
 pub(super) type Unit = (Kind, f64);
 
 const TAU: f64 = std::f64::consts::TAU;
@@ -56,7 +56,7 @@ const NAMES: [(&str, Kind, f64); 38] = [
 ];
 
 impl Kind {
-    /// The unit of this name and size, as an error shows it.
+    /// The name of the unit of this size, for errors.
     pub(super) fn name(self, size: f64) -> String {
         let of =
             |kind, size| NAMES.iter().find(|unit| unit.1 == kind && same(unit.2, size)).map(|unit| unit.0.to_owned());
@@ -71,12 +71,12 @@ impl Kind {
     }
 }
 
-/// Whether two sizes are those of one unit: 2π may be given with few digits.
+/// Whether two sizes are equal: 2π may be given with few digits.
 pub(super) fn same(one: f64, other: f64) -> bool {
     (one / other - 1.0).abs() < 1e-2
 }
 
-/// What a text may mean as a unit, none if it is none: `1/s` is an angular frequency or another way to write Hz.
+/// The possible meanings of a text as a unit, empty if none: `1/s` is an angular frequency or another notation of Hz.
 pub(super) fn readings(text: &str) -> Vec<Unit> {
     // 10⁻⁹ Pa⁻¹ as 10^-9 Pa^-1
     let mut plain = String::new();
@@ -129,7 +129,7 @@ fn scaled(text: &str) -> (f64, &str) {
     }
 }
 
-/// A unit without an exponent or a slash of its own; in other capitals than usual where it is longer than a letter.
+/// A unit without exponent or slash; case is ignored in names longer than a letter.
 fn simple(name: &str) -> Vec<Unit> {
     let units = |fits: &dyn Fn(&str) -> bool| -> Vec<Unit> {
         NAMES.iter().filter(|unit| fits(unit.0)).map(|unit| (unit.1, unit.2)).collect()
@@ -143,7 +143,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn units_are_known_as_they_are_written() {
+    fn units_are_known_in_every_notation() {
         for (texts, unit) in [
             (&["s", "sec", "seconds", "SEC", "10^0 s"][..], (Kind::Time, 1.0)),
             (&["min", "Min", "minutes", "minute", "min."], (Kind::Time, 60.0)),
