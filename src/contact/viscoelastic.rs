@@ -52,12 +52,12 @@ pub struct ViscoelasticContact {
     /// How far the run had come that was saved and resumed, for the next to go on.
     pub(super) progress: Option<Box<Progress>>,
     /// An indenter to refill in the next step along a path.
-    pub(super) spare: Option<Spare>,
+    pub(super) spare: Spare,
 }
 
 impl ViscoelasticContact {
     pub(super) fn new(scene: Scene, domain: Domain) -> ViscoelasticContact {
         let view = View::new(&domain.state);
-        ViscoelasticContact { scene: Arc::new(scene), domain, view, progress: None, spare: None }
+        ViscoelasticContact { scene: Arc::new(scene), domain, view, progress: None, spare: Spare::default() }
     }
 }

@@ -51,26 +51,16 @@ impl ViscoelasticContact {
         }
         non_negative("time step", dt)?;
         let from = travel.position(self.time())?;
-        if self.spare.is_none() {
+        if self.spare.is_empty() {
             memory::check("the gap of a moving indenter", 16 * self.grid().len() as u128)?;
         }
-        let mut spare = self.spare.take().unwrap_or_default();
-        let filled = spare.fill(&self.scene.grid, travel, self.time() + dt);
-        let indenter = match filled {
-            Ok(indenter) => indenter,
-            Err(error) => {
-                self.spare = Some(spare);
-                return Err(error);
-            }
-        };
+        let indenter = self.spare.fill(&self.scene.grid, travel, self.time() + dt)?;
         let before = (self.force(), self.moment(), self.domain.state.current.motions[0]);
         let left = Arc::clone(&self.domain.state.indenter);
         let loads = [load];
         let step = Step { indenter, ..self.request(self.time() + dt, dt, &loads, self.settings().tolerance) };
-        let taken = self.take(step);
-        spare.indenter = if taken.is_ok() { Some(left) } else { None };
-        self.spare = Some(spare);
-        let step = taken?;
+        let step = self.take(step)?;
+        self.spare.indenter = Some(left);
         let position = travel.position(step.time)?;
         let lateral_force = self.lateral_force(&travel.shape_at(step.time)?);
         let power = if dt > 0.0 { self.work_along(before) / dt } else { 0.0 };

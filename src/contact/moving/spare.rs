@@ -18,6 +18,11 @@ pub(crate) struct Spare {
 }
 
 impl Spare {
+    /// Whether no step along a path has been taken.
+    pub(super) fn is_empty(&self) -> bool {
+        self.heights.is_empty()
+    }
+
     /// The indenter at time `t` of its path.
     ///
     /// # Errors
