@@ -12,7 +12,7 @@ use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Settings, TimeRule};
 use crate::contact::state::State;
-use crate::contact::time_rule::{memory_by, windowed};
+use crate::contact::time_rule::{history_by, windowed};
 use crate::contact::times::Times;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::contact::window::region::Region;
@@ -165,16 +165,16 @@ impl Builder {
         let bodies = self.bodies()?;
         let gaps = std::mem::take(&mut self.gaps).into_iter().collect::<Result<_>>()?;
         let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
-        let (material, kernel, memory) = self.parts()?;
+        let (material, kernel, history) = self.parts()?;
         let Builder { grid, settings, .. } = self;
         let folded = if settings.symmetry { indenter.even_axes(&grid) } else { [false; 2] };
-        let region = if windowed(&settings, &memory, &kernel) {
+        let region = if windowed(&settings, &history, &kernel) {
             // without load, each body is above the cell that it would touch first
             Region::first_touched(&grid, folded, indenter.gap(), bodies)
         } else {
             Region::whole(&grid, folded)
         };
-        let footprint = Footprint { all: grid.len(), bodies, settings: &settings, kernel: &kernel, memory: &memory };
+        let footprint = Footprint { all: grid.len(), bodies, settings: &settings, kernel: &kernel, history: &history };
         footprint.check(Computed::on(&region), 0)?;
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
@@ -185,8 +185,8 @@ impl Builder {
             settings,
             bodies,
         };
-        let memory = memory.undisturbed_on(region.cells(), !region.covers());
-        let state = State::at_rest(Arc::new(indenter), region, memory);
+        let history = history.undisturbed_on(region.cells(), !region.covers());
+        let state = State::at_rest(Arc::new(indenter), region, history);
         let domain = Domain::new(&scene, state);
         Ok(ViscoelasticContact::new(scene, domain))
     }
@@ -221,12 +221,12 @@ impl Builder {
     pub fn memory(&self) -> Result<Memory> {
         self.settings.validate()?;
         let bodies = self.bodies()?;
-        let (_, kernel, memory) = self.parts()?;
+        let (_, kernel, history) = self.parts()?;
         let (settings, cells) = (&self.settings, self.grid.cells());
         let gaps: Option<Vec<_>> = self.gaps.iter().map(|gap| gap.as_ref().ok()).collect();
         let folded = gaps.filter(|_| settings.symmetry).map_or([false; 2], |gaps| symmetry_of(&gaps, cells));
-        let footprint = Footprint { all: self.grid.len(), bodies, settings, kernel: &kernel, memory: &memory };
-        Ok(footprint.most(cells, folded, windowed(settings, &memory, &kernel)))
+        let footprint = Footprint { all: self.grid.len(), bodies, settings, kernel: &kernel, history: &history };
+        Ok(footprint.most(cells, folded, windowed(settings, &history, &kernel)))
     }
 
     /// Number of rigid bodies.
@@ -241,7 +241,7 @@ impl Builder {
     }
 
     /// Material, kernel, and the memory of the bodies on no cells yet.
-    fn parts(&self) -> Result<(Material, Arc<InfluenceKernel>, hereditary::Memory)> {
+    fn parts(&self) -> Result<(Material, Arc<InfluenceKernel>, hereditary::History)> {
         let mut material = self.material.clone().ok_or(Error::Missing { part: "material" })?;
         if let Some(other) = self.counter_body.clone() {
             material = material.against(other);
@@ -260,7 +260,7 @@ impl Builder {
         {
             material = times.fit(&material, self.settings.series_tolerance)?;
         }
-        let memory = memory_by(&self.settings, &material, kernel.periodic_axes())?;
-        Ok((material, kernel, memory))
+        let history = history_by(&self.settings, &material, kernel.periodic_axes())?;
+        Ok((material, kernel, history))
     }
 }

@@ -38,7 +38,7 @@ impl Domain {
     /// Rejects a region for which there is no memory beside this one.
     pub(super) fn check_memory_for(&self, scene: &Scene, region: &Region) -> Result<()> {
         let Scene { grid, kernel, settings, bodies, .. } = scene;
-        let footprint = Footprint { all: grid.len(), bodies: *bodies, settings, kernel, memory: &self.state.memory };
+        let footprint = Footprint { all: grid.len(), bodies: *bodies, settings, kernel, history: &self.state.history };
         footprint.check(Computed::on(region), footprint.on(Computed::on(&self.state.region)).total())
     }
 

@@ -88,7 +88,7 @@ pub(super) struct Footprint<'a> {
     pub(super) settings: &'a Settings,
     pub(super) kernel: &'a InfluenceKernel,
     /// The rule that the bodies remember by.
-    pub(super) memory: &'a hereditary::Memory,
+    pub(super) history: &'a hereditary::History,
 }
 
 /// Cells that a contact is computed on.
@@ -115,7 +115,7 @@ impl Footprint<'_> {
         // the whole of it, what is computed of it, and the pressure that is shown
         let grid = if count == self.all { gap * all } else { (gap + 8) * all + gap * n };
         // of the far field of a window two fields, and one for each relaxation time
-        let history = self.memory.bytes_per_cell() as u128 * n;
+        let history = self.history.bytes_per_cell() as u128 * n;
         let far = if covers { 0 } else { 16 * n + history };
         let [kernel, inverse] = self.kernel.bytes_on(cells, folded);
         let solver = match self.settings.solver {
@@ -133,7 +133,7 @@ impl Footprint<'_> {
             history: saturated(history + far),
             solver: saturated(solver),
             kernel: saturated(kernel),
-            each_step: if self.memory.grows() { saturated(8 * n) } else { 0 },
+            each_step: if self.history.grows() { saturated(8 * n) } else { 0 },
         }
     }
 
@@ -187,11 +187,11 @@ mod tests {
     #[test]
     fn no_more_cells_are_computed_than_can_be_numbered() {
         let creep = CreepSpectrum::new(1.0, 1.0, &[]).unwrap();
-        let (settings, memory) = (Settings::default(), hereditary::Memory::exponential(&creep));
+        let (settings, history) = (Settings::default(), hereditary::History::exponential(&creep));
         for cells in [[65536, 65536], [1 << 32, 1], [131072, 65536]] {
             let kernel = InfluenceKernel::half_space(&Grid::new(cells, [1.0, 1.0]).unwrap()).unwrap();
             let all = cells[0] * cells[1];
-            let footprint = Footprint { all, bodies: 1, settings: &settings, kernel: &kernel, memory: &memory };
+            let footprint = Footprint { all, bodies: 1, settings: &settings, kernel: &kernel, history: &history };
             let whole = Computed { cells, folded: [false; 2], covers: true };
             let refused = footprint.check(whole, 0).unwrap_err();
             assert!(matches!(refused, Error::CountOutOfRange { value, .. } if value == all), "{refused}");

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::contact::extrapolation::Extrapolation;
 use crate::contact::indenter::Indenter;
 use crate::contact::window::region::Region;
-use crate::hereditary::{Interval, Memory};
+use crate::hereditary::{History, Interval};
 use crate::load::Load;
 use crate::solver::{RigidMotion, Solution};
 
@@ -25,7 +25,7 @@ pub(crate) struct State {
     /// Whether the region was chosen for a contact, rather than for bodies apart.
     pub(super) region_is_placed: bool,
     /// Displacement and past of the bodies.
-    pub(super) memory: Memory,
+    pub(super) history: History,
     pub(super) current: Equilibrium,
     /// At the start of the last step.
     pub(super) previous: Equilibrium,
@@ -65,7 +65,7 @@ pub(crate) struct Equilibrium {
 
 impl State {
     /// Bodies without load, where they just touch.
-    pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, memory: Memory) -> State {
+    pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, history: History) -> State {
         let motions = indenter.first_touch();
         let bodies = motions.len();
         let current = Equilibrium { solution: Solution::zero(region.len(), bodies), motions, contact_cells: 0 };
@@ -76,7 +76,7 @@ impl State {
             indenter_is_new: false,
             region,
             region_is_placed: false,
-            memory,
+            history,
             previous: current.clone(),
             current,
             extrapolation: Extrapolation::default(),
@@ -102,7 +102,7 @@ impl State {
             indenter_is_new,
             region: _,
             region_is_placed,
-            memory,
+            history,
             current,
             previous,
             extrapolation,
@@ -111,7 +111,7 @@ impl State {
         (*indenter_is_new, *region_is_placed) = (other.indenter_is_new, other.region_is_placed);
         loads.clone_from(&other.loads);
         indenter.clone_from(&other.indenter);
-        memory.copy_from(&other.memory);
+        history.copy_from(&other.history);
         current.copy_from(&other.current);
         previous.copy_from(&other.previous);
     }

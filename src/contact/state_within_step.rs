@@ -40,8 +40,8 @@ impl ViscoelasticContact {
     /// If the time does not lie within the last step. After a step that failed, or one over the bodies
     /// ([`ViscoelasticContact::step_over`]), the state before it is not kept, and only its end is left.
     pub fn within_step(&self, time: f64) -> Result<StateWithinStep<'_>> {
-        let State { clock, memory, .. } = &self.domain.state;
-        let kept = memory.displacement_before().is_some();
+        let State { clock, history, .. } = &self.domain.state;
+        let kept = history.displacement_before().is_some();
         let start = if kept { clock.time - clock.last_dt } else { clock.time };
         // by rounding the start may come out a little off
         let inside = time >= start - 1e-12 * clock.last_dt && time <= clock.time;
@@ -88,8 +88,8 @@ impl StateWithinStep<'_> {
     /// # Errors
     /// If `out` does not hold one value per cell.
     pub fn displacement_into(&self, out: &mut [f64]) -> Result<()> {
-        let State { region, memory, .. } = &self.contact.domain.state;
-        let before = on_the_whole_grid(&self.contact.scene, region, memory.trial(), memory.far_trial());
+        let State { region, history, .. } = &self.contact.domain.state;
+        let before = on_the_whole_grid(&self.contact.scene, region, history.trial(), history.far_trial());
         self.mix_into(out, "displacement", &before, self.contact.displacement())
     }
 

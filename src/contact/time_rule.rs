@@ -2,30 +2,30 @@
 
 use crate::contact::settings::{Frame, Settings, TimeRule};
 use crate::error::{Error, Result};
-use crate::hereditary::{Memory, Weighting};
+use crate::hereditary::{History, Weighting};
 use crate::kernel::InfluenceKernel;
 use crate::rheology::Material;
 
 /// Whether only a part of the grid is computed. Elsewhere than on a half-space nothing is known of the displacement outside
 /// a window.
-pub(super) fn windowed(settings: &Settings, memory: &Memory, kernel: &InfluenceKernel) -> bool {
-    settings.window && memory.has_far_field() && kernel.is_half_space()
+pub(super) fn windowed(settings: &Settings, history: &History, kernel: &InfluenceKernel) -> bool {
+    settings.window && history.has_far_field() && kernel.is_half_space()
 }
 
 /// The memory of bodies of `material` by the time rule of the settings, on no cells yet.
-pub(super) fn memory_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> Result<Memory> {
+pub(super) fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> Result<History> {
     let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
     match settings.time_rule {
         TimeRule::Exponential => {
             let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact"))?;
             Ok(match settings.frame {
-                Frame::Bodies => Memory::exponential(&creep),
-                Frame::Indenter => Memory::moving_frame(&creep, periodic),
+                Frame::Bodies => History::exponential(&creep),
+                Frame::Indenter => History::moving_frame(&creep, periodic),
             })
         }
         _ if settings.frame == Frame::Indenter => Err(Error::WrongFrame { what: "a direct sum" }),
         TimeRule::Rectangle if glassy == 0.0 => Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" }),
-        TimeRule::Rectangle => Ok(Memory::direct_sum(Weighting::End)),
-        TimeRule::Backward => Ok(Memory::direct_sum(Weighting::Start)),
+        TimeRule::Rectangle => Ok(History::direct_sum(Weighting::End)),
+        TimeRule::Backward => Ok(History::direct_sum(Weighting::Start)),
     }
 }

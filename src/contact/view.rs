@@ -45,11 +45,11 @@ impl View {
     }
 
     pub(super) fn displacement<'a>(&'a self, scene: &Scene, state: &'a State) -> &'a [f64] {
-        let own = state.memory.displacement();
+        let own = state.history.displacement();
         if state.region.is_whole() {
             return own;
         }
-        let whole = || on_the_whole_grid(scene, &state.region, own, state.memory.far_source()).into_owned();
+        let whole = || on_the_whole_grid(scene, &state.region, own, state.history.far_source()).into_owned();
         self.displacement.get_or_init(whole)
     }
 

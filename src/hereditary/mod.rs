@@ -5,7 +5,7 @@
 //! u = u_old + c K p,
 //!
 //! with one number c, the compliance of the step, and one field u_old. The contact problem of the step is then that of
-//! an elastic body. [`Memory`] is the one door to this: a step predicts c and u_old, responds to a pressure, and is
+//! an elastic body. [`History`] is the one door to this: a step predicts c and u_old, responds to a pressure, and is
 //! committed when it is accepted. Three rules are behind it:
 //!
 //! * [`Exponential`]: a recursion with one field per relaxation time, updated in place; second order, stable for steps of
@@ -20,10 +20,10 @@
 
 mod direct_sum;
 mod exponential;
-mod memory;
+mod history;
 mod moving_frame;
 mod remembered_field;
 
 pub(crate) use direct_sum::Weighting;
-pub(crate) use memory::{Bodies, Interval, Memory, Transfer, no_elastic_response};
+pub(crate) use history::{Bodies, History, Interval, Transfer, no_elastic_response};
 pub(crate) use remembered_field::RememberedField;

@@ -45,7 +45,7 @@ impl<'a> Saved<'a> {
 /// Rejects fields that do not fit: a file may have a right checksum and be written by another program all the same.
 fn check(state: &State, built: &State, scene: &Scene) -> Result<(), CheckpointError> {
     let malformed = |what: &str| Err(CheckpointError::Malformed { what: what.into() });
-    let State { clock, loads, indenter, region, memory, current, previous, .. } = state;
+    let State { clock, loads, indenter, region, history, current, previous, .. } = state;
     let (whole, bodies, gap) = (scene.grid.len(), scene.bodies, indenter.gap());
     if !region.is_of(&scene.grid) {
         return malformed("its region is none of the grid");
@@ -62,7 +62,7 @@ fn check(state: &State, built: &State, scene: &Scene) -> Result<(), CheckpointEr
         && complete(previous)
         && gap.above.len() == whole
         && owners
-        && memory.fits(&built.memory, region.cells());
+        && history.fits(&built.history, region.cells());
     if !fits {
         return malformed("fields that do not fit its region, or another time rule");
     }
@@ -72,7 +72,7 @@ fn check(state: &State, built: &State, scene: &Scene) -> Result<(), CheckpointEr
         finite(&[&solution.pressure, &solution.potential])
             && motions.iter().all(|motion| finite(&[&[motion.approach], &motion.tilt]))
     };
-    let sound = finite(&[&times, &[gap.datum], memory.displacement(), memory.trial()])
+    let sound = finite(&[&times, &[gap.datum], history.displacement(), history.trial()])
         && sound(current)
         && sound(previous)
         && current.solution.pressure.iter().all(|&p| p >= 0.0)

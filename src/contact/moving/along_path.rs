@@ -70,9 +70,9 @@ impl ViscoelasticContact {
     /// The work of the last step \[J\] that went along the surface: what the pressure did there, Σ p Δu, less the part of force
     /// and moments.
     fn work_along(&self, (force, moment, motion): (f64, [f64; 2], RigidMotion)) -> f64 {
-        let State { region, memory, current, previous, .. } = &self.domain.state;
+        let State { region, history, current, previous, .. } = &self.domain.state;
         let pressures = previous.solution.pressure.iter().zip(&current.solution.pressure);
-        let displacements = memory.trial().iter().zip(memory.displacement());
+        let displacements = history.trial().iter().zip(history.displacement());
         let work: f64 = pressures.zip(displacements).map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum();
         let parts = |motion: RigidMotion| [motion.approach, motion.tilt[0], motion.tilt[1]];
         let (start, end) = (parts(motion), parts(current.motions[0]));

@@ -158,7 +158,7 @@ impl StepControl {
         self.strongest = self.strongest.max(state.loads[0].strength());
         self.rate_dt = 0.0;
         let cornered = std::mem::take(&mut self.cornered);
-        let Some(before) = state.memory.displacement_before().filter(|_| !cornered && clock.last_dt > 0.0) else {
+        let Some(before) = state.history.displacement_before().filter(|_| !cornered && clock.last_dt > 0.0) else {
             return;
         };
         self.rate_dt = clock.last_dt;
@@ -166,7 +166,7 @@ impl StepControl {
             self.region = Some(state.region.clone());
         }
         self.rate.resize(before.len(), 0.0);
-        for ((rate, &new), &old) in self.rate.iter_mut().zip(state.memory.displacement()).zip(before) {
+        for ((rate, &new), &old) in self.rate.iter_mut().zip(state.history.displacement()).zip(before) {
             *rate = (new - old) / self.rate_dt;
         }
     }
@@ -182,12 +182,12 @@ impl StepControl {
             self.rate = old.carry(&self.rate, &state.region, |_| 0.0);
             self.region = Some(state.region.clone());
         }
-        let (pressure, memory) = (&trial.solution.pressure, &state.memory);
+        let (pressure, history) = (&trial.solution.pressure, &state.history);
         let bend = 2.0 / (dt + self.rate_dt) * 0.125 * dt * dt * self.amplification(scene, state, dt);
         // bodies apart: the surface recovers everywhere alike
         let apart = pressure.iter().all(|&p| p == 0.0);
         let (mut error, mut size) = (0.0, 0.0);
-        let fields = pressure.iter().zip(memory.trial()).zip(memory.displacement()).zip(&self.rate);
+        let fields = pressure.iter().zip(history.trial()).zip(history.displacement()).zip(&self.rate);
         for (((&p, &new), &old), &rate) in fields {
             let weight = if apart { 1.0 } else { p };
             error += weight * ((new - old) / dt - rate).abs();

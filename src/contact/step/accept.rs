@@ -13,7 +13,7 @@ impl Domain {
         let contact_cells = trial.solution.pressure.iter().filter(|&&p| p > 0.0).count();
         let touched = !state.is_undisturbed() || contact_cells > 0;
         let potential = [&state.current.solution.potential[..], &trial.solution.potential];
-        state.memory.commit(interval, potential, touched);
+        state.history.commit(interval, potential, touched);
 
         std::mem::swap(&mut state.previous, &mut state.current);
         std::mem::swap(&mut state.current.solution, &mut trial.solution);

@@ -85,7 +85,7 @@ pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Ste
             return Err(Error::ContactAtEdge { time, cells });
         }
     }
-    if !sum(state.memory.trial()).is_finite() {
+    if !sum(state.history.trial()).is_finite() {
         return overflow("the displacement");
     }
     Ok(sum_of_pressure)

@@ -103,5 +103,5 @@ impl<'a> Prescribed<'a> {
 
 /// Whether hi + u in contact is the motion of a body whose motion was prescribed, to the last bit.
 pub(super) fn is_exact(step: &Step<'_>, state: &State) -> bool {
-    state.memory.follows_body_exactly() && !step.has_new_indenter(state)
+    state.history.follows_body_exactly() && !step.has_new_indenter(state)
 }

@@ -53,7 +53,7 @@ fn residual(state: &State, initial: &Gap, trial: &Trial, step: &Step<'_>, body: 
     let own = |&k: &usize| initial.owner(k) == body && initial.above[k].is_finite();
     for k in (0..trial.gap.len()).filter(own) {
         let p = if pressed { state.current.solution.pressure[k] } else { 0.0 };
-        let (u, moved) = (state.memory.trial()[k], modes.displacement(motion, k));
+        let (u, moved) = (state.history.trial()[k], modes.displacement(motion, k));
         let h = trial.gap[k] - moved;
         if !h.is_finite() {
             return f64::INFINITY;

@@ -3,16 +3,16 @@
 //! | Flow chart of the source paper (Figure 1) | here |
 //! |---|---|
 //! | load, and the motions that it leaves free (equations 4, 5) | [`constraints`] |
-//! | displacement due to the past, u_old (equations 9 to 11) | [`Memory::predict`](crate::hereditary::Memory::predict) |
+//! | displacement due to the past, u_old (equations 9 to 11) | [`History::predict`](crate::hereditary::History::predict) |
 //! | gap before any pressure (equation 1) | [`gap`] |
 //! | initial guess of the pressure | [`initial_guess`] |
 //! | contact problem of an elastic body (equations 2 to 7), by conjugate gradients | [`Window::solve`] |
-//! | pressure and displacement kept for the steps to come (equation 12) | [`Memory::respond`](crate::hereditary::Memory::respond) |
+//! | pressure and displacement kept for the steps to come (equation 12) | [`History::respond`](crate::hereditary::History::respond) |
 //! | next step | [`ViscoelasticContact::accept`] |
 //!
 //! Beyond the paper, a step looks whether the bodies might touch outside the region that is computed, and then goes on in a
 //! copy of the state on a larger one ([`outgrown`]). All that a step computes is in its trial, in such a copy, or in the
-//! part of the memory that it may write; the state changes when the step is accepted. A step that fails has nothing to
+//! part of the history that it may write; the state changes when the step is accepted. A step that fails has nothing to
 //! undo.
 
 mod accept;
@@ -160,7 +160,7 @@ fn compute(scene: &Scene, own: &mut Domain, larger: &mut Option<Box<Domain>>, st
         let grown = match at.solve(scene, step) {
             Ok(()) => outgrown(scene, &at.state, &at.window, &at.trial, step),
             // the load acts inside the hull of what the body may touch, but nothing in the window can carry it there
-            Err(Error::LoadOutsideHull { .. }) if at.state.memory.far_source().is_some() => {
+            Err(Error::LoadOutsideHull { .. }) if at.state.history.far_source().is_some() => {
                 Some(Region::whole(&scene.grid, at.state.region.folded()))
             }
             Err(error) => return Err(error),
@@ -171,7 +171,7 @@ fn compute(scene: &Scene, own: &mut Domain, larger: &mut Option<Box<Domain>>, st
 }
 
 impl Domain {
-    /// Computes a step on the region at hand: into the trial, and the part of the memory that a step may write.
+    /// Computes a step on the region at hand: into the trial, and the part of the history that a step may write.
     fn solve(&mut self, scene: &Scene, step: &Step<'_>) -> Result<()> {
         let Domain { state, window, trial } = self;
         let time = step.interval.time;
@@ -181,14 +181,14 @@ impl Domain {
 
         // u = u_old + c K p
         let (kernel, work) = window.kernel_and_work();
-        let (c, convolutions) = state.memory.predict(step.interval, scene.creeping_bodies(), kernel, work)?;
+        let (c, convolutions) = state.history.predict(step.interval, scene.creeping_bodies(), kernel, work)?;
         compliance_is_usable(c, step)?;
 
         // h = hi + u_old + c K p − ω − α·x, what is prescribed of ω and α included
         let prescribed = Prescribed::new(step, is_exact(step, state), &state.loads, &state.current.motions);
         let bodies = RigidBodies { region: &state.region, initial: window.gap(&step.indenter), prescribed };
-        bodies.fill_gap(state.memory.trial(), &mut trial.gap);
-        bodies.refine_gap(c, &state.memory, &state.current.solution.pressure, &mut trial.gap);
+        bodies.fill_gap(state.history.trial(), &mut trial.gap);
+        bodies.refine_gap(c, &state.history, &state.current.solution.pressure, &mut trial.gap);
         let greatest = prescribed.greatest(&scene.grid);
         below_full_contact(window, trial, step)?;
 
@@ -206,9 +206,9 @@ impl Domain {
         material_is_known(scene, state, time, state.is_undisturbed() && pressure.iter().any(|&p| p > 0.0))?;
 
         // what the bodies will remember
-        let (integrated, before) = (state.memory.integrates_displacement(), &state.current.solution.pressure);
+        let (integrated, before) = (state.history.integrates_displacement(), &state.current.solution.pressure);
         let bodies = RigidBodies { region: &state.region, initial: window.gap(&step.indenter), prescribed };
-        state.memory.respond(c, [pressure, &trial.solution.potential], |now, u| {
+        state.history.respond(c, [pressure, &trial.solution.potential], |now, u| {
             bodies.displace(c, integrated, trial, u);
             bodies.follow_prescribed([before, pressure], now, u);
         });

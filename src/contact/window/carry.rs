@@ -46,7 +46,7 @@ pub(in crate::contact) fn carried(scene: &Scene, state: &mut State, region: Regi
     let (kernel, work) = window.kernel_and_work();
     let mut carry = Carry { from: &state.region, to: &region, kernel, work };
     events::moved(state.region.cells(), region.cells());
-    let memory = state.memory.carried(&mut carry);
+    let history = state.history.carried(&mut carry);
     let [current, previous] = [&state.current, &state.previous].map(|old| {
         let Solution { pressure, potential, motions, .. } = &old.solution;
         let solution = Solution {
@@ -61,7 +61,7 @@ pub(in crate::contact) fn carried(scene: &Scene, state: &mut State, region: Regi
         loads: state.loads.clone(),
         indenter: state.indenter.clone(),
         region,
-        memory,
+        history,
         current,
         previous,
         ..*state

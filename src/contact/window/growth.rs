@@ -29,7 +29,7 @@ pub(in crate::contact) fn outgrown(
     trial: &Trial,
     step: &Step<'_>,
 ) -> Option<Region> {
-    let source = state.memory.far_trial()?;
+    let source = state.history.far_trial()?;
     let (region, gap) = (&state.region, step.indenter.gap());
     let [l1, l2] = scene.grid.lengths();
     let motions = || (0..scene.bodies).map(|body| motion_tried(region, trial, step, body));

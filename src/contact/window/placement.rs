@@ -29,7 +29,7 @@ pub(in crate::contact) fn region_for(scene: &Scene, state: &State, step: &Step<'
     let still_folded = [0, 1].map(|axis| folded[axis] && even[axis] && upright(axis) && moving[axis] == 0);
     let unfolded = (still_folded != folded).then(|| state.region.unfolded(still_folded));
     let region = unfolded.as_ref().unwrap_or(&state.region);
-    let to_be_placed = state.is_undisturbed() && !state.region_is_placed && state.memory.far_source().is_some();
+    let to_be_placed = state.is_undisturbed() && !state.region_is_placed && state.history.far_source().is_some();
     if to_be_placed
         && !region.covers()
         && let Some(placed) = first_contact(scene, region, step)

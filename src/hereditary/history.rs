@@ -11,7 +11,7 @@ use crate::rheology::{CreepSpectrum, Material};
 /// The displacement of a contact and what the bodies remember of its past.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Memory {
+pub(crate) struct History {
     displacement: RememberedField<Recursion>,
     /// Where only a window of the grid is computed, the field U whose convolution K U is the displacement elsewhere.
     /// U ≥ 0, and zero wherever there never was contact.
@@ -99,34 +99,34 @@ impl Recursion {
     }
 }
 
-impl Memory {
-    fn new(recursion: Recursion) -> Memory {
-        Memory { displacement: RememberedField::undisturbed(recursion, 0), far: None, before_is_kept: true }
+impl History {
+    fn new(recursion: Recursion) -> History {
+        History { displacement: RememberedField::undisturbed(recursion, 0), far: None, before_is_kept: true }
     }
 
     /// Undisturbed bodies with contact compliance `creep`, by the exponential rule; on no cells yet.
-    pub(crate) fn exponential(creep: &CreepSpectrum) -> Memory {
-        Memory::new(Recursion::Exponential(Exponential::new(creep, 0)))
+    pub(crate) fn exponential(creep: &CreepSpectrum) -> History {
+        History::new(Recursion::Exponential(Exponential::new(creep, 0)))
     }
 
     /// Undisturbed bodies, by a direct sum over all steps; on no cells yet.
-    pub(crate) fn direct_sum(weighting: Weighting) -> Memory {
-        Memory::new(Recursion::DirectSum(DirectSum::new(weighting)))
+    pub(crate) fn direct_sum(weighting: Weighting) -> History {
+        History::new(Recursion::DirectSum(DirectSum::new(weighting)))
     }
 
     /// Undisturbed bodies that move under the grid, by the exponential rule; on no cells yet.
-    pub(crate) fn moving_frame(creep: &CreepSpectrum, periodic: [bool; 2]) -> Memory {
-        Memory::new(Recursion::MovingFrame(Box::new(MovingFrame::new(creep, periodic))))
+    pub(crate) fn moving_frame(creep: &CreepSpectrum, periodic: [bool; 2]) -> History {
+        History::new(Recursion::MovingFrame(Box::new(MovingFrame::new(creep, periodic))))
     }
 
     /// The same bodies, undisturbed, on so many cells; with a far field where these are a `window` of the grid.
-    pub(crate) fn undisturbed_on(&self, cells: [usize; 2], window: bool) -> Memory {
+    pub(crate) fn undisturbed_on(&self, cells: [usize; 2], window: bool) -> History {
         let (count, recursion) = (cells[0] * cells[1], self.displacement.recursion.undisturbed_on(cells));
         let far = match &recursion {
             Recursion::Exponential(own) if window => Some(RememberedField::undisturbed(own.clone(), count)),
             _ => None,
         };
-        Memory { displacement: RememberedField::undisturbed(recursion, count), far, before_is_kept: true }
+        History { displacement: RememberedField::undisturbed(recursion, count), far, before_is_kept: true }
     }
 
     /// Whether the displacement outside a window of the grid can be found.
@@ -264,7 +264,7 @@ impl Memory {
     }
 
     /// The same past on other cells. The displacement before the last step stays behind.
-    pub(crate) fn carried(&mut self, transfer: &mut impl Transfer) -> Memory {
+    pub(crate) fn carried(&mut self, transfer: &mut impl Transfer) -> History {
         let cells = transfer.cells();
         let RememberedField { recursion, now, trial } = &mut self.displacement;
         self.far.iter_mut().for_each(RememberedField::settle);
@@ -284,11 +284,11 @@ impl Memory {
         let now = transfer.induced(now, far.map(|far| &far.now[..]));
         let far = far.filter(|_| !transfer.covers()).map(|far| far.carried(now.len(), |own| transfer.confined(own)));
         let displacement = RememberedField { recursion, trial: vec![0.0; now.len()], now };
-        Memory { displacement, far, before_is_kept: false }
+        History { displacement, far, before_is_kept: false }
     }
 
     /// Copies another without reallocating where both have the same rule and cells, and no direct sum grows.
-    pub(crate) fn copy_from(&mut self, other: &Memory) {
+    pub(crate) fn copy_from(&mut self, other: &History) {
         self.before_is_kept = other.before_is_kept;
         self.displacement.recursion.copy_from(&other.displacement.recursion);
         self.displacement.copy_fields_from(&other.displacement);
@@ -300,7 +300,7 @@ impl Memory {
 
     /// Whether it follows the same rule as another, on these cells: a file may hold anything.
     #[cfg(feature = "checkpoint")]
-    pub(crate) fn fits(&self, other: &Memory, cells: [usize; 2]) -> bool {
+    pub(crate) fn fits(&self, other: &History, cells: [usize; 2]) -> bool {
         let (own, other) = (&self.displacement.recursion, &other.displacement.recursion);
         std::mem::discriminant(own) == std::mem::discriminant(other)
             && own.fits(cells)
