@@ -1,4 +1,4 @@
-//! The memory that a time rule needs.
+//! The history that a time rule needs.
 
 use crate::contact::settings::{Frame, Settings, TimeRule};
 use crate::error::{Error, Result};
@@ -12,7 +12,7 @@ pub(super) fn windowed(settings: &Settings, history: &History, kernel: &Influenc
     settings.window && history.has_far_field() && kernel.is_half_space()
 }
 
-/// The memory of bodies of `material` by the time rule of the settings, on no cells yet.
+/// The history of bodies of `material` by the time rule of the settings, on no cells yet.
 pub(super) fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> Result<History> {
     let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
     match settings.time_rule {

@@ -1,4 +1,4 @@
-//! Memory of bodies that move under the grid.
+//! History of bodies that move under the grid.
 
 use crate::hereditary::remembered_field::RememberedField;
 use crate::rheology::CreepSpectrum;
