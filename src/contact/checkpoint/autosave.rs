@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use crate::contact::run::autosave::Autosave;
 use crate::contact::run::follow::Follow;
+use crate::contact::run::progress::Autosave;
 use crate::error::Result;
 
 impl Follow<'_> {

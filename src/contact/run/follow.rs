@@ -1,9 +1,9 @@
 //! Drives a contact along a load history.
 
 use crate::contact::report::StepReport;
-#[cfg(feature = "checkpoint")]
-use crate::contact::run::autosave::Autosave;
 use crate::contact::run::error_budget::ErrorBudget;
+#[cfg(feature = "checkpoint")]
+use crate::contact::run::progress::Autosave;
 use crate::contact::run::progress::Progress;
 use crate::contact::run::stepping::Stepping;
 use crate::contact::viscoelastic::ViscoelasticContact;

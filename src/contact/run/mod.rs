@@ -1,8 +1,6 @@
 //! Runs along a load history.
 
 mod adaptive_step;
-#[cfg(feature = "checkpoint")]
-pub(in crate::contact) mod autosave;
 pub(in crate::contact) mod error_budget;
 pub(in crate::contact) mod follow;
 pub(in crate::contact) mod progress;

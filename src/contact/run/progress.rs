@@ -1,4 +1,7 @@
-//! How far a run has come.
+//! How far a run has come, and when it is saved.
+
+#[cfg(feature = "checkpoint")]
+use std::time::{Duration, Instant};
 
 use crate::contact::run::step_control::StepControl;
 use crate::contact::run::stepping::Stepping;
@@ -41,5 +44,29 @@ impl Progress {
     /// Takes account of the errors of a step.
     pub(super) fn include(&mut self, time_error: f64, residual: f64) {
         self.worst = [self.worst[0].max(time_error), self.worst[1].max(residual)];
+    }
+}
+
+/// Where a run is saved, how often, and when it was last.
+#[cfg(feature = "checkpoint")]
+#[derive(Debug)]
+pub(in crate::contact) struct Autosave {
+    pub(in crate::contact) path: std::path::PathBuf,
+    every: Duration,
+    last: Instant,
+}
+
+#[cfg(feature = "checkpoint")]
+impl Autosave {
+    pub(in crate::contact) fn new(path: std::path::PathBuf, every: Duration) -> Autosave {
+        Autosave { path, every, last: Instant::now() }
+    }
+
+    pub(in crate::contact) fn is_due(&self) -> bool {
+        self.last.elapsed() >= self.every
+    }
+
+    pub(in crate::contact) fn done(&mut self) {
+        self.last = Instant::now();
     }
 }
