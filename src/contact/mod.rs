@@ -5,6 +5,7 @@
 //! being tried. State, window and trial form a domain.
 
 mod accessors;
+mod build;
 mod builder;
 #[cfg(feature = "checkpoint")]
 mod checkpoint;

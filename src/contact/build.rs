@@ -1,0 +1,139 @@
+//! A contact built from its parts.
+
+use std::sync::Arc;
+
+use crate::contact::builder::Builder;
+#[cfg(feature = "checkpoint")]
+use crate::contact::checkpoint::built::Built;
+use crate::contact::domain::Domain;
+use crate::contact::footprint::{Computed, Footprint, Memory, symmetry_of};
+use crate::contact::indenter::Indenter;
+use crate::contact::scene::Scene;
+use crate::contact::settings::TimeRule;
+use crate::contact::state::State;
+use crate::contact::time_rule::{history_by, windowed};
+use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::window::region::Region;
+use crate::error::{Error, KernelError, Result};
+use crate::geometry::Gap;
+use crate::hereditary;
+use crate::kernel::InfluenceKernel;
+use crate::rheology::Material;
+
+impl Builder {
+    /// Makes the contact: undisturbed bodies at time 0, without load.
+    ///
+    /// # Errors
+    /// If geometry or material is missing, a gap is NaN or −∞ or none is finite, a rheology is known until NaN, a setting is
+    /// out of range, the kernel was made for another grid or cannot be made for its cells
+    /// ([`InfluenceKernel::half_space`]), or the rectangle rule was chosen for a rheology without elastic response.
+    ///
+    /// If a rheology without an exact series is given no [`Builder::times`] ([`Error::NoExponentialSeries`]), no series is
+    /// within the tolerance, or the times span more than 50 decades.
+    ///
+    /// If there is not enough memory ([`Error::OutOfMemory`], before any is taken; systems that overcommit memory, as Linux
+    /// does, may grant more than is free), or more than 2³² − 1 cells would be computed.
+    pub fn build(mut self) -> Result<ViscoelasticContact> {
+        self.settings.validate()?;
+        let bodies = self.bodies()?;
+        let gaps = std::mem::take(&mut self.gaps).into_iter().collect::<Result<_>>()?;
+        let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
+        let (material, kernel, history) = self.parts()?;
+        let Builder { grid, settings, .. } = self;
+        let folded = if settings.symmetry { indenter.even_axes(&grid) } else { [false; 2] };
+        let region = if windowed(&settings, &history, &kernel) {
+            // without load, each body is above the cell that it would touch first
+            Region::first_touched(&grid, folded, indenter.gap(), bodies)
+        } else {
+            Region::whole(&grid, folded)
+        };
+        let footprint = Footprint { all: grid.len(), bodies, settings: &settings, kernel: &kernel, history: &history };
+        footprint.check(Computed::on(&region), 0)?;
+        let scene = Scene {
+            #[cfg(feature = "checkpoint")]
+            built: Built::new(indenter.gap(), grid.cells()),
+            grid,
+            kernel,
+            material,
+            settings,
+            bodies,
+        };
+        let history = history.undisturbed_on(region.cells(), !region.covers());
+        let state = State::at_rest(Arc::new(indenter), region, history);
+        let domain = Domain::new(&scene, state);
+        Ok(ViscoelasticContact::new(scene, domain))
+    }
+
+    /// The memory that the contact will take; no field is allocated to find out. The cells that are computed follow from the
+    /// symmetry of the gap ([`Settings::symmetry`](crate::contact::Settings::symmetry)); with [`Settings::window`](crate::contact::Settings::window) the figure is that of the largest window. A
+    /// load that breaks the symmetry makes the contact compute the mirror images too: set symmetry to false for what that
+    /// takes. Where there is not even memory for the gap, it counts as asymmetric.
+    ///
+    /// A series of the material over [`Builder::times`] is fitted for it, in a tenth of a second. Threads are those of the
+    /// pool in which it is called.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let scene = |cells: usize| {
+    ///     Ok::<_, Error>(ViscoelasticContact::builder(Grid::square(cells, 4.0e-3)?)
+    ///         .geometry(&Sphere::new(10.0e-3)?)
+    ///         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?)))
+    /// };
+    /// let memory = scene(256)?.memory()?;
+    /// assert_eq!(memory.computed_cells, 128 * 128);
+    /// assert!(memory.total() < 6_000_000, "{memory}");
+    /// // more than any machine has: reported, and rejected
+    /// assert!(scene(1 << 25)?.memory()?.total() > 1 << 57);
+    /// assert!(matches!(scene(1 << 25)?.build(), Err(Error::OutOfMemory { .. })));
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Builder::build`], except for invalid gaps and for memory.
+    pub fn memory(&self) -> Result<Memory> {
+        self.settings.validate()?;
+        let bodies = self.bodies()?;
+        let (_, kernel, history) = self.parts()?;
+        let (settings, cells) = (&self.settings, self.grid.cells());
+        let gaps: Option<Vec<_>> = self.gaps.iter().map(|gap| gap.as_ref().ok()).collect();
+        let folded = gaps.filter(|_| settings.symmetry).map_or([false; 2], |gaps| symmetry_of(&gaps, cells));
+        let footprint = Footprint { all: self.grid.len(), bodies, settings, kernel: &kernel, history: &history };
+        Ok(footprint.most(cells, folded, windowed(settings, &history, &kernel)))
+    }
+
+    /// Number of rigid bodies.
+    fn bodies(&self) -> Result<usize> {
+        match self.gaps.len() {
+            0 => Err(Error::Missing { part: "geometry" }),
+            bodies if bodies > usize::from(u16::MAX) => {
+                Err(Error::CountOutOfRange { field: "rigid bodies", value: bodies, allowed: "65535 at most" })
+            }
+            bodies => Ok(bodies),
+        }
+    }
+
+    /// Material, kernel, and the memory of the bodies on no cells yet.
+    fn parts(&self) -> Result<(Material, Arc<InfluenceKernel>, hereditary::History)> {
+        let mut material = self.material.clone().ok_or(Error::Missing { part: "material" })?;
+        if let Some(other) = self.counter_body.clone() {
+            material = material.against(other);
+        }
+        material.validate()?;
+        let kernel = match &self.kernel {
+            Some(kernel) if *kernel.grid() != self.grid => {
+                let [kernel, contact] = [kernel.grid(), &self.grid].map(|grid| (grid.cells(), grid.spacing()));
+                return Err(KernelError::WrongGrid { kernel, contact }.into());
+            }
+            Some(kernel) => Arc::clone(kernel),
+            None => Arc::new(InfluenceKernel::half_space(&self.grid)?),
+        };
+        if let Some(times) = &self.times
+            && self.settings.time_rule == TimeRule::Exponential
+        {
+            material = times.fit(&material, self.settings.series_tolerance)?;
+        }
+        let history = history_by(&self.settings, &material, kernel.periodic_axes())?;
+        Ok((material, kernel, history))
+    }
+}
