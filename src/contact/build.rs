@@ -28,7 +28,7 @@ impl Builder {
     /// out of range, the kernel was made for another grid or cannot be made for its cells
     /// ([`InfluenceKernel::half_space`]), or the rectangle rule was chosen for a rheology without elastic response.
     ///
-    /// If a rheology without an exact series is given no [`Builder::times`] ([`Error::NoExponentialSeries`]), no series is
+    /// If a rheology without an exact series is given no [`Builder::times`] ([`MaterialError::NoExponentialSeries`](crate::rheology::MaterialError::NoExponentialSeries)), no series is
     /// within the tolerance, or the times span more than 50 decades.
     ///
     /// If there is not enough memory ([`Error::OutOfMemory`], before any is taken; systems that overcommit memory, as Linux

@@ -79,8 +79,8 @@ impl Builder {
     /// The loading times \[s\] over which the material is needed, from the shortest that matters to the end of the scene,
     /// both after the load first acts. Rheologies without an exact exponential series
     /// ([`PowerLaw`](crate::rheology::PowerLaw), closures) cannot be built without it: their series is fitted over these
-    /// times to within [`Settings::series_tolerance`], and a step that ends later fails with [`Error::BeyondMaterial`](crate::Error::BeyondMaterial). All
-    /// others ignore it.
+    /// times to within [`Settings::series_tolerance`], and a step that ends later fails with
+    /// [`Error::BeyondMaterial`](crate::Error::BeyondMaterial). All others ignore it.
     ///
     /// The creep up to the shortest time counts as immediate, so that bodies without elastic response can start with a jump
     /// of the load.

@@ -33,6 +33,12 @@ impl Indenter {
         &self.gap
     }
 
+    /// Number of rigid bodies.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn bodies(&self) -> usize {
+        self.bodies
+    }
+
     pub(crate) fn id(&self) -> u64 {
         self.id
     }

@@ -298,13 +298,15 @@ impl History {
         }
     }
 
-    /// Whether it follows the same rule as another, on these cells: a file may hold anything.
+    /// Whether it follows the same rule as another, on these cells, a `window` of the grid or all of it: a file may hold
+    /// anything.
     #[cfg(feature = "checkpoint")]
-    pub(crate) fn fits(&self, other: &History, cells: [usize; 2]) -> bool {
+    pub(crate) fn fits(&self, other: &History, cells: [usize; 2], window: bool) -> bool {
         let (own, other) = (&self.displacement.recursion, &other.displacement.recursion);
         std::mem::discriminant(own) == std::mem::discriminant(other)
             && own.fits(cells)
             && self.displacement.has_cells(cells[0] * cells[1])
+            && self.far.is_some() == window
             && self.far.as_ref().is_none_or(|far| far.fits(cells[0] * cells[1]))
     }
 }

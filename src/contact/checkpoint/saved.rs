@@ -57,12 +57,12 @@ fn check(state: &State, built: &State, scene: &Scene) -> Result<(), CheckpointEr
     };
     let of_a_body = |&owner: &_| usize::from(owner) < bodies;
     let owners = gap.owner.as_ref().is_none_or(|owner| owner.len() == whole && owner.iter().all(of_a_body));
-    let fits = loads.len() == bodies
+    let fits = [loads.len(), indenter.bodies()] == [bodies; 2]
         && complete(current)
         && complete(previous)
         && gap.above.len() == whole
         && owners
-        && history.fits(&built.history, region.cells());
+        && history.fits(&built.history, region.cells(), !region.covers());
     if !fits {
         return malformed("fields that do not fit its region, or another time rule");
     }
