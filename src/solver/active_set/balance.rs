@@ -11,20 +11,20 @@ const MAX_CLOSING_FORCE_CHANGE: f64 = 1e-9;
 impl ActiveSet {
     /// Fills the shape of corrections on A.
     fn fill_shape(&mut self, shape: Shape, solution: &mut Solution) {
-        self.shape.resize(self.member.len(), 0.0);
+        self.shape.resize(self.set.member.len(), 0.0);
         match shape {
             Shape::Pressure => self.shape.copy_from_slice(&solution.pressure),
             Shape::Punch => {
                 self.shape
                     .iter_mut()
-                    .zip(&self.member)
+                    .zip(&self.set.member)
                     .for_each(|(shape, &member)| *shape = f64::from(u8::from(member)));
                 self.preconditioner.apply(&mut self.shape);
                 solution.counts.preconditioner_applications += 1;
             }
         }
         // cells that join A before the correction is applied add nothing to it
-        for (shape, &member) in self.shape.iter_mut().zip(&self.member) {
+        for (shape, &member) in self.shape.iter_mut().zip(&self.set.member) {
             *shape = if member { shape.max(0.0) } else { 0.0 };
         }
     }
@@ -38,12 +38,12 @@ impl ActiveSet {
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Result<(), usize> {
-        let single = self.contacts.len() == 1;
+        let single = self.set.contacts.len() == 1;
         if !single || problem.modes(0).tilts() {
             self.fill_shape(shape, solution);
         }
-        for body in 0..self.contacts.len() {
-            let (contact, change, modes) = (&mut self.contacts[body], &mut self.changes[body], problem.modes(body));
+        for body in 0..self.set.contacts.len() {
+            let (contact, change, modes) = (&mut self.set.contacts[body], &mut self.changes[body], problem.modes(body));
             change.correction = None;
             if problem.released(body) || !(modes.translates() || modes.tilts()) {
                 continue;
@@ -62,7 +62,7 @@ impl ActiveSet {
                 continue;
             }
             // the load acts outside the hull of what is left of A: begin again under this body
-            contact.cells.iter().for_each(|&k| self.member[k as usize] = false);
+            contact.cells.iter().for_each(|&k| self.set.member[k as usize] = false);
             change.leaving.drain(..).for_each(|k| solution.pressure[k as usize] = 0.0);
             if !modes.translates() {
                 // held at a pivot, and touching on one side of it only: unloaded, it may turn away
@@ -74,7 +74,7 @@ impl ActiveSet {
                 return Err(body);
             }
             contact.keep_pressed(modes, &solution.pressure);
-            contact.cells.iter().for_each(|&k| self.member[k as usize] = true);
+            contact.cells.iter().for_each(|&k| self.set.member[k as usize] = true);
             self.find_runs(problem);
             solution.convolve(problem, work);
         }
@@ -94,7 +94,7 @@ impl ActiveSet {
             }
             return true;
         }
-        for (body, contact) in self.contacts.iter().enumerate().filter(|(body, _)| !problem.released(*body)) {
+        for (body, contact) in self.set.contacts.iter().enumerate().filter(|(body, _)| !problem.released(*body)) {
             let sum = |solution: &Solution| contact.cells.iter().map(|&k| solution.pressure[k as usize]).sum::<f64>();
             let before = sum(solution);
             let closed = balance(problem, body, &contact.cells, solution);

@@ -55,10 +55,10 @@ impl ActiveSet {
             return Outcome::Unbalanced(body);
         }
         let (mut gained, mut joins_without_gain) = (true, 0);
-        self.energy = 0.0;
+        self.search.energy = 0.0;
         loop {
-            let mut state = contact_cells::fit_motions(problem, &self.contacts, solution, &mut self.residual);
-            let penetration = problem.penetration(solution, |k| !self.member[k]);
+            let mut state = contact_cells::fit_motions(problem, &self.set.contacts, solution, &mut self.residual);
+            let penetration = problem.penetration(solution, |k| !self.set.member[k]);
             state.note(problem, penetration, self.guess_rounding, solution);
             if let Some(outcome) = stop.outcome(solution, || true) {
                 return outcome;
@@ -73,13 +73,13 @@ impl ActiveSet {
                 // where several cells have joined without any gain, only the deepest one
                 let least = if joins_without_gain == 0 { state.joining_depth(penetration) } else { penetration };
                 self.add_cells_deeper_than(problem, least, solution);
-                contact_cells::fit_motions(problem, &self.contacts, solution, &mut self.residual);
+                contact_cells::fit_motions(problem, &self.set.contacts, solution, &mut self.residual);
             }
             solution.counts.iterations += 1;
             solution.counts.fallback_iterations += 1;
             let cells = state.cells;
             match self.step_downhill(problem, joins_without_gain > 1, solution, work) {
-                0.0 if !joins && contact_cells::all(&self.contacts).count() == cells => return Outcome::Stagnated,
+                0.0 if !joins && contact_cells::all(&self.set.contacts).count() == cells => return Outcome::Stagnated,
                 gain => gained |= gain > 0.0,
             }
         }
@@ -92,7 +92,7 @@ impl ActiveSet {
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Result<(), usize> {
-        for (k, member) in self.member.iter_mut().enumerate() {
+        for (k, member) in self.set.member.iter_mut().enumerate() {
             let p = &mut solution.pressure[k];
             *member = problem.possible(k) && *p > 0.0;
             if !*member {
@@ -100,7 +100,7 @@ impl ActiveSet {
             }
         }
         self.list_all_cells(problem);
-        for (body, (contact, change)) in self.contacts.iter_mut().zip(&mut self.changes).enumerate() {
+        for (body, (contact, change)) in self.set.contacts.iter_mut().zip(&mut self.changes).enumerate() {
             change.leaving.clear();
             change.correction = None;
             if !problem.released(body)
@@ -110,7 +110,7 @@ impl ActiveSet {
                 return Err(body);
             }
         }
-        self.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
+        self.set.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
         self.list_all_cells(problem);
         solution.convolve(problem, work);
         Ok(())
@@ -118,11 +118,11 @@ impl ActiveSet {
 
     /// Takes cells into A that penetrate by `least` or more.
     fn add_cells_deeper_than(&mut self, problem: &Problem<'_>, least: f64, solution: &Solution) {
-        for k in 0..self.member.len() {
-            self.member[k] |= problem.possible(k) && least > 0.0 && problem.depth(solution, k) >= least;
+        for k in 0..self.set.member.len() {
+            self.set.member[k] |= problem.possible(k) && least > 0.0 && problem.depth(solution, k) >= least;
         }
         self.list_all_cells(problem);
-        self.energy = 0.0;
+        self.search.energy = 0.0;
     }
 
     /// One step, along the residual itself if `plain`; returns by how much E falls.
@@ -135,44 +135,44 @@ impl ActiveSet {
     ) -> f64 {
         let c = problem.compliance;
         self.find_descent(problem, plain, solution);
-        problem.kernel.apply(&self.direction, &mut self.image, work);
+        problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
         solution.counts.convolutions += 1;
-        let [slope, curvature] = self.slope_and_curvature(&self.direction, &self.image);
-        self.energy = curvature;
+        let [slope, curvature] = self.slope_and_curvature(&self.search.direction, &self.search.image);
+        self.search.energy = curvature;
         let free = Gain::along(slope, c * curvature, f64::INFINITY);
         if free.energy <= 0.0 {
-            self.energy = 0.0;
+            self.search.energy = 0.0;
             return 0.0;
         }
         let to_zero = |k: usize| {
-            let (p, d) = (solution.pressure[k], self.direction[k]);
+            let (p, d) = (solution.pressure[k], self.search.direction[k]);
             if d < 0.0 { -p / d } else { f64::INFINITY }
         };
-        let first_zero = contact_cells::all(&self.contacts).map(to_zero).fold(f64::INFINITY, f64::min);
+        let first_zero = contact_cells::all(&self.set.contacts).map(to_zero).fold(f64::INFINITY, f64::min);
         if free.length <= first_zero {
-            for k in contact_cells::all(&self.contacts) {
-                solution.pressure[k] = (solution.pressure[k] + free.length * self.direction[k]).max(0.0);
+            for k in contact_cells::all(&self.set.contacts) {
+                solution.pressure[k] = (solution.pressure[k] + free.length * self.search.direction[k]).max(0.0);
             }
-            add(&mut solution.potential, free.length, &self.image);
+            add(&mut solution.potential, free.length, &self.search.image);
             return free.energy;
         }
 
         let straight = Gain::along(slope, c * curvature, first_zero);
         // s of the clipped step takes the place of z, and c K s that of r, which is made anew for the next step
         let clipped = if self.find_clipped_step(problem, free.length, solution) {
-            let slope = contact_cells::all(&self.contacts)
+            let slope = contact_cells::all(&self.set.contacts)
                 .fold(0.0, |slope, k| slope + self.residual[k] * self.preconditioned[k]);
             problem.kernel.apply(&self.preconditioned, &mut self.residual, work);
             solution.counts.convolutions += 1;
-            let curvature =
-                contact_cells::all(&self.contacts).fold(0.0, |sum, k| sum + self.preconditioned[k] * self.residual[k]);
+            let curvature = contact_cells::all(&self.set.contacts)
+                .fold(0.0, |sum, k| sum + self.preconditioned[k] * self.residual[k]);
             Gain::along(slope, c * curvature, 1.0)
         } else {
             Gain::default()
         };
         let clips = clipped.energy > straight.energy;
-        for k in contact_cells::all(&self.contacts) {
-            let (p, d) = (&mut solution.pressure[k], self.direction[k]);
+        for k in contact_cells::all(&self.set.contacts) {
+            let (p, d) = (&mut solution.pressure[k], self.search.direction[k]);
             *p = if clips {
                 (*p + clipped.length * self.preconditioned[k]).max(0.0)
             } else if d < 0.0 && -*p / d <= first_zero {
@@ -181,37 +181,37 @@ impl ActiveSet {
                 (*p + straight.length * d).max(0.0)
             };
             if *p <= 0.0 && d < 0.0 {
-                self.member[k] = false;
+                self.set.member[k] = false;
             }
         }
-        let (gain, image) = if clips { (clipped, &self.residual) } else { (straight, &self.image) };
+        let (gain, image) = if clips { (clipped, &self.residual) } else { (straight, &self.search.image) };
         add(&mut solution.potential, gain.length, image);
         self.list_all_cells(problem);
-        self.energy = 0.0;
+        self.search.energy = 0.0;
         gain.energy
     }
 
     /// d ← z + β d without free motion on A, with z = r if `plain`.
     fn find_descent(&mut self, problem: &Problem<'_>, plain: bool, solution: &mut Solution) {
         self.preconditioned.fill(0.0);
-        contact_cells::all(&self.contacts).for_each(|k| self.preconditioned[k] = self.residual[k]);
+        contact_cells::all(&self.set.contacts).for_each(|k| self.preconditioned[k] = self.residual[k]);
         if !plain {
             self.preconditioner.apply(&mut self.preconditioned);
             solution.counts.preconditioner_applications += 1;
         }
         self.conjugate_preconditioned(problem, false);
-        self.direction.fill(0.0);
-        for k in contact_cells::all(&self.contacts) {
-            self.direction[k] = self.preconditioned[k];
+        self.search.direction.fill(0.0);
+        for k in contact_cells::all(&self.set.contacts) {
+            self.search.direction[k] = self.preconditioned[k];
         }
     }
 
     /// Writes s, the way from p to the balanced max(0, p + a d), to `preconditioned`; false if there is no such balance on A.
     fn find_clipped_step(&mut self, problem: &Problem<'_>, a: f64, solution: &Solution) -> bool {
         self.preconditioned.fill(0.0);
-        for (body, contact) in self.contacts.iter().enumerate().filter(|(body, _)| !problem.released(*body)) {
+        for (body, contact) in self.set.contacts.iter().enumerate().filter(|(body, _)| !problem.released(*body)) {
             let modes = problem.modes(body);
-            let clipped = |k: usize| (solution.pressure[k] + a * self.direction[k]).max(0.0);
+            let clipped = |k: usize| (solution.pressure[k] + a * self.search.direction[k]).max(0.0);
             let y = if modes.tilts() || modes.translates() {
                 let Some(y) = modes.balance(&contact.cells, clipped, clipped) else { return false };
                 y

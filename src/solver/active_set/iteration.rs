@@ -59,7 +59,7 @@ impl ActiveSet {
 
             solution.counts.iterations += 1;
             self.find_direction(problem, solution);
-            problem.kernel.apply(&self.direction, &mut self.image, work);
+            problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
             solution.counts.convolutions += 1;
             step = self.step_length(problem, solution);
         }
@@ -71,15 +71,15 @@ impl ActiveSet {
             return self.advance_upright(problem, solution, a);
         }
         if a != 0.0 {
-            for k in contact_cells::all(&self.contacts) {
-                solution.pressure[k] += a * self.direction[k];
+            for k in contact_cells::all(&self.set.contacts) {
+                solution.pressure[k] += a * self.search.direction[k];
             }
-            for (v, &kd) in solution.potential.iter_mut().zip(&self.image) {
+            for (v, &kd) in solution.potential.iter_mut().zip(&self.search.image) {
                 *v += a * kd;
             }
         }
-        let state = contact_cells::fit_motions(problem, &self.contacts, solution, &mut self.residual);
-        (state, problem.penetration(solution, |k| !self.member[k]))
+        let state = contact_cells::fit_motions(problem, &self.set.contacts, solution, &mut self.residual);
+        (state, problem.penetration(solution, |k| !self.set.member[k]))
     }
 
     fn advance_upright(&mut self, problem: &Problem<'_>, solution: &mut Solution, a: f64) -> (ResidualSums, f64) {
@@ -90,8 +90,8 @@ impl ActiveSet {
             motion,
             Fields {
                 gap: problem.gap,
-                direction: &self.direction,
-                image: &self.image,
+                direction: &self.search.direction,
+                image: &self.search.image,
                 pressure: &mut solution.pressure,
                 potential: &mut solution.potential,
                 residual: &mut self.residual,
@@ -108,8 +108,14 @@ impl ActiveSet {
             self.residual_mean = 0.0;
         }
         let Survey { displacement, negative, .. } = found;
-        let state =
-            ResidualSums { square, displacement, negative, greatest_gap: self.greatest_gap, cancellation: 0.0, cells };
+        let state = ResidualSums {
+            square,
+            displacement,
+            negative,
+            greatest_gap: self.set.greatest_gap,
+            cancellation: 0.0,
+            cells,
+        };
         (state, (found.depth + solution.motions[0].0[0]).max(0.0))
     }
 
@@ -122,7 +128,7 @@ impl ActiveSet {
         }
         let z = &mut self.preconditioned;
         z.fill(0.0);
-        for (contact, change) in self.contacts.iter().zip(&self.changes) {
+        for (contact, change) in self.set.contacts.iter().zip(&self.changes) {
             contact.cells.iter().for_each(|&k| z[k as usize] = self.residual[k as usize]);
             for &k in &change.leaving {
                 z[k as usize] = -solution.pressure[k as usize] / (length * self.preconditioner.diagonal());
@@ -133,17 +139,17 @@ impl ActiveSet {
 
         self.conjugate_preconditioned(problem, pending);
 
-        self.direction.fill(0.0);
+        self.search.direction.fill(0.0);
         let scale = if pending { length } else { 1.0 };
-        for (body, (contact, change)) in self.contacts.iter().zip(&self.changes).enumerate() {
+        for (body, (contact, change)) in self.set.contacts.iter().zip(&self.changes).enumerate() {
             let z = &self.preconditioned;
-            contact.cells.iter().for_each(|&k| self.direction[k as usize] = scale * z[k as usize]);
-            change.leaving.iter().for_each(|&k| self.direction[k as usize] = -solution.pressure[k as usize]);
+            contact.cells.iter().for_each(|&k| self.search.direction[k as usize] = scale * z[k as usize]);
+            change.leaving.iter().for_each(|&k| self.search.direction[k as usize] = -solution.pressure[k as usize]);
             if let Some(y) = change.correction {
                 let modes = problem.modes(body);
                 for k in contact.cells.iter().map(|&k| k as usize) {
                     let p = solution.pressure[k].max(0.0);
-                    self.direction[k] += modes.balanced(y, k, p, self.shape[k]) - p;
+                    self.search.direction[k] += modes.balanced(y, k, p, self.shape[k]) - p;
                 }
             }
         }
@@ -160,15 +166,15 @@ impl ActiveSet {
         self.preconditioner.apply(&mut self.preconditioned);
         solution.counts.preconditioner_applications += 1;
 
-        let [z, z_kd, kd, d] = self.passes.overlaps(&self.preconditioned, &self.image, &self.direction);
+        let [z, z_kd, kd, d] = self.passes.overlaps(&self.preconditioned, &self.search.image, &self.search.direction);
         let share = if problem.modes(0).translates() { 1.0 / self.passes.runs.count().max(1) as f64 } else { 0.0 };
-        let beta = conjugate(self.energy, z_kd - share * z * kd, pending);
+        let beta = conjugate(self.search.energy, z_kd - share * z * kd, pending);
         let scale = if pending { length } else { 1.0 };
         // without a last direction, d holds values of an earlier solve
         let shift = -share * if beta == 0.0 { z } else { z + beta * d };
-        self.passes.redirect([scale, beta, shift], &self.preconditioned, &mut self.direction);
+        self.passes.redirect([scale, beta, shift], &self.preconditioned, &mut self.search.direction);
         for &k in &change.leaving {
-            self.direction[k as usize] = -solution.pressure[k as usize];
+            self.search.direction[k as usize] = -solution.pressure[k as usize];
         }
     }
 
@@ -176,16 +182,16 @@ impl ActiveSet {
     pub(super) fn conjugate_preconditioned(&mut self, problem: &Problem<'_>, pending: bool) {
         let z = &mut self.preconditioned;
         let mut overlap = 0.0;
-        for (body, ContactCells { cells, gram }) in self.contacts.iter().enumerate() {
+        for (body, ContactCells { cells, gram }) in self.set.contacts.iter().enumerate() {
             problem.modes(body).project_out(gram, cells, z);
-            overlap += cells.iter().map(|&k| z[k as usize] * self.image[k as usize]).sum::<f64>();
+            overlap += cells.iter().map(|&k| z[k as usize] * self.search.image[k as usize]).sum::<f64>();
         }
-        let beta = conjugate(self.energy, overlap, pending);
+        let beta = conjugate(self.search.energy, overlap, pending);
         if beta == 0.0 {
             return;
         }
-        for (body, ContactCells { cells, gram }) in self.contacts.iter().enumerate() {
-            cells.iter().for_each(|&k| z[k as usize] += beta * self.direction[k as usize]);
+        for (body, ContactCells { cells, gram }) in self.set.contacts.iter().enumerate() {
+            cells.iter().for_each(|&k| z[k as usize] += beta * self.search.direction[k as usize]);
             problem.modes(body).project_out(gram, cells, z);
         }
     }
@@ -193,12 +199,12 @@ impl ActiveSet {
     /// The length a of the step along d, 1 for a correction. Brings cells that leave to p = 0.
     pub(super) fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> f64 {
         let [slope, curvature] = if self.is_upright(problem) {
-            self.passes.slope_and_curvature(&self.residual, &self.direction, &self.image)
+            self.passes.slope_and_curvature(&self.residual, &self.search.direction, &self.search.image)
         } else {
-            self.slope_and_curvature(&self.direction, &self.image)
+            self.slope_and_curvature(&self.search.direction, &self.search.image)
         };
         let leaving = self.changes.iter().flat_map(|change| &change.leaving).map(|&k| k as usize);
-        self.energy = curvature + leaving.map(|k| self.direction[k] * self.image[k]).sum::<f64>();
+        self.search.energy = curvature + leaving.map(|k| self.search.direction[k] * self.search.image[k]).sum::<f64>();
         if !self.pending() {
             // a direction that vanishes, as on a single cell, gains nothing
             let downhill = slope > 0.0 && curvature > 0.0;
@@ -213,7 +219,7 @@ impl ActiveSet {
 
     /// Σ r d and Σ d·Kd on the listed cells of A.
     pub(super) fn slope_and_curvature(&self, direction: &[f64], image: &[f64]) -> [f64; 2] {
-        let cells = contact_cells::all(&self.contacts);
+        let cells = contact_cells::all(&self.set.contacts);
         cells.fold([0.0; 2], |[slope, curvature], k| {
             [slope + self.residual[k] * direction[k], curvature + direction[k] * image[k]]
         })

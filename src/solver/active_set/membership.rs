@@ -16,23 +16,23 @@ impl ActiveSet {
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Result<(), usize> {
-        self.energy = 0.0;
+        self.search.energy = 0.0;
         let upright = self.is_upright(problem);
         if upright {
             let fields = solution.pressure.iter().zip(problem.gap);
-            for (member, (&p, &gap)) in self.member.iter_mut().zip(fields) {
+            for (member, (&p, &gap)) in self.set.member.iter_mut().zip(fields) {
                 *member = (p > 0.0) & (gap < f64::INFINITY);
             }
         } else {
-            self.direction.fill(0.0);
-            self.image.fill(0.0);
-            for (k, (member, &p)) in self.member.iter_mut().zip(&solution.pressure).enumerate() {
+            self.search.direction.fill(0.0);
+            self.search.image.fill(0.0);
+            for (k, (member, &p)) in self.set.member.iter_mut().zip(&solution.pressure).enumerate() {
                 *member = p > 0.0 && problem.possible(k);
             }
         }
         self.list_cells(problem);
         let mut fresh = false;
-        for (body, contact) in self.contacts.iter_mut().enumerate() {
+        for (body, contact) in self.set.contacts.iter_mut().enumerate() {
             if contact.cells.is_empty() && (!upright || self.passes.runs.count() == 0) && !problem.released(body) {
                 // a guess without positive pressure may hold negative ones, which v includes
                 fresh |= solution.pressure.iter().any(|&p| p != 0.0);
@@ -51,7 +51,7 @@ impl ActiveSet {
                     return Err(body);
                 }
                 contact.keep_pressed(problem.modes(body), &solution.pressure);
-                contact.cells.iter().for_each(|&k| self.member[k as usize] = true);
+                contact.cells.iter().for_each(|&k| self.set.member[k as usize] = true);
                 fresh |= !contact.cells.is_empty();
             }
         }
@@ -60,7 +60,7 @@ impl ActiveSet {
             solution.convolve(problem, work);
         }
         self.changes.iter_mut().for_each(|change| change.leaving.clear());
-        for (k, (&p, &member)) in solution.pressure.iter().zip(&self.member).enumerate() {
+        for (k, (&p, &member)) in solution.pressure.iter().zip(&self.set.member).enumerate() {
             if (p != 0.0) & !member {
                 self.changes[problem.owner(k)].leaving.push(k as u32);
             }
@@ -75,15 +75,15 @@ impl ActiveSet {
 
     /// Finds the runs of cells in A.
     pub(super) fn find_runs(&mut self, problem: &Problem<'_>) {
-        self.passes.runs.find(&self.member);
-        self.greatest_gap = self.passes.runs.greatest(problem.gap);
+        self.passes.runs.find(&self.set.member);
+        self.set.greatest_gap = self.passes.runs.greatest(problem.gap);
     }
 
     /// Finds the runs of cells in A, and lists its cells unless the runs say it all.
     fn list_cells(&mut self, problem: &Problem<'_>) {
         if self.is_upright(problem) {
             self.find_runs(problem);
-            self.contacts[0].cells.clear();
+            self.set.contacts[0].cells.clear();
         } else {
             self.list_all_cells(problem);
         }
@@ -92,7 +92,7 @@ impl ActiveSet {
     /// Finds the runs of cells in A, and lists its cells.
     pub(super) fn list_all_cells(&mut self, problem: &Problem<'_>) {
         self.find_runs(problem);
-        contact_cells::list(problem, &mut self.contacts, self.passes.runs.ranges().flatten());
+        contact_cells::list(problem, &mut self.set.contacts, self.passes.runs.ranges().flatten());
     }
 
     /// Takes cells into A that penetrate deeper than `least`, but for those that are about to leave: they would bring a
@@ -100,8 +100,8 @@ impl ActiveSet {
     pub(super) fn add_penetrating_cells(&mut self, problem: &Problem<'_>, least: f64, solution: &Solution) {
         let upright = self.is_upright(problem);
         let (c, motion) = (problem.compliance, solution.motions[0].0[0]);
-        for k in 0..self.member.len() {
-            self.member[k] |= solution.pressure[k] == 0.0
+        for k in 0..self.set.member.len() {
+            self.set.member[k] |= solution.pressure[k] == 0.0
                 && if upright {
                     motion - (c * solution.potential[k] + problem.gap[k]) > least
                 } else {
@@ -127,13 +127,13 @@ impl ActiveSet {
     ) -> Result<(), usize> {
         if self.is_upright(problem) {
             for k in self.passes.runs.ranges().flatten().filter(|&k| solution.pressure[k] < 0.0) {
-                self.member[k] = false;
+                self.set.member[k] = false;
                 self.changes[0].leaving.push(k as u32);
             }
         } else {
-            for (contact, change) in self.contacts.iter().zip(&mut self.changes) {
+            for (contact, change) in self.set.contacts.iter().zip(&mut self.changes) {
                 for &k in contact.cells.iter().filter(|&&k| solution.pressure[k as usize] < 0.0) {
-                    self.member[k as usize] = false;
+                    self.set.member[k as usize] = false;
                     change.leaving.push(k);
                 }
             }

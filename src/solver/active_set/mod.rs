@@ -55,29 +55,41 @@ const CORRECTION_LENGTH: f64 = 0.5;
 #[derive(Debug, Clone)]
 pub(crate) struct ActiveSet {
     preconditioner: Preconditioner,
-    /// Whether a cell is in A.
-    member: Vec<bool>,
+    set: Members,
     /// The runs of cells in A, and the passes over them.
     passes: Passes,
-    /// The greatest |gap| there.
-    greatest_gap: f64,
     /// Rounding of c K p of the guess: where an approach is given, the pressure may fall far below that of the guess.
     guess_rounding: f64,
-    /// The cells of A by body; of a single body that does not tilt the runs say it all.
-    contacts: Vec<ContactCells>,
     changes: Vec<PendingChange>,
     /// r on A.
     residual: Vec<f64>,
     /// What is still to be subtracted from it: its mean, by which the motion was corrected.
     residual_mean: f64,
     preconditioned: Vec<f64>,
+    search: Search,
+    /// The shape of corrections of the balance: allocated by the first solve with a tilting load or several bodies.
+    shape: Vec<f64>,
+}
+
+/// The active set A.
+#[derive(Debug, Clone)]
+struct Members {
+    /// Whether a cell is in A.
+    member: Vec<bool>,
+    /// The cells of A by body; of a single body that does not tilt the runs are enough.
+    contacts: Vec<ContactCells>,
+    /// The greatest |gap| on A.
+    greatest_gap: f64,
+}
+
+/// The search direction d.
+#[derive(Debug, Clone)]
+struct Search {
     direction: Vec<f64>,
     /// K d.
     image: Vec<f64>,
     /// d·Kd.
     energy: f64,
-    /// The shape of corrections of the balance: allocated by the first solve with a tilting load or several bodies.
-    shape: Vec<f64>,
 }
 
 /// What the next direction changes of the pressure under one body.
@@ -104,20 +116,20 @@ impl ActiveSet {
         let field = vec![0.0; cells];
         ActiveSet {
             preconditioner: Preconditioner::new(kernel),
-            member: vec![false; cells],
+            set: Members {
+                member: vec![false; cells],
+                contacts: ContactCells::of_bodies(bodies, cells),
+                greatest_gap: 0.0,
+            },
             passes: Passes::new(cells),
-            greatest_gap: 0.0,
             guess_rounding: 0.0,
-            energy: 0.0,
             residual_mean: 0.0,
-            contacts: ContactCells::of_bodies(bodies, cells),
             changes: (0..bodies)
                 .map(|_| PendingChange { leaving: Vec::with_capacity(cells), correction: None })
                 .collect(),
             residual: field.clone(),
             preconditioned: field.clone(),
-            direction: field.clone(),
-            image: field,
+            search: Search { direction: field.clone(), image: field, energy: 0.0 },
             shape: Vec::new(),
         }
     }
@@ -151,6 +163,6 @@ impl ActiveSet {
 
     /// Whether there is one body that does not tilt: then everything is done in a few passes ([`Passes`]).
     fn is_upright(&self, problem: &Problem<'_>) -> bool {
-        self.contacts.len() == 1 && !problem.modes(0).tilts()
+        self.set.contacts.len() == 1 && !problem.modes(0).tilts()
     }
 }
