@@ -21,7 +21,7 @@ use crate::sum::sum;
 impl ViscoelasticContact {
     /// Time \[s\], 0 at first.
     pub fn time(&self) -> f64 {
-        self.domain.state.clock.time
+        self.computation.state.clock.time
     }
 
     /// The grid of every field.
@@ -47,12 +47,12 @@ impl ViscoelasticContact {
 
     /// The load of the last step, on the first body.
     pub fn load(&self) -> Load {
-        self.domain.state.loads[0]
+        self.computation.state.loads[0]
     }
 
     /// Contact pressure \[Pa\], one value per cell, ≥ 0.
     pub fn pressure(&self) -> &[f64] {
-        self.view.pressure(&self.domain.state)
+        self.view.pressure(&self.computation.state)
     }
 
     /// Composite normal surface displacement, positive into the bodies \[m\], one value per cell.
@@ -60,7 +60,7 @@ impl ViscoelasticContact {
     /// With [`Settings::window`] the first call after a step costs a convolution on the whole grid, and memory for its
     /// result.
     pub fn displacement(&self) -> &[f64] {
-        self.view.displacement(&self.scene, &self.domain.state)
+        self.view.displacement(&self.scene, &self.computation.state)
     }
 
     /// Writes the gap between the deformed bodies into `out` \[m\]: zero in contact to within the tolerance, +∞ where there
@@ -70,7 +70,7 @@ impl ViscoelasticContact {
     /// If `out` does not hold one value per cell, or there is no memory for the displacement, where not all of it is
     /// computed.
     pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
-        let (Scene { grid, kernel, .. }, state) = (&*self.scene, &self.domain.state);
+        let (Scene { grid, kernel, .. }, state) = (&*self.scene, &self.computation.state);
         exact_length("gap", out.len(), grid.len())?;
         if !self.view.has_displacement(state) {
             let whole = Region::whole(grid, state.region.folded());
@@ -90,18 +90,18 @@ impl ViscoelasticContact {
     /// Rigid-body approach ω of the (first) body, at the origin of the grid \[m\]. Without load, the approach
     /// at which it just touches.
     pub fn approach(&self) -> f64 {
-        self.domain.state.current.motions[0].approach
+        self.computation.state.current.motions[0].approach
     }
 
     /// Tilt (α1, α2) of the (first) body \[rad\]: it lowers the surface by ω + α1 x1 + α2 x2.
     pub fn tilt(&self) -> [f64; 2] {
-        self.domain.state.current.motions[0].tilt
+        self.computation.state.current.motions[0].tilt
     }
 
     /// Normal force Σ p ΔA on all bodies together \[N\].
     pub fn force(&self) -> f64 {
         // row by row, so that rounding does not grow with the number of cells
-        let State { region, current, .. } = &self.domain.state;
+        let State { region, current, .. } = &self.computation.state;
         let rows = current.solution.pressure.chunks_exact(region.cells()[1]);
         rows.map(sum).sum::<f64>() * self.scene.grid.cell_area() * region.images() as f64
     }
@@ -113,7 +113,7 @@ impl ViscoelasticContact {
 
     /// Number of cells in contact (p > 0).
     pub fn contact_cells(&self) -> usize {
-        self.domain.state.current.contact_cells
+        self.computation.state.current.contact_cells
     }
 
     /// How far the cells in contact reach from the origin along x1 and x2, outer sides included \[m\].
@@ -135,7 +135,7 @@ impl ViscoelasticContact {
     /// The state of one rigid body, in the order in which the builder was given them; `None` if there are
     /// not as many.
     pub fn body(&self, body: usize) -> Option<BodyState> {
-        let State { indenter, current, .. } = &self.domain.state;
+        let State { indenter, current, .. } = &self.computation.state;
         let RigidMotion { approach, tilt } = *current.motions.get(body)?;
         let (force, moment, contact_cells) = self.sums(|k| indenter.gap().owner(k) == body);
         Some(BodyState { approach, tilt, force, moment, contact_cells })
@@ -162,7 +162,7 @@ impl ViscoelasticContact {
 
 impl fmt::Debug for ViscoelasticContact {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let state = &self.domain.state;
+        let state = &self.computation.state;
         f.debug_struct("ViscoelasticContact")
             .field("grid", &self.scene.grid)
             .field("settings", &self.scene.settings)

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::contact::builder::Builder;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::built::Built;
-use crate::contact::domain::Domain;
+use crate::contact::computation::Computation;
 use crate::contact::footprint::{Computed, Footprint, Memory, symmetry_of};
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
@@ -60,8 +60,8 @@ impl Builder {
         };
         let history = history.undisturbed_on(region.cells(), !region.covers());
         let state = State::at_rest(Arc::new(indenter), region, history);
-        let domain = Domain::new(&scene, state);
-        Ok(ViscoelasticContact::new(scene, domain))
+        let computation = Computation::new(&scene, state);
+        Ok(ViscoelasticContact::new(scene, computation))
     }
 
     /// The memory that the contact will take; no field is allocated to find out. The cells that are computed follow from the

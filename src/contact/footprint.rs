@@ -19,7 +19,7 @@ use crate::memory;
 /// |---|---|
 /// | state and trial step | 72 |
 /// | history | 8 per relaxation time (40 + 16 per relaxation time with [`Frame::Indenter`](crate::contact::Frame::Indenter); direct sums: 8 per step taken) |
-/// | solver | 37, and 8 per body; [`Solver::PolonskyKeer`]: 28 |
+/// | solver | 37, and 8 per body; [`Solver::PolonskyKeer`]: 24, and 4 per body |
 /// | its preconditioner | 11: a quarter of a spectrum of the grid without padding, 2, and work space, 9 |
 /// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
 /// | transforms on several threads | 16 + 8 more |
@@ -121,8 +121,8 @@ impl Footprint<'_> {
         let solver = match self.settings.solver {
             // four fields, a mark, and runs of cells; lists of those that touch and those that leave for each body
             Solver::ActiveSet => (32 + 1 + 4 + 8 * bodies) * n + inverse,
-            // three fields, and a list of cells
-            Solver::PolonskyKeer => (24 + 4) * n,
+            // three fields; a list of the cells that touch for each body
+            Solver::PolonskyKeer => (24 + 4 * bodies) * n,
         };
         let saturated = |bytes: u128| u64::try_from(bytes).unwrap_or(u64::MAX);
         Memory {

@@ -2,14 +2,15 @@
 //!
 //! A contact has five owners: the scene never changes; the indenter is replaced whole when it moves; the state is what a
 //! step changes; the window computes on the region of the state, and follows from the three above; the trial is the step
-//! being tried. State, window and trial form a domain.
+//! being tried. State, window and trial form a
+//! computation.
 
 mod accessors;
 mod build;
 mod builder;
 #[cfg(feature = "checkpoint")]
 mod checkpoint;
-mod domain;
+mod computation;
 mod extrapolation;
 mod footprint;
 mod hull;
@@ -17,6 +18,7 @@ mod indenter;
 mod moving;
 mod observations;
 mod report;
+mod request;
 mod run;
 mod scene;
 mod set_geometry;

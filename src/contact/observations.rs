@@ -69,8 +69,8 @@ impl ViscoelasticContact {
     /// # Errors
     /// If the iteration for it does not converge.
     pub fn stiffness_over_modulus(&self) -> Result<f64> {
-        let State { clock, region, current, .. } = &self.domain.state;
-        let kernel = self.domain.window.kernel();
+        let State { clock, region, current, .. } = &self.computation.state;
+        let kernel = self.computation.window.kernel();
         if current.contact_cells == 0 {
             return Ok(0.0);
         }
@@ -89,7 +89,7 @@ impl ViscoelasticContact {
     }
 
     fn pressed(&self) -> Pressed<'_> {
-        let (periodic, gap) = (self.scene.kernel.periodic_axes(), &self.domain.state.indenter.gap().above);
+        let (periodic, gap) = (self.scene.kernel.periodic_axes(), &self.computation.state.indenter.gap().above);
         Pressed { grid: self.grid(), periodic, pressure: self.pressure(), gap }
     }
 }

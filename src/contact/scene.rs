@@ -6,7 +6,7 @@ use crate::Grid;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::built::Built;
 use crate::contact::settings::Settings;
-use crate::hereditary::Bodies;
+use crate::hereditary::HistoryInputs;
 use crate::kernel::InfluenceKernel;
 use crate::rheology::Material;
 
@@ -19,14 +19,14 @@ pub(crate) struct Scene {
     pub(super) settings: Settings,
     /// Number of rigid bodies.
     pub(super) bodies: usize,
-    /// What tells it from other scenes, as far as steps change it.
+    /// Fingerprint of the gap as built.
     #[cfg(feature = "checkpoint")]
     pub(super) built: Built,
 }
 
 impl Scene {
-    /// What the memory of the bodies needs of it.
-    pub(super) fn creeping_bodies(&self) -> Bodies<'_> {
-        Bodies { material: &self.material, history_limit: self.settings.history_limit }
+    /// Inputs of the time rule.
+    pub(super) fn history_inputs(&self) -> HistoryInputs<'_> {
+        HistoryInputs { material: &self.material, history_limit: self.settings.history_limit }
     }
 }

@@ -21,7 +21,7 @@ impl ViscoelasticContact {
     /// [`ViscoelasticContact::set_geometry`] with a geometry for each rigid body.
     ///
     /// # Errors
-    /// As [`ViscoelasticContact::set_geometry`], or if there is not one geometry a body.
+    /// As [`ViscoelasticContact::set_geometry`], or if there is not one geometry per body.
     pub fn set_geometries(&mut self, geometries: &[&dyn Geometry]) -> Result<()> {
         if geometries.len() != self.scene.bodies {
             return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.scene.bodies });
@@ -29,14 +29,14 @@ impl ViscoelasticContact {
         let gaps =
             geometries.iter().map(|geometry| evaluate(*geometry, &self.scene.grid)).collect::<Result<Vec<_>>>()?;
         let indenter = Indenter::new(Gap::new(gaps, &self.scene.grid)?, self.scene.bodies);
-        let region = &self.domain.state.region;
+        let region = &self.computation.state.region;
         let (folded, even) = (region.folded(), indenter.even_axes(&self.scene.grid));
         let still_folded = [0, 1].map(|axis| folded[axis] && even[axis]);
         if still_folded != folded {
             // the next step gives up the symmetry
-            self.domain.check_memory_for(&self.scene, &region.unfolded(still_folded))?;
+            self.computation.check_memory_for(&self.scene, &region.unfolded(still_folded))?;
         }
-        let state = &mut self.domain.state;
+        let state = &mut self.computation.state;
         (state.indenter, state.indenter_is_new) = (Arc::new(indenter), true);
         state.extrapolation.interrupt();
         Ok(())

@@ -9,7 +9,8 @@ use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result};
 
 /// The state of a contact in memory, made by [`ViscoelasticContact::snapshot`]: what steps change, without kernel and work
-/// space. About 60 bytes per computed cell, 8 more for each relaxation time.
+/// space. About 48 bytes per computed cell and 8 for each relaxation time; where a
+/// window is computed, 16 and 8 more.
 #[derive(Clone)]
 pub struct Snapshot {
     scene: Arc<Scene>,
@@ -54,14 +55,14 @@ impl ViscoelasticContact {
     /// # Ok::<(), Error>(())
     /// ```
     pub fn snapshot(&self) -> Snapshot {
-        Snapshot { scene: Arc::clone(&self.scene), state: self.domain.state.clone() }
+        Snapshot { scene: Arc::clone(&self.scene), state: self.computation.state.clone() }
     }
 
     /// [`ViscoelasticContact::snapshot`] into one made before. Allocates nothing while the region that is computed stays the
     /// same and no direct sum grows.
     pub fn snapshot_into(&self, snapshot: &mut Snapshot) {
         if Arc::ptr_eq(&snapshot.scene, &self.scene) {
-            snapshot.state.copy_from(&self.domain.state);
+            snapshot.state.copy_from(&self.computation.state);
         } else {
             *snapshot = self.snapshot();
         }
@@ -77,8 +78,8 @@ impl ViscoelasticContact {
         if !Arc::ptr_eq(&snapshot.scene, &self.scene) {
             return Err(Error::OtherContact);
         }
-        self.domain.restore(&self.scene, &snapshot.state);
-        self.view.refresh(&self.domain.state);
+        self.computation.restore(&self.scene, &snapshot.state);
+        self.view.refresh(&self.computation.state);
         self.progress = None;
         Ok(())
     }

@@ -40,7 +40,7 @@ impl ViscoelasticContact {
     /// If the time does not lie within the last step. After a step that failed, or one over the bodies
     /// ([`ViscoelasticContact::step_over`]), the state before it is not kept, and only its end is left.
     pub fn within_step(&self, time: f64) -> Result<StateWithinStep<'_>> {
-        let State { clock, history, .. } = &self.domain.state;
+        let State { clock, history, .. } = &self.computation.state;
         let kept = history.displacement_before().is_some();
         let start = if kept { clock.time - clock.last_dt } else { clock.time };
         // by rounding the start may come out a little off
@@ -69,7 +69,7 @@ impl StateWithinStep<'_> {
 
     /// Normal force on all bodies together \[N\].
     pub fn force(&self) -> f64 {
-        let area = self.contact.grid().cell_area() * self.contact.domain.state.region.images() as f64;
+        let area = self.contact.grid().cell_area() * self.contact.computation.state.region.images() as f64;
         self.mix(|state| state.solution.pressure.iter().sum::<f64>() * area)
     }
 
@@ -78,7 +78,7 @@ impl StateWithinStep<'_> {
     /// # Errors
     /// If `out` does not hold one value per cell.
     pub fn pressure_into(&self, out: &mut [f64]) -> Result<()> {
-        let State { region, previous, .. } = &self.contact.domain.state;
+        let State { region, previous, .. } = &self.contact.computation.state;
         let before = on_the_whole_grid(&self.contact.scene, region, &previous.solution.pressure, None);
         self.mix_into(out, "pressure", &before, self.contact.pressure())
     }
@@ -88,13 +88,13 @@ impl StateWithinStep<'_> {
     /// # Errors
     /// If `out` does not hold one value per cell.
     pub fn displacement_into(&self, out: &mut [f64]) -> Result<()> {
-        let State { region, history, .. } = &self.contact.domain.state;
+        let State { region, history, .. } = &self.contact.computation.state;
         let before = on_the_whole_grid(&self.contact.scene, region, history.trial(), history.far_trial());
         self.mix_into(out, "displacement", &before, self.contact.displacement())
     }
 
     fn mix(&self, of: impl Fn(&Equilibrium) -> f64) -> f64 {
-        let State { previous, current, .. } = &self.contact.domain.state;
+        let State { previous, current, .. } = &self.contact.computation.state;
         self.interpolate(of(previous), of(current))
     }
 

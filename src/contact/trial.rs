@@ -2,7 +2,7 @@
 
 use crate::solver::{Freedom, Solution};
 
-/// Everything that a step computes before it is accepted, but for the displacement, which the memory of the bodies holds
+/// Everything that a step computes before it is accepted, but for the displacement, which the history holds
 /// at both ends of a step. Dropped when the step fails.
 #[derive(Debug, Clone)]
 pub(crate) struct Trial {

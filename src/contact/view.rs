@@ -1,4 +1,4 @@
-//! The fields of a contact on the whole grid, for those who look at them.
+//! The fields of a contact on the whole grid, for the accessors.
 
 use std::borrow::Cow;
 use std::sync::OnceLock;

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::contact::domain::Domain;
+use crate::contact::computation::Computation;
 use crate::contact::moving::spare::Spare;
 use crate::contact::run::progress::Progress;
 use crate::contact::scene::Scene;
@@ -46,7 +46,7 @@ pub struct ViscoelasticContact {
     /// What never changes.
     pub(super) scene: Arc<Scene>,
     /// What steps change, and what computes them.
-    pub(super) domain: Domain,
+    pub(super) computation: Computation,
     /// What users see of it on the whole grid.
     pub(super) view: View,
     /// How far the run had come that was saved and resumed, for the next to go on.
@@ -56,8 +56,8 @@ pub struct ViscoelasticContact {
 }
 
 impl ViscoelasticContact {
-    pub(super) fn new(scene: Scene, domain: Domain) -> ViscoelasticContact {
-        let view = View::new(&domain.state);
-        ViscoelasticContact { scene: Arc::new(scene), domain, view, progress: None, spare: Spare::default() }
+    pub(super) fn new(scene: Scene, computation: Computation) -> ViscoelasticContact {
+        let view = View::new(&computation.state);
+        ViscoelasticContact { scene: Arc::new(scene), computation, view, progress: None, spare: Spare::default() }
     }
 }

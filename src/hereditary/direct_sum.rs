@@ -96,9 +96,9 @@ impl DirectSum {
         self.increments.push((when, increment));
     }
 
-    /// Whether its increments have so many cells.
+    /// Whether its weighting is that of another, and every increment has so many cells.
     #[cfg(feature = "checkpoint")]
-    pub(crate) fn fits(&self, cells: usize) -> bool {
-        self.increments.iter().all(|(_, increment)| increment.len() == cells)
+    pub(crate) fn fits(&self, other: &DirectSum, cells: usize) -> bool {
+        self.weighting == other.weighting && self.increments.iter().all(|(_, increment)| increment.len() == cells)
     }
 }

@@ -89,11 +89,12 @@ impl Exponential {
         self.waiting = other.waiting;
     }
 
-    /// Whether its fields are of so many cells, and as many as it has relaxation times.
+    /// Whether it has as many relaxation times as another, and its fields have so many cells.
     #[cfg(feature = "checkpoint")]
-    pub(crate) fn fits(&self, cells: usize) -> bool {
-        let branches = self.relaxation.terms().len();
-        [self.factors.len(), self.committed.len()] == [branches; 2]
+    pub(crate) fn fits(&self, other: &Exponential, cells: usize) -> bool {
+        let branches = other.branches();
+        self.relaxation.terms().len() == branches
+            && [self.factors.len(), self.committed.len()] == [branches; 2]
             && Some(self.fields.len()) == cells.checked_mul(branches)
     }
 

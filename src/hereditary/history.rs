@@ -1,4 +1,4 @@
-//! What the bodies remember, by whichever time rule.
+//! State of the hereditary integral, for every time rule.
 
 use crate::error::{Error, Result};
 use crate::hereditary::direct_sum::{DirectSum, Weighting};
@@ -40,9 +40,9 @@ pub(crate) struct Interval {
     pub(crate) stride: [isize; 2],
 }
 
-/// What a time rule may look at, besides the past.
+/// Inputs of a time rule besides the past.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Bodies<'a> {
+pub(crate) struct HistoryInputs<'a> {
     pub(crate) material: &'a Material,
     /// Bytes that a direct sum may fill with its past.
     pub(crate) history_limit: usize,
@@ -53,7 +53,7 @@ pub(crate) trait Transfer {
     /// The cells they are carried to.
     fn cells(&self) -> [usize; 2];
 
-    /// Whether these are all that there are, mirror images included.
+    /// Whether they cover the whole grid, mirror images included.
     fn covers(&self) -> bool;
 
     /// A field that is zero wherever it was not computed.
@@ -89,12 +89,15 @@ impl Recursion {
         }
     }
 
+    /// Whether it is the rule of another, on these cells.
     #[cfg(feature = "checkpoint")]
-    fn fits(&self, cells: [usize; 2]) -> bool {
-        match self {
-            Recursion::Exponential(own) => own.fits(cells[0] * cells[1]),
-            Recursion::DirectSum(own) => own.fits(cells[0] * cells[1]),
-            Recursion::MovingFrame(own) => own.fits(cells),
+    fn fits(&self, other: &Recursion, cells: [usize; 2]) -> bool {
+        let count = cells[0] * cells[1];
+        match (self, other) {
+            (Recursion::Exponential(own), Recursion::Exponential(other)) => own.fits(other, count),
+            (Recursion::DirectSum(own), Recursion::DirectSum(other)) => own.fits(other, count),
+            (Recursion::MovingFrame(own), Recursion::MovingFrame(other)) => own.fits(other, cells),
+            _ => false,
         }
     }
 }
@@ -188,7 +191,7 @@ impl History {
     pub(crate) fn predict(
         &mut self,
         step: Interval,
-        bodies: Bodies<'_>,
+        inputs: HistoryInputs<'_>,
         kernel: &LocalKernel,
         work: &mut Workspace,
     ) -> Result<(f64, usize)> {
@@ -200,7 +203,7 @@ impl History {
                 Ok((own.predict(step.dt, now, trial), 0))
             }
             Recursion::DirectSum(own) => {
-                let c = own.predict((step.time, step.dt), bodies.material, bodies.history_limit, trial)?;
+                let c = own.predict((step.time, step.dt), inputs.material, inputs.history_limit, trial)?;
                 if c == 0.0 {
                     trial.copy_from_slice(now); // the sum is the same but for rounding
                 }
@@ -220,7 +223,7 @@ impl History {
         }
     }
 
-    /// Takes in the pressure found for the step, and v = K p; `displace` turns u_old, given the displacement at the start
+    /// Adds the response to the pressure found for the step, and v = K p; `displace` turns u_old, given the displacement at the start
     /// of the step, into the displacement at its end.
     pub(crate) fn respond(
         &mut self,
@@ -302,12 +305,14 @@ impl History {
     /// anything.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &History, cells: [usize; 2], window: bool) -> bool {
-        let (own, other) = (&self.displacement.recursion, &other.displacement.recursion);
-        std::mem::discriminant(own) == std::mem::discriminant(other)
-            && own.fits(cells)
+        let own = &self.displacement.recursion;
+        own.fits(&other.displacement.recursion, cells)
             && self.displacement.has_cells(cells[0] * cells[1])
             && self.far.is_some() == window
-            && self.far.as_ref().is_none_or(|far| far.fits(cells[0] * cells[1]))
+            && self.far.as_ref().is_none_or(|far| match own {
+                Recursion::Exponential(own) => far.fits(own, cells[0] * cells[1]),
+                _ => false,
+            })
     }
 }
 

@@ -1,11 +1,11 @@
-//! Hereditary integral: how much of the displacement at the end of a step the past has already decided.
+//! Hereditary integral: the part of the displacement at the end of a step that follows from the past.
 //!
 //! Every time rule writes the displacement at the end of a step as
 //!
 //! u = u_old + c K p,
 //!
 //! with one number c, the compliance of the step, and one field u_old. The contact problem of the step is then that of
-//! an elastic body. [`History`] is the one door to this: a step predicts c and u_old, responds to a pressure, and is
+//! an elastic body. [`History`] is the one interface to this: a step predicts c and u_old, responds to a pressure, and is
 //! committed when it is accepted. Three rules are behind it:
 //!
 //! * [`Exponential`]: a recursion with one field per relaxation time, updated in place; second order, stable for steps of
@@ -25,5 +25,5 @@ mod moving_frame;
 mod remembered_field;
 
 pub(crate) use direct_sum::Weighting;
-pub(crate) use history::{Bodies, History, Interval, Transfer, no_elastic_response};
+pub(crate) use history::{History, HistoryInputs, Interval, Transfer, no_elastic_response};
 pub(crate) use remembered_field::RememberedField;

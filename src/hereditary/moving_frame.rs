@@ -49,13 +49,14 @@ impl MovingFrame {
         self.scratch.resize(other.scratch.len(), 0.0);
     }
 
-    /// Whether its fields have such cells.
+    /// Whether it is like another, and its fields have such cells.
     #[cfg(feature = "checkpoint")]
-    pub(crate) fn fits(&self, cells: [usize; 2]) -> bool {
+    pub(crate) fn fits(&self, other: &MovingFrame, cells: [usize; 2]) -> bool {
         let count = cells[0] * cells[1];
         self.cells == cells
             && self.scratch.len() == count
-            && [&self.source, &self.remainder].iter().all(|field| field.fits(count))
+            && self.periodic == other.periodic
+            && [&self.source, &self.remainder].iter().all(|field| field.fits(&other.source.recursion, count))
     }
 
     /// Whether there is a past at all.

@@ -85,9 +85,9 @@ impl RememberedField {
         RememberedField { recursion, now: carry(&self.now), trial: vec![0.0; cells] }
     }
 
-    /// Whether its fields have so many cells.
+    /// Whether its recursion is like another, and its fields have so many cells.
     #[cfg(feature = "checkpoint")]
-    pub(super) fn fits(&self, cells: usize) -> bool {
-        self.recursion.fits(cells) && self.has_cells(cells)
+    pub(super) fn fits(&self, recursion: &Exponential, cells: usize) -> bool {
+        self.recursion.fits(recursion, cells) && self.has_cells(cells)
     }
 }

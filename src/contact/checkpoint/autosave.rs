@@ -10,7 +10,7 @@ use crate::error::Result;
 impl Follow<'_> {
     /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end: no more is lost with
     /// the process. A contact that is built alike and resumes from the file ([`ViscoelasticContact::resume`]) goes on
-    /// with the next run of the same stepping as if nothing had happened, bit by bit.
+    /// with the next run of the same stepping as if nothing had happened, bitwise.
     ///
     /// Needs the feature `checkpoint`.
     ///

@@ -11,7 +11,7 @@ use crate::sum::moments;
 /// Numbers of two scenes are the same if they differ by no more than this part: mathematical libraries round differently.
 const SAME: f64 = 1e-9;
 /// Times at which materials without a series are compared: so many a decade, ...
-const A_DECADE: i32 = 8;
+const TIMES_PER_DECADE: i32 = 8;
 /// ... so many decades before and after a second, as far as the material is known.
 const DECADES: i32 = 12;
 
@@ -90,8 +90,8 @@ impl Owners {
 }
 
 fn times() -> impl Iterator<Item = f64> {
-    let steps = -A_DECADE * DECADES..=A_DECADE * DECADES;
-    std::iter::once(0.0).chain(steps.map(|k| 10_f64.powf(f64::from(k) / f64::from(A_DECADE))))
+    let steps = -TIMES_PER_DECADE * DECADES..=TIMES_PER_DECADE * DECADES;
+    std::iter::once(0.0).chain(steps.map(|k| 10_f64.powf(f64::from(k) / f64::from(TIMES_PER_DECADE))))
 }
 
 /// The first entry that differs.

@@ -1,4 +1,4 @@
-//! The file around a state: a mark, the version of the format, length, checksum.
+//! The file around a state: a magic number, the version of the format, length, checksum.
 
 use std::cmp::Ordering;
 
@@ -7,16 +7,16 @@ use serde::de::DeserializeOwned;
 
 use crate::error::CheckpointError;
 
-const MARK: [u8; 8] = *b"VISCOCHK";
+const MAGIC: [u8; 8] = *b"VISCOCHK";
 /// Raised whenever what is saved changes.
 pub(super) const VERSION: u32 = 3;
-/// Mark, version, length, checksum of all but itself.
+/// Magic number, version, length, checksum of all but itself.
 const HEADER: usize = 24;
 const CHECKSUM: std::ops::Range<usize> = 20..HEADER;
 
 /// The bytes of a checkpoint.
 pub(super) fn encode(state: &impl Serialize) -> Result<Vec<u8>, CheckpointError> {
-    let mut bytes = Vec::from(MARK);
+    let mut bytes = Vec::from(MAGIC);
     bytes.extend(VERSION.to_le_bytes());
     bytes.resize(HEADER, 0);
     let mut bytes = postcard::to_extend(state, bytes).map_err(malformed)?;
@@ -31,14 +31,14 @@ pub(super) fn encode(state: &impl Serialize) -> Result<Vec<u8>, CheckpointError>
 pub(super) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, CheckpointError> {
     let (found, expected) = (bytes.len() as u64, HEADER as u64);
     let Some((header, payload)) = bytes.split_first_chunk::<HEADER>() else {
-        return Err(if MARK.starts_with(&bytes[..bytes.len().min(8)]) && !bytes.is_empty() {
+        return Err(if MAGIC.starts_with(&bytes[..bytes.len().min(8)]) && !bytes.is_empty() {
             CheckpointError::Size { found, expected }
         } else {
             CheckpointError::Foreign
         });
     };
     let number = |from: usize| u32::from_le_bytes([header[from], header[from + 1], header[from + 2], header[from + 3]]);
-    if header[..8] != MARK {
+    if header[..8] != MAGIC {
         return Err(CheckpointError::Foreign);
     }
     let version = number(8);

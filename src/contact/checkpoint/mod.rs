@@ -16,12 +16,13 @@ use saved::Saved;
 
 impl ViscoelasticContact {
     /// Saves the whole state to a file: a contact that is built like this one and continues from it
-    /// ([`ViscoelasticContact::resume`]) takes the same steps, bit by bit, on any number of threads.
+    /// ([`ViscoelasticContact::resume`]) takes the same steps, bitwise, on any number of threads.
     ///
     /// Needs the feature `checkpoint`.
     ///
     /// The file is complete and on the medium when this returns; until then, what was there before is not touched. It carries the version
-    /// of its format, its length and a checksum. About 50 bytes a computed cell, 8 more for each relaxation time.
+    /// of its format, its length and a checksum. About 50 bytes per computed cell, 8 more for each relaxation time, and 8 per cell of the
+    /// whole grid.
     ///
     /// ```
     /// use viscocontact::prelude::*;

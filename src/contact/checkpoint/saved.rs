@@ -6,10 +6,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::fingerprint::Fingerprint;
-use crate::contact::domain::Domain;
+use crate::contact::computation::Computation;
 use crate::contact::run::progress::Progress;
 use crate::contact::scene::Scene;
 use crate::contact::state::{Equilibrium, State};
+use crate::contact::time_rule::windowed;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::CheckpointError;
 
@@ -25,7 +26,7 @@ impl<'a> Saved<'a> {
     pub(super) fn of(contact: &'a ViscoelasticContact, progress: Option<&'a Progress>) -> Saved<'a> {
         Saved {
             scene: Fingerprint::of(&contact.scene),
-            state: Cow::Borrowed(&contact.domain.state),
+            state: Cow::Borrowed(&contact.computation.state),
             progress: progress.map(Cow::Borrowed),
         }
     }
@@ -34,9 +35,12 @@ impl<'a> Saved<'a> {
     pub(super) fn restore(self, contact: &mut ViscoelasticContact) -> Result<(), CheckpointError> {
         let scene = Arc::clone(&contact.scene);
         self.scene.require(&Fingerprint::of(&scene))?;
-        check(&self.state, &contact.domain.state, &scene)?;
-        contact.domain = Domain::new(&scene, self.state.into_owned());
-        contact.view.refresh(&contact.domain.state);
+        check(&self.state, &contact.computation.state, &scene)?;
+        if self.progress.as_ref().is_some_and(|progress| !progress.fits(&scene.grid)) {
+            return Err(CheckpointError::Malformed { what: "a run that no contact can continue".into() });
+        }
+        contact.computation = Computation::new(&scene, self.state.into_owned());
+        contact.view.refresh(&contact.computation.state);
         contact.progress = self.progress.map(|progress| Box::new(progress.into_owned()));
         Ok(())
     }
@@ -47,8 +51,9 @@ fn check(state: &State, built: &State, scene: &Scene) -> Result<(), CheckpointEr
     let malformed = |what: &str| Err(CheckpointError::Malformed { what: what.into() });
     let State { clock, loads, indenter, region, history, current, previous, .. } = state;
     let (whole, bodies, gap) = (scene.grid.len(), scene.bodies, indenter.gap());
-    if !region.is_of(&scene.grid) {
-        return malformed("its region is none of the grid");
+    let allowed = region.covers() || windowed(&scene.settings, &built.history, &scene.kernel);
+    if !region.is_of(&scene.grid) || !allowed {
+        return malformed("its region is not part of the grid");
     }
     let cells = region.len();
     let complete = |Equilibrium { solution, motions, .. }: &Equilibrium| {
@@ -56,7 +61,10 @@ fn check(state: &State, built: &State, scene: &Scene) -> Result<(), CheckpointEr
             && [solution.motions.len(), motions.len()] == [bodies; 2]
     };
     let of_a_body = |&owner: &_| usize::from(owner) < bodies;
-    let owners = gap.owner.as_ref().is_none_or(|owner| owner.len() == whole && owner.iter().all(of_a_body));
+    let owners = match &gap.owner {
+        Some(owner) => bodies > 1 && owner.len() == whole && owner.iter().all(of_a_body),
+        None => bodies == 1,
+    };
     let fits = [loads.len(), indenter.bodies()] == [bodies; 2]
         && complete(current)
         && complete(previous)
@@ -72,11 +80,12 @@ fn check(state: &State, built: &State, scene: &Scene) -> Result<(), CheckpointEr
         finite(&[&solution.pressure, &solution.potential])
             && motions.iter().all(|motion| finite(&[&[motion.approach], &motion.tilt]))
     };
-    let sound = finite(&[&times, &[gap.datum], history.displacement(), history.trial()])
-        && sound(current)
-        && sound(previous)
-        && current.solution.pressure.iter().all(|&p| p >= 0.0)
-        && gap.above.iter().all(|&gap| gap >= 0.0)
-        && times.iter().all(|&time| time >= 0.0);
-    if sound { Ok(()) } else { malformed("numbers that no contact has") }
+    let sound =
+        finite(&[&times, &[gap.datum], history.displacement(), history.displacement_before().unwrap_or_default()])
+            && sound(current)
+            && sound(previous)
+            && current.solution.pressure.iter().all(|&p| p >= 0.0)
+            && gap.above.iter().all(|&gap| gap >= 0.0)
+            && times.iter().all(|&time| time >= 0.0);
+    if sound { Ok(()) } else { malformed("non-finite or negative numbers") }
 }

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::contact::report::StepReport;
+use crate::contact::request::Step;
 use crate::contact::settings::Frame;
 use crate::contact::state::State;
-use crate::contact::step::request::Step;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result, non_negative};
 use crate::load::Load;
@@ -55,8 +55,8 @@ impl ViscoelasticContact {
             memory::check("the gap of a moving indenter", 16 * self.grid().len() as u128)?;
         }
         let indenter = self.spare.fill(&self.scene.grid, travel, self.time() + dt)?;
-        let before = (self.force(), self.moment(), self.domain.state.current.motions[0]);
-        let left = Arc::clone(&self.domain.state.indenter);
+        let before = (self.force(), self.moment(), self.computation.state.current.motions[0]);
+        let left = Arc::clone(&self.computation.state.indenter);
         let loads = [load];
         let step = Step { indenter, ..self.request(self.time() + dt, dt, &loads, self.settings().tolerance) };
         let step = self.take(step)?;
@@ -70,7 +70,7 @@ impl ViscoelasticContact {
     /// The work of the last step \[J\] that went along the surface: what the pressure did there, Σ p Δu, less the part of force
     /// and moments.
     fn work_along(&self, (force, moment, motion): (f64, [f64; 2], RigidMotion)) -> f64 {
-        let State { region, history, current, previous, .. } = &self.domain.state;
+        let State { region, history, current, previous, .. } = &self.computation.state;
         let pressures = previous.solution.pressure.iter().zip(&current.solution.pressure);
         let displacements = history.trial().iter().zip(history.displacement());
         let work: f64 = pressures.zip(displacements).map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum();

@@ -42,7 +42,7 @@ impl ViscoelasticContact {
     /// [`ViscoelasticContact::step_over`] with a load for each rigid body, all of which move alike.
     ///
     /// # Errors
-    /// As [`ViscoelasticContact::step_over`], or if there is not one load a body.
+    /// As [`ViscoelasticContact::step_over`], or if there is not one load per body.
     pub fn step_each_over(&mut self, cells: [isize; 2], dt: f64, loads: &[Load]) -> Result<StepReport> {
         if self.settings().frame != Frame::Indenter {
             return Err(Error::WrongFrame { what: "a step over the bodies" });

@@ -1,4 +1,4 @@
-//! An indenter to refill where the next one along a path shall be.
+//! Reuses the fields of an earlier indenter for the next position on a path.
 
 use std::sync::Arc;
 
@@ -9,7 +9,7 @@ use crate::geometry::Gap;
 use crate::motion::Travel;
 
 /// The indenter of the step before the last, and the fields that a new one is made in: a step along a path allocates
-/// nothing, unless a snapshot still holds it.
+/// nothing, unless a snapshot still holds it, or the load leaves the indenter free to tilt.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Spare {
     pub(super) indenter: Option<Arc<Indenter>>,

@@ -7,11 +7,11 @@ use crate::error::{Error, Result, finite, within};
 use crate::load::Load;
 
 /// The contact is this many steps long, or more, in the longest strides.
-const STEPS_A_CONTACT: usize = 8;
+const STEPS_PER_CONTACT_LENGTH: usize = 8;
 /// Lengths of the contact that each shorter stride is kept for: the past that the contact feels is then made of it.
-const CONTACTS_A_STRIDE: usize = 2;
+const CONTACT_LENGTHS_PER_STRIDE: usize = 2;
 /// Lengths of the grid after which a motion that is still not steady is given up.
-const FARTHEST: usize = 10;
+const MAX_GRID_LENGTHS: usize = 10;
 
 /// A steady motion of the indenter over the bodies, and how steady the contact shall be.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,7 +34,7 @@ pub struct SteadyMotion {
 pub struct TowardSteady<'a> {
     contact: &'a mut ViscoelasticContact,
     motion: SteadyMotion,
-    /// Cells a step.
+    /// Cells per step.
     stride: usize,
     /// Cells still to go with it.
     left: usize,
@@ -174,13 +174,13 @@ impl TowardSteady<'_> {
                 if self.arrived {
                     return Ok(false);
                 }
-                if self.travelled > FARTHEST * cells {
+                if self.travelled > MAX_GRID_LENGTHS * cells {
                     let (change, distance) = (self.change, self.distance());
                     return Err(Error::NotSteady { distance, change, tolerance: limit });
                 }
                 (1, contact)
             }
-            longer => (longer / 2, CONTACTS_A_STRIDE * contact),
+            longer => (longer / 2, CONTACT_LENGTHS_PER_STRIDE * contact),
         };
         self.before.copy_from_slice(self.contact.pressure());
         Ok(true)
@@ -198,5 +198,5 @@ impl TowardSteady<'_> {
 
 /// The largest power of two of which a contact has enough.
 fn longest_stride(contact: usize) -> usize {
-    1 << (contact / STEPS_A_CONTACT).max(1).ilog2()
+    1 << (contact / STEPS_PER_CONTACT_LENGTH).max(1).ilog2()
 }

@@ -1,6 +1,6 @@
 //! Steps as long as their error allows.
 
-use crate::contact::domain::Domain;
+use crate::contact::computation::Computation;
 use crate::contact::report::StepReport;
 use crate::contact::run::follow::Follow;
 use crate::contact::run::step_control::StepControl;
@@ -15,13 +15,13 @@ impl Follow<'_> {
     /// One step as long as its error allows.
     pub(super) fn adaptive_step(&mut self, control: &mut StepControl, corner: f64) -> Result<StepReport> {
         let now = self.contact.time();
-        control.keep_slope(&self.contact.domain.state);
+        control.keep_slope(&self.contact.computation.state);
         let stop = corner.min(self.until).min(self.next_stop(now));
         let tolerance = control.solver_tolerance(self.contact.settings().tolerance);
         let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
         loop {
-            let ViscoelasticContact { scene, domain, .. } = &*self.contact;
-            let wanted = control.length(scene, &domain.state, self.history, self.until - now)?;
+            let ViscoelasticContact { scene, computation, .. } = &*self.contact;
+            let wanted = control.length(scene, &computation.state, self.history, self.until - now)?;
             let (time, dt) = towards(now, stop, wanted);
             // a step of the last digit of the time, shortened, may round to itself again, and again
             if time <= now || time >= tried {
@@ -39,13 +39,13 @@ impl Follow<'_> {
                 Err(Error::NotConverged { .. }) if failures < MAX_SOLVER_RETRIES => {
                     failures += 1;
                     control.shorten(dt);
-                    add_work(&mut wasted, &self.contact.domain);
+                    add_work(&mut wasted, &self.contact.computation);
                     continue;
                 }
                 other => other?,
             };
-            let ViscoelasticContact { scene, domain, .. } = &*self.contact;
-            let error = control.estimate(scene, attempt.domain(domain), dt).max(straying);
+            let ViscoelasticContact { scene, computation, .. } = &*self.contact;
+            let error = control.estimate(scene, attempt.computation(computation), dt).max(straying);
             if control.judge(dt, error) {
                 if time == corner {
                     control.restart();
@@ -60,13 +60,13 @@ impl Follow<'_> {
                 return Ok(report);
             }
             events::rejected(time, dt, error, control.tolerance);
-            add_work(&mut wasted, attempt.domain(domain));
+            add_work(&mut wasted, attempt.computation(computation));
         }
     }
 }
 
 /// Adds the convolutions and preconditioner applications of a step that was tried.
-fn add_work(work: &mut [usize; 2], tried: &Domain) {
+fn add_work(work: &mut [usize; 2], tried: &Computation) {
     let counts = tried.trial.solution.counts;
     *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
 }

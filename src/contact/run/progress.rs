@@ -41,6 +41,15 @@ impl Progress {
         self.start + (self.steps + 1) as f64 * dt
     }
 
+    /// Whether a run can be continued from it: a file may hold anything.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn fits(&self, grid: &crate::Grid) -> bool {
+        match &self.control {
+            Some(control) => control.fits(grid),
+            None => (self.now - self.start - self.steps as f64 * self.dt).abs() <= 2.0 * self.dt,
+        }
+    }
+
     /// Takes account of the errors of a step.
     pub(super) fn include(&mut self, time_error: f64, residual: f64) {
         self.worst = [self.worst[0].max(time_error), self.worst[1].max(residual)];

@@ -1,6 +1,6 @@
 //! The length of steps chosen by an estimate of their error.
 
-use crate::contact::domain::Domain;
+use crate::contact::computation::Computation;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::window::region::Region;
@@ -74,6 +74,15 @@ impl StepControl {
             cornered: true,
             strongest: 0.0,
             rejected: 0,
+        }
+    }
+
+    /// Whether its rate belongs to a region of the grid: a file may hold anything.
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn fits(&self, grid: &crate::Grid) -> bool {
+        match &self.region {
+            Some(region) => region.is_of(grid) && self.rate.len() == region.len(),
+            None => self.rate_dt == 0.0,
         }
     }
 
@@ -172,11 +181,11 @@ impl StepControl {
     }
 
     /// The error of a step that was tried, 0 where there is no last step to compare it with.
-    pub(super) fn estimate(&mut self, scene: &Scene, tried: &Domain, dt: f64) -> f64 {
+    pub(super) fn estimate(&mut self, scene: &Scene, tried: &Computation, dt: f64) -> f64 {
         if self.rate_dt == 0.0 || dt == 0.0 {
             return 0.0;
         }
-        let Domain { state, trial, .. } = tried;
+        let Computation { state, trial, .. } = tried;
         if let Some(old) = self.region.as_ref().filter(|old| **old != state.region) {
             // the region grew with this step; on its rim, which carries no force yet, any rate will do
             self.rate = old.carry(&self.rate, &state.region, |_| 0.0);

@@ -1,13 +1,13 @@
 //! A step that was computed becomes the state.
 
-use crate::contact::domain::Domain;
-use crate::contact::step::request::{Step, prescribed};
+use crate::contact::computation::Computation;
+use crate::contact::request::{Step, prescribed};
 use crate::solver::{Modes, RigidMotion};
 
-impl Domain {
+impl Computation {
     /// Makes the trial the state.
     pub(super) fn accept(&mut self, step: Step<'_>, sum: f64) {
-        let Domain { state, trial, .. } = self;
+        let Computation { state, trial, .. } = self;
         let Step { interval, loads, indenter, .. } = step;
         let datum = indenter.gap().datum;
         let contact_cells = trial.solution.pressure.iter().filter(|&&p| p > 0.0).count();

@@ -1,9 +1,9 @@
 //! What the loads of a step ask of the bodies: which motions they leave free, and which they prescribe.
 
 use crate::Grid;
+use crate::contact::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
-use crate::contact::step::request::Step;
 use crate::contact::window::region::Region;
 use crate::error::{Error, Result};
 use crate::load::{Load, Tilt};
@@ -34,7 +34,7 @@ pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Writes what the loads leave free of each body. A tilt about a folded axis cannot but vanish.
+/// Writes what the loads leave free of each body. A tilt about a folded axis vanishes by symmetry.
 pub(super) fn find_free_motions(scene: &Scene, region: &Region, loads: &[Load], free: &mut [Freedom]) {
     for (own, load) in free.iter_mut().zip(loads) {
         *own = freedom(load, &scene.grid);
@@ -102,6 +102,6 @@ impl<'a> Prescribed<'a> {
 }
 
 /// Whether hi + u in contact is the motion of a body whose motion was prescribed, to the last bit.
-pub(super) fn is_exact(step: &Step<'_>, state: &State) -> bool {
+pub(super) fn surface_follows_bodies(step: &Step<'_>, state: &State) -> bool {
     state.history.follows_body_exactly() && !step.has_new_indenter(state)
 }

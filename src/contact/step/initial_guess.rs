@@ -1,7 +1,7 @@
 //! The first guess of a step.
 
+use crate::contact::request::Step;
 use crate::contact::state::State;
-use crate::contact::step::request::Step;
 use crate::contact::trial::Trial;
 use crate::contact::window::window::Window;
 use crate::solver::{Counts, Modes, RigidMotion};

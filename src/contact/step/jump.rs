@@ -1,8 +1,8 @@
 //! Jumps of the load on bodies without elastic response.
 
+use crate::contact::request::Step;
 use crate::contact::state::State;
 use crate::contact::step::initial_guess::{begin, extrapolate};
-use crate::contact::step::request::Step;
 use crate::contact::trial::Trial;
 use crate::contact::window::window::Window;
 use crate::error::Result;

@@ -10,7 +10,7 @@
 //! | pressure and displacement kept for the steps to come (equation 12) | [`History::respond`](crate::hereditary::History::respond) |
 //! | next step | [`ViscoelasticContact::accept`] |
 //!
-//! Beyond the paper, a step looks whether the bodies might touch outside the region that is computed, and then goes on in a
+//! Beyond the paper, a step checks whether the bodies might touch outside the region that is computed, and then goes on in a
 //! copy of the state on a larger one ([`outgrown`]). All that a step computes is in its trial, in such a copy, or in the
 //! part of the history that it may write; the state changes when the step is accepted. A step that fails has nothing to
 //! undo.
@@ -22,12 +22,12 @@ mod constraints;
 mod gap;
 mod initial_guess;
 mod jump;
-pub(in crate::contact) mod request;
 
 use std::sync::Arc;
 
-use crate::contact::domain::Domain;
+use crate::contact::computation::Computation;
 use crate::contact::report::StepReport;
+use crate::contact::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::contact::window::growth::outgrown;
@@ -40,17 +40,16 @@ use crate::load::Load;
 use crate::solver::Stop;
 use checks::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use collect_warnings::collect_warnings;
-use constraints::{Prescribed, find_free_motions, is_exact, validate_loads};
+use constraints::{Prescribed, find_free_motions, surface_follows_bodies, validate_loads};
 use gap::RigidBodies;
 use initial_guess::initial_guess;
 use jump::jump_without_response;
-use request::Step;
 
 /// A step that was computed and waits to be accepted; dropped, it leaves the contact as it was.
 #[must_use]
 pub(in crate::contact) struct Attempt {
     /// The copy on a larger region in which it was computed, if it needed one.
-    larger: Option<Box<Domain>>,
+    larger: Option<Box<Computation>>,
     /// Σ p.
     sum: f64,
 }
@@ -84,7 +83,7 @@ impl ViscoelasticContact {
 
     /// A step in which nothing moves along the surface.
     pub(in crate::contact) fn request<'a>(&self, time: f64, dt: f64, loads: &'a [Load], tolerance: f64) -> Step<'a> {
-        let indenter = Arc::clone(&self.domain.state.indenter);
+        let indenter = Arc::clone(&self.computation.state.indenter);
         Step { interval: Interval { time, dt, stride: [0; 2] }, loads, indenter, tolerance }
     }
 
@@ -98,11 +97,11 @@ impl ViscoelasticContact {
     pub(in crate::contact) fn attempt(&mut self, step: &Step<'_>) -> Result<Attempt> {
         non_negative("time", step.interval.time)?;
         let mut larger = None;
-        let tried = compute(&self.scene, &mut self.domain, &mut larger, step);
+        let tried = compute(&self.scene, &mut self.computation, &mut larger, step);
         if let Err(error) = &tried {
             events::failed(step.interval.time, step.interval.dt, error);
             if let Some(larger) = &larger {
-                self.domain.trial.solution.counts = larger.trial.solution.counts; // the work was done
+                self.computation.trial.solution.counts = larger.trial.solution.counts; // the work was done
             }
         }
         tried.map(|sum| Attempt { larger, sum })
@@ -111,17 +110,17 @@ impl ViscoelasticContact {
     /// Makes an attempt the state. Nothing here can fail.
     pub(in crate::contact) fn accept(&mut self, attempt: Attempt, step: Step<'_>) -> StepReport {
         if let Some(larger) = attempt.larger {
-            self.domain = *larger;
+            self.computation = *larger;
         }
-        self.domain.accept(step, attempt.sum);
-        self.view.refresh(&self.domain.state);
+        self.computation.accept(step, attempt.sum);
+        self.view.refresh(&self.computation.state);
         let report = self.report();
         report.emit();
         report
     }
 
     fn report(&self) -> StepReport {
-        let state = &self.domain.state;
+        let state = &self.computation.state;
         let counts = state.current.solution.counts;
         StepReport {
             time: state.clock.time,
@@ -143,13 +142,18 @@ impl ViscoelasticContact {
 
 impl Attempt {
     /// Where it was computed: in its own copy, or in the contact's.
-    pub(in crate::contact) fn domain<'a>(&'a self, own: &'a Domain) -> &'a Domain {
+    pub(in crate::contact) fn computation<'a>(&'a self, own: &'a Computation) -> &'a Computation {
         self.larger.as_deref().unwrap_or(own)
     }
 }
 
 /// Computes a step in `own`, or in a copy on the first `larger` region that holds all of the contact; returns Σ p.
-fn compute(scene: &Scene, own: &mut Domain, larger: &mut Option<Box<Domain>>, step: &Step<'_>) -> Result<f64> {
+fn compute(
+    scene: &Scene,
+    own: &mut Computation,
+    larger: &mut Option<Box<Computation>>,
+    step: &Step<'_>,
+) -> Result<f64> {
     validate_loads(scene, step)?;
     if let Some((region, placed)) = region_for(scene, &own.state, step) {
         let carried = larger.insert(own.carried_to(scene, region)?);
@@ -170,10 +174,10 @@ fn compute(scene: &Scene, own: &mut Domain, larger: &mut Option<Box<Domain>>, st
     }
 }
 
-impl Domain {
+impl Computation {
     /// Computes a step on the region at hand: into the trial, and the part of the history that a step may write.
     fn solve(&mut self, scene: &Scene, step: &Step<'_>) -> Result<()> {
-        let Domain { state, window, trial } = self;
+        let Computation { state, window, trial } = self;
         let time = step.interval.time;
         window.follow(&state.region, &step.indenter);
         find_free_motions(scene, &state.region, step.loads, &mut trial.free);
@@ -181,11 +185,12 @@ impl Domain {
 
         // u = u_old + c K p
         let (kernel, work) = window.kernel_and_work();
-        let (c, convolutions) = state.history.predict(step.interval, scene.creeping_bodies(), kernel, work)?;
+        let (c, convolutions) = state.history.predict(step.interval, scene.history_inputs(), kernel, work)?;
         compliance_is_usable(c, step)?;
 
         // h = hi + u_old + c K p − ω − α·x, what is prescribed of ω and α included
-        let prescribed = Prescribed::new(step, is_exact(step, state), &state.loads, &state.current.motions);
+        let prescribed =
+            Prescribed::new(step, surface_follows_bodies(step, state), &state.loads, &state.current.motions);
         let bodies = RigidBodies { region: &state.region, initial: window.gap(&step.indenter), prescribed };
         bodies.fill_gap(state.history.trial(), &mut trial.gap);
         bodies.refine_gap(c, &state.history, &state.current.solution.pressure, &mut trial.gap);

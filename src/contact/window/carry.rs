@@ -33,7 +33,9 @@ impl Transfer for Carry<'_> {
 
     fn induced(&mut self, own: &[f64], source: Option<&[f64]>) -> Vec<f64> {
         let mut far = vec![0.0; self.to.len()];
-        if let Some(source) = source.filter(|source| source.iter().any(|&s| s != 0.0)) {
+        // nothing is unknown where the images of a region cover the grid
+        let source = source.filter(|source| !self.from.covers() && source.iter().any(|&s| s != 0.0));
+        if let Some(source) = source {
             self.kernel.apply(&self.confined(source), &mut far, self.work);
         }
         self.from.carry(own, self.to, |k| far[k])

@@ -6,5 +6,5 @@ mod fields;
 pub(crate) mod growth;
 pub(crate) mod placement;
 pub(crate) mod region;
-#[expect(clippy::module_inception, reason = "a window is the noun of this room")]
+#[expect(clippy::module_inception, reason = "the file is named after its type")]
 pub(crate) mod window;

@@ -1,4 +1,4 @@
-//! What is asked of a step.
+//! A requested step.
 
 use std::sync::Arc;
 

@@ -12,27 +12,27 @@ use crate::error::Result;
 /// State, window and trial of one computation. A step that needs a larger region goes on in a copy; whichever was accepted
 /// last is the contact's.
 #[derive(Debug, Clone)]
-pub(crate) struct Domain {
+pub(crate) struct Computation {
     pub(super) state: State,
     pub(super) window: Window,
     pub(super) trial: Trial,
 }
 
-impl Domain {
-    pub(super) fn new(scene: &Scene, state: State) -> Domain {
+impl Computation {
+    pub(super) fn new(scene: &Scene, state: State) -> Computation {
         let window = Window::new(scene, &state.region, &state.indenter);
-        Domain { trial: Trial::new(state.region.len(), scene.bodies), window, state }
+        Computation { trial: Trial::new(state.region.len(), scene.bodies), window, state }
     }
 
     /// A copy on another region; the state stays what it is.
     ///
     /// # Errors
     /// If there is no memory for both.
-    pub(super) fn carried_to(&mut self, scene: &Scene, region: Region) -> Result<Box<Domain>> {
+    pub(super) fn carried_to(&mut self, scene: &Scene, region: Region) -> Result<Box<Computation>> {
         self.check_memory_for(scene, &region)?;
         let cells = region.len();
         let (state, window) = carried(scene, &mut self.state, region);
-        Ok(Box::new(Domain { state, window, trial: Trial::new(cells, scene.bodies) }))
+        Ok(Box::new(Computation { state, window, trial: Trial::new(cells, scene.bodies) }))
     }
 
     /// Rejects a region for which there is no memory beside this one.
@@ -47,7 +47,7 @@ impl Domain {
         if self.state.region == state.region {
             self.state.copy_from(state);
         } else {
-            *self = Domain::new(scene, state.clone());
+            *self = Computation::new(scene, state.clone());
         }
     }
 }
