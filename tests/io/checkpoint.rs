@@ -563,3 +563,25 @@ fn forged_bodies_do_no_harm() {
     fs::remove_file(path).unwrap();
     assert!(refused > 10 && resumed > 10, "{refused} refused, {resumed} resumed");
 }
+
+/// After a step that failed with numbers out of range, the contact is saved and resumed like any other.
+#[test]
+fn a_failed_step_does_not_spoil_a_checkpoint() {
+    let path = file("after_failure");
+    let build = || {
+        let body = Material::incompressible(Maxwell::new(1.0e6, 1.0).unwrap());
+        sphere_on(Grid::square(16, 4.0e-3).unwrap(), body, Settings::default())
+    };
+    let mut contact = build();
+    contact.step(0.0, Load::force(0.5)).unwrap();
+    contact.step(1.0e305, Load::force(0.5)).unwrap_err();
+    contact.save(&path).unwrap();
+    let mut resumed = build();
+    resumed.resume(&path).unwrap();
+    for contact in [&mut contact, &mut resumed] {
+        contact.step(1.0e-7, Load::force(0.5)).unwrap();
+    }
+    assert_eq!(contact.pressure(), resumed.pressure());
+    assert_eq!(contact.displacement(), resumed.displacement());
+    fs::remove_file(path).unwrap();
+}

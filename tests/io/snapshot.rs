@@ -78,3 +78,80 @@ fn nothing_is_left_of_a_larger_contact() {
     }
     assert_eq!(seen(&contact), seen(&twin));
 }
+
+/// One operation on a contact, by four random numbers; whether it succeeded.
+fn operate(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) -> bool {
+    let (dt, force) = (0.2 * a, 0.2 + b);
+    let eccentric = || Load::eccentric_force(force, [1.0e-4 * (c - 0.5), 0.0]);
+    match (contact.settings().frame, (8.0 * kind) as usize) {
+        (_, 0) => contact.step(0.0, Load::force(force)).is_ok(),
+        (_, 1) => contact.step(dt, eccentric()).is_ok(),
+        (_, 2) => contact.step(dt, Load::approach(2.0e-5 * b)).is_ok(),
+        (Frame::Indenter, 3 | 4) => contact.step_over([1, 0], dt, Load::force(force)).is_ok(),
+        (_, 3) => {
+            let path = Straight::new([1.0e-4 * (c - 0.5), 0.0], [1.0e-4, 0.0]).unwrap();
+            contact.step_along(&Travel::new(Sphere::new(10.0e-3).unwrap(), path), dt, Load::force(force)).is_ok()
+        }
+        (_, 4) => {
+            let moved = Shifted::new(Sphere::new(8.0e-3 + 4.0e-3 * a).unwrap(), [0.0, 2.0e-4 * (c - 0.5)]).unwrap();
+            contact.set_geometry(&moved).is_ok()
+        }
+        _ => contact.step(dt, Load::force(force)).is_ok(),
+    }
+}
+
+/// Something that must leave no trace: steps that fail in every way, on a larger region or with the indenter elsewhere, and
+/// states that are restored.
+fn disturb(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) {
+    let (dt, too_much) = (0.2 * a, 1.0e3 * (1.0 + b));
+    match (6.0 * kind) as usize {
+        0 => assert!(contact.step(dt, Load::force(too_much)).is_err(), "contact at the edge"),
+        1 => assert!(contact.step(dt, Load::force(f64::NAN)).is_err()),
+        2 => assert!(contact.step(dt, Load::eccentric_force(0.5, [1.0, 0.0])).is_err(), "outside the hull"),
+        3 => {
+            let path = Straight::new([3.0e-4 * (c - 0.5), 1.0e-4], [1.0e-4, 0.0]).unwrap();
+            let travel = Travel::new(Sphere::new(10.0e-3).unwrap(), path);
+            assert!(contact.step_along(&travel, dt, Load::force(too_much)).is_err());
+        }
+        _ => {
+            let snapshot = contact.snapshot();
+            (0..3).for_each(|k| _ = operate(contact, [(kind * 7.0 + f64::from(k) * 0.37).fract(), b, c, a]));
+            contact.restore(&snapshot).unwrap();
+        }
+    }
+}
+
+/// Two contacts take the same random steps, one of them disturbed in between: bitwise the same, whatever moves, grows, unfolds
+/// or fails.
+#[test]
+fn what_fails_or_is_restored_leaves_no_trace() {
+    let mut taken = 0;
+    for seed in 0..120 {
+        let mut uniform = crate::common::noise::uniform(seed);
+        let mut random = move || [0; 4].map(|_| uniform());
+        let [frame, window, symmetry, cells] = random();
+        let settings = Settings {
+            frame: if frame < 0.25 { Frame::Indenter } else { Frame::Bodies },
+            window: window < 0.7,
+            symmetry: symmetry < 0.7,
+            ..Settings::default()
+        };
+        let grid = Grid::square(2 * (8.0 + 12.0 * cells) as usize, 4.0e-3).unwrap();
+        let mut plain = sphere_on(grid, three_times(), settings);
+        let mut disturbed = plain.clone();
+        for step in 0..10 {
+            let (operation, disturbance) = (random(), random());
+            disturb(&mut disturbed, disturbance);
+            let done = [operate(&mut plain, operation), operate(&mut disturbed, operation)];
+            assert_eq!(done[0], done[1], "seed {seed}, step {step}: {operation:?} after {disturbance:?}");
+            taken += usize::from(done[0]);
+            let same = plain.pressure() == disturbed.pressure()
+                && plain.displacement() == disturbed.displacement()
+                && plain.approach() == disturbed.approach()
+                && plain.tilt() == disturbed.tilt()
+                && plain.time() == disturbed.time();
+            assert!(same, "seed {seed}, step {step}: {operation:?} after {disturbance:?}");
+        }
+    }
+    assert!(taken > 900, "{taken}");
+}
