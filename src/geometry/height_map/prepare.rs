@@ -33,8 +33,7 @@ impl HeightMap {
         let rows = (first[0]..first[0] + cells[0]).map(|i| i * n2 + first[1]);
         let heights = rows.flat_map(|from| self.heights[from..from + cells[1]].iter().copied());
         let heights = memory::collect("a part of a map", cells[0] * cells[1], heights)?;
-        let part = HeightMap { cells, periodic: false, heights: Vec::new(), ..self };
-        Ok(part.with_heights(heights))
+        Ok(HeightMap { cells, periodic: false, heights, ..self }.summarized())
     }
 
     /// The mirror image: the order of the points is reversed along the chosen axes. Flip a surface that was measured
@@ -65,9 +64,8 @@ impl HeightMap {
     /// The map with peaks and valleys exchanged, as on a replica: z becomes −z.
     #[must_use]
     pub fn inverted(mut self) -> HeightMap {
-        let mut heights = std::mem::take(&mut self.heights);
-        heights.iter_mut().for_each(|z| *z = -*z);
-        self.with_heights(heights)
+        self.heights.iter_mut().for_each(|z| *z = -*z);
+        self.summarized()
     }
 
     /// The map with all heights multiplied by `factor`.
@@ -76,9 +74,9 @@ impl HeightMap {
     /// If the factor is not finite, or a height exceeds ±1e300 m.
     pub fn scaled(mut self, factor: f64) -> Result<HeightMap> {
         finite("factor of the heights", factor)?;
-        let mut heights = std::mem::take(&mut self.heights);
-        heights.iter_mut().for_each(|z| *z *= factor);
-        Ok(self.with_heights(super::check_heights(heights)?))
+        self.heights.iter_mut().for_each(|z| *z *= factor);
+        super::check_heights(&self.heights)?;
+        Ok(self.summarized())
     }
 
     /// The map with its middle at the point `center` \[m\].
