@@ -112,11 +112,8 @@ impl AxisymmetricContact {
         // six fields and the recursion
         memory::check("a foundation", (48 + displacement.bytes_per_cell()) as u128 * elements as u128)?;
         let depths: Vec<f64> = (0..elements).map(|k| (profile.depth)((k as f64 + 0.5) * width)).collect();
-        for &depth in &depths {
-            if depth != f64::INFINITY {
-                finite("profile", depth)?;
-            }
-        }
+        let mut bounded = depths.iter().filter(|depth| **depth != f64::INFINITY);
+        bounded.try_for_each(|&depth| finite("profile", depth).map(drop))?;
         let approach = depths.iter().copied().fold(f64::INFINITY, f64::min);
         if approach == f64::INFINITY {
             return Err(Error::NothingToTouch { body: 0, cells: elements });

@@ -106,16 +106,13 @@ fn central_differences(map: &HeightMap) -> MeanSquares {
             let here = z[i * n2 + j];
             let along1 = neighbours(i, n1).map(|(a, b)| (z[a * n2 + j], z[b * n2 + j]));
             let along2 = neighbours(j, n2).map(|(a, b)| (z[i * n2 + a], z[i * n2 + b]));
-            let second_derivative = |(a, b): (f64, f64), s: f64| (a - 2.0 * here + b) / (s * s);
-            if let Some((a, b)) = along1 {
-                add(0, (b - a) / (2.0 * s1));
-            }
-            if let Some((a, b)) = along2 {
-                add(1, (b - a) / (2.0 * s2));
+            let axes = [(along1, s1, n1), (along2, s2, n2)];
+            for (axis, (pair, s, _)) in axes.into_iter().enumerate() {
+                pair.into_iter().for_each(|(a, b)| add(axis, (b - a) / (2.0 * s)));
             }
             // A single row of points has no curvature across.
-            let curvatures = [(along1, s1, n1), (along2, s2, n2)]
-                .map(|(pair, s, n)| if n == 1 { Some(0.0) } else { pair.map(|pair| second_derivative(pair, s)) });
+            let curvatures = axes
+                .map(|(pair, s, n)| if n == 1 { Some(0.0) } else { pair.map(|(a, b)| (a - 2.0 * here + b) / (s * s)) });
             if let [Some(a), Some(b)] = curvatures {
                 add(2, 0.5 * (a + b));
             }

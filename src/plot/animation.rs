@@ -107,12 +107,10 @@ impl Animation {
             encoder.set_repeat(gif::Repeat::Infinite).map_err(|error| failed(path, error))?;
             (self.encoder, self.size) = (Some(encoder), size);
         }
-        for (field, side, first) in
-            [("width of a frame", size[0], self.size[0]), ("height of a frame", size[1], self.size[1])]
-        {
-            if side != first {
-                return Err(Error::CountOutOfRange { field, value: side as usize, allowed: "that of the first frame" });
-            }
+        if let Some(axis) = (0..2).find(|&axis| size[axis] != self.size[axis]) {
+            let field = ["width of a frame", "height of a frame"][axis];
+            let (value, allowed) = (size[axis] as usize, "that of the first frame");
+            return Err(Error::CountOutOfRange { field, value, allowed });
         }
         let pixels = self.palette.indexed(picture.rgb());
         let [left, top, width, height] = changed(&self.last, &pixels, size[0] as usize);
