@@ -201,21 +201,17 @@ pub fn shifts_by_whole_cells(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let within = ROUNDING * greatest(&gap);
     for shift in SHIFTS {
         let by = [0, 1].map(|axis| shift[axis] as f64 * grid.spacing()[axis]);
-        check(
-            "a shift by whole cells shifts the field",
-            grid,
-            &shifted(geometry, grid, by, 0.0),
-            |k, center, found| {
-                let from = [(k / n2) as i64 - shift[0], (k % n2) as i64 - shift[1]];
-                if !(0..n1 as i64).contains(&from[0]) || !(0..n2 as i64).contains(&from[1]) {
-                    return None;
-                }
-                let [i, j] = from.map(|index| index as usize);
-                let expected = gap[i * n2 + j];
-                let same = found == expected || (found - expected).abs() <= within;
-                if same { None } else { mismatch(geometry, grid, center, found, within) }
-            },
-        )?;
+        let moved = shifted(geometry, grid, by, 0.0);
+        check("a shift by whole cells shifts the field", grid, &moved, |k, center, found| {
+            let from = [(k / n2) as i64 - shift[0], (k % n2) as i64 - shift[1]];
+            if !(0..n1 as i64).contains(&from[0]) || !(0..n2 as i64).contains(&from[1]) {
+                return None;
+            }
+            let [i, j] = from.map(|index| index as usize);
+            let expected = gap[i * n2 + j];
+            let same = found == expected || (found - expected).abs() <= within;
+            if same { None } else { mismatch(geometry, grid, center, found, within) }
+        })?;
     }
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::error::{Error, MapError, Result, finite, positive};
+use crate::error::{Error, MapError, Result, count_within, finite, positive};
 use crate::geometry::HeightMap;
 use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
 
@@ -128,9 +128,7 @@ impl HeightMap {
     /// # Errors
     /// If there are no bins, or all heights are equal.
     pub fn height_distribution(&self, bins: usize) -> Result<Vec<(f64, f64)>> {
-        if bins == 0 {
-            return Err(Error::CountOutOfRange { field: "bins of the heights", value: 0, allowed: "1 or more" });
-        }
+        count_within("bins of the heights", bins, bins > 0, "1 or more")?;
         self.require_known()?;
         let low = self.known().fold(f64::INFINITY, f64::min);
         let range = positive("range of the heights", self.known().fold(low, f64::max) - low)?;

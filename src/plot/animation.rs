@@ -5,7 +5,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use crate::ViscoelasticContact;
-use crate::error::{Error, Result, within};
+use crate::error::{Error, Result, count_within, within};
 use crate::file::{Appending, Part, failed};
 use crate::output::Field;
 use crate::plot::palette::Palette;
@@ -107,10 +107,8 @@ impl Animation {
             encoder.set_repeat(gif::Repeat::Infinite).map_err(|error| failed(path, error))?;
             (self.encoder, self.size) = (Some(encoder), size);
         }
-        if let Some(axis) = (0..2).find(|&axis| size[axis] != self.size[axis]) {
-            let field = ["width of a frame", "height of a frame"][axis];
-            let (value, allowed) = (size[axis] as usize, "that of the first frame");
-            return Err(Error::CountOutOfRange { field, value, allowed });
+        for (axis, field) in ["width of a frame", "height of a frame"].into_iter().enumerate() {
+            count_within(field, size[axis] as usize, size[axis] == self.size[axis], "that of the first frame")?;
         }
         let pixels = self.palette.indexed(picture.rgb());
         let [left, top, width, height] = changed(&self.last, &pixels, size[0] as usize);

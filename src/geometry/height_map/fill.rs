@@ -65,8 +65,7 @@ impl Laplacian {
             let along2 = |forward| next(j, n2, forward).map_or((k, 0.0), |j| (i * n2 + j, w2));
             [along1(false), along1(true), along2(false), along2(true)]
         });
-        let neighbours = neighbours.collect();
-        Laplacian { points, unknown, neighbours }
+        Laplacian { neighbours: neighbours.collect(), points, unknown }
     }
 
     /// Σ weight (value − neighbour) with 0 for known neighbours: the equations without their right-hand sides.

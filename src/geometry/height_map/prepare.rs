@@ -2,7 +2,7 @@
 
 use super::HeightMap;
 use crate::Grid;
-use crate::error::{Error, Result, finite};
+use crate::error::{Result, count_within, finite};
 use crate::memory;
 
 impl HeightMap {
@@ -20,14 +20,11 @@ impl HeightMap {
     pub fn cropped(self, first: [usize; 2], cells: [usize; 2]) -> Result<HeightMap> {
         let fields = [("first point along x1", "points along x1"), ("first point along x2", "points along x2")];
         for (axis, (of_first, of_cells)) in fields.into_iter().enumerate() {
-            if first[axis] >= self.cells[axis] {
-                let allowed = "below the number of points of the map";
-                return Err(Error::CountOutOfRange { field: of_first, value: first[axis], allowed });
-            }
-            if cells[axis] == 0 || cells[axis] > self.cells[axis] - first[axis] {
-                let allowed = "at least 1, and at most the number of points of the map from the first on";
-                return Err(Error::CountOutOfRange { field: of_cells, value: cells[axis], allowed });
-            }
+            let inside = first[axis] < self.cells[axis];
+            count_within(of_first, first[axis], inside, "below the number of points of the map")?;
+            let inside = (1..=self.cells[axis] - first[axis]).contains(&cells[axis]);
+            let allowed = "at least 1, and at most the number of points of the map from the first on";
+            count_within(of_cells, cells[axis], inside, allowed)?;
         }
         let n2 = self.cells[1];
         let rows = (first[0]..first[0] + cells[0]).map(|i| i * n2 + first[1]);
@@ -104,7 +101,7 @@ impl HeightMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::MapError;
+    use crate::error::{Error, MapError};
 
     fn map() -> HeightMap {
         HeightMap::new([2, 3], [2.0, 6.0], vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap()

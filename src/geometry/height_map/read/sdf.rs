@@ -82,11 +82,7 @@ fn from_binary(file: &[u8]) -> Result<HeightMap> {
     }
     let (header, mut data) = file.split_at(BINARY_HEADER);
     let u16_at = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
-    let f64_at = |at: usize| {
-        let mut word = [0; 8];
-        word.copy_from_slice(&header[at..at + 8]);
-        f64::from_le_bytes(word)
-    };
+    let f64_at = |at: usize| f64::from_le_bytes(std::array::from_fn(|k| header[at + k]));
     let cells = [u16_at(42), u16_at(44)];
     let spacing = [positive("Xscale", f64_at(46))?, positive("Yscale", f64_at(54))?];
     let scale = positive("Zscale", f64_at(62))?;

@@ -176,10 +176,7 @@ impl<'a, 'i> Header<'a, 'i> {
         let Some(rotation) = self.node(ROTATION) else { return Ok(()) };
         for entry in rotation.children().filter(Node::is_element) {
             let text = entry.text().unwrap_or_default().trim();
-            let identity = match entry.tag_name().name() {
-                "r11" | "r22" | "r33" => 1.0,
-                _ => 0.0,
-            };
+            let identity = if ["r11", "r22", "r33"].contains(&entry.tag_name().name()) { 1.0 } else { 0.0 };
             if !text.parse().is_ok_and(|value: f64| (value - identity).abs() < 1e-9) {
                 return Err(Self::error(ROTATION, text, "none (1 on the diagonal, 0 off it)").into());
             }
