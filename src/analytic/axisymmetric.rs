@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::error::{Error, Result, finite, length, non_negative, positive};
+use crate::error::{Error, Result, count_within, finite, length, non_negative, positive};
 use crate::hereditary::RememberedField;
 use crate::memory;
 use crate::rheology::{Material, is_known};
@@ -102,9 +102,7 @@ impl AxisymmetricContact {
     /// If there are no elements, the reach is not positive or more than 1e300 m, no value of the profile is finite or
     /// one is NaN or −∞, or the material has no exponential series. If there is not enough memory for the elements.
     pub fn new(profile: &Profile, material: &Material, elements: usize, reach: f64) -> Result<AxisymmetricContact> {
-        if elements == 0 {
-            return Err(Error::CountOutOfRange { field: "elements", value: 0, allowed: "1 or more" });
-        }
+        count_within("elements", elements, elements > 0, "1 or more")?;
         length("reach of the foundation", reach)?;
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("the one-dimensional foundation"))?;
         let width = reach / elements as f64;
@@ -112,11 +110,8 @@ impl AxisymmetricContact {
         // six fields and the recursion
         memory::check("a foundation", (48 + displacement.bytes_per_cell()) as u128 * elements as u128)?;
         let depths: Vec<f64> = (0..elements).map(|k| (profile.depth)((k as f64 + 0.5) * width)).collect();
-        for &depth in &depths {
-            if depth != f64::INFINITY {
-                finite("profile", depth)?;
-            }
-        }
+        let mut bounded = depths.iter().filter(|depth| **depth != f64::INFINITY);
+        bounded.try_for_each(|&depth| finite("profile", depth).map(drop))?;
         let approach = depths.iter().copied().fold(f64::INFINITY, f64::min);
         if approach == f64::INFINITY {
             return Err(Error::NothingToTouch { body: 0, cells: elements });

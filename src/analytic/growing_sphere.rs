@@ -75,9 +75,8 @@ impl GrowingSphere {
             return Err(Error::NoElasticResponse { time: 0.0, what: "the solution for a growing contact" });
         }
         if let Load::Approach { .. } = load.at(0.0) {
-            return Err(
-                LoadError::WrongKind { field: "the growing sphere", needed: "a force", given: "an approach" }.into()
-            );
+            let (field, needed, given) = ("the growing sphere", "a force", "an approach");
+            return Err(LoadError::WrongKind { field, needed, given }.into());
         }
         let relaxation = creep.relaxation();
         Ok(GrowingSphere { radius, creep, relaxation, load: Arc::new(load), step: None, rule: GaussLegendre::new(20) })

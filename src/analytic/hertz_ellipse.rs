@@ -2,7 +2,7 @@ use std::f64::consts::PI;
 
 use ellip::{elliprd, elliprf};
 
-use crate::error::{Error, Result, finite, non_negative, positive};
+use crate::error::{Result, finite, non_negative, positive, within};
 
 /// A paraboloid with two radii of curvature on an elastic half-space (Hertz 1882; Johnson, *Contact
 /// Mechanics*, 1985, §4.2): the contact is an ellipse.
@@ -40,13 +40,7 @@ impl HertzEllipse {
         non_negative("force", force)?;
         let (long, short) = (radii[0].max(radii[1]), radii[0].min(radii[1]));
         let ratio = long / short;
-        if ratio > 1e12 {
-            return Err(Error::OutOfRange {
-                field: "ratio of the radii of curvature",
-                value: radii[0] / radii[1],
-                allowed: "in [1e-12, 1e12]",
-            });
-        }
+        within("ratio of the radii of curvature", radii[0] / radii[1], ratio <= 1e12, "in [1e-12, 1e12]")?;
 
         // the ratio of the curvatures, (a/b)² (K/D − 1), falls with k = b/a: bisect in ln k
         let (mut low, mut high) = (-2.0 * ratio.ln() - 1.0, 0.0_f64);

@@ -30,6 +30,11 @@ pub(crate) fn within(field: &'static str, value: f64, inside: bool, allowed: &'s
     if value.is_finite() && inside { Ok(value) } else { Err(Error::OutOfRange { field, value, allowed }) }
 }
 
+/// Accepts a count for which `inside` holds.
+pub(crate) fn count_within(field: &'static str, value: usize, inside: bool, allowed: &'static str) -> Result<()> {
+    if inside { Ok(()) } else { Err(Error::CountOutOfRange { field, value, allowed }) }
+}
+
 /// Accepts a slice of exactly `expected` values.
 pub(crate) fn exact_length(field: &'static str, len: usize, expected: usize) -> Result<()> {
     if len == expected { Ok(()) } else { Err(Error::WrongLength { field, len, expected, exact: true }) }

@@ -12,7 +12,9 @@ mod table;
 
 #[cfg(feature = "checkpoint")]
 pub use checkpoint::CheckpointError;
-pub(crate) use checks::{LONGEST, exact_length, finite, least_length, length, non_negative, positive, within};
+pub(crate) use checks::{
+    LONGEST, count_within, exact_length, finite, least_length, length, non_negative, positive, within,
+};
 pub use convergence::{Convergence, Trend};
 pub use kernel::KernelError;
 pub use load::LoadError;

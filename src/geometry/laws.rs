@@ -71,13 +71,20 @@ pub fn all(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     shifts_by_whole_cells(geometry, grid)
 }
 
-/// Checks a field: `expected` returns the value that a cell should have if it differs.
-fn check(law: &'static str, grid: &Grid, gap: &[f64], expected: impl Fn([usize; 2], f64) -> Option<f64>) -> Verdict {
+/// Checks a field: `expected` takes the index and the centre of a cell and its gap, and returns the value that it should
+/// have if it differs.
+fn check(
+    law: &'static str,
+    grid: &Grid,
+    gap: &[f64],
+    expected: impl Fn(usize, [f64; 2], f64) -> Option<f64>,
+) -> Verdict {
     let n2 = grid.cells()[1];
     for (k, &found) in gap.iter().enumerate() {
         let cell = [k / n2, k % n2];
-        if let Some(expected) = expected(cell, found) {
-            return Err(Violation { law, cell, position: grid.center(cell[0], cell[1]), found, expected });
+        let position = grid.center(cell[0], cell[1]);
+        if let Some(expected) = expected(k, position, found) {
+            return Err(Violation { law, cell, position, found, expected });
         }
     }
     Ok(())
@@ -122,15 +129,14 @@ fn mismatch(geometry: &dyn Geometry, grid: &Grid, [x1, x2]: [f64; 2], found: f64
 /// # Errors
 /// The first violation.
 pub fn is_a_gap(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
-    let bad = |_, found: f64| (found.is_nan() || found == f64::NEG_INFINITY).then_some(f64::INFINITY);
+    let bad = |_, _, found: f64| (found.is_nan() || found == f64::NEG_INFINITY).then_some(f64::INFINITY);
     let law = "a gap is a number or +∞";
     check(law, grid, &filled(geometry, grid, 0.0), bad)?;
     let [l1, l2] = grid.lengths();
     for by in [[0.0; 2], [0.3 * l1, -0.2 * l2], [-1.7 * l1, 0.01 * l2], [1e3 * l1, 1e3 * l2]] {
         check(law, grid, &shifted(geometry, grid, by, 0.0), bad)?;
-        check(law, grid, &vec![0.0; grid.len()], |[i, j], _| {
-            let [x1, x2] = grid.center(i, j);
-            bad([i, j], geometry.initial_gap(x1 - by[0], x2 - by[1]))
+        check(law, grid, &vec![0.0; grid.len()], |k, [x1, x2], _| {
+            bad(k, [x1, x2], geometry.initial_gap(x1 - by[0], x2 - by[1]))
         })?;
     }
     Ok(())
@@ -143,7 +149,7 @@ pub fn is_a_gap(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
 pub fn has_something_to_touch(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let gap = filled(geometry, grid, 0.0);
     let nothing = !gap.iter().any(|h| h.is_finite());
-    check("there is something to touch", grid, &gap, |_, _| nothing.then_some(0.0))
+    check("there is something to touch", grid, &gap, |_, _, _| nothing.then_some(0.0))
 }
 
 /// Repeated evaluations give bitwise the same values on every cell, whatever the field contained before.
@@ -152,14 +158,10 @@ pub fn has_something_to_touch(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
 /// The first violation.
 pub fn repeats_itself(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let law = "repeated evaluations give the same gap";
-    let n2 = grid.cells()[1];
     let by = grid.lengths().map(|length| 0.37 * length);
     let (first, first_shifted) = (filled(geometry, grid, 0.0), shifted(geometry, grid, by, 0.0));
-    let differs_from = |other: Vec<f64>| {
-        move |[i, j]: [usize; 2], found: f64| {
-            let again = other[i * n2 + j];
-            (again.to_bits() != found.to_bits()).then_some(again)
-        }
+    let differs_from = |again: Vec<f64>| {
+        move |k: usize, _: [f64; 2], found: f64| (again[k].to_bits() != found.to_bits()).then_some(again[k])
     };
     check(law, grid, &first, differs_from(filled(geometry, grid, f64::NAN)))?;
     check(law, grid, &first_shifted, differs_from(shifted(geometry, grid, by, f64::NAN)))
@@ -172,8 +174,8 @@ pub fn repeats_itself(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
 pub fn field_matches_points(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let gap = filled(geometry, grid, 0.0);
     let within = ROUNDING * greatest(&gap);
-    check("a field is the gap at the cell centres", grid, &gap, |[i, j], found| {
-        mismatch(geometry, grid, grid.center(i, j), found, within)
+    check("a field is the gap at the cell centres", grid, &gap, |_, center, found| {
+        mismatch(geometry, grid, center, found, within)
     })
 }
 
@@ -182,12 +184,11 @@ pub fn field_matches_points(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
 /// # Errors
 /// The first cell where they differ by more than 1e-10 of the greatest gap.
 pub fn zero_shift_changes_nothing(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
-    let (gap, n2) = (filled(geometry, grid, 0.0), grid.cells()[1]);
+    let gap = filled(geometry, grid, 0.0);
     let within = ROUNDING * greatest(&gap);
-    check("a shift by zero changes nothing", grid, &shifted(geometry, grid, [0.0; 2], 0.0), |[i, j], found| {
-        let expected = gap[i * n2 + j];
-        let same = found == expected || (found - expected).abs() <= within;
-        (!same).then_some(expected)
+    check("a shift by zero changes nothing", grid, &shifted(geometry, grid, [0.0; 2], 0.0), |k, _, found| {
+        let same = found == gap[k] || (found - gap[k]).abs() <= within;
+        (!same).then_some(gap[k])
     })
 }
 
@@ -200,15 +201,16 @@ pub fn shifts_by_whole_cells(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     let within = ROUNDING * greatest(&gap);
     for shift in SHIFTS {
         let by = [0, 1].map(|axis| shift[axis] as f64 * grid.spacing()[axis]);
-        check("a shift by whole cells shifts the field", grid, &shifted(geometry, grid, by, 0.0), |[i, j], found| {
-            let from = [i as i64 - shift[0], j as i64 - shift[1]];
+        let moved = shifted(geometry, grid, by, 0.0);
+        check("a shift by whole cells shifts the field", grid, &moved, |k, center, found| {
+            let from = [(k / n2) as i64 - shift[0], (k % n2) as i64 - shift[1]];
             if !(0..n1 as i64).contains(&from[0]) || !(0..n2 as i64).contains(&from[1]) {
                 return None;
             }
             let [i, j] = from.map(|index| index as usize);
             let expected = gap[i * n2 + j];
             let same = found == expected || (found - expected).abs() <= within;
-            if same { None } else { mismatch(geometry, grid, grid.center(i, j), found, within) }
+            if same { None } else { mismatch(geometry, grid, center, found, within) }
         })?;
     }
     Ok(())
@@ -222,8 +224,7 @@ pub fn shifts_by_whole_cells(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
 pub fn shift_matches_points(geometry: &dyn Geometry, grid: &Grid, by: [f64; 2], tolerance: f64) -> Verdict {
     let gap = shifted(geometry, grid, by, 0.0);
     let within = (ROUNDING + tolerance) * greatest(&gap);
-    check("the shifted field is the gap at the shifted points", grid, &gap, |[i, j], found| {
-        let [x1, x2] = grid.center(i, j);
+    check("the shifted field is the gap at the shifted points", grid, &gap, |_, [x1, x2], found| {
         mismatch(geometry, grid, [x1 - by[0], x2 - by[1]], found, within)
     })
 }

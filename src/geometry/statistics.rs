@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use crate::error::{Error, MapError, Result, finite, positive};
+use crate::error::{Error, MapError, Result, count_within, finite, positive};
 use crate::geometry::HeightMap;
 use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
 
@@ -106,16 +106,13 @@ fn central_differences(map: &HeightMap) -> MeanSquares {
             let here = z[i * n2 + j];
             let along1 = neighbours(i, n1).map(|(a, b)| (z[a * n2 + j], z[b * n2 + j]));
             let along2 = neighbours(j, n2).map(|(a, b)| (z[i * n2 + a], z[i * n2 + b]));
-            let second_derivative = |(a, b): (f64, f64), s: f64| (a - 2.0 * here + b) / (s * s);
-            if let Some((a, b)) = along1 {
-                add(0, (b - a) / (2.0 * s1));
-            }
-            if let Some((a, b)) = along2 {
-                add(1, (b - a) / (2.0 * s2));
+            let axes = [(along1, s1, n1), (along2, s2, n2)];
+            for (axis, (pair, s, _)) in axes.into_iter().enumerate() {
+                pair.into_iter().for_each(|(a, b)| add(axis, (b - a) / (2.0 * s)));
             }
             // A single row of points has no curvature across.
-            let curvatures = [(along1, s1, n1), (along2, s2, n2)]
-                .map(|(pair, s, n)| if n == 1 { Some(0.0) } else { pair.map(|pair| second_derivative(pair, s)) });
+            let curvatures = axes
+                .map(|(pair, s, n)| if n == 1 { Some(0.0) } else { pair.map(|(a, b)| (a - 2.0 * here + b) / (s * s)) });
             if let [Some(a), Some(b)] = curvatures {
                 add(2, 0.5 * (a + b));
             }
@@ -131,9 +128,7 @@ impl HeightMap {
     /// # Errors
     /// If there are no bins, or all heights are equal.
     pub fn height_distribution(&self, bins: usize) -> Result<Vec<(f64, f64)>> {
-        if bins == 0 {
-            return Err(Error::CountOutOfRange { field: "bins of the heights", value: 0, allowed: "1 or more" });
-        }
+        count_within("bins of the heights", bins, bins > 0, "1 or more")?;
         self.require_known()?;
         let low = self.known().fold(f64::INFINITY, f64::min);
         let range = positive("range of the heights", self.known().fold(low, f64::max) - low)?;

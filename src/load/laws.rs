@@ -20,7 +20,7 @@
 //! println!("{violation}");
 //! ```
 
-use crate::load::{Load, LoadHistory, Tilt};
+use crate::load::{Load, LoadHistory};
 
 /// A violation of a law.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
@@ -78,27 +78,6 @@ pub fn all(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     smooth_between_breakpoints(history, times)
 }
 
-/// Force or approach, and for each tilt the angle or the load point.
-fn values(load: &Load) -> [f64; 3] {
-    let main = match *load {
-        Load::Force { normal, .. } => normal,
-        Load::Approach { approach, .. } => approach,
-    };
-    let [first, second] = load.tilt().map(|tilt| match tilt {
-        Tilt::Fixed(angle) => angle,
-        Tilt::Free { at } => at,
-    });
-    [main, first, second]
-}
-
-/// The names of the values.
-fn names(load: &Load) -> [&'static str; 3] {
-    let main = if matches!(load, Load::Force { .. }) { "normal force" } else { "approach" };
-    let tilt = load.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
-    let first = if tilt[0] { "load point along x1" } else { "tilt along x1" };
-    [main, first, if tilt[1] { "load point along x2" } else { "tilt along x2" }]
-}
-
 /// The times and the breakpoints between them.
 fn moments(history: &dyn LoadHistory, times: &[f64]) -> Vec<f64> {
     let mut moments = times.to_vec();
@@ -128,14 +107,14 @@ fn and_between(moments: &[f64]) -> impl Iterator<Item = f64> {
 /// The greatest absolute value at and between the moments: a load may vanish at its corners.
 fn scales(history: &dyn LoadHistory, moments: &[f64]) -> [f64; 3] {
     and_between(moments).fold([0.0; 3], |most, t| {
-        let (at, before) = (values(&history.at(t)), values(&history.before(t)));
+        let (at, before) = (history.at(t).values(), history.before(t).values());
         [0, 1, 2].map(|k| f64::max(most[k], f64::max(at[k].abs(), before[k].abs())))
     })
 }
 
 /// The first value in which two loads differ by more than `within` allows: its name, and both.
 fn difference(found: &Load, expected: &Load, within: [f64; 3]) -> Option<(&'static str, f64, f64)> {
-    let (a, b, named) = (values(found), values(expected), names(found));
+    let (a, b, named) = (found.values(), expected.values(), found.names());
     if found.kind() != expected.kind() {
         return Some(("kind of load", a[0], b[0]));
     }
@@ -186,7 +165,7 @@ pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict
 pub fn is_a_load(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     for t in and_between(&moments(history, times)) {
         for load in [history.at(t), history.before(t)].iter().filter(|load| load.validate().is_err()) {
-            let (named, found) = (names(load), values(load));
+            let (named, found) = (load.names(), load.values());
             let k = (0..3).find(|&k| !found[k].is_finite()).unwrap_or(0);
             verdict(IS_A_LOAD, t, Some((named[k], found[k], 0.0)))?;
         }
@@ -210,18 +189,25 @@ pub fn repeats_itself(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     Ok(())
 }
 
-/// Checks that the load tends to `limit` towards `t` from one `side`, within the distance `room`: the difference must
-/// decrease with the distance.
-fn tends(history: &dyn LoadHistory, t: f64, side: f64, room: f64, limit: &Load, scale: [f64; 3]) -> Verdict {
-    let far = (1e-6 * room).max(1e-9 * t.abs());
-    if far >= 0.5 * room {
-        return Ok(()); // below the resolution of f64
+/// Whether the load has its limit at the start of each interval from later times (`side` 1), or at its end from earlier
+/// ones (`side` −1): ever nearer, it must differ less.
+fn one_sided_limits(law: &'static str, history: &dyn LoadHistory, times: &[f64], side: f64) -> Verdict {
+    let moments = moments(history, times);
+    let scale = scales(history, &moments);
+    for pair in moments.windows(2) {
+        let later = side > 0.0;
+        let (t, limit) = if later { (pair[0], history.at(pair[0])) } else { (pair[1], history.before(pair[1])) };
+        let room = pair[1] - pair[0];
+        let far = (1e-6 * room).max(1e-9 * t.abs());
+        if far >= 0.5 * room {
+            continue; // below the resolution of f64
+        }
+        let (here, near) = (history.at(t + side * far), history.at(t + side * 1e-3 * far));
+        let (a, b) = (here.values(), limit.values());
+        let within = [0, 1, 2].map(|k| 0.5 * (a[k] - b[k]).abs() + SAME * scale[k]);
+        verdict(law, t, difference(&limit, &near, within))?;
     }
-    let (here, near) = (history.at(t + side * far), history.at(t + side * 1e-3 * far));
-    let (a, b) = (values(&here), values(limit));
-    let within = [0, 1, 2].map(|k| 0.5 * (a[k] - b[k]).abs() + SAME * scale[k]);
-    let law = if side > 0.0 { "at a time it is the load after it" } else { "before a time it is the left limit" };
-    verdict(law, t, difference(limit, &near, within))
+    Ok(())
 }
 
 /// At each time [`LoadHistory::at`] is the limit from later times.
@@ -229,12 +215,7 @@ fn tends(history: &dyn LoadHistory, t: f64, side: f64, room: f64, limit: &Load, 
 /// # Errors
 /// The first violation.
 pub fn right_continuous(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
-    let moments = moments(history, times);
-    let scale = scales(history, &moments);
-    for pair in moments.windows(2) {
-        tends(history, pair[0], 1.0, pair[1] - pair[0], &history.at(pair[0]), scale)?;
-    }
-    Ok(())
+    one_sided_limits("at a time it is the load after it", history, times, 1.0)
 }
 
 /// At each time but the first [`LoadHistory::before`] is the limit from earlier times.
@@ -242,12 +223,7 @@ pub fn right_continuous(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
 /// # Errors
 /// The first violation.
 pub fn before_is_the_left_limit(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
-    let moments = moments(history, times);
-    let scale = scales(history, &moments);
-    for pair in moments.windows(2) {
-        tends(history, pair[1], -1.0, pair[1] - pair[0], &history.before(pair[1]), scale)?;
-    }
-    Ok(())
+    one_sided_limits("before a time it is the left limit", history, times, -1.0)
 }
 
 /// Between breakpoints the load has no jump and no corner, and does not change its kind. The search follows the
@@ -270,15 +246,15 @@ pub fn smooth_between_breakpoints(history: &dyn LoadHistory, times: &[f64]) -> V
         let load = |t: f64| if t == end { history.before(end) } else { history.at(t) };
         let (middle, last) = (load(0.5 * (start + end)), load(end));
         for other in [&middle, &last].into_iter().filter(|other| other.kind() != first.kind()) {
-            let kind = Some(("kind of load", values(other)[0], values(&first)[0]));
+            let kind = Some(("kind of load", other.values()[0], first.values()[0]));
             verdict("jumps lie on breakpoints", end, kind)?;
         }
         for (k, scale) in scale.into_iter().enumerate() {
-            let value = |t: f64| values(&load(t))[k];
+            let value = |t: f64| load(t).values()[k];
             if let Some((law, t)) = roughest(&value, start, end, STRAIGHT * scale) {
                 let near = 1e-9 * (end - start);
                 let (found, expected) = (value((t + near).min(end)), value((t - near).max(start)));
-                verdict(law, t, Some((names(&first)[k], found, expected)))?;
+                verdict(law, t, Some((first.names()[k], found, expected)))?;
             }
         }
     }

@@ -26,6 +26,7 @@ pub use sinusoid::Sinusoid;
 pub use step::StepLoad;
 
 use std::fmt::{self, Debug};
+use std::mem::discriminant;
 
 use crate::error::{Error, Result, finite, non_negative};
 
@@ -125,28 +126,32 @@ impl Load {
 
     /// Tilt along x1 and along x2.
     pub fn tilt(&self) -> [Tilt; 2] {
-        match *self {
-            Load::Force { tilt, .. } | Load::Approach { tilt, .. } => tilt,
-        }
+        let (Load::Force { tilt, .. } | Load::Approach { tilt, .. }) = *self;
+        tilt
+    }
+
+    /// Force or approach, then the tilts or load points along x1 and x2.
+    fn values(&self) -> [f64; 3] {
+        let (Load::Force { normal: main, tilt } | Load::Approach { approach: main, tilt }) = *self;
+        let [first, second] = tilt.map(|(Tilt::Fixed(value) | Tilt::Free { at: value })| value);
+        [main, first, second]
+    }
+
+    /// The names of these values.
+    fn names(&self) -> [&'static str; 3] {
+        let main = if matches!(self, Load::Force { .. }) { "normal force" } else { "approach" };
+        let free = self.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
+        let first = if free[0] { "load point along x1" } else { "tilt along x1" };
+        [main, first, if free[1] { "load point along x2" } else { "tilt along x2" }]
     }
 
     /// Accepts loads with finite values and a force ≥ 0.
     pub(crate) fn validate(&self) -> Result<()> {
-        match *self {
-            Load::Force { normal, .. } => non_negative("normal force", normal)?,
-            Load::Approach { approach, .. } => finite("approach", approach)?,
-        };
-        for (tilt, [angle, point]) in self
-            .tilt()
-            .into_iter()
-            .zip([["tilt along x1", "load point along x1"], ["tilt along x2", "load point along x2"]])
-        {
-            match tilt {
-                Tilt::Fixed(value) => finite(angle, value)?,
-                Tilt::Free { at } => finite(point, at)?,
-            };
+        let (names, values) = (self.names(), self.values());
+        if let Load::Force { normal, .. } = *self {
+            non_negative(names[0], normal)?;
         }
-        Ok(())
+        names.into_iter().zip(values).try_for_each(|(name, value)| finite(name, value).map(drop))
     }
 
     /// [`Load::validate`] for the load that a history returned for `time`.
@@ -190,33 +195,22 @@ impl Load {
 
     /// The force or the approach, in absolute value.
     pub(crate) fn strength(&self) -> f64 {
-        match *self {
-            Load::Force { normal, .. } => normal,
-            Load::Approach { approach, .. } => approach.abs(),
-        }
+        self.values()[0].abs()
     }
 
     /// The deviation of `between` from the linear interpolation at the fraction `s` from `self` to `to`: force or
     /// approach relative to `scale`, tilts and points relative to their greatest value.
     pub(crate) fn deviation(&self, to: &Load, s: f64, between: &Load, scale: f64) -> f64 {
         let straight = self.towards(to, s);
-        let relative = |distance: f64, scale: f64| if distance == 0.0 { 0.0 } else { distance / scale };
-        let main = match (straight, *between) {
-            (Load::Force { normal: a, .. }, Load::Force { normal: b, .. })
-            | (Load::Approach { approach: a, .. }, Load::Approach { approach: b, .. }) => {
-                relative((a - b).abs(), scale)
-            }
-            _ => f64::INFINITY,
+        let [start, end, here, line] = [self, to, between, &straight].map(Load::values);
+        let relative = |k: usize, scale: f64| {
+            let far = (line[k] - here[k]).abs();
+            if far == 0.0 { 0.0 } else { far / scale }
         };
-        let value = |tilt: Tilt| match tilt {
-            Tilt::Fixed(angle) => angle,
-            Tilt::Free { at } => at,
-        };
-        let tilts = [0, 1].map(|axis| {
-            let [start, end, here, line] = [self, to, between, &straight].map(|load| value(load.tilt()[axis]));
-            relative((here - line).abs(), start.abs().max(end.abs()).max(here.abs()))
-        });
-        main.max(tilts[0]).max(tilts[1])
+        let same_kind = discriminant(&straight) == discriminant(between);
+        let main = if same_kind { relative(0, scale) } else { f64::INFINITY };
+        let tilt = |k: usize| relative(k, start[k].abs().max(end[k].abs()).max(here[k].abs()));
+        main.max(tilt(1)).max(tilt(2))
     }
 
     /// Linear interpolation at the fraction `s` from `self` to `to`, which is of the same kind.

@@ -31,18 +31,13 @@ impl PiecewiseLinear {
             finite("time in the load table", time)?;
         }
         Load::validate_all("load table", table.iter().map(|entry| entry.1))?;
-        for (index, pair) in table.windows(2).enumerate() {
-            let disorder = |rule| Error::OutOfOrder {
-                field: "load table times",
-                index: index + 1,
-                value: pair[1].0,
-                previous: pair[0].0,
-                rule,
-            };
-            if pair[1].0 < pair[0].0 {
+        for (index, pair) in (1..).zip(table.windows(2)) {
+            let (field, previous, value) = ("load table times", pair[0].0, pair[1].0);
+            let disorder = |rule| Error::OutOfOrder { field, index, value, previous, rule };
+            if value < previous {
                 return Err(disorder("not decrease"));
             }
-            if index > 0 && pair[1].0 == table[index - 1].0 {
+            if index > 1 && value == table[index - 2].0 {
                 return Err(disorder("occur at most twice, where the load jumps"));
             }
         }

@@ -1,6 +1,6 @@
 //! Distributions of gap and pressure over the surface.
 
-use crate::error::{Error, Result, finite, positive};
+use crate::error::{Result, count_within, finite, positive};
 
 const MAX_BINS: usize = 1_000_000;
 
@@ -17,9 +17,7 @@ pub struct Distribution {
 impl Distribution {
     /// The distribution of `positive_values` out of `all` values, the others being zero.
     fn new(positive_values: impl Iterator<Item = f64> + Clone, all: usize, bins: usize) -> Result<Distribution> {
-        if !(1..=MAX_BINS).contains(&bins) {
-            return Err(Error::CountOutOfRange { field: "bins", value: bins, allowed: "in [1, 1000000]" });
-        }
+        count_within("bins", bins, (1..=MAX_BINS).contains(&bins), "in [1, 1000000]")?;
         let greatest = positive_values.clone().fold(0.0, f64::max);
         if greatest == 0.0 {
             return Ok(Distribution { share_at_zero: 1.0, width: 0.0, density: Vec::new() });

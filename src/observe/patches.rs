@@ -111,7 +111,7 @@ impl FloodFill<'_> {
     /// Labels the patch of the cell `first`.
     fn patch(&mut self, first: usize, label: u32) -> Patch {
         let grid = self.grid;
-        let ([n1, n2], lengths) = (grid.cells(), grid.lengths());
+        let (n2, lengths) = (grid.cells()[1], grid.lengths());
         let (mut cells, mut sum, mut greatest, mut winds) = (0, 0.0, 0.0_f64, [false; 2]);
         // sums of the coordinates on the grid, and of those of the unwrapped patch
         let (mut on_grid, mut unwrapped) = ([0.0; 2], [0.0; 2]);
@@ -128,11 +128,13 @@ impl FloodFill<'_> {
                 unwrapped[axis] += x + f64::from(periods[axis]) * lengths[axis];
             }
             for axis in 0..2 {
-                for up in [false, true] {
-                    let Some((next, crossed)) = self.neighbour(cell[axis], [n1, n2][axis], self.periodic[axis], up)
-                    else {
+                for step in [-1, 1] {
+                    let (next, count) = (cell[axis] as i64 + step, grid.cells()[axis] as i64);
+                    let crossed = next.div_euclid(count) as i32;
+                    if crossed != 0 && !self.periodic[axis] {
                         continue;
-                    };
+                    }
+                    let next = next.rem_euclid(count) as usize;
                     let other = if axis == 0 { next * n2 + cell[1] } else { cell[0] * n2 + next };
                     if self.pressure[other] <= 0.0 {
                         continue;
@@ -155,17 +157,6 @@ impl FloodFill<'_> {
         });
         let area = grid.cell_area();
         Patch { cells, area: cells as f64 * area, force: sum * area, centroid, greatest_pressure: greatest, winds }
-    }
-
-    /// The next cell along an axis of `count` cells, and the periods crossed on the way.
-    fn neighbour(&self, index: usize, count: usize, periodic: bool, up: bool) -> Option<(usize, i32)> {
-        match (up, index) {
-            (true, k) if k + 1 < count => Some((k + 1, 0)),
-            (true, _) if periodic => Some((0, 1)),
-            (false, k) if k > 0 => Some((k - 1, 0)),
-            (false, _) if periodic => Some((count - 1, -1)),
-            _ => None,
-        }
     }
 }
 

@@ -9,26 +9,34 @@ use crate::error::{Result, exact_length};
 use crate::file::{Appending, failed};
 use crate::output::Metadata;
 
+/// The name of a column, and its cell in the row of a step.
+type Column = (&'static str, fn(&ViscoelasticContact, &StepReport) -> String);
+
 /// The columns of every history.
-const COLUMNS: [&str; 17] = [
-    "time [s]",
-    "step length [s]",
-    "force [N]",
-    "approach [m]",
-    "tilt 1 [rad]",
-    "tilt 2 [rad]",
-    "moment 1 [N m]",
-    "moment 2 [N m]",
-    "contact area [m2]",
-    "contact cells",
-    "mean pressure [Pa]",
-    "greatest pressure [Pa]",
-    "iterations",
-    "convolutions",
-    "preconditioner applications",
-    "residual",
-    "time error",
+const COLUMNS: [Column; 17] = [
+    ("time [s]", |contact, _| number(contact.time())),
+    ("step length [s]", |_, report| number(report.dt)),
+    ("force [N]", |contact, _| number(contact.force())),
+    ("approach [m]", |contact, _| number(contact.approach())),
+    ("tilt 1 [rad]", |contact, _| number(contact.tilt()[0])),
+    ("tilt 2 [rad]", |contact, _| number(contact.tilt()[1])),
+    ("moment 1 [N m]", |contact, _| number(contact.moment()[0])),
+    ("moment 2 [N m]", |contact, _| number(contact.moment()[1])),
+    ("contact area [m2]", |contact, _| number(contact.contact_area())),
+    ("contact cells", |contact, _| contact.contact_cells().to_string()),
+    ("mean pressure [Pa]", |contact, _| number(contact.mean_pressure())),
+    ("greatest pressure [Pa]", |contact, _| number(contact.greatest_pressure())),
+    ("iterations", |_, report| report.iterations.to_string()),
+    ("convolutions", |_, report| report.convolutions.to_string()),
+    ("preconditioner applications", |_, report| report.preconditioner_applications.to_string()),
+    ("residual", |_, report| number(report.residual)),
+    ("time error", |_, report| number(report.time_error)),
 ];
+
+/// A number with enough digits to be read back bitwise.
+fn number(value: f64) -> String {
+    format!("{value:?}")
+}
 
 /// A run as a CSV file with one row per step, each passed to the operating system when its `write` returns.
 ///
@@ -78,12 +86,13 @@ impl CsvHistory {
         let path = path.as_ref().to_owned();
         for (k, name) in additional.iter().enumerate() {
             let invalid = name.is_empty() || name.contains(|c: char| c == '#' || c == '"' || c.is_control());
-            if invalid || COLUMNS.contains(name) || additional[..k].contains(name) {
+            if invalid || COLUMNS.iter().any(|(standard, _)| standard == name) || additional[..k].contains(name) {
                 let rule = "unique, not empty, and without '#', quotes and control characters";
                 return Err(failed(&path, format!("invalid column name {name:?}: names must be {rule}")));
             }
         }
-        let names: Vec<String> = COLUMNS.iter().chain(additional).map(|name| quoted(name)).collect();
+        let names: Vec<String> =
+            COLUMNS.iter().map(|(name, _)| name).chain(additional).map(|name| quoted(name)).collect();
         let head = format!("# {}\n{}\n", metadata.json(contact), names.join(","));
         let mut file = Appending::new(File::create_new(&path).map_err(|error| failed(&path, error))?);
         if let Err(error) = file.append(head.as_bytes()) {
@@ -100,28 +109,8 @@ impl CsvHistory {
     /// in the file, and writing can be repeated once there is space again.
     pub fn write(&mut self, contact: &ViscoelasticContact, report: &StepReport, additional: &[f64]) -> Result<()> {
         exact_length("additional columns", additional.len(), self.additional)?;
-        let number = |value: f64| format!("{value:?}");
-        let ([tilt1, tilt2], [moment1, moment2]) = (contact.tilt(), contact.moment());
-        let standard = [
-            number(contact.time()),
-            number(report.dt),
-            number(contact.force()),
-            number(contact.approach()),
-            number(tilt1),
-            number(tilt2),
-            number(moment1),
-            number(moment2),
-            number(contact.contact_area()),
-            contact.contact_cells().to_string(),
-            number(contact.mean_pressure()),
-            number(contact.greatest_pressure()),
-            report.iterations.to_string(),
-            report.convolutions.to_string(),
-            report.preconditioner_applications.to_string(),
-            number(report.residual),
-            number(report.time_error),
-        ];
-        let cells: Vec<String> = standard.into_iter().chain(additional.iter().copied().map(number)).collect();
+        let standard = COLUMNS.iter().map(|(_, cell)| cell(contact, report));
+        let cells: Vec<String> = standard.chain(additional.iter().copied().map(number)).collect();
         let row = cells.join(",") + "\n";
         self.file.append(row.as_bytes()).map_err(|error| failed(&self.path, error))
     }

@@ -10,9 +10,10 @@ use crate::output::{Field, Metadata};
 /// A folder of frames `frame_000000`, `frame_000001`, ... and what each of them contains.
 #[derive(Debug)]
 pub(super) struct Frames {
-    folder: PathBuf,
+    pub(super) folder: PathBuf,
     extension: &'static str,
-    written: usize,
+    /// Number of frames written.
+    pub(super) written: usize,
     pub(super) metadata: Metadata,
     pub(super) fields: Vec<Field>,
     /// For fields that the contact does not store.
@@ -47,20 +48,5 @@ impl Frames {
     /// Name of the next frame.
     pub(super) fn next_name(&self) -> String {
         format!("frame_{:06}.{}", self.written, self.extension)
-    }
-
-    /// Path of a file in the folder.
-    pub(super) fn path(&self, name: &str) -> PathBuf {
-        self.folder.join(name)
-    }
-
-    /// Counts a frame that was written.
-    pub(super) fn count(&mut self) {
-        self.written += 1;
-    }
-
-    /// Number of frames written.
-    pub(super) fn written(&self) -> usize {
-        self.written
     }
 }

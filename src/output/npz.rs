@@ -64,7 +64,7 @@ impl NpzSeries {
     /// # Errors
     /// If the file cannot be written. Then there is no frame, and the next call uses the same number.
     pub fn write(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
-        let path = self.frames.path(&self.frames.next_name());
+        let path = self.frames.folder.join(self.frames.next_name());
         let Frames { metadata, fields, buffer, .. } = &mut self.frames;
         replace(&path, |out| {
             let mut archive = Archive(ZipWriter::new(Deferred::new(out)));
@@ -86,13 +86,13 @@ impl NpzSeries {
             npy::text(&mut archive.0, &metadata.json(contact))?;
             archive.0.finish()?.finish()
         })?;
-        self.frames.count();
+        self.frames.written += 1;
         Ok(path)
     }
 
     /// Number of frames written.
     pub fn frames(&self) -> usize {
-        self.frames.written()
+        self.frames.written
     }
 }
 

@@ -66,26 +66,27 @@ impl VtkSeries {
     /// If a file cannot be written. Then the frame is not listed, and the next call uses the same number.
     pub fn write(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
         let name = self.frames.next_name();
-        let path = self.frames.path(&name);
+        let path = self.frames.folder.join(&name);
         replace(&path, |out| write_image(out, contact, &mut self.frames))?;
 
         let time = contact.time();
         let entry = format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{name}\"/>\n");
         let entries = &self.entries;
-        replace(&self.frames.path(COLLECTION), |out| {
-            out.write_all(b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n")?;
-            out.write_all(entries.as_bytes())?;
-            out.write_all(entry.as_bytes())?;
-            out.write_all(b"  </Collection>\n</VTKFile>\n")
+        replace(&self.frames.folder.join(COLLECTION), |out| {
+            write!(
+                out,
+                "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n\
+                 {entries}{entry}  </Collection>\n</VTKFile>\n"
+            )
         })?;
         self.entries.push_str(&entry);
-        self.frames.count();
+        self.frames.written += 1;
         Ok(path)
     }
 
     /// Number of frames written.
     pub fn frames(&self) -> usize {
-        self.frames.written()
+        self.frames.written
     }
 }
 
@@ -102,28 +103,23 @@ fn write_image(out: &mut impl Write, contact: &ViscoelasticContact, frames: &mut
     ];
     write_header(out, grid, &numbers, &metadata, fields)?;
     for (_, values) in numbers {
-        write_size(out, 8 * values.len() as u64)?;
+        out.write_all(&(8 * values.len() as u64).to_le_bytes())?;
         values.iter().try_for_each(|value| out.write_all(&value.to_le_bytes()))?;
     }
     // strings end with a NUL byte, which JSON does not contain
-    write_size(out, metadata.len() as u64 + 1)?;
+    out.write_all(&(metadata.len() as u64 + 1).to_le_bytes())?;
     out.write_all(metadata.as_bytes())?;
     out.write_all(&[0])?;
     let [n1, n2] = grid.cells();
     for field in fields.iter() {
         let values = field.values(contact, buffer).map_err(io::Error::other)?;
-        write_size(out, 8 * values.len() as u64)?;
+        out.write_all(&(8 * values.len() as u64).to_le_bytes())?;
         // in VTK x varies fastest
         for j in 0..n2 {
             (0..n1).try_for_each(|i| out.write_all(&values[i * n2 + j].to_le_bytes()))?;
         }
     }
     out.write_all(b"\n  </AppendedData>\n</VTKFile>\n")
-}
-
-/// Writes the size of the array that follows.
-fn write_size(out: &mut impl Write, bytes: u64) -> io::Result<()> {
-    out.write_all(&bytes.to_le_bytes())
 }
 
 /// Writes the XML before the values.

@@ -5,7 +5,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use crate::ViscoelasticContact;
-use crate::error::{Error, Result, within};
+use crate::error::{Error, Result, count_within, within};
 use crate::file::{Appending, Part, failed};
 use crate::output::Field;
 use crate::plot::palette::Palette;
@@ -107,12 +107,8 @@ impl Animation {
             encoder.set_repeat(gif::Repeat::Infinite).map_err(|error| failed(path, error))?;
             (self.encoder, self.size) = (Some(encoder), size);
         }
-        for (field, side, first) in
-            [("width of a frame", size[0], self.size[0]), ("height of a frame", size[1], self.size[1])]
-        {
-            if side != first {
-                return Err(Error::CountOutOfRange { field, value: side as usize, allowed: "that of the first frame" });
-            }
+        for (axis, field) in ["width of a frame", "height of a frame"].into_iter().enumerate() {
+            count_within(field, size[axis] as usize, size[axis] == self.size[axis], "that of the first frame")?;
         }
         let pixels = self.palette.indexed(picture.rgb());
         let [left, top, width, height] = changed(&self.last, &pixels, size[0] as usize);

@@ -104,11 +104,12 @@ pub struct Chart {
     curves: Vec<Curve>,
 }
 
-/// An axis as drawn: its label, the factor from SI to its unit, and its ends in that unit.
+/// An axis as drawn: its label, the factor from SI to its unit, and its ends and the format of numbers in that unit.
 struct ScaledAxis {
     label: String,
     factor: f64,
     ends: [f64; 2],
+    format: Box<dyn Fn(&f64) -> String>,
 }
 
 impl Chart {
@@ -138,7 +139,7 @@ impl Chart {
     /// If there is no point to draw, or a coordinate exceeds 1e100 in magnitude (or, on a logarithmic axis, is below
     /// 1e-100).
     pub fn draw(&self) -> Result<Picture> {
-        let [x, y] = [self.scaled(0)?, self.scaled(1)?];
+        let axes = [self.scaled(0)?, self.scaled(1)?];
         Picture::new(SIZE, |root| {
             let mut builder = ChartBuilder::on(root);
             builder
@@ -147,14 +148,12 @@ impl Chart {
                 .margin_right(40)
                 .x_label_area_size(65)
                 .y_label_area_size(95);
-            let [across, up] = [&x, &y].map(|axis| axis.ends[0]..axis.ends[1]);
+            let [across, up] = axes.each_ref().map(|axis| axis.ends[0]..axis.ends[1]);
             match self.scale {
-                Scale::Linear => self.fill(&mut builder.build_cartesian_2d(across, up)?, &x, &y),
-                Scale::LogX => self.fill(&mut builder.build_cartesian_2d(across.log_scale(), up)?, &x, &y),
-                Scale::LogY => self.fill(&mut builder.build_cartesian_2d(across, up.log_scale())?, &x, &y),
-                Scale::LogLog => {
-                    self.fill(&mut builder.build_cartesian_2d(across.log_scale(), up.log_scale())?, &x, &y)
-                }
+                Scale::Linear => self.fill(builder.build_cartesian_2d(across, up)?, &axes),
+                Scale::LogX => self.fill(builder.build_cartesian_2d(across.log_scale(), up)?, &axes),
+                Scale::LogY => self.fill(builder.build_cartesian_2d(across, up.log_scale())?, &axes),
+                Scale::LogLog => self.fill(builder.build_cartesian_2d(across.log_scale(), up.log_scale())?, &axes),
             }
         })
     }
@@ -194,31 +193,27 @@ impl Chart {
             let margin = 0.04 * if span > 0.0 { span } else { 1.0 };
             [if low == 0.0 { 0.0 } else { low - margin }, high + margin]
         };
-        Ok(ScaledAxis { label, factor, ends })
+        let format: Box<dyn Fn(&f64) -> String> = if logarithmic { Box::new(powers) } else { Box::new(numbers(ends)) };
+        Ok(ScaledAxis { label, factor, ends, format })
     }
 
     fn fill<'a, X, Y>(
         &self,
-        chart: &mut ChartContext<'a, BitMapBackend<'a>, Cartesian2d<X, Y>>,
-        x: &ScaledAxis,
-        y: &ScaledAxis,
+        mut chart: ChartContext<'a, BitMapBackend<'a>, Cartesian2d<X, Y>>,
+        [x, y]: &[ScaledAxis; 2],
     ) -> Result<(), DrawingError>
     where
         X: Ranged<ValueType = f64> + ValueFormatter<f64>,
         Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
     {
-        let format = |axis: &ScaledAxis, logarithmic: bool| -> Box<dyn Fn(&f64) -> String> {
-            if logarithmic { Box::new(powers) } else { Box::new(numbers(axis.ends)) }
-        };
-        let [log_x, log_y] = self.scale.is_logarithmic();
         chart
             .configure_mesh()
             .x_desc(&x.label)
             .y_desc(&y.label)
             .axis_desc_style((FONT, 26))
             .label_style((FONT, 22))
-            .x_label_formatter(&*format(x, log_x))
-            .y_label_formatter(&*format(y, log_y))
+            .x_label_formatter(&*x.format)
+            .y_label_formatter(&*y.format)
             .light_line_style(RGBColor(240, 240, 240))
             .bold_line_style(RGBColor(215, 215, 215))
             .draw()?;

@@ -9,7 +9,7 @@ use plotters::coord::Shift;
 use plotters::prelude::{BitMapBackend, DrawingArea, IntoDrawingArea};
 use plotters::style::{FontStyle, WHITE, register_font};
 
-use crate::error::{Error, Result, least_length};
+use crate::error::{Error, Result, count_within, least_length};
 use crate::file::{failed, replace};
 
 /// Name under which the font of all texts is registered.
@@ -98,10 +98,7 @@ impl fmt::Debug for Picture {
 
 /// Accepts a width or height in pixels.
 fn check_side(value: usize) -> Result<()> {
-    if (1..=MAX_SIDE).contains(&value) {
-        return Ok(());
-    }
-    Err(Error::CountOutOfRange { field: "pixels along a side of a picture", value, allowed: "in [1, 16384]" })
+    count_within("pixels along a side of a picture", value, (1..=MAX_SIDE).contains(&value), "in [1, 16384]")
 }
 
 /// The message of a drawing error.

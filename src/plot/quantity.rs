@@ -22,38 +22,15 @@ pub struct Quantity {
     unit: Option<String>,
 }
 
-/// SI prefixes and their powers of ten.
-const PREFIXES: [(&str, i32); 15] = [
-    ("f", -15),
-    ("p", -12),
-    ("n", -9),
-    ("µ", -6),
-    ("m", -3),
-    ("", 0),
-    ("k", 3),
-    ("M", 6),
-    ("G", 9),
-    ("T", 12),
-    ("P", 15),
-    ("a", -18),
-    ("z", -21),
-    ("y", -24),
-    ("E", 18),
-];
+/// SI prefixes in steps of a thousand, from 1e-24 on.
+const PREFIXES: [&str; 15] = ["y", "z", "a", "f", "p", "n", "µ", "m", "", "k", "M", "G", "T", "P", "E"];
+/// Steps below the unit in [`PREFIXES`].
+const STEPS_BELOW_UNIT: i32 = 8;
 
-/// Symbols that take a prefix, and whether they take one above 1.
-const SYMBOLS: [(&str, bool); 10] = [
-    ("m", false),
-    ("s", false),
-    ("rad", false),
-    ("Pa", true),
-    ("N", true),
-    ("J", true),
-    ("W", true),
-    ("Hz", true),
-    ("V", true),
-    ("A", true),
-];
+/// Symbols that take prefixes below 1 alone.
+const SMALL_PREFIXES: [&str; 3] = ["m", "s", "rad"];
+/// Symbols that take all prefixes.
+const ALL_PREFIXES: [&str; 7] = ["Pa", "N", "J", "W", "Hz", "V", "A"];
 
 impl Quantity {
     /// The quantity `name`, whose values are in the SI unit `unit`.
@@ -94,7 +71,10 @@ fn prefix(unit: &str, greatest: f64) -> Option<(&'static str, f64)> {
     }
     let letters = unit.find(|c: char| !c.is_alphabetic()).unwrap_or(unit.len());
     let (symbol, rest) = unit.split_at(letters);
-    let &(_, above) = SYMBOLS.iter().find(|(known, _)| *known == symbol)?;
+    let above = ALL_PREFIXES.contains(&symbol);
+    if !above && !SMALL_PREFIXES.contains(&symbol) {
+        return None;
+    }
     // a prefix is raised to the power of its unit
     let power = match rest.chars().next() {
         Some('²') => 2,
@@ -104,11 +84,9 @@ fn prefix(unit: &str, greatest: f64) -> Option<(&'static str, f64)> {
     };
     // 999.99999 counts as 1000, which it would be rounded to
     let tens = (greatest.log10() + 1e-9).floor() as i32;
-    let step = 3 * power;
-    let wanted = tens.div_euclid(step) * 3;
-    let wanted = if above { wanted } else { wanted.min(0) };
-    let &(prefix, tens) = PREFIXES.iter().find(|(_, tens)| *tens == wanted)?;
-    Some((prefix, 10f64.powi(-tens * power)))
+    let steps = tens.div_euclid(3 * power).min(if above { i32::MAX } else { 0 });
+    let prefix = PREFIXES.get(usize::try_from(steps + STEPS_BELOW_UNIT).ok()?)?;
+    Some((prefix, 10f64.powi(-3 * steps * power)))
 }
 
 /// Greatest magnitude that a picture can show.

@@ -26,12 +26,11 @@ impl HeightMap {
         // Unknowns are relative to the middle of the range, and start there. Halves do not overflow.
         let middle = 0.5 * low + 0.5 * self.highest;
         let values = laplacian.solve(&self, middle, TOLERANCE * (self.highest - low))?;
-        let mut heights = std::mem::take(&mut self.heights);
         // A mean does not exceed its terms: any excess is within the tolerance.
         for (&point, value) in laplacian.points.iter().zip(values) {
-            heights[point] = (middle + value).clamp(low, self.highest);
+            self.heights[point] = (middle + value).clamp(low, self.highest);
         }
-        Ok(self.with_heights(heights))
+        Ok(self.summarized())
     }
 }
 
@@ -66,8 +65,7 @@ impl Laplacian {
             let along2 = |forward| next(j, n2, forward).map_or((k, 0.0), |j| (i * n2 + j, w2));
             [along1(false), along1(true), along2(false), along2(true)]
         });
-        let neighbours = neighbours.collect();
-        Laplacian { points, unknown, neighbours }
+        Laplacian { neighbours: neighbours.collect(), points, unknown }
     }
 
     /// Σ weight (value − neighbour) with 0 for known neighbours: the equations without their right-hand sides.

@@ -39,11 +39,10 @@ impl HeightMap {
     pub fn leveled(mut self, form: Form) -> Result<HeightMap> {
         self.require_known()?;
         let terms = form.terms();
-        let mut heights = std::mem::take(&mut self.heights);
         // Once more for what rounding left, which counts where the form is far larger than the roughness.
         for _ in 0..2 {
             let (mut matrix, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);
-            for (k, &height) in heights.iter().enumerate().filter(|(_, height)| !height.is_nan()) {
+            for (k, &height) in self.heights.iter().enumerate().filter(|(_, height)| !height.is_nan()) {
                 let basis = self.basis(k);
                 for a in 0..terms {
                     right[a] += basis[a] * height;
@@ -54,12 +53,12 @@ impl HeightMap {
             }
             // A function that the others make up already, as a slope across a single row of points, gets no share.
             let factors = linalg::solve_normal_equations(&matrix, right, DEPENDENT_FRACTION);
-            for (k, height) in heights.iter_mut().enumerate() {
-                *height -= self.basis(k).iter().zip(&factors).map(|(b, f)| b * f).sum::<f64>();
+            for k in 0..self.heights.len() {
+                self.heights[k] -= self.basis(k).iter().zip(&factors).map(|(b, f)| b * f).sum::<f64>();
             }
         }
-        let heights = super::check_heights(heights)?;
-        Ok(self.with_heights(heights))
+        super::check_heights(&self.heights)?;
+        Ok(self.summarized())
     }
 
     /// The functions at the point `k`, of coordinates from −1 to 1 so that they have like sizes.

@@ -78,7 +78,8 @@ impl HeightMap {
     pub fn new(cells: [usize; 2], lengths: [f64; 2], heights: Vec<f64>) -> Result<HeightMap> {
         let grid = Grid::new(cells, lengths)?;
         exact_length("heights", heights.len(), grid.len())?;
-        Ok(HeightMap::on(&grid, check_heights(heights)?))
+        check_heights(&heights)?;
+        Ok(HeightMap::on(&grid, heights))
     }
 
     /// A map on the cells of a grid. The heights, one per cell, must be finite or NaN.
@@ -86,21 +87,20 @@ impl HeightMap {
         let map = HeightMap {
             cells: grid.cells(),
             spacing: grid.spacing(),
-            heights: Vec::new(),
+            heights,
             highest: f64::NEG_INFINITY,
             missing: 0,
             masked: false,
             center: [0.0; 2],
             periodic: false,
         };
-        map.with_heights(heights)
+        map.summarized()
     }
 
-    /// The map with other heights.
-    fn with_heights(mut self, heights: Vec<f64>) -> HeightMap {
-        self.highest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        self.missing = heights.iter().filter(|h| h.is_nan()).count();
-        self.heights = heights;
+    /// The map with the greatest height and the number of missing ones that follow from its heights.
+    fn summarized(mut self) -> HeightMap {
+        self.highest = self.heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        self.missing = self.heights.iter().filter(|h| h.is_nan()).count();
         self
     }
 
@@ -184,18 +184,16 @@ impl HeightMap {
 
     /// Whether map and grid have the same spacing, so that all points have the same fractional offset.
     fn has_spacing_of(&self, grid: &Grid) -> bool {
-        let same = |axis: usize| {
-            self.cells[axis] == 1 || (grid.spacing()[axis] / self.spacing[axis] - 1.0).abs() <= SAME_SPACING
-        };
-        same(0) && same(1)
+        let differs = |axis: usize| (grid.spacing()[axis] / self.spacing[axis] - 1.0).abs() > SAME_SPACING;
+        (0..2).all(|axis| self.cells[axis] == 1 || !differs(axis))
     }
 }
 
 /// Refuses heights whose differences and sums would overflow.
-fn check_heights(heights: Vec<f64>) -> Result<Vec<f64>> {
+fn check_heights(heights: &[f64]) -> Result<()> {
     match heights.iter().position(|height| height.abs() > LONGEST) {
         Some(entry) => Err(Error::Map(MapError::NotFinite { entry, value: heights[entry] })),
-        None => Ok(heights),
+        None => Ok(()),
     }
 }
 
@@ -203,7 +201,7 @@ impl Geometry for HeightMap {
     fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
         match self.height_at(x1, x2) {
             Some(height) => self.highest - height,
-            None if self.masked || !self.covers(x1, x2) => f64::INFINITY,
+            None if self.masked || self.indices(x1, x2).is_none() => f64::INFINITY,
             None => f64::NAN,
         }
     }

@@ -2,7 +2,7 @@
 
 use super::HeightMap;
 use crate::Grid;
-use crate::error::{Error, Result, finite};
+use crate::error::{Result, count_within, finite};
 use crate::memory;
 
 impl HeightMap {
@@ -20,21 +20,17 @@ impl HeightMap {
     pub fn cropped(self, first: [usize; 2], cells: [usize; 2]) -> Result<HeightMap> {
         let fields = [("first point along x1", "points along x1"), ("first point along x2", "points along x2")];
         for (axis, (of_first, of_cells)) in fields.into_iter().enumerate() {
-            if first[axis] >= self.cells[axis] {
-                let allowed = "below the number of points of the map";
-                return Err(Error::CountOutOfRange { field: of_first, value: first[axis], allowed });
-            }
-            if cells[axis] == 0 || cells[axis] > self.cells[axis] - first[axis] {
-                let allowed = "at least 1, and at most the number of points of the map from the first on";
-                return Err(Error::CountOutOfRange { field: of_cells, value: cells[axis], allowed });
-            }
+            let inside = first[axis] < self.cells[axis];
+            count_within(of_first, first[axis], inside, "below the number of points of the map")?;
+            let inside = (1..=self.cells[axis] - first[axis]).contains(&cells[axis]);
+            let allowed = "at least 1, and at most the number of points of the map from the first on";
+            count_within(of_cells, cells[axis], inside, allowed)?;
         }
         let n2 = self.cells[1];
         let rows = (first[0]..first[0] + cells[0]).map(|i| i * n2 + first[1]);
         let heights = rows.flat_map(|from| self.heights[from..from + cells[1]].iter().copied());
         let heights = memory::collect("a part of a map", cells[0] * cells[1], heights)?;
-        let part = HeightMap { cells, periodic: false, heights: Vec::new(), ..self };
-        Ok(part.with_heights(heights))
+        Ok(HeightMap { cells, periodic: false, heights, ..self }.summarized())
     }
 
     /// The mirror image: the order of the points is reversed along the chosen axes. Flip a surface that was measured
@@ -65,9 +61,8 @@ impl HeightMap {
     /// The map with peaks and valleys exchanged, as on a replica: z becomes −z.
     #[must_use]
     pub fn inverted(mut self) -> HeightMap {
-        let mut heights = std::mem::take(&mut self.heights);
-        heights.iter_mut().for_each(|z| *z = -*z);
-        self.with_heights(heights)
+        self.heights.iter_mut().for_each(|z| *z = -*z);
+        self.summarized()
     }
 
     /// The map with all heights multiplied by `factor`.
@@ -76,9 +71,9 @@ impl HeightMap {
     /// If the factor is not finite, or a height exceeds ±1e300 m.
     pub fn scaled(mut self, factor: f64) -> Result<HeightMap> {
         finite("factor of the heights", factor)?;
-        let mut heights = std::mem::take(&mut self.heights);
-        heights.iter_mut().for_each(|z| *z *= factor);
-        Ok(self.with_heights(super::check_heights(heights)?))
+        self.heights.iter_mut().for_each(|z| *z *= factor);
+        super::check_heights(&self.heights)?;
+        Ok(self.summarized())
     }
 
     /// The map with its middle at the point `center` \[m\].
@@ -106,7 +101,7 @@ impl HeightMap {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::MapError;
+    use crate::error::{Error, MapError};
 
     fn map() -> HeightMap {
         HeightMap::new([2, 3], [2.0, 6.0], vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap()

@@ -77,14 +77,14 @@ impl HeightMap {
         distance.clamp(f64::MIN, f64::MAX) % self.lengths()[axis] / spacing + middle
     }
 
-    /// Whether (x1, x2) lies in a cell of the map.
-    pub(super) fn covers(&self, x1: f64, x2: f64) -> bool {
-        let inside = |axis: usize, x: f64| {
-            let index = self.index(axis, x);
-            let end = self.cells[axis] as f64 - 0.5 + ROUNDING;
+    /// Position of a point in the map, as fractional indices; `None` outside the map.
+    pub(super) fn indices(&self, x1: f64, x2: f64) -> Option<[f64; 2]> {
+        let indices = [self.index(0, x1), self.index(1, x2)];
+        let inside = |axis: usize| {
+            let (index, end) = (indices[axis], self.cells[axis] as f64 - 0.5 + ROUNDING);
             if self.periodic { index.is_finite() } else { index >= -0.5 - ROUNDING && index <= end }
         };
-        inside(0, x1) && inside(1, x2)
+        (inside(0) && inside(1)).then_some(indices)
     }
 
     /// Height at the point (x1, x2) \[m\]; `None` outside the map and where it is missing.
@@ -92,10 +92,7 @@ impl HeightMap {
     /// Interpolated bicubically, exact at the points of the map. Next to masked points it is interpolated linearly
     /// between the known ones, and missing if the nearest point is. Next to undecided points it is missing.
     pub fn height_at(&self, x1: f64, x2: f64) -> Option<f64> {
-        if !self.covers(x1, x2) {
-            return None;
-        }
-        let [u1, u2] = [self.index(0, x1), self.index(1, x2)];
+        let [u1, u2] = self.indices(x1, x2)?;
         let (along1, along2) = self.stencils(u1, u2);
         let height = self.weighted(&along1.index, &along1.weight, &along2.index, &along2.weight);
         if height.is_nan() && self.masked { self.linear_of_known(u1, u2) } else { Some(height).filter(|z| !z.is_nan()) }
@@ -104,10 +101,8 @@ impl HeightMap {
     /// Slopes ∂z/∂x1 and ∂z/∂x2 of [`HeightMap::height_at`] at the point (x1, x2); `None` outside the map and where one
     /// of the sixteen points around is missing.
     pub fn slope_at(&self, x1: f64, x2: f64) -> Option<[f64; 2]> {
-        if !self.covers(x1, x2) {
-            return None;
-        }
-        let (along1, along2) = self.stencils(self.index(0, x1), self.index(1, x2));
+        let [u1, u2] = self.indices(x1, x2)?;
+        let (along1, along2) = self.stencils(u1, u2);
         let slope = [
             self.weighted(&along1.index, &along1.slope, &along2.index, &along2.weight) / self.spacing[0],
             self.weighted(&along1.index, &along1.weight, &along2.index, &along2.slope) / self.spacing[1],

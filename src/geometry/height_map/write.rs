@@ -1,6 +1,5 @@
 //! Maps written to files.
 
-use std::fmt::Write as _;
 use std::io::Write;
 
 use crate::error::{Error, MapError, Result};
@@ -24,13 +23,9 @@ impl HeightMap {
     /// If a height exceeds the range of single precision, or writing fails.
     pub fn write_gsf(&self, writer: impl Write) -> Result<()> {
         let [n1, n2] = self.cells;
-        let mut header = gsf::MAGIC.to_owned();
         let [l1, l2] = [n1 as f64 * self.spacing[0], n2 as f64 * self.spacing[1]];
-        put(
-            &mut header,
-            format_args!("XRes = {n1}\nYRes = {n2}\nXReal = {l1:e}\nYReal = {l2:e}\nXYUnits = m\nZUnits = m\n"),
-        );
-        let mut file = header.into_bytes();
+        let sizes = format!("XRes = {n1}\nYRes = {n2}\nXReal = {l1:e}\nYReal = {l2:e}\nXYUnits = m\nZUnits = m\n");
+        let mut file = [gsf::MAGIC, &sizes].concat().into_bytes();
         file.resize(file.len() + 4 - file.len() % 4, 0);
         for j in (0..n2).rev() {
             for i in 0..n1 {
@@ -56,20 +51,16 @@ impl HeightMap {
     pub fn write_sdf(&self, writer: impl Write) -> Result<()> {
         let [n1, n2] = self.cells;
         let [d1, d2] = self.spacing;
-        let mut file =
-            "aISO-1.0\r\nManufacID = viscocont\r\nCreateDate = 000000000000\r\nModDate = 000000000000\r\n".to_owned();
-        put(
-            &mut file,
-            format_args!("NumPoints = {n1}\r\nNumProfiles = {n2}\r\nXscale = {d1:e}\r\nYscale = {d2:e}\r\n"),
+        let mut file = format!(
+            "aISO-1.0\r\nManufacID = viscocont\r\nCreateDate = 000000000000\r\nModDate = 000000000000\r\n\
+             NumPoints = {n1}\r\nNumProfiles = {n2}\r\nXscale = {d1:e}\r\nYscale = {d2:e}\r\nZscale = 1\r\n\
+             Zresolution = -1\r\nCompression = 0\r\nDataType = 7\r\nCheckType = 0\r\n*\r\n"
         );
-        file += "Zscale = 1\r\nZresolution = -1\r\nCompression = 0\r\nDataType = 7\r\nCheckType = 0\r\n*\r\n";
         for j in 0..n2 {
             for i in 0..n1 {
                 let end = if i + 1 == n1 { "\r\n" } else { " " };
-                match self.heights[i * n2 + j] {
-                    height if height.is_nan() => put(&mut file, format_args!("BAD{end}")),
-                    height => put(&mut file, format_args!("{height:e}{end}")),
-                }
+                let height = self.heights[i * n2 + j];
+                file += &if height.is_nan() { format!("BAD{end}") } else { format!("{height:e}{end}") };
             }
         }
         file += "*\r\n*\r\n";
@@ -107,12 +98,6 @@ impl HeightMap {
         file.extend(self.heights.iter().flat_map(|height| height.to_le_bytes()));
         save(writer, "NPY", &file)
     }
-}
-
-/// Appends text.
-fn put(file: &mut String, text: std::fmt::Arguments<'_>) {
-    // writing to a string cannot fail
-    let _ = file.write_fmt(text);
 }
 
 fn save(mut writer: impl Write, format: &'static str, file: &[u8]) -> Result<()> {

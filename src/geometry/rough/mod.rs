@@ -65,13 +65,10 @@ impl Rough {
         memory::check("a rough surface", HeightSpectrum::bytes(cells) + 8 * grid.len() as u128)?;
         let spectrum = spectrum(grid, &spec)?;
         let map = HeightMap::on(&Grid::of_spacing(cells, spacing), spectrum.heights());
-        match map.heights().iter().position(|z| !z.is_finite()) {
-            Some(entry) => {
-                let value = map.heights()[entry];
-                Err(Error::Map(super::MapError::NotFinite { entry, value }))
-            }
-            None => Ok(Rough { spec, map: map.periodic() }),
+        if let Some((entry, &value)) = map.heights().iter().enumerate().find(|(_, z)| !z.is_finite()) {
+            return Err(Error::Map(super::MapError::NotFinite { entry, value }));
         }
+        Ok(Rough { spec, map: map.periodic() })
     }
 
     /// A surface with a longer `period` \[m\], of which the grid shows a part; it is not periodic on the grid.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use proptest::prelude::*;
 use proptest::strategy::Union;
 
-use super::{AnyGeometry, around, built, spectra};
+use super::{AnyGeometry, around, built, shape, spectra};
 use crate::contact::{Builder, Settings};
 use crate::error::Result;
 use crate::geometry::{Cone, Ellipsoid, FlatPunch, Shifted, Sphere, Sum, Wavy};
@@ -72,17 +72,16 @@ const MAX_RADIUS: f64 = 0.35;
 /// `radius` \[m\] is `reach`.
 fn indenters(radius: f64, reach: f64) -> BoxedStrategy<AnyGeometry> {
     let share = 0.4..1.0_f64;
-    let any = |geometry: Result<AnyGeometry>| geometry;
     Union::new([
-        built(share.clone(), move |part| any(Ok(Arc::new(Sphere::new(part * radius)?)))),
-        built([share.clone(), share.clone()], move |[a, b]| any(Ok(Arc::new(Ellipsoid::new(a * radius, b * radius)?)))),
-        built(1.0..2.5_f64, move |part| any(Ok(Arc::new(Cone::new(part * reach / radius)?)))),
+        shape(share.clone(), move |part| Sphere::new(part * radius)),
+        shape([share.clone(), share.clone()], move |[a, b]| Ellipsoid::new(a * radius, b * radius)),
+        shape(1.0..2.5_f64, move |part| Cone::new(part * reach / radius)),
         // large enough to contain the centre of a cell
-        built(0.8..1.0_f64, move |part| any(Ok(Arc::new(FlatPunch::circular(part * reach)?)))),
-        built((share, 0.02..0.3_f64, 0.5..2.0_f64), move |(part, height, wave)| {
+        shape(0.8..1.0_f64, move |part| FlatPunch::circular(part * reach)),
+        shape((share, 0.02..0.3_f64, 0.5..2.0_f64), move |(part, height, wave)| {
             // waves low enough that their crests do not extend the contact
             let wavy = Wavy::new(0.1 * height * reach * reach / radius, wave * reach)?;
-            any(Ok(Arc::new(Sum::new(Sphere::new(part * radius)?, wavy))))
+            Ok(Sum::new(Sphere::new(part * radius)?, wavy))
         }),
     ])
     .boxed()

@@ -76,9 +76,8 @@ fn from_gsf(reader: impl Read, fallback: Option<LengthUnit>) -> Result<HeightMap
     if padding.is_empty() || padding.iter().any(|&byte| byte != 0) {
         return Err(MapError::Missing { format: FORMAT, key: "padding of NUL bytes to a multiple of four" }.into());
     }
-    let mut rows = Number::little(Kind::Float, 4).decode_all(FORMAT, &file[start..], count, true)?;
-    rows.iter_mut().for_each(|height| *height = vertical.to_metres(*height));
-    HeightMap::from_rows(cells, spacing, &rows, First::Top)
+    let rows = Number::little(Kind::Float, 4).decode_all(FORMAT, &file[start..], count, true)?;
+    HeightMap::from_rows(cells, spacing, &rows, First::Top, |height| vertical.to_metres(height))
 }
 
 #[cfg(test)]

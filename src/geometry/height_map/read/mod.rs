@@ -69,14 +69,17 @@ impl HeightMap {
         }
     }
 
-    /// The map of `rows` of `cells[0]` heights along x1, with exactly the given `spacing`.
-    fn from_rows(cells: [usize; 2], spacing: [f64; 2], rows: &[f64], first: First) -> Result<HeightMap> {
+    /// The map of `rows` of `cells[0]` heights along x1, which `metres` converts, with exactly the given `spacing`.
+    fn from_rows(
+        cells: [usize; 2],
+        spacing: [f64; 2],
+        rows: &[f64],
+        first: First,
+        metres: impl Fn(f64) -> f64,
+    ) -> Result<HeightMap> {
         let [n1, n2] = cells;
-        let row = |j: usize| match first {
-            First::Top => n2 - 1 - j,
-            First::Bottom => j,
-        };
-        let heights = (0..n1).flat_map(|i| (0..n2).map(move |j| rows[row(j) * n1 + i]));
+        let row = |j: usize| if first == First::Top { n2 - 1 - j } else { j };
+        let heights = (0..n1).flat_map(|i| (0..n2).map(move |j| rows[row(j) * n1 + i])).map(metres);
         let heights = memory::collect("the heights of a file", rows.len(), heights)?;
         let lengths = [n1 as f64 * spacing[0], n2 as f64 * spacing[1]];
         // the spacing of the file, bitwise, instead of a quotient of lengths
@@ -95,6 +98,23 @@ fn bytes(mut reader: impl Read, format: &str) -> Result<Vec<u8>> {
 /// The number of points, if a grid may have that many: checked before anything is allocated for them.
 fn count(cells: [usize; 2], spacing: [f64; 2]) -> Result<usize> {
     Ok(Grid::new(cells, [cells[0] as f64 * spacing[0], cells[1] as f64 * spacing[1]])?.len())
+}
+
+/// The heights that a file lists in words, NaN where one `is_missing`; there must be `count`.
+fn listed<'a>(
+    words: impl Iterator<Item = &'a str>,
+    is_missing: impl Fn(&str) -> bool,
+    count: usize,
+    format: &'static str,
+    refuse: impl Fn(&str) -> MapError,
+) -> Result<Vec<f64>> {
+    let height = |word: &str| match word.parse::<f64>() {
+        _ if is_missing(word) => Ok(f64::NAN),
+        Ok(height) if !height.is_infinite() => Ok(height),
+        _ => Err(refuse(word)),
+    };
+    let rows: Vec<f64> = words.map(height).collect::<Result<_, _>>()?;
+    if rows.len() == count { Ok(rows) } else { Err(wrong_size(format, "heights", rows.len(), count).into()) }
 }
 
 /// The error of a file with `found` of the `expected` items, all of them counted.

@@ -5,7 +5,7 @@
 use std::io::Read;
 
 use super::number::{Kind, Number};
-use super::{bytes, count, wrong_size};
+use super::{bytes, wrong_size};
 use crate::Grid;
 use crate::error::{MapError, Result};
 use crate::geometry::{HeightMap, LengthUnit};
@@ -30,8 +30,7 @@ impl HeightMap {
         let file = bytes(reader, FORMAT)?;
         let (header, data) = split(&file)?;
         let array = Array::new(&header)?;
-        let spacing = Grid::new(array.cells, lengths)?.spacing();
-        let count = count(array.cells, spacing)?;
+        let count = Grid::new(array.cells, lengths)?.len();
         let stored = array.number.decode_all(FORMAT, data, count, true)?;
         let [n1, n2] = array.cells;
         let index = |i: usize, j: usize| if array.fortran { j * n1 + i } else { i * n2 + j };

@@ -9,7 +9,7 @@ use std::io::Read;
 
 use super::header::Header;
 use super::number::{Kind, Number};
-use super::{First, bytes, count, wrong_size};
+use super::{First, bytes, count, listed, wrong_size};
 use crate::error::{MapError, Result, positive};
 use crate::geometry::HeightMap;
 
@@ -51,20 +51,6 @@ impl HeightMap {
     }
 }
 
-/// Shape and scale of the map, from a text or binary header.
-struct Layout {
-    cells: [usize; 2],
-    spacing: [f64; 2],
-    scale: f64,
-}
-
-impl Layout {
-    fn map(&self, mut rows: Vec<f64>) -> Result<HeightMap> {
-        rows.iter_mut().for_each(|height| *height *= self.scale);
-        HeightMap::from_rows(self.cells, self.spacing, &rows, First::Bottom)
-    }
-}
-
 /// Accepts only data without compression or checksum, which have type 0.
 fn require_none(key: &'static str, value: usize) -> Result<()> {
     match value {
@@ -85,18 +71,9 @@ fn from_text(text: &str) -> Result<HeightMap> {
     require_none("CheckType", header.count("CheckType")?)?;
     let count = count(cells, spacing)?;
     let area = rest.split('*').next().unwrap_or_default();
-    let mut rows = Vec::new();
-    for token in area.split_whitespace() {
-        rows.push(match token.parse::<f64>() {
-            _ if token.eq_ignore_ascii_case("bad") => f64::NAN,
-            Ok(height) if !height.is_infinite() => height,
-            _ => return Err(header.error("height", token, "a finite number or BAD").into()),
-        });
-    }
-    if rows.len() != count {
-        return Err(wrong_size(FORMAT, "heights", rows.len(), count).into());
-    }
-    Layout { cells, spacing, scale }.map(rows)
+    let refuse = |word: &str| header.error("height", word, "a finite number or BAD");
+    let rows = listed(area.split_whitespace(), |word| word.eq_ignore_ascii_case("bad"), count, FORMAT, refuse)?;
+    HeightMap::from_rows(cells, spacing, &rows, First::Bottom, |height| height * scale)
 }
 
 fn from_binary(file: &[u8]) -> Result<HeightMap> {
@@ -105,11 +82,7 @@ fn from_binary(file: &[u8]) -> Result<HeightMap> {
     }
     let (header, mut data) = file.split_at(BINARY_HEADER);
     let u16_at = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
-    let f64_at = |at: usize| {
-        let mut word = [0; 8];
-        word.copy_from_slice(&header[at..at + 8]);
-        f64::from_le_bytes(word)
-    };
+    let f64_at = |at: usize| f64::from_le_bytes(std::array::from_fn(|k| header[at + k]));
     let cells = [u16_at(42), u16_at(44)];
     let spacing = [positive("Xscale", f64_at(46))?, positive("Yscale", f64_at(54))?];
     let scale = positive("Zscale", f64_at(62))?;
@@ -133,7 +106,7 @@ fn from_binary(file: &[u8]) -> Result<HeightMap> {
     }
     let mut rows = number.decode_all(FORMAT, data, count, false)?;
     rows.iter_mut().filter(|height| **height == number.least()).for_each(|height| *height = f64::NAN);
-    Layout { cells, spacing, scale }.map(rows)
+    HeightMap::from_rows(cells, spacing, &rows, First::Bottom, |height| height * scale)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use super::{First, bytes, count};
+use super::{First, bytes};
 use crate::Grid;
 use crate::error::{MapError, Result};
 use crate::geometry::{HeightMap, LengthUnit};
@@ -46,13 +46,12 @@ impl HeightMap {
                 return Err(MapError::Columns { line, found: fields.len(), expected: columns }.into());
             }
             for (k, field) in fields.iter().enumerate() {
-                rows.push(unit.to_metres(height(line, k + 1, field)?));
+                rows.push(height(line, k + 1, field)?);
             }
         }
         let cells = [columns, rows.len().checked_div(columns).unwrap_or(0)];
         let spacing = Grid::new(cells, lengths)?.spacing();
-        count(cells, spacing)?;
-        HeightMap::from_rows(cells, spacing, &rows, First::Top)
+        HeightMap::from_rows(cells, spacing, &rows, First::Top, |height| unit.to_metres(height))
     }
 }
 

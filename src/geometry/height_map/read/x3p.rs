@@ -9,7 +9,7 @@ use roxmltree::{Document, Node, ParsingOptions};
 use zip::ZipArchive;
 
 use super::number::{Kind, Number};
-use super::{First, bytes, count, wrong_size};
+use super::{First, bytes, count, listed, wrong_size};
 use crate::error::{MapError, Result, finite, positive};
 use crate::geometry::HeightMap;
 
@@ -72,12 +72,11 @@ fn member(archive: &mut Archive, name: &str, what: &'static str, most: u64) -> R
     let mut bytes = Vec::new();
     file.take(most + 1).read_to_end(&mut bytes).map_err(|error| broken(error.to_string()))?;
     // one byte more than allowed is read to detect files that are too large
-    match bytes.len() as u64 {
-        found if found > most => {
-            Err(MapError::Size { format: FORMAT, what, found, expected: most, exact: false }.into())
-        }
-        _ => Ok(bytes),
+    let found = bytes.len() as u64;
+    if found > most {
+        return Err(MapError::Size { format: FORMAT, what, found, expected: most, exact: false }.into());
     }
+    Ok(bytes)
 }
 
 /// The contents of `main.xml`.
@@ -158,9 +157,6 @@ impl<'a, 'i> Header<'a, 'i> {
             }
             None => self.listed(count)?,
         };
-        for height in &mut rows {
-            *height = *height * scale + offset;
-        }
         if let Some(name) = self.get(VALID) {
             let (expected, what) = (count.div_ceil(8), "bytes of valid points");
             let valid = member(archive, name, what, expected as u64)?;
@@ -171,7 +167,7 @@ impl<'a, 'i> Header<'a, 'i> {
             let missing = |k: &usize| valid[k / 8] >> (k % 8) & 1 == 0;
             (0..count).filter(missing).for_each(|k| rows[k] = f64::NAN);
         }
-        HeightMap::from_rows(cells, spacing, &rows, First::Bottom)
+        HeightMap::from_rows(cells, spacing, &rows, First::Bottom, |height| height * scale + offset)
     }
 
     /// Rejects rotated axes.
@@ -180,10 +176,7 @@ impl<'a, 'i> Header<'a, 'i> {
         let Some(rotation) = self.node(ROTATION) else { return Ok(()) };
         for entry in rotation.children().filter(Node::is_element) {
             let text = entry.text().unwrap_or_default().trim();
-            let identity = match entry.tag_name().name() {
-                "r11" | "r22" | "r33" => 1.0,
-                _ => 0.0,
-            };
+            let identity = if ["r11", "r22", "r33"].contains(&entry.tag_name().name()) { 1.0 } else { 0.0 };
             if !text.parse().is_ok_and(|value: f64| (value - identity).abs() < 1e-9) {
                 return Err(Self::error(ROTATION, text, "none (1 on the diagonal, 0 off it)").into());
             }
@@ -194,19 +187,10 @@ impl<'a, 'i> Header<'a, 'i> {
     /// The heights in the XML itself: the last number of each datum, after x and y if they are present.
     fn listed(&self, count: usize) -> Result<Vec<f64>> {
         let list = self.node(LIST).ok_or(MapError::Missing { format: FORMAT, key: "PointDataLink or DataList" })?;
-        let mut rows = Vec::new();
-        for datum in list.children().filter(|child| child.tag_name().name() == "Datum") {
-            let text = datum.text().unwrap_or_default().rsplit(';').next().unwrap_or_default().trim();
-            rows.push(match text.parse::<f64>() {
-                _ if text.is_empty() => f64::NAN,
-                Ok(height) if !height.is_infinite() => height,
-                _ => return Err(Self::error("Datum", text, "a finite number or empty").into()),
-            });
-        }
-        if rows.len() != count {
-            return Err(wrong_size(FORMAT, "heights", rows.len(), count).into());
-        }
-        Ok(rows)
+        let data = list.children().filter(|child| child.tag_name().name() == "Datum");
+        let heights = data.map(|datum| datum.text().unwrap_or_default().rsplit(';').next().unwrap_or_default().trim());
+        let refuse = |text: &str| Self::error("Datum", text, "a finite number or empty");
+        listed(heights, str::is_empty, count, FORMAT, refuse)
     }
 }
 

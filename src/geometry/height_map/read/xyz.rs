@@ -55,7 +55,7 @@ impl HeightMap {
             }
             (rows[at], lines[at]) = (point.height, point.line);
         }
-        HeightMap::from_rows(cells, spacing, &rows, First::Bottom)
+        HeightMap::from_rows(cells, spacing, &rows, First::Bottom, |height| height)
     }
 }
 
