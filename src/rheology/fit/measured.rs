@@ -39,17 +39,10 @@ const FOLLOWED: f64 = 8.0;
 /// Greatest number of points over all samples of a table: one over many decades is followed more coarsely.
 const FOLLOWED_IN_ALL: f64 = 64.0;
 
-/// A series fitted to measurements.
-#[derive(Debug, Clone)]
-pub(crate) struct Measured {
-    pub(crate) series: FittedSeries,
-    /// Relative deviation, at or between the samples, of another series that fits them equally well.
-    pub(crate) uncertainty: f64,
-}
-
 impl Search {
-    /// The series with the best prediction.
-    pub(crate) fn measured(&self, samples: &[Sample]) -> Measured {
+    /// The series with the best prediction for measurements, and the relative deviation from it, at or between the
+    /// samples, of another series that fits them equally well.
+    pub(crate) fn measured(&self, samples: &[Sample]) -> (FittedSeries, f64) {
         let start = self.on_grid(samples, DENSITY);
         // each strength that is not zero is a parameter of non-negative least squares (Meyer & Woodroofe, Ann. Statist.
         // 28, 2000)
@@ -67,7 +60,7 @@ impl Search {
             None => self.sparse(&start, samples, noise.max(FLOOR * root)),
         };
         let uncertainty = series.worst(&along(&start, samples));
-        Measured { series, uncertainty }
+        (series, uncertainty)
     }
 
     /// The terms that improve the prediction, by the criterion of Mallows (Technometrics 15, 1973).

@@ -17,7 +17,6 @@ mod report;
 
 pub use basis::MaterialFunction;
 pub(crate) use basis::{FittedSeries, Sample};
-pub(crate) use measured::Measured;
 pub use report::{FitReport, FitSample, FitWarning};
 
 use faer::{Col, Mat};
