@@ -122,16 +122,8 @@ struct Point {
 
 impl Secular {
     fn zeros(&self) -> impl Iterator<Item = Point> + '_ {
-        let last = self.poles.len().wrapping_sub(1);
-        (0..self.poles.len()).filter_map(move |k| {
-            if k < last {
-                Some(self.zero_between(k))
-            } else if self.constant > 0.0 {
-                Some(self.zero_above_last())
-            } else {
-                None
-            }
-        })
+        let above = (self.constant > 0.0 && !self.poles.is_empty()).then(|| self.zero_above_last());
+        (1..self.poles.len()).map(|k| self.zero_between(k - 1)).chain(above)
     }
 
     /// The zero between poles k and k + 1, measured from the nearer one.
