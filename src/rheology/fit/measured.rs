@@ -48,7 +48,7 @@ impl Search {
         // 28, 2000)
         let parameters = ends(&start) + start.terms.len();
         let enough = |series: &FittedSeries| series.worst(samples) <= 0.1 * FLOOR;
-        let start = polish(&start, samples, self.free(), LONG, &enough);
+        let start = polish(&start, samples, self, LONG, &enough);
         let left = samples.len().saturating_sub(parameters).max(1) as f64;
         let noise = (start.squares(samples) / left).sqrt();
         // the floor holds for single measurements: a mean of many is not fitted more closely
@@ -74,7 +74,7 @@ impl Search {
         };
         let prefers = |trial: &FittedSeries, current: &FittedSeries| criterion(trial) <= criterion(current);
         let thinned = self.thinned(start.clone(), samples, TRIES, &prefers);
-        polish(&thinned, samples, self.free(), LONG, &|_| false)
+        polish(&thinned, samples, self, LONG, &|_| false)
     }
 
     /// The smoothest spectrum that explains the samples; `None` if none does, as for a few discrete times without

@@ -20,7 +20,7 @@ pub(crate) use basis::{FittedSeries, Sample};
 pub use report::{FitReport, FitSample, FitWarning};
 
 use faer::{Col, Mat};
-use polish::{Free, polish};
+use polish::polish;
 
 /// The class of series to search.
 #[derive(Debug, Clone)]
@@ -49,7 +49,7 @@ impl Search {
         let reached = |series: &FittedSeries| series.worst(samples) <= most;
         let mut best: Option<FittedSeries> = None;
         for density in DENSITIES {
-            let series = polish(&self.on_grid(samples, density), samples, self.free(), LONG, &reached);
+            let series = polish(&self.on_grid(samples, density), samples, self, LONG, &reached);
             if best.as_ref().is_none_or(|best| series.worst(samples) < best.worst(samples)) {
                 best = Some(series);
             }
@@ -61,12 +61,8 @@ impl Search {
             best.unwrap_or(FittedSeries { constant: self.constant.unwrap_or(0.0), slope: 0.0, terms: Vec::new() });
         let thinned = self.thinned(found, samples, TRIES, &|trial, _| reached(trial));
         // the polish of a merger stops early: complete it
-        let polished = polish(&thinned, samples, self.free(), LONG, &|_| false);
+        let polished = polish(&thinned, samples, self, LONG, &|_| false);
         if polished.worst(samples) <= thinned.worst(samples) { polished } else { thinned }
-    }
-
-    fn free(&self) -> Free {
-        Free { constant: self.constant.is_none(), slope: self.slope }
     }
 
     /// Non-negative least squares with `density` times per decade.
@@ -110,7 +106,7 @@ impl Search {
             let mut mergers = self.mergers(&best, samples);
             mergers.sort_by(|a, b| a.0.total_cmp(&b.0));
             let next = mergers.iter().take(tries).find_map(|(_, merged)| {
-                let trial = polish(merged, samples, self.free(), BRIEF, &|series| prefers(series, &best));
+                let trial = polish(merged, samples, self, BRIEF, &|series| prefers(series, &best));
                 prefers(&trial, &best).then_some(trial)
             });
             match next {
