@@ -5,10 +5,7 @@
 //! determine as many parameters as there are values, the sparsest series ripples between the rows; then the smoothest
 //! spectrum that explains the data is computed, and a sparse series is fitted to its curve.
 
-use faer::{Col, Mat};
-
 use super::basis::{FittedSeries, MaterialFunction, Sample};
-use super::nnls::non_negative_least_squares;
 use super::polish::polish;
 use super::{LONG, Search};
 
@@ -98,38 +95,11 @@ impl Search {
         smoothest
     }
 
-    /// Non-negative least squares of the misfit and of `weight` times the squared second differences of the strengths,
-    /// relative to the data at the same time, so that those of a power law vanish.
+    /// A smooth spectrum: second differences relative to the data at the same time, so that those of a power law vanish.
     fn regularised(&self, samples: &[Sample], weight: f64) -> FittedSeries {
         let decades = (self.times[1] / self.times[0]).log10();
         let times = self.grid(SMOOTH_DENSITY.min(SMOOTH_TIMES / decades));
-        let levels: Vec<f64> = times.iter().map(|&time| level(samples, time)).collect();
-        let ends = 1 + usize::from(self.slope);
-        let (rows, root) = (samples.len(), weight.sqrt());
-        let matrix = Mat::from_fn(rows + times.len() - 2, ends + times.len(), |i, j| {
-            if let Some(Sample { function, x, value, weight }) = samples.get(i) {
-                let entry = match j {
-                    0 => function.constant(),
-                    _ if j < ends => function.slope(*x),
-                    _ => levels[j - ends] * function.term(*x, times[j - ends]).0,
-                };
-                return entry * weight.sqrt() / value;
-            }
-            match (j + rows).checked_sub(ends + i) {
-                Some(0 | 2) => root,
-                Some(1) => -2.0 * root,
-                _ => 0.0,
-            }
-        });
-        let right = Col::from_fn(matrix.nrows(), |i| samples.get(i).map_or(0.0, |sample| sample.weight.sqrt()));
-        let strengths = non_negative_least_squares(&matrix, &right);
-        let (at_ends, of_terms) = strengths.split_at(ends);
-        let terms = of_terms.iter().zip(levels).map(|(part, level)| part * level).zip(times);
-        FittedSeries {
-            constant: at_ends[0],
-            slope: if self.slope { at_ends[1] } else { 0.0 },
-            terms: terms.filter(|(strength, _)| *strength > 0.0).collect(),
-        }
+        self.least_squares(samples, times, |time| level(samples, time), weight)
     }
 }
 
