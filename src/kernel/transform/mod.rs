@@ -89,7 +89,7 @@ impl SpectralOperator {
         self.read(field, work);
     }
 
-    /// Transforms `input` and multiplies it by the spectrum.
+    /// Convolves `input`: the result remains in the workspace, its rows still transformed.
     fn convolve(&self, input: &[f64], work: &mut TransformWorkspace) {
         if let Some(column) = &self.column {
             return self.convolve_column(column, input, &mut work.column);
@@ -106,7 +106,7 @@ impl SpectralOperator {
         for_each_share(&task, &mut work.lanes, &mut work.result, share * self.down() * AREA);
     }
 
-    /// Transforms the result of [`SpectralOperator::convolve`] back.
+    /// Reads the result of [`SpectralOperator::convolve`] from the workspace.
     fn read(&self, output: &mut [f64], work: &mut TransformWorkspace) {
         if let Some(column) = &self.column {
             return self.read_column(column, &work.column, output);
