@@ -81,7 +81,7 @@ mod tests {
         let minor = |column: usize| -> Vec<Vec<f64>> {
             a[1..].iter().map(|row| [&row[..column], &row[column + 1..]].concat()).collect()
         };
-        let sign = |column: usize| if column % 2 == 0 { 1.0 } else { -1.0 };
+        let sign = |column: usize| if column.is_multiple_of(2) { 1.0 } else { -1.0 };
         first.iter().enumerate().map(|(column, entry)| sign(column) * entry * determinant(&minor(column))).sum()
     }
 

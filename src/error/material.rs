@@ -5,7 +5,7 @@ pub enum MaterialError {
     /// An exponential series of the creep compliance is needed, and the rheology has no exact one
     /// ([`Rheology::creep_spectrum`](crate::rheology::Rheology::creep_spectrum) is `None`). One is fitted over the
     /// times that [`Builder::times`](crate::contact::Builder::times) or
-    /// `Builder::times_of` names; a material is fitted beforehand by
+    /// [`Builder::times_of`](crate::contact::Builder::times_of) names; a material is fitted beforehand by
     /// [`Material::fitted`](crate::rheology::Material::fitted).
     #[error(
         "{what} needs an exponential series, and {rheology} has no exact one: name the times to fit one over, with Builder::times (first and last) or Builder::times_of (a load history and its end), or fit one with Material::fitted"

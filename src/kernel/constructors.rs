@@ -129,28 +129,24 @@ impl InfluenceKernel {
         let coefficients = (grid.len() * size_of::<f64>()) as u128;
         memory::check("a kernel of coefficients", 2 * coefficients + MEMORY_WHILE_MADE * layout.operator_bytes())?;
         let mut values = Vec::with_capacity(grid.len());
-        for i in 0..n1 as isize {
-            for j in 0..n2 as isize {
-                let value = coefficient(i, j);
-                // also rejects NaN
-                if !(-GREATEST..=GREATEST).contains(&value) {
-                    let allowed = "finite, and at most 1e100 m in absolute value";
-                    return Err(KernelError::InvalidInfluence { of: "coefficient", at: [i, j], value, allowed }.into());
-                }
-                values.push(value);
+        let distances = || (0..n1 as isize).flat_map(|i| (0..n2 as isize).map(move |j| (i, j)));
+        for (i, j) in distances() {
+            let value = coefficient(i, j);
+            // also rejects NaN
+            if !(-GREATEST..=GREATEST).contains(&value) {
+                let allowed = "finite, and at most 1e100 m in absolute value";
+                return Err(KernelError::InvalidInfluence { of: "coefficient", at: [i, j], value, allowed }.into());
             }
+            values.push(value);
         }
         let greatest = values.iter().fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
-        for i in 0..n1 as isize {
-            for j in 0..n2 as isize {
-                let own = values[i as usize * n2 + j as usize];
-                for at in [[-i, j], [i, -j], [-i, -j]] {
-                    let value = coefficient(at[0], at[1]);
-                    let equal = (value - own).abs() <= UNEQUAL * greatest;
-                    if !equal {
-                        let allowed = "the same as that of its mirror images";
-                        return Err(KernelError::InvalidInfluence { of: "coefficient", at, value, allowed }.into());
-                    }
+        for ((i, j), own) in distances().zip(&values) {
+            for at in [[-i, j], [i, -j], [-i, -j]] {
+                let value = coefficient(at[0], at[1]);
+                let equal = (value - own).abs() <= UNEQUAL * greatest;
+                if !equal {
+                    let allowed = "the same as that of its mirror images";
+                    return Err(KernelError::InvalidInfluence { of: "coefficient", at, value, allowed }.into());
                 }
             }
         }
@@ -229,8 +225,7 @@ fn representable(grid: &Grid) -> Result<()> {
         within(field, side, RANGE.contains(&side), "in [1e-100, 1e100] m for the kernel of a half-space")?;
     }
     let field = "aspect ratio of the cells";
-    within(field, d1 / d2, RANGE.contains(&(d1 / d2)), "in [1e-100, 1e100] for the kernel of a half-space")?;
-    Ok(())
+    within(field, d1 / d2, RANGE.contains(&(d1 / d2)), "in [1e-100, 1e100] for the kernel of a half-space").map(drop)
 }
 
 fn strip(grid: &Grid, axis: usize, datum: f64) -> Result<Strip> {

@@ -152,7 +152,7 @@ impl fmt::Display for Influence {
                 write!(f, "half-space, periodic along x1 and x2, the mean of the surface being the datum")
             }
             Influence::Strip { periodic, strip } => {
-                write!(f, "half-space, periodic along x{}, datum {:e} m", periodic + 1, strip.datum())
+                write!(f, "half-space, periodic along x{}, datum {:e} m", periodic + 1, strip.datum)
             }
             Influence::Coefficients { .. } => write!(f, "user-defined coefficients"),
             Influence::Waves { .. } => write!(f, "user-defined waves, periodic along x1 and x2"),

@@ -77,9 +77,7 @@ pub struct InfluenceKernel {
 
 /// Buffers of [`InfluenceKernel::convolve`], made by [`InfluenceKernel::workspace`].
 #[derive(Debug, Clone)]
-pub struct Workspace {
-    transform: TransformWorkspace,
-}
+pub struct Workspace(TransformWorkspace);
 
 /// The influence operator on a part of a grid, and on its mirror images along folded axes.
 #[derive(Debug, Clone)]
@@ -104,7 +102,7 @@ impl InfluenceKernel {
     /// If there is not enough memory for them, or for the spectrum, which is computed here if it was not needed before.
     pub fn workspace(&self) -> Result<Workspace> {
         memory::check("the workspace of a kernel", self.layout([false; 2]).workspace_bytes())?;
-        Ok(Workspace { transform: self.whole_operator()?.workspace() })
+        Ok(Workspace(self.whole_operator()?.workspace()))
     }
 
     /// Writes K p into `displacement` \[Pa·m\]: the surface displacement \[m\] under `pressure` \[Pa\] of
@@ -117,11 +115,11 @@ impl InfluenceKernel {
     pub fn convolve(&self, pressure: &[f64], displacement: &mut [f64], work: &mut Workspace) -> Result<()> {
         exact_length("pressure", pressure.len(), self.grid.len())?;
         exact_length("displacement", displacement.len(), self.grid.len())?;
-        if self.layout([false; 2]) != work.transform.layout() {
-            let (len, expected) = (work.transform.layout().numbers(), self.layout([false; 2]).numbers());
+        if self.layout([false; 2]) != work.0.layout {
+            let (len, expected) = (work.0.layout.numbers(), self.layout([false; 2]).numbers());
             return Err(Error::WrongLength { field: "workspace", len, expected, exact: true });
         }
-        self.whole_operator()?.apply(pressure, displacement, &mut work.transform);
+        self.whole_operator()?.apply(pressure, displacement, &mut work.0);
         if displacement.iter().all(|value| value.is_finite()) {
             return Ok(());
         }
@@ -248,7 +246,7 @@ impl LocalKernel {
     }
 
     pub(crate) fn workspace(&self) -> Workspace {
-        Workspace { transform: self.operator.workspace() }
+        Workspace(self.operator.workspace())
     }
 
     /// The coefficient of a cell on itself \[m\].
@@ -258,6 +256,6 @@ impl LocalKernel {
 
     /// [`InfluenceKernel::convolve`] for fields of the right length.
     pub(crate) fn apply(&self, pressure: &[f64], displacement: &mut [f64], work: &mut Workspace) {
-        self.operator.apply(pressure, displacement, &mut work.transform);
+        self.operator.apply(pressure, displacement, &mut work.0);
     }
 }

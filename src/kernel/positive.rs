@@ -44,10 +44,8 @@ pub(super) fn least_eigenvalue(operator: &SpectralOperator, cells: usize) -> (f6
         _ => 0.0,
     };
     let matrix = Mat::from_fn(diagonal.len(), diagonal.len(), entry);
-    match matrix.self_adjoint_eigenvalues(Side::Lower) {
-        Ok(values) => values
-            .into_iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value))),
-        Err(_) => (f64::NAN, f64::NAN),
-    }
+    // in ascending order
+    matrix
+        .self_adjoint_eigenvalues(Side::Lower)
+        .map_or((f64::NAN, f64::NAN), |values| (values[0], values[values.len() - 1]))
 }

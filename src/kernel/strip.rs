@@ -25,16 +25,12 @@ pub(crate) struct Strip {
     /// Length of a cell \[m\].
     side: f64,
     /// Distance from a line load at which the displacement is zero \[m\].
-    datum: f64,
+    pub(super) datum: f64,
 }
 
 impl Strip {
     pub(crate) fn new(side: f64, datum: f64) -> Strip {
         Strip { side, datum }
-    }
-
-    pub(crate) fn datum(&self) -> f64 {
-        self.datum
     }
 
     /// The coefficient of the cell `i` cells away for the wave number `kappa` \[1/m\].

@@ -1,12 +1,10 @@
 use crate::error::{Result, positive};
-use crate::rheology::{CreepSpectrum, exponential_rheology};
+use crate::rheology::{CreepSpectrum, forward_rheology};
 
 /// A Maxwell and a Kelvin–Voigt element in series:
 /// J = 1/G + t/η + (1 − e^(−t/λ))/G_K, λ = η_K/G_K. A fluid with delayed elasticity.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Burgers {
-    spectrum: CreepSpectrum,
-}
+pub struct Burgers(CreepSpectrum);
 
 impl Burgers {
     /// A body with the Maxwell element (`g` \[Pa\], `eta` \[Pa·s\]) and the Kelvin–Voigt element
@@ -19,8 +17,8 @@ impl Burgers {
         positive("shear viscosity", eta)?;
         positive("Kelvin–Voigt modulus", g_k)?;
         positive("Kelvin–Voigt viscosity", eta_k)?;
-        Ok(Burgers { spectrum: CreepSpectrum::new(1.0 / g, 1.0 / eta, &[(1.0 / g_k, eta_k / g_k)])? })
+        Ok(Burgers(CreepSpectrum::new(1.0 / g, 1.0 / eta, &[(1.0 / g_k, eta_k / g_k)])?))
     }
 }
 
-exponential_rheology!(Burgers);
+forward_rheology!(self: Burgers => self.0);

@@ -24,14 +24,12 @@ use crate::rheology::Rheology;
 /// assert!(series.report().max_misfit() < 1.0e-4);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-pub struct FnRheology<F> {
-    compliance: F,
-}
+pub struct FnRheology<F>(F);
 
 impl<F: Fn(f64) -> f64 + Send + Sync> FnRheology<F> {
     /// Wraps the closure. Its values are checked when used: they must be finite, ≥ 0 and non-decreasing.
     pub fn new(compliance: F) -> FnRheology<F> {
-        FnRheology { compliance }
+        FnRheology(compliance)
     }
 }
 
@@ -43,6 +41,6 @@ impl<F> fmt::Debug for FnRheology<F> {
 
 impl<F: Fn(f64) -> f64 + Send + Sync> Rheology for FnRheology<F> {
     fn creep_compliance(&self, t: f64) -> f64 {
-        (self.compliance)(t)
+        (self.0)(t)
     }
 }

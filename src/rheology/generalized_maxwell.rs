@@ -1,5 +1,5 @@
 use crate::error::{Result, least_length};
-use crate::rheology::{CreepSpectrum, RelaxationSpectrum, exponential_rheology};
+use crate::rheology::{CreepSpectrum, RelaxationSpectrum, forward_rheology};
 
 /// A spring and any number of Maxwell elements in parallel (a Prony series):
 /// G(t) = G_∞ + Σ G_k e^(−t/τ_k). A solid if G_∞ > 0, otherwise a fluid.
@@ -13,9 +13,7 @@ use crate::rheology::{CreepSpectrum, RelaxationSpectrum, exponential_rheology};
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct GeneralizedMaxwell {
-    spectrum: CreepSpectrum,
-}
+pub struct GeneralizedMaxwell(CreepSpectrum);
 
 impl GeneralizedMaxwell {
     /// A body of `equilibrium` modulus \[Pa\] (0 for a fluid) and `terms` of (modulus \[Pa\], relaxation
@@ -25,8 +23,8 @@ impl GeneralizedMaxwell {
     /// As [`RelaxationSpectrum::new`]; also without terms.
     pub fn new(equilibrium: f64, terms: &[(f64, f64)]) -> Result<GeneralizedMaxwell> {
         least_length("Maxwell elements", terms.len(), 1)?;
-        Ok(GeneralizedMaxwell { spectrum: RelaxationSpectrum::new(equilibrium, 0.0, terms)?.creep() })
+        Ok(GeneralizedMaxwell(RelaxationSpectrum::new(equilibrium, 0.0, terms)?.creep()))
     }
 }
 
-exponential_rheology!(GeneralizedMaxwell);
+forward_rheology!(self: GeneralizedMaxwell => self.0);

@@ -13,24 +13,15 @@
 //! In σ = 1/s the reciprocal has the form of φ again, with poles at the times 1/z_k: one function
 //! converts both ways.
 
-/// The coefficients of c + f/s + Σ a p/(p + s): positive strengths a at ascending, distinct poles p.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct StieltjesSeries {
-    pub(crate) constant: f64,
-    pub(crate) slope: f64,
-    /// (strength a, pole p)
-    pub(crate) terms: Vec<(f64, f64)>,
-}
-
 /// Poles closer than this, relative to their position, are replaced by one at their mean, weighted by
 /// strength. That changes the function by a relative 1e-13 at most (the square of the distance, over
 /// eight), while zeros in a narrower gap would be resolved to fewer than ten digits of its width.
 const SAME_POLE: f64 = 1e-6;
 
-/// The coefficients c′, f′ and (b_k, z_k) of the reciprocal c′ + f′ s + Σ b s/(s + z), zeros ascending.
-pub(crate) fn reciprocal(series: &StieltjesSeries) -> StieltjesSeries {
-    let StieltjesSeries { constant, slope, .. } = *series;
-    let terms = significant(&merged(&series.terms), constant, slope);
+/// The coefficients c′, f′ and (b_k, z_k), zeros ascending, of the reciprocal c′ + f′ s + Σ b s/(s + z) of
+/// c + f/s + Σ a p/(p + s), given by c, f and `terms` of positive strengths a at ascending, distinct poles p.
+pub(crate) fn reciprocal(constant: f64, slope: f64, terms: &[(f64, f64)]) -> (f64, f64, Vec<(f64, f64)>) {
+    let terms = significant(&merged(terms), constant, slope);
     let total: f64 = terms.iter().map(|&(a, _)| a).sum();
     let rate: f64 = terms.iter().map(|&(a, p)| a * p).sum();
 
@@ -51,11 +42,9 @@ pub(crate) fn reciprocal(series: &StieltjesSeries) -> StieltjesSeries {
             _ => zeros.push((strength, at)),
         }
     }
-    StieltjesSeries {
-        constant: if slope > 0.0 { 0.0 } else { 1.0 / (constant + total) },
-        slope: if constant > 0.0 { 0.0 } else { 1.0 / (slope + rate) },
-        terms: zeros,
-    }
+    let slope_of_reciprocal = if constant > 0.0 { 0.0 } else { 1.0 / (slope + rate) };
+    let constant_of_reciprocal = if slope > 0.0 { 0.0 } else { 1.0 / (constant + total) };
+    (constant_of_reciprocal, slope_of_reciprocal, zeros)
 }
 
 /// The terms with clusters of poles replaced by their weighted means.
@@ -122,16 +111,8 @@ struct Point {
 
 impl Secular {
     fn zeros(&self) -> impl Iterator<Item = Point> + '_ {
-        let last = self.poles.len().wrapping_sub(1);
-        (0..self.poles.len()).filter_map(move |k| {
-            if k < last {
-                Some(self.zero_between(k))
-            } else if self.constant > 0.0 {
-                Some(self.zero_above_last())
-            } else {
-                None
-            }
-        })
+        let above = (self.constant > 0.0 && !self.poles.is_empty()).then(|| self.zero_above_last());
+        (1..self.poles.len()).map(|k| self.zero_between(k - 1)).chain(above)
     }
 
     /// The zero between poles k and k + 1, measured from the nearer one.

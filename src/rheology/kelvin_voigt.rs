@@ -1,13 +1,11 @@
 use crate::error::{Result, positive};
-use crate::rheology::{CreepSpectrum, exponential_rheology};
+use crate::rheology::{CreepSpectrum, forward_rheology};
 
 /// A spring and a dashpot in parallel: J = (1 − e^(−t/λ))/G, λ = η/G.
 ///
 /// J(0) = 0: it has no elastic response and cannot follow a jump to a non-zero load; ramp the load.
 #[derive(Debug, Clone, PartialEq)]
-pub struct KelvinVoigt {
-    spectrum: CreepSpectrum,
-}
+pub struct KelvinVoigt(CreepSpectrum);
 
 impl KelvinVoigt {
     /// A body of shear modulus `g` \[Pa\] and shear viscosity `eta` \[Pa·s\].
@@ -17,8 +15,8 @@ impl KelvinVoigt {
     pub fn new(g: f64, eta: f64) -> Result<KelvinVoigt> {
         positive("shear modulus", g)?;
         positive("shear viscosity", eta)?;
-        Ok(KelvinVoigt { spectrum: CreepSpectrum::new(0.0, 0.0, &[(1.0 / g, eta / g)])? })
+        Ok(KelvinVoigt(CreepSpectrum::new(0.0, 0.0, &[(1.0 / g, eta / g)])?))
     }
 }
 
-exponential_rheology!(KelvinVoigt);
+forward_rheology!(self: KelvinVoigt => self.0);

@@ -1,5 +1,5 @@
 use crate::error::{Result, positive};
-use crate::rheology::{CreepSpectrum, exponential_rheology};
+use crate::rheology::{CreepSpectrum, forward_rheology};
 
 /// A spring and a dashpot in series: J = 1/G + t/η, relaxation time τ = η/G. A fluid.
 ///
@@ -11,9 +11,7 @@ use crate::rheology::{CreepSpectrum, exponential_rheology};
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Maxwell {
-    spectrum: CreepSpectrum,
-}
+pub struct Maxwell(CreepSpectrum);
 
 impl Maxwell {
     /// A body of shear modulus `g` \[Pa\] and shear viscosity `eta` \[Pa·s\].
@@ -23,8 +21,8 @@ impl Maxwell {
     pub fn new(g: f64, eta: f64) -> Result<Maxwell> {
         positive("shear modulus", g)?;
         positive("shear viscosity", eta)?;
-        Ok(Maxwell { spectrum: CreepSpectrum::new(1.0 / g, 1.0 / eta, &[])? })
+        Ok(Maxwell(CreepSpectrum::new(1.0 / g, 1.0 / eta, &[])?))
     }
 }
 
-exponential_rheology!(Maxwell);
+forward_rheology!(self: Maxwell => self.0);

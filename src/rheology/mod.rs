@@ -168,50 +168,41 @@ fn may_follow(value: f64, earlier: f64) -> bool {
     value.is_finite() && value >= earlier * (1.0 - ROUNDING)
 }
 
-/// Forwards the trait through smart pointers.
+/// [`Rheology`] of a type that holds another rheology and behaves as that one.
 macro_rules! forward_rheology {
-    ($($pointer:ty),*) => {$(
-        impl<T: Rheology + ?Sized> Rheology for $pointer {
-            fn creep_compliance(&self, t: f64) -> f64 {
-                (**self).creep_compliance(t)
+    ($(<$generic:ident>)? $self:ident: $outer:ty => $inner:expr) => {
+        impl $(<$generic: $crate::rheology::Rheology + ?Sized>)? $crate::rheology::Rheology for $outer {
+            fn creep_compliance(&$self, t: f64) -> f64 {
+                $crate::rheology::Rheology::creep_compliance(&$inner, t)
             }
 
-            fn creep_spectrum(&self) -> Option<CreepSpectrum> {
-                (**self).creep_spectrum()
+            fn creep_spectrum(&$self) -> Option<$crate::rheology::CreepSpectrum> {
+                $crate::rheology::Rheology::creep_spectrum(&$inner)
             }
 
-            fn known_until(&self) -> f64 {
-                (**self).known_until()
+            fn known_until(&$self) -> f64 {
+                $crate::rheology::Rheology::known_until(&$inner)
             }
 
-            fn measured(&self) -> [f64; 2] {
-                (**self).measured()
+            fn measured(&$self) -> [f64; 2] {
+                $crate::rheology::Rheology::measured(&$inner)
             }
 
-            fn fit_report(&self) -> Option<&FitReport> {
-                (**self).fit_report()
+            fn fit_report(&$self) -> Option<&$crate::rheology::FitReport> {
+                $crate::rheology::Rheology::fit_report(&$inner)
             }
 
-            fn series(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<CreepSeries> {
-                (**self).series(times, tolerance)
-            }
-        }
-    )*};
-}
-forward_rheology!(Box<T>, std::sync::Arc<T>);
-
-/// [`Rheology`] for a model with its exact series in the field `spectrum`.
-macro_rules! exponential_rheology {
-    ($model:ty) => {
-        impl $crate::rheology::Rheology for $model {
-            fn creep_compliance(&self, t: f64) -> f64 {
-                self.spectrum.compliance(t)
-            }
-
-            fn creep_spectrum(&self) -> Option<$crate::rheology::CreepSpectrum> {
-                Some(self.spectrum.clone())
+            fn series(
+                &$self,
+                times: std::ops::RangeInclusive<f64>,
+                tolerance: f64,
+            ) -> $crate::error::Result<$crate::rheology::CreepSeries> {
+                $crate::rheology::Rheology::series(&$inner, times, tolerance)
             }
         }
     };
 }
-use exponential_rheology;
+use forward_rheology;
+
+forward_rheology!(<T> self: Box<T> => **self);
+forward_rheology!(<T> self: std::sync::Arc<T> => **self);

@@ -2,7 +2,7 @@ use std::ops::RangeInclusive;
 
 use crate::error::{MaterialError, Result, positive, within};
 use crate::rheology::fit::{FitReport, MaterialFunction, Sample, Search};
-use crate::rheology::{CreepSpectrum, Rheology, may_follow};
+use crate::rheology::{CreepSpectrum, Rheology, is_known, may_follow};
 
 /// The exponential series that approximates a creep compliance over a range of times, and its error.
 ///
@@ -22,10 +22,10 @@ use crate::rheology::{CreepSpectrum, Rheology, may_follow};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct CreepSeries {
-    spectrum: CreepSpectrum,
-    report: FitReport,
-    known_until: f64,
-    measured: [f64; 2],
+    pub(super) spectrum: CreepSpectrum,
+    pub(super) report: FitReport,
+    pub(super) known_until: f64,
+    pub(super) measured: [f64; 2],
 }
 
 /// Samples per decade to which a series is fitted, and at which it is checked.
@@ -68,18 +68,14 @@ impl CreepSeries {
             Search { constant: (glassy > 0.0).then_some(glassy), slope: true, times: [first / BEYOND, last * BEYOND] };
         let series = search.within(&samples, FITTED_SHARE * tolerance);
         let report = FitReport::new(&series, &sampled(rheology, [first, last], CHECKED, glassy)?);
-        match report.worst() {
-            Some(worst) if worst.misfit().abs() > tolerance => {
-                Err(MaterialError::PoorFit { misfit: worst.misfit().abs(), at: worst.x, tolerance }.into())
-            }
-            _ => {
-                let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
-                let known_until = last.min(rheology.known_until());
-                crate::events::fitted([first, last], series.terms.len(), report.max_misfit());
-                let measured = [first, known_until.min(rheology.measured()[1])];
-                Ok(CreepSeries { spectrum, report, known_until, measured })
-            }
+        if let Some(worst) = report.worst().filter(|worst| worst.misfit().abs() > tolerance) {
+            return Err(MaterialError::PoorFit { misfit: worst.misfit().abs(), at: worst.x, tolerance }.into());
         }
+        let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
+        let known_until = last.min(rheology.known_until());
+        crate::events::fitted([first, last], series.terms.len(), report.max_misfit());
+        let measured = [first, known_until.min(rheology.measured()[1])];
+        Ok(CreepSeries { spectrum, report, known_until, measured })
     }
 
     /// The series.
@@ -93,35 +89,27 @@ impl CreepSeries {
     }
 }
 
-/// [`Rheology`] for types with the fields `spectrum`, `report`, `known_until` and `measured`.
-macro_rules! known_series {
-    ($series:ty) => {
-        impl $crate::rheology::Rheology for $series {
-            fn creep_compliance(&self, t: f64) -> f64 {
-                if $crate::rheology::is_known(t, self.known_until) { self.spectrum.compliance(t) } else { f64::NAN }
-            }
+impl Rheology for CreepSeries {
+    fn creep_compliance(&self, t: f64) -> f64 {
+        if is_known(t, self.known_until) { self.spectrum.compliance(t) } else { f64::NAN }
+    }
 
-            fn creep_spectrum(&self) -> Option<$crate::rheology::CreepSpectrum> {
-                Some(self.spectrum.clone())
-            }
+    fn creep_spectrum(&self) -> Option<CreepSpectrum> {
+        Some(self.spectrum.clone())
+    }
 
-            fn known_until(&self) -> f64 {
-                self.known_until
-            }
+    fn known_until(&self) -> f64 {
+        self.known_until
+    }
 
-            fn measured(&self) -> [f64; 2] {
-                self.measured
-            }
+    fn measured(&self) -> [f64; 2] {
+        self.measured
+    }
 
-            fn fit_report(&self) -> Option<&$crate::rheology::FitReport> {
-                (!self.report.is_exact()).then_some(&self.report)
-            }
-        }
-    };
+    fn fit_report(&self) -> Option<&FitReport> {
+        (!self.report.is_exact()).then_some(&self.report)
+    }
 }
-pub(super) use known_series;
-
-known_series!(CreepSeries);
 
 /// J at log-spaced times, both ends included.
 fn sampled<R: Rheology + ?Sized>(

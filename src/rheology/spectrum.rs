@@ -2,7 +2,7 @@
 
 use crate::error::{Result, least_length, positive, within};
 use crate::rheology::Rheology;
-use crate::rheology::interconversion::{StieltjesSeries, reciprocal};
+use crate::rheology::interconversion::reciprocal;
 
 /// A creep compliance as an exponential series,
 ///
@@ -119,10 +119,10 @@ impl CreepSpectrum {
     /// The relaxation modulus of the same body, exactly: s Ĵ(s) · s Ĝ(s) = 1.
     pub fn relaxation(&self) -> RelaxationSpectrum {
         // s Ĵ(s) = J_g + φ/s + Σ J_k x_k/(x_k + s), poles at the rates x_k = 1/λ_k
-        let terms = self.terms.iter().rev().map(|&(c, lambda)| (c, 1.0 / lambda)).collect();
-        let series = reciprocal(&StieltjesSeries { constant: self.glassy, slope: self.fluidity, terms });
-        let terms = series.terms.into_iter().rev().map(|(g, rate)| (g, 1.0 / rate)).collect();
-        RelaxationSpectrum { equilibrium: series.constant, viscosity: series.slope, terms }
+        let terms: Vec<_> = self.terms.iter().rev().map(|&(c, lambda)| (c, 1.0 / lambda)).collect();
+        let (equilibrium, viscosity, terms) = reciprocal(self.glassy, self.fluidity, &terms);
+        let terms = terms.into_iter().rev().map(|(g, rate)| (g, 1.0 / rate)).collect();
+        RelaxationSpectrum { equilibrium, viscosity, terms }
     }
 }
 
@@ -168,9 +168,8 @@ impl RelaxationSpectrum {
     pub fn creep(&self) -> CreepSpectrum {
         // In σ = 1/s the modulus reads s Ĝ = G_∞ + η/σ + Σ G_k τ_k/(τ_k + σ): the form of s Ĵ with
         // times in place of rates, so that the same function converts both ways.
-        let series = StieltjesSeries { constant: self.equilibrium, slope: self.viscosity, terms: self.terms.clone() };
-        let StieltjesSeries { constant, slope, terms } = reciprocal(&series);
-        CreepSpectrum { glassy: constant, fluidity: slope, terms }
+        let (glassy, fluidity, terms) = reciprocal(self.equilibrium, self.viscosity, &self.terms);
+        CreepSpectrum { glassy, fluidity, terms }
     }
 }
 

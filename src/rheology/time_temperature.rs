@@ -1,4 +1,4 @@
-use crate::error::{Error, Result, finite, positive};
+use crate::error::{Result, finite, positive, within};
 use crate::rheology::{CreepSpectrum, FitReport, Rheology};
 
 /// The gas constant \[J/(mol K)\] (exact since 2019).
@@ -78,19 +78,15 @@ impl TimeTemperature {
         positive("temperature", temperature)?;
         let difference = temperature - self.reference;
         let factor = match self.law {
-            Law::Wlf { c2, .. } if c2 + difference <= 0.0 => {
+            Law::Wlf { c1, c2 } => {
                 let allowed = "above T_ref - C2, where the WLF law ends";
-                return Err(Error::OutOfRange { field: "temperature", value: temperature, allowed });
+                within("temperature", temperature, c2 + difference > 0.0, allowed)?;
+                10f64.powf(-c1 * difference / (c2 + difference))
             }
-            Law::Wlf { c1, c2 } => 10f64.powf(-c1 * difference / (c2 + difference)),
             Law::Arrhenius { energy } => (energy / GAS_CONSTANT * (1.0 / temperature - 1.0 / self.reference)).exp(),
         };
         finite("shift factor", factor)?;
-        if (1e-60..=1e60).contains(&factor) {
-            Ok(factor)
-        } else {
-            Err(Error::OutOfRange { field: "shift factor", value: factor, allowed: "in [1e-60, 1e60]" })
-        }
+        within("shift factor", factor, (1e-60..=1e60).contains(&factor), "in [1e-60, 1e60]")
     }
 
     /// A `rheology` known at the reference temperature, at another `temperature` \[K\]: J(t/a_T).

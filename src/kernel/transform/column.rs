@@ -1,6 +1,5 @@
 //! The transform of a single column, that of a line contact: it needs no tiles and no rows.
 
-use std::fmt;
 use std::sync::Arc;
 
 use num_complex::Complex64;
@@ -52,11 +51,11 @@ impl SpectralOperator {
     /// Transforms `input`, multiplies it by the spectrum and transforms it back; the result remains in the workspace.
     pub(super) fn convolve_column(&self, column: &Column, input: &[f64], work: &mut ColumnWorkspace) {
         let ColumnWorkspace { real, waves, scratch } = work;
-        let values = input.iter().copied();
         match column {
             Column::Real(forward, inverse) => {
-                real[input.len()..].fill(0.0);
-                real.iter_mut().zip(values).for_each(|(real, value)| *real = value);
+                let (values, padding) = real.split_at_mut(input.len());
+                values.copy_from_slice(input);
+                padding.fill(0.0);
                 let transformed = forward.process_with_scratch(real, waves, scratch);
                 waves.iter_mut().zip(&self.spectrum).for_each(|(z, s)| *z *= *s);
                 let inverted = inverse.process_with_scratch(waves, real, scratch);
@@ -67,7 +66,7 @@ impl SpectralOperator {
             Column::Folded => {
                 let line = &self.columns;
                 line.pad(waves, input.len());
-                line.fill(waves, values.map(Complex64::from));
+                line.fill(waves, input.iter().map(Complex64::from));
                 line.bare_forward(waves, scratch);
                 line.multiply_folded(waves, &self.spectrum);
                 line.bare_inverse(waves, scratch);
@@ -78,16 +77,8 @@ impl SpectralOperator {
     /// Copies the result from the workspace.
     pub(super) fn read_column(&self, column: &Column, work: &ColumnWorkspace, output: &mut [f64]) {
         match column {
-            Column::Real(..) => {
-                output.iter_mut().zip(&work.real).for_each(|(out, &value)| *out = value);
-            }
+            Column::Real(..) => output.copy_from_slice(&work.real[..output.len()]),
             Column::Folded => self.columns.read(&work.waves, output, |z| z.re),
         }
-    }
-}
-
-impl fmt::Debug for Column {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(if matches!(self, Column::Folded) { "Folded" } else { "Real" })
     }
 }

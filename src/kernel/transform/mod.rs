@@ -79,33 +79,24 @@ impl SpectralOperator {
 
     /// Applies the operator to `input` and writes the result to `output`; both hold one value per cell.
     pub(crate) fn apply(&self, input: &[f64], output: &mut [f64], work: &mut TransformWorkspace) {
-        if let Some(column) = &self.column {
-            self.convolve_column(column, input, &mut work.column);
-            return self.read_column(column, &work.column, output);
-        }
-        self.rows_forward(input, work);
-        self.columns(work);
-        self.rows_inverse(output, work);
+        self.convolve(input, work);
+        self.read(output, work);
     }
 
     /// [`SpectralOperator::apply`] in place.
     pub(crate) fn apply_in_place(&self, field: &mut [f64], work: &mut TransformWorkspace) {
-        if let Some(column) = &self.column {
-            self.convolve_column(column, field, &mut work.column);
-            return self.read_column(column, &work.column, field);
-        }
-        self.rows_forward(field, work);
-        self.columns(work);
-        self.rows_inverse(field, work);
+        self.convolve(field, work);
+        self.read(field, work);
     }
 
-    fn rows_forward(&self, input: &[f64], work: &mut TransformWorkspace) {
+    /// Convolves `input`: the result remains in the workspace, its rows still transformed.
+    fn convolve(&self, input: &[f64], work: &mut TransformWorkspace) {
+        if let Some(column) = &self.column {
+            return self.convolve_column(column, input, &mut work.column);
+        }
         let share = self.down().div_ceil(work.lanes.len());
         let task = RowsForward { operator: self, input, share };
         for_each_share(&task, &mut work.lanes, &mut work.tiles, share * self.across() * AREA);
-    }
-
-    fn columns(&self, work: &mut TransformWorkspace) {
         if let [lane] = &mut work.lanes[..] {
             let task = ColumnsInPlace { operator: self };
             return for_each_share(&task, std::slice::from_mut(lane), &mut work.tiles, usize::MAX);
@@ -115,7 +106,11 @@ impl SpectralOperator {
         for_each_share(&task, &mut work.lanes, &mut work.result, share * self.down() * AREA);
     }
 
-    fn rows_inverse(&self, output: &mut [f64], work: &mut TransformWorkspace) {
+    /// Reads the result of [`SpectralOperator::convolve`] from the workspace.
+    fn read(&self, output: &mut [f64], work: &mut TransformWorkspace) {
+        if let Some(column) = &self.column {
+            return self.read_column(column, &work.column, output);
+        }
         let share = self.down().div_ceil(work.lanes.len());
         let in_place = work.lanes.len() == 1;
         let tiles = if in_place { &work.tiles } else { &work.result };
@@ -125,7 +120,7 @@ impl SpectralOperator {
 
     /// Transforms the columns of a panel, multiplies them by the spectrum, and transforms them back.
     #[inline(always)]
-    fn convolve(&self, panel: usize, lane: &mut Lane) {
+    fn convolve_panel(&self, panel: usize, lane: &mut Lane) {
         let (line, values) = (&self.columns, self.columns.independent());
         let columns = if self.rows.is_folded() { TILE / 2 } else { TILE };
         let spectra = self.spectrum[panel * TILE * values..].chunks(values * TILE / columns);

@@ -76,7 +76,7 @@ impl Task for ColumnsInPlace<'_> {
         for panel in 0..across {
             let at = |tile: usize| (tile * across + panel) * AREA;
             self.operator.gather(tiles, at, lane.block.get());
-            self.operator.convolve(panel, lane);
+            self.operator.convolve_panel(panel, lane);
             self.operator.scatter(lane.block.get(), tiles, at);
         }
     }
@@ -99,7 +99,7 @@ impl Task for Columns<'_> {
         for (panel, result) in result.chunks_exact_mut(down * AREA).enumerate() {
             let panel = k * self.share + panel;
             self.operator.gather(self.tiles, |tile| (tile * across + panel) * AREA, lane.block.get());
-            self.operator.convolve(panel, lane);
+            self.operator.convolve_panel(panel, lane);
             self.operator.scatter(lane.block.get(), result, |tile| tile * AREA);
         }
     }

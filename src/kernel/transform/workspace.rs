@@ -12,7 +12,8 @@ use crate::kernel::layout::Layout;
 /// Buffers of a [`SpectralOperator`]: made once, used by every application.
 #[derive(Clone)]
 pub(crate) struct TransformWorkspace {
-    layout: Layout,
+    /// The layout that it was made for.
+    pub(crate) layout: Layout,
     /// Coefficients of the rows, in tiles: those of 8 rows side by side. A folded row holds the (real) coefficients of
     /// two.
     pub(super) tiles: Vec<Complex64>,
@@ -78,13 +79,6 @@ impl SpectralOperator {
         let result = zeros(if lanes > 1 { tiles } else { 0 });
         let column = ColumnWorkspace::default();
         TransformWorkspace { layout, tiles: zeros(tiles), result, lanes: vec![lane; lanes.max(1)], column }
-    }
-}
-
-impl TransformWorkspace {
-    /// The layout that it was made for.
-    pub(crate) fn layout(&self) -> Layout {
-        self.layout
     }
 }
 

@@ -5,10 +5,7 @@
 //! determine as many parameters as there are values, the sparsest series ripples between the rows; then the smoothest
 //! spectrum that explains the data is computed, and a sparse series is fitted to its curve.
 
-use faer::{Col, Mat};
-
 use super::basis::{FittedSeries, MaterialFunction, Sample};
-use super::nnls::non_negative_least_squares;
 use super::polish::polish;
 use super::{LONG, Search};
 
@@ -39,23 +36,16 @@ const FOLLOWED: f64 = 8.0;
 /// Greatest number of points over all samples of a table: one over many decades is followed more coarsely.
 const FOLLOWED_IN_ALL: f64 = 64.0;
 
-/// A series fitted to measurements.
-#[derive(Debug, Clone)]
-pub(crate) struct Measured {
-    pub(crate) series: FittedSeries,
-    /// Relative deviation, at or between the samples, of another series that fits them equally well.
-    pub(crate) uncertainty: f64,
-}
-
 impl Search {
-    /// The series with the best prediction.
-    pub(crate) fn measured(&self, samples: &[Sample]) -> Measured {
+    /// The series with the best prediction for measurements, and the relative deviation from it, at or between the
+    /// samples, of another series that fits them equally well.
+    pub(crate) fn measured(&self, samples: &[Sample]) -> (FittedSeries, f64) {
         let start = self.on_grid(samples, DENSITY);
         // each strength that is not zero is a parameter of non-negative least squares (Meyer & Woodroofe, Ann. Statist.
         // 28, 2000)
         let parameters = ends(&start) + start.terms.len();
         let enough = |series: &FittedSeries| series.worst(samples) <= 0.1 * FLOOR;
-        let start = polish(&start, samples, self.free(), LONG, &enough);
+        let start = polish(&start, samples, self, LONG, &enough);
         let left = samples.len().saturating_sub(parameters).max(1) as f64;
         let noise = (start.squares(samples) / left).sqrt();
         // the floor holds for single measurements: a mean of many is not fitted more closely
@@ -67,7 +57,7 @@ impl Search {
             None => self.sparse(&start, samples, noise.max(FLOOR * root)),
         };
         let uncertainty = series.worst(&along(&start, samples));
-        Measured { series, uncertainty }
+        (series, uncertainty)
     }
 
     /// The terms that improve the prediction, by the criterion of Mallows (Technometrics 15, 1973).
@@ -81,7 +71,7 @@ impl Search {
         };
         let prefers = |trial: &FittedSeries, current: &FittedSeries| criterion(trial) <= criterion(current);
         let thinned = self.thinned(start.clone(), samples, TRIES, &prefers);
-        polish(&thinned, samples, self.free(), LONG, &|_| false)
+        polish(&thinned, samples, self, LONG, &|_| false)
     }
 
     /// The smoothest spectrum that explains the samples; `None` if none does, as for a few discrete times without
@@ -105,38 +95,11 @@ impl Search {
         smoothest
     }
 
-    /// Non-negative least squares of the misfit and of `weight` times the squared second differences of the strengths,
-    /// relative to the data at the same time, so that those of a power law vanish.
+    /// A smooth spectrum: second differences relative to the data at the same time, so that those of a power law vanish.
     fn regularised(&self, samples: &[Sample], weight: f64) -> FittedSeries {
         let decades = (self.times[1] / self.times[0]).log10();
         let times = self.grid(SMOOTH_DENSITY.min(SMOOTH_TIMES / decades));
-        let levels: Vec<f64> = times.iter().map(|&time| level(samples, time)).collect();
-        let ends = 1 + usize::from(self.slope);
-        let (rows, root) = (samples.len(), weight.sqrt());
-        let matrix = Mat::from_fn(rows + times.len() - 2, ends + times.len(), |i, j| {
-            if let Some(Sample { function, x, value, weight }) = samples.get(i) {
-                let entry = match j {
-                    0 => function.constant(),
-                    _ if j < ends => function.slope(*x),
-                    _ => levels[j - ends] * function.term(*x, times[j - ends]).0,
-                };
-                return entry * weight.sqrt() / value;
-            }
-            match (j + rows).checked_sub(ends + i) {
-                Some(0 | 2) => root,
-                Some(1) => -2.0 * root,
-                _ => 0.0,
-            }
-        });
-        let right = Col::from_fn(matrix.nrows(), |i| samples.get(i).map_or(0.0, |sample| sample.weight.sqrt()));
-        let strengths = non_negative_least_squares(&matrix, &right);
-        let (at_ends, of_terms) = strengths.split_at(ends);
-        let terms = of_terms.iter().zip(levels).map(|(part, level)| part * level).zip(times);
-        FittedSeries {
-            constant: at_ends[0],
-            slope: if self.slope { at_ends[1] } else { 0.0 },
-            terms: terms.filter(|(strength, _)| *strength > 0.0).collect(),
-        }
+        self.least_squares(samples, times, |time| level(samples, time), weight)
     }
 }
 

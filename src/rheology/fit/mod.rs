@@ -17,11 +17,10 @@ mod report;
 
 pub use basis::MaterialFunction;
 pub(crate) use basis::{FittedSeries, Sample};
-pub(crate) use measured::Measured;
 pub use report::{FitReport, FitSample, FitWarning};
 
 use faer::{Col, Mat};
-use polish::{Free, polish};
+use polish::polish;
 
 /// The class of series to search.
 #[derive(Debug, Clone)]
@@ -50,7 +49,7 @@ impl Search {
         let reached = |series: &FittedSeries| series.worst(samples) <= most;
         let mut best: Option<FittedSeries> = None;
         for density in DENSITIES {
-            let series = polish(&self.on_grid(samples, density), samples, self.free(), LONG, &reached);
+            let series = polish(&self.on_grid(samples, density), samples, self, LONG, &reached);
             if best.as_ref().is_none_or(|best| series.worst(samples) < best.worst(samples)) {
                 best = Some(series);
             }
@@ -62,38 +61,55 @@ impl Search {
             best.unwrap_or(FittedSeries { constant: self.constant.unwrap_or(0.0), slope: 0.0, terms: Vec::new() });
         let thinned = self.thinned(found, samples, TRIES, &|trial, _| reached(trial));
         // the polish of a merger stops early: complete it
-        let polished = polish(&thinned, samples, self.free(), LONG, &|_| false);
+        let polished = polish(&thinned, samples, self, LONG, &|_| false);
         if polished.worst(samples) <= thinned.worst(samples) { polished } else { thinned }
-    }
-
-    fn free(&self) -> Free {
-        Free { constant: self.constant.is_none(), slope: self.slope }
     }
 
     /// Non-negative least squares with `density` times per decade.
     fn on_grid(&self, samples: &[Sample], density: f64) -> FittedSeries {
-        let times = self.grid(density);
+        self.least_squares(samples, self.grid(density), |_| 1.0, 0.0)
+    }
+
+    /// Non-negative least squares of the misfit with terms at `times`, and of `smoothing` times the squared second
+    /// differences of their strengths, each relative to `level` at its time.
+    fn least_squares(
+        &self,
+        samples: &[Sample],
+        times: Vec<f64>,
+        level: impl Fn(f64) -> f64,
+        smoothing: f64,
+    ) -> FittedSeries {
+        let levels: Vec<f64> = times.iter().map(|&time| level(time)).collect();
         let ends = usize::from(self.constant.is_none()) + usize::from(self.slope);
-        let matrix = Mat::from_fn(samples.len(), ends + times.len(), |i, j| {
-            let Sample { function, x, value, weight } = samples[i];
-            let entry = match j {
-                0 if self.constant.is_none() => function.constant(),
-                _ if j < ends => function.slope(x),
-                _ => function.term(x, times[j - ends]).0,
-            };
-            entry * weight.sqrt() / value
+        let (rows, root) = (samples.len(), smoothing.sqrt());
+        let differences = if smoothing > 0.0 { times.len() - 2 } else { 0 };
+        let matrix = Mat::from_fn(rows + differences, ends + times.len(), |i, j| {
+            if let Some(Sample { function, x, value, weight }) = samples.get(i) {
+                let entry = match j {
+                    0 if self.constant.is_none() => function.constant(),
+                    _ if j < ends => function.slope(*x),
+                    _ => levels[j - ends] * function.term(*x, times[j - ends]).0,
+                };
+                return entry * weight.sqrt() / value;
+            }
+            match (j + rows).checked_sub(ends + i) {
+                Some(0 | 2) => root,
+                Some(1) => -2.0 * root,
+                _ => 0.0,
+            }
         });
         let known = self.constant.unwrap_or(0.0);
-        let right = Col::from_fn(samples.len(), |i| {
-            let Sample { function, value, weight, .. } = samples[i];
-            weight.sqrt() * (1.0 - known * function.constant() / value)
+        let right = Col::from_fn(matrix.nrows(), |i| {
+            let unknown = |sample: &Sample| 1.0 - known * sample.function.constant() / sample.value;
+            samples.get(i).map_or(0.0, |sample| sample.weight.sqrt() * unknown(sample))
         });
         let strengths = nnls::non_negative_least_squares(&matrix, &right);
         let (at_ends, of_terms) = strengths.split_at(ends);
+        let terms = of_terms.iter().zip(levels).map(|(part, level)| part * level).zip(times);
         FittedSeries {
             constant: self.constant.unwrap_or_else(|| at_ends[0]),
             slope: if self.slope { at_ends[ends - 1] } else { 0.0 },
-            terms: of_terms.iter().copied().zip(times).filter(|(strength, _)| *strength > 0.0).collect(),
+            terms: terms.filter(|(strength, _)| *strength > 0.0).collect(),
         }
     }
 
@@ -111,7 +127,7 @@ impl Search {
             let mut mergers = self.mergers(&best, samples);
             mergers.sort_by(|a, b| a.0.total_cmp(&b.0));
             let next = mergers.iter().take(tries).find_map(|(_, merged)| {
-                let trial = polish(merged, samples, self.free(), BRIEF, &|series| prefers(series, &best));
+                let trial = polish(merged, samples, self, BRIEF, &|series| prefers(series, &best));
                 prefers(&trial, &best).then_some(trial)
             });
             match next {

@@ -2,25 +2,19 @@
 
 use faer::{Col, Mat};
 
+use super::Search;
 use super::basis::{FittedSeries, Sample};
 use super::nnls::solve;
 
 /// Greatest change of the logarithm of a parameter in one iteration.
 const MAX_CHANGE: f64 = 1.5;
 
-/// The ends of a series that may change.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Free {
-    pub(crate) constant: bool,
-    pub(crate) slope: bool,
-}
-
 /// Levenberg–Marquardt in the logarithms of strengths and times, which keeps both positive. Ends after
 /// `iterations`, when `done`, or when the squares no longer decrease.
 pub(crate) fn polish(
     start: &FittedSeries,
     samples: &[Sample],
-    free: Free,
+    search: &Search,
     iterations: usize,
     done: &dyn Fn(&FittedSeries) -> bool,
 ) -> FittedSeries {
@@ -31,10 +25,10 @@ pub(crate) fn polish(
         if squares == 0.0 || done(&best) {
             break;
         }
-        let (jacobian, misfits) = linearise(&best, samples, free);
+        let (jacobian, misfits) = linearise(&best, samples, search);
         let mut improved = None;
         for _ in 0..6 {
-            let trial = moved(&best, free, &damped_step(&jacobian, &misfits, damping));
+            let trial = moved(&best, search, &damped_step(&jacobian, &misfits, damping));
             let trial_squares = trial.squares(samples);
             if trial_squares < squares {
                 improved = Some((trial, trial_squares));
@@ -55,8 +49,9 @@ pub(crate) fn polish(
 }
 
 /// Derivatives of the misfits by ln constant, ln slope, and each (ln strength, ln time), and the misfits.
-fn linearise(series: &FittedSeries, samples: &[Sample], free: Free) -> (Mat<f64>, Col<f64>) {
-    let ends = usize::from(moves(free.constant, series.constant)) + usize::from(moves(free.slope, series.slope));
+fn linearise(series: &FittedSeries, samples: &[Sample], search: &Search) -> (Mat<f64>, Col<f64>) {
+    let [constant_moves, slope_moves] = moving_ends(series, search);
+    let ends = usize::from(constant_moves) + usize::from(slope_moves);
     let mut jacobian = Mat::zeros(samples.len(), ends + 2 * series.terms.len());
     let mut misfits = Col::zeros(samples.len());
     for (i, sample) in samples.iter().enumerate() {
@@ -64,11 +59,11 @@ fn linearise(series: &FittedSeries, samples: &[Sample], free: Free) -> (Mat<f64>
         let weight = root / sample.value;
         misfits[i] = root * series.misfit(sample);
         let mut column = 0;
-        for (is_free, strength, value) in [
-            (free.constant, series.constant, function.constant()),
-            (free.slope, series.slope, function.slope(sample.x)),
+        for (moves, strength, value) in [
+            (constant_moves, series.constant, function.constant()),
+            (slope_moves, series.slope, function.slope(sample.x)),
         ] {
-            if moves(is_free, strength) {
+            if moves {
                 jacobian[(i, column)] = strength * value * weight;
                 column += 1;
             }
@@ -83,8 +78,9 @@ fn linearise(series: &FittedSeries, samples: &[Sample], free: Free) -> (Mat<f64>
     (jacobian, misfits)
 }
 
-fn moves(free: bool, strength: f64) -> bool {
-    free && strength > 0.0
+/// Whether the constant and the slope may change: in the logarithm, zero stays zero.
+fn moving_ends(series: &FittedSeries, search: &Search) -> [bool; 2] {
+    [search.constant.is_none() && series.constant > 0.0, search.slope && series.slope > 0.0]
 }
 
 /// min |J δ + r|² + damping |δ|².
@@ -100,14 +96,15 @@ fn damped_step(jacobian: &Mat<f64>, misfits: &Col<f64>, damping: f64) -> Vec<f64
     solve(&matrix, &right)
 }
 
-fn moved(series: &FittedSeries, free: Free, step: &[f64]) -> FittedSeries {
+fn moved(series: &FittedSeries, search: &Search, step: &[f64]) -> FittedSeries {
     let mut step = step.iter().map(|d| d.clamp(-MAX_CHANGE, MAX_CHANGE).exp());
     let mut next = || step.next().unwrap_or(1.0);
     let mut moved = series.clone();
-    if moves(free.constant, series.constant) {
+    let [constant_moves, slope_moves] = moving_ends(series, search);
+    if constant_moves {
         moved.constant *= next();
     }
-    if moves(free.slope, series.slope) {
+    if slope_moves {
         moved.slope *= next();
     }
     for (strength, lambda) in &mut moved.terms {

@@ -49,22 +49,15 @@ pub enum FitWarning {
 
 impl fmt::Display for FitWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
+        let (what, by, unit) = match self {
             FitWarning::FewSamples { uncertainty } => {
-                write!(
-                    f,
-                    "too few samples per decade: between them the curve is uncertain by {:.1} %",
-                    100.0 * uncertainty
-                )
+                ("too few samples per decade: between them the curve is uncertain", uncertainty, "%")
             }
             FitWarning::Systematic { rms } => {
-                write!(
-                    f,
-                    "the samples deviate systematically from those of any linear body, by {:.1} % rms",
-                    100.0 * rms
-                )
+                ("the samples deviate systematically from those of any linear body,", rms, "% rms")
             }
-        }
+        };
+        write!(f, "{what} by {:.1} {unit}", 100.0 * by)
     }
 }
 
@@ -83,7 +76,6 @@ impl fmt::Display for FitWarning {
 pub struct FitReport {
     samples: Vec<FitSample>,
     terms: usize,
-    exact: bool,
     wrong_way: f64,
     uncertainty: f64,
     warning: Option<FitWarning>,
@@ -98,19 +90,12 @@ impl FitReport {
             given: sample.value,
             fitted: series.value(sample.function, sample.x),
         };
-        FitReport {
-            samples: samples.iter().map(fitted).collect(),
-            terms: series.terms.len(),
-            exact: false,
-            wrong_way: 0.0,
-            uncertainty: 0.0,
-            warning: None,
-        }
+        FitReport { samples: samples.iter().map(fitted).collect(), ..FitReport::exact(series.terms.len()) }
     }
 
     /// The report of an exact series.
     pub(crate) fn exact(terms: usize) -> FitReport {
-        FitReport { samples: Vec::new(), terms, exact: true, wrong_way: 0.0, uncertainty: 0.0, warning: None }
+        FitReport { samples: Vec::new(), terms, wrong_way: 0.0, uncertainty: 0.0, warning: None }
     }
 
     /// The report with the deviation from monotone and the uncertainty of measurements.
@@ -136,7 +121,7 @@ impl FitReport {
 
     /// Whether the series is exact and nothing was fitted.
     pub fn is_exact(&self) -> bool {
-        self.exact
+        self.samples.is_empty()
     }
 
     /// The values given and fitted, in ascending order of time or frequency within each function.

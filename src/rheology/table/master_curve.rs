@@ -219,8 +219,13 @@ impl MasterCurve {
         })
     }
 
-    /// The rows of the curve; points at the same time are separated by one unit in the last place.
-    fn rows(&self) -> Vec<Row> {
+    /// The rows of the curve, if it is of the quantity `wanted`; points at the same time are separated by one unit in
+    /// the last place.
+    fn rows(&self, wanted: Layout) -> Result<Vec<Row>> {
+        let given = self.isotherms[0].layout.table;
+        if given != wanted.table {
+            return Err(TableError::MixedIsotherms { first: wanted.table, second: given }.into());
+        }
         let mut rows: Vec<Row> = self.reduced().map(|(_, row)| row).collect();
         rows.sort_by(|a, b| a.x.total_cmp(&b.x));
         for k in 0..rows.len() {
@@ -229,7 +234,7 @@ impl MasterCurve {
             }
             rows[k].place = Place::Entry(k);
         }
-        rows
+        Ok(rows)
     }
 
     /// The body at the reference temperature, from creep isotherms.
@@ -237,8 +242,7 @@ impl MasterCurve {
     /// # Errors
     /// If the isotherms measure another quantity, or the curve cannot be fitted ([`TabulatedCreep::new`]).
     pub fn creep(&self) -> Result<TabulatedCreep> {
-        self.measures(CREEP)?;
-        TabulatedCreep::from_rows(self.rows())
+        TabulatedCreep::from_rows(self.rows(CREEP)?)
     }
 
     /// The body at the reference temperature, from relaxation isotherms.
@@ -246,8 +250,7 @@ impl MasterCurve {
     /// # Errors
     /// If the isotherms measure another quantity, or the curve cannot be fitted.
     pub fn relaxation(&self) -> Result<TabulatedRelaxation> {
-        self.measures(RELAXATION)?;
-        TabulatedRelaxation::from_rows(self.rows())
+        TabulatedRelaxation::from_rows(self.rows(RELAXATION)?)
     }
 
     /// The body at the reference temperature, from dynamic isotherms.
@@ -255,17 +258,7 @@ impl MasterCurve {
     /// # Errors
     /// If the isotherms measure another quantity, or the curve cannot be fitted.
     pub fn dynamic(&self) -> Result<TabulatedDynamic> {
-        self.measures(DYNAMIC)?;
-        TabulatedDynamic::from_rows(self.rows())
-    }
-
-    fn measures(&self, wanted: Layout) -> Result<()> {
-        let given = self.isotherms[0].layout.table;
-        if given == wanted.table {
-            Ok(())
-        } else {
-            Err(TableError::MixedIsotherms { first: wanted.table, second: given }.into())
-        }
+        TabulatedDynamic::from_rows(self.rows(DYNAMIC)?)
     }
 }
 

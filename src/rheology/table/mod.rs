@@ -10,9 +10,8 @@ pub use self::csv::Units;
 pub use master_curve::{Isotherm, MasterCurve};
 
 use crate::error::{Place, Result, TableError, exact_length};
-use crate::rheology::fit::{FitReport, FittedSeries, Measured, Sample, Search};
-use crate::rheology::series::known_series;
-use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
+use crate::rheology::fit::{FitReport, Sample, Search};
+use crate::rheology::{CreepSeries, CreepSpectrum, RelaxationSpectrum, forward_rheology};
 use data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
 
 /// Greatest root mean square misfit of an accepted fit.
@@ -26,27 +25,31 @@ const BEYOND: f64 = 3.0;
 
 /// Methods common to the three kinds of table.
 macro_rules! tabulated {
-    ($table:ident) => {
+    ($table:ident, $layout:expr) => {
         impl $table {
             /// The fitted series.
             pub fn spectrum(&self) -> &CreepSpectrum {
-                &self.spectrum
+                self.0.spectrum()
             }
 
             /// The error of the fit.
             pub fn report(&self) -> &FitReport {
-                &self.report
+                self.0.report()
             }
 
             /// The same body, with its series extrapolated beyond the last time of the data, where nothing was
             /// measured.
             #[must_use]
             pub fn extrapolated(self) -> $table {
-                $table { known_until: f64::INFINITY, ..self }
+                $table(CreepSeries { known_until: f64::INFINITY, ..self.0 })
+            }
+
+            pub(crate) fn from_rows(rows: Vec<Row>) -> Result<$table> {
+                fitted($layout, rows).map($table)
             }
         }
 
-        known_series!($table);
+        forward_rheology!(self: $table => self.0);
     };
 }
 
@@ -78,12 +81,7 @@ macro_rules! tabulated {
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct TabulatedCreep {
-    spectrum: CreepSpectrum,
-    report: FitReport,
-    known_until: f64,
-    measured: [f64; 2],
-}
+pub struct TabulatedCreep(CreepSeries);
 
 impl TabulatedCreep {
     /// Fits `compliances` \[1/Pa\] at `times` ≥ 0 \[s\], in any order.
@@ -95,17 +93,9 @@ impl TabulatedCreep {
     pub fn new(times: &[f64], compliances: &[f64]) -> Result<TabulatedCreep> {
         TabulatedCreep::from_rows(rows(times, "creep compliances", &[compliances])?)
     }
-
-    pub(crate) fn from_rows(rows: Vec<Row>) -> Result<TabulatedCreep> {
-        let (series, report) = fitted(CREEP, rows, true)?;
-        let spectrum = CreepSpectrum::new(series.constant, series.slope, &series.terms)?;
-        let measured = report.range().unwrap_or_default();
-        let known_until = measured[1];
-        Ok(TabulatedCreep { spectrum, report, known_until, measured })
-    }
 }
 
-tabulated!(TabulatedCreep);
+tabulated!(TabulatedCreep, CREEP);
 
 /// A body given by its measured relaxation modulus: pairs of time \[s\] and G \[Pa\].
 ///
@@ -122,12 +112,7 @@ tabulated!(TabulatedCreep);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct TabulatedRelaxation {
-    spectrum: CreepSpectrum,
-    report: FitReport,
-    known_until: f64,
-    measured: [f64; 2],
-}
+pub struct TabulatedRelaxation(CreepSeries);
 
 impl TabulatedRelaxation {
     /// Fits `moduli` \[Pa\] at `times` ≥ 0 \[s\], in any order.
@@ -137,17 +122,9 @@ impl TabulatedRelaxation {
     pub fn new(times: &[f64], moduli: &[f64]) -> Result<TabulatedRelaxation> {
         TabulatedRelaxation::from_rows(rows(times, "relaxation moduli", &[moduli])?)
     }
-
-    pub(crate) fn from_rows(rows: Vec<Row>) -> Result<TabulatedRelaxation> {
-        let (series, report) = fitted(RELAXATION, rows, false)?;
-        let spectrum = RelaxationSpectrum::new(series.constant, 0.0, &series.terms)?.creep();
-        let measured = report.range().unwrap_or_default();
-        let known_until = measured[1];
-        Ok(TabulatedRelaxation { spectrum, report, known_until, measured })
-    }
 }
 
-tabulated!(TabulatedRelaxation);
+tabulated!(TabulatedRelaxation, RELAXATION);
 
 /// A body given by its measured dynamic moduli (DMA, rheometer): angular frequency \[rad/s\], storage and loss
 /// modulus G′, G″ \[Pa\].
@@ -168,12 +145,7 @@ tabulated!(TabulatedRelaxation);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct TabulatedDynamic {
-    spectrum: CreepSpectrum,
-    report: FitReport,
-    known_until: f64,
-    measured: [f64; 2],
-}
+pub struct TabulatedDynamic(CreepSeries);
 
 impl TabulatedDynamic {
     /// Fits `storage` and `loss` moduli \[Pa\] at the angular frequencies `omega` > 0 \[rad/s\], in any order.
@@ -184,17 +156,9 @@ impl TabulatedDynamic {
     pub fn new(omega: &[f64], storage: &[f64], loss: &[f64]) -> Result<TabulatedDynamic> {
         TabulatedDynamic::from_rows(rows(omega, "storage and loss moduli", &[storage, loss])?)
     }
-
-    pub(crate) fn from_rows(rows: Vec<Row>) -> Result<TabulatedDynamic> {
-        let (series, report) = fitted(DYNAMIC, rows, false)?;
-        let spectrum = RelaxationSpectrum::new(series.constant, 0.0, &series.terms)?.creep();
-        let measured = report.range().map_or([0.0; 2], |[lowest, highest]| [1.0 / highest, 1.0 / lowest]);
-        let known_until = measured[1];
-        Ok(TabulatedDynamic { spectrum, report, known_until, measured })
-    }
 }
 
-tabulated!(TabulatedDynamic);
+tabulated!(TabulatedDynamic, DYNAMIC);
 
 /// Rows of slices of equal length.
 fn rows(x: &[f64], field: &'static str, columns: &[&[f64]]) -> Result<Vec<Row>> {
@@ -209,25 +173,24 @@ fn rows(x: &[f64], field: &'static str, columns: &[&[f64]]) -> Result<Vec<Row>> 
     Ok(x.iter().enumerate().map(row).collect())
 }
 
-/// Fits a series to the rows.
-fn fitted(layout: Layout, rows: Vec<Row>, slope: bool) -> Result<(FittedSeries, FitReport)> {
+/// The creep series fitted to the rows.
+fn fitted(layout: Layout, rows: Vec<Row>) -> Result<CreepSeries> {
     let (samples, wrong_way) = validated(layout, rows)?;
-    let times = |sample: &Sample| match layout.zero {
-        true => sample.x,
-        false => 1.0 / sample.x,
-    };
-    let positive = || samples.iter().map(times).filter(|t| *t > 0.0);
+    let time = |x: f64| if layout.zero { x } else { 1.0 / x };
+    let positive = || samples.iter().map(|sample| time(sample.x)).filter(|t| *t > 0.0);
     let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
-    let search = Search { constant: None, slope, times: [first / BEYOND, last * BEYOND] };
-    let Measured { series, uncertainty } = search.measured(&averaged(&samples, (last / first).log10()));
+    let search = Search { constant: None, slope: layout == CREEP, times: [first / BEYOND, last * BEYOND] };
+    let (series, uncertainty) = search.measured(&averaged(&samples, (last / first).log10()));
     let report = FitReport::new(&series, &samples).of_measurements(wrong_way, uncertainty);
-    match report.worst() {
-        Some(worst) if report.rms_misfit() > MOST_MISFIT => {
-            let (table, rms) = (layout.table, report.rms_misfit());
-            Err(TableError::Inconsistent { table, rms, worst: worst.misfit().abs(), x: worst.x }.into())
-        }
-        _ => Ok((series, report)),
+    if let Some(worst) = report.worst().filter(|_| report.rms_misfit() > MOST_MISFIT) {
+        let (table, rms) = (layout.table, report.rms_misfit());
+        return Err(TableError::Inconsistent { table, rms, worst: worst.misfit().abs(), x: worst.x }.into());
     }
+    let spectrum = match layout {
+        CREEP => CreepSpectrum::new(series.constant, series.slope, &series.terms)?,
+        _ => RelaxationSpectrum::new(series.constant, 0.0, &series.terms)?.creep(),
+    };
+    Ok(CreepSeries { spectrum, report, known_until: last, measured: [first, last] })
 }
 
 /// Replaces neighbouring samples by their geometric means where there are more than a fit needs.

@@ -1,40 +1,24 @@
 //! Headings of a table: the meaning and the unit of each column.
 
 use super::Units;
-use super::number::{resembles, shortened};
+use super::number::shortened;
 use super::unit::{Kind, readings, same};
 use crate::error::TableError;
 use crate::rheology::fit::MaterialFunction;
 use crate::rheology::table::data::Layout;
 
-/// First words of headings, lower case.
-const ABSCISSA: &[&str] = &["time", "t", "omega", "ω", "angular", "frequency", "freq", "f", "w"];
-const CREEP_WORDS: &[&str] = &["j", "creep", "compliance"];
-const RELAXATION_WORDS: &[&str] = &["g", "e", "relaxation", "modulus"];
-const STORAGE_WORDS: &[&str] = &["g'", "g′", "e'", "e′", "storage", "gp"];
-const LOSS_WORDS: &[&str] = &["g''", "g″", "g\"", "e''", "e″", "e\"", "loss", "gpp"];
-
 /// Parts of headings of other quantities.
 const OTHERS: &[&str] = &["factor", "tan", "strain", "stress", "phase", "%"];
 
+/// First words of the headings of a column, lower case.
 fn words(column: &str) -> &'static [&'static str] {
     match column {
-        "creep compliance" => CREEP_WORDS,
-        "relaxation modulus" => RELAXATION_WORDS,
-        "storage modulus" => STORAGE_WORDS,
-        "loss modulus" => LOSS_WORDS,
-        _ => ABSCISSA,
+        "creep compliance" => &["j", "creep", "compliance"],
+        "relaxation modulus" => &["g", "e", "relaxation", "modulus"],
+        "storage modulus" => &["g'", "g′", "e'", "e′", "storage", "gp"],
+        "loss modulus" => &["g''", "g″", "g\"", "e''", "e″", "e\"", "loss", "gpp"],
+        _ => &["time", "t", "omega", "ω", "angular", "frequency", "freq", "f", "w"],
     }
-}
-
-/// Names of the columns that a table needs.
-pub(super) fn names(layout: &Layout) -> Vec<&'static str> {
-    std::iter::once(layout.abscissa).chain(layout.columns.iter().map(|&(name, _)| name)).collect()
-}
-
-/// Whether a first row names the columns: no field of it resembles a number.
-pub(super) fn are_headings(fields: &[String]) -> bool {
-    !fields.iter().any(|field| resembles(field))
 }
 
 /// Indices of the columns that a table needs, in its order, or `None` if no heading names one.

@@ -7,12 +7,13 @@ mod unit;
 
 use std::fs::File;
 use std::io::Read;
+use std::iter;
 use std::path::Path;
 
 use crate::error::{Place, Result, TableError, positive};
 use crate::rheology::table::data::{CREEP, DYNAMIC, Layout, RELAXATION, Row};
 use crate::rheology::table::{TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
-use headings::{are_headings, check_units, columns, names};
+use headings::{check_units, columns};
 use number::{Numbers, one_decimal, plain, resembles, shortened};
 use records::{Record, records, separator};
 
@@ -122,12 +123,12 @@ fn read(mut reader: impl Read, layout: Layout, units: Units) -> Result<Vec<Row>>
     let separator = separator(text);
     let mut records = records(text, separator);
 
-    let names = names(&layout);
+    let names: Vec<_> = iter::once(layout.abscissa).chain(layout.columns.iter().map(|&(name, _)| name)).collect();
     // the headings determine the number of columns; without headings there are only those needed
     let (mut order, mut width, mut named) = ((0..names.len()).collect::<Vec<_>>(), names.len(), false);
     if let Some(Record { line, fields, .. }) = records.first_mut() {
         drop_empty(fields, width);
-        if are_headings(fields) {
+        if !fields.iter().any(|field| resembles(field)) {
             width = fields.len();
             check_width(*line, fields, names.len(), width, &names)?;
             if let Some(columns) = columns(*line, fields, &names)? {

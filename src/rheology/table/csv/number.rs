@@ -55,11 +55,8 @@ fn parse(text: &str) -> Option<f64> {
     };
     number.parse().ok().or_else(|| {
         let (mantissa, exponent) = number.split_once(['d', 'D'])?;
-        mantissa
-            .ends_with(|c: char| c.is_ascii_digit() || c == '.')
-            .then(|| format!("{mantissa}e{exponent}"))?
-            .parse()
-            .ok()
+        let complete = mantissa.ends_with(|c: char| c.is_ascii_digit() || c == '.');
+        complete.then(|| format!("{mantissa}e{exponent}"))?.parse().ok()
     })
 }
 

@@ -21,7 +21,7 @@ pub(super) fn records(text: &str, separator: char) -> Vec<Record<'_>> {
         let from = rest;
         let mut fields = Vec::new();
         if rest.trim_start_matches([' ', '\t']).starts_with('#') {
-            rest = &rest[line_end(rest)..];
+            rest = &rest[rest.find(['\r', '\n']).unwrap_or(rest.len())..];
         } else {
             loop {
                 let (field, after) = field(rest, separator);
@@ -44,10 +44,6 @@ pub(super) fn records(text: &str, separator: char) -> Vec<Record<'_>> {
         line += (read.matches('\n').count() + read.matches('\r').count() - read.matches("\r\n").count()) as u64;
     }
     records
-}
-
-fn line_end(text: &str) -> usize {
-    text.find(['\r', '\n']).unwrap_or(text.len())
 }
 
 /// The field at the beginning of `text`, and what follows it: a separator, the end of the line or nothing.

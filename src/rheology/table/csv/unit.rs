@@ -14,52 +14,40 @@ pub(super) type Unit = (Kind, f64);
 
 const TAU: f64 = std::f64::consts::TAU;
 
-const NAMES: [(&str, Kind, f64); 38] = [
-    ("s", Kind::Time, 1.0),
-    ("ms", Kind::Time, 1e-3),
-    ("µs", Kind::Time, 1e-6),
-    ("us", Kind::Time, 1e-6),
-    ("ns", Kind::Time, 1e-9),
-    ("min", Kind::Time, 60.0),
-    ("h", Kind::Time, 3600.0),
-    ("d", Kind::Time, 86400.0),
-    ("sec", Kind::Time, 1.0),
-    ("second", Kind::Time, 1.0),
-    ("seconds", Kind::Time, 1.0),
-    ("minute", Kind::Time, 60.0),
-    ("minutes", Kind::Time, 60.0),
-    ("hr", Kind::Time, 3600.0),
-    ("hour", Kind::Time, 3600.0),
-    ("hours", Kind::Time, 3600.0),
-    ("day", Kind::Time, 86400.0),
-    ("days", Kind::Time, 86400.0),
-    ("week", Kind::Time, 604_800.0),
-    ("weeks", Kind::Time, 604_800.0),
-    ("year", Kind::Time, 31_557_600.0),
-    ("years", Kind::Time, 31_557_600.0),
-    ("Hz", Kind::Frequency, TAU),
-    ("mHz", Kind::Frequency, 1e-3 * TAU),
-    ("kHz", Kind::Frequency, 1e3 * TAU),
-    ("MHz", Kind::Frequency, 1e6 * TAU),
-    ("Pa", Kind::Modulus, 1.0),
-    ("mPa", Kind::Modulus, 1e-3),
-    ("kPa", Kind::Modulus, 1e3),
-    ("MPa", Kind::Modulus, 1e6),
-    ("GPa", Kind::Modulus, 1e9),
-    ("TPa", Kind::Modulus, 1e12),
-    ("N/m2", Kind::Modulus, 1.0),
-    ("N/mm2", Kind::Modulus, 1e6),
-    ("dyn/cm2", Kind::Modulus, 0.1),
-    ("bar", Kind::Modulus, 1e5),
-    ("kbar", Kind::Modulus, 1e8),
-    ("psi", Kind::Modulus, 6894.757),
+/// Names of each unit, that used in errors first; its quantity and size.
+const UNITS: [(&[&str], Kind, f64); 23] = [
+    (&["s", "sec", "second", "seconds"], Kind::Time, 1.0),
+    (&["ms"], Kind::Time, 1e-3),
+    (&["µs", "us"], Kind::Time, 1e-6),
+    (&["ns"], Kind::Time, 1e-9),
+    (&["min", "minute", "minutes"], Kind::Time, 60.0),
+    (&["h", "hr", "hour", "hours"], Kind::Time, 3600.0),
+    (&["d", "day", "days"], Kind::Time, 86400.0),
+    (&["week", "weeks"], Kind::Time, 604_800.0),
+    (&["year", "years"], Kind::Time, 31_557_600.0),
+    (&["Hz"], Kind::Frequency, TAU),
+    (&["mHz"], Kind::Frequency, 1e-3 * TAU),
+    (&["kHz"], Kind::Frequency, 1e3 * TAU),
+    (&["MHz"], Kind::Frequency, 1e6 * TAU),
+    (&["Pa", "N/m2"], Kind::Modulus, 1.0),
+    (&["mPa"], Kind::Modulus, 1e-3),
+    (&["kPa"], Kind::Modulus, 1e3),
+    (&["MPa", "N/mm2"], Kind::Modulus, 1e6),
+    (&["GPa"], Kind::Modulus, 1e9),
+    (&["TPa"], Kind::Modulus, 1e12),
+    (&["dyn/cm2"], Kind::Modulus, 0.1),
+    (&["bar"], Kind::Modulus, 1e5),
+    (&["kbar"], Kind::Modulus, 1e8),
+    (&["psi"], Kind::Modulus, 6894.757),
 ];
 
 impl Kind {
     /// The name of the unit of this size, for errors.
     pub(super) fn name(self, size: f64) -> String {
-        let of =
-            |kind, size| NAMES.iter().find(|unit| unit.1 == kind && same(unit.2, size)).map(|unit| unit.0.to_owned());
+        let of = |kind, size| {
+            let unit = UNITS.iter().find(|unit| unit.1 == kind && same(unit.2, size));
+            unit.map(|unit| unit.0[0].to_owned())
+        };
         let (si, found) = match self {
             Kind::Time => ("s", of(self, size)),
             Kind::Frequency if same(size, 1.0) => ("rad/s", Some("rad/s".to_owned())),
@@ -132,7 +120,7 @@ fn scaled(text: &str) -> (f64, &str) {
 /// A unit without exponent or slash; case is ignored in names longer than a letter.
 fn simple(name: &str) -> Vec<Unit> {
     let units = |fits: &dyn Fn(&str) -> bool| -> Vec<Unit> {
-        NAMES.iter().filter(|unit| fits(unit.0)).map(|unit| (unit.1, unit.2)).collect()
+        UNITS.iter().filter(|unit| unit.0.iter().any(|name| fits(name))).map(|unit| (unit.1, unit.2)).collect()
     };
     let exact = units(&|unit| unit == name);
     if exact.is_empty() && name.len() > 1 { units(&|unit| unit.eq_ignore_ascii_case(name)) } else { exact }
