@@ -14,7 +14,7 @@ use crate::contact::state::State;
 use crate::contact::time_rule::{history_by, windowed};
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::contact::window::region::Region;
-use crate::error::{Error, KernelError, Result};
+use crate::error::{Error, KernelError, Result, count_within};
 use crate::geometry::Gap;
 use crate::hereditary;
 use crate::kernel::InfluenceKernel;
@@ -104,13 +104,12 @@ impl Builder {
 
     /// Number of rigid bodies.
     fn bodies(&self) -> Result<usize> {
-        match self.gaps.len() {
-            0 => Err(Error::Missing { part: "geometry" }),
-            bodies if bodies > usize::from(u16::MAX) => {
-                Err(Error::CountOutOfRange { field: "rigid bodies", value: bodies, allowed: "65535 at most" })
-            }
-            bodies => Ok(bodies),
+        let bodies = self.gaps.len();
+        if bodies == 0 {
+            return Err(Error::Missing { part: "geometry" });
         }
+        count_within("rigid bodies", bodies, u16::try_from(bodies).is_ok(), "65535 at most")?;
+        Ok(bodies)
     }
 
     /// Material, kernel, and the memory of the bodies on no cells yet.

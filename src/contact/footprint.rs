@@ -6,7 +6,7 @@ use crate::contact::indenter::even_axes;
 use crate::contact::settings::{Settings, Solver};
 use crate::contact::window::growth::MAX_WINDOW_FRACTION;
 use crate::contact::window::region::Region;
-use crate::error::{Error, Result};
+use crate::error::{Result, count_within};
 use crate::hereditary;
 use crate::kernel::InfluenceKernel;
 use crate::memory;
@@ -140,12 +140,9 @@ impl Footprint<'_> {
     /// Rejects more cells than solvers can number, and more memory than there is, `besides` included \[bytes\].
     pub(super) fn check(&self, computed: Computed, besides: u64) -> Result<()> {
         let memory = self.on(computed);
-        if u32::try_from(memory.computed_cells).is_err() {
-            let (field, value) = ("cells that are computed", memory.computed_cells);
-            let allowed =
-                "4294967295 at most: take fewer cells, or let symmetry and window of the Settings compute fewer";
-            return Err(Error::CountOutOfRange { field, value, allowed });
-        }
+        let cells = memory.computed_cells;
+        let allowed = "4294967295 at most: take fewer cells, or let symmetry and window of the Settings compute fewer";
+        count_within("cells that are computed", cells, u32::try_from(cells).is_ok(), allowed)?;
         memory::check("the contact", u128::from(memory.total()) + u128::from(besides))
     }
 
@@ -181,6 +178,7 @@ pub(super) fn symmetry_of(gaps: &[&Vec<f64>], cells: [usize; 2]) -> [bool; 2] {
 mod tests {
     use super::*;
     use crate::Grid;
+    use crate::error::Error;
     use crate::rheology::CreepSpectrum;
 
     /// Solvers number the cells that are computed in 32 bits, whatever memory there is.

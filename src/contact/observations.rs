@@ -1,11 +1,13 @@
-//! Area, mesh error and stiffness of a contact.
+//! Observations of a contact: pure functions of its fields, applied to them.
 
 use crate::contact::settings::Solver;
 use crate::contact::state::State;
 use crate::contact::viscoelastic::ViscoelasticContact;
-use crate::error::{Convergence, Error, Result};
+use crate::error::{Convergence, Error, Result, finite};
+use crate::memory;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
+use crate::observe::{Asymmetry, Axis, Distribution, LineProfile, Patches};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
 
 impl ViscoelasticContact {
@@ -88,8 +90,139 @@ impl ViscoelasticContact {
         }
     }
 
+    /// Mean pressure over the contact \[Pa\]: force over [`contact_area`](ViscoelasticContact::contact_area); 0 without
+    /// contact.
+    pub fn mean_pressure(&self) -> f64 {
+        let area = self.contact_area();
+        if area > 0.0 { self.force() / area } else { 0.0 }
+    }
+
+    /// Greatest pressure of any cell \[Pa\]; 0 without contact.
+    pub fn greatest_pressure(&self) -> f64 {
+        crate::sum::greatest(self.pressure())
+    }
+
+    /// The distribution of the pressure \[Pa\] over all cells of the grid, in `bins` between 0 and the greatest
+    /// pressure. [`Distribution::share_at_zero`] is the share out of contact.
+    ///
+    /// # Errors
+    /// If `bins` is 0 or more than a million.
+    pub fn pressure_distribution(&self, bins: usize) -> Result<Distribution> {
+        Distribution::of_pressure(self.pressure(), bins)
+    }
+
+    /// The distribution of the gap \[m\] over all cells where the initial gap is finite, in `bins` between 0 and the
+    /// greatest gap. [`Distribution::share_at_zero`] is the share in contact, cells that touch without pressure
+    /// included.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .build()?;
+    /// contact.step(0.0, Load::force(0.5))?;
+    /// let gaps = contact.gap_distribution(20)?;
+    /// for (gap, density) in gaps.centers().zip(gaps.density()) {
+    ///     println!("{gap:.2e} m  {density:.3e} 1/m");
+    /// }
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If `bins` is 0 or more than a million, or there is no memory for the gap.
+    pub fn gap_distribution(&self, bins: usize) -> Result<Distribution> {
+        Distribution::of_gap(&self.gap()?, self.pressure(), bins)
+    }
+
+    /// Pressure, displacement and gap along the line of cells in the direction of `along` that contains the other
+    /// coordinate `at` \[m\]; if `at` lies on the boundary of two lines, along the upper one. Nothing is interpolated:
+    /// [`LineProfile::at`] is the coordinate of the cell centres.
+    ///
+    /// ```
+    /// use viscocontact::{observe::Axis, prelude::*};
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(33, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .build()?;
+    /// contact.step(0.0, Load::force(0.5))?;
+    /// let profile = contact.profile(Axis::X1, 0.0)?;
+    /// assert_eq!([profile.positions.len(), profile.pressure.len()], [33, 33]);
+    /// assert_eq!(profile.pressure[16], contact.greatest_pressure());
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If `at` lies outside the grid, or there is no memory for the gap.
+    pub fn profile(&self, along: Axis, at: f64) -> Result<LineProfile> {
+        let gap = self.gap()?;
+        LineProfile::new(self.grid(), along, at, [self.pressure(), self.displacement(), &gap])
+    }
+
+    /// The connected patches of the contact; where the bodies are periodic, the first and the last cells are
+    /// neighbours.
+    ///
+    /// # Errors
+    /// If the force of a patch overflows `f64`.
+    pub fn patches(&self) -> Result<Patches> {
+        Patches::new(self.grid(), self.pressure(), self.kernel().periodic_axes())
+    }
+
+    /// Position of the contact relative to the point `about` \[m\], such as the lowest point of a roller; `None`
+    /// without contact. Several patches count as one contact. Where the bodies are periodic, each cell counts at its
+    /// periodic image nearest to the point, and the centre of pressure may lie beyond the grid.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .build()?;
+    /// assert_eq!(contact.asymmetry([0.0; 2])?, None);
+    /// contact.step(0.0, Load::force(0.5))?;
+    /// let asymmetry = contact.asymmetry([0.0; 2])?.expect("in contact");
+    /// assert!(asymmetry.skewness()[0].abs() < 1e-12);
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If a coordinate is not finite.
+    pub fn asymmetry(&self, about: [f64; 2]) -> Result<Option<Asymmetry>> {
+        let about = [finite("point along x1", about[0])?, finite("point along x2", about[1])?];
+        Ok(Asymmetry::new(self.grid(), self.pressure(), self.kernel().periodic_axes(), about))
+    }
+
+    /// The gap of every cell \[m\].
+    fn gap(&self) -> Result<Vec<f64>> {
+        let mut gap = memory::field("the gap", self.grid().len(), 0.0)?;
+        self.gap_into(&mut gap)?;
+        Ok(gap)
+    }
+
     fn pressed(&self) -> Pressed<'_> {
         let (periodic, gap) = (self.scene.kernel.periodic_axes(), &self.computation.state.indenter.gap().above);
         Pressed { grid: self.grid(), periodic, pressure: self.pressure(), gap }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::analytic::Hertz;
+    use crate::load::Load;
+    use crate::observe::sphere;
+
+    #[test]
+    fn mean_and_greatest_pressure_of_hertz() {
+        let exact = Hertz::new(10.0e-3, 4.0e6, 0.5).unwrap();
+        let peak = exact.pressure(0.0);
+        // odd number of cells: one lies in the middle
+        let mut contact = sphere([129; 2], [2.6 * exact.contact_radius(); 2], [0.0; 2], 0.5);
+        assert!((contact.greatest_pressure() / peak - 1.0).abs() < 1e-3);
+        assert!((contact.mean_pressure() / (peak / 1.5) - 1.0).abs() < 3e-3);
+        contact.step(0.0, Load::force(0.0)).unwrap();
+        assert_eq!([contact.mean_pressure(), contact.greatest_pressure()], [0.0; 2]);
     }
 }

@@ -1,6 +1,6 @@
 //! Settings of a contact.
 
-use crate::error::{Error, Result, within};
+use crate::error::{Result, count_within, within};
 
 /// How a contact is computed. Plain fields with defaults, validated when a contact is built.
 ///
@@ -92,7 +92,7 @@ pub enum TimeRule {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Edge {
-    /// The step fails with [`Error::ContactAtEdge`]: the bodies go on beyond the grid, so that the
+    /// The step fails with [`Error::ContactAtEdge`](crate::Error::ContactAtEdge): the bodies go on beyond the grid, so that the
     /// result would be wrong.
     #[default]
     Refuse,
@@ -135,9 +135,7 @@ impl Settings {
         within("Settings::tolerance", tolerance, (1e-13..=0.1).contains(&tolerance), "in [1e-13, 0.1]")?;
         let series = self.series_tolerance;
         within("Settings::series_tolerance", series, (1e-8..=0.1).contains(&series), "in [1e-8, 0.1]")?;
-        if self.max_iterations == 0 {
-            return Err(Error::CountOutOfRange { field: "Settings::max_iterations", value: 0, allowed: "1 or more" });
-        }
-        Ok(())
+        let iterations = self.max_iterations;
+        count_within("Settings::max_iterations", iterations, iterations > 0, "1 or more")
     }
 }

@@ -10,9 +10,9 @@ pub enum Warning {
     /// fails with [`Error::ContactAtEdge`](crate::Error::ContactAtEdge). Enlarge the grid. Only with
     /// [`Edge::Refuse`](crate::contact::Edge::Refuse).
     NearEdge,
-    /// The contact is fewer than 8 cells across, or, unless it is a line, has fewer than 50. Refine the mesh; what is due to
-    /// it, tells [`ViscoelasticContact::mesh_error`](crate::ViscoelasticContact::mesh_error). A sphere's approach, greatest
-    /// pressure and contact area err by up to 1.3 %, 4 % and 8 % with contacts of 4 cells across, by 0.5 %, 1.5 % and 2.5 % with 8.
+    /// The contact is fewer than 8 cells across, or, unless it is a line, has fewer than 50. Refine the mesh;
+    /// [`ViscoelasticContact::mesh_error`](crate::ViscoelasticContact::mesh_error) estimates the error. A sphere's approach,
+    /// greatest pressure and contact area err by up to 1.3 %, 4 % and 8 % with contacts of 4 cells across, by 0.5 %, 1.5 % and 2.5 % with 8.
     FewCells,
     /// The loading time exceeds that over which the material was measured: a table is extrapolated beyond its data
     /// ([`TabulatedCreep::extrapolated`](crate::rheology::TabulatedCreep::extrapolated)).

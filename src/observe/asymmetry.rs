@@ -24,7 +24,7 @@ impl Asymmetry {
     }
 
     /// Asymmetry of `pressure` \[Pa\] about the point `about` \[m\]; `None` without contact.
-    pub(super) fn new(grid: &Grid, pressure: &[f64], periodic: [bool; 2], about: [f64; 2]) -> Option<Asymmetry> {
+    pub(crate) fn new(grid: &Grid, pressure: &[f64], periodic: [bool; 2], about: [f64; 2]) -> Option<Asymmetry> {
         let (n2, lengths, highest) = (grid.cells()[1], grid.lengths(), greatest(pressure));
         if highest == 0.0 {
             return None;

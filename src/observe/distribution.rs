@@ -35,14 +35,14 @@ impl Distribution {
     }
 
     /// The distribution of `gap` \[m\] over the cells where it is finite. A cell under pressure counts as gap 0.
-    pub(super) fn of_gap(gap: &[f64], pressure: &[f64], bins: usize) -> Result<Distribution> {
+    pub(crate) fn of_gap(gap: &[f64], pressure: &[f64], bins: usize) -> Result<Distribution> {
         let finite = gap.iter().filter(|h| h.is_finite()).count();
         let open = gap.iter().zip(pressure).filter(|(h, p)| h.is_finite() && **h > 0.0 && **p == 0.0);
         Distribution::new(open.map(|(h, _)| *h), finite, bins)
     }
 
     /// The distribution of `pressure` \[Pa\] over all cells.
-    pub(super) fn of_pressure(pressure: &[f64], bins: usize) -> Result<Distribution> {
+    pub(crate) fn of_pressure(pressure: &[f64], bins: usize) -> Result<Distribution> {
         Distribution::new(pressure.iter().copied().filter(|p| *p > 0.0), pressure.len(), bins)
     }
 

@@ -14,7 +14,6 @@
 
 pub(crate) mod area;
 mod asymmetry;
-mod contact;
 mod distribution;
 pub(crate) mod mesh_error;
 mod patches;
@@ -28,7 +27,7 @@ pub use profile::{Axis, LineProfile};
 
 /// A sphere pressed on an elastic half-space, for the tests of most observations.
 #[cfg(test)]
-fn sphere(cells: [usize; 2], lengths: [f64; 2], center: [f64; 2], force: f64) -> crate::ViscoelasticContact {
+pub(crate) fn sphere(cells: [usize; 2], lengths: [f64; 2], center: [f64; 2], force: f64) -> crate::ViscoelasticContact {
     use crate::prelude::*;
 
     let shape = Shifted::new(Sphere::new(10.0e-3).unwrap(), center).unwrap();

@@ -32,7 +32,7 @@ pub struct LineProfile {
 
 impl LineProfile {
     /// The values of the fields along the line of cells that contains the other coordinate `at` \[m\].
-    pub(super) fn new(
+    pub(crate) fn new(
         grid: &Grid,
         along: Axis,
         at: f64,

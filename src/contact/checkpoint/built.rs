@@ -1,4 +1,4 @@
-//! What a contact was built of, in numbers that tell it from others.
+//! Fingerprint of gap and material as built.
 
 use std::sync::OnceLock;
 
@@ -9,13 +9,13 @@ use crate::rheology::Material;
 use crate::sum::moments;
 
 /// Numbers of two scenes are the same if they differ by no more than this part: mathematical libraries round differently.
-const SAME: f64 = 1e-9;
+const RELATIVE_TOLERANCE: f64 = 1e-9;
 /// Times at which materials without a series are compared: so many a decade, ...
 const TIMES_PER_DECADE: i32 = 8;
 /// ... so many decades before and after a second, as far as the material is known.
 const DECADES: i32 = 12;
 
-/// What a contact was built of.
+/// Fingerprint of gap and material as built.
 #[derive(Debug)]
 pub(crate) struct Built {
     /// Sums over the gap.
@@ -96,7 +96,9 @@ fn times() -> impl Iterator<Item = f64> {
 
 /// The first entry that differs.
 pub(super) fn difference(saved: &[f64], built: &[f64]) -> Option<usize> {
-    let same = |a: f64, b: f64| a == b || (a.is_nan() && b.is_nan()) || (a - b).abs() <= SAME * a.abs().max(b.abs());
+    let same = |a: f64, b: f64| {
+        a == b || (a.is_nan() && b.is_nan()) || (a - b).abs() <= RELATIVE_TOLERANCE * a.abs().max(b.abs())
+    };
     let differing = saved.iter().zip(built).position(|(&a, &b)| !same(a, b));
     differing.or_else(|| (saved.len() != built.len()).then(|| saved.len().min(built.len())))
 }

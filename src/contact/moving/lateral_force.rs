@@ -10,11 +10,11 @@ impl ViscoelasticContact {
     /// the bodies dissipate or store: on a slope, p does the work p (∂u/∂t − dω/dt). Divided by the normal force, it is the
     /// coefficient of hysteretic friction.
     ///
-    /// The pressure being constant on a cell, the slope is the rise of the gap from side to side, as given by
-    /// [`Geometry::initial_gap`](crate::geometry::Geometry::initial_gap) has it: of a map that is interpolated, as well as that is, so that
-    /// a rough slider with waves of 2 cells shows 3e-4 of the normal force on an elastic body, and with waves of 8 cells 2e-5. Where the rise is not
-    /// finite, beside the rim of a face, there is no slope to press against: what a rim carries is in
-    /// [`TravelReport::power`](crate::contact::TravelReport) alone. NaN where the shape's gap is.
+    /// The pressure being constant on a cell, its slope is the rise of
+    /// [`Geometry::initial_gap`](crate::geometry::Geometry::initial_gap) from side to side. On interpolated maps it is as
+    /// accurate as the interpolation: on an elastic body a rough slider with waves of 2 cells shows 3e-4 of the normal force,
+    /// with waves of 8 cells 2e-5. Where the rise is not finite, beside the rim of a face, there is no slope: what a rim
+    /// carries is in [`TravelReport::power`](crate::contact::TravelReport) alone. NaN where the shape's gap is.
     ///
     /// ```
     /// use viscocontact::prelude::*;

@@ -3,7 +3,7 @@
 use crate::contact::report::StepReport;
 use crate::contact::settings::Frame;
 use crate::contact::viscoelastic::ViscoelasticContact;
-use crate::error::{Error, Result, finite, within};
+use crate::error::{Error, Result, count_within, finite, within};
 use crate::load::Load;
 
 /// The contact is this many steps long, or more, in the longest strides.
@@ -77,10 +77,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If the grid is fixed to the bodies, the axis is neither 0 nor 1, the velocity zero or not finite, or the tolerance not in (0, 1).
     pub fn toward_steady(&mut self, motion: SteadyMotion) -> Result<TowardSteady<'_>> {
-        if motion.axis > 1 {
-            let allowed = "0 (x1) or 1 (x2)";
-            return Err(Error::CountOutOfRange { field: "axis of the motion", value: motion.axis, allowed });
-        }
+        count_within("axis of the motion", motion.axis, motion.axis <= 1, "0 (x1) or 1 (x2)")?;
         if self.settings().frame != Frame::Indenter {
             return Err(Error::WrongFrame { what: "a motion to its steady state" });
         }

@@ -23,7 +23,7 @@ impl Follow<'_> {
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
             let wanted = control.length(scene, &computation.state, self.history, self.until - now)?;
             let (time, dt) = towards(now, stop, wanted);
-            // a step of the last digit of the time, shortened, may round to itself again, and again
+            // near the resolution of the time, a shortened step may round to the same end for ever
             if time <= now || time >= tried {
                 return Err(Error::StepTooShort { time: now, dt, tolerance: control.tolerance });
             }

@@ -109,17 +109,19 @@ impl<'a> Follow<'a> {
 
     /// Takes the next step and reports it; `None` when the end is reached.
     ///
-    /// At the start, and wherever the history jumps or changes its kind, a step of length zero brings in the new load; which
-    /// of these a body without elastic response can follow, tells [`ViscoelasticContact::step`].
-    /// Corners and jumps of the history are met exactly.
+    /// At the start, and wherever the history jumps or changes its kind, a step of length zero brings in the new load;
+    /// [`ViscoelasticContact::step`] states which jumps a body without elastic response can follow. Corners and jumps of the
+    /// history are met exactly.
     ///
     /// # Errors
-    /// If the end is not finite or lies before the contact's time, the fixed step is not finite and
-    /// positive or too short to change the time, the tolerance is out of range or asks for steps too short to change
-    /// the time, the history returns what is not a load wherever the run looks at it ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); adaptive steps
-    /// look between their ends, and ahead), or a step fails; the contact is then as it was after the last good step, and the call may be
-    /// repeated. Or if the file of `Follow::autosave_to` cannot be written: the step is then taken all the same, and the next call
-    /// tries to write again, and reports it.
+    /// If the end is not finite or lies before the contact's time, the fixed step is not finite and positive or too short to
+    /// change the time, the tolerance is out of range or asks for steps too short to change the time, the history returns an
+    /// invalid load at any time that is evaluated ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); adaptive
+    /// steps look between their ends, and ahead), or a step fails. The contact is then as it was after the last good step,
+    /// and the call may be repeated.
+    ///
+    /// If the file of `Follow::autosave_to` cannot be written: the step is then taken all the same, and the next call tries
+    /// to write again, and reports it.
     pub fn next_step(&mut self) -> Result<Option<StepReport>> {
         #[cfg(feature = "checkpoint")]
         {
