@@ -1,6 +1,7 @@
 //! A state on its region, with what computes there.
 
 use crate::contact::footprint::{Computed, Footprint};
+use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::trial::Trial;
@@ -24,14 +25,19 @@ impl Computation {
         Computation { trial: Trial::new(state.region.len(), scene.bodies), window, state }
     }
 
-    /// A copy on another region; the state stays what it is.
+    /// A copy on another region, for a step under `indenter`; the state stays what it is.
     ///
     /// # Errors
     /// If there is no memory for both.
-    pub(super) fn carried_to(&mut self, scene: &Scene, region: Region) -> Result<Box<Computation>> {
+    pub(super) fn carried_to(
+        &mut self,
+        scene: &Scene,
+        region: Region,
+        indenter: &Indenter,
+    ) -> Result<Box<Computation>> {
         self.check_memory_for(scene, &region)?;
         let cells = region.len();
-        let (state, window) = carried(scene, &mut self.state, region);
+        let (state, window) = carried(scene, &mut self.state, region, indenter);
         Ok(Box::new(Computation { state, window, trial: Trial::new(cells, scene.bodies) }))
     }
 

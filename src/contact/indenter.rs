@@ -50,6 +50,13 @@ impl Indenter {
         *self.even.get_or_init(|| even_axes(grid.cells(), alike))
     }
 
+    /// The folded axes of a region that stay so under it.
+    pub(crate) fn keeps_folded(&self, folded: [bool; 2], grid: &Grid) -> [bool; 2] {
+        // nothing to look up where there is no symmetry to lose
+        let even = if folded == [false; 2] { folded } else { self.even_axes(grid) };
+        [0, 1].map(|axis| folded[axis] && even[axis])
+    }
+
     /// The convex hull of the cells that a body may touch.
     pub(crate) fn hull(&self, body: usize, grid: &Grid) -> &Hull {
         let touchable = |k: usize| self.gap.owner(k) == body && self.gap.above[k].is_finite();

@@ -29,13 +29,9 @@ impl Step<'_> {
     /// What the load of a body prescribes of its motion, the approach from the datum of the gap; zero where it leaves
     /// it free.
     pub(in crate::contact) fn prescribed(&self, body: usize) -> RigidMotion {
-        prescribed(&self.loads[body], self.indenter.gap().datum)
+        let (load, datum) = (&self.loads[body], self.indenter.gap().datum);
+        let approach = if let Load::Approach { approach, .. } = load { approach - datum } else { 0.0 };
+        let tilt = load.tilt().map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
+        RigidMotion { approach, tilt }
     }
-}
-
-/// What a load prescribes of a motion, the approach from `datum`; zero where it leaves it free.
-pub(in crate::contact) fn prescribed(load: &Load, datum: f64) -> RigidMotion {
-    let approach = if let Load::Approach { approach, .. } = load { approach - datum } else { 0.0 };
-    let tilt = load.tilt().map(|tilt| if let Tilt::Fixed(angle) = tilt { angle } else { 0.0 });
-    RigidMotion { approach, tilt }
 }

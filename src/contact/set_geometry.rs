@@ -30,9 +30,8 @@ impl ViscoelasticContact {
             geometries.iter().map(|geometry| evaluate(*geometry, &self.scene.grid)).collect::<Result<Vec<_>>>()?;
         let indenter = Indenter::new(Gap::new(gaps, &self.scene.grid)?, self.scene.bodies);
         let region = &self.computation.state.region;
-        let (folded, even) = (region.folded(), indenter.even_axes(&self.scene.grid));
-        let still_folded = [0, 1].map(|axis| folded[axis] && even[axis]);
-        if still_folded != folded {
+        let still_folded = indenter.keeps_folded(region.folded(), &self.scene.grid);
+        if still_folded != region.folded() {
             // the next step gives up the symmetry
             self.computation.check_memory_for(&self.scene, &region.unfolded(still_folded))?;
         }

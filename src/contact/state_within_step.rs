@@ -89,7 +89,9 @@ impl StateWithinStep<'_> {
     /// If `out` does not hold one value per cell.
     pub fn displacement_into(&self, out: &mut [f64]) -> Result<()> {
         let State { region, history, .. } = &self.contact.computation.state;
-        let before = on_the_whole_grid(&self.contact.scene, region, history.trial(), history.far_trial());
+        // at the end of the step the field before it has no share, and no convolution is needed for it
+        let source = history.far_trial().filter(|_| self.share != 1.0);
+        let before = on_the_whole_grid(&self.contact.scene, region, history.trial(), source);
         self.mix_into(out, "displacement", &before, self.contact.displacement())
     }
 

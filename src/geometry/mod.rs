@@ -204,21 +204,17 @@ impl Gap {
         Ok(Gap { datum, above, owner })
     }
 
-    /// Swaps in the checked heights of a single body, leaving the old ones in `heights`; returns the old datum.
-    pub(crate) fn exchange(&mut self, heights: &mut Vec<f64>, grid: &Grid) -> Result<f64> {
+    /// Swaps in the heights of a single body, checked, and leaves the old ones above their datum in `heights`.
+    pub(crate) fn exchange(&mut self, heights: &mut Vec<f64>, grid: &Grid) -> Result<()> {
         check(heights, grid)?;
         let datum = heights.iter().copied().fold(f64::INFINITY, f64::min);
         if datum == f64::INFINITY {
             return Err(Error::NothingToTouch { body: 0, cells: grid.len() });
         }
         heights.iter_mut().for_each(|h| *h -= datum);
-        Ok(self.put_back(heights, datum))
-    }
-
-    /// Swaps in heights above a datum, leaving the old ones in `above`; returns the old datum.
-    pub(crate) fn put_back(&mut self, above: &mut Vec<f64>, datum: f64) -> f64 {
-        std::mem::swap(&mut self.above, above);
-        std::mem::replace(&mut self.datum, datum)
+        std::mem::swap(&mut self.above, heights);
+        self.datum = datum;
+        Ok(())
     }
 
     /// The body of cell `k`.

@@ -73,14 +73,6 @@ impl Recursion {
         }
     }
 
-    fn bytes_per_cell(&self) -> usize {
-        match self {
-            Recursion::Exponential(own) => own.bytes_per_cell(),
-            Recursion::DirectSum(_) => 0,
-            Recursion::MovingFrame(own) => own.bytes_per_cell(),
-        }
-    }
-
     fn copy_from(&mut self, other: &Recursion) {
         match (self, other) {
             (Recursion::Exponential(own), Recursion::Exponential(other)) => own.copy_from(other),
@@ -144,7 +136,11 @@ impl History {
 
     /// Bytes per cell of an undisturbed past, besides the displacement; a far field takes as much again, and two fields.
     pub(crate) fn bytes_per_cell(&self) -> usize {
-        self.displacement.recursion.bytes_per_cell()
+        match &self.displacement.recursion {
+            Recursion::Exponential(own) => own.bytes_per_cell(),
+            Recursion::DirectSum(_) => 0,
+            Recursion::MovingFrame(own) => own.bytes_per_cell(),
+        }
     }
 
     /// The displacement \[m\].
@@ -223,8 +219,8 @@ impl History {
         }
     }
 
-    /// Adds the response to the pressure found for the step, and v = K p; `displace` turns u_old, given the displacement at the start
-    /// of the step, into the displacement at its end.
+    /// Adds the response to the pressure found for the step, and v = K p; `displace` turns u_old, given the displacement at
+    /// the start of the step, into the displacement at its end.
     pub(crate) fn respond(
         &mut self,
         c: f64,

@@ -1,15 +1,14 @@
 //! A step that was computed becomes the state.
 
 use crate::contact::computation::Computation;
-use crate::contact::request::{Step, prescribed};
+use crate::contact::request::Step;
 use crate::solver::{Modes, RigidMotion};
 
 impl Computation {
     /// Makes the trial the state.
     pub(super) fn accept(&mut self, step: Step<'_>, sum: f64) {
         let Computation { state, trial, .. } = self;
-        let Step { interval, loads, indenter, .. } = step;
-        let datum = indenter.gap().datum;
+        let (interval, datum) = (step.interval, step.indenter.gap().datum);
         let contact_cells = trial.solution.pressure.iter().filter(|&&p| p > 0.0).count();
         let touched = !state.is_undisturbed() || contact_cells > 0;
         let potential = [&state.current.solution.potential[..], &trial.solution.potential];
@@ -18,14 +17,14 @@ impl Computation {
         std::mem::swap(&mut state.previous, &mut state.current);
         std::mem::swap(&mut state.current.solution, &mut trial.solution);
         state.current.contact_cells = state.region.images() * contact_cells;
-        for (body, load) in loads.iter().enumerate() {
+        for body in 0..step.loads.len() {
             let modes = Modes::new(state.region.grid(), trial.free[body]);
-            let (held, free) = (prescribed(load, datum), modes.physical(state.current.solution.motions[body]));
-            let RigidMotion { approach, tilt } = held;
+            let free = modes.physical(state.current.solution.motions[body]);
+            let RigidMotion { approach, tilt } = step.prescribed(body);
             state.current.motions[body] = RigidMotion { approach: datum + approach, tilt } + free;
         }
-        state.loads.copy_from_slice(loads);
-        (state.indenter, state.indenter_is_new) = (indenter, false);
+        state.loads.copy_from_slice(step.loads);
+        (state.indenter, state.indenter_is_new) = (step.indenter, false);
         state.extrapolation.accept(interval.dt, sum, trial.reach);
         state.clock.accept(interval, touched);
     }

@@ -156,7 +156,7 @@ fn compute(
 ) -> Result<f64> {
     validate_loads(scene, step)?;
     if let Some((region, placed)) = region_for(scene, &own.state, step) {
-        let carried = larger.insert(own.carried_to(scene, region)?);
+        let carried = larger.insert(own.carried_to(scene, region, &step.indenter)?);
         carried.state.region_is_placed = placed;
     }
     loop {
@@ -170,7 +170,7 @@ fn compute(
             Err(error) => return Err(error),
         };
         let Some(region) = grown else { return acceptable(scene, &at.state, &at.trial, step) };
-        *larger = Some(at.carried_to(scene, region)?);
+        *larger = Some(at.carried_to(scene, region, &step.indenter)?);
     }
 }
 

@@ -1,5 +1,6 @@
 //! A state carried to another region.
 
+use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
 use crate::contact::state::{Equilibrium, State};
 use crate::contact::window::region::Region;
@@ -42,9 +43,15 @@ impl Transfer for Carry<'_> {
     }
 }
 
-/// A copy of the state on another region, and the window that computes there. The state itself stays what it is.
-pub(in crate::contact) fn carried(scene: &Scene, state: &mut State, region: Region) -> (State, Window) {
-    let mut window = Window::new(scene, &region, &state.indenter);
+/// A copy of the state on another region, and the window that computes there under `indenter`. The state itself stays what
+/// it is.
+pub(in crate::contact) fn carried(
+    scene: &Scene,
+    state: &mut State,
+    region: Region,
+    indenter: &Indenter,
+) -> (State, Window) {
+    let mut window = Window::new(scene, &region, indenter);
     let (kernel, work) = window.kernel_and_work();
     let mut carry = Carry { from: &state.region, to: &region, kernel, work };
     events::moved(state.region.cells(), region.cells());

@@ -25,8 +25,8 @@ pub(in crate::contact) fn region_for(scene: &Scene, state: &State, step: &Step<'
     };
     let folded = state.region.folded();
     let moving = step.interval.stride;
-    let even = if folded == [false; 2] { folded } else { step.indenter.even_axes(&scene.grid) };
-    let still_folded = [0, 1].map(|axis| folded[axis] && even[axis] && upright(axis) && moving[axis] == 0);
+    let even = step.indenter.keeps_folded(folded, &scene.grid);
+    let still_folded = [0, 1].map(|axis| even[axis] && upright(axis) && moving[axis] == 0);
     let unfolded = (still_folded != folded).then(|| state.region.unfolded(still_folded));
     let region = unfolded.as_ref().unwrap_or(&state.region);
     let to_be_placed = state.is_undisturbed() && !state.region_is_placed && state.history.far_source().is_some();
