@@ -15,7 +15,7 @@ mod stiffness;
 mod trace;
 
 pub(crate) use active_set::ActiveSet;
-pub(crate) use outcome::{Outcome, Stop};
+pub(crate) use outcome::{Outcome, PENETRATION_SLACK, Stop};
 pub(crate) use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::{Counts, Problem, Solution};
 pub(crate) use rigid_motion::{Freedom, Modes, RigidMotion};

@@ -8,10 +8,8 @@ use crate::contact::window::window::Window;
 use crate::error::Result;
 use crate::geometry::Gap;
 use crate::hereditary::no_elastic_response;
-use crate::solver::Modes;
+use crate::solver::{Modes, PENETRATION_SLACK};
 
-/// Penetration outside the contact may exceed the residual by this factor, as in the solver.
-const PENETRATION_SLACK: f64 = 10.0;
 /// Rounding of the gap of a cell, relative to the numbers that it is the sum of.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
