@@ -3,7 +3,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::error::{Error, Result, count_within, finite, length, non_negative, positive};
-use crate::hereditary::RememberedField;
+use crate::hereditary::{ExponentialRule, Interpolant, RememberedField};
 use crate::memory;
 use crate::rheology::{Material, is_known};
 
@@ -87,6 +87,7 @@ pub struct AxisymmetricContact {
     known_until: f64,
     time: f64,
     approach: f64,
+    rule: ExponentialRule,
     displacement: RememberedField,
     /// Line load q \[N/m\].
     load: Vec<f64>,
@@ -106,9 +107,9 @@ impl AxisymmetricContact {
         length("reach of the foundation", reach)?;
         let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("the one-dimensional foundation"))?;
         let width = reach / elements as f64;
-        let displacement = RememberedField::new(&creep, 0);
-        // six fields and the recursion
-        memory::check("a foundation", (48 + displacement.bytes_per_cell()) as u128 * elements as u128)?;
+        let rule = ExponentialRule::new(&creep);
+        // six fields, a difference of one or two, and the recursion
+        memory::check("a foundation", (64 + 8 * rule.branches()) as u128 * elements as u128)?;
         let depths: Vec<f64> = (0..elements).map(|k| (profile.depth)((k as f64 + 0.5) * width)).collect();
         let mut bounded = depths.iter().filter(|depth| **depth != f64::INFINITY);
         bounded.try_for_each(|&depth| finite("profile", depth).map(drop))?;
@@ -122,7 +123,8 @@ impl AxisymmetricContact {
             known_until: material.known_until(),
             time: 0.0,
             approach,
-            displacement: RememberedField::new(&creep, elements),
+            displacement: RememberedField::new(rule.branches(), elements),
+            rule,
             load: vec![0.0; elements],
             touch: vec![0.0; elements],
             trial_touch: vec![0.0; elements],
@@ -170,7 +172,8 @@ impl AxisymmetricContact {
         if !is_known(time, known_until) {
             return Err(Error::BeyondMaterial { time, age: time, known_until });
         }
-        let c = self.displacement.predict(dt);
+        self.displacement.predict_non_negative(&mut self.rule, dt, Interpolant::CorrectedLinear);
+        let c = self.rule.compliance();
         if c == 0.0 && dt == 0.0 {
             return Err(Error::NoElasticResponse { time, what: "a jump of the foundation (ramp the load instead)" });
         }
@@ -195,6 +198,7 @@ impl AxisymmetricContact {
             *q = (approach - touch).max(0.0) / c;
         }
         self.displacement.add(c, &self.load);
+        self.rule.commit();
         self.displacement.commit();
         std::mem::swap(&mut self.touch, &mut self.trial_touch);
         self.time += dt;

@@ -9,7 +9,6 @@ use crate::contact::computation::Computation;
 use crate::contact::footprint::{Computed, Footprint, Memory, symmetry_of};
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
-use crate::contact::settings::TimeRule;
 use crate::contact::state::State;
 use crate::contact::time_rule::{history_by, windowed};
 use crate::contact::viscoelastic::ViscoelasticContact;
@@ -128,7 +127,7 @@ impl Builder {
             None => Arc::new(InfluenceKernel::half_space(&self.grid)?),
         };
         if let Some(times) = &self.times
-            && self.settings.time_rule == TimeRule::Exponential
+            && self.settings.time_rule.needs_series()
         {
             material = times.fit(&material, self.settings.series_tolerance)?;
         }

@@ -1,6 +1,7 @@
 //! Settings of a contact.
 
 use crate::error::{Result, count_within, within};
+use crate::hereditary::Interpolant;
 
 /// How a contact is computed. Plain fields with defaults, validated when a contact is built.
 ///
@@ -74,11 +75,20 @@ pub enum Solver {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum TimeRule {
-    /// Exponential integration of the relaxation form: second order (first for a body without elastic response, as
-    /// Kelvin–Voigt), stable for steps of any length, one field per relaxation time. A rheology without an exact
-    /// exponential series gets a fitted one: see [`Builder::times`](crate::contact::Builder::times).
+    /// Exponential integration of the relaxation form, stable for steps of any length, one field per relaxation time. Within
+    /// a step the displacement is a polynomial of time through its last values, and each step puts right the one before,
+    /// which knew one value less. Steps of given length take it to be linear: third order. Steps chosen by their error
+    /// ([`Stepping::adaptive`](crate::contact::Stepping::adaptive)), and all of a body without elastic response (as
+    /// Kelvin–Voigt), take it to be quadratic: fourth order, second without elastic response. A kink of the displacement, as
+    /// at cells that come into contact, is met with second order.
+    ///
+    /// A rheology without an exact exponential series gets a fitted one: see
+    /// [`Builder::times`](crate::contact::Builder::times).
     #[default]
     Exponential,
+    /// The same with the displacement linear within each step, and nothing put right afterwards: second order (first without
+    /// elastic response). A prediction never rises above the undeformed surface, whatever the lengths of the steps.
+    ExponentialLinear,
     /// The rule of the source paper, a direct sum over all past steps: first order, oscillates when
     /// a step is longer than the relaxation time of a Maxwell body and diverges beyond twice that; needs
     /// an elastic response.
@@ -117,6 +127,13 @@ impl Default for Settings {
     }
 }
 
+impl TimeRule {
+    /// Whether it works with an exponential series of the creep.
+    pub(crate) fn needs_series(self) -> bool {
+        matches!(self, TimeRule::Exponential | TimeRule::ExponentialLinear)
+    }
+}
+
 impl Settings {
     /// The whole algorithm of the source paper: Polonsky–Keer solver, rectangle rule, direct sums. The baseline of every
     /// comparison.
@@ -128,6 +145,16 @@ impl Settings {
             window: false,
             ..Settings::default()
         }
+    }
+
+    /// How the displacement changes within a step of given length.
+    pub(crate) fn interpolant(&self) -> Interpolant {
+        if self.time_rule == TimeRule::ExponentialLinear { Interpolant::Linear } else { Interpolant::CorrectedLinear }
+    }
+
+    /// How it changes within a step chosen by its error.
+    pub(crate) fn adaptive_interpolant(&self) -> Interpolant {
+        if self.time_rule == TimeRule::ExponentialLinear { Interpolant::Linear } else { Interpolant::CorrectedQuadratic }
     }
 
     pub(crate) fn validate(&self) -> Result<()> {

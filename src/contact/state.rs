@@ -30,6 +30,8 @@ pub(crate) struct State {
     /// At the start of the last step.
     pub(super) previous: Equilibrium,
     pub(super) extrapolation: Extrapolation,
+    /// The greatest mean displacement in contact so far \[m\], as far as errors were taken relative to it.
+    pub(super) greatest_displacement: f64,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -80,6 +82,7 @@ impl State {
             previous: current.clone(),
             current,
             extrapolation: Extrapolation::default(),
+            greatest_displacement: 0.0,
         }
     }
 
@@ -106,8 +109,10 @@ impl State {
             current,
             previous,
             extrapolation,
+            greatest_displacement,
         } = self;
         (*clock, *extrapolation) = (other.clock, other.extrapolation);
+        *greatest_displacement = other.greatest_displacement;
         (*indenter_is_new, *region_is_placed) = (other.indenter_is_new, other.region_is_placed);
         loads.clone_from(&other.loads);
         indenter.clone_from(&other.indenter);

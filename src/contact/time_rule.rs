@@ -16,7 +16,7 @@ pub(super) fn windowed(settings: &Settings, history: &History, kernel: &Influenc
 pub(super) fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> Result<History> {
     let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
     match settings.time_rule {
-        TimeRule::Exponential => {
+        TimeRule::Exponential | TimeRule::ExponentialLinear => {
             let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact"))?;
             Ok(match settings.frame {
                 Frame::Bodies => History::exponential(&creep),

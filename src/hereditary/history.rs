@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::hereditary::direct_sum::{DirectSum, Weighting};
-use crate::hereditary::exponential::Exponential;
+use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
 use crate::hereditary::moving_frame::MovingFrame;
 use crate::hereditary::remembered_field::RememberedField;
 use crate::kernel::{LocalKernel, Workspace};
@@ -12,9 +12,10 @@ use crate::rheology::{CreepSpectrum, Material};
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct History {
-    displacement: RememberedField<Recursion>,
+    rule: Rule,
+    pub(super) displacement: RememberedField,
     /// Where only a window of the grid is computed, the field U whose convolution K U is the displacement elsewhere.
-    /// U ≥ 0, and zero wherever there never was contact.
+    /// Zero wherever there never was contact.
     far: Option<RememberedField>,
     /// Whether the trial of the displacement is that before the last step, cell by cell.
     before_is_kept: bool,
@@ -23,10 +24,12 @@ pub(crate) struct History {
 /// How the displacement follows from its past.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-enum Recursion {
-    Exponential(Exponential),
+enum Rule {
+    /// By its own past.
+    Exponential(ExponentialRule),
+    /// By that of what it is the convolution of.
+    MovingFrame(ExponentialRule, Box<MovingFrame>),
     DirectSum(DirectSum),
-    MovingFrame(Box<MovingFrame>),
 }
 
 /// A time step.
@@ -38,6 +41,8 @@ pub(crate) struct Interval {
     pub(crate) dt: f64,
     /// By how many cells the bodies move under the grid.
     pub(crate) stride: [isize; 2],
+    /// How u changes within it.
+    pub(crate) interpolant: Interpolant,
 }
 
 /// Inputs of a time rule besides the past.
@@ -63,83 +68,114 @@ pub(crate) trait Transfer {
     fn induced(&mut self, own: &[f64], source: Option<&[f64]>) -> Vec<f64>;
 }
 
-impl Recursion {
+impl Rule {
     /// Without a past, on so many cells.
-    fn undisturbed_on(&self, cells: [usize; 2]) -> Recursion {
+    fn undisturbed_on(&self, cells: [usize; 2]) -> Rule {
         match self {
-            Recursion::Exponential(own) => Recursion::Exponential(own.undisturbed_on(cells[0] * cells[1])),
-            Recursion::DirectSum(own) => Recursion::DirectSum(own.without_increments()),
-            Recursion::MovingFrame(own) => Recursion::MovingFrame(Box::new(own.undisturbed_on(cells))),
+            Rule::Exponential(own) => Rule::Exponential(own.clone()),
+            Rule::MovingFrame(own, frame) => Rule::MovingFrame(own.clone(), Box::new(frame.undisturbed_on(cells))),
+            Rule::DirectSum(own) => Rule::DirectSum(own.without_increments()),
         }
     }
 
-    fn copy_from(&mut self, other: &Recursion) {
+    /// The exponential rule, if it is that.
+    fn exponential(&self) -> Option<&ExponentialRule> {
+        match self {
+            Rule::Exponential(own) | Rule::MovingFrame(own, _) => Some(own),
+            Rule::DirectSum(_) => None,
+        }
+    }
+
+    /// Number of fields that the displacement itself has for its past.
+    fn branches(&self) -> usize {
+        if let Rule::Exponential(own) = self { own.branches() } else { 0 }
+    }
+
+    fn copy_from(&mut self, other: &Rule) {
         match (self, other) {
-            (Recursion::Exponential(own), Recursion::Exponential(other)) => own.copy_from(other),
-            (Recursion::MovingFrame(own), Recursion::MovingFrame(other)) => own.copy_from(other),
+            (Rule::Exponential(own), Rule::Exponential(other)) => own.copy_from(other),
+            (Rule::MovingFrame(own, frame), Rule::MovingFrame(other, other_frame)) => {
+                own.copy_from(other);
+                frame.copy_from(other_frame);
+            }
             (own, other) => *own = other.clone(),
         }
     }
 
     /// Whether it is the rule of another, on these cells.
     #[cfg(feature = "checkpoint")]
-    fn fits(&self, other: &Recursion, cells: [usize; 2]) -> bool {
-        let count = cells[0] * cells[1];
+    fn fits(&self, other: &Rule, cells: [usize; 2]) -> bool {
         match (self, other) {
-            (Recursion::Exponential(own), Recursion::Exponential(other)) => own.fits(other, count),
-            (Recursion::DirectSum(own), Recursion::DirectSum(other)) => own.fits(other, count),
-            (Recursion::MovingFrame(own), Recursion::MovingFrame(other)) => own.fits(other, cells),
+            (Rule::Exponential(own), Rule::Exponential(other)) => own.fits(other),
+            (Rule::MovingFrame(own, frame), Rule::MovingFrame(other, other_frame)) => {
+                own.fits(other) && frame.fits(other_frame, own.kept(), cells)
+            }
+            (Rule::DirectSum(own), Rule::DirectSum(other)) => own.fits(other, cells[0] * cells[1]),
             _ => false,
         }
     }
 }
 
 impl History {
-    fn new(recursion: Recursion) -> History {
-        History { displacement: RememberedField::undisturbed(recursion, 0), far: None, before_is_kept: true }
+    fn new(rule: Rule) -> History {
+        let displacement = RememberedField::new(rule.branches(), 0);
+        History { rule, displacement, far: None, before_is_kept: true }
     }
 
     /// Undisturbed bodies with contact compliance `creep`, by the exponential rule; on no cells yet.
     pub(crate) fn exponential(creep: &CreepSpectrum) -> History {
-        History::new(Recursion::Exponential(Exponential::new(creep, 0)))
+        History::new(Rule::Exponential(ExponentialRule::new(creep)))
     }
 
     /// Undisturbed bodies, by a direct sum over all steps; on no cells yet.
     pub(crate) fn direct_sum(weighting: Weighting) -> History {
-        History::new(Recursion::DirectSum(DirectSum::new(weighting)))
+        History::new(Rule::DirectSum(DirectSum::new(weighting)))
     }
 
     /// Undisturbed bodies that move under the grid, by the exponential rule; on no cells yet.
     pub(crate) fn moving_frame(creep: &CreepSpectrum, periodic: [bool; 2]) -> History {
-        History::new(Recursion::MovingFrame(Box::new(MovingFrame::new(creep, periodic))))
+        let rule = ExponentialRule::new(creep);
+        let frame = MovingFrame::new(rule.branches(), periodic);
+        History::new(Rule::MovingFrame(rule, Box::new(frame)))
     }
 
     /// The same bodies, undisturbed, on so many cells; with a far field where these are a `window` of the grid.
     pub(crate) fn undisturbed_on(&self, cells: [usize; 2], window: bool) -> History {
-        let (count, recursion) = (cells[0] * cells[1], self.displacement.recursion.undisturbed_on(cells));
-        let far = match &recursion {
-            Recursion::Exponential(own) if window => Some(RememberedField::undisturbed(own.clone(), count)),
-            _ => None,
-        };
-        History { displacement: RememberedField::undisturbed(recursion, count), far, before_is_kept: true }
+        let rule = self.rule.undisturbed_on(cells);
+        let displacement = RememberedField::new(rule.branches(), cells[0] * cells[1]);
+        let far = (window && self.has_far_field()).then(|| displacement.clone());
+        History { rule, displacement, far, before_is_kept: true }
     }
 
     /// Whether the displacement outside a window of the grid can be found.
     pub(crate) fn has_far_field(&self) -> bool {
-        matches!(self.displacement.recursion, Recursion::Exponential(_))
+        matches!(self.rule, Rule::Exponential(_))
     }
 
     /// Whether each step adds a field to the past.
     pub(crate) fn grows(&self) -> bool {
-        matches!(self.displacement.recursion, Recursion::DirectSum(_))
+        matches!(self.rule, Rule::DirectSum(_))
     }
 
-    /// Bytes per cell of an undisturbed past, besides the displacement; a far field takes as much again, and two fields.
+    /// Bytes per cell of an undisturbed past, besides the displacement, with as many differences as steps of given length
+    /// need, and `more`; a far field takes as much again, and two fields.
     pub(crate) fn bytes_per_cell(&self) -> usize {
-        match &self.displacement.recursion {
-            Recursion::Exponential(own) => own.bytes_per_cell(),
-            Recursion::DirectSum(_) => 0,
-            Recursion::MovingFrame(own) => own.bytes_per_cell(),
+        match &self.rule {
+            Rule::Exponential(own) => self.displacement.bytes_per_cell(own.least_kept()),
+            Rule::MovingFrame(own, frame) => 8 * own.least_kept() + frame.bytes_per_cell(own.least_kept()),
+            Rule::DirectSum(_) => 0,
+        }
+    }
+
+    /// The exponential rule, if the history follows it.
+    pub(crate) fn exponential_rule(&self) -> Option<&ExponentialRule> {
+        self.rule.exponential()
+    }
+
+    /// The past says nothing about how the displacement goes on, as after a corner of the load.
+    pub(crate) fn forget_slopes(&mut self) {
+        if let Rule::Exponential(own) | Rule::MovingFrame(own, _) = &mut self.rule {
+            own.forget_slopes();
         }
     }
 
@@ -170,11 +206,7 @@ impl History {
 
     /// Whether the displacement itself is part of the past, rather than computed anew from v.
     pub(crate) fn integrates_displacement(&self) -> bool {
-        match &self.displacement.recursion {
-            Recursion::Exponential(own) => own.remembers(),
-            Recursion::DirectSum(_) => false,
-            Recursion::MovingFrame(own) => own.remembers(),
-        }
+        self.rule.exponential().is_some_and(ExponentialRule::remembers)
     }
 
     /// Whether the surface in contact stays, from step to step, exactly on a body whose motion is prescribed.
@@ -192,29 +224,34 @@ impl History {
         work: &mut Workspace,
     ) -> Result<(f64, usize)> {
         self.before_is_kept = false;
-        let RememberedField { recursion, now, trial } = &mut self.displacement;
-        match recursion {
-            Recursion::Exponential(own) => {
-                self.far.iter_mut().for_each(|far| _ = far.predict(step.dt));
-                Ok((own.predict(step.dt, now, trial), 0))
+        let History { rule, displacement, far, .. } = self;
+        match rule {
+            Rule::Exponential(own) => {
+                displacement.predict_non_negative(own, step.dt, step.interpolant);
+                far.iter_mut().for_each(|far| far.predict(own));
+                Ok((own.compliance(), 0))
             }
-            Recursion::DirectSum(own) => {
+            Rule::MovingFrame(own, frame) => {
+                own.weigh(step.dt, step.interpolant);
+                displacement.settle(own);
+                frame.predict(own, step.stride);
+                let (c, trial) = (own.compliance(), &mut displacement.trial);
+                if !own.remembers() {
+                    trial.fill(0.0);
+                    return Ok((c, 0));
+                }
+                let [source, remainder] = frame.predicted();
+                kernel.apply(source, trial, work);
+                trial.iter_mut().zip(remainder).for_each(|(u_old, &e)| *u_old += e);
+                Ok((c, 1))
+            }
+            Rule::DirectSum(own) => {
+                let RememberedField { now, trial, .. } = displacement;
                 let c = own.predict((step.time, step.dt), inputs.material, inputs.history_limit, trial)?;
                 if c == 0.0 {
                     trial.copy_from_slice(now); // the sum is the same but for rounding
                 }
                 Ok((c, 0))
-            }
-            Recursion::MovingFrame(own) => {
-                let c = own.predict(step.dt, step.stride);
-                if !own.remembers() {
-                    trial.fill(0.0);
-                    return Ok((c, 0));
-                }
-                let [source, remainder] = own.predicted();
-                kernel.apply(source, trial, work);
-                trial.iter_mut().zip(remainder).for_each(|(u_old, &e)| *u_old += e);
-                Ok((c, 1))
             }
         }
     }
@@ -227,37 +264,47 @@ impl History {
         [pressure, potential]: [&[f64]; 2],
         displace: impl FnOnce(&[f64], &mut [f64]),
     ) {
-        let RememberedField { recursion, now, trial } = &mut self.displacement;
+        let RememberedField { now, trial, .. } = &mut self.displacement;
         self.far.iter_mut().for_each(|far| far.add(c, pressure));
-        if let Recursion::MovingFrame(own) = recursion {
-            own.respond(c, pressure, trial, potential);
+        if let Rule::MovingFrame(_, frame) = &mut self.rule {
+            frame.respond(c, pressure, trial, potential);
             displace(now, trial);
-            own.add_displacement(trial);
+            frame.add_displacement(trial);
         } else {
             displace(now, trial);
         }
     }
 
-    /// c (E∞ u + Σ e^(−z_i) q_i), by which a free displacement recedes in the step predicted last: calls `take` with it for
-    /// each cell that is `wanted`. Only the exponential rule knows it.
-    pub(crate) fn recovery(&self, c: f64, wanted: impl Fn(usize) -> bool, take: impl FnMut(usize, f64)) {
-        if let Recursion::Exponential(own) = &self.displacement.recursion {
-            own.recovery(c, &self.displacement.now, wanted, take);
-        }
+    /// u − u_old, by which a free displacement recedes in the step predicted last: calls `take` with it for each cell that is
+    /// `wanted`. Only the exponential rule knows it.
+    pub(crate) fn recovery(&self, wanted: impl Fn(usize) -> bool, mut take: impl FnMut(usize, f64)) {
+        let Rule::Exponential(own) = &self.rule else { return };
+        let RememberedField { past, now, .. } = &self.displacement;
+        let held = own.compliance() * own.equilibrium();
+        past.recovery(&own.tried, now.len(), wanted, |k, by_past| take(k, held * now[k] + by_past));
     }
 
     /// Accepts the step predicted last, in which v = K p went from one field to the other; `touched` tells whether
     /// anything has ever been displaced.
     pub(crate) fn commit(&mut self, step: Interval, potential: [&[f64]; 2], touched: bool) {
-        self.far.iter_mut().for_each(RememberedField::commit);
-        let RememberedField { recursion, now, trial } = &mut self.displacement;
-        match recursion {
-            Recursion::Exponential(own) => own.commit(),
-            Recursion::DirectSum(own) if touched => own.commit((step.time, step.dt), potential),
-            Recursion::DirectSum(_) => {}
-            Recursion::MovingFrame(own) => own.commit(step.stride),
+        let History { rule, displacement, far, .. } = self;
+        far.iter_mut().for_each(RememberedField::commit);
+        match rule {
+            Rule::Exponential(own) => {
+                own.commit();
+                displacement.commit();
+            }
+            Rule::MovingFrame(own, frame) => {
+                own.commit();
+                frame.commit(step.stride, displacement);
+            }
+            Rule::DirectSum(own) => {
+                if touched {
+                    own.commit((step.time, step.dt), potential);
+                }
+                displacement.commit();
+            }
         }
-        std::mem::swap(now, trial);
         // under bodies that moved, the field before the step belongs to other places
         self.before_is_kept = step.stride == [0; 2];
     }
@@ -265,32 +312,30 @@ impl History {
     /// The same past on other cells. The displacement before the last step stays behind.
     pub(crate) fn carried(&mut self, transfer: &mut impl Transfer) -> History {
         let cells = transfer.cells();
-        let RememberedField { recursion, now, trial } = &mut self.displacement;
-        self.far.iter_mut().for_each(RememberedField::settle);
-        let far = self.far.as_ref();
-        let recursion = match recursion {
-            Recursion::Exponential(own) => {
-                own.settle(trial, now);
-                Recursion::Exponential(own.carried(cells[0] * cells[1], now.len(), |i, branch| {
-                    transfer.induced(branch, far.map(|far| far.recursion.branch(i, now.len())).as_deref())
-                }))
+        let (count, History { rule, displacement, far, .. }) = (cells[0] * cells[1], self);
+        if let Some(own) = rule.exponential() {
+            displacement.settle(own);
+            far.iter_mut().for_each(|far| far.settle(own));
+        }
+        let rule = match rule {
+            Rule::Exponential(own) => Rule::Exponential(own.clone()),
+            Rule::MovingFrame(own, frame) => {
+                let frame = frame.carried(own, cells, |own| transfer.confined(own));
+                Rule::MovingFrame(own.clone(), Box::new(frame))
             }
-            Recursion::DirectSum(own) => Recursion::DirectSum(own.carried(|own| transfer.confined(own))),
-            Recursion::MovingFrame(own) => {
-                Recursion::MovingFrame(Box::new(own.carried(cells, |own| transfer.confined(own))))
-            }
+            Rule::DirectSum(own) => Rule::DirectSum(own.carried(|own| transfer.confined(own))),
         };
-        let now = transfer.induced(now, far.map(|far| &far.now[..]));
-        let far = far.filter(|_| !transfer.covers()).map(|far| far.carried(now.len(), |own| transfer.confined(own)));
-        let displacement = RememberedField { recursion, trial: vec![0.0; now.len()], now };
-        History { displacement, far, before_is_kept: false }
+        let displacement = displacement.carried(count, far.as_ref(), |own, source| transfer.induced(own, source));
+        let far = far.as_ref().filter(|_| !transfer.covers());
+        let far = far.map(|far| far.carried(count, None, |own, _| transfer.confined(own)));
+        History { rule, displacement, far, before_is_kept: false }
     }
 
     /// Copies another without reallocating where both have the same rule and cells, and no direct sum grows.
     pub(crate) fn copy_from(&mut self, other: &History) {
         self.before_is_kept = other.before_is_kept;
-        self.displacement.recursion.copy_from(&other.displacement.recursion);
-        self.displacement.copy_fields_from(&other.displacement);
+        self.rule.copy_from(&other.rule);
+        self.displacement.copy_from(&other.displacement);
         match (&mut self.far, &other.far) {
             (Some(own), Some(other)) => own.copy_from(other),
             (own, other) => *own = other.clone(),
@@ -301,14 +346,12 @@ impl History {
     /// anything.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &History, cells: [usize; 2], window: bool) -> bool {
-        let own = &self.displacement.recursion;
-        own.fits(&other.displacement.recursion, cells)
-            && self.displacement.has_cells(cells[0] * cells[1])
-            && self.far.is_some() == window
-            && self.far.as_ref().is_none_or(|far| match own {
-                Recursion::Exponential(own) => far.fits(own, cells[0] * cells[1]),
-                _ => false,
-            })
+        let (count, branches) = (cells[0] * cells[1], other.rule.branches());
+        let kept = self.rule.exponential().map_or(0, ExponentialRule::kept);
+        self.rule.fits(&other.rule, cells)
+            && self.displacement.fits(branches, kept, count)
+            && self.far.is_some() == (window && self.has_far_field())
+            && self.far.as_ref().is_none_or(|far| far.fits(branches, kept, count))
     }
 }
 

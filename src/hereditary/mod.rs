@@ -8,22 +8,27 @@
 //! an elastic body. [`History`] is the one interface to this: a step predicts c and u_old, responds to a pressure, and is
 //! committed when it is accepted. Three rules are behind it:
 //!
-//! * [`Exponential`]: a recursion with one field per relaxation time, updated in place; second order, stable for steps of
-//!   any length.
-//! * [`DirectSum`]: every past increment of v = K p, summed anew in each step with weights from C(t). It needs no
-//!   exponential series and serves the paper's rectangle rule and the backward rule.
-//! * [`MovingFrame`]: the exponential rule for the field whose convolution is the displacement, so that the bodies can
-//!   move under the grid.
+//! * [`ExponentialRule`]: a recursion with one field per relaxation time, updated in place; stable for steps of any length.
+//!   Within a step u is a polynomial of time, see [`Interpolant`].
+//! * [`DirectSum`](direct_sum::DirectSum): every past increment of v = K p, summed anew in each step with weights from C(t).
+//!   It needs no exponential series and serves the paper's rectangle rule and the backward rule.
+//! * [`MovingFrame`](moving_frame::MovingFrame): the exponential rule for the field whose convolution is the displacement, so
+//!   that the bodies can move under the grid.
 //!
-//! [`RememberedField`] pairs a recursion with its field at the start of a step and at its end. It serves the
-//! displacement, the far field of a window, and the moving frame alike.
+//! [`RememberedField`] is a field at the start of a step and at its end, with its past. It serves the displacement, the far
+//! field of a window, and the moving frame alike.
 
 mod direct_sum;
-mod exponential;
+mod exponential_rule;
 mod history;
+mod moments;
 mod moving_frame;
+mod past;
 mod remembered_field;
+mod time_error;
 
 pub(crate) use direct_sum::Weighting;
+pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
 pub(crate) use history::{History, HistoryInputs, Interval, Transfer, no_elastic_response};
 pub(crate) use remembered_field::RememberedField;
+pub(crate) use time_error::{ErrorMeasure, TimeError};

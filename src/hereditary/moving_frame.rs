@@ -1,7 +1,7 @@
 //! History of bodies that move under the grid.
 
+use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::remembered_field::RememberedField;
-use crate::rheology::CreepSpectrum;
 
 /// The past kept as the field U with u = K U, and its branches, which follow the recursion of u itself, K and the bodies
 /// being linear. U vanishes wherever there never was contact: what enters the grid across its edge is known, and so the
@@ -23,9 +23,9 @@ pub(crate) struct MovingFrame {
 }
 
 impl MovingFrame {
-    /// The undisturbed past of bodies with contact compliance `creep`, on no cells yet.
-    pub(crate) fn new(creep: &CreepSpectrum, periodic: [bool; 2]) -> MovingFrame {
-        let source = RememberedField::new(creep, 0);
+    /// The undisturbed past of bodies with so many relaxation times, on no cells yet.
+    pub(crate) fn new(branches: usize, periodic: [bool; 2]) -> MovingFrame {
+        let source = RememberedField::new(branches, 0);
         MovingFrame { cells: [0; 2], periodic, remainder: source.clone(), source, scratch: Vec::new() }
     }
 
@@ -37,8 +37,8 @@ impl MovingFrame {
     }
 
     /// Bytes per cell: two fields at both ends of a step, their recursions, and one to shift branches in.
-    pub(crate) fn bytes_per_cell(&self) -> usize {
-        40 + self.source.bytes_per_cell() + self.remainder.bytes_per_cell()
+    pub(crate) fn bytes_per_cell(&self, kept: usize) -> usize {
+        40 + self.source.bytes_per_cell(kept) + self.remainder.bytes_per_cell(kept)
     }
 
     /// Copies another without reallocating.
@@ -51,29 +51,22 @@ impl MovingFrame {
 
     /// Whether it is like another, and its fields have such cells.
     #[cfg(feature = "checkpoint")]
-    pub(crate) fn fits(&self, other: &MovingFrame, cells: [usize; 2]) -> bool {
-        let count = cells[0] * cells[1];
+    pub(crate) fn fits(&self, other: &MovingFrame, kept: usize, cells: [usize; 2]) -> bool {
+        let (count, branches) = (cells[0] * cells[1], other.source.past.branches());
         self.cells == cells
             && self.scratch.len() == count
             && self.periodic == other.periodic
-            && [&self.source, &self.remainder].iter().all(|field| field.fits(&other.source.recursion, count))
-    }
-
-    /// Whether there is a past at all.
-    pub(crate) fn remembers(&self) -> bool {
-        self.source.recursion.remembers()
+            && [&self.source, &self.remainder].iter().all(|field| field.fits(branches, kept, count))
     }
 
     /// Finds U_old and e_old at the end of a step in which the cell `[i, j]` comes over what was the cell
-    /// `[i, j] + stride`; returns c.
-    pub(crate) fn predict(&mut self, dt: f64, stride: [isize; 2]) -> f64 {
+    /// `[i, j] + stride`.
+    pub(crate) fn predict(&mut self, rule: &ExponentialRule, stride: [isize; 2]) {
         let (cells, periodic) = (self.cells, self.periodic);
-        let [_, c] = [&mut self.remainder, &mut self.source].map(|field| {
-            let c = field.predict(dt);
+        for field in [&mut self.remainder, &mut self.source] {
+            field.predict(rule);
             shift(&mut field.trial, cells, stride, periodic);
-            c
-        });
-        c
+        }
     }
 
     /// U_old and e_old: u_old = K U_old + e_old.
@@ -93,28 +86,29 @@ impl MovingFrame {
         self.remainder.add(1.0, u);
     }
 
-    /// Takes the step that was predicted last into the past.
-    pub(crate) fn commit(&mut self, stride: [isize; 2]) {
-        for field in [&mut self.source, &mut self.remainder] {
-            std::mem::swap(&mut field.now, &mut field.trial);
+    /// Takes the step that was predicted last into the past, `displacement` with it.
+    pub(crate) fn commit(&mut self, stride: [isize; 2], displacement: &mut RememberedField) {
+        for field in [displacement, &mut self.source, &mut self.remainder] {
             if stride != [0; 2] {
-                shift(&mut field.trial, self.cells, stride, self.periodic);
-                for branch in 0..field.recursion.branches() {
-                    field.recursion.read_branch(branch, &mut self.scratch);
-                    shift(&mut self.scratch, self.cells, stride, self.periodic);
-                    field.recursion.write_branch(branch, &self.scratch);
-                }
+                // what was before the step, too, is now elsewhere
+                shift(&mut field.now, self.cells, stride, self.periodic);
+                field.past.change(&mut self.scratch, |own| shift(own, self.cells, stride, self.periodic));
             }
-            field.recursion.commit();
+            field.commit();
         }
     }
 
     /// The same past on other cells; `carry` says what a field is there.
-    pub(crate) fn carried(&mut self, cells: [usize; 2], carry: impl Fn(&[f64]) -> Vec<f64>) -> MovingFrame {
+    pub(crate) fn carried(
+        &mut self,
+        rule: &ExponentialRule,
+        cells: [usize; 2],
+        carry: impl Fn(&[f64]) -> Vec<f64>,
+    ) -> MovingFrame {
         let count = cells[0] * cells[1];
         let [source, remainder] = [&mut self.source, &mut self.remainder].map(|field| {
-            field.settle();
-            field.carried(count, &carry)
+            field.settle(rule);
+            field.carried(count, None, |own, _| carry(own))
         });
         MovingFrame { cells, periodic: self.periodic, source, remainder, scratch: vec![0.0; count] }
     }

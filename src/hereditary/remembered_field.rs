@@ -1,23 +1,32 @@
 //! A field that follows the recursion of the displacement.
 
-use crate::hereditary::exponential::Exponential;
-use crate::rheology::CreepSpectrum;
+use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
+use crate::hereditary::past::Past;
+
+/// What lies below zero by less than this part of the greatest value is rounding.
+const DIP: f64 = -1e-9;
 
 /// A field, and what it remembers of its past. The bodies being linear, whatever the displacement is a convolution of
 /// follows the recursion of the displacement itself.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct RememberedField<R = Exponential> {
-    pub(super) recursion: R,
+pub(crate) struct RememberedField {
+    pub(super) past: Past,
     pub(super) now: Vec<f64>,
-    /// At the end of the step being tried; between steps the field before the last one, which the recursion has yet to
-    /// take in.
+    /// At the end of the step being tried; between steps the field before the last one, which the past has yet to take in.
     pub(super) trial: Vec<f64>,
 }
 
-impl<R> RememberedField<R> {
-    pub(super) fn undisturbed(recursion: R, cells: usize) -> RememberedField<R> {
-        RememberedField { recursion, now: vec![0.0; cells], trial: vec![0.0; cells] }
+impl RememberedField {
+    /// The undisturbed field of bodies with so many relaxation times.
+    pub(crate) fn new(branches: usize, cells: usize) -> RememberedField {
+        let past = Past::undisturbed(branches, cells);
+        RememberedField { past, now: vec![0.0; cells], trial: vec![0.0; cells] }
+    }
+
+    /// The same, undisturbed, on `cells` cells.
+    pub(super) fn undisturbed_on(&self, cells: usize) -> RememberedField {
+        RememberedField::new(self.past.branches(), cells)
     }
 
     /// The field at the end of the step being tried; between steps that before the last one.
@@ -25,36 +34,31 @@ impl<R> RememberedField<R> {
         &self.trial
     }
 
-    pub(super) fn copy_fields_from(&mut self, other: &RememberedField<R>) {
-        self.now.clone_from(&other.now);
-        self.trial.clone_from(&other.trial);
+    /// Bytes per cell that the past takes, with so many differences.
+    pub(crate) fn bytes_per_cell(&self, kept: usize) -> usize {
+        self.past.bytes_per_cell(kept)
     }
 
-    #[cfg(feature = "checkpoint")]
-    pub(super) fn has_cells(&self, cells: usize) -> bool {
-        [self.now.len(), self.trial.len()] == [cells; 2]
-    }
-}
-
-impl RememberedField {
-    /// The undisturbed field of bodies with contact compliance `creep`.
-    pub(crate) fn new(creep: &CreepSpectrum, cells: usize) -> RememberedField {
-        RememberedField::undisturbed(Exponential::new(creep, cells), cells)
+    /// Writes what the past makes of the end of a step to the trial.
+    pub(crate) fn predict(&mut self, rule: &ExponentialRule) {
+        self.past.predict(rule, &self.now, &mut self.trial);
     }
 
-    /// The same, undisturbed, on `cells` cells.
-    pub(super) fn undisturbed_on(&self, cells: usize) -> RememberedField {
-        RememberedField::undisturbed(self.recursion.undisturbed_on(cells), cells)
+    /// Finds the weights of a step and predicts its end. No pressure has pulled the surface up yet: where the field would fall
+    /// below zero, the polynomial does not suit the step, and one of less degree is taken.
+    pub(crate) fn predict_non_negative(&mut self, rule: &mut ExponentialRule, dt: f64, interpolant: Interpolant) {
+        rule.weigh(dt, interpolant);
+        self.predict(rule);
+        while rule.has_less() && self.dips() {
+            rule.weigh_less();
+            self.predict(rule);
+        }
     }
 
-    /// Bytes per cell that the recursion takes.
-    pub(crate) fn bytes_per_cell(&self) -> usize {
-        self.recursion.bytes_per_cell()
-    }
-
-    /// Writes what the past makes of the end of a step to the trial, and returns the compliance c of the step.
-    pub(crate) fn predict(&mut self, dt: f64) -> f64 {
-        self.recursion.predict(dt, &self.now, &mut self.trial)
+    /// Whether the trial is negative somewhere, by more than rounding.
+    fn dips(&self) -> bool {
+        let greatest = self.now.iter().fold(0.0, |most: f64, &value| if value > most { value } else { most });
+        self.trial.iter().any(|&value| value < DIP * greatest)
     }
 
     /// Adds c times a source to the trial.
@@ -64,30 +68,37 @@ impl RememberedField {
 
     /// Accepts the step predicted last.
     pub(crate) fn commit(&mut self) {
-        self.recursion.commit();
+        self.past.commit();
         std::mem::swap(&mut self.now, &mut self.trial);
     }
 
-    /// Lets the recursion take in the last step, so that nothing depends on the field before it any more.
-    pub(super) fn settle(&mut self) {
-        self.recursion.settle(&self.trial, &self.now);
+    /// Lets the past take in the last step, so that nothing depends on the field before it any more.
+    pub(super) fn settle(&mut self, rule: &ExponentialRule) {
+        self.past.settle(rule, &self.trial, &self.now);
     }
 
     /// Copies another without reallocating.
     pub(super) fn copy_from(&mut self, other: &RememberedField) {
-        self.recursion.copy_from(&other.recursion);
-        self.copy_fields_from(other);
+        self.past.copy_from(&other.past);
+        self.now.clone_from(&other.now);
+        self.trial.clone_from(&other.trial);
     }
 
-    /// The same past on `cells` other cells, once settled; `carry` returns each of its fields there.
-    pub(super) fn carried(&self, cells: usize, mut carry: impl FnMut(&[f64]) -> Vec<f64>) -> RememberedField {
-        let recursion = self.recursion.carried(cells, self.now.len(), |_, branch| carry(branch));
-        RememberedField { recursion, now: carry(&self.now), trial: vec![0.0; cells] }
+    /// The same field and past, once settled, on `cells` other cells. `carry` returns there each of its fields, given with the
+    /// same field of `companion`.
+    pub(super) fn carried(
+        &self,
+        cells: usize,
+        companion: Option<&RememberedField>,
+        mut carry: impl FnMut(&[f64], Option<&[f64]>) -> Vec<f64>,
+    ) -> RememberedField {
+        let past = self.past.carried([cells, self.now.len()], companion.map(|field| &field.past), &mut carry);
+        RememberedField { past, now: carry(&self.now, companion.map(|field| &field.now[..])), trial: vec![0.0; cells] }
     }
 
-    /// Whether its recursion is like another, and its fields have so many cells.
+    /// Whether its past has so many branches, and its fields have so many cells.
     #[cfg(feature = "checkpoint")]
-    pub(super) fn fits(&self, recursion: &Exponential, cells: usize) -> bool {
-        self.recursion.fits(recursion, cells) && self.has_cells(cells)
+    pub(super) fn fits(&self, branches: usize, kept: usize, cells: usize) -> bool {
+        self.past.fits(branches, kept, cells) && [self.now.len(), self.trial.len()] == [cells; 2]
     }
 }

@@ -26,7 +26,6 @@ pub use sinusoid::Sinusoid;
 pub use step::StepLoad;
 
 use std::fmt::{self, Debug};
-use std::mem::discriminant;
 
 use crate::error::{Error, Result, finite, non_negative};
 
@@ -198,19 +197,31 @@ impl Load {
         self.values()[0].abs()
     }
 
-    /// The deviation of `between` from the linear interpolation at the fraction `s` from `self` to `to`: force or
-    /// approach relative to `scale`, tilts and points relative to their greatest value.
-    pub(crate) fn deviation(&self, to: &Load, s: f64, between: &Load, scale: f64) -> f64 {
-        let straight = self.towards(to, s);
-        let [start, end, here, line] = [self, to, between, &straight].map(Load::values);
-        let relative = |k: usize, scale: f64| {
-            let far = (line[k] - here[k]).abs();
-            if far == 0.0 { 0.0 } else { far / scale }
+    /// Whether it prescribes and leaves free what another does.
+    pub(crate) fn is_like(&self, other: &Load) -> bool {
+        self.kind() == other.kind()
+    }
+
+    /// How far it is, at `time`, from the polynomial through loads of its kind at other times: force or approach relative to
+    /// `scale`, tilts and points relative to their greatest value.
+    pub(crate) fn deviation(&self, time: f64, nodes: &[(f64, Load)], scale: f64) -> f64 {
+        let here = self.values();
+        let (mut far, mut greatest) = (here, here.map(f64::abs));
+        for (k, (at, load)) in nodes.iter().enumerate() {
+            // Lagrange's form
+            let others = nodes.iter().enumerate().filter(|(other, _)| *other != k);
+            let weight: f64 = others.map(|(_, (other, _))| (time - other) / (at - other)).product();
+            for (axis, value) in load.values().into_iter().enumerate() {
+                far[axis] -= weight * value;
+                greatest[axis] = greatest[axis].max(value.abs());
+            }
+        }
+        // the rounding of a load is no deviation
+        let relative = |axis: usize, scale: f64| {
+            let far = far[axis].abs();
+            if far <= 4.0 * f64::EPSILON * greatest[axis] { 0.0 } else { far / scale }
         };
-        let same_kind = discriminant(&straight) == discriminant(between);
-        let main = if same_kind { relative(0, scale) } else { f64::INFINITY };
-        let tilt = |k: usize| relative(k, start[k].abs().max(end[k].abs()).max(here[k].abs()));
-        main.max(tilt(1)).max(tilt(2))
+        relative(0, scale).max(relative(1, greatest[1])).max(relative(2, greatest[2]))
     }
 
     /// Linear interpolation at the fraction `s` from `self` to `to`, which is of the same kind.

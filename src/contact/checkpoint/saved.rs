@@ -36,7 +36,7 @@ impl<'a> Saved<'a> {
         let scene = Arc::clone(&contact.scene);
         self.scene.require(&Fingerprint::of(&scene))?;
         check(&self.state, &contact.computation.state, &scene)?;
-        if self.progress.as_ref().is_some_and(|progress| !progress.fits(&scene.grid)) {
+        if self.progress.as_ref().is_some_and(|progress| !progress.fits()) {
             return Err(CheckpointError::Malformed { what: "a run that no contact can continue".into() });
         }
         contact.computation = Computation::new(&scene, self.state.into_owned());

@@ -4,6 +4,9 @@ use crate::contact::computation::Computation;
 use crate::contact::report::StepReport;
 use crate::contact::run::follow::Follow;
 use crate::contact::run::step_control::StepControl;
+use crate::contact::settings::Settings;
+use crate::contact::state::State;
+use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::events;
@@ -14,14 +17,16 @@ const MAX_SOLVER_RETRIES: u32 = 5;
 impl Follow<'_> {
     /// One step as long as its error allows.
     pub(super) fn adaptive_step(&mut self, control: &mut StepControl, corner: f64) -> Result<StepReport> {
+        let ViscoelasticContact { scene, computation, .. } = &*self.contact;
         let now = self.contact.time();
-        control.keep_slope(&self.contact.computation.state);
+        control.begin(scene, &computation.state, self.history, self.until)?;
+        let tolerance = control.solver_tolerance(scene.settings.tolerance);
         let stop = corner.min(self.until).min(self.next_stop(now));
-        let tolerance = control.solver_tolerance(self.contact.settings().tolerance);
         let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
         loop {
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
             let wanted = control.length(scene, &computation.state, self.history, self.until - now)?;
+            let (order, dashpot) = order_of(&computation.state, &scene.settings);
             let (time, dt) = towards(now, stop, wanted);
             // near the resolution of the time, a shortened step may round to the same end for ever
             if time <= now || time >= tried {
@@ -31,10 +36,11 @@ impl Follow<'_> {
             let loads = [self.history.before(time).validated_at(time)?];
             let straying = control.watch(self.history, now, time)?;
             if straying > control.tolerance {
-                control.judge(dt, straying);
+                control.judge(dt, straying, order, dashpot);
                 continue;
             }
-            let step = self.contact.request(time, dt, &loads, tolerance);
+            let mut step = self.contact.request(time, dt, &loads, tolerance);
+            step.interval.interpolant = scene.settings.adaptive_interpolant();
             let attempt = match self.contact.attempt(&step) {
                 Err(Error::NotConverged { .. }) if failures < MAX_SOLVER_RETRIES => {
                     failures += 1;
@@ -45,23 +51,33 @@ impl Follow<'_> {
                 other => other?,
             };
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
-            let error = control.estimate(scene, attempt.computation(computation), dt).max(straying);
-            if control.judge(dt, error) {
+            let computed = attempt.computation(computation);
+            let age = time - computed.state.clock.undisturbed_until;
+            let expected = control.expected_displacement(scene, &loads[0], age);
+            let mut error = error_in_time(scene, computed, step.interval, expected);
+            error.relative = error.relative.max(straying);
+            if control.judge(dt, error.relative, order, dashpot) {
+                control.accept(time, loads[0], [wanted, dt], time == corner, order);
+                let mut report = self.contact.accept(attempt, step, error);
                 if time == corner {
-                    control.restart();
-                } else {
-                    control.resume(wanted, dt);
+                    self.contact.computation.state.history.forget_slopes();
                 }
-                let mut report = self.contact.accept(attempt, step);
-                report.time_error = error;
                 report.convolutions += wasted[0];
                 report.preconditioner_applications += wasted[1];
                 self.progress.include(report.time_error, report.residual);
                 return Ok(report);
             }
-            events::rejected(time, dt, error, control.tolerance);
-            add_work(&mut wasted, attempt.computation(computation));
+            events::rejected(time, dt, error.relative, control.tolerance);
+            add_work(&mut wasted, computed);
         }
+    }
+}
+
+/// The order of the error of a step in its length, and whether an immediate dashpot answers it.
+fn order_of(state: &State, settings: &Settings) -> (u32, bool) {
+    match state.history.exponential_rule() {
+        Some(rule) => (rule.order(settings.adaptive_interpolant()), rule.has_dashpot()),
+        None => (1, false),
     }
 }
 

@@ -154,7 +154,7 @@ impl<'a> Follow<'a> {
         let load = self.history.at(now).validated_at(now)?;
         if load != self.contact.load() {
             if let Some(control) = &mut self.progress.control {
-                control.restart();
+                control.jump();
             }
             return self.step_to(now, 0.0, load).map(Some);
         }
@@ -173,7 +173,11 @@ impl<'a> Follow<'a> {
         let Stepping::Fixed { dt } = self.stepping else { return Ok(None) };
         let time = self.next_time(now, dt, corner)?;
         let load = self.history.before(time).validated_at(time)?;
-        self.step_to(time, time - now, load).map(Some)
+        let report = self.step_to(time, time - now, load)?;
+        if time == corner {
+            self.contact.computation.state.history.forget_slopes();
+        }
+        Ok(Some(report))
     }
 
     /// One step of given end, as a step of the contact.

@@ -4,5 +4,6 @@ mod adaptive_step;
 pub(in crate::contact) mod error_budget;
 pub(in crate::contact) mod follow;
 pub(in crate::contact) mod progress;
+mod run_scale;
 mod step_control;
 pub(in crate::contact) mod stepping;

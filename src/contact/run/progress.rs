@@ -43,9 +43,9 @@ impl Progress {
 
     /// Whether a run can be continued from it: a file may hold anything.
     #[cfg(feature = "checkpoint")]
-    pub(crate) fn fits(&self, grid: &crate::Grid) -> bool {
+    pub(crate) fn fits(&self) -> bool {
         match &self.control {
-            Some(control) => control.fits(grid),
+            Some(control) => control.fits(),
             None => (self.now - self.start - self.steps as f64 * self.dt).abs() <= 2.0 * self.dt,
         }
     }

@@ -5,8 +5,8 @@ use crate::contact::request::Step;
 use crate::solver::{Modes, RigidMotion};
 
 impl Computation {
-    /// Makes the trial the state.
-    pub(super) fn accept(&mut self, step: Step<'_>, sum: f64) {
+    /// Makes the trial the state; `sum` is Σ p, and `displacement` the mean in contact.
+    pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, displacement: f64) {
         let Computation { state, trial, .. } = self;
         let (interval, datum) = (step.interval, step.indenter.gap().datum);
         let contact_cells = trial.solution.pressure.iter().filter(|&&p| p > 0.0).count();
@@ -26,6 +26,7 @@ impl Computation {
         state.loads.copy_from_slice(step.loads);
         (state.indenter, state.indenter_is_new) = (step.indenter, false);
         state.extrapolation.accept(interval.dt, sum, trial.reach);
+        state.greatest_displacement = state.greatest_displacement.max(displacement);
         state.clock.accept(interval, touched);
     }
 }

@@ -36,13 +36,13 @@ impl RigidBodies<'_> {
     }
 
     /// The gap in contact under bodies whose motion is prescribed: hi + u is their motion at the start of the step, so that
-    /// the gap is their retraction less c (E∞ u + Σ e^(−z_i) q_i), by how much the surface recedes. Computed as a part of
+    /// the gap is their retraction less u − u_old, by how much the surface recedes. Computed as a part of
     /// hi + u_old − ω, that would be lost in rounding once the pressure has relaxed by many decades.
-    pub(super) fn refine_gap(&self, c: f64, history: &History, pressure: &[f64], gap: &mut [f64]) {
+    pub(super) fn refine_gap(&self, history: &History, pressure: &[f64], gap: &mut [f64]) {
         for body in 0..self.prescribed.bodies() {
             let Some(retraction) = self.prescribed.retraction(body) else { continue };
             let pressed = |k: usize| pressure[k] > 0.0 && self.initial.owner(k) == body;
-            history.recovery(c, pressed, |k, recovery| gap[k] = retraction.at(self.region.center(k)) - recovery);
+            history.recovery(pressed, |k, recovery| gap[k] = retraction.at(self.region.center(k)) - recovery);
         }
     }
 

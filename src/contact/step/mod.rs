@@ -19,6 +19,7 @@ mod accept;
 mod checks;
 mod collect_warnings;
 mod constraints;
+pub(in crate::contact) mod error_in_time;
 mod gap;
 mod initial_guess;
 mod jump;
@@ -35,9 +36,10 @@ use crate::contact::window::placement::region_for;
 use crate::contact::window::region::Region;
 use crate::error::{Error, Result, non_negative};
 use crate::events;
-use crate::hereditary::Interval;
+use crate::hereditary::{Interval, TimeError};
 use crate::load::Load;
 use crate::solver::Stop;
+use error_in_time::error_in_time;
 use checks::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use collect_warnings::collect_warnings;
 use constraints::{Prescribed, find_free_motions, surface_follows_bodies, validate_loads};
@@ -84,13 +86,15 @@ impl ViscoelasticContact {
     /// A step in which nothing moves along the surface.
     pub(in crate::contact) fn request<'a>(&self, time: f64, dt: f64, loads: &'a [Load], tolerance: f64) -> Step<'a> {
         let indenter = Arc::clone(&self.computation.state.indenter);
-        Step { interval: Interval { time, dt, stride: [0; 2] }, loads, indenter, tolerance }
+        let interval = Interval { time, dt, stride: [0; 2], interpolant: self.settings().interpolant() };
+        Step { interval, loads, indenter, tolerance }
     }
 
     /// Computes a step and accepts it.
     pub(in crate::contact) fn take(&mut self, step: Step<'_>) -> Result<StepReport> {
         let attempt = self.attempt(&step)?;
-        Ok(self.accept(attempt, step))
+        let error = error_in_time(&self.scene, attempt.computation(&self.computation), step.interval, 0.0);
+        Ok(self.accept(attempt, step, error))
     }
 
     /// Computes a step. The state stays as it is.
@@ -108,13 +112,13 @@ impl ViscoelasticContact {
     }
 
     /// Makes an attempt the state. Nothing here can fail.
-    pub(in crate::contact) fn accept(&mut self, attempt: Attempt, step: Step<'_>) -> StepReport {
+    pub(in crate::contact) fn accept(&mut self, attempt: Attempt, step: Step<'_>, error: TimeError) -> StepReport {
         if let Some(larger) = attempt.larger {
             self.computation = *larger;
         }
-        self.computation.accept(step, attempt.sum);
+        self.computation.accept(step, attempt.sum, error.displacement);
         self.view.refresh(&self.computation.state);
-        let report = self.report();
+        let report = StepReport { time_error: error.relative, ..self.report() };
         report.emit();
         report
     }
@@ -193,7 +197,7 @@ impl Computation {
             Prescribed::new(step, surface_follows_bodies(step, state), &state.loads, &state.current.motions);
         let bodies = RigidBodies { region: &state.region, initial: window.gap(&step.indenter), prescribed };
         bodies.fill_gap(state.history.trial(), &mut trial.gap);
-        bodies.refine_gap(c, &state.history, &state.current.solution.pressure, &mut trial.gap);
+        bodies.refine_gap(&state.history, &state.current.solution.pressure, &mut trial.gap);
         let greatest = prescribed.greatest(&scene.grid);
         below_full_contact(window, trial, step)?;
 

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::contact::indenter::Indenter;
 use crate::contact::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
@@ -61,20 +62,32 @@ fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Regi
 /// A depth at which a body pressed by `normal` about comes to rest, above the datum: twice that of the level at which the
 /// gap has risen by a²/2R, see the cold start of the solver.
 fn depth(scene: &Scene, step: &Step<'_>, body: usize, normal: f64) -> f64 {
-    let gap = step.indenter.gap();
+    let [lowest, rest] = level(scene, &step.indenter, body, scene.material.contact_compliance(step.interval.dt) * normal);
+    lowest + 2.0 * rest
+}
+
+/// The depth below first touch at which the first body about comes to rest, under the product of a force and a contact
+/// compliance.
+pub(in crate::contact) fn resting_depth(scene: &Scene, indenter: &Indenter, force_times_compliance: f64) -> f64 {
+    level(scene, indenter, 0, force_times_compliance)[1]
+}
+
+/// The lowest gap of a body, above the datum, and how far above it the level lies at which the gap has risen by a²/2R.
+fn level(scene: &Scene, indenter: &Indenter, body: usize, force_times_compliance: f64) -> [f64; 2] {
+    let gap = indenter.gap();
     let heights =
         || gap.above.iter().enumerate().filter(|(k, h)| h.is_finite() && gap.owner(*k) == body).map(|(_, h)| *h);
     let lowest = heights().fold(f64::INFINITY, f64::min);
     let (mut low, mut high) = (lowest, heights().fold(lowest, f64::max));
-    let force = 0.375 * PI.sqrt() * scene.material.contact_compliance(step.interval.dt) * normal;
+    let force = 0.375 * PI.sqrt() * force_times_compliance;
     let cells_below = |level: f64| heights().filter(|&h| h <= level).count() as f64;
     let rise = |level: f64| force / (cells_below(level) * scene.grid.cell_area()).sqrt();
     if high - lowest < rise(high) {
-        return lowest + 2.0 * rise(high); // all of it is pressed
+        return [lowest, rise(high)]; // all of it is pressed
     }
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
         if middle - lowest < rise(middle) { low = middle } else { high = middle }
     }
-    lowest + 2.0 * (high - lowest)
+    [lowest, high - lowest]
 }

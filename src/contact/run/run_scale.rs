@@ -1,0 +1,107 @@
+//! The size of the loads and displacements of a run.
+
+use crate::contact::scene::Scene;
+use crate::contact::state::State;
+use crate::contact::window::placement::resting_depth;
+use crate::load::{Load, LoadHistory};
+
+/// Loads and displacements below this part of the greatest of the run are measured relative to that part.
+const SMALL: f64 = 0.05;
+/// A history is looked at before the run: at so many equal parts of it, ...
+const EQUAL_PARTS: i32 = 64;
+/// ... at so many times a decade, over so many decades before its end, ...
+const TIMES_PER_DECADE: i32 = 4;
+const DECADES: i32 = 12;
+/// ... and at so many of its breakpoints.
+const BREAKPOINTS: usize = 1000;
+
+/// What is small in a run: the greatest loads of its history, and the displacement that they are likely to cause. Near nothing,
+/// at first touch, when bodies part, or under a load that starts like a power of time, errors relative to the state itself
+/// would never become small.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct RunScale {
+    /// Approach at first touch.
+    touch: f64,
+    /// The greatest force.
+    force: f64,
+    /// The greatest depth below first touch that is prescribed.
+    depth: f64,
+    /// The depth at which the greatest force is likely to come to rest in the end, over the compliance then.
+    depth_over_compliance: f64,
+}
+
+impl RunScale {
+    /// Of a run from the state along a history to the time `until`.
+    pub(super) fn new(scene: &Scene, state: &State, history: &dyn LoadHistory, until: f64) -> RunScale {
+        let touch = state.indenter.first_touch()[0].approach;
+        let mut scale = RunScale { touch, force: 0.0, depth: 0.0, depth_over_compliance: 0.0 };
+        let now = state.clock.time;
+        let span = until - now;
+        let equal = (0..=EQUAL_PARTS).map(|k| now + span * f64::from(k) / f64::from(EQUAL_PARTS));
+        let decades = (1..=TIMES_PER_DECADE * DECADES)
+            .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
+        let mut corner = now;
+        let corners = std::iter::from_fn(|| {
+            corner = history.next_breakpoint(corner).filter(|&next| next > corner && next <= until)?;
+            Some(corner)
+        });
+        for time in equal.chain(decades).chain(corners.take(BREAKPOINTS)) {
+            // what is not allowed is reported when the run comes to it
+            [history.before(time), history.at(time)].iter().filter(|load| load.validate().is_ok()).for_each(|load| scale.include(load));
+        }
+        let compliance = scene.material.contact_compliance(span.min(scene.material.known_until()));
+        if scale.force > 0.0 && compliance > 0.0 {
+            scale.depth_over_compliance = resting_depth(scene, &state.indenter, scale.force * compliance) / compliance;
+        }
+        scale
+    }
+
+    /// Takes account of a load that acts.
+    pub(super) fn include(&mut self, load: &Load) {
+        let magnitude = self.magnitude(load);
+        match load {
+            Load::Force { .. } => self.force = self.force.max(magnitude),
+            Load::Approach { .. } => self.depth = self.depth.max(magnitude),
+        }
+    }
+
+    /// The force, or the depth below first touch that is prescribed; of bodies apart, their distance.
+    pub(super) fn magnitude(&self, load: &Load) -> f64 {
+        match load {
+            Load::Force { normal, .. } => *normal,
+            Load::Approach { approach, .. } => (approach - self.touch).abs(),
+        }
+    }
+
+    /// What deviations of loads between these two are taken relative to.
+    pub(super) fn of_load(&self, start: &Load, end: &Load) -> f64 {
+        let (greatest, pressed) = match end {
+            Load::Force { .. } => (self.force, [start, end].map(|load| self.magnitude(load))),
+            // how far apart bodies are is no measure of how far they are pressed
+            Load::Approach { .. } => (self.depth, [start, end].map(|load| (self.depth_of(load)).max(0.0))),
+        };
+        pressed[0].max(pressed[1]).max(SMALL * greatest)
+    }
+
+    fn depth_of(&self, load: &Load) -> f64 {
+        if let Load::Approach { approach, .. } = load { approach - self.touch } else { 0.0 }
+    }
+
+    /// The displacement that the greatest load of the kind of `load` is likely to cause in bodies that have been pressed for so
+    /// long.
+    pub(super) fn of_displacement(&self, scene: &Scene, load: &Load, age: f64) -> f64 {
+        match load {
+            Load::Force { .. } if self.depth_over_compliance > 0.0 => {
+                self.depth_over_compliance * scene.material.contact_compliance(age)
+            }
+            Load::Force { .. } => 0.0,
+            Load::Approach { .. } => self.depth,
+        }
+    }
+
+    /// Whether a load leaves bodies apart that were never pressed.
+    pub(super) fn is_apart(&self, load: &Load) -> bool {
+        matches!(load, Load::Approach { .. }) && self.depth_of(load) < 0.0
+    }
+}

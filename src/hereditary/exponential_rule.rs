@@ -1,0 +1,312 @@
+//! Exponential integration of the relaxation form of the hereditary integral.
+
+use crate::hereditary::moments::{moments as moments_of, slopes as slopes_of};
+use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
+
+/// How the displacement is taken to change with time within a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Interpolant {
+    /// Linear, and that stays so.
+    Linear,
+    /// Linear, with the step before raised to a quadratic by what this step adds to its nodes. Quadratic for bodies with an
+    /// immediate dashpot, which answer the slope at the end.
+    CorrectedLinear,
+    /// Quadratic through the last three nodes, with the step before raised to a cubic.
+    CorrectedQuadratic,
+}
+
+/// The exponential rule.
+///
+/// With v = K p and the contact relaxation modulus E(t) = E∞ + Σ E_i e^(−t/τ_i) + η δ(t), v = ∫ E(t − s) du(s). On a step of
+/// length Δ, after steps of Δ′ and Δ″, u is a polynomial through its last values, in Newton's form
+///
+/// u + D₁ s + D₂ s (s − Δ), with the divided differences D_k at the end of the step,
+///
+/// and the step before, which knew one node less, is put right: it gets the next term of its own, with the D_k found now.
+/// With z_i = Δ/τ_i, and the moments I_k of [`moments`], that gives one field q_i for each relaxation time
+///
+/// q_i ← e^(−z_i) q_i + E_i Σ_k (I_k + e^(−z_i) I_k′ of the step before) D_k,
+///
+/// where D_k = (u_new − R_k)/(Δ (Δ + Δ′) …), and R_k continues the polynomial through the k nodes before. Hence u_new = u_old +
+/// c v, with γ_k = Σ_i γ_ik, γ_ik = E_i (I_k + …)/(Δ (Δ + Δ′) …), dashpot included:
+///
+/// 1/c = E∞ + γ₁ + γ₂ + γ₃, u_old = c (Σ γ_k R_k − Σ e^(−z_i) q_i).
+///
+/// All γ_k are positive, and so is c. In a jump, Δ = 0, u is linear and γ₁ = Σ E_i. The derivation, the orders and the stability
+/// are in docs/design.md.
+///
+/// Fields keep their differences undivided, d₁ = u − u_before and so on, which have the unit of u whatever the length of the
+/// steps: d_k of a step is d_(k−1) less ρ_(k−1) times that of the step before.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct ExponentialRule {
+    relaxation: RelaxationSpectrum,
+    /// Lengths of the last two steps since the last jump or corner.
+    spans: [f64; 2],
+    /// How many differences are known at the end of the last step.
+    known: usize,
+    /// How many the fields keep.
+    kept: usize,
+    /// The term that the last step lacks, 0 for none.
+    lacking: usize,
+    /// Of the step predicted last.
+    pub(super) tried: Weights,
+    /// Of the step committed last, which the fields take in with the next prediction.
+    pub(super) committed: Weights,
+    /// How often a prediction was made again, because u_old was negative somewhere.
+    pub(super) repeated: u64,
+}
+
+/// What a step does to a field that follows the rule.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Weights {
+    /// Length of the step.
+    dt: f64,
+    /// Degree of u on the step.
+    degree: usize,
+    /// Whether it puts the step before right, and is to be put right by the next one.
+    corrects: [bool; 2],
+    /// Compliance of the step.
+    pub(super) c: f64,
+    /// Of u and its differences in u_old.
+    pub(super) past: [f64; 3],
+    /// e^(−z_i), γ_i1, γ_i2, γ_i3.
+    pub(super) branches: Vec<[f64; 4]>,
+    /// The highest k for which a γ_ik is not zero.
+    pub(super) terms: usize,
+    /// ρ₁ and ρ₂.
+    pub(super) ratios: [f64; 2],
+    /// c γ_k of the degrees 2 and 3, each as if the step had it: what u lacks is this times d_k.
+    defects: [f64; 2],
+    /// (Δ + Δ′)/Δ.
+    pub(super) span: f64,
+    /// How many differences are known at its end.
+    known: usize,
+}
+
+/// e^(−700) is near the smallest normal number: what decays further counts as zero.
+const MAX_EXPONENT: f64 = 700.0;
+/// A step that is longer than so many times the one before is not continued from it by a quadratic, ...
+const MAX_GROWTH: f64 = 4.0;
+/// ... nor one of a body with an immediate dashpot, whose errors grow beyond 1 + √2.
+const MAX_GROWTH_OF_DASHPOT: f64 = 2.41;
+/// A step that is shorter than this part of the one before was cut short by something that happened: the step before is not
+/// told about it.
+const MIN_CORRECTING: f64 = 0.5;
+
+impl ExponentialRule {
+    /// For bodies with contact compliance `creep`.
+    pub(crate) fn new(creep: &CreepSpectrum) -> ExponentialRule {
+        let relaxation = creep.relaxation();
+        let weights = Weights {
+            dt: 0.0,
+            degree: 1,
+            corrects: [false; 2],
+            c: 0.0,
+            past: [0.0; 3],
+            branches: vec![[0.0; 4]; relaxation.terms().len()],
+            terms: 0,
+            ratios: [0.0; 2],
+            defects: [0.0; 2],
+            span: 1.0,
+            known: 0,
+        };
+        ExponentialRule {
+            relaxation,
+            spans: [0.0; 2],
+            known: 0,
+            kept: 0,
+            lacking: 0,
+            committed: weights.clone(),
+            tried: weights,
+            repeated: 0,
+        }
+    }
+
+    /// Number of relaxation times.
+    pub(crate) fn branches(&self) -> usize {
+        self.relaxation.terms().len()
+    }
+
+    /// Whether there is a past: an elastic body has none.
+    pub(crate) fn remembers(&self) -> bool {
+        self.branches() > 0 || self.has_dashpot()
+    }
+
+    /// Whether the body has no elastic response.
+    pub(crate) fn has_dashpot(&self) -> bool {
+        self.relaxation.viscosity() > 0.0
+    }
+
+    /// E∞.
+    pub(super) fn equilibrium(&self) -> f64 {
+        self.relaxation.equilibrium()
+    }
+
+    /// How many differences of its fields the rule keeps.
+    pub(super) fn kept(&self) -> usize {
+        self.kept
+    }
+
+    /// How many differences steps of given length need.
+    pub(super) fn least_kept(&self) -> usize {
+        if self.has_dashpot() { 2 } else { usize::from(self.remembers()) }
+    }
+
+    /// c of the step predicted last.
+    pub(crate) fn compliance(&self) -> f64 {
+        self.tried.c
+    }
+
+    /// The first degree that u lacks on the step predicted last, as far as the steps before it tell, and c γ of that degree; none
+    /// after a jump or a corner.
+    pub(super) fn missing(&self) -> Option<(usize, f64)> {
+        let lacking = (self.tried.degree + 1).min(self.known + 1);
+        (self.tried.dt > 0.0 && lacking > 1).then(|| (lacking, self.tried.defects[lacking - 2]))
+    }
+
+    /// c γ₂ of the step predicted last.
+    pub(super) fn kinked(&self) -> f64 {
+        self.tried.defects[0]
+    }
+
+    /// Whether the next step puts right the one predicted last.
+    pub(super) fn corrects(&self) -> bool {
+        self.tried.corrects[1]
+    }
+
+    /// The order of the error of a step in its length.
+    pub(crate) fn order(&self, interpolant: Interpolant) -> u32 {
+        match interpolant {
+            Interpolant::Linear => 2,
+            Interpolant::CorrectedLinear => 3,
+            Interpolant::CorrectedQuadratic => if self.has_dashpot() { 3 } else { 4 },
+        }
+    }
+
+    /// Copies another without reallocating.
+    pub(crate) fn copy_from(&mut self, other: &ExponentialRule) {
+        if self.relaxation != other.relaxation {
+            *self = other.clone();
+            return;
+        }
+        (self.spans, self.known, self.kept, self.lacking) = (other.spans, other.known, other.kept, other.lacking);
+        self.repeated = other.repeated;
+        self.tried.copy_from(&other.tried);
+        self.committed.copy_from(&other.committed);
+    }
+
+    /// Whether it is a rule for the bodies of another: a file may hold anything.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn fits(&self, other: &ExponentialRule) -> bool {
+        let branches = other.branches();
+        let steps = self.spans.iter().take(self.known).all(|&span| span > 0.0 && span.is_finite());
+        self.relaxation.terms().len() == branches
+            && [&self.tried, &self.committed].iter().all(|weights| weights.branches.len() == branches)
+            && self.known <= self.kept
+            && self.kept <= 2
+            && [0, 2, 3].contains(&self.lacking)
+            && steps
+    }
+
+    /// The past says nothing about how u goes on, as after a corner of the load.
+    pub(crate) fn forget_slopes(&mut self) {
+        (self.known, self.lacking) = (0, 0);
+    }
+
+    /// Finds the weights of a step of length `dt`; its compliance is 0 in a jump of a body without elastic response.
+    pub(super) fn weigh(&mut self, dt: f64, interpolant: Interpolant) {
+        let quadratic = interpolant == Interpolant::CorrectedQuadratic
+            || interpolant == Interpolant::CorrectedLinear && self.has_dashpot();
+        let wanted = if quadratic { 2 } else { 1 };
+        if self.remembers() && self.kept < wanted {
+            (self.kept, self.known) = (wanted, self.known.min(self.kept));
+        }
+        let growth = if self.has_dashpot() { MAX_GROWTH_OF_DASHPOT } else { MAX_GROWTH };
+        let degree = if dt > growth * self.spans[0] { 1 } else { wanted };
+        let corrected = interpolant != Interpolant::Linear;
+        self.weigh_as(dt, degree, [corrected && dt >= MIN_CORRECTING * self.spans[0], corrected]);
+    }
+
+    /// Whether the step can be weighed with less degree.
+    pub(super) fn has_less(&self) -> bool {
+        self.tried.degree > 1 || self.tried.corrects[0]
+    }
+
+    /// The weights of the same step with less degree: linear, then without what puts the step before right.
+    pub(super) fn weigh_less(&mut self) {
+        let Weights { dt, degree, corrects: [corrects, corrected], .. } = self.tried;
+        self.weigh_as(dt, 1, [corrects && degree > 1, corrected]);
+        self.repeated += 1;
+    }
+
+    fn weigh_as(&mut self, dt: f64, degree: usize, corrects: [bool; 2]) {
+        let jump = dt == 0.0;
+        let known = if jump { 0 } else { self.known };
+        let degree = degree.min(known + 1);
+        let lacking = if corrects[0] && known + 1 >= self.lacking { self.lacking } else { 0 };
+        let [past, before] = [0, 1].map(|k| if k < known { self.spans[k] / dt } else { 0.0 });
+        let late_past = if known > 1 { before / past } else { 0.0 };
+        // Δ (Δ + Δ′) … over Δ^k
+        let products = [1.0, 1.0 + past, (1.0 + past) * (1.0 + past + before)];
+        let slopes = slopes_of(past);
+        let viscosity = if self.has_dashpot() { self.relaxation.viscosity() / dt } else { 0.0 };
+
+        let (mut gains, mut defects) = ([0.0; 3], [0.0; 2]);
+        for (weights, &(modulus, tau)) in self.tried.branches.iter_mut().zip(self.relaxation.terms()) {
+            let z = dt / tau;
+            let decay = if z < MAX_EXPONENT { (-z).exp() } else { 0.0 };
+            let moments = if jump { [1.0, 0.0, 0.0] } else { moments_of(z, past) };
+            let mut own = [0, 1, 2].map(|k| if k < degree { modulus * moments[k] / products[k] } else { 0.0 });
+            (0..2).for_each(|k| defects[k] += modulus * moments[k + 1] / products[k + 1]);
+            if lacking > 0 {
+                let late = moments_of(self.spans[0] / tau, late_past);
+                // over Δ^k instead of Δ′^k
+                own[lacking - 1] += decay * modulus * late[lacking - 1] * past.powi(lacking as i32) / products[lacking - 1];
+            }
+            (0..3).for_each(|k| gains[k] += own[k]);
+            *weights = [decay, own[0], own[1], own[2]];
+        }
+        if viscosity > 0.0 {
+            (0..degree).for_each(|k| gains[k] += viscosity * slopes[k] / products[k]);
+            (0..2).for_each(|k| defects[k] += viscosity * slopes[k + 1] / products[k + 1]);
+        }
+        let c = 1.0 / (self.equilibrium() + gains.iter().sum::<f64>());
+        let ratios = if known == 0 {
+            [0.0; 2]
+        } else {
+            let second = if known > 1 { (1.0 + past) / (past * (past + before)) } else { 0.0 };
+            [1.0 / past, second]
+        };
+        let differences = [c * (gains[1] + gains[2]) * ratios[0], c * gains[2] * ratios[1]];
+        // c Σ γ_k, written so that an elastic body keeps exactly nothing
+        let kept = if self.remembers() { 1.0 - c * self.equilibrium() } else { 0.0 };
+        let tried = &mut self.tried;
+        (tried.dt, tried.degree, tried.c, tried.ratios) = (dt, degree, c, ratios);
+        tried.past = [kept, differences[0], differences[1]];
+        (tried.terms, tried.span) = (degree.max(lacking), products[1]);
+        tried.corrects = [lacking > 0, corrects[1]];
+        tried.defects = if jump { [0.0; 2] } else { defects.map(|defect| c * defect) };
+        tried.known = if jump { 0 } else { (known + 1).min(self.kept) };
+    }
+
+    /// Accepts the step predicted last.
+    pub(crate) fn commit(&mut self) {
+        let step = &self.tried;
+        self.known = step.known;
+        self.spans = if step.dt > 0.0 { [step.dt, self.spans[0]] } else { [0.0; 2] };
+        self.lacking = if step.corrects[1] && self.known > 0 { step.degree + 1 } else { 0 };
+        self.committed.copy_from(&self.tried);
+    }
+}
+
+impl Weights {
+    fn copy_from(&mut self, other: &Weights) {
+        let Weights { dt, degree, corrects, c, past, branches, terms, ratios, defects, span, known } = self;
+        (*dt, *degree, *corrects, *c) = (other.dt, other.degree, other.corrects, other.c);
+        (*past, *terms, *ratios) = (other.past, other.terms, other.ratios);
+        (*defects, *span, *known) = (other.defects, other.span, other.known);
+        branches.copy_from_slice(&other.branches);
+    }
+}
