@@ -1,7 +1,7 @@
 //! How the first guess of a step extrapolates from the last one.
 
 /// A guess reaches at most this many times the length of the last step ahead.
-const MAX_REACH: f64 = 2.0;
+pub(crate) const MAX_REACH: f64 = 2.0;
 
 /// The first guess of a step extrapolates p and K p alike, which saves a convolution but lets the rounding of K p
 /// accumulate, step by step linearly. After so many steps K p is computed afresh, in two successive steps: extrapolation

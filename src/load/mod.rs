@@ -192,11 +192,6 @@ impl Load {
         Ok(())
     }
 
-    /// The force or the approach, in absolute value.
-    pub(crate) fn strength(&self) -> f64 {
-        self.values()[0].abs()
-    }
-
     /// Whether it prescribes and leaves free what another does.
     pub(crate) fn is_like(&self, other: &Load) -> bool {
         self.kind() == other.kind()

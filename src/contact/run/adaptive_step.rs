@@ -21,6 +21,7 @@ impl Follow<'_> {
         let now = self.contact.time();
         control.begin(scene, &computation.state, self.history, self.until)?;
         let tolerance = control.solver_tolerance(scene.settings.tolerance);
+        let corner = corner.min(control.first_touch(&computation.state, self.history, corner.min(self.until)));
         let stop = corner.min(self.until).min(self.next_stop(now));
         let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
         loop {

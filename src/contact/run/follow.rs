@@ -5,6 +5,7 @@ use crate::contact::run::error_budget::ErrorBudget;
 #[cfg(feature = "checkpoint")]
 use crate::contact::run::progress::Autosave;
 use crate::contact::run::progress::Progress;
+use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::stepping::Stepping;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, LoadError, Result, finite, positive, within};
@@ -185,7 +186,13 @@ impl<'a> Follow<'a> {
         let tolerance = self.solver_tolerance();
         let loads = [load];
         let step = self.contact.request(time, dt, &loads, tolerance);
-        let report = self.contact.take(step)?;
+        let ViscoelasticContact { scene, computation, .. } = &*self.contact;
+        let expected = {
+            let new = || RunScale::new(scene, &computation.state, self.history, self.until);
+            let scale = self.progress.scale.get_or_insert_with(new);
+            scale.of_displacement(scene, &load, time - computation.state.clock.undisturbed_until)
+        };
+        let report = self.contact.take_expecting(step, expected)?;
         self.progress.include(report.time_error, report.residual);
         Ok(report)
     }

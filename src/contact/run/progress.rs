@@ -3,6 +3,7 @@
 #[cfg(feature = "checkpoint")]
 use std::time::{Duration, Instant};
 
+use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::step_control::StepControl;
 use crate::contact::run::stepping::Stepping;
 
@@ -17,6 +18,8 @@ pub(crate) struct Progress {
     pub(super) steps: u64,
     dt: f64,
     pub(super) control: Option<StepControl>,
+    /// The sizes of a run by equal steps.
+    pub(super) scale: Option<RunScale>,
     /// Greatest estimated error in time of a step, and greatest residual.
     pub(super) worst: [f64; 2],
 }
@@ -27,7 +30,7 @@ impl Progress {
             Stepping::Fixed { dt } => (None, dt),
             Stepping::Adaptive { tolerance } => (Some(StepControl::new(tolerance)), 0.0),
         };
-        Progress { start: now, now, steps: 0, dt, control, worst: [0.0; 2] }
+        Progress { start: now, now, steps: 0, dt, control, scale: None, worst: [0.0; 2] }
     }
 
     /// Whether it is that of a run that begins like this one.

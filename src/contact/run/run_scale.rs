@@ -48,7 +48,8 @@ impl RunScale {
         });
         for time in equal.chain(decades).chain(corners.take(BREAKPOINTS)) {
             // what is not allowed is reported when the run comes to it
-            [history.before(time), history.at(time)].iter().filter(|load| load.validate().is_ok()).for_each(|load| scale.include(load));
+            let loads = [history.before(time), history.at(time)];
+            loads.iter().filter(|load| load.validate().is_ok()).for_each(|load| scale.include(load));
         }
         let compliance = scene.material.contact_compliance(span.min(scene.material.known_until()));
         if scale.force > 0.0 && compliance > 0.0 {
@@ -66,26 +67,19 @@ impl RunScale {
         }
     }
 
-    /// The force, or the depth below first touch that is prescribed; of bodies apart, their distance.
+    /// The force, or the depth below first touch that is prescribed. How far apart bodies are is no measure of how far they
+    /// are pressed: then it is 0.
     pub(super) fn magnitude(&self, load: &Load) -> f64 {
         match load {
             Load::Force { normal, .. } => *normal,
-            Load::Approach { approach, .. } => (approach - self.touch).abs(),
+            Load::Approach { approach, .. } => (approach - self.touch).max(0.0),
         }
     }
 
     /// What deviations of loads between these two are taken relative to.
     pub(super) fn of_load(&self, start: &Load, end: &Load) -> f64 {
-        let (greatest, pressed) = match end {
-            Load::Force { .. } => (self.force, [start, end].map(|load| self.magnitude(load))),
-            // how far apart bodies are is no measure of how far they are pressed
-            Load::Approach { .. } => (self.depth, [start, end].map(|load| (self.depth_of(load)).max(0.0))),
-        };
-        pressed[0].max(pressed[1]).max(SMALL * greatest)
-    }
-
-    fn depth_of(&self, load: &Load) -> f64 {
-        if let Load::Approach { approach, .. } = load { approach - self.touch } else { 0.0 }
+        let greatest = if let Load::Force { .. } = end { self.force } else { self.depth };
+        self.magnitude(start).max(self.magnitude(end)).max(SMALL * greatest)
     }
 
     /// The displacement that the greatest load of the kind of `load` is likely to cause in bodies that have been pressed for so
@@ -100,8 +94,25 @@ impl RunScale {
         }
     }
 
-    /// Whether a load leaves bodies apart that were never pressed.
-    pub(super) fn is_apart(&self, load: &Load) -> bool {
-        matches!(load, Load::Approach { .. }) && self.depth_of(load) < 0.0
+    /// The time between `now` and `stop` at which a prescribed approach first brings together undisturbed bodies that are
+    /// apart: from then on the displacement grows, as after a corner. Infinite if there is none.
+    pub(super) fn first_touch(&self, history: &dyn LoadHistory, now: f64, stop: f64) -> f64 {
+        let apart = |time: f64| match history.at(time) {
+            Load::Approach { approach, .. } => approach < self.touch,
+            Load::Force { .. } => true,
+        };
+        if !matches!(history.at(now), Load::Approach { .. }) || !apart(now) || !stop.is_finite() {
+            return f64::INFINITY;
+        }
+        let part = |k: i32| now + (stop - now) * f64::from(k) / f64::from(EQUAL_PARTS);
+        let Some(k) = (1..=EQUAL_PARTS).find(|&k| !apart(part(k))) else { return f64::INFINITY };
+        let (mut before, mut after) = (part(k - 1), part(k));
+        loop {
+            let middle = 0.5 * (before + after);
+            if middle <= before || middle >= after {
+                return after;
+            }
+            if apart(middle) { before = middle } else { after = middle }
+        }
     }
 }

@@ -117,6 +117,12 @@ impl StepControl {
         Ok(())
     }
 
+    /// The time before `stop` at which the bodies first touch, as far as the load alone tells.
+    pub(super) fn first_touch(&self, state: &State, history: &dyn LoadHistory, stop: f64) -> f64 {
+        let scale = self.scale.as_ref().filter(|_| state.is_undisturbed());
+        scale.map_or(f64::INFINITY, |scale| scale.first_touch(history, state.clock.time, stop))
+    }
+
     /// The displacement that is likely under the greatest load of the run, in bodies that have been pressed for so long.
     pub(super) fn expected_displacement(&self, scene: &Scene, load: &Load, age: f64) -> f64 {
         self.scale.as_ref().map_or(0.0, |scale| scale.of_displacement(scene, load, age))

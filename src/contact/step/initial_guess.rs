@@ -1,10 +1,11 @@
 //! The first guess of a step.
 
+use crate::contact::extrapolation::MAX_REACH;
 use crate::contact::request::Step;
 use crate::contact::state::State;
 use crate::contact::trial::Trial;
 use crate::contact::window::window::Window;
-use crate::solver::{Counts, Modes, RigidMotion};
+use crate::solver::{Counts, Freedom, Modes, RigidMotion};
 use crate::sum::{sum, sum_of_pairs};
 
 /// A guess is extrapolated only if it carries the force to within this factor: what is left after a cancellation is noise.
@@ -31,6 +32,12 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
         return refresh_if_due(state, window, trial);
     }
     let mut reach = state.extrapolation.reach(step.interval.dt);
+    if let [Freedom { translation: true, tilt: [false, false], total, .. }] = trial.free[..]
+        && reach > 0.0
+        && let Some(best) = best_reach(state, &trial.gap, c, total)
+    {
+        reach = best;
+    }
     let positive = |p: f64| if p > 0.0 { p } else { 0.0 };
     let guessed = sum_of_pairs(&now.pressure, &before.pressure, |p, before| positive(p + reach * (p - before)));
     // a single force says what the guess must carry; else it should not stray far from the last state
@@ -66,6 +73,28 @@ fn share_left(state: &State, trial: &Trial, c: f64) -> Option<f64> {
     }
     let share = overlap / square;
     (share < MAX_SHARE_LEFT).then_some(share.max(0.0))
+}
+
+/// The reach a of the guess p₀ + a (p₀ − p₁), scaled to the Σ p that is `wanted`, whose energy ½ c p·K p + gap·p is least. It costs
+/// no convolution, K p₀ and K p₁ being known, and follows a creep that slows down better than the length of the step does.
+fn best_reach(state: &State, gap: &[f64], c: f64, wanted: f64) -> Option<f64> {
+    let (now, before) = (&state.current.solution, &state.previous.solution);
+    let (mut sums, mut gaps, mut energies) = ([0.0; 2], [0.0; 2], [0.0; 3]);
+    for (k, &gap) in gap.iter().enumerate() {
+        let (p, v) = (now.pressure[k], now.potential[k]);
+        let (dp, dv) = (p - before.pressure[k], v - before.potential[k]);
+        // outside a punch the gap is infinite
+        let gap = if (p != 0.0) | (dp != 0.0) { gap } else { 0.0 };
+        sums = [sums[0] + p, sums[1] + dp];
+        gaps = [gaps[0] + gap * p, gaps[1] + gap * dp];
+        energies = [energies[0] + p * v, energies[1] + p * dv, energies[2] + dp * dv];
+    }
+    // the direction is p₀ − p₁ less so much of p₀ that it carries no force
+    let (scale, share) = (wanted / sums[0], sums[1] / sums[0]);
+    let slope = gaps[1] - share * gaps[0] + c * scale * (energies[1] - share * energies[0]);
+    let curvature = c * (energies[2] - share * (2.0 * energies[1] - share * energies[0]));
+    let best = -slope / curvature;
+    best.is_finite().then_some(best.clamp(0.0, MAX_REACH))
 }
 
 /// Resets the counts, and leaves the bodies where they are, as far as their loads leave them free.

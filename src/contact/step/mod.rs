@@ -92,8 +92,13 @@ impl ViscoelasticContact {
 
     /// Computes a step and accepts it.
     pub(in crate::contact) fn take(&mut self, step: Step<'_>) -> Result<StepReport> {
+        self.take_expecting(step, 0.0)
+    }
+
+    /// Computes a step and accepts it; its error is estimated relative to a part of the `expected` displacement at least.
+    pub(in crate::contact) fn take_expecting(&mut self, step: Step<'_>, expected: f64) -> Result<StepReport> {
         let attempt = self.attempt(&step)?;
-        let error = error_in_time(&self.scene, attempt.computation(&self.computation), step.interval, 0.0);
+        let error = error_in_time(&self.scene, attempt.computation(&self.computation), step.interval, expected);
         Ok(self.accept(attempt, step, error))
     }
 

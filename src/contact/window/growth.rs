@@ -20,8 +20,8 @@ pub(in crate::contact) const MAX_WINDOW_FRACTION: f64 = 0.7;
 
 /// After a step was tried: a larger region, if the bodies might touch outside this one.
 ///
-/// No convolution is needed to rule that out. With pressures ≥ 0 and creep that never recedes, u ≥ 0 everywhere, and more
-/// than that: K of a total U within a distance ρ of a point is nowhere less than ∫U/(π (r + ρ)).
+/// No convolution is needed to rule that out: at a distance r, K of a source U ≥ 0 within a distance ρ of a point is at least
+/// ∫U/(π (r + ρ)). Where pressures released within long steps have left some U < 0, that takes away at most ∫|U|/(π (r − ρ)).
 pub(in crate::contact) fn outgrown(
     scene: &Scene,
     state: &State,
@@ -43,17 +43,25 @@ pub(in crate::contact) fn outgrown(
     let centre = [0, 1].map(|axis| if folded[axis] { 0.0 } else { 0.5 * (first[axis] + last[axis]) });
     let distance = |x: [f64; 2]| (x[0] - centre[0]).hypot(x[1] - centre[1]);
     let [side1, side2] = grid.spacing();
-    let (mut total, mut radius) = (0.0, 0.0_f64);
-    for (k, &strength) in source.iter().enumerate().filter(|(_, strength)| **strength > 0.0) {
-        total += strength;
+    let (mut positive, mut negative, mut radius) = (0.0, 0.0, 0.0_f64);
+    for (k, &strength) in source.iter().enumerate().filter(|(_, strength)| **strength != 0.0) {
+        if strength > 0.0 {
+            positive += strength;
+        } else {
+            negative -= strength;
+        }
         radius = radius.max(distance(grid.center(k / m2, k % m2)));
     }
     let radius = radius + 0.5 * side1.hypot(side2);
-    let strength = total * grid.cell_area() * region.images() as f64 / PI;
+    let area = grid.cell_area() * region.images() as f64 / PI;
+    let least = |r: f64| {
+        let lowered = if negative > 0.0 { negative / (r - radius).max(0.0) } else { 0.0 };
+        area * (positive / (r + radius) - lowered)
+    };
     let touched = motions().enumerate().filter_map(|(body, motion)| {
         cells_below(&scene.grid, folded, gap, body, motion, |cell, depth| {
             let computed = state.region_is_placed && region.find(cell).is_some();
-            !computed && depth > strength / (distance(scene.grid.center(cell[0], cell[1])) + radius)
+            !computed && depth > least(distance(scene.grid.center(cell[0], cell[1])))
         })
     });
     Extent::hull(touched).map(|touched| region_holding(&scene.grid, folded, region.extent().with(touched)))
