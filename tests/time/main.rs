@@ -4,5 +4,6 @@ mod adaptive;
 #[path = "../common/mod.rs"]
 mod common;
 mod follow;
+mod honest;
 mod protocols;
 mod time_rules;
