@@ -129,8 +129,11 @@ impl RandomScene {
         self.contact_of(self.body.material.clone(), tolerance)
     }
 
-    pub fn is_elastic(&self) -> bool {
-        self.body.name == "elastic"
+    /// The kinds of body and of history, with what is given.
+    pub fn kinds(&self) -> [String; 2] {
+        let by = if self.control.is_approach() { "approach" } else { "force" };
+        let history = self.history.name.split([' ', ',', '^']).next().unwrap_or_default();
+        [self.body.name.to_string(), format!("{by}, {history}")]
     }
 
     /// The history itself.

@@ -5,6 +5,11 @@ use viscocontact::prelude::*;
 
 use super::random_scenes::RandomScene;
 
+/// A number from the environment.
+pub fn from_environment(name: &str, default: u64) -> u64 {
+    std::env::var(name).ok().and_then(|value| value.parse().ok()).unwrap_or(default)
+}
+
 /// States of a run at the times to look at, and what it took.
 #[derive(Debug, Clone, Default)]
 pub struct Watched {
@@ -110,8 +115,6 @@ pub struct Truth {
     cell: usize,
     greatest: [f64; 2],
     pub uncertainty: [f64; 3],
-    /// Of the longest steps given: nothing to err about if this is small.
-    pub error_of_long_steps: f64,
     pub steps: u64,
     pub levels: u32,
 }
@@ -148,7 +151,6 @@ impl Truth {
             let (top, u1) = of(&Watched::greatest_pressures);
             let (central, u2) = of(&|run| run.pressures_in(cell));
             if u0 <= wanted || 2 * fine.steps > most_steps {
-                let error_of_long_steps = apart(&runs[0].answer, &answer, fine.greatest[0]);
                 return Ok(Truth {
                     answer,
                     pressures: [top, central],
@@ -156,7 +158,6 @@ impl Truth {
                     cell,
                     greatest: fine.greatest,
                     uncertainty: [u0, u1, u2],
-                    error_of_long_steps,
                     steps: work,
                     levels: runs.len() as u32,
                 });

@@ -6,4 +6,5 @@ mod common;
 mod follow;
 mod honest;
 mod protocols;
+mod protocols_run;
 mod time_rules;
