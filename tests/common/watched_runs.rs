@@ -119,14 +119,16 @@ pub struct Truth {
     pub levels: u32,
 }
 
-/// Extrapolated from three runs each with half the steps of the one before, by the order they show, one to four.
-fn extrapolated([coarse, middle, fine]: [&[f64]; 3], scale: f64) -> (Vec<f64>, f64) {
-    let ratio = (apart(middle, coarse, scale) / apart(fine, middle, scale).max(1e-300)).clamp(2.0, 16.0);
-    let beyond = |finer: &[f64], coarser: &[f64]| -> Vec<f64> {
-        finer.iter().zip(coarser).map(|(f, c)| f + (f - c) / (ratio - 1.0)).collect()
+/// The limit of runs each with half the steps of the one before, by the order that the last three show, one to four; and how
+/// far it is from the limit of the runs before the last, or a part of the last difference.
+fn extrapolated(runs: &[Vec<f64>], scale: f64) -> (Vec<f64>, f64) {
+    let limit = |runs: &[Vec<f64>]| -> Vec<f64> {
+        let [.., coarse, middle, fine] = runs else { unreachable!("three runs or more") };
+        let ratio = (apart(middle, coarse, scale) / apart(fine, middle, scale).max(1e-300)).clamp(2.0, 16.0);
+        fine.iter().zip(middle).map(|(f, m)| f + (f - m) / (ratio - 1.0)).collect()
     };
-    let (best, second) = (beyond(fine, middle), beyond(middle, coarse));
-    let uncertainty = 0.5 * apart(&best, &second, scale);
+    let (last, best) = (runs.len() - 1, limit(runs));
+    let uncertainty = apart(&best, &limit(&runs[..last]), scale).max(apart(&runs[last], &runs[last - 1], scale) / 40.0);
     (best, uncertainty)
 }
 
@@ -142,14 +144,18 @@ impl Truth {
             let run = watch(scene, &mut contact, scene.load(), stepping, &times, u64::MAX)?;
             work += run.steps;
             runs.push(run);
-            let [.., coarse, middle, fine] = &runs[..] else { continue };
+            let (count, fine) = (runs.len(), &runs[runs.len() - 1]);
+            if count < 4 {
+                continue;
+            }
             let cell = fine.central_cell();
-            let (answer, u0) = extrapolated([&coarse.answer, &middle.answer, &fine.answer], fine.greatest[0]);
-            let of = |pick: &dyn Fn(&Watched) -> Vec<f64>| {
-                extrapolated([&pick(coarse), &pick(middle), &pick(fine)], fine.greatest[1])
+            let of = |pick: &dyn Fn(&Watched) -> Vec<f64>, scale: f64| {
+                let last: Vec<_> = runs[count - 4..].iter().map(pick).collect();
+                extrapolated(&last, scale)
             };
-            let (top, u1) = of(&Watched::greatest_pressures);
-            let (central, u2) = of(&|run| run.pressures_in(cell));
+            let (answer, u0) = of(&|run| run.answer.clone(), fine.greatest[0]);
+            let (top, u1) = of(&Watched::greatest_pressures, fine.greatest[1]);
+            let (central, u2) = of(&|run| run.pressures_in(cell), fine.greatest[1]);
             if u0 <= wanted || 2 * fine.steps > most_steps {
                 return Ok(Truth {
                     answer,
