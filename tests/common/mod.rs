@@ -3,6 +3,7 @@
 
 pub mod bodies;
 pub mod draws;
+pub mod environment;
 pub mod histories;
 pub mod noise;
 pub mod protocol;
@@ -17,4 +18,5 @@ pub mod runs;
 pub mod spectra;
 pub mod spheres;
 pub mod step_loaded_sphere;
+pub mod truth;
 pub mod watched_runs;

@@ -1,14 +1,9 @@
-//! What is seen of a run at given times, and how far two runs are apart.
+//! What is seen of a run at given times.
 
 use viscocontact::Error;
 use viscocontact::prelude::*;
 
 use super::random_scenes::RandomScene;
-
-/// A number from the environment.
-pub fn from_environment(name: &str, default: u64) -> u64 {
-    std::env::var(name).ok().and_then(|value| value.parse().ok()).unwrap_or(default)
-}
 
 /// States of a run at the times to look at, and what it took.
 #[derive(Debug, Clone, Default)]
@@ -99,85 +94,4 @@ pub fn watch(
     }
     seen.rejected = run.rejected_steps();
     Ok(seen)
-}
-
-/// Greatest difference of two sequences over `scale`.
-fn apart(one: &[f64], other: &[f64], scale: f64) -> f64 {
-    assert_eq!(one.len(), other.len());
-    one.iter().zip(other).fold(0.0, |most, (a, b)| f64::max(most, (a - b).abs())) / scale.max(f64::MIN_POSITIVE)
-}
-
-/// The truth on the mesh, and how well it is known: of the answer, the greatest pressure, the pressure of a central cell.
-pub struct Truth {
-    answer: Vec<f64>,
-    pressures: [Vec<f64>; 2],
-    times: Vec<f64>,
-    cell: usize,
-    greatest: [f64; 2],
-    pub uncertainty: [f64; 3],
-    pub steps: u64,
-    pub levels: u32,
-}
-
-/// The limit of runs each with half the steps of the one before, by the order that the last three show, one to four; and how
-/// far it is from the limit of the runs before the last, or a part of the last difference.
-fn extrapolated(runs: &[Vec<f64>], scale: f64) -> (Vec<f64>, f64) {
-    let limit = |runs: &[Vec<f64>]| -> Vec<f64> {
-        let [.., coarse, middle, fine] = runs else { unreachable!("three runs or more") };
-        let ratio = (apart(middle, coarse, scale) / apart(fine, middle, scale).max(1e-300)).clamp(2.0, 16.0);
-        fine.iter().zip(middle).map(|(f, m)| f + (f - m) / (ratio - 1.0)).collect()
-    };
-    let (last, best) = (runs.len() - 1, limit(runs));
-    let uncertainty = apart(&best, &limit(&runs[..last]), scale).max(apart(&runs[last], &runs[last - 1], scale) / 40.0);
-    (best, uncertainty)
-}
-
-impl Truth {
-    /// Halves given steps until the answer is known to `wanted`, or a run would take more than `most_steps`.
-    pub fn of(scene: &RandomScene, wanted: f64, most_steps: u64) -> Result<Truth, Stopped> {
-        let mut runs: Vec<Watched> = Vec::new();
-        let mut work = 0;
-        loop {
-            let times = scene.graded_times(runs.len() as u32);
-            let mut contact = scene.contact(1e-9);
-            let stepping = Stepping::fixed(10.0 * scene.body.until);
-            let run = watch(scene, &mut contact, scene.load(), stepping, &times, u64::MAX)?;
-            work += run.steps;
-            runs.push(run);
-            let (count, fine) = (runs.len(), &runs[runs.len() - 1]);
-            if count < 4 {
-                continue;
-            }
-            let cell = fine.central_cell();
-            let of = |pick: &dyn Fn(&Watched) -> Vec<f64>, scale: f64| {
-                let last: Vec<_> = runs[count - 4..].iter().map(pick).collect();
-                extrapolated(&last, scale)
-            };
-            let (answer, u0) = of(&|run| run.answer.clone(), fine.greatest[0]);
-            let (top, u1) = of(&Watched::greatest_pressures, fine.greatest[1]);
-            let (central, u2) = of(&|run| run.pressures_in(cell), fine.greatest[1]);
-            if u0 <= wanted || 2 * fine.steps > most_steps {
-                return Ok(Truth {
-                    answer,
-                    pressures: [top, central],
-                    times: fine.times.clone(),
-                    cell,
-                    greatest: fine.greatest,
-                    uncertainty: [u0, u1, u2],
-                    steps: work,
-                    levels: runs.len() as u32,
-                });
-            }
-        }
-    }
-
-    /// Errors of a run, relative to the greatest values.
-    pub fn errors(&self, run: &Watched) -> [f64; 3] {
-        assert_eq!(run.times, self.times, "both runs stop at every moment");
-        [
-            apart(&run.answer, &self.answer, self.greatest[0]),
-            apart(&run.greatest_pressures(), &self.pressures[0], self.greatest[1]),
-            apart(&run.pressures_in(self.cell), &self.pressures[1], self.greatest[1]),
-        ]
-    }
 }

@@ -1,12 +1,15 @@
 //! Whether the error that a run was asked for is the one it makes: random scenes against fine steps on the same mesh.
 //!
 //! By hand: `HONEST_SCENES=3000 HONEST_SEED=7 cargo test --release --test time honest -- --nocapture`;
-//! `HONEST_LINES=1` prints every scene, `HONEST_FIRST=17` begins with that number.
+//! `HONEST_LINES=1` prints every scene, `HONEST_FIRST=17` begins with that number, `HONEST_STEPS=300000` knows more of the
+//! truth, and `HONEST_TRUTHS=/tmp/truths` keeps it in that file for the next time.
 
 use std::time::Instant;
 
+use crate::common::environment::from_environment;
 use crate::common::random_scenes::RandomScene;
-use crate::common::watched_runs::{Stopped, Truth, from_environment, watch};
+use crate::common::truth::Truth;
+use crate::common::watched_runs::{Stopped, watch};
 use viscocontact::prelude::*;
 
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
@@ -14,7 +17,7 @@ const QUANTITIES: [&str; 3] = ["approach or force", "greatest pressure", "centra
 /// A run of so many contact problems does not end.
 const MOST_PROBLEMS: u64 = 20_000;
 /// Steps of the finest run for the truth.
-const MOST_GIVEN_STEPS: u64 = 40_000;
+const MOST_GIVEN_STEPS: u64 = 20_000;
 
 /// What the runs of one scene at one tolerance came to.
 struct Outcome {
@@ -102,7 +105,9 @@ fn judge(scene: &RandomScene, truth: &Truth, tolerance: f64, tally: &mut Tally) 
     match watch(scene, &mut contact, scene.load(), stepping, &scene.stops, MOST_PROBLEMS) {
         Ok(run) => {
             let errors = truth.errors(&run);
-            let known = |k: usize| (truth.uncertainty[k] <= 0.1 * tolerance).then_some(errors[k] / tolerance);
+            // an error far beyond what was asked for is known well enough by a poorer truth
+            let known =
+                |k: usize| (truth.uncertainty[k] <= 0.1 * tolerance.max(errors[k])).then_some(errors[k] / tolerance);
             tally.unjudged += usize::from(known(0).is_none());
             tally.outcomes.push(Outcome {
                 scene: scene.name.clone(),
@@ -148,6 +153,7 @@ fn errors_are_honest_on_random_scenes() {
     let [scenes, seed, first] = [("HONEST_SCENES", 300), ("HONEST_SEED", 1), ("HONEST_FIRST", 0)]
         .map(|(name, default)| from_environment(name, default));
     let most_steps = from_environment("HONEST_STEPS", MOST_GIVEN_STEPS);
+    let kept = std::env::var_os("HONEST_TRUTHS").map(std::path::PathBuf::from);
     let lines = from_environment("HONEST_LINES", 0) > 0;
     let mut tallies: [Tally; 4] = Default::default();
     let mut without_truth = Vec::new();
@@ -156,7 +162,7 @@ fn errors_are_honest_on_random_scenes() {
     for number in first..first + scenes {
         let scene = RandomScene::new(seed, number);
         let begun = Instant::now();
-        let truth = Truth::of(&scene, 1e-6, most_steps);
+        let truth = Truth::kept_in(kept.as_deref(), &scene, 1e-6, most_steps);
         seconds[0] += begun.elapsed().as_secs_f64();
         let truth = match truth {
             Ok(truth) => truth,

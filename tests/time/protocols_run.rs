@@ -3,10 +3,11 @@
 //! By hand: `PROTOCOLS_SCENES=5000 PROTOCOLS_SEED=7 cargo test --release --test time runs -- --nocapture`.
 
 use crate::common::draws::Draws;
+use crate::common::environment::from_environment;
 use crate::common::random_histories::FromSmallLoad;
 use crate::common::random_scenes::RandomScene;
 use crate::common::spheres::builder_on;
-use crate::common::watched_runs::{Stopped, from_environment, watch};
+use crate::common::watched_runs::{Stopped, watch};
 use viscocontact::prelude::*;
 
 /// A run of so many contact problems does not end.
