@@ -1,5 +1,7 @@
 //! What is seen of a run at given times.
 
+use std::fmt;
+
 use viscocontact::Error;
 use viscocontact::prelude::*;
 
@@ -57,6 +59,25 @@ pub enum Stopped {
         time: f64,
         steps: u64,
     },
+}
+
+impl Stopped {
+    /// The name of the error, or what stands in for it.
+    pub fn reason(&self) -> String {
+        match self {
+            Stopped::Failed { error, .. } => format!("{error:?}").split([' ', '(']).next().unwrap_or_default().into(),
+            Stopped::Endless { .. } => "endless".into(),
+        }
+    }
+}
+
+impl fmt::Display for Stopped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Stopped::Failed { time, error } => write!(f, "at {time:e} s: {error:?}"),
+            Stopped::Endless { time, steps } => write!(f, "only at {time:e} s after {steps} steps"),
+        }
+    }
 }
 
 /// Follows the history of a scene, and looks at it at its moments.
