@@ -2,9 +2,14 @@
 #![allow(dead_code, reason = "each group takes what it needs")]
 
 pub mod bodies;
+pub mod draws;
+pub mod environment;
 pub mod histories;
 pub mod noise;
 pub mod protocol;
+pub mod random_bodies;
+pub mod random_histories;
+pub mod random_scenes;
 #[cfg(feature = "laws")]
 pub mod related;
 pub mod rolling;
@@ -13,3 +18,5 @@ pub mod runs;
 pub mod spectra;
 pub mod spheres;
 pub mod step_loaded_sphere;
+pub mod truth;
+pub mod watched_runs;

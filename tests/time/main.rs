@@ -4,5 +4,7 @@ mod adaptive;
 #[path = "../common/mod.rs"]
 mod common;
 mod follow;
+mod honest;
 mod protocols;
+mod protocols_run;
 mod time_rules;

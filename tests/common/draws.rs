@@ -1,0 +1,36 @@
+//! Random numbers of the kinds that scenes are made of, the same for the same seed.
+
+use super::noise::uniform;
+
+/// A stream of random numbers.
+pub struct Draws(Box<dyn FnMut() -> f64>);
+
+impl Draws {
+    pub fn new(seed: u64) -> Draws {
+        let mut next = uniform(seed);
+        // the first numbers of neighbouring seeds are related
+        for _ in 0..8 {
+            next();
+        }
+        Draws(Box::new(next))
+    }
+
+    /// Equally probable between two numbers.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.0)()
+    }
+
+    /// 10^x, x equally probable between two exponents.
+    pub fn power_of_ten(&mut self, low: f64, high: f64) -> f64 {
+        10f64.powf(self.between(low, high))
+    }
+
+    /// 0 … `count` − 1.
+    pub fn below(&mut self, count: usize) -> usize {
+        (((self.0)() * count as f64) as usize).min(count - 1)
+    }
+
+    pub fn chance(&mut self, probability: f64) -> bool {
+        (self.0)() < probability
+    }
+}

@@ -1,0 +1,198 @@
+//! Whole scenes drawn at random, on small meshes: bodies, shapes, histories, and the times at which they are looked at.
+
+use std::sync::Arc;
+
+use viscocontact::prelude::*;
+
+use super::draws::Draws;
+use super::random_bodies::{Body, random_body};
+use super::random_histories::{Control, RandomHistory, random_history};
+
+pub struct RandomScene {
+    pub name: String,
+    pub body: Body,
+    pub history: RandomHistory,
+    pub control: Control,
+    /// Times to look at, besides the breakpoints of the history \[s\].
+    pub stops: Vec<f64>,
+    geometry: Box<dyn Geometry>,
+    grid: Grid,
+    kernel: Arc<InfluenceKernel>,
+}
+
+const LENGTH: f64 = 4.0e-3;
+const RADIUS: f64 = 8.0e-3;
+
+/// A shape, what it is, and the depth to which it touches a circle of radius `reach`, roughly.
+fn random_shape(draws: &mut Draws, reach: f64) -> (&'static str, Box<dyn Geometry>, f64) {
+    let sphere = || Sphere::new(RADIUS).unwrap();
+    let depth = reach * reach / RADIUS;
+    match draws.below(20) {
+        0..10 => ("sphere", Box::new(sphere()), depth),
+        10 | 11 => {
+            let by = [draws.between(-0.1, 0.1) * reach, draws.between(-0.1, 0.1) * reach];
+            ("shifted sphere", Box::new(Shifted::new(sphere(), by).unwrap()), depth)
+        }
+        12..15 => {
+            let other = RADIUS * draws.between(0.4, 1.0);
+            ("ellipsoid", Box::new(Ellipsoid::new(RADIUS, other).unwrap()), depth)
+        }
+        15 | 16 => ("cone", Box::new(Cone::new(0.1).unwrap()), 0.5 * std::f64::consts::PI * 0.1 * reach),
+        17 => ("flat punch", Box::new(FlatPunch::circular(reach).unwrap()), depth),
+        _ => {
+            let wavy = Wavy::new(draws.between(0.05, 0.3) * depth, LENGTH / draws.between(2.0, 4.0)).unwrap();
+            ("wavy sphere", Box::new(Sum::new(sphere(), wavy)), depth)
+        }
+    }
+}
+
+impl RandomScene {
+    /// The scene of this number in the series of this seed.
+    pub fn new(seed: u64, number: u64) -> RandomScene {
+        let mut draws = Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number));
+        let body = random_body(&mut draws);
+        let grid = Grid::new([12 + draws.below(5), 12 + draws.below(3)], [LENGTH, 0.95 * LENGTH]).unwrap();
+        let reach = 0.5 * LENGTH * draws.between(0.5, 0.75);
+        let (shape, geometry, depth) = random_shape(&mut draws, reach);
+        let kernel = Arc::new(InfluenceKernel::half_space(&grid).unwrap());
+        let mut scene = RandomScene {
+            name: String::new(),
+            body,
+            history: RandomHistory {
+                name: String::new(),
+                history: Box::new(FnHistory::new(|_| Load::force(0.0))),
+                corners: vec![],
+            },
+            control: Control::Force(0.0),
+            stops: Vec::new(),
+            geometry,
+            grid,
+            kernel,
+        };
+        let (touch, stiffness) = scene.elastic_force(depth);
+        let force = stiffness / scene.body.material.contact_compliance(scene.body.until);
+        scene.control = match draws.below(10) {
+            0..4 => Control::Approach { touch, depth },
+            4 => {
+                let at = [draws.between(-0.15, 0.15) * reach, draws.between(-0.15, 0.15) * reach];
+                Control::EccentricForce(force, at)
+            }
+            _ => Control::Force(force),
+        };
+        let until = scene.body.until;
+        scene.history = random_history(&mut draws, scene.control, until, scene.body.is_elastic_at_once());
+        let stops = (0..1 + draws.below(10)).map(|k| {
+            let part = if k % 2 == 0 { draws.between(0.0, 1.0) } else { draws.power_of_ten(-4.0, 0.0) };
+            part * until
+        });
+        scene.stops = stops.collect();
+        scene.stops.push(until);
+        let by = match scene.control {
+            Control::Force(_) => "force",
+            Control::EccentricForce(..) => "eccentric force",
+            Control::Approach { .. } => "approach",
+        };
+        let (body, history) = (&scene.body, &scene.history);
+        scene.name = format!(
+            "{seed}:{number} {} (creep {:.1e}, {:.0e} s of {:.0e} s), {shape} {:?}, {by}, {}",
+            body.name,
+            body.creep_ratio(),
+            until,
+            body.shortest_time(),
+            scene.grid.cells(),
+            history.name
+        );
+        scene
+    }
+
+    /// The approach of first touch, and the force on an elastic body of compliance 1/Pa pressed deeper by `depth`.
+    fn elastic_force(&self, depth: f64) -> (f64, f64) {
+        let unit = Material::incompressible(Elastic::new(0.25).unwrap());
+        let mut contact = self.contact_of(unit, 1e-6);
+        let touch = contact.approach();
+        contact.step(0.0, Load::approach(touch + depth)).unwrap();
+        (touch, contact.force())
+    }
+
+    fn contact_of(&self, material: Material, tolerance: f64) -> ViscoelasticContact {
+        ViscoelasticContact::builder(self.grid.clone())
+            .geometry(&*self.geometry)
+            .material(material)
+            .kernel(self.kernel.clone())
+            .settings(Settings { tolerance, edge: Edge::Allow, ..Settings::default() })
+            .build()
+            .unwrap()
+    }
+
+    /// The contact before any load, whose problems are solved to `tolerance`.
+    pub fn contact(&self, tolerance: f64) -> ViscoelasticContact {
+        self.contact_of(self.body.material.clone(), tolerance)
+    }
+
+    /// The kinds of body and of history, with what is given.
+    pub fn kinds(&self) -> [String; 2] {
+        let by = if self.control.is_approach() { "approach" } else { "force" };
+        let history = self.history.name.split([' ', ',', '^']).next().unwrap_or_default();
+        [self.body.name.to_string(), format!("{by}, {history}")]
+    }
+
+    /// The history itself.
+    pub fn load(&self) -> &dyn LoadHistory {
+        &*self.history.history
+    }
+
+    /// The times at which states are compared \[s\], ascending: those to look at, and the breakpoints of the history.
+    pub fn moments(&self) -> Vec<f64> {
+        let mut moments = self.stops.clone();
+        let mut after = 0.0;
+        while let Some(next) = self.load().next_breakpoint(after).filter(|&next| next <= self.body.until) {
+            moments.push(next);
+            after = next;
+        }
+        sorted(moments)
+    }
+
+    /// Ends of given steps \[s\]: graded after the start, after every corner, jump, touch and time looked at; the finer the
+    /// higher the `level`, which halves every step.
+    pub fn graded_times(&self, level: u32) -> Vec<f64> {
+        let until = self.body.until;
+        let shortest = self.body.shortest_time();
+        let corners = self.history.corners.iter().copied().filter(|&time| time > 0.0 && time < until);
+        let knots = sorted([0.0].into_iter().chain(corners).chain(self.moments()).collect());
+        let corners = &self.history.corners;
+        let mut times = Vec::new();
+        let mut origin = 0.0;
+        for pair in knots.windows(2) {
+            let (start, end) = (pair[0], pair[1]);
+            if start == 0.0 || corners.contains(&start) {
+                origin = start;
+            }
+            // from a corner on, steps grow with the time since
+            let longest = until.min(4.0 * end) / 40.0;
+            let first = 0.05 * shortest.min(end - start) * if start == 0.0 { 1e-2 } else { 1.0 };
+            let mut now = start;
+            let mut coarse = vec![];
+            while now < end {
+                let step = (0.25 * (now - origin)).max(first).min(longest);
+                now = if now + 1.5 * step >= end { end } else { now + step };
+                coarse.push(now);
+            }
+            let parts = 1 << level;
+            let mut before = start;
+            for now in coarse {
+                let part = |k: i32| before + (now - before) * f64::from(k) / f64::from(parts);
+                times.extend((1..parts).map(part));
+                times.push(now);
+                before = now;
+            }
+        }
+        times
+    }
+}
+
+/// Ascending, each once.
+fn sorted(mut times: Vec<f64>) -> Vec<f64> {
+    times.sort_by(f64::total_cmp);
+    times.dedup();
+    times
+}

@@ -1,0 +1,118 @@
+//! What is seen of a run at given times.
+
+use std::fmt;
+
+use viscocontact::Error;
+use viscocontact::prelude::*;
+
+use super::random_scenes::RandomScene;
+
+/// States of a run at the times to look at, and what it took.
+#[derive(Debug, Clone, Default)]
+pub struct Watched {
+    pub times: Vec<f64>,
+    /// Force where the approach is given, otherwise the approach.
+    pub answer: Vec<f64>,
+    pub pressure: Vec<Vec<f64>>,
+    /// Greatest answer and pressure of the whole run.
+    pub greatest: [f64; 2],
+    pub steps: u64,
+    pub rejected: u64,
+    pub equivalents: f64,
+}
+
+impl Watched {
+    /// Contact problems, those of rejected steps included.
+    pub fn problems(&self) -> u64 {
+        self.steps + self.rejected
+    }
+
+    pub fn greatest_pressures(&self) -> Vec<f64> {
+        self.pressure.iter().map(|field| field.iter().copied().fold(0.0, f64::max)).collect()
+    }
+
+    pub fn pressures_in(&self, cell: usize) -> Vec<f64> {
+        self.pressure.iter().map(|field| field[cell]).collect()
+    }
+
+    /// The cell that is in contact at most of the times, with the greatest pressure among those.
+    pub fn central_cell(&self) -> usize {
+        let cells = self.pressure.first().map_or(0, Vec::len);
+        let held = |cell: usize| {
+            let pressures = self.pressure.iter().map(|field| field[cell]);
+            let touched = pressures.clone().filter(|&p| p > 0.0).count() as f64;
+            touched + pressures.sum::<f64>() / (1e-300 + self.greatest[1] * self.pressure.len() as f64)
+        };
+        (0..cells).max_by(|&a, &b| held(a).total_cmp(&held(b))).unwrap_or(0)
+    }
+}
+
+/// Why a run did not come to its end.
+#[derive(Debug)]
+pub enum Stopped {
+    Failed {
+        time: f64,
+        error: Error,
+    },
+    /// After so many steps.
+    Endless {
+        time: f64,
+        steps: u64,
+    },
+}
+
+impl Stopped {
+    /// The name of the error, or what stands in for it.
+    pub fn reason(&self) -> String {
+        match self {
+            Stopped::Failed { error, .. } => format!("{error:?}").split([' ', '(']).next().unwrap_or_default().into(),
+            Stopped::Endless { .. } => "endless".into(),
+        }
+    }
+}
+
+impl fmt::Display for Stopped {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Stopped::Failed { time, error } => write!(f, "at {time:e} s: {error:?}"),
+            Stopped::Endless { time, steps } => write!(f, "only at {time:e} s after {steps} steps"),
+        }
+    }
+}
+
+/// Follows the history of a scene, and looks at it at its moments.
+pub fn watch(
+    scene: &RandomScene,
+    contact: &mut ViscoelasticContact,
+    history: &dyn LoadHistory,
+    stepping: Stepping,
+    stops: &[f64],
+    most_steps: u64,
+) -> Result<Watched, Stopped> {
+    let moments = scene.moments();
+    let by_approach = scene.control.is_approach();
+    let mut run = contact.follow(history, stepping, scene.body.until).stop_at(stops).unwrap();
+    let mut seen = Watched::default();
+    loop {
+        let report = match run.next_step() {
+            Ok(Some(report)) => report,
+            Ok(None) => break,
+            Err(error) => return Err(Stopped::Failed { time: run.contact().time(), error }),
+        };
+        seen.steps += 1;
+        seen.equivalents += report.convolution_equivalents();
+        let answer = if by_approach { report.force } else { report.approach };
+        let pressure = run.contact().pressure().iter().copied().fold(0.0, f64::max);
+        seen.greatest = [seen.greatest[0].max(answer.abs()), seen.greatest[1].max(pressure)];
+        if report.time > 0.0 && moments.binary_search_by(|time| time.total_cmp(&report.time)).is_ok() {
+            seen.times.push(report.time);
+            seen.answer.push(answer);
+            seen.pressure.push(run.contact().pressure().to_vec());
+        }
+        if seen.steps + run.rejected_steps() >= most_steps {
+            return Err(Stopped::Endless { time: report.time, steps: seen.steps });
+        }
+    }
+    seen.rejected = run.rejected_steps();
+    Ok(seen)
+}

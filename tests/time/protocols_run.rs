@@ -1,0 +1,136 @@
+//! Whether runs come to their end, and in how many steps: ordinary protocols on ordinary bodies, and random scenes.
+//!
+//! By hand: `PROTOCOLS_SCENES=5000 PROTOCOLS_SEED=7 cargo test --release --test time runs -- --nocapture`.
+
+use std::collections::BTreeMap;
+
+use crate::common::draws::Draws;
+use crate::common::environment::from_environment;
+use crate::common::random_histories::FromSmallLoad;
+use crate::common::random_scenes::RandomScene;
+use crate::common::spheres::builder_on;
+use crate::common::watched_runs::watch;
+use viscocontact::prelude::*;
+
+/// A run of so many contact problems does not end.
+const MOST_PROBLEMS: u64 = 20_000;
+
+fn bodies() -> [(&'static str, Material); 4] {
+    [
+        ("elastic", Material::incompressible(Elastic::new(1.0e6).unwrap())),
+        ("Kelvin-Voigt", Material::incompressible(KelvinVoigt::new(1.0e6, 0.3e6).unwrap())),
+        ("Maxwell", Material::incompressible(Maxwell::new(1.0e6, 0.3e6).unwrap())),
+        ("fractional Zener", Material::incompressible(FractionalZener::new(3.0e6, 1.0e6, 0.3, 0.5).unwrap())),
+    ]
+}
+
+/// Protocols of one second on a sphere, in approach or force.
+fn protocols() -> [(&'static str, Box<dyn LoadHistory>); 5] {
+    let approaches = |rows: &[(f64, f64)]| {
+        let rows: Vec<_> = rows.iter().map(|&(time, approach)| (time, Load::approach(approach))).collect();
+        Box::new(PiecewiseLinear::new(&rows).unwrap()) as Box<dyn LoadHistory>
+    };
+    let force = |of: fn(f64) -> f64| Box::new(FnHistory::new(move |t| Load::force(of(t)))) as Box<dyn LoadHistory>;
+    let (above, below) = (-0.2e-4, 1.5e-4);
+    [
+        ("indentation at a constant rate", approaches(&[(0.0, above), (1.0, below)])),
+        ("triangle of the approach", approaches(&[(0.0, above), (0.5, below), (1.0, above)])),
+        ("force as t^2", force(|t| t * t)),
+        ("force as t^0.5", force(f64::sqrt)),
+        ("force as sin^2", force(|t| (std::f64::consts::TAU * t).sin().powi(2))),
+    ]
+}
+
+/// The number of steps, rejected ones included; or why it did not end.
+fn run(contact: &mut ViscoelasticContact, history: &dyn LoadHistory, stepping: Stepping) -> Result<u64, String> {
+    let mut run = contact.follow(history, stepping, 1.0);
+    for steps in 0..MOST_PROBLEMS {
+        match run.next_step() {
+            Ok(Some(_)) => {}
+            Ok(None) => return Ok(steps + run.rejected_steps()),
+            Err(error) => return Err(format!("at {:e} s: {error:?}", run.contact().time())),
+        }
+    }
+    Err(format!("only at {:e} s after {MOST_PROBLEMS} steps", run.contact().time()))
+}
+
+#[test]
+fn ordinary_protocols_run_to_their_end() {
+    let mut failures = 0;
+    for (protocol, history) in protocols() {
+        for (body, material) in bodies() {
+            let mut line = format!("{protocol}, {body}:");
+            for (name, stepping) in [("fixed", Stepping::fixed(0.02)), ("adaptive", Stepping::adaptive(1e-3))] {
+                let builder = builder_on(Grid::square(16, 4.0e-3).unwrap(), material.clone()).times_of(&*history, 1.0);
+                let mut contact =
+                    builder.settings(Settings { edge: Edge::Allow, ..Settings::default() }).build().unwrap();
+                match run(&mut contact, &*history, stepping) {
+                    Ok(problems) => line += &format!("  {name} {problems}"),
+                    Err(error) => {
+                        line += &format!("  {name} FAILED {error}");
+                        failures += 1;
+                    }
+                }
+            }
+            println!("{line}");
+        }
+    }
+    println!("{failures} of 40 do not end");
+    assert_eq!(failures, 0);
+}
+
+/// The same history, never below a hundredth of its greatest load, is no more than twice as easy.
+#[test]
+fn random_protocols_run_to_their_end() {
+    let scenes = from_environment("PROTOCOLS_SCENES", 500);
+    let seed = from_environment("PROTOCOLS_SEED", 2);
+    let (mut failures, mut compared, mut total) = (Vec::new(), Vec::new(), [0; 2]);
+    let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
+    for number in 0..scenes {
+        let scene = RandomScene::new(seed, number);
+        let tolerance = Draws::new(number.wrapping_add(77 * seed)).power_of_ten(-4.0, -2.0);
+        let name = format!("{tolerance:.0e} {}", scene.name);
+        let steps = |history: &dyn LoadHistory| {
+            let mut contact = scene.contact(Settings::default().tolerance);
+            watch(&scene, &mut contact, history, Stepping::adaptive(tolerance), &scene.stops, MOST_PROBLEMS)
+        };
+        let from_small = FromSmallLoad::new(scene.load(), scene.control.load(0.01), scene.body.until);
+        // a body without elastic response cannot start from a load
+        let easier = scene.body.is_elastic_at_once().then(|| steps(&from_small));
+        match (steps(scene.load()), easier) {
+            (Ok(run), Some(Ok(easier))) => {
+                total = [total[0] + run.problems(), total[1] + easier.problems()];
+                compared.push((run.problems() as f64 / easier.problems() as f64, run.problems(), name));
+            }
+            (Ok(_), None) => {}
+            (Ok(_), Some(Err(stopped))) => {
+                *reasons.entry(format!("{} from a small load", stopped.reason())).or_default() += 1;
+                failures.push(format!("from a small load, {stopped}: {name}"));
+            }
+            (Err(stopped), _) => {
+                *reasons.entry(stopped.reason()).or_default() += 1;
+                failures.push(format!("{stopped}: {name}"));
+            }
+        }
+    }
+    compared.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let at = |part: f64| compared.get((part * compared.len() as f64) as usize).map_or(f64::NAN, |run| run.0);
+    let above = compared.iter().filter(|run| run.0 > 2.0).count();
+    println!("seed {seed}: {} of {scenes} runs do not end: {reasons:?}", failures.len());
+    failures.iter().take(12).for_each(|failure| println!("    {failure}"));
+    println!(
+        "{} compared with a start from a small load: {} contact problems, {} so: {:.2} times in the median, {:.2} in 90 %, {:.2} in 99 \
+         %; {above} more than twice as many",
+        compared.len(),
+        total[0],
+        total[1],
+        at(0.5),
+        at(0.1),
+        at(0.01)
+    );
+    for (ratio, problems, name) in compared.iter().take(12) {
+        println!("    {ratio:.2} times, {problems} problems: {name}");
+    }
+    assert!(failures.is_empty(), "{} do not end", failures.len());
+    assert_eq!(above, 0);
+}
