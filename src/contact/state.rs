@@ -30,8 +30,8 @@ pub(crate) struct State {
     /// At the start of the last step.
     pub(super) previous: Equilibrium,
     pub(super) extrapolation: Extrapolation,
-    /// The greatest mean displacement in contact so far \[m\], as far as errors were taken relative to it.
-    pub(super) greatest_displacement: f64,
+    /// The greatest means of displacement and v over the contact so far, as far as errors were taken relative to them.
+    pub(super) greatest: [f64; 2],
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -82,7 +82,7 @@ impl State {
             previous: current.clone(),
             current,
             extrapolation: Extrapolation::default(),
-            greatest_displacement: 0.0,
+            greatest: [0.0; 2],
         }
     }
 
@@ -109,10 +109,10 @@ impl State {
             current,
             previous,
             extrapolation,
-            greatest_displacement,
+            greatest,
         } = self;
         (*clock, *extrapolation) = (other.clock, other.extrapolation);
-        *greatest_displacement = other.greatest_displacement;
+        *greatest = other.greatest;
         (*indenter_is_new, *region_is_placed) = (other.indenter_is_new, other.region_is_placed);
         loads.clone_from(&other.loads);
         indenter.clone_from(&other.indenter);

@@ -77,8 +77,10 @@ pub(crate) struct Weights {
     pub(super) terms: usize,
     /// ρ₁ and ρ₂.
     pub(super) ratios: [f64; 2],
-    /// c γ_k of the degrees 2 and 3, each as if the step had it: what u lacks is this times d_k.
+    /// γ_k of the degrees 2 and 3, each as if the step had it: what v lacks is this times d_k.
     defects: [f64; 2],
+    /// γ of a change of u that was not to be expected from the steps before.
+    answer: f64,
     /// (Δ + Δ′)/Δ.
     pub(super) span: f64,
     /// How many differences are known at its end.
@@ -109,6 +111,7 @@ impl ExponentialRule {
             terms: 0,
             ratios: [0.0; 2],
             defects: [0.0; 2],
+            answer: 0.0,
             span: 1.0,
             known: 0,
         };
@@ -159,16 +162,24 @@ impl ExponentialRule {
         self.tried.c
     }
 
-    /// The first degree that u lacks on the step predicted last, as far as the steps before it tell, and c γ of that degree; none
+    /// The first degree that u lacks on the step predicted last, as far as the steps before it tell, and γ of that degree; none
     /// after a jump or a corner.
     pub(super) fn missing(&self) -> Option<(usize, f64)> {
         let lacking = (self.tried.degree + 1).min(self.known + 1);
         (self.tried.dt > 0.0 && lacking > 1).then(|| (lacking, self.tried.defects[lacking - 2]))
     }
 
-    /// c γ₂ of the step predicted last.
-    pub(super) fn kinked(&self) -> f64 {
-        self.tried.defects[0]
+    /// What v lacks at a cell whose u, going on as before, was met by a body within the step: from then on u has changed more, as
+    /// fast as by `jump` in a whole step, to be off by `bend` in the end. With θ = bend/jump the share of the step after the
+    /// meeting, v answers by Σ E_i (1 − e^(−θ z_i))/z_i jump, and by η jump/Δ.
+    pub(super) fn kink(&self, jump: f64, bend: f64) -> f64 {
+        let share = bend / jump;
+        if !(share > 0.0 && share < 1.0) {
+            return 0.0;
+        }
+        let answered = |&(modulus, tau): &(f64, f64)| -modulus * tau / self.tried.dt * (-share * self.tried.dt / tau).exp_m1();
+        let relaxing: f64 = self.relaxation.terms().iter().map(answered).sum();
+        (relaxing + self.relaxation.viscosity() / self.tried.dt) * jump - self.tried.answer * bend
     }
 
     /// Whether the next step puts right the one predicted last.
@@ -287,7 +298,8 @@ impl ExponentialRule {
         tried.past = [kept, differences[0], differences[1]];
         (tried.terms, tried.span) = (degree.max(lacking), products[1]);
         tried.corrects = [lacking > 0, corrects[1]];
-        tried.defects = if jump { [0.0; 2] } else { defects.map(|defect| c * defect) };
+        tried.defects = if jump { [0.0; 2] } else { defects };
+        tried.answer = gains[0] + if degree > 1 { defects[0] } else { 0.0 };
         tried.known = if jump { 0 } else { (known + 1).min(self.kept) };
     }
 
@@ -303,10 +315,10 @@ impl ExponentialRule {
 
 impl Weights {
     fn copy_from(&mut self, other: &Weights) {
-        let Weights { dt, degree, corrects, c, past, branches, terms, ratios, defects, span, known } = self;
+        let Weights { dt, degree, corrects, c, past, branches, terms, ratios, defects, answer, span, known } = self;
         (*dt, *degree, *corrects, *c) = (other.dt, other.degree, other.corrects, other.c);
         (*past, *terms, *ratios) = (other.past, other.terms, other.ratios);
-        (*defects, *span, *known) = (other.defects, other.span, other.known);
+        (*defects, *answer, *span, *known) = (other.defects, other.answer, other.span, other.known);
         branches.copy_from_slice(&other.branches);
     }
 }

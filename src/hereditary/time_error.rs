@@ -4,12 +4,19 @@ use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::history::History;
 
 /// What the error in time of a step is measured by, besides the displacement.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct ErrorMeasure<'a> {
     /// Pressure at the end of the step tried, at its start, and at the start of the step before.
     pub(crate) pressure: [&'a [f64]; 3],
-    /// The least mean displacement in contact \[m\] that an error is taken relative to.
-    pub(crate) least: f64,
+    /// v = K p at the end of the step tried.
+    pub(crate) potential: &'a [f64],
+    /// Which errors matter: that of the displacement where a force is given, and that of v where a motion is, which leaves the
+    /// displacement in contact no error.
+    pub(crate) matters: [bool; 2],
+    /// The least means over the contact of displacement and v that errors are taken relative to.
+    pub(crate) least: [f64; 2],
+    /// By how much the rigid body above a cell advances in the step.
+    pub(crate) advance: &'a dyn Fn(usize) -> f64,
     /// C(age)/C(Δ), by which an error in u grows in the end if no later step puts it right: the next steps answer it with the
     /// compliance of a step, the surface with that of its age.
     pub(crate) amplification: f64,
@@ -18,17 +25,17 @@ pub(crate) struct ErrorMeasure<'a> {
 /// What is known of the error in time of a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct TimeError {
-    /// Relative to the displacement; 0 where nothing is known.
+    /// Relative to displacement or force; 0 where nothing is known.
     pub(crate) relative: f64,
-    /// Mean displacement in contact, weighted by the pressure \[m\].
-    pub(crate) displacement: f64,
+    /// Means over the contact of displacement and v, weighted by the pressure.
+    pub(crate) sizes: [f64; 2],
 }
 
 /// Share of the defect of a step that is left once the next has put it right, and of one that is not put right.
 const CORRECTED: f64 = 0.5;
 const NOT_CORRECTED: f64 = 0.25;
-/// Cells that leave or join the contact kink: their defects count twice.
-const KINK: f64 = 2.0;
+/// Defects of cells that leave the contact count twice.
+const LEFT: f64 = 2.0;
 /// An immediate dashpot answers an error of the slope, which no later step undoes at once: it counts with the amplification,
 /// up to this.
 const MAX_AMPLIFICATION: f64 = 5.0;
@@ -36,79 +43,101 @@ const MAX_AMPLIFICATION: f64 = 5.0;
 impl History {
     /// The estimated error of the step tried; 0 where too few steps before it are known.
     ///
-    /// With d_k the last difference, of the first degree k that u lacks on the step, Γ_k what it would weigh,
+    /// With d_k the last difference, of the first degree k that u lacks on the step, and Γ_k what it would weigh, the defect of v
+    /// is
     ///
-    /// e = ½ c Γ_k Σ p |d_k| / Σ p |u|,
+    /// ½ Γ_k Σ p |d_k| / Σ p,
     ///
     /// weighted by the pressure: the greatest error over all cells is that of the kink of u at a moving edge, which carries no
-    /// force. Cells that have just left, and have no weight, count by the greatest of them, and cells that joined or left in
-    /// this step, where u has a kink, by their second difference.
+    /// force. Cells that have just left, and have no weight, count by the greatest of them. Those that joined in this step count
+    /// with what v lacks by the kink of u when the body met them. Relative to v, this is the error of a force under given motion,
+    /// and c times it, relative to u, that of an approach under a given force.
     pub(crate) fn time_error(&self, measure: ErrorMeasure<'_>) -> TimeError {
         let Some(rule) = self.exponential_rule().filter(|rule| rule.remembers()) else { return TimeError::default() };
-        let (relative, displacement) = self.defect(rule, measure);
-        // overflow must not pass for accuracy
-        TimeError { relative: if relative.is_nan() { f64::INFINITY } else { relative }, displacement }
+        let ErrorMeasure { potential, matters, least, .. } = measure;
+        let weights = Weighting::new(measure.pressure, rule.has_dashpot());
+        let (mut weight, mut sizes) = (0.0, [0.0; 2]);
+        for (k, (&u, &v)) in self.displacement.trial.iter().zip(potential).enumerate() {
+            let w = weights.of(k);
+            weight += w;
+            sizes = [sizes[0] + w * u.abs(), sizes[1] + w * v.abs()];
+        }
+        let means = sizes.map(|size| if weight > 0.0 { size / weight } else { 0.0 });
+        let defect = self.defect(rule, measure, &weights, weight);
+        let relative = [0, 1].map(|which| {
+            let size = means[which].max(least[which]);
+            let defect = if which == 0 { rule.compliance() * defect } else { defect };
+            // nothing over nothing is nothing, but overflow must not pass for accuracy
+            if !matters[which] || defect == 0.0 { 0.0 } else { defect / size }
+        });
+        let worst = if relative.iter().any(|error| error.is_nan()) { f64::INFINITY } else { relative[0].max(relative[1]) };
+        TimeError { relative: worst, sizes: if weights.pressed { means } else { [0.0; 2] } }
     }
 
-    fn defect(&self, rule: &ExponentialRule, measure: ErrorMeasure<'_>) -> (f64, f64) {
-        let missing = rule.missing();
-        let ErrorMeasure { pressure: [tried, now, before], least, amplification } = measure;
-        let any = |pressure: &[f64]| pressure.iter().any(|&p| p > 0.0);
-        let pressed = [any(tried), any(now)];
-        let dashpot = rule.has_dashpot();
-        // cells that join a dashpot have a finite pressure at once, and a kink
-        let inside = dashpot && (0..tried.len()).any(|k| tried[k].min(now[k]).min(before[k]) > 0.0);
-        let weight = |k: usize| match pressed {
-            [true, _] if inside => tried[k].min(now[k]).min(before[k]),
-            [true, _] => tried[k],
-            [false, true] => now[k],
-            // bodies apart: the surface recovers everywhere alike
-            _ => 1.0,
-        };
+    /// The mean defect of v.
+    fn defect(&self, rule: &ExponentialRule, measure: ErrorMeasure<'_>, weights: &Weighting<'_>, weight: f64) -> f64 {
+        let Some((lacking, missing)) = rule.missing().filter(|_| weight > 0.0) else { return 0.0 };
+        let ErrorMeasure { pressure: [tried, now, before], advance, amplification, .. } = measure;
         let [first, second] = self.displacement.past.differences();
         let [to_first, to_second] = rule.tried.ratios;
         let (new, old) = (&self.displacement.trial, &self.displacement.now);
-        let mut sums = Sums::default();
+        let dashpot = rule.has_dashpot();
+        let (mut last_sum, mut kinks, mut joined, mut left, mut touching) = (0.0, 0.0, 0.0, 0.0_f64, 0_usize);
         for k in 0..new.len() {
-            let w = weight(k);
-            sums.weight += w;
-            sums.size += w * new[k].abs();
-            let Some((lacking, _)) = missing else { continue };
-            let bend = (new[k] - old[k]) - to_first * first[k];
+            let going_on = to_first * first[k];
+            let bend = (new[k] - old[k]) - going_on;
             let last = if lacking == 2 { bend } else { bend - to_second * second[k] };
-            sums.last += w * last.abs();
             let touches = tried[k] > 0.0;
-            if touches != (now[k] > 0.0) {
-                sums.kinks += tried[k].max(now[k]) * bend.abs();
+            touching += usize::from(touches);
+            if touches && now[k] <= 0.0 {
+                joined += 1.0;
+                kinks += rule.kink(advance(k) - going_on, bend);
+            } else {
+                last_sum += weights.of(k) * last.abs();
             }
             if !touches && (now[k] > 0.0 || before[k] > 0.0) {
-                sums.left = sums.left.max(last.abs());
+                left = left.max(last.abs());
             }
         }
-        let mean = if sums.weight > 0.0 && pressed[0] { sums.size / sums.weight } else { 0.0 };
-        let size = sums.size.max(least * sums.weight);
-        let Some((_, defect)) = missing.filter(|_| size > 0.0) else { return (0.0, mean) };
+        let _ = joined;
         if !rule.corrects() {
-            // the greatest of |s (s − Δ)| is Δ²/4
-            return (NOT_CORRECTED * amplification * 0.25 * sums.last / rule.tried.span / size, mean);
+            // the greatest of |s (s − Δ)| is Δ²/4; the defect is that of u
+            let bend = 0.25 * last_sum / rule.tried.span / weight;
+            return NOT_CORRECTED * amplification * bend / rule.compliance();
         }
-        let smooth = CORRECTED * defect * sums.last.max(KINK * sums.left * sums.weight) / size;
+        let smooth = CORRECTED * missing * (last_sum / weight).max(LEFT * left);
         if dashpot {
-            return (smooth * amplification.clamp(1.0, MAX_AMPLIFICATION), mean);
+            return smooth * amplification.clamp(1.0, MAX_AMPLIFICATION);
         }
-        (smooth.max(KINK * rule.kinked() * sums.kinks / size), mean)
+        smooth.max(kinks.abs() / touching.max(1) as f64)
     }
 }
 
-#[derive(Default)]
-struct Sums {
-    weight: f64,
-    /// Σ w |u|.
-    size: f64,
-    /// Σ w |d_k|.
-    last: f64,
-    /// The same of the second differences of cells that joined or left.
-    kinks: f64,
-    /// The greatest |d_k| of cells that left.
-    left: f64,
+/// The weight of each cell in a mean over the contact.
+struct Weighting<'a> {
+    pressure: [&'a [f64]; 3],
+    pressed: bool,
+    was_pressed: bool,
+    inside: bool,
+}
+
+impl<'a> Weighting<'a> {
+    fn new(pressure: [&'a [f64]; 3], dashpot: bool) -> Weighting<'a> {
+        let [tried, now, before] = pressure;
+        let any = |pressure: &[f64]| pressure.iter().any(|&p| p > 0.0);
+        // cells that join a dashpot have a finite pressure at once, and a kink
+        let inside = dashpot && (0..tried.len()).any(|k| tried[k].min(now[k]).min(before[k]) > 0.0);
+        Weighting { pressure, pressed: any(tried), was_pressed: any(now), inside }
+    }
+
+    fn of(&self, k: usize) -> f64 {
+        let [tried, now, before] = self.pressure;
+        match (self.pressed, self.was_pressed) {
+            (true, _) if self.inside => tried[k].min(now[k]).min(before[k]),
+            (true, _) => tried[k],
+            (false, true) => now[k],
+            // bodies apart: the surface recovers everywhere alike
+            _ => 1.0,
+        }
+    }
 }

@@ -54,8 +54,8 @@ impl Follow<'_> {
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
             let computed = attempt.computation(computation);
             let age = time - computed.state.clock.undisturbed_until;
-            let expected = control.expected_displacement(scene, &loads[0], age);
-            let mut error = error_in_time(scene, computed, step.interval, expected);
+            let expected = control.expected(scene, &loads[0], age);
+            let mut error = error_in_time(scene, computed, &step, expected);
             error.relative = error.relative.max(straying);
             if control.judge(dt, error.relative, order, dashpot) {
                 control.accept(time, loads[0], [wanted, dt], time == corner, order);

@@ -190,7 +190,7 @@ impl<'a> Follow<'a> {
         let expected = {
             let new = || RunScale::new(scene, &computation.state, self.history, self.until);
             let scale = self.progress.scale.get_or_insert_with(new);
-            scale.of_displacement(scene, &load, time - computation.state.clock.undisturbed_until)
+            scale.expected(scene, &load, time - computation.state.clock.undisturbed_until)
         };
         let report = self.contact.take_expecting(step, expected)?;
         self.progress.include(report.time_error, report.residual);

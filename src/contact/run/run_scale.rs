@@ -27,6 +27,8 @@ pub(super) struct RunScale {
     force: f64,
     /// The greatest depth below first touch that is prescribed.
     depth: f64,
+    /// The compliance in the end.
+    compliance: f64,
     /// The depth at which the greatest force is likely to come to rest in the end, over the compliance then.
     depth_over_compliance: f64,
 }
@@ -35,9 +37,10 @@ impl RunScale {
     /// Of a run from the state along a history to the time `until`.
     pub(super) fn new(scene: &Scene, state: &State, history: &dyn LoadHistory, until: f64) -> RunScale {
         let touch = state.indenter.first_touch()[0].approach;
-        let mut scale = RunScale { touch, force: 0.0, depth: 0.0, depth_over_compliance: 0.0 };
         let now = state.clock.time;
         let span = until - now;
+        let compliance = scene.material.contact_compliance(span.min(scene.material.known_until()));
+        let mut scale = RunScale { touch, force: 0.0, depth: 0.0, compliance, depth_over_compliance: 0.0 };
         let equal = (0..=EQUAL_PARTS).map(|k| now + span * f64::from(k) / f64::from(EQUAL_PARTS));
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
@@ -51,7 +54,6 @@ impl RunScale {
             let loads = [history.before(time), history.at(time)];
             loads.iter().filter(|load| load.validate().is_ok()).for_each(|load| scale.include(load));
         }
-        let compliance = scene.material.contact_compliance(span.min(scene.material.known_until()));
         if scale.force > 0.0 && compliance > 0.0 {
             scale.depth_over_compliance = resting_depth(scene, &state.indenter, scale.force * compliance) / compliance;
         }
@@ -82,15 +84,15 @@ impl RunScale {
         self.magnitude(start).max(self.magnitude(end)).max(SMALL * greatest)
     }
 
-    /// The displacement that the greatest load of the kind of `load` is likely to cause in bodies that have been pressed for so
-    /// long.
-    pub(super) fn of_displacement(&self, scene: &Scene, load: &Load, age: f64) -> f64 {
+    /// The displacement and v that the greatest load of the kind of `load` is likely to cause in bodies that have been pressed
+    /// for so long.
+    pub(super) fn expected(&self, scene: &Scene, load: &Load, age: f64) -> [f64; 2] {
         match load {
             Load::Force { .. } if self.depth_over_compliance > 0.0 => {
-                self.depth_over_compliance * scene.material.contact_compliance(age)
+                [self.depth_over_compliance * scene.material.contact_compliance(age), 0.0]
             }
-            Load::Force { .. } => 0.0,
-            Load::Approach { .. } => self.depth,
+            Load::Force { .. } => [0.0; 2],
+            Load::Approach { .. } => [self.depth, self.depth / self.compliance],
         }
     }
 

@@ -123,9 +123,9 @@ impl StepControl {
         scale.map_or(f64::INFINITY, |scale| scale.first_touch(history, state.clock.time, stop))
     }
 
-    /// The displacement that is likely under the greatest load of the run, in bodies that have been pressed for so long.
-    pub(super) fn expected_displacement(&self, scene: &Scene, load: &Load, age: f64) -> f64 {
-        self.scale.as_ref().map_or(0.0, |scale| scale.of_displacement(scene, load, age))
+    /// The displacement and v that are likely under the greatest load of the run, in bodies that have been pressed for so long.
+    pub(super) fn expected(&self, scene: &Scene, load: &Load, age: f64) -> [f64; 2] {
+        self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age))
     }
 
     /// The length to try next, at most `left`.

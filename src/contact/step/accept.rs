@@ -5,8 +5,9 @@ use crate::contact::request::Step;
 use crate::solver::{Modes, RigidMotion};
 
 impl Computation {
-    /// Makes the trial the state; `sum` is Σ p, and `displacement` the mean in contact.
-    pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, displacement: f64) {
+    /// Makes the trial the state; `sum` is Σ p, and `sizes` are the means of displacement and v in
+    /// contact.
+    pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, sizes: [f64; 2]) {
         let Computation { state, trial, .. } = self;
         let (interval, datum) = (step.interval, step.indenter.gap().datum);
         let contact_cells = trial.solution.pressure.iter().filter(|&&p| p > 0.0).count();
@@ -26,7 +27,7 @@ impl Computation {
         state.loads.copy_from_slice(step.loads);
         (state.indenter, state.indenter_is_new) = (step.indenter, false);
         state.extrapolation.accept(interval.dt, sum, trial.reach);
-        state.greatest_displacement = state.greatest_displacement.max(displacement);
+        (0..2).for_each(|which| state.greatest[which] = state.greatest[which].max(sizes[which]));
         state.clock.accept(interval, touched);
     }
 }

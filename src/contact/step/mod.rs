@@ -92,13 +92,14 @@ impl ViscoelasticContact {
 
     /// Computes a step and accepts it.
     pub(in crate::contact) fn take(&mut self, step: Step<'_>) -> Result<StepReport> {
-        self.take_expecting(step, 0.0)
+        self.take_expecting(step, [0.0; 2])
     }
 
-    /// Computes a step and accepts it; its error is estimated relative to a part of the `expected` displacement at least.
-    pub(in crate::contact) fn take_expecting(&mut self, step: Step<'_>, expected: f64) -> Result<StepReport> {
+    /// Computes a step and accepts it; its error is estimated relative to a part of the `expected` displacement or
+    /// v at least.
+    pub(in crate::contact) fn take_expecting(&mut self, step: Step<'_>, expected: [f64; 2]) -> Result<StepReport> {
         let attempt = self.attempt(&step)?;
-        let error = error_in_time(&self.scene, attempt.computation(&self.computation), step.interval, expected);
+        let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, expected);
         Ok(self.accept(attempt, step, error))
     }
 
@@ -121,7 +122,7 @@ impl ViscoelasticContact {
         if let Some(larger) = attempt.larger {
             self.computation = *larger;
         }
-        self.computation.accept(step, attempt.sum, error.displacement);
+        self.computation.accept(step, attempt.sum, error.sizes);
         self.view.refresh(&self.computation.state);
         let report = StepReport { time_error: error.relative, ..self.report() };
         report.emit();
