@@ -7,12 +7,11 @@ pub struct Draws(Box<dyn FnMut() -> f64>);
 
 impl Draws {
     pub fn new(seed: u64) -> Draws {
-        let mut next = uniform(seed);
-        // the first numbers of neighbouring seeds are related
-        for _ in 0..8 {
-            next();
-        }
-        Draws(Box::new(next))
+        // scattered (splitmix64): linear congruential generators of neighbouring seeds draw alike
+        let mut mixed = seed.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        mixed = (mixed ^ (mixed >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        Draws(Box::new(uniform(mixed ^ (mixed >> 31))))
     }
 
     /// Equally probable between two numbers.
