@@ -17,9 +17,11 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) least: [f64; 2],
     /// By how much the rigid body above a cell advances in the step.
     pub(crate) advance: &'a dyn Fn(usize) -> f64,
-    /// C(age)/C(Δ), by which an error in u grows in the end if no later step puts it right: the next steps answer it with the
-    /// compliance of a step, the surface with that of its age.
+    /// C(age)/C(Δ), by which an error in u grows in the end if those of the next steps are like it: a step answers a defect of v
+    /// with the compliance of a step, all steps together with that of their age.
     pub(crate) amplification: f64,
+    /// How far the defects so far agree in sign, 0 … 1.
+    pub(crate) agreement: f64,
 }
 
 /// What is known of the error in time of a step.
@@ -29,6 +31,8 @@ pub(crate) struct TimeError {
     pub(crate) relative: f64,
     /// Means over the contact of displacement and v, weighted by the pressure.
     pub(crate) sizes: [f64; 2],
+    /// Mean defect of v, and mean of its absolute value.
+    pub(crate) defect: [f64; 2],
 }
 
 /// Share of the defect of a step that is left once the next has put it right, and of one that is not put right.
@@ -36,9 +40,6 @@ const CORRECTED: f64 = 0.5;
 const NOT_CORRECTED: f64 = 0.25;
 /// Defects of cells that leave the contact count twice.
 const LEFT: f64 = 2.0;
-/// An immediate dashpot answers an error of the slope, which no later step undoes at once: it counts with the amplification,
-/// up to this.
-const MAX_AMPLIFICATION: f64 = 5.0;
 
 impl History {
     /// The estimated error of the step tried; 0 where too few steps before it are known.
@@ -50,8 +51,8 @@ impl History {
     ///
     /// weighted by the pressure: the greatest error over all cells is that of the kink of u at a moving edge, which carries no
     /// force. Cells that have just left, and have no weight, count by the greatest of them. Those that joined in this step count
-    /// with what v lacks by the kink of u when the body met them. Relative to v, this is the error of a force under given motion,
-    /// and c times it, relative to u, that of an approach under a given force.
+    /// with what v lacks by the kink of u when the body met them. Relative to v, this is the error of a force under given motion.
+    /// Under a given force, the error of u is c times it, or more if the defects of many steps add up.
     pub(crate) fn time_error(&self, measure: ErrorMeasure<'_>) -> TimeError {
         let Some(rule) = self.exponential_rule().filter(|rule| rule.remembers()) else { return TimeError::default() };
         let ErrorMeasure { potential, matters, least, .. } = measure;
@@ -63,26 +64,26 @@ impl History {
             sizes = [sizes[0] + w * u.abs(), sizes[1] + w * v.abs()];
         }
         let means = sizes.map(|size| if weight > 0.0 { size / weight } else { 0.0 });
-        let defect = self.defect(rule, measure, &weights, weight);
+        let (signed, defect) = self.defect(rule, measure, &weights, weight);
+        let growth = 1.0 + measure.agreement * (measure.amplification - 1.0);
         let relative = [0, 1].map(|which| {
             let size = means[which].max(least[which]);
-            let defect = if which == 0 { rule.compliance() * defect } else { defect };
+            let defect = if which == 0 { growth * rule.compliance() * defect } else { defect };
             // nothing over nothing is nothing, but overflow must not pass for accuracy
             if !matters[which] || defect == 0.0 { 0.0 } else { defect / size }
         });
         let worst = if relative.iter().any(|error| error.is_nan()) { f64::INFINITY } else { relative[0].max(relative[1]) };
-        TimeError { relative: worst, sizes: if weights.pressed { means } else { [0.0; 2] } }
+        TimeError { relative: worst, sizes: if weights.pressed { means } else { [0.0; 2] }, defect: [signed, defect] }
     }
 
-    /// The mean defect of v.
-    fn defect(&self, rule: &ExponentialRule, measure: ErrorMeasure<'_>, weights: &Weighting<'_>, weight: f64) -> f64 {
-        let Some((lacking, missing)) = rule.missing().filter(|_| weight > 0.0) else { return 0.0 };
-        let ErrorMeasure { pressure: [tried, now, before], advance, amplification, .. } = measure;
+    /// The mean defect of v, signed, and in absolute value with all that counts.
+    fn defect(&self, rule: &ExponentialRule, measure: ErrorMeasure<'_>, weights: &Weighting<'_>, weight: f64) -> (f64, f64) {
+        let Some((lacking, missing)) = rule.missing().filter(|_| weight > 0.0) else { return (0.0, 0.0) };
+        let ErrorMeasure { pressure: [tried, now, before], advance, .. } = measure;
         let [first, second] = self.displacement.past.differences();
         let [to_first, to_second] = rule.tried.ratios;
         let (new, old) = (&self.displacement.trial, &self.displacement.now);
-        let dashpot = rule.has_dashpot();
-        let (mut last_sum, mut kinks, mut joined, mut left, mut touching) = (0.0, 0.0, 0.0, 0.0_f64, 0_usize);
+        let (mut signed, mut absolute, mut kinks, mut left, mut touching) = (0.0, 0.0, 0.0, 0.0_f64, 0_usize);
         for k in 0..new.len() {
             let going_on = to_first * first[k];
             let bend = (new[k] - old[k]) - going_on;
@@ -90,26 +91,24 @@ impl History {
             let touches = tried[k] > 0.0;
             touching += usize::from(touches);
             if touches && now[k] <= 0.0 {
-                joined += 1.0;
                 kinks += rule.kink(advance(k) - going_on, bend);
             } else {
-                last_sum += weights.of(k) * last.abs();
+                let w = weights.of(k);
+                (signed, absolute) = (signed + w * last, absolute + w * last.abs());
             }
             if !touches && (now[k] > 0.0 || before[k] > 0.0) {
                 left = left.max(last.abs());
             }
         }
-        let _ = joined;
-        if !rule.corrects() {
-            // the greatest of |s (s − Δ)| is Δ²/4; the defect is that of u
-            let bend = 0.25 * last_sum / rule.tried.span / weight;
-            return NOT_CORRECTED * amplification * bend / rule.compliance();
-        }
-        let smooth = CORRECTED * missing * (last_sum / weight).max(LEFT * left);
-        if dashpot {
-            return smooth * amplification.clamp(1.0, MAX_AMPLIFICATION);
-        }
-        smooth.max(kinks.abs() / touching.max(1) as f64)
+        let scale = if rule.corrects() {
+            CORRECTED * missing
+        } else {
+            // the greatest of |s (s − Δ)| is Δ²/4, that of the error of u
+            NOT_CORRECTED * 0.25 / rule.tried.span / rule.compliance()
+        };
+        let smooth = scale * (absolute / weight).max(LEFT * left);
+        let kinks = if rule.has_dashpot() { 0.0 } else { kinks.abs() / touching.max(1) as f64 };
+        (scale * signed / weight, smooth.max(kinks))
     }
 }
 

@@ -55,9 +55,10 @@ impl Follow<'_> {
             let computed = attempt.computation(computation);
             let age = time - computed.state.clock.undisturbed_until;
             let expected = control.expected(scene, &loads[0], age);
-            let mut error = error_in_time(scene, computed, &step, expected);
+            let mut error = error_in_time(scene, computed, &step, expected, control.agreement());
             error.relative = error.relative.max(straying);
             if control.judge(dt, error.relative, order, dashpot) {
+                control.include(dt, error.defect);
                 control.accept(time, loads[0], [wanted, dt], time == corner, order);
                 let mut report = self.contact.accept(attempt, step, error);
                 if time == corner {

@@ -1,6 +1,7 @@
 //! Runs along a load history.
 
 mod adaptive_step;
+mod drift;
 pub(in crate::contact) mod error_budget;
 pub(in crate::contact) mod follow;
 pub(in crate::contact) mod progress;

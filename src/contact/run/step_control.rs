@@ -1,5 +1,6 @@
 //! The length of steps chosen by an estimate of their error.
 
+use crate::contact::run::drift::Drift;
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
@@ -22,6 +23,7 @@ pub(super) struct StepControl {
     /// Length of the last step before a corner, and what the load would change by in a second had it gone on straight.
     corner: Option<(f64, f64)>,
     scale: Option<RunScale>,
+    drift: Option<Drift>,
     /// Steps that were rejected.
     pub(super) rejected: u64,
 }
@@ -50,7 +52,7 @@ const NODES: usize = 3;
 impl StepControl {
     pub(super) fn new(tolerance: f64) -> StepControl {
         let nodes = Vec::with_capacity(NODES + 1);
-        StepControl { tolerance, next: None, last: 1.0, nodes, corner: None, scale: None, rejected: 0 }
+        StepControl { tolerance, next: None, last: 1.0, nodes, corner: None, scale: None, drift: None, rejected: 0 }
     }
 
     /// Whether a run can be continued with it: a file may hold anything.
@@ -114,7 +116,20 @@ impl StepControl {
         }
         let scale = self.scale.get_or_insert_with(|| RunScale::new(scene, state, history, until));
         scale.include(&state.loads[0]);
+        if self.drift.is_none() {
+            self.drift = scene.material.contact_spectrum()?.map(|creep| Drift::new(&creep));
+        }
         Ok(())
+    }
+
+    /// How far the defects of the steps so far agree in sign.
+    pub(super) fn agreement(&self) -> f64 {
+        self.drift.as_ref().map_or(1.0, Drift::agreement)
+    }
+
+    /// Takes account of the defect of an accepted step.
+    pub(super) fn include(&mut self, dt: f64, defect: [f64; 2]) {
+        self.drift.iter_mut().for_each(|drift| drift.include(dt, defect));
     }
 
     /// The time before `stop` at which the bodies first touch, as far as the load alone tells.

@@ -14,8 +14,14 @@ const SHARE_OF_DIRECT_SUM: f64 = 0.5;
 const SMALL: f64 = 0.05;
 
 /// The estimated error in time of the step that was `tried`, relative to the displacement, or to a small part of the greatest
-/// so far, or of those of displacement and v that are `expected`.
-pub(in crate::contact) fn error_in_time(scene: &Scene, tried: &Computation, step: &Step<'_>, expected: [f64; 2]) -> TimeError {
+/// so far, or of those of displacement and v that are `expected`; `agreement` is how far the defects of the run agree in sign.
+pub(in crate::contact) fn error_in_time(
+    scene: &Scene,
+    tried: &Computation,
+    step: &Step<'_>,
+    expected: [f64; 2],
+    agreement: f64,
+) -> TimeError {
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();
@@ -32,7 +38,7 @@ pub(in crate::contact) fn error_in_time(scene: &Scene, tried: &Computation, step
         let creep = compliance(interval.dt) - compliance(0.0);
         let over = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
         let relative = SHARE_OF_DIRECT_SUM * creep * over(change, size.max(least[0] * sum));
-        return TimeError { relative, sizes: [over(size, sum), 0.0] };
+        return TimeError { relative, sizes: [over(size, sum), 0.0], defect: [0.0; 2] };
     }
     let age = state.clock.time - state.clock.undisturbed_until;
     let (old, young) = (compliance(age + interval.dt), compliance(interval.dt));
@@ -51,6 +57,6 @@ pub(in crate::contact) fn error_in_time(scene: &Scene, tried: &Computation, step
         advance.at(state.region.center(k))
     };
     let potential = &trial.solution.potential;
-    let measure = ErrorMeasure { pressure, potential, matters, least, advance: &advance, amplification };
+    let measure = ErrorMeasure { pressure, potential, matters, least, advance: &advance, amplification, agreement };
     state.history.time_error(measure)
 }

@@ -99,7 +99,7 @@ impl ViscoelasticContact {
     /// v at least.
     pub(in crate::contact) fn take_expecting(&mut self, step: Step<'_>, expected: [f64; 2]) -> Result<StepReport> {
         let attempt = self.attempt(&step)?;
-        let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, expected);
+        let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, expected, 1.0);
         Ok(self.accept(attempt, step, error))
     }
 
