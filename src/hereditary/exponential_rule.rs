@@ -62,7 +62,7 @@ pub(crate) struct ExponentialRule {
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Weights {
     /// Length of the step.
-    dt: f64,
+    pub(super) dt: f64,
     /// Degree of u on the step.
     degree: usize,
     /// Whether it puts the step before right, and is to be put right by the next one.

@@ -22,6 +22,9 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) amplification: f64,
     /// How far the defects so far agree in sign, 0 … 1.
     pub(crate) agreement: f64,
+    /// An immediate dashpot answers a body that meets a cell with a finite pressure at once, however short the step: that counts
+    /// in steps longer than this.
+    pub(crate) resolution: f64,
 }
 
 /// What is known of the error in time of a step.
@@ -36,10 +39,12 @@ pub(crate) struct TimeError {
 }
 
 /// Share of the defect of a step that is left once the next has put it right, and of one that is not put right.
-const CORRECTED: f64 = 0.5;
+const CORRECTED: f64 = 0.4;
 const NOT_CORRECTED: f64 = 0.25;
 /// Defects of cells that leave the contact count twice.
 const LEFT: f64 = 2.0;
+/// A force answers a cell at the edge of the contact more than others: a rigid body presses hardest there.
+const EDGE: f64 = 2.0;
 
 impl History {
     /// The estimated error of the step tried; 0 where too few steps before it are known.
@@ -64,30 +69,33 @@ impl History {
             sizes = [sizes[0] + w * u.abs(), sizes[1] + w * v.abs()];
         }
         let means = sizes.map(|size| if weight > 0.0 { size / weight } else { 0.0 });
-        let (signed, defect) = self.defect(rule, measure, &weights, weight);
+        let Defect { signed, smooth, kinks } = self.defect(rule, measure, &weights, weight);
         let growth = 1.0 + measure.agreement * (measure.amplification - 1.0);
         let relative = [0, 1].map(|which| {
             let size = means[which].max(least[which]);
-            let defect = if which == 0 { growth * rule.compliance() * defect } else { defect };
+            let defect =
+                if which == 0 { rule.compliance() * kinks.max(growth * smooth) } else { (EDGE * kinks).max(smooth) };
             // nothing over nothing is nothing, but overflow must not pass for accuracy
             if !matters[which] || defect == 0.0 { 0.0 } else { defect / size }
         });
         let worst = if relative.iter().any(|error| error.is_nan()) { f64::INFINITY } else { relative[0].max(relative[1]) };
-        TimeError { relative: worst, sizes: if weights.pressed { means } else { [0.0; 2] }, defect: [signed, defect] }
+        TimeError { relative: worst, sizes: if weights.pressed { means } else { [0.0; 2] }, defect: [signed, smooth] }
     }
 
-    /// The mean defect of v, signed, and in absolute value with all that counts.
-    fn defect(&self, rule: &ExponentialRule, measure: ErrorMeasure<'_>, weights: &Weighting<'_>, weight: f64) -> (f64, f64) {
-        let Some((lacking, missing)) = rule.missing().filter(|_| weight > 0.0) else { return (0.0, 0.0) };
+    fn defect(&self, rule: &ExponentialRule, measure: ErrorMeasure<'_>, weights: &Weighting<'_>, weight: f64) -> Defect {
+        if weight == 0.0 {
+            return Defect::default();
+        }
+        let (lacking, missing) = rule.missing().unwrap_or((0, 0.0));
         let ErrorMeasure { pressure: [tried, now, before], advance, .. } = measure;
         let [first, second] = self.displacement.past.differences();
         let [to_first, to_second] = rule.tried.ratios;
         let (new, old) = (&self.displacement.trial, &self.displacement.now);
         let (mut signed, mut absolute, mut kinks, mut left, mut touching) = (0.0, 0.0, 0.0, 0.0_f64, 0_usize);
         for k in 0..new.len() {
-            let going_on = to_first * first[k];
+            let going_on = if lacking > 0 { to_first * first[k] } else { 0.0 };
             let bend = (new[k] - old[k]) - going_on;
-            let last = if lacking == 2 { bend } else { bend - to_second * second[k] };
+            let last = if lacking < 3 { bend } else { bend - to_second * second[k] };
             let touches = tried[k] > 0.0;
             touching += usize::from(touches);
             if touches && now[k] <= 0.0 {
@@ -102,14 +110,27 @@ impl History {
         }
         let scale = if rule.corrects() {
             CORRECTED * missing
+        } else if lacking == 0 {
+            0.0
         } else {
             // the greatest of |s (s − Δ)| is Δ²/4, that of the error of u
             NOT_CORRECTED * 0.25 / rule.tried.span / rule.compliance()
         };
         let smooth = scale * (absolute / weight).max(LEFT * left);
-        let kinks = if rule.has_dashpot() { 0.0 } else { kinks.abs() / touching.max(1) as f64 };
-        (scale * signed / weight, smooth.max(kinks))
+        let counts = !rule.has_dashpot() || rule.tried.dt > measure.resolution;
+        let kinks = if counts { kinks.abs() / touching.max(1) as f64 } else { 0.0 };
+        Defect { signed: scale * signed / weight, smooth, kinks }
     }
+}
+
+/// Mean defects of v.
+#[derive(Default)]
+struct Defect {
+    signed: f64,
+    /// In absolute value, of cells that are in contact or leave it.
+    smooth: f64,
+    /// By cells that joined.
+    kinks: f64,
 }
 
 /// The weight of each cell in a mean over the contact.

@@ -54,8 +54,8 @@ impl Follow<'_> {
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
             let computed = attempt.computation(computation);
             let age = time - computed.state.clock.undisturbed_until;
-            let expected = control.expected(scene, &loads[0], age);
-            let mut error = error_in_time(scene, computed, &step, expected, control.agreement());
+            let outlook = control.outlook(scene, &loads[0], age, corner.min(self.until));
+            let mut error = error_in_time(scene, computed, &step, outlook);
             error.relative = error.relative.max(straying);
             if control.judge(dt, error.relative, order, dashpot) {
                 control.include(dt, error.defect);

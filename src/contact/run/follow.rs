@@ -7,6 +7,7 @@ use crate::contact::run::progress::Autosave;
 use crate::contact::run::progress::Progress;
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::stepping::Stepping;
+use crate::contact::step::error_in_time::Outlook;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, LoadError, Result, finite, positive, within};
 use crate::load::{Load, LoadHistory};
@@ -187,12 +188,12 @@ impl<'a> Follow<'a> {
         let loads = [load];
         let step = self.contact.request(time, dt, &loads, tolerance);
         let ViscoelasticContact { scene, computation, .. } = &*self.contact;
-        let expected = {
+        let outlook = {
             let new = || RunScale::new(scene, &computation.state, self.history, self.until);
             let scale = self.progress.scale.get_or_insert_with(new);
-            scale.expected(scene, &load, time - computation.state.clock.undisturbed_until)
+            Outlook { expected: scale.expected(scene, &load, time - computation.state.clock.undisturbed_until), ..Outlook::default() }
         };
-        let report = self.contact.take_expecting(step, expected)?;
+        let report = self.contact.take_expecting(step, outlook)?;
         self.progress.include(report.time_error, report.residual);
         Ok(report)
     }

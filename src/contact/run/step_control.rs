@@ -4,6 +4,7 @@ use crate::contact::run::drift::Drift;
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
+use crate::contact::step::error_in_time::Outlook;
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
 
@@ -24,6 +25,9 @@ pub(super) struct StepControl {
     corner: Option<(f64, f64)>,
     scale: Option<RunScale>,
     drift: Option<Drift>,
+    /// Steps accepted, and the time of the last jump or corner.
+    steps: u64,
+    since: f64,
     /// Steps that were rejected.
     pub(super) rejected: u64,
 }
@@ -46,13 +50,15 @@ const LENGTHS_PER_DECADE: i32 = 4;
 const DECADES: i32 = 40;
 /// A body without elastic response has no shortest time: its first step is this fraction of the time left.
 const FIRST_FRACTION: f64 = 1e-6;
+/// Events shorter than this part of the time between corners, times the tolerance, do not matter.
+const SHORTEST: f64 = 0.1;
 /// Nodes that a quadratic and its correction go through, besides the end of the step.
 const NODES: usize = 3;
 
 impl StepControl {
     pub(super) fn new(tolerance: f64) -> StepControl {
         let nodes = Vec::with_capacity(NODES + 1);
-        StepControl { tolerance, next: None, last: 1.0, nodes, corner: None, scale: None, drift: None, rejected: 0 }
+        StepControl { tolerance, next: None, last: 1.0, nodes, corner: None, scale: None, drift: None, steps: 0, since: 0.0, rejected: 0 }
     }
 
     /// Whether a run can be continued with it: a file may hold anything.
@@ -113,6 +119,7 @@ impl StepControl {
         let now = state.clock.time;
         if self.nodes.is_empty() {
             self.nodes.push((now, history.at(now).validated_at(now)?));
+            self.since = now;
         }
         let scale = self.scale.get_or_insert_with(|| RunScale::new(scene, state, history, until));
         scale.include(&state.loads[0]);
@@ -122,13 +129,9 @@ impl StepControl {
         Ok(())
     }
 
-    /// How far the defects of the steps so far agree in sign.
-    pub(super) fn agreement(&self) -> f64 {
-        self.drift.as_ref().map_or(1.0, Drift::agreement)
-    }
-
     /// Takes account of the defect of an accepted step.
     pub(super) fn include(&mut self, dt: f64, defect: [f64; 2]) {
+        self.steps += 1;
         self.drift.iter_mut().for_each(|drift| drift.include(dt, defect));
     }
 
@@ -138,9 +141,15 @@ impl StepControl {
         scale.map_or(f64::INFINITY, |scale| scale.first_touch(history, state.clock.time, stop))
     }
 
-    /// The displacement and v that are likely under the greatest load of the run, in bodies that have been pressed for so long.
-    pub(super) fn expected(&self, scene: &Scene, load: &Load, age: f64) -> [f64; 2] {
-        self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age))
+    /// What is known of the run at a step under `load` that ends when the bodies have been pressed for `age`, before a corner or
+    /// the end of the run.
+    pub(super) fn outlook(&self, scene: &Scene, load: &Load, age: f64, stop: f64) -> Outlook {
+        Outlook {
+            expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
+            agreement: self.drift.as_ref().map_or(1.0, Drift::agreement),
+            steps: self.steps as f64 + 1.0,
+            resolution: SHORTEST * self.tolerance * (stop - self.since),
+        }
     }
 
     /// The length to try next, at most `left`.

@@ -6,27 +6,58 @@ use crate::contact::request::Step;
 use crate::contact::settings::TimeRule;
 use crate::contact::window::growth::motion_tried;
 use crate::hereditary::{ErrorMeasure, TimeError};
+use crate::solver::RigidMotion;
+
+impl Computation {
+    /// By how much the body above a cell advances in the step tried.
+    pub(super) fn advance(&self, step: &Step<'_>, k: usize) -> f64 {
+        let Computation { state, window, trial } = self;
+        let body = window.gap(&step.indenter).owner(k);
+        let (start, end) = (state.current.motions[body], motion_tried(&state.region, trial, step, body));
+        let approach = step.indenter.gap().datum + end.approach - start.approach;
+        let tilt = [0, 1].map(|axis| end.tilt[axis] - start.tilt[axis]);
+        RigidMotion { approach, tilt }.at(state.region.center(k))
+    }
+}
 
 /// A direct sum assigns an increment to one end of its step: on average it answers it half a step too early or too late.
 const SHARE_OF_DIRECT_SUM: f64 = 0.5;
 
-/// Displacements below this part of the greatest are measured relative to that part.
-const SMALL: f64 = 0.05;
+/// What a run knows besides the step.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::contact) struct Outlook {
+    /// Mean displacement and v that are to be expected of the greatest loads.
+    pub(in crate::contact) expected: [f64; 2],
+    /// How far the defects of the run agree in sign, 0 … 1.
+    pub(in crate::contact) agreement: f64,
+    /// Steps so far, this one included.
+    pub(in crate::contact) steps: f64,
+    /// Events that take less time than this do not matter.
+    pub(in crate::contact) resolution: f64,
+}
+
+impl Default for Outlook {
+    fn default() -> Outlook {
+        Outlook { expected: [0.0; 2], agreement: 1.0, steps: f64::INFINITY, resolution: 0.0 }
+    }
+}
+
+/// Displacements, and v, below this part of the greatest are measured relative to that part.
+const SMALL: [f64; 2] = [0.05, 0.2];
 
 /// The estimated error in time of the step that was `tried`, relative to the displacement, or to a small part of the greatest
-/// so far, or of those of displacement and v that are `expected`; `agreement` is how far the defects of the run agree in sign.
+/// so far.
 pub(in crate::contact) fn error_in_time(
     scene: &Scene,
     tried: &Computation,
     step: &Step<'_>,
-    expected: [f64; 2],
-    agreement: f64,
+    Outlook { expected, agreement, steps, resolution }: Outlook,
 ) -> TimeError {
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();
     }
-    let least = [0, 1].map(|which| SMALL * expected[which].max(state.greatest[which]));
+    let least = [0, 1].map(|which| SMALL[which] * expected[which].max(state.greatest[which]));
     let compliance = |t: f64| scene.material.contact_compliance(t);
     let (pressure, before) = (&trial.solution.pressure, &state.current.solution);
     if let TimeRule::Rectangle | TimeRule::Backward = scene.settings.time_rule {
@@ -42,21 +73,13 @@ pub(in crate::contact) fn error_in_time(
     }
     let age = state.clock.time - state.clock.undisturbed_until;
     let (old, young) = (compliance(age + interval.dt), compliance(interval.dt));
-    let amplification = if young > 0.0 { (old / young).max(1.0) } else { 1.0 };
+    // so many steps cannot add up to more than as many times the error of one
+    let amplification = if young > 0.0 { (old / young).clamp(1.0, steps.max(1.0)) } else { 1.0 };
     let pressure = [&pressure[..], &before.pressure, &state.previous.solution.pressure];
     let forces = trial.free.iter().filter(|freedom| freedom.translation).count();
     let matters = [forces > 0, forces < trial.free.len()];
-    let gap = tried.window.gap(&step.indenter);
-    let advance = |k: usize| {
-        let body = gap.owner(k);
-        let end = motion_tried(&state.region, trial, step, body);
-        let mut advance = end;
-        let start = state.current.motions[body];
-        advance.approach += step.indenter.gap().datum - start.approach;
-        (0..2).for_each(|axis| advance.tilt[axis] -= start.tilt[axis]);
-        advance.at(state.region.center(k))
-    };
+    let advance = |k: usize| tried.advance(step, k);
     let potential = &trial.solution.potential;
-    let measure = ErrorMeasure { pressure, potential, matters, least, advance: &advance, amplification, agreement };
+    let measure = ErrorMeasure { pressure, potential, matters, least, advance: &advance, amplification, agreement, resolution };
     state.history.time_error(measure)
 }

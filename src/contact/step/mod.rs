@@ -39,7 +39,7 @@ use crate::events;
 use crate::hereditary::{Interval, TimeError};
 use crate::load::Load;
 use crate::solver::Stop;
-use error_in_time::error_in_time;
+use error_in_time::{Outlook, error_in_time};
 use checks::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use collect_warnings::collect_warnings;
 use constraints::{Prescribed, find_free_motions, surface_follows_bodies, validate_loads};
@@ -92,14 +92,13 @@ impl ViscoelasticContact {
 
     /// Computes a step and accepts it.
     pub(in crate::contact) fn take(&mut self, step: Step<'_>) -> Result<StepReport> {
-        self.take_expecting(step, [0.0; 2])
+        self.take_expecting(step, Outlook::default())
     }
 
-    /// Computes a step and accepts it; its error is estimated relative to a part of the `expected` displacement or
-    /// v at least.
-    pub(in crate::contact) fn take_expecting(&mut self, step: Step<'_>, expected: [f64; 2]) -> Result<StepReport> {
+    /// Computes a step and accepts it; its error is estimated with regard to the `outlook`.
+    pub(in crate::contact) fn take_expecting(&mut self, step: Step<'_>, outlook: Outlook) -> Result<StepReport> {
         let attempt = self.attempt(&step)?;
-        let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, expected, 1.0);
+        let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, outlook);
         Ok(self.accept(attempt, step, error))
     }
 
