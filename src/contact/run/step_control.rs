@@ -6,7 +6,7 @@ use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::error_in_time::Outlook;
 use crate::error::Result;
-use crate::load::{Load, LoadHistory};
+use crate::load::{Load, LoadHistory, Tilt};
 
 /// Chooses steps whose error stays below the tolerance: that of the displacement within the step
 /// ([`History::time_error`](crate::hereditary::History::time_error)), and that of the load, which is taken to be the polynomial
@@ -52,6 +52,8 @@ const DECADES: i32 = 40;
 const FIRST_FRACTION: f64 = 1e-6;
 /// Events shorter than this part of the time between corners, times the tolerance, do not matter.
 const SHORTEST: f64 = 0.1;
+/// Where loads are looked at within a step: unevenly, so that no oscillation hits a zero at all of them.
+const SHARES: [f64; 5] = [0.153, 0.381, 0.5, 0.677, 0.891];
 /// Nodes that a quadratic and its correction go through, besides the end of the step.
 const NODES: usize = 3;
 
@@ -192,6 +194,20 @@ impl StepControl {
         Ok(longest * 10f64.powi(-DECADES))
     }
 
+    /// Whether a body whose approach is given comes no nearer between now and `time` than at these ends.
+    pub(super) fn stays_away(&self, history: &dyn LoadHistory, now: f64, time: f64) -> bool {
+        let approach = |load: Load| match load {
+            Load::Approach { approach, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)] } => approach,
+            _ => f64::NAN,
+        };
+        let nearest = approach(history.at(now)).max(approach(history.before(time)));
+        let mut away = !nearest.is_nan();
+        for share in SHARES {
+            away &= approach(history.at(now + share * (time - now))) <= nearest;
+        }
+        away
+    }
+
     /// How far the load strays between now and `time` from the polynomial through its last nodes and that at `time`, relative
     /// to itself or to a fraction of the greatest of the run. Rejects invalid loads of the history.
     pub(super) fn watch(&self, history: &dyn LoadHistory, now: f64, time: f64) -> Result<f64> {
@@ -202,10 +218,8 @@ impl StepControl {
         let nodes = &nodes[..=known];
         let start = nodes[known.min(1)].1;
         let scale = self.scale.as_ref().map_or(0.0, |scale| scale.of_load(&start, &end));
-        // unevenly, so that no oscillation hits a zero at all of them
-        let shares = [0.153, 0.381, 0.5, 0.677, 0.891];
         let mut most = 0.0_f64;
-        for share in shares {
+        for share in SHARES {
             let between = now + share * (time - now);
             let load = history.at(between).validated_at(between)?;
             let like = load.is_like(&start) && load.is_like(&end);
