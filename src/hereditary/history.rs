@@ -194,6 +194,16 @@ impl History {
         self.before_is_kept.then(|| self.trial())
     }
 
+    /// The changes of the displacement and of the source of its far field in the step before the last, where they are kept
+    /// and [`History::displacement_before`] is known.
+    pub(crate) fn change_before(&self) -> Option<(&[f64], Option<&[f64]>)> {
+        let change = self.displacement.past.change_before()?;
+        match &self.far {
+            Some(far) => far.past.change_before().map(|far| (change, Some(far))),
+            None => Some((change, None)),
+        }
+    }
+
     /// The source U of the far field, if only a window is computed.
     pub(crate) fn far_source(&self) -> Option<&[f64]> {
         self.far.as_ref().map(|far| &far.now[..])

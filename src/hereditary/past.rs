@@ -107,6 +107,12 @@ impl Past {
         [&self.differences[0], &self.differences[1]]
     }
 
+    /// The change of the field in the step before the last, until that is taken in; none where it is not kept.
+    pub(super) fn change_before(&self) -> Option<&[f64]> {
+        let [first, _] = self.differences();
+        (self.waiting && !first.is_empty()).then_some(first)
+    }
+
     /// Calls `take` with c Σ e^(−z_i) q_i less the share of the differences, for each cell that is `wanted`; after
     /// [`Past::predict`].
     pub(super) fn recovery(
