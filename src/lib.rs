@@ -128,7 +128,7 @@
 //! periodic or not, with contact plasticity; adhesion is in a separate package.
 //! [CONTACT](https://www.kalkersoftware.org) (Fortran) computes rolling and sliding with friction, conformal and
 //! transient, also of viscoelastic bodies. Their friction, adhesion and plasticity are not available here. This crate
-//! offers any linear rheology, measured or fitted, in a second-order recursion whose cost does not grow with the number
+//! offers any linear rheology, measured or fitted, in a recursion of third to fourth order whose cost does not grow with the number
 //! of steps; eccentric loads that tilt; steps chosen by their error; all of it as a typed library that another program
 //! drives step by step. Its accuracy is given claim by claim in `docs/validation.md` and `docs/accuracy.md`.
 

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use crate::contact::extrapolation::Extrapolation;
 use crate::contact::indenter::Indenter;
-use crate::contact::request::Step;
 use crate::contact::window::region::Region;
 use crate::hereditary::{History, Interval};
 use crate::load::Load;
@@ -36,9 +35,9 @@ pub(crate) struct State {
     pub(super) previous: Equilibrium,
     /// At the start of the step before the last, where the last one follows the polynomial through it.
     pub(super) earlier: Option<Node>,
-    /// Whether the loads were held in the last step; none where that does not tell how the next goes on: after a jump, a
-    /// corner, a step over the bodies, or with a new indenter.
-    pub(super) held: Option<bool>,
+    /// Whether the last step tells how the next goes on: not after a jump, a corner or a step over the bodies, nor with a new
+    /// indenter.
+    pub(super) goes_on: bool,
     pub(super) extrapolation: Extrapolation,
     /// The greatest means of displacement and v over the contact so far, as far as errors were taken relative to them.
     pub(super) greatest: [f64; 2],
@@ -113,7 +112,7 @@ impl State {
             previous: current.clone(),
             current,
             earlier: None,
-            held: None,
+            goes_on: false,
             extrapolation: Extrapolation::default(),
             greatest: [0.0; 2],
         }
@@ -129,19 +128,15 @@ impl State {
     /// The last step says nothing about how the state goes on, as at a corner of the load.
     pub(super) fn forget_slopes(&mut self) {
         self.history.forget_slopes();
-        self.held = None;
+        self.goes_on = false;
     }
 
-    /// Keeps the start of the last step, before a next one is accepted.
-    pub(super) fn keep_earlier(&mut self, step: &Step<'_>) {
-        let (dt, before) = (step.interval.dt, self.clock.last_dt);
-        let held = self.loads == step.loads;
-        let like = self.loads.iter().zip(step.loads).all(|(own, load)| own.is_like(load));
-        let goes_on = self.held == Some(held) && like && dt > 0.0 && dt <= MAX_GROWTH * before;
-        let Equilibrium { motions, .. } = &self.previous;
-        let node = || Node { dt: before, motion: motions[0], force: self.force_of(&self.previous) };
-        self.earlier = goes_on.then(node);
-        self.held = (dt > 0.0 && step.interval.stride == [0; 2]).then_some(held);
+    /// Keeps the start of the last step where the `next`, which the history has just committed, follows a quadratic through it.
+    pub(super) fn keep_earlier(&mut self, next: Interval) {
+        let (Equilibrium { motions, .. }, dt) = (&self.previous, self.clock.last_dt);
+        let follows = self.goes_on && next.dt <= MAX_GROWTH * dt && self.history.followed_quadratic(next);
+        self.earlier = follows.then(|| Node { dt, motion: motions[0], force: self.force_of(&self.previous) });
+        self.goes_on = next.dt > 0.0 && next.stride == [0; 2];
     }
 
     /// Whether no pressure has ever acted.
@@ -167,12 +162,12 @@ impl State {
             current,
             previous,
             earlier,
-            held,
+            goes_on,
             extrapolation,
             greatest,
         } = self;
         (*clock, *extrapolation) = (other.clock, other.extrapolation);
-        (*earlier, *held, *greatest) = (other.earlier, other.held, other.greatest);
+        (*earlier, *goes_on, *greatest) = (other.earlier, other.goes_on, other.greatest);
         (*indenter_is_new, *region_is_placed) = (other.indenter_is_new, other.region_is_placed);
         loads.clone_from(&other.loads);
         indenter.clone_from(&other.indenter);

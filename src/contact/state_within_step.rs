@@ -12,13 +12,14 @@ use crate::solver::RigidMotion;
 /// The state at a time inside the last step, made by [`ViscoelasticContact::within_step`]. So the times at which a user looks
 /// need not be those at which a step ends.
 ///
-/// Displacement, approach, tilt and force follow the quadratic through their last three values: they are third order in the
-/// length of the steps, second where a cell comes into contact or leaves it. A force or displacement that would fall below
-/// zero between values that do not is linear. The pressure is linear, so never negative, and second order.
+/// In steps chosen by their error, and all steps of bodies without elastic response, displacement, approach, tilt and force
+/// follow the quadratic through their last three values, as the rule takes the displacement to do: third order in the length
+/// of the steps, second where cells come into contact or leave it. A force or displacement that would fall below zero between
+/// values that do not is linear. The pressure is linear, so never negative, and second order.
 ///
-/// All are linear, second order, where the step before does not tell how the state goes on: in the first step after a jump,
-/// a corner of the load that a history announces, a new indenter, a step over the bodies, or between loads that are held and
-/// loads that change; and in a step more than four times as long as the one before.
+/// Else all are linear, second order: in steps of given length, in which the load may have any kink, in the first step after a
+/// jump, a corner of the load or a new indenter, in steps more than four times as long as the one before, and with direct sums.
+/// So is the displacement of an elastic body.
 ///
 /// ```
 /// use viscocontact::prelude::*;

@@ -194,6 +194,16 @@ impl History {
         self.before_is_kept.then(|| self.trial())
     }
 
+    /// Whether the displacement followed a quadratic in the step committed last; that of an elastic body, which depends on no
+    /// past, may follow any.
+    pub(crate) fn followed_quadratic(&self, last: Interval) -> bool {
+        let rule = self.exponential_rule();
+        rule.is_some_and(|rule| match rule.remembers() {
+            true => rule.followed_quadratic(),
+            false => last.interpolant == Interpolant::CorrectedQuadratic,
+        })
+    }
+
     /// The changes of the displacement and of the source of its far field in the step before the last, where they are kept
     /// and [`History::displacement_before`] is known.
     pub(crate) fn change_before(&self) -> Option<(&[f64], Option<&[f64]>)> {

@@ -129,7 +129,7 @@ fn rejected_steps_leave_no_trace() {
 }
 
 #[test]
-fn the_state_inside_a_step_is_third_order() {
+fn the_state_inside_a_step_is_second_order() {
     let scene = scenes().into_iter().find(|scene| scene.name == "Zener, held").unwrap();
     let mut errors = Vec::new();
     for steps in [8, 16, 32] {
@@ -157,9 +157,7 @@ fn the_state_inside_a_step_is_third_order() {
     }
     println!("{errors:?}");
     for pair in errors.windows(2) {
-        assert!(pair[0][0] / pair[1][0] > 7.0, "{errors:?}");
-        // the edge of the contact, where u has its kink, is between cells
-        assert!(pair[0][1] / pair[1][1] > 3.5, "{errors:?}");
+        assert!(pair[0][0] / pair[1][0] > 3.5, "{errors:?}");
     }
     // its ends are the states themselves
     let mut contact = scene.contact(32, 1e-8);
@@ -177,91 +175,71 @@ fn the_state_inside_a_step_is_third_order() {
     }
 }
 
-/// Inside the steps of a run, against the line between their ends: nearer where all is smooth, no farther where bodies part and
-/// meet again.
+/// Greatest and mean error of approach and force inside the steps of an adaptive run, by what the contact says and on the line
+/// between the ends of the steps, relative to their greatest values; and the number of steps.
+fn errors_inside(scene: &Scene, tolerance: f64) -> ([[[f64; 2]; 2]; 2], usize) {
+    const SHARES: [f64; 3] = [0.2, 0.5, 0.8];
+    let mut contact = scene.contact(24, 1e-4 * tolerance);
+    let mut follow = contact.follow(&*scene.history, Stepping::adaptive(tolerance), scene.until);
+    // time; approach and force there, and on the line
+    let (mut inside, mut start, mut steps) = (Vec::new(), [0.0; 2], 0);
+    while let Some(report) = follow.next_step().unwrap() {
+        let end = [report.approach, report.force];
+        for share in SHARES.into_iter().filter(|_| report.dt > 0.0) {
+            let time = report.time - (1.0 - share) * report.dt;
+            let between = follow.contact().within_step(time).unwrap();
+            let mut u = vec![0.0; follow.contact().grid().len()];
+            between.displacement_into(&mut u).unwrap();
+            assert!(between.force() >= 0.0 && u.iter().all(|&u| u >= 0.0), "{} at {time}", scene.name);
+            let line = [0, 1].map(|which| start[which] + share * (end[which] - start[which]));
+            inside.push((time, [[between.approach(), between.force()], line]));
+        }
+        (start, steps) = (end, steps + 1);
+    }
+    let times: Vec<f64> = inside.iter().map(|(time, _)| *time).collect();
+    let mut contact = scene.contact(24, 1e-10);
+    let fine = Stepping::adaptive((1e-2 * tolerance).min(1e-5));
+    let mut follow = contact.follow(&*scene.history, fine, scene.until).stop_at(&times).unwrap();
+    let mut exact = Vec::new();
+    while let Some(report) = follow.next_step().unwrap() {
+        exact.push((report.time, [report.approach, report.force]));
+    }
+    let errors = [0, 1].map(|which| {
+        let greatest = exact.iter().map(|(_, exact)| exact[which].abs()).fold(0.0, f64::max);
+        [0, 1].map(|by| {
+            let off = inside.iter().map(|(time, found)| {
+                let (_, exact) = exact.iter().find(|(at, _)| at == time).unwrap();
+                (found[by][which] - exact[which]).abs() / greatest
+            });
+            off.fold([0.0, 0.0], |[most, mean]: [f64; 2], off| [most.max(off), mean + off / inside.len() as f64])
+        })
+    });
+    (errors, steps)
+}
+
+/// Against the line between the ends of the steps: nearer, also where bodies part and meet again.
 #[test]
 fn the_state_inside_a_step_is_nearer_than_a_line() {
-    const SHARES: [f64; 3] = [0.2, 0.5, 0.8];
-    for (name, adaptive, least_gain) in [
-        ("approach", true, [5.0, 1.8]),
-        ("sine", true, [2.5, 2.5]),
-        ("approach", false, [1.5, 1.5]),
-        ("sine", false, [2.0, 2.0]),
-    ] {
-        let scene = scenes().into_iter().find(|scene| scene.name.contains(name)).unwrap();
-        let stepping = if adaptive { Stepping::adaptive(1e-3) } else { Stepping::fixed(scene.until / 40.0) };
-        let mut contact = scene.contact(24, 1e-7);
-        let mut follow = contact.follow(&*scene.history, stepping, scene.until);
-        // time; approach and force there, and on the line
-        let (mut inside, mut start) = (Vec::new(), [0.0; 2]);
-        while let Some(report) = follow.next_step().unwrap() {
-            let end = [report.approach, report.force];
-            for share in SHARES.into_iter().filter(|_| report.dt > 0.0) {
-                let time = report.time - (1.0 - share) * report.dt;
-                let between = follow.contact().within_step(time).unwrap();
-                let mut u = vec![0.0; follow.contact().grid().len()];
-                between.displacement_into(&mut u).unwrap();
-                assert!(between.force() >= 0.0 && u.iter().all(|&u| u >= 0.0), "{name} at {time}");
-                let line = [0, 1].map(|which| start[which] + share * (end[which] - start[which]));
-                inside.push((time, [[between.approach(), between.force()], line]));
-            }
-            start = end;
-        }
-        let times: Vec<f64> = inside.iter().map(|(time, _)| *time).collect();
-        let mut contact = scene.contact(24, 1e-9);
-        let mut follow =
-            contact.follow(&*scene.history, Stepping::adaptive(1e-5), scene.until).stop_at(&times).unwrap();
-        let mut fine = Vec::new();
-        while let Some(report) = follow.next_step().unwrap() {
-            fine.push((report.time, [report.approach, report.force]));
-        }
-        for which in [0, 1] {
-            // greatest error and sum, there and on the line
-            let mut errors = [[0.0_f64; 2]; 2];
-            for (time, found) in &inside {
-                let exact = fine.iter().find(|(at, _)| at == time).unwrap().1[which];
-                for (error, found) in errors.iter_mut().zip(found) {
-                    let off = (found[which] - exact).abs();
-                    *error = [error[0].max(off), error[1] + off];
-                }
-            }
-            let [own, line] = errors;
-            println!(
-                "{name}, {adaptive}: {own:.1e?}, line {line:.1e?}, {:.2} {:.2}",
-                line[0] / own[0],
-                line[1] / own[1]
-            );
-            assert!(own[0] <= 1.05 * line[0] && least_gain[which] * own[1] <= line[1], "{name}: {own:?} {line:?}");
+    let sine = || Box::new(Sinusoid::new(Load::force(0.2), Load::force(1.0), 1.0).unwrap());
+    let elastic = Scene { name: "elastic, sine", material: elastic(), history: sine(), until: 2.0 };
+    let others = scenes().into_iter().filter(|scene| scene.name.contains("sine") || scene.name.contains("approach"));
+    for scene in others.chain([elastic]) {
+        let (errors, steps) = errors_inside(&scene, 1e-3);
+        for (what, [own, line]) in ["approach", "force"].into_iter().zip(errors) {
+            println!("{}, {steps} steps, {what}: {own:?}, on the line {line:?}", scene.name);
+            assert!(own[0] <= 0.5 * line[0] && own[1] <= 0.4 * line[1], "{}, {what}: {own:?} {line:?}", scene.name);
         }
     }
 }
 
-/// What is not known to go on as before is linear: a load that is let go of, or held.
 #[test]
-fn steps_that_do_not_go_on_are_linear_inside() {
-    let scene = scenes().into_iter().find(|scene| scene.name == "Zener, held").unwrap();
-    let mut contact = scene.contact(16, 1e-8);
-    let mut before = contact.approach();
-    // a jump, a first step, a ramp and its end, a ramp of another kind, a longer step
-    let steps = [
-        (0.0, 0.2, true),
-        (0.1, 0.4, true),
-        (0.1, 0.4, true),
-        (0.1, 0.4, false),
-        (0.1, 0.5, true),
-        (0.1, 0.7, false),
-        (0.5, 0.9, true),
-    ];
-    for (dt, force, linear) in steps {
-        contact.step(dt, Load::force(force)).unwrap();
-        if dt > 0.0 {
-            let (middle, line) = (
-                contact.within_step(contact.time() - 0.5 * dt).unwrap().approach(),
-                0.5 * (before + contact.approach()),
-            );
-            assert_eq!((middle - line).abs() < 1e-12 * line, linear, "{dt} {force}: {middle} {line}");
-        }
-        before = contact.approach();
+fn the_state_inside_an_adaptive_step_is_third_order() {
+    let scene = scenes().into_iter().find(|scene| scene.name.contains("sine")).unwrap();
+    let [(coarse, few), (fine, many)] = [1e-3, 1e-5].map(|tolerance| errors_inside(&scene, tolerance));
+    for which in [0, 1] {
+        let order = |by: usize| (coarse[which][by][1] / fine[which][by][1]).ln() / (many as f64 / few as f64).ln();
+        println!("{few} and {many} steps, order {:.2}, on the line {:.2}", order(0), order(1));
+        assert!(order(0) > 2.6, "{}", order(0));
     }
 }
 
