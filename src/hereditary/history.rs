@@ -73,7 +73,9 @@ impl Rule {
     fn undisturbed_on(&self, cells: [usize; 2]) -> Rule {
         match self {
             Rule::Exponential(own) => Rule::Exponential(own.clone()),
-            Rule::MovingFrame(own, frame) => Rule::MovingFrame(own.clone(), Box::new(frame.undisturbed_on(cells))),
+            Rule::MovingFrame(own, frame) => {
+                Rule::MovingFrame(own.clone(), Box::new(frame.undisturbed_on(cells, own.least_kept())))
+            }
             Rule::DirectSum(own) => Rule::DirectSum(own.without_increments()),
         }
     }
@@ -142,7 +144,9 @@ impl History {
     /// The same bodies, undisturbed, on so many cells; with a far field where these are a `window` of the grid.
     pub(crate) fn undisturbed_on(&self, cells: [usize; 2], window: bool) -> History {
         let rule = self.rule.undisturbed_on(cells);
-        let displacement = RememberedField::new(rule.branches(), cells[0] * cells[1]);
+        // what steps of given length need, so that none of them allocates
+        let kept = rule.exponential().map_or(0, ExponentialRule::least_kept);
+        let displacement = self.displacement.undisturbed_on(cells[0] * cells[1], kept);
         let far = (window && self.has_far_field()).then(|| displacement.clone());
         History { rule, displacement, far, before_is_kept: true }
     }
