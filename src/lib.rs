@@ -81,7 +81,7 @@
 //! exponential series is fitted by one when the contact is built ([`rheology::Rheology::series`]): about two relaxation
 //! times per decade for an error of 1e-4, in a tenth of a second.
 //!
-//! Memory: about 175 bytes per computed cell (360 for a line contact, whose transform tables are as long as the line),
+//! Memory: about 183 bytes per computed cell (369 for a line contact, whose transform tables are as long as the line),
 //! and 8 for each further relaxation time, 16 where the grid follows the indenter (an elastic bulk doubles their
 //! number). [`contact::Builder::memory`] returns it before a contact is built; insufficient memory is an error
 //! ([`Error::OutOfMemory`]) and does not abort the process. A step allocates nothing, except when a window grows.
