@@ -84,7 +84,7 @@
 //! Memory: about 183 bytes per computed cell (369 for a line contact, whose transform tables are as long as the line),
 //! and 8 for each further relaxation time, 16 where the grid follows the indenter (an elastic bulk doubles their
 //! number). [`contact::Builder::memory`] returns it before a contact is built; insufficient memory is an error
-//! ([`Error::OutOfMemory`]) and does not abort the process. A step allocates nothing, except when a window grows.
+//! ([`Error::OutOfMemory`]) and does not abort the process. A step allocates nothing, except when a window grows, and the first adaptive one.
 //!
 //! # Co-simulation and long runs
 //!
