@@ -16,7 +16,6 @@ use crate::load::Load;
 use crate::memory;
 use crate::rheology::Material;
 use crate::solver::RigidMotion;
-use crate::sum::sum;
 
 impl ViscoelasticContact {
     /// Time \[s\], 0 at first.
@@ -100,10 +99,8 @@ impl ViscoelasticContact {
 
     /// Normal force Σ p ΔA on all bodies together \[N\].
     pub fn force(&self) -> f64 {
-        // row by row, so that rounding does not grow with the number of cells
-        let State { region, current, .. } = &self.computation.state;
-        let rows = current.solution.pressure.chunks_exact(region.cells()[1]);
-        rows.map(sum).sum::<f64>() * self.scene.grid.cell_area() * region.images() as f64
+        let state = &self.computation.state;
+        state.force_of(&state.current)
     }
 
     /// Moments of the whole pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\].

@@ -18,7 +18,8 @@ use crate::memory;
 /// | | |
 /// |---|---|
 /// | state and trial step | 72 |
-/// | history | 8 per relaxation time (40 + 16 per relaxation time with [`Frame::Indenter`](crate::contact::Frame::Indenter); direct sums: 8 per step taken) |
+/// | history | 8 per relaxation time, and 8 for the change in the last step (16 without elastic response, none of an elastic body); with [`Frame::Indenter`](crate::contact::Frame::Indenter) 40, 16 per relaxation time and 24 (48, none); direct sums: 8 per step taken |
+/// | displacement outside a window | 16, and the history again |
 /// | solver | 37, and 8 per body; [`Solver::PolonskyKeer`]: 24, and 4 per body |
 /// | its preconditioner | 11: a quarter of a spectrum of the grid without padding, 2, and work space, 9 |
 /// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
@@ -27,7 +28,9 @@ use crate::memory;
 /// and per cell of the whole grid 8 for the gap, 8 for the pressure where not all cells are computed, 2 if there are several
 /// bodies. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.
 ///
-/// Counted allocations agree to 5 % and a few kB (`tests/allocations`). Not included: the displacement where not all cells are
+/// Counted allocations agree to 5 % and a few kB (`tests/allocations`). Not included: 8 bytes per computed cell from the first
+/// adaptive step of a body with elastic response that remembers (16 with a window, 24 with
+/// [`Frame::Indenter`](crate::contact::Frame::Indenter)); the displacement where not all cells are
 /// computed, made on first use, with a kernel for the whole grid; 8 bytes per computed cell from the first load that tilts,
 /// or presses several bodies; [snapshots](crate::contact::Snapshot); the old state during a step that moves to a larger
 /// window.

@@ -38,7 +38,7 @@ impl ViscoelasticContact {
         let state = &mut self.computation.state;
         (state.indenter, state.indenter_is_new) = (Arc::new(indenter), true);
         state.extrapolation.interrupt();
-        state.history.forget_slopes();
+        state.forget_slopes();
         Ok(())
     }
 }

@@ -9,8 +9,8 @@ use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, Result};
 
 /// The state of a contact in memory, made by [`ViscoelasticContact::snapshot`]: what steps change, without kernel and work
-/// space. About 48 bytes per computed cell and 8 for each relaxation time; where a
-/// window is computed, 16 and 8 more.
+/// space. About 48 bytes per computed cell and what the history takes ([`Memory`](crate::contact::Memory)); where a window is
+/// computed, 16 and the history again.
 #[derive(Clone)]
 pub struct Snapshot {
     scene: Arc<Scene>,

@@ -8,6 +8,10 @@ use crate::contact::window::region::Region;
 use crate::hereditary::{History, Interval};
 use crate::load::Load;
 use crate::solver::{RigidMotion, Solution};
+use crate::sum::sum;
+
+/// A step longer than so many times the one before does not follow the polynomial through its start.
+const MAX_GROWTH: f64 = 4.0;
 
 /// The state of a contact between two steps. A clone of it is a snapshot, its bytes are a checkpoint, and a step that is
 /// tried on a larger region changes a copy.
@@ -29,6 +33,11 @@ pub(crate) struct State {
     pub(super) current: Equilibrium,
     /// At the start of the last step.
     pub(super) previous: Equilibrium,
+    /// At the start of the step before the last, where the last one follows the polynomial through it.
+    pub(super) earlier: Option<Node>,
+    /// Whether the last step tells how the next goes on: not after a jump, a corner or a step over the bodies, nor with a new
+    /// indenter.
+    pub(super) goes_on: bool,
     pub(super) extrapolation: Extrapolation,
     /// The greatest means of displacement and v over the contact so far, as far as errors were taken relative to them.
     pub(super) greatest: [f64; 2],
@@ -65,6 +74,27 @@ pub(crate) struct Equilibrium {
     pub(super) contact_cells: usize,
 }
 
+/// What is kept of the start of the step before the last.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(crate) struct Node {
+    /// Length of the step before the last.
+    pub(super) dt: f64,
+    /// Motion of the first body.
+    pub(super) motion: RigidMotion,
+    /// Normal force on all bodies together.
+    pub(super) force: f64,
+}
+
+#[cfg(feature = "checkpoint")]
+impl Node {
+    /// Whether it can be followed by a step: a file may hold anything.
+    pub(super) fn is_sound(&self) -> bool {
+        let Node { dt, motion: RigidMotion { approach, tilt: [tilt1, tilt2] }, force } = *self;
+        dt > 0.0 && [dt, approach, tilt1, tilt2, force].iter().all(|value| value.is_finite())
+    }
+}
+
 impl State {
     /// Bodies without load, where they just touch.
     pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, history: History) -> State {
@@ -81,9 +111,32 @@ impl State {
             history,
             previous: current.clone(),
             current,
+            earlier: None,
+            goes_on: false,
             extrapolation: Extrapolation::default(),
             greatest: [0.0; 2],
         }
+    }
+
+    /// Normal force on all bodies together \[N\].
+    pub(super) fn force_of(&self, Equilibrium { solution, .. }: &Equilibrium) -> f64 {
+        // row by row, so that rounding does not grow with the number of cells
+        let rows = solution.pressure.chunks_exact(self.region.cells()[1]);
+        rows.map(sum).sum::<f64>() * self.region.grid().cell_area() * self.region.images() as f64
+    }
+
+    /// The last step says nothing about how the state goes on, as at a corner of the load.
+    pub(super) fn forget_slopes(&mut self) {
+        self.history.forget_slopes();
+        self.goes_on = false;
+    }
+
+    /// Keeps the start of the last step where the `next`, which the history has just committed, follows a quadratic through it.
+    pub(super) fn keep_earlier(&mut self, next: Interval) {
+        let (Equilibrium { motions, .. }, dt) = (&self.previous, self.clock.last_dt);
+        let follows = self.goes_on && next.dt <= MAX_GROWTH * dt && self.history.followed_quadratic(next);
+        self.earlier = follows.then(|| Node { dt, motion: motions[0], force: self.force_of(&self.previous) });
+        self.goes_on = next.dt > 0.0 && next.stride == [0; 2];
     }
 
     /// Whether no pressure has ever acted.
@@ -108,11 +161,13 @@ impl State {
             history,
             current,
             previous,
+            earlier,
+            goes_on,
             extrapolation,
             greatest,
         } = self;
         (*clock, *extrapolation) = (other.clock, other.extrapolation);
-        *greatest = other.greatest;
+        (*earlier, *goes_on, *greatest) = (other.earlier, other.goes_on, other.greatest);
         (*indenter_is_new, *region_is_placed) = (other.indenter_is_new, other.region_is_placed);
         loads.clone_from(&other.loads);
         indenter.clone_from(&other.indenter);

@@ -182,6 +182,11 @@ impl ExponentialRule {
         (relaxing + self.relaxation.viscosity() / self.tried.dt) * jump - self.tried.answer * bend
     }
 
+    /// Whether u was quadratic on the step committed last.
+    pub(super) fn followed_quadratic(&self) -> bool {
+        self.committed.degree == 2
+    }
+
     /// Whether the next step puts right the one predicted last.
     pub(super) fn corrects(&self) -> bool {
         self.tried.corrects[1]

@@ -73,7 +73,9 @@ impl Rule {
     fn undisturbed_on(&self, cells: [usize; 2]) -> Rule {
         match self {
             Rule::Exponential(own) => Rule::Exponential(own.clone()),
-            Rule::MovingFrame(own, frame) => Rule::MovingFrame(own.clone(), Box::new(frame.undisturbed_on(cells))),
+            Rule::MovingFrame(own, frame) => {
+                Rule::MovingFrame(own.clone(), Box::new(frame.undisturbed_on(cells, own.least_kept())))
+            }
             Rule::DirectSum(own) => Rule::DirectSum(own.without_increments()),
         }
     }
@@ -142,7 +144,9 @@ impl History {
     /// The same bodies, undisturbed, on so many cells; with a far field where these are a `window` of the grid.
     pub(crate) fn undisturbed_on(&self, cells: [usize; 2], window: bool) -> History {
         let rule = self.rule.undisturbed_on(cells);
-        let displacement = RememberedField::new(rule.branches(), cells[0] * cells[1]);
+        // what steps of given length need, so that none of them allocates
+        let kept = rule.exponential().map_or(0, ExponentialRule::least_kept);
+        let displacement = self.displacement.undisturbed_on(cells[0] * cells[1], kept);
         let far = (window && self.has_far_field()).then(|| displacement.clone());
         History { rule, displacement, far, before_is_kept: true }
     }
@@ -192,6 +196,26 @@ impl History {
     /// The displacement before the last step, unless a step was tried in the meantime or the bodies moved.
     pub(crate) fn displacement_before(&self) -> Option<&[f64]> {
         self.before_is_kept.then(|| self.trial())
+    }
+
+    /// Whether the displacement followed a quadratic in the step committed last; that of an elastic body, which depends on no
+    /// past, may follow any.
+    pub(crate) fn followed_quadratic(&self, last: Interval) -> bool {
+        let rule = self.exponential_rule();
+        rule.is_some_and(|rule| match rule.remembers() {
+            true => rule.followed_quadratic(),
+            false => last.interpolant == Interpolant::CorrectedQuadratic,
+        })
+    }
+
+    /// The changes of the displacement and of the source of its far field in the step before the last, where they are kept
+    /// and [`History::displacement_before`] is known.
+    pub(crate) fn change_before(&self) -> Option<(&[f64], Option<&[f64]>)> {
+        let change = self.displacement.past.change_before()?;
+        match &self.far {
+            Some(far) => far.past.change_before().map(|far| (change, Some(far))),
+            None => Some((change, None)),
+        }
     }
 
     /// The source U of the far field, if only a window is computed.

@@ -25,10 +25,12 @@ mod moments;
 mod moving_frame;
 mod past;
 mod remembered_field;
+mod step_polynomial;
 mod time_error;
 
 pub(crate) use direct_sum::Weighting;
 pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
 pub(crate) use history::{History, HistoryInputs, Interval, Transfer, no_elastic_response};
 pub(crate) use remembered_field::RememberedField;
+pub(crate) use step_polynomial::StepPolynomial;
 pub(crate) use time_error::{ErrorMeasure, TimeError};

@@ -29,10 +29,10 @@ impl MovingFrame {
         MovingFrame { cells: [0; 2], periodic, remainder: source.clone(), source, scratch: Vec::new() }
     }
 
-    /// The undisturbed past of the same bodies on so many cells.
-    pub(crate) fn undisturbed_on(&self, cells: [usize; 2]) -> MovingFrame {
+    /// The undisturbed past of the same bodies on so many cells, with room for so many differences.
+    pub(crate) fn undisturbed_on(&self, cells: [usize; 2], kept: usize) -> MovingFrame {
         let count = cells[0] * cells[1];
-        let [source, remainder] = [&self.source, &self.remainder].map(|field| field.undisturbed_on(count));
+        let [source, remainder] = [&self.source, &self.remainder].map(|field| field.undisturbed_on(count, kept));
         MovingFrame { cells, periodic: self.periodic, source, remainder, scratch: vec![0.0; count] }
     }
 

@@ -35,6 +35,11 @@ impl Past {
         Past { branches, fields: vec![0.0; cells * branches], differences: [Vec::new(), Vec::new()], waiting: false }
     }
 
+    /// Makes room for so many differences.
+    pub(super) fn keep(&mut self, kept: usize, cells: usize) {
+        self.differences.iter_mut().take(kept).for_each(|own| own.resize(cells, 0.0));
+    }
+
     /// Number of relaxation times.
     pub(super) fn branches(&self) -> usize {
         self.branches
@@ -53,7 +58,7 @@ impl Past {
     /// Writes u_old over `u_old`, which after a commit must still hold the field before that step, as `field` holds the one
     /// after it.
     pub(super) fn predict(&mut self, rule: &ExponentialRule, field: &[f64], u_old: &mut [f64]) {
-        self.differences.iter_mut().take(rule.kept()).for_each(|own| own.resize(field.len(), 0.0));
+        self.keep(rule.kept(), field.len());
         let (tried, committed, waiting) = (&rule.tried, &rule.committed, std::mem::take(&mut self.waiting));
         let mut steps = [[0.0; BLOCK]; 3];
         let [mut first, mut second] = self.differences.each_mut().map(|own| own.chunks_mut(BLOCK));
@@ -88,7 +93,7 @@ impl Past {
         if !std::mem::take(&mut self.waiting) {
             return;
         }
-        self.differences.iter_mut().take(rule.kept()).for_each(|own| own.resize(field.len(), 0.0));
+        self.keep(rule.kept(), field.len());
         let (mut steps, mut nowhere) = ([[0.0; BLOCK]; 3], [0.0; BLOCK]);
         let [mut first, mut second] = self.differences.each_mut().map(|own| own.chunks_mut(BLOCK));
         let mut blocks = self.fields.chunks_mut((BLOCK * self.branches).max(1));
@@ -105,6 +110,12 @@ impl Past {
     /// d₁ and d₂ at the end of the last step once that is taken in; empty where the rule keeps none.
     pub(super) fn differences(&self) -> [&[f64]; 2] {
         [&self.differences[0], &self.differences[1]]
+    }
+
+    /// The change of the field in the step before the last, until that is taken in; none where it is not kept.
+    pub(super) fn change_before(&self) -> Option<&[f64]> {
+        let [first, _] = self.differences();
+        (self.waiting && !first.is_empty()).then_some(first)
     }
 
     /// Calls `take` with c Σ e^(−z_i) q_i less the share of the differences, for each cell that is `wanted`; after

@@ -24,9 +24,11 @@ impl RememberedField {
         RememberedField { past, now: vec![0.0; cells], trial: vec![0.0; cells] }
     }
 
-    /// The same, undisturbed, on `cells` cells.
-    pub(super) fn undisturbed_on(&self, cells: usize) -> RememberedField {
-        RememberedField::new(self.past.branches(), cells)
+    /// The same, undisturbed, on `cells` cells, with room for so many differences.
+    pub(super) fn undisturbed_on(&self, cells: usize, kept: usize) -> RememberedField {
+        let mut field = RememberedField::new(self.past.branches(), cells);
+        field.past.keep(kept, cells);
+        field
     }
 
     /// The field at the end of the step being tried; between steps that before the last one.

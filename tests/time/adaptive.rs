@@ -175,6 +175,75 @@ fn the_state_inside_a_step_is_second_order() {
     }
 }
 
+/// Greatest and mean error of approach and force inside the steps of an adaptive run, by what the contact says and on the line
+/// between the ends of the steps, relative to their greatest values; and the number of steps.
+fn errors_inside(scene: &Scene, tolerance: f64) -> ([[[f64; 2]; 2]; 2], usize) {
+    const SHARES: [f64; 3] = [0.2, 0.5, 0.8];
+    let mut contact = scene.contact(24, 1e-4 * tolerance);
+    let mut follow = contact.follow(&*scene.history, Stepping::adaptive(tolerance), scene.until);
+    // time; approach and force there, and on the line
+    let (mut inside, mut start, mut steps) = (Vec::new(), [0.0; 2], 0);
+    while let Some(report) = follow.next_step().unwrap() {
+        let end = [report.approach, report.force];
+        for share in SHARES.into_iter().filter(|_| report.dt > 0.0) {
+            let time = report.time - (1.0 - share) * report.dt;
+            let between = follow.contact().within_step(time).unwrap();
+            let mut u = vec![0.0; follow.contact().grid().len()];
+            between.displacement_into(&mut u).unwrap();
+            assert!(between.force() >= 0.0 && u.iter().all(|&u| u >= 0.0), "{} at {time}", scene.name);
+            let line = [0, 1].map(|which| start[which] + share * (end[which] - start[which]));
+            inside.push((time, [[between.approach(), between.force()], line]));
+        }
+        (start, steps) = (end, steps + 1);
+    }
+    let times: Vec<f64> = inside.iter().map(|(time, _)| *time).collect();
+    let mut contact = scene.contact(24, 1e-10);
+    let fine = Stepping::adaptive((1e-2 * tolerance).min(1e-5));
+    let mut follow = contact.follow(&*scene.history, fine, scene.until).stop_at(&times).unwrap();
+    let mut exact = Vec::new();
+    while let Some(report) = follow.next_step().unwrap() {
+        exact.push((report.time, [report.approach, report.force]));
+    }
+    let errors = [0, 1].map(|which| {
+        let greatest = exact.iter().map(|(_, exact)| exact[which].abs()).fold(0.0, f64::max);
+        [0, 1].map(|by| {
+            let off = inside.iter().map(|(time, found)| {
+                let (_, exact) = exact.iter().find(|(at, _)| at == time).unwrap();
+                (found[by][which] - exact[which]).abs() / greatest
+            });
+            off.fold([0.0, 0.0], |[most, mean]: [f64; 2], off| [most.max(off), mean + off / inside.len() as f64])
+        })
+    });
+    (errors, steps)
+}
+
+/// Against the line between the ends of the steps: nearer, also where bodies part and meet again.
+#[test]
+fn the_state_inside_a_step_is_nearer_than_a_line() {
+    let sine = || Box::new(Sinusoid::new(Load::force(0.2), Load::force(1.0), 1.0).unwrap());
+    let elastic = Scene { name: "elastic, sine", material: elastic(), history: sine(), until: 2.0 };
+    let others = scenes().into_iter().filter(|scene| scene.name.contains("sine") || scene.name.contains("approach"));
+    for scene in others.chain([elastic]) {
+        let (errors, steps) = errors_inside(&scene, 1e-3);
+        for (what, [own, line]) in ["approach", "force"].into_iter().zip(errors) {
+            println!("{}, {steps} steps, {what}: {own:?}, on the line {line:?}", scene.name);
+            assert!(own[0] <= 0.5 * line[0] && own[1] <= 0.4 * line[1], "{}, {what}: {own:?} {line:?}", scene.name);
+        }
+    }
+}
+
+/// Third where all is smooth; kinks of the cells that join take a part of it.
+#[test]
+fn the_order_inside_adaptive_steps_is_above_that_of_a_line() {
+    let scene = scenes().into_iter().find(|scene| scene.name.contains("sine")).unwrap();
+    let [(coarse, few), (fine, many)] = [1e-3, 1e-5].map(|tolerance| errors_inside(&scene, tolerance));
+    for which in [0, 1] {
+        let order = |by: usize| (coarse[which][by][1] / fine[which][by][1]).ln() / (many as f64 / few as f64).ln();
+        println!("{few} and {many} steps, order {:.2}, on the line {:.2}", order(0), order(1));
+        assert!(order(0) > 2.4 && order(0) > order(1) + 0.4, "{} {}", order(0), order(1));
+    }
+}
+
 #[test]
 fn tolerances_and_impossible_loads_are_refused() {
     let scene = &scenes()[0];

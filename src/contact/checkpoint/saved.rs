@@ -49,7 +49,7 @@ impl<'a> Saved<'a> {
 /// Rejects fields that do not fit: a file may have a right checksum and be written by another program all the same.
 fn check(state: &State, built: &State, scene: &Scene) -> Result<(), CheckpointError> {
     let malformed = |what: &str| Err(CheckpointError::Malformed { what: what.into() });
-    let State { clock, loads, indenter, region, history, current, previous, .. } = state;
+    let State { clock, loads, indenter, region, history, current, previous, earlier, .. } = state;
     let (whole, bodies, gap) = (scene.grid.len(), scene.bodies, indenter.gap());
     let allowed = region.covers() || windowed(&scene.settings, &built.history, &scene.kernel);
     if !region.is_of(&scene.grid) || !allowed {
@@ -84,6 +84,7 @@ fn check(state: &State, built: &State, scene: &Scene) -> Result<(), CheckpointEr
         finite(&[&times, &[gap.datum], history.displacement(), history.displacement_before().unwrap_or_default()])
             && sound(current)
             && sound(previous)
+            && earlier.is_none_or(|earlier| earlier.is_sound())
             && current.solution.pressure.iter().all(|&p| p >= 0.0)
             && gap.above.iter().all(|&gap| gap >= 0.0)
             && times.iter().all(|&time| time >= 0.0);

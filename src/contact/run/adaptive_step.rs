@@ -66,7 +66,7 @@ impl Follow<'_> {
                 control.accept(time, loads[0], [wanted, dt], time == corner, order);
                 let mut report = self.contact.accept(attempt, step, error);
                 if time == corner {
-                    self.contact.computation.state.history.forget_slopes();
+                    self.contact.computation.state.forget_slopes();
                 }
                 report.convolutions += wasted[0];
                 report.preconditioner_applications += wasted[1];

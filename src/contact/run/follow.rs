@@ -177,7 +177,7 @@ impl<'a> Follow<'a> {
         let load = self.history.before(time).validated_at(time)?;
         let report = self.step_to(time, time - now, load)?;
         if time == corner {
-            self.contact.computation.state.history.forget_slopes();
+            self.contact.computation.state.forget_slopes();
         }
         Ok(Some(report))
     }

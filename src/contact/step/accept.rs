@@ -15,6 +15,7 @@ impl Computation {
         let potential = [&state.current.solution.potential[..], &trial.solution.potential];
         state.history.commit(interval, potential, touched);
 
+        state.keep_earlier(interval);
         std::mem::swap(&mut state.previous, &mut state.current);
         std::mem::swap(&mut state.current.solution, &mut trial.solution);
         state.current.contact_cells = state.region.images() * contact_cells;
