@@ -251,7 +251,13 @@ impl History {
         let History { rule, displacement, far, .. } = self;
         match rule {
             Rule::Exponential(own) => {
-                displacement.predict_non_negative(own, step.dt, step.interpolant);
+                // on periodic bodies u is measured from its mean
+                if kernel.mean_is_held() {
+                    own.weigh(step.dt, step.interpolant);
+                    displacement.predict(own);
+                } else {
+                    displacement.predict_non_negative(own, step.dt, step.interpolant);
+                }
                 far.iter_mut().for_each(|far| far.predict(own));
                 Ok((own.compliance(), 0))
             }

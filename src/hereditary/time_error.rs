@@ -91,7 +91,8 @@ impl History {
         let [first, second] = self.displacement.past.differences();
         let [to_first, to_second] = rule.tried.ratios;
         let (new, old) = (&self.displacement.trial, &self.displacement.now);
-        let (mut signed, mut absolute, mut kinks, mut left, mut touching) = (0.0, 0.0, 0.0, 0.0_f64, 0_usize);
+        let (mut signed, mut absolute, mut left, mut touching) = (0.0, 0.0, 0.0_f64, 0_usize);
+        let (mut kinks, mut squares) = (0.0_f64, 0.0_f64);
         for k in 0..new.len() {
             let going_on = if lacking > 0 { to_first * first[k] } else { 0.0 };
             let bend = (new[k] - old[k]) - going_on;
@@ -99,7 +100,9 @@ impl History {
             let touches = tried[k] > 0.0;
             touching += usize::from(touches);
             if touches && now[k] <= 0.0 {
-                kinks += rule.kink(advance(k) - going_on, bend);
+                let jump = advance(k) - going_on;
+                kinks += rule.kink(jump, bend);
+                squares += rule.kink(jump, 0.5 * jump).powi(2);
             } else {
                 let w = weights.of(k);
                 (signed, absolute) = (signed + w * last, absolute + w * last.abs());
@@ -118,7 +121,7 @@ impl History {
         };
         let smooth = scale * (absolute / weight).max(LEFT * left);
         let counts = !rule.has_dashpot() || rule.tried.dt > measure.resolution;
-        let kinks = if counts { kinks.abs() / touching.max(1) as f64 } else { 0.0 };
+        let kinks = if counts { kinks.abs().max(squares.sqrt()) / touching.max(1) as f64 } else { 0.0 };
         Defect { signed: scale * signed / weight, smooth, kinks }
     }
 }
