@@ -44,7 +44,7 @@ const NOT_CORRECTED: f64 = 0.25;
 /// Defects of cells that leave the contact count twice.
 const LEFT: f64 = 2.0;
 /// A force answers a cell at the edge of the contact more than others: a rigid body presses hardest there.
-const EDGE: f64 = 2.0;
+const EDGE: f64 = 3.0;
 
 impl History {
     /// The estimated error of the step tried; 0 where too few steps before it are known.
