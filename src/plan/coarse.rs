@@ -6,6 +6,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory};
 use crate::plan::Accuracy;
+use crate::plan::convergence::greatest;
 use crate::rheology::Material;
 
 /// Cells along a side of the runs that find the domain.
@@ -17,12 +18,19 @@ const CONTACT_FRACTION: [f64; 2] = [0.45, 0.92];
 /// A step that the solver cannot do is halved so many times.
 const MAX_HALVINGS: u32 = 5;
 
+/// A greatest pressure in a contact smaller than this fraction of the largest gets a domain of its own, which holds the
+/// contact until it has grown to the second fraction.
+const SMALL_CONTACT: [f64; 2] = [1.0 / 3.0, 0.4];
+
 /// A scene to plan.
+#[derive(Clone, Copy)]
 pub(super) struct Scene<'a> {
     pub(super) geometry: &'a dyn Geometry,
     pub(super) material: &'a Material,
     pub(super) history: &'a dyn LoadHistory,
     pub(super) until: f64,
+    /// End of the run for which the material is fitted.
+    pub(super) whole: f64,
     pub(super) accuracy: Accuracy,
 }
 
@@ -38,6 +46,7 @@ pub(super) struct Extent {
 /// A state at the end of a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct State {
+    pub(super) time: f64,
     pub(super) approach: f64,
     pub(super) force: f64,
     pub(super) radius: f64,
@@ -67,6 +76,7 @@ impl Run {
         self.convolutions += report.convolution_equivalents();
         self.steps.push((report.dt, contact.load()));
         self.states.push(State {
+            time: report.time,
             approach: report.approach,
             force: report.force,
             radius: (contact.contact_area() / std::f64::consts::PI).sqrt(),
@@ -93,7 +103,7 @@ impl Run {
 impl Scene<'_> {
     pub(super) fn builder(&self, grid: Grid) -> Builder {
         let builder = ViscoelasticContact::builder(grid).geometry(self.geometry).material(self.material.clone());
-        builder.settings(self.accuracy.settings()).times_of(self.history, self.until)
+        builder.settings(self.accuracy.settings()).times_of(self.history, self.whole)
     }
 
     /// Runs on domains until the contact fills one well; returns where the contact was.
@@ -137,6 +147,29 @@ impl Scene<'_> {
             run.add(&contact, &report);
         }
         Ok(run)
+    }
+
+    /// Whether there is nothing to touch in a part of the domain: the face of a punch ends.
+    pub(super) fn has_edge(&self, grid: &Grid) -> bool {
+        let [n1, n2] = grid.cells();
+        let mut cells = (0..n1 * n2).map(|k| grid.center(k / n2, k % n2));
+        cells.any(|[x1, x2]| self.geometry.initial_gap(x1, x2) == f64::INFINITY)
+    }
+
+    /// Where the pressure is greatest in a contact that is small compared with what it becomes: the time until which it
+    /// stays small.
+    pub(super) fn before_growth(&self, run: &Run) -> Option<f64> {
+        let largest = greatest(&run.states, |state| state.radius);
+        let highest = greatest(&run.states, |state| state.pressure);
+        let peak = run.states.iter().position(|state| state.pressure == highest)?;
+        let small = run.states.iter().take_while(|state| state.radius <= SMALL_CONTACT[1] * largest).count();
+        if peak >= small || run.states[peak].radius > SMALL_CONTACT[0] * largest {
+            return None;
+        }
+        let last = run.states[small - 1].time;
+        let next = run.states.get(small).map_or(self.until, |state| state.time);
+        let until = if last > 0.0 { last } else { 0.1 * next };
+        (until < self.until).then_some(until)
     }
 
     /// Initial length of the domain: a contact of half width L/4 is indented by the gap there, under a force of about

@@ -4,66 +4,104 @@ use crate::Grid;
 use crate::error::Result;
 use crate::plan::coarse::{Extent, Run, Scene, State};
 
-/// Cells across the contact on the coarsest mesh.
+/// Cells across the widest contact on the coarsest mesh, and on the finest that a plan computes.
 const LEAST_ACROSS: usize = 16;
-/// Cells across the contact on the finest mesh that a plan computes.
 const MOST_ACROSS: usize = 128;
-/// A plan extrapolates to meshes at most this many times finer, unless that takes more than `MOST_ACROSS`.
+/// A plan extrapolates to meshes at most this many times finer, unless `MOST_ACROSS` is reached.
 const MAX_EXTRAPOLATION: f64 = 3.0;
-/// Orders of convergence that are believed.
-const ORDERS: [f64; 2] = [0.5, 2.0];
-
+/// Orders of convergence that are believed; below the first the quantity counts as not converging.
+const ORDERS: [f64; 2] = [0.7, 2.0];
+/// Most domains for ever smaller contacts.
+const MAX_ZOOMS: usize = 12;
+/// Errors that are fractions of a cell have either sign on two meshes: the greatest difference is that much more than the
+/// error on the finer one.
+const DIFFERENCE_OVER_ERROR: f64 = 1.5;
 /// Ratio of the domain to the rectangle of the contact.
 pub(super) const DOMAIN_TO_CONTACT: f64 = 1.12;
 
-/// The error of a quantity on the finest mesh, relative to the greatest value of the run, and its order.
-#[derive(Debug, Clone, Copy, Default)]
+/// The error of a quantity, relative to the greatest value of the run, as a power of the number of cells across.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Convergence {
     error: f64,
     order: f64,
+    /// Cells across the widest contact at which the error is that.
+    across: f64,
+    /// Whether the differences fall with the mesh.
+    converges: bool,
 }
 
 impl Convergence {
-    /// From the differences between three meshes, or the last two of them.
-    fn new(first: Option<f64>, second: f64) -> Convergence {
-        let order = first.map_or(1.0, |first| (first / second).log2());
-        let order = if order.is_nan() { ORDERS[1] } else { order.clamp(ORDERS[0], ORDERS[1]) };
-        Convergence { error: second / (2f64.powf(order) - 1.0), order }
+    /// Of smooth quantities, from the differences between successive meshes, the finest with `across` cells.
+    fn smooth(differences: &[f64], across: f64) -> Convergence {
+        let (error, order, converges) = match *differences {
+            [] => (1.0, 1.0, true),
+            [only] => (only, 1.0, true),
+            [.., before, last] => {
+                let last = last.max(before * 0.5f64.powf(ORDERS[1]));
+                let order = if last > 0.0 { (before / last).log2() } else { ORDERS[1] };
+                let believed = order.clamp(ORDERS[0], ORDERS[1]);
+                (last / (2f64.powf(believed) - 1.0), believed, order >= ORDERS[0])
+            }
+        };
+        Convergence { error, order, across, converges }
     }
 
-    /// The error on a mesh `finer` times as fine.
-    pub(super) fn at(&self, finer: f64) -> f64 {
-        self.error * finer.powf(-self.order)
+    /// Of quantities that err by a fraction of a cell.
+    fn by_cells(differences: &[f64], across: f64) -> Convergence {
+        let last = match *differences {
+            [] => 1.0,
+            [only] => only,
+            [.., before, last] => last.max(0.5 * before),
+        };
+        Convergence { error: last / DIFFERENCE_OVER_ERROR, order: 1.0, across, converges: true }
     }
 
-    /// How much finer the mesh must be for a given error.
-    fn finer(&self, target: f64) -> f64 {
-        (self.error / target).powf(1.0 / self.order)
+    /// The error with so many cells across.
+    pub(super) fn at(&self, across: f64) -> f64 {
+        self.error * (self.across / across).powf(self.order)
+    }
+
+    /// Cells across for a given error.
+    fn across_for(&self, target: f64) -> f64 {
+        self.across * (self.error / target).powf(1.0 / self.order)
     }
 }
 
-/// What the coarse runs found.
+/// What the coarse runs found. Cells are those across the widest contact of the whole run.
 pub(super) struct Found {
-    /// Cells across the contact on the finest mesh.
-    pub(super) across: f64,
-    /// Of approach or force, greatest pressure, and contact radius.
+    /// Of approach and force.
     pub(super) main: Convergence,
-    pub(super) pressure: Convergence,
-    pub(super) radius: Convergence,
-    /// First-order share of the error of approach or force.
+    /// First-order part of that: singular edges.
     pub(super) singular: Convergence,
+    /// Of the greatest pressure of the run.
+    pub(super) pressure: Convergence,
+    /// Of the greatest pressure at any time.
+    pub(super) pressure_over_time: Convergence,
+    /// Of the contact radius at any time.
+    pub(super) radius: Convergence,
     pub(super) steps: usize,
-    /// Convolution equivalents on the finest mesh, and by which power they grow with its cells across.
-    pub(super) convolutions: f64,
-    pub(super) growth: f64,
+    /// Convolution equivalents of the run on the finest mesh, and by which power of the cells they grow.
+    convolutions: Convergence,
 }
 
 impl Found {
-    /// How much finer the mesh must be for approach, force and greatest pressure to err by `target`.
-    pub(super) fn finer(&self, target: f64) -> f64 {
-        let singular = self.singular.error > 0.0;
-        let pressure = if singular { 0.0 } else { self.pressure.finer(target) };
-        self.main.finer(target).max(self.singular.finer(target)).max(pressure)
+    /// Cells across for approach, force and greatest pressure to err by `target`.
+    pub(super) fn across_for(&self, target: f64) -> f64 {
+        let pressure = if self.pressure.converges { self.pressure.across_for(target) } else { 0.0 };
+        self.main.across_for(target).max(self.singular.across_for(target)).max(pressure)
+    }
+
+    /// Whether the greatest pressure of the run converges with the mesh.
+    pub(super) fn pressure_converges(&self) -> bool {
+        self.pressure.converges
+    }
+
+    pub(super) fn across_for_radius(&self, target: f64) -> f64 {
+        self.radius.across_for(target)
+    }
+
+    pub(super) fn convolutions(&self, across: f64) -> f64 {
+        self.convolutions.at(across)
     }
 }
 
@@ -74,59 +112,156 @@ pub(super) fn grid_with(extent: &Extent, across: f64) -> Result<Grid> {
     Grid::new(cells, lengths)
 }
 
-/// Refines the mesh until the differences between three of them show how fine it must be.
-pub(super) fn converge(scene: &Scene<'_>, extent: &Extent) -> Result<Found> {
-    let mut across = LEAST_ACROSS;
-    let base = scene.follow(grid_with(extent, across as f64)?)?;
-    let target = scene.accuracy.space();
-    let (mut last, mut before): (Run, Option<[f64; 3]>) = (base, None);
-    loop {
-        across *= 2;
-        let finer = scene.repeat(grid_with(extent, across as f64)?, &last.steps)?;
-        let now = differences(&last.states, &finer.states);
-        let of = |which: usize| Convergence::new(before.map(|before| before[which]), now[which]);
-        let deepest = greatest(&finer.states, |state| state.approach);
-        let singular = finer.states.iter().map(|state| state.singular * (state.approach / deepest).clamp(0.0, 1.0));
-        let singular = Convergence { error: singular.fold(0.0, f64::max), order: 1.0 };
-        let found = Found {
-            across: across as f64,
-            main: of(0),
-            pressure: of(1),
-            radius: of(2),
-            singular,
-            steps: finer.steps.len(),
-            convolutions: finer.convolutions,
-            growth: (finer.convolutions / last.convolutions).log2().clamp(0.0, 1.0),
+/// Runs on successive meshes, each twice as fine as the last.
+struct Meshes {
+    across: f64,
+    /// Greatest differences between each mesh and the one before, relative to the greatest values of the run.
+    main: Vec<f64>,
+    pressure: Vec<f64>,
+    pressure_over_time: Vec<f64>,
+    radius: Vec<f64>,
+    finest: Run,
+    /// Whether the contact was resolved on the mesh before when the pressure was greatest.
+    peak_resolved: bool,
+    growth: f64,
+}
+
+impl Meshes {
+    /// Refines until the mesh that is `needed` is within reach.
+    fn refine(scene: &Scene<'_>, extent: &Extent, base: Run, needed: impl Fn(&Meshes) -> f64) -> Result<Meshes> {
+        let mut meshes = Meshes {
+            across: LEAST_ACROSS as f64,
+            main: Vec::new(),
+            pressure: Vec::new(),
+            pressure_over_time: Vec::new(),
+            radius: Vec::new(),
+            finest: base,
+            peak_resolved: false,
+            growth: 0.0,
         };
-        if std::env::var("PLAN_DEBUG").is_ok() {
-            println!("   {across}: {now:.5?} main {:.5?} p {:.5?} r {:.5?} s {:.1e} work {:.0} from {:.0}", found.main, found.pressure, found.radius, found.singular.error, finer.convolutions, last.convolutions);
+        loop {
+            meshes.halve(scene, extent)?;
+            let reach = if meshes.main.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
+            if meshes.across >= MOST_ACROSS as f64 || needed(&meshes) <= reach * meshes.across {
+                return Ok(meshes);
+            }
         }
-        let needed = found.finer(target);
-        let enough = if before.is_none() { needed <= 1.0 } else { needed <= MAX_EXTRAPOLATION };
-        if enough || across >= MOST_ACROSS {
-            return Ok(found);
-        }
-        (last, before) = (finer, Some(now));
+    }
+
+    fn halve(&mut self, scene: &Scene<'_>, extent: &Extent) -> Result<()> {
+        self.across *= 2.0;
+        let finer = scene.repeat(grid_with(extent, self.across)?, &self.finest.steps)?;
+        let (coarse, fine) = (&self.finest.states, &finer.states);
+        let over = |of: fn(&State) -> f64, all: bool| {
+            let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
+            let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
+            relative(most, greatest(fine, of))
+        };
+        let [before, now] = [coarse, fine].map(|states| greatest(states, |state| state.pressure));
+        self.peak_resolved = coarse.iter().any(|state| state.pressure == before && state.resolved);
+        self.main.push(over(|state| state.approach, true).max(over(|state| state.force, true)));
+        self.pressure.push(relative((before - now).abs(), now));
+        self.pressure_over_time.push(over(|state| state.pressure, false));
+        self.radius.push(over(|state| state.radius, false));
+        self.growth = (finer.convolutions / self.finest.convolutions).log2().clamp(0.0, 1.0);
+        self.finest = finer;
+        Ok(())
+    }
+
+    /// Approach and force; with a rim of cells on a face that ends, by fractions of a cell.
+    fn main(&self, punch: bool) -> Convergence {
+        let law = if punch { Convergence::by_cells } else { Convergence::smooth };
+        law(&self.main, self.across)
+    }
+
+    /// The first-order part, estimated from the rim. Creep raises the pressure towards a growing rim too: at edges of the
+    /// shape it is raised from the start.
+    fn singular(&self, punch: bool) -> Convergence {
+        let states = &self.finest.states;
+        let deepest = greatest(states, |state| state.approach);
+        let shares = states.iter().map(|state| state.singular * relative(state.approach.abs(), deepest));
+        let touching = states.iter().filter(|state| state.force > 0.0);
+        let lasts = punch || touching.map(|state| state.singular).fold(f64::INFINITY, f64::min) > 0.0;
+        let error = if lasts { shares.fold(0.0, f64::max) } else { 0.0 };
+        Convergence { error, order: 1.0, across: self.across, converges: true }
+    }
+
+    /// The greatest pressure of the run; a small contact must be resolved before it can be said not to converge.
+    fn pressure(&self) -> Convergence {
+        let smooth = Convergence::smooth(&self.pressure, self.across);
+        Convergence { converges: smooth.converges || !self.peak_resolved, ..smooth }
     }
 }
 
-fn greatest(states: &[State], of: impl Fn(&State) -> f64) -> f64 {
-    states.iter().map(|state| of(state).abs()).fold(0.0, f64::max)
+/// Finds how approach, force, radius and greatest pressure converge; `area` tells whether the radius has to be resolved.
+pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result<Found> {
+    let (target, first) = (scene.accuracy.space(), grid_with(extent, LEAST_ACROSS as f64)?);
+    let punch = scene.has_edge(&first);
+    let base = scene.follow(first)?;
+    let zoomed = match scene.before_growth(&base) {
+        Some(until) => Some(small_contact(scene, until, extent)?),
+        None => None,
+    };
+    let found = |meshes: &Meshes| Found {
+        main: meshes.main(punch),
+        singular: meshes.singular(punch),
+        pressure: zoomed.unwrap_or_else(|| meshes.pressure()),
+        pressure_over_time: Convergence::smooth(&meshes.pressure_over_time, meshes.across),
+        radius: Convergence::by_cells(&meshes.radius, meshes.across),
+        steps: meshes.finest.steps.len(),
+        convolutions: Convergence {
+            error: meshes.finest.convolutions,
+            order: -meshes.growth,
+            across: meshes.across,
+            converges: true,
+        },
+    };
+    let meshes = Meshes::refine(scene, extent, base, |meshes| {
+        let Found { main, singular, radius, .. } = found(meshes);
+        let pressure = if zoomed.is_some() { None } else { Some(meshes.pressure()) };
+        let wanted = [Some(main), Some(singular), Some(radius).filter(|_| area), pressure.filter(|p| p.converges)];
+        wanted.into_iter().flatten().map(|quantity| quantity.across_for(target)).fold(0.0, f64::max)
+    })?;
+    let found = found(&meshes);
+    if std::env::var("PLAN_DEBUG").is_ok() {
+        println!("   {} main {:?} {:?} sing {:?} p {:?} {:?} r {:?}", meshes.across, meshes.main, found.main, found.singular.error, meshes.pressure, found.pressure, found.radius);
+    }
+    Ok(found)
 }
 
-/// Greatest differences of approach or force, greatest pressure, and radius, relative to the greatest values of the run.
-fn differences(coarse: &[State], fine: &[State]) -> [f64; 3] {
-    let over = |of: fn(&State) -> f64, all: bool| {
-        let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
-        let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
-        let scale = greatest(fine, of);
-        if scale > 0.0 { most / scale } else { 0.0 }
+/// The greatest pressure of a run in which the contact grows much afterwards: of the run to `until`, on a domain of its
+/// own.
+fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Convergence> {
+    let (mut until, mut zooms) = (until, 0);
+    let (part, extent, base) = loop {
+        let part = Scene { until, ..*scene };
+        let extent = part.extent()?;
+        let base = part.follow(grid_with(&extent, LEAST_ACROSS as f64)?)?;
+        zooms += 1;
+        match part.before_growth(&base).filter(|_| zooms < MAX_ZOOMS) {
+            Some(earlier) => until = earlier,
+            None => break (part, extent, base),
+        }
     };
-    let of_pressure: fn(&State) -> f64 = |state| state.pressure;
-    let [highest, before] = [fine, coarse].map(|states| greatest(states, of_pressure));
-    let highest = if highest > 0.0 { (highest - before).abs() / highest } else { 0.0 };
-    let main = over(|state| state.approach, true).max(over(|state| state.force, true));
-    [main, over(of_pressure, false).max(highest), over(|state| state.radius, false)]
+    let target = scene.accuracy.space();
+    let meshes = Meshes::refine(&part, &extent, base, |meshes| {
+        let pressure = meshes.pressure();
+        if pressure.converges { pressure.across_for(target) } else { 0.0 }
+    })?;
+    let larger = [0, 1].map(|axis| whole.width[axis] / extent.width[axis]);
+    let across = meshes.across * larger[0].max(larger[1]);
+    if std::env::var("PLAN_DEBUG").is_ok() {
+        println!("   zoom {zooms} until {until:.2e}: {} p {:?} {:?}", meshes.across, meshes.pressure, meshes.pressure());
+    }
+    Ok(Convergence { across, ..meshes.pressure() })
+}
+
+fn relative(value: f64, scale: f64) -> f64 {
+    if scale > 0.0 { value / scale } else { 0.0 }
+}
+
+pub(super) fn greatest(states: &[State], of: impl Fn(&State) -> f64) -> f64 {
+    states.iter().map(|state| of(state).abs()).fold(0.0, f64::max)
 }
 
 /// The next number of cells whose double has no prime factor above 5, for fast transforms.

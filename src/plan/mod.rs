@@ -12,8 +12,8 @@ use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
-use crate::plan::coarse::{Extent, Scene};
-use crate::plan::convergence::{DOMAIN_TO_CONTACT, Found, converge, grid_with};
+use crate::plan::coarse::Scene;
+use crate::plan::convergence::{DOMAIN_TO_CONTACT, converge, grid_with};
 use crate::rheology::Material;
 
 /// A scene planned for an accuracy: the extent of the contact, the cells and steps needed, and their cost.
@@ -49,6 +49,10 @@ pub struct Plan {
     steps: usize,
     convolutions: f64,
     error: MeshError,
+    /// Whether the greatest pressure of the run converges with the mesh.
+    pressure_converges: bool,
+    /// Greatest error of the mesh of the greatest pressure at any time.
+    pressure_over_time: f64,
     bytes: u64,
 }
 
@@ -70,37 +74,61 @@ impl Plan {
         until: f64,
         accuracy: Accuracy,
     ) -> Result<Plan> {
-        positive("end of the run", until)?;
-        Accuracy::target_of(accuracy.target())?;
-        let scene = Scene { geometry, material, history, until, accuracy };
-        let extent = scene.extent()?;
-        let found = converge(&scene, &extent)?;
-        Plan::on_mesh(&scene, &extent, &found, found.finer(accuracy.space()))
+        Plan::made(Scene { geometry, material, history, until, whole: until, accuracy }, false)
     }
 
-    /// The plan on a mesh `finer` times as fine as the finest of the coarse runs.
-    fn on_mesh(scene: &Scene<'_>, extent: &Extent, found: &Found, finer: f64) -> Result<Plan> {
-        let across = (found.across * finer).max(LEAST_ACROSS);
+    /// As [`Plan::new`], with a mesh on which the contact radius, √(area/π), is as accurate too, at all times at which the
+    /// contact is at least 8 cells across: under growing contacts it errs by a fraction of a cell.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn with_area(
+        geometry: &dyn Geometry,
+        material: &Material,
+        history: &dyn LoadHistory,
+        until: f64,
+        accuracy: Accuracy,
+    ) -> Result<Plan> {
+        Plan::made(Scene { geometry, material, history, until, whole: until, accuracy }, true)
+    }
+
+    fn made(scene: Scene<'_>, area: bool) -> Result<Plan> {
+        positive("end of the run", scene.until)?;
+        Accuracy::target_of(scene.accuracy.target())?;
+        let extent = scene.extent()?;
+        let found = converge(&scene, &extent, area)?;
+        let target = scene.accuracy.space();
+        let radius = if area { found.across_for_radius(target) } else { 0.0 };
+        let across = found.across_for(target).max(radius).max(LEAST_ACROSS);
         let sides = [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * extent.reach[axis] / extent.width[axis]);
         let wanted = sides[0].max(sides[1]);
-        if !(wanted <= MOST_CELLS as f64) {
+        if wanted.is_nan() || wanted > MOST_CELLS as f64 {
             let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
             return Err(Error::CountOutOfRange { field, value: wanted.min(1e18) as usize, allowed });
         }
-        let grid = grid_with(extent, across)?;
-        let finer = grid.cells()[0] as f64 / sides[0] * across / found.across;
+        let grid = grid_with(&extent, across)?;
+        let across = across * grid.cells()[0] as f64 / sides[0];
         let error = MeshError {
-            approach: found.main.at(finer).max(found.singular.at(finer)),
-            greatest_pressure: found.pressure.at(finer),
-            area: 2.0 * found.radius.at(finer),
-            singular: found.singular.at(finer),
+            approach: found.main.at(across).max(found.singular.at(across)),
+            greatest_pressure: found.pressure.at(across),
+            area: 2.0 * found.radius.at(across),
+            singular: found.singular.at(across),
         };
         let builder = scene.builder(grid.clone());
         let memory = builder.memory()?;
         let slope = 8 * memory.computed_cells as u64; // the rate that adaptive steps store
-        let bytes = memory.total() + slope;
-        let convolutions = found.convolutions * finer.powf(found.growth);
-        Ok(Plan { accuracy: scene.accuracy, builder, grid, reach: extent.reach, steps: found.steps, convolutions, error, bytes })
+        Ok(Plan {
+            accuracy: scene.accuracy,
+            builder,
+            grid,
+            reach: extent.reach,
+            steps: found.steps,
+            convolutions: found.convolutions(across),
+            error,
+            pressure_converges: found.pressure_converges(),
+            pressure_over_time: found.pressure_over_time.at(across),
+            bytes: memory.total() + slope,
+        })
     }
 
     /// A builder with grid, geometry, material and settings, each of which can be replaced.
@@ -144,7 +172,21 @@ impl Plan {
         self.bytes
     }
 
-    /// Expected errors of the mesh.
+    /// Whether the greatest pressure of the run converges with the mesh. If not, as under the edges of punches and the tips
+    /// of cones, where it is infinite, and under moving edges of bodies that creep fast, the plan does not refine for it.
+    pub fn pressure_converges(&self) -> bool {
+        self.pressure_converges
+    }
+
+    /// Expected greatest error of the mesh, over all times, of the greatest pressure at that time, relative to the greatest
+    /// of the run. It may exceed the accuracy: creep leaves a narrow rim of high pressure at a growing edge, which neither
+    /// cells nor steps resolve.
+    pub fn pressure_error_at_all_times(&self) -> f64 {
+        self.pressure_over_time
+    }
+
+    /// Expected errors of the mesh: of approach and force, and of the contact area, at all times, and of the greatest
+    /// pressure of the run.
     pub fn mesh_error(&self) -> MeshError {
         self.error
     }

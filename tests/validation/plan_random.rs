@@ -73,7 +73,8 @@ fn table(entries: &[(f64, Load)]) -> Box<dyn LoadHistory> {
 /// The greatest pressure of a growing sphere, over all radii.
 fn highest(exact: &GrowingSphere, t: f64) -> f64 {
     let a = exact.contact_radius(t);
-    (0..16).map(|k| exact.pressure(a * f64::from(k) / 16.0, t)).fold(0.0, f64::max)
+    // towards the edge, where fast creep leaves a thin rim of high pressure
+    (0..18).map(|k| exact.pressure(a * (1.0 - 10f64.powf(-0.2 * f64::from(k))), t)).fold(0.0, f64::max)
 }
 
 fn scene(seed: u64) -> Scene {
@@ -101,6 +102,16 @@ fn scene(seed: u64) -> Scene {
             let entries = [(0.0, Load::force(0.0)), (ramp, Load::force(1.0)), (2.0, Load::force(1.0))];
             let exact = GrowingSphere::new(radius, &material, PiecewiseLinear::new(&entries).unwrap()).unwrap();
             let state = move |t: f64| [Some(exact.approach(t)), Some(exact.contact_radius(t)), Some(highest(&exact, t))];
+            if env::var("PLAN_CHECK").is_ok() {
+                let exact = GrowingSphere::new(radius, &material, PiecewiseLinear::new(&entries).unwrap()).unwrap();
+                let mut foundation = viscocontact::analytic::AxisymmetricContact::new(
+                    &viscocontact::analytic::Profile::sphere(radius).unwrap(), &material, 4000, 1.3 * exact.contact_radius(1.0)).unwrap();
+                for k in 1..=4000 {
+                    let t = f64::from(k) / 4000.0;
+                    foundation.press(1.0 / 4000.0, (t / ramp).min(1.0)).unwrap();
+                    if k % 1000 == 0 { println!("ramp {ramp:.3} t {t}: {:.6e} exact {:.6e} by hand {:.6e}", foundation.approach(), exact.approach(t), 0.0); }
+                }
+            }
             ("ramped sphere", Box::new(Sphere::new(radius).unwrap()), table(&entries), Some(Box::new(state)), false)
         }
         3 => {
@@ -188,15 +199,15 @@ fn observed(contact: &ViscoelasticContact) -> State {
 /// True error over what was asked, of each quantity; `None` where there is nothing to compare with.
 struct Outcome {
     over: State,
-    late: State,
     line: String,
 }
 
-fn deliver(scene: &Scene, target: f64) -> Result<Option<Outcome>, Error> {
+fn deliver(scene: &Scene, target: f64, area: bool) -> Result<Option<Outcome>, Error> {
     let accuracy = Accuracy::target_of(target).unwrap();
     let Scene { geometry, material, history, until, .. } = scene;
     let started = Instant::now();
-    let plan = match Plan::new(geometry, material, history, *until, accuracy) {
+    let made = if area { Plan::with_area } else { Plan::new };
+    let plan = match made(geometry, material, history, *until, accuracy) {
         Err(error @ Error::CountOutOfRange { .. }) => {
             println!("{}, {target:.0e}: {error}", scene.name);
             return Ok(None);
@@ -260,30 +271,43 @@ fn deliver(scene: &Scene, target: f64) -> Result<Option<Outcome>, Error> {
             truth
         }
     };
-    let mut over = [None; 3];
-    let mut late = [None; 3];
+    // approach, radius and pressure at all times, then the greatest pressure of the run
+    let error = plan.mesh_error();
+    let promised = [target, target.max(0.5 * error.area), target.max(plan.pressure_error_at_all_times()), target];
+    let (mut over, mut at) = ([None; 4], [0.0; 3]);
     for which in 0..3 {
-        if truth[0][which].is_none() || (which == 2 && scene.singular) {
+        if truth[0][which].is_none() {
             continue;
         }
         let greatest = truth.iter().map(|state| state[which].unwrap().abs()).fold(0.0, f64::max);
         let errors = states.iter().zip(&truth).filter(|((.., resolved), _)| which == 0 || *resolved);
-        let errors = errors
-            .map(|((t, state, _), truth)| (*t, (state[which].unwrap() - truth[which].unwrap()).abs() / greatest));
-        let first = if which == 2 { (-1.0, (highest / greatest - 1.0).abs()) } else { (0.0, 0.0) };
-        let (at, worst) = errors.fold(first, |worst, now| if now.1 > worst.1 { now } else { worst });
-        over[which] = Some(worst / target);
-        late[which] = Some(at);
+        let errors =
+            errors.map(|((t, state, _), truth)| (*t, (state[which].unwrap() - truth[which].unwrap()).abs() / greatest));
+        let (time, worst) = errors.fold((0.0, 0.0), |worst, now| if now.1 > worst.1 { now } else { worst });
+        (over[which], at[which]) = (Some(worst / promised[which]), time);
+        if which == 2 && plan.pressure_converges() {
+            over[3] = Some((highest / greatest - 1.0).abs() / promised[3]);
+        }
     }
     let show = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.2}"));
-    let error = plan.mesh_error();
     let line = format!(
-        "{}, {target:.0e}, {n1} × {n2}: {} {} {} (at {} {} {}); estimated {:.2} {:.2} {:.2}; steps {} planned {}; work {work:.0} planned {:.0}; planned in {planning:.2} s, run in {took:.2} s",
-        scene.name, show(over[0]), show(over[1]), show(over[2]), show(late[0]), show(late[1]), show(late[2]),
-        error.approach / target, 0.5 * error.area / target, error.greatest_pressure / target, steps, plan.steps(), plan.convolutions()
+        "{}, {target:.0e}, {n1} × {n2}: {} {} {} {} (at {at:.2?}); said {:.2} {:.2} {:.2} {:.2}{}; steps {steps} planned {}; work \
+         {work:.0} planned {:.0}; planned in {planning:.2} s, run in {took:.2} s",
+        scene.name,
+        show(over[0]),
+        show(over[1]),
+        show(over[2]),
+        show(over[3]),
+        error.approach / target,
+        0.5 * error.area / target,
+        plan.pressure_error_at_all_times() / target,
+        error.greatest_pressure / target,
+        if plan.pressure_converges() { "" } else { " (not)" },
+        plan.steps(),
+        plan.convolutions()
     );
     println!("{line}");
-    Ok(Some(Outcome { over, late, line }))
+    Ok(Some(Outcome { over: [over[0], over[1], over[3]], line }))
 }
 
 #[test]
@@ -293,8 +317,8 @@ fn random_scenes_are_as_accurate_as_planned() {
     let mut missed = Vec::new();
     for seed in first..first + count {
         let scene = scene(seed);
-        for target in [1e-2, 1e-3] {
-            match deliver(&scene, target) {
+        for (target, area) in [(1e-2, false), (1e-2, true), (1e-3, false)] {
+            match deliver(&scene, target, area) {
                 Err(error) => println!("FAILED {}, {target:.0e}: {error}", scene.name),
                 Ok(None) => {}
                 Ok(Some(outcome)) => {
