@@ -1,7 +1,7 @@
 //! The scene on coarse meshes: its domain, its steps, and its states.
 
 use crate::Grid;
-use crate::contact::{Builder, StepReport, ViscoelasticContact, Warning};
+use crate::contact::{Builder, StepReport, Stepping, ViscoelasticContact, Warning};
 use crate::error::{Error, Result};
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory};
@@ -22,6 +22,11 @@ const MAX_HALVINGS: u32 = 5;
 /// contact until it has grown to the second fraction.
 const SMALL_CONTACT: [f64; 2] = [1.0 / 3.0, 0.4];
 
+/// Ratio of the tolerances of two runs whose difference is taken for the error in time of the first, and the smallest
+/// tolerance of a run.
+const SHORTER: f64 = 0.125;
+pub(super) const LEAST_TOLERANCE: f64 = 1e-9;
+
 /// A scene to plan.
 #[derive(Clone, Copy)]
 pub(super) struct Scene<'a> {
@@ -32,6 +37,8 @@ pub(super) struct Scene<'a> {
     /// End of the run for which the material is fitted.
     pub(super) whole: f64,
     pub(super) accuracy: Accuracy,
+    /// Tolerance of the steps.
+    pub(super) tolerance: f64,
 }
 
 /// Where the contact is during a run, in the middle between cells.
@@ -43,6 +50,13 @@ pub(super) struct Extent {
     pub(super) width: [f64; 2],
 }
 
+impl Extent {
+    /// Reaches of so much more.
+    pub(super) fn enlarged(&self, factor: f64) -> Extent {
+        Extent { reach: self.reach.map(|half| factor * half), ..*self }
+    }
+}
+
 /// A state at the end of a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct State {
@@ -51,6 +65,8 @@ pub(super) struct State {
     pub(super) force: f64,
     pub(super) radius: f64,
     pub(super) pressure: f64,
+    /// Second-order error of the greatest pressure, estimated from the rim.
+    pub(super) rim: f64,
     /// First-order share of the error of the mesh, estimated from the rim: that of singular edges.
     pub(super) singular: f64,
     /// Whether the contact is enough cells wide for radius and pressure to be resolved.
@@ -73,6 +89,7 @@ impl Run {
     }
 
     fn add(&mut self, contact: &ViscoelasticContact, report: &StepReport) {
+        let error = contact.mesh_error();
         self.convolutions += report.convolution_equivalents();
         self.steps.push((report.dt, contact.load()));
         self.states.push(State {
@@ -81,7 +98,8 @@ impl Run {
             force: report.force,
             radius: (contact.contact_area() / std::f64::consts::PI).sqrt(),
             pressure: contact.greatest_pressure(),
-            singular: contact.mesh_error().singular,
+            rim: error.greatest_pressure - error.singular,
+            singular: error.singular,
             resolved: !report.warnings.contains(Warning::FewCells),
         });
         let reach = contact.reach_of_contact();
@@ -127,15 +145,44 @@ impl Scene<'_> {
         Err(Error::NoDomain { length: lengths[0].max(lengths[1]) })
     }
 
-    /// The run in steps as long as the accuracy allows.
+    /// The run in steps as long as the scene's tolerance allows.
     pub(super) fn follow(&self, grid: Grid) -> Result<Run> {
+        self.follow_over(grid, self.tolerance, &[])
+    }
+
+    /// The run with another tolerance of the steps, some of which end on given times.
+    fn follow_over(&self, grid: Grid, tolerance: f64, times: &[f64]) -> Result<Run> {
         let mut contact = self.builder(grid).build()?;
-        let mut follow = contact.follow(self.history, self.accuracy.stepping(), self.until);
+        let mut follow = contact.follow(self.history, Stepping::adaptive(tolerance), self.until).stop_at(times)?;
         let mut run = Run::new();
         while let Some(report) = follow.next_step()? {
             run.add(follow.contact(), &report);
         }
         Ok(run)
+    }
+
+    /// The states of a run from one with shorter steps on the same mesh. `None` if its steps are too short for `f64`.
+    pub(super) fn with_shorter_steps(&self, run: &Run, grid: Grid) -> Result<Option<Vec<State>>> {
+        let times: Vec<f64> = run.states.iter().map(|state| state.time).collect();
+        let tolerance = (SHORTER * self.tolerance).max(LEAST_TOLERANCE);
+        match self.follow_over(grid, tolerance, &times) {
+            Err(Error::StepTooShort { .. }) => Ok(None),
+            other => {
+                let mut states = other?.states.into_iter().peekable();
+                // of several states at a time, the run ends with the last
+                let mut at = |time: f64| {
+                    let mut found = None;
+                    while let Some(state) = states.next_if(|state| state.time <= time) {
+                        found = Some(state);
+                        if state.time == time {
+                            break;
+                        }
+                    }
+                    found.filter(|state| state.time == time)
+                };
+                Ok(times.iter().map(|&time| at(time)).collect())
+            }
+        }
     }
 
     /// The run in given steps.

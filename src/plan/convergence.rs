@@ -1,18 +1,27 @@
 //! How the states of a run converge with the mesh.
 
 use crate::Grid;
-use crate::error::Result;
-use crate::plan::coarse::{Extent, Run, Scene, State};
+use crate::error::{Error, Result};
+use crate::plan::Accuracy;
+use crate::plan::coarse::{Extent, LEAST_TOLERANCE, Run, Scene, State};
 
 /// Cells across the widest contact on the coarsest mesh, and on the finest that a plan computes.
 const LEAST_ACROSS: usize = 16;
 const MOST_ACROSS: usize = 128;
+/// The error in time may take this share of what was asked, and leaves at least the rest to that of the mesh.
+const MAX_TIME_SHARE: f64 = 0.7;
+/// Cells across the widest contact where the steps are found, and how often they are shortened.
+const STEPS_ACROSS: f64 = 32.0;
+const MAX_STEP_TRIES: u32 = 4;
 /// A plan extrapolates to meshes at most this many times finer, unless `MOST_ACROSS` is reached.
 const MAX_EXTRAPOLATION: f64 = 3.0;
 /// Orders of convergence that are believed; below the first the quantity counts as not converging.
 const ORDERS: [f64; 2] = [0.7, 2.0];
 /// Most domains for ever smaller contacts.
 const MAX_ZOOMS: usize = 12;
+/// On finer meshes the contact may reach the edge of the domain: that grows by this factor, so many times.
+const GROWTH: f64 = 1.2;
+const MAX_GROWTHS: u32 = 5;
 /// Errors that are fractions of a cell have either sign on two meshes: the greatest difference is that much more than the
 /// error on the finer one.
 const DIFFERENCE_OVER_ERROR: f64 = 1.5;
@@ -46,6 +55,14 @@ impl Convergence {
         Convergence { error, order, across, converges }
     }
 
+    /// The error if the order is the highest.
+    fn second_order(differences: &[f64]) -> f64 {
+        let finest = 2f64.powf(ORDERS[1]);
+        let last = differences.last().copied().unwrap_or(1.0);
+        let before = differences.iter().rev().nth(1).map_or(0.0, |before| before / finest);
+        last.max(before) / (finest - 1.0)
+    }
+
     /// Of quantities that err by a fraction of a cell.
     fn by_cells(differences: &[f64], across: f64) -> Convergence {
         let last = match *differences {
@@ -69,6 +86,8 @@ impl Convergence {
 
 /// What the coarse runs found. Cells are those across the widest contact of the whole run.
 pub(super) struct Found {
+    /// Half sides of the rectangle about the origin that contained the contact.
+    pub(super) reach: [f64; 2],
     /// Of approach and force.
     pub(super) main: Convergence,
     /// First-order part of that: singular edges.
@@ -79,7 +98,7 @@ pub(super) struct Found {
     pub(super) pressure_over_time: Convergence,
     /// Of the contact radius at any time.
     pub(super) radius: Convergence,
-    pub(super) steps: usize,
+    pub(super) steps: Steps,
     /// Convolution equivalents of the run on the finest mesh, and by which power of the cells they grow.
     convolutions: Convergence,
 }
@@ -110,6 +129,20 @@ pub(super) fn grid_with(extent: &Extent, across: f64) -> Result<Grid> {
     let lengths = extent.reach.map(|half| 2.0 * DOMAIN_TO_CONTACT * half);
     let cells = [0, 1].map(|axis| smooth_size((across * lengths[axis] / extent.width[axis]).ceil() as usize));
     Grid::new(cells, lengths)
+}
+
+impl Extent {
+    /// Computes on domains that grow until they hold the contact.
+    pub(super) fn held<T>(&self, compute: impl Fn(&Extent) -> Result<T>) -> Result<T> {
+        let mut extent = *self;
+        for _ in 0..MAX_GROWTHS {
+            match compute(&extent) {
+                Err(Error::ContactAtEdge { .. }) => extent = extent.enlarged(GROWTH),
+                other => return other,
+            }
+        }
+        compute(&extent)
+    }
 }
 
 /// Runs on successive meshes, each twice as fine as the last.
@@ -152,11 +185,7 @@ impl Meshes {
         self.across *= 2.0;
         let finer = scene.repeat(grid_with(extent, self.across)?, &self.finest.steps)?;
         let (coarse, fine) = (&self.finest.states, &finer.states);
-        let over = |of: fn(&State) -> f64, all: bool| {
-            let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
-            let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
-            relative(most, greatest(fine, of))
-        };
+        let over = |of: fn(&State) -> f64, all: bool| difference(coarse, fine, of, all);
         let [before, now] = [coarse, fine].map(|states| greatest(states, |state| state.pressure));
         self.peak_resolved = coarse.iter().any(|state| state.pressure == before && state.resolved);
         self.main.push(over(|state| state.approach, true).max(over(|state| state.force, true)));
@@ -186,52 +215,108 @@ impl Meshes {
         Convergence { error, order: 1.0, across: self.across, converges: true }
     }
 
+    fn radius(&self) -> Convergence {
+        Convergence::by_cells(&self.radius, self.across)
+    }
+
     /// The greatest pressure of the run; a small contact must be resolved before it can be said not to converge.
     fn pressure(&self) -> Convergence {
         let smooth = Convergence::smooth(&self.pressure, self.across);
+        let states = &self.finest.states;
+        let highest = greatest(states, |state| state.pressure);
+        // Differences of a single number may be small by chance: then the rim tells more. Where it explains them, the
+        // pressure is as smooth as in an elastic contact.
+        let rim = states.iter().find(|state| state.pressure == highest).map_or(0.0, |state| state.rim);
+        let second = Convergence::second_order(&self.pressure);
+        if std::env::var("PLAN_DEBUG").is_ok() { println!("  {} p {:?} second {second:.2e} smooth {:.2e} {:.2} rim {rim:.2e} main {:?}", self.across, self.pressure, smooth.error, smooth.order, self.main); }
+        if smooth.converges && rim > second {
+            return Convergence { error: rim, order: ORDERS[1], ..smooth };
+        }
         Convergence { converges: smooth.converges || !self.peak_resolved, ..smooth }
     }
 }
 
-/// Finds how approach, force, radius and greatest pressure converge; `area` tells whether the radius has to be resolved.
+/// Finds the steps and how approach, force, radius and greatest pressure converge with the mesh; `area` tells whether the
+/// radius has to be resolved.
 pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result<Found> {
-    let (target, first) = (scene.accuracy.space(), grid_with(extent, LEAST_ACROSS as f64)?);
+    let first = grid_with(extent, STEPS_ACROSS)?;
     let punch = scene.has_edge(&first);
-    let base = scene.follow(first)?;
-    let zoomed = match scene.before_growth(&base) {
-        Some(until) => Some(small_contact(scene, until, extent)?),
+    let steps = Steps::find(scene, &first)?;
+    let target = steps.left_for_mesh(scene.accuracy);
+    let scene = &Scene { tolerance: steps.tolerance, ..*scene };
+    let zoomed = match scene.before_growth(&steps.run) {
+        Some(until) => Some(small_contact(scene, until, extent, target)?),
         None => None,
     };
-    let found = |meshes: &Meshes| Found {
+    let base = scene.repeat(grid_with(extent, LEAST_ACROSS as f64)?, &steps.run.steps)?;
+    let meshes = Meshes::refine(scene, extent, base, |meshes| {
+        let pressure = if zoomed.is_some() { None } else { Some(meshes.pressure()) };
+        let radius = if area { Some(meshes.radius()) } else { None };
+        let wanted = [Some(meshes.main(punch)), Some(meshes.singular(punch)), radius, pressure.filter(|p| p.converges)];
+        wanted.into_iter().flatten().map(|quantity| quantity.across_for(target)).fold(0.0, f64::max)
+    })?;
+    let across = meshes.across;
+    let touched = meshes.finest.extent.reach;
+    Ok(Found {
+        reach: [0, 1].map(|axis| extent.reach[axis].max(touched[axis])),
         main: meshes.main(punch),
         singular: meshes.singular(punch),
         pressure: zoomed.unwrap_or_else(|| meshes.pressure()),
-        pressure_over_time: Convergence::smooth(&meshes.pressure_over_time, meshes.across),
-        radius: Convergence::by_cells(&meshes.radius, meshes.across),
-        steps: meshes.finest.steps.len(),
+        pressure_over_time: Convergence::smooth(&meshes.pressure_over_time, across),
+        radius: meshes.radius(),
         convolutions: Convergence {
             error: meshes.finest.convolutions,
             order: -meshes.growth,
-            across: meshes.across,
+            across,
             converges: true,
         },
-    };
-    let meshes = Meshes::refine(scene, extent, base, |meshes| {
-        let Found { main, singular, radius, .. } = found(meshes);
-        let pressure = if zoomed.is_some() { None } else { Some(meshes.pressure()) };
-        let wanted = [Some(main), Some(singular), Some(radius).filter(|_| area), pressure.filter(|p| p.converges)];
-        wanted.into_iter().flatten().map(|quantity| quantity.across_for(target)).fold(0.0, f64::max)
-    })?;
-    let found = found(&meshes);
-    if std::env::var("PLAN_DEBUG").is_ok() {
-        println!("   {} main {:?} {:?} sing {:?} p {:?} {:?} r {:?}", meshes.across, meshes.main, found.main, found.singular.error, meshes.pressure, found.pressure, found.radius);
+        steps,
+    })
+}
+
+/// The steps of a run, and the error in time that they leave.
+pub(super) struct Steps {
+    pub(super) tolerance: f64,
+    pub(super) run: Run,
+    /// Of approach or force, and of the greatest pressure at any time, relative to the greatest values of the run; `None`
+    /// where steps short enough to compare with do not exist.
+    pub(super) error: Option<[f64; 2]>,
+}
+
+impl Steps {
+    /// The error of the mesh that the error in time leaves.
+    pub(super) fn left_for_mesh(&self, accuracy: Accuracy) -> f64 {
+        let target = accuracy.target();
+        let left = target - self.error.map_or(0.0, |error| error[0]);
+        left.clamp((1.0 - MAX_TIME_SHARE) * target, accuracy.space())
     }
-    Ok(found)
+
+    /// Shortens the steps until the error of approach or force is what was asked.
+    fn find(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
+        let target = scene.accuracy.target();
+        let mut tolerance = scene.tolerance;
+        let mut tries = 0;
+        loop {
+            let scene = Scene { tolerance, ..*scene };
+            let run = scene.follow(grid.clone())?;
+            let error = scene.with_shorter_steps(&run, grid.clone())?.map(|finer| {
+                let [approach, force] = [|state: &State| state.approach, |state: &State| state.force];
+                let main = difference(&run.states, &finer, approach, true);
+                [main.max(difference(&run.states, &finer, force, true)), difference(&run.states, &finer, |s| s.pressure, false)]
+            });
+            tries += 1;
+            let worst = error.map_or(0.0, |error| error[0]);
+            if worst <= MAX_TIME_SHARE * target || tries == MAX_STEP_TRIES || tolerance <= LEAST_TOLERANCE {
+                return Ok(Steps { tolerance, run, error });
+            }
+            tolerance = (tolerance * (0.5 * target / worst).max(0.1)).max(LEAST_TOLERANCE);
+        }
+    }
 }
 
 /// The greatest pressure of a run in which the contact grows much afterwards: of the run to `until`, on a domain of its
 /// own.
-fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Convergence> {
+fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent, target: f64) -> Result<Convergence> {
     let (mut until, mut zooms) = (until, 0);
     let (part, extent, base) = loop {
         let part = Scene { until, ..*scene };
@@ -243,17 +328,24 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Conver
             None => break (part, extent, base),
         }
     };
-    let target = scene.accuracy.space();
-    let meshes = Meshes::refine(&part, &extent, base, |meshes| {
-        let pressure = meshes.pressure();
-        if pressure.converges { pressure.across_for(target) } else { 0.0 }
+    let meshes = extent.held(|extent| {
+        let base = part.repeat(grid_with(extent, LEAST_ACROSS as f64)?, &base.steps)?;
+        Meshes::refine(&part, extent, base, |meshes| {
+            let pressure = meshes.pressure();
+            if pressure.converges { pressure.across_for(target) } else { 0.0 }
+        })
     })?;
     let larger = [0, 1].map(|axis| whole.width[axis] / extent.width[axis]);
     let across = meshes.across * larger[0].max(larger[1]);
-    if std::env::var("PLAN_DEBUG").is_ok() {
-        println!("   zoom {zooms} until {until:.2e}: {} p {:?} {:?}", meshes.across, meshes.pressure, meshes.pressure());
-    }
     Ok(Convergence { across, ..meshes.pressure() })
+}
+
+/// The greatest difference between the states of two runs at the same times, relative to the greatest value; of all states
+/// or of those resolved in the first.
+fn difference(coarse: &[State], fine: &[State], of: impl Fn(&State) -> f64, all: bool) -> f64 {
+    let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
+    let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
+    relative(most, greatest(fine, of))
 }
 
 fn relative(value: f64, scale: f64) -> f64 {

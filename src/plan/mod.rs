@@ -12,7 +12,7 @@ use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
-use crate::plan::coarse::Scene;
+use crate::plan::coarse::{Extent, Scene};
 use crate::plan::convergence::{DOMAIN_TO_CONTACT, converge, grid_with};
 use crate::rheology::Material;
 
@@ -47,6 +47,9 @@ pub struct Plan {
     /// Half sides of the rectangle that contains the contact at all times.
     reach: [f64; 2],
     steps: usize,
+    /// Tolerance of the steps, and the error in time that it was seen to leave.
+    tolerance: f64,
+    time_error: Option<f64>,
     convolutions: f64,
     error: MeshError,
     /// Whether the greatest pressure of the run converges with the mesh.
@@ -74,7 +77,7 @@ impl Plan {
         until: f64,
         accuracy: Accuracy,
     ) -> Result<Plan> {
-        Plan::made(Scene { geometry, material, history, until, whole: until, accuracy }, false)
+        Plan::made(geometry, material, history, until, accuracy, false)
     }
 
     /// As [`Plan::new`], with a mesh on which the contact radius, √(area/π), is as accurate too, at all times at which the
@@ -89,15 +92,25 @@ impl Plan {
         until: f64,
         accuracy: Accuracy,
     ) -> Result<Plan> {
-        Plan::made(Scene { geometry, material, history, until, whole: until, accuracy }, true)
+        Plan::made(geometry, material, history, until, accuracy, true)
     }
 
-    fn made(scene: Scene<'_>, area: bool) -> Result<Plan> {
-        positive("end of the run", scene.until)?;
-        Accuracy::target_of(scene.accuracy.target())?;
+    fn made(
+        geometry: &dyn Geometry,
+        material: &Material,
+        history: &dyn LoadHistory,
+        until: f64,
+        accuracy: Accuracy,
+        area: bool,
+    ) -> Result<Plan> {
+        positive("end of the run", until)?;
+        Accuracy::target_of(accuracy.target())?;
+        let tolerance = accuracy.step_tolerance();
+        let scene = Scene { geometry, material, history, until, whole: until, accuracy, tolerance };
         let extent = scene.extent()?;
-        let found = converge(&scene, &extent, area)?;
-        let target = scene.accuracy.space();
+        let found = extent.held(|extent| converge(&scene, extent, area))?;
+        let extent = Extent { reach: found.reach, ..extent };
+        let target = found.steps.left_for_mesh(accuracy);
         let radius = if area { found.across_for_radius(target) } else { 0.0 };
         let across = found.across_for(target).max(radius).max(LEAST_ACROSS);
         let sides = [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * extent.reach[axis] / extent.width[axis]);
@@ -122,11 +135,13 @@ impl Plan {
             builder,
             grid,
             reach: extent.reach,
-            steps: found.steps,
+            steps: found.steps.run.steps.len(),
+            tolerance: found.steps.tolerance,
+            time_error: found.steps.error.map(|error| error[0]),
             convolutions: found.convolutions(across),
             error,
             pressure_converges: found.pressure_converges(),
-            pressure_over_time: found.pressure_over_time.at(across),
+            pressure_over_time: found.pressure_over_time.at(across) + found.steps.error.map_or(0.0, |error| error[1]),
             bytes: memory.total() + slope,
         })
     }
@@ -143,7 +158,7 @@ impl Plan {
 
     /// The stepping, for [`ViscoelasticContact::follow`].
     pub fn stepping(&self) -> Stepping {
-        self.accuracy.stepping()
+        Stepping::adaptive(self.tolerance)
     }
 
     /// The accuracy.
@@ -170,6 +185,12 @@ impl Plan {
     /// of the material.
     pub fn bytes(&self) -> u64 {
         self.bytes
+    }
+
+    /// Expected error in time of approach and force, relative to their greatest values: the difference from a run with
+    /// shorter steps on a coarse mesh. `None` where these are too short for `f64`.
+    pub fn time_error(&self) -> Option<f64> {
+        self.time_error
     }
 
     /// Whether the greatest pressure of the run converges with the mesh. If not, as under the edges of punches and the tips

@@ -292,7 +292,7 @@ fn deliver(scene: &Scene, target: f64, area: bool) -> Result<Option<Outcome>, Er
     let show = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.2}"));
     let line = format!(
         "{}, {target:.0e}, {n1} × {n2}: {} {} {} {} (at {at:.2?}); said {:.2} {:.2} {:.2} {:.2}{}; steps {steps} planned {}; work \
-         {work:.0} planned {:.0}; planned in {planning:.2} s, run in {took:.2} s",
+         {work:.0} planned {:.0}; error in time {:.2}; planned in {planning:.2} s, run in {took:.2} s",
         scene.name,
         show(over[0]),
         show(over[1]),
@@ -304,7 +304,8 @@ fn deliver(scene: &Scene, target: f64, area: bool) -> Result<Option<Outcome>, Er
         error.greatest_pressure / target,
         if plan.pressure_converges() { "" } else { " (not)" },
         plan.steps(),
-        plan.convolutions()
+        plan.convolutions(),
+        plan.time_error().unwrap_or(f64::NAN) / target
     );
     println!("{line}");
     Ok(Some(Outcome { over: [over[0], over[1], over[3]], line }))
@@ -329,5 +330,5 @@ fn random_scenes_are_as_accurate_as_planned() {
             }
         }
     }
-    println!("missed: {}\n{}", missed.len(), missed.join("\n"));
+    println!("missed: {} of {count}\n{}", missed.len(), missed.join("\n"));
 }
