@@ -74,6 +74,7 @@ pub(super) struct State {
 }
 
 /// A run on a coarse mesh.
+#[derive(Clone)]
 pub(super) struct Run {
     pub(super) extent: Extent,
     /// Steps taken: their lengths, and the loads at their ends.
@@ -165,7 +166,10 @@ impl Scene<'_> {
     pub(super) fn with_shorter_steps(&self, run: &Run, grid: Grid) -> Result<Option<Vec<State>>> {
         let times: Vec<f64> = run.states.iter().map(|state| state.time).collect();
         let tolerance = (SHORTER * self.tolerance).max(LEAST_TOLERANCE);
-        match self.follow_over(grid, tolerance, &times) {
+        // No step of the run remains: its control may have been blind to what happens within one.
+        let middles = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+        let stops: Vec<f64> = times.iter().copied().chain(middles).collect();
+        match self.follow_over(grid, tolerance, &stops) {
             Err(Error::StepTooShort { .. }) => Ok(None),
             other => {
                 let mut states = other?.states.into_iter().peekable();

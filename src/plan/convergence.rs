@@ -8,11 +8,17 @@ use crate::plan::coarse::{Extent, LEAST_TOLERANCE, Run, Scene, State};
 /// Cells across the widest contact on the coarsest mesh, and on the finest that a plan computes.
 const LEAST_ACROSS: usize = 16;
 const MOST_ACROSS: usize = 128;
-/// The error in time may take this share of what was asked, and leaves at least the rest to that of the mesh.
-const MAX_TIME_SHARE: f64 = 0.7;
+/// The error in time may take this share of what was asked, both errors together the second, and that of the mesh at least
+/// the third.
+const MAX_TIME_SHARE: f64 = 0.6;
+const BOTH_SHARES: f64 = 0.9;
+const MIN_MESH_SHARE: f64 = 0.2;
 /// Cells across the widest contact where the steps are found, and how often they are shortened.
 const STEPS_ACROSS: f64 = 32.0;
-const MAX_STEP_TRIES: u32 = 4;
+const MAX_STEP_TRIES: u32 = 3;
+/// The least factor of their tolerance at a time, and the most of the error that may remain for it to be of use.
+const MAX_SHORTENING: f64 = 0.2;
+const MIN_GAIN: f64 = 0.8;
 /// A plan extrapolates to meshes at most this many times finer, unless `MOST_ACROSS` is reached.
 const MAX_EXTRAPOLATION: f64 = 3.0;
 /// Orders of convergence that are believed; below the first the quantity counts as not converging.
@@ -25,6 +31,11 @@ const MAX_GROWTHS: u32 = 5;
 /// Errors that are fractions of a cell have either sign on two meshes: the greatest difference is that much more than the
 /// error on the finer one.
 const DIFFERENCE_OVER_ERROR: f64 = 1.5;
+/// Differences of a greatest pressure of second order are three times the error on the finer mesh; up to this many times the
+/// estimate from the rim they count as such.
+const MAX_DIFFERENCE_OVER_RIM: f64 = 4.0;
+/// Bound of the power of the number of cells across with which the convolutions of a run grow.
+const MAX_WORK_ORDER: f64 = 0.4;
 /// Ratio of the domain to the rectangle of the contact.
 pub(super) const DOMAIN_TO_CONTACT: f64 = 1.12;
 
@@ -99,28 +110,22 @@ pub(super) struct Found {
     /// Of the contact radius at any time.
     pub(super) radius: Convergence,
     pub(super) steps: Steps,
-    /// Convolution equivalents of the run on the finest mesh, and by which power of the cells they grow.
-    convolutions: Convergence,
+    /// Convolution equivalents of the run, which grow with the cells.
+    pub(super) work: Convergence,
 }
 
 impl Found {
-    /// Cells across for approach, force and greatest pressure to err by `target`.
-    pub(super) fn across_for(&self, target: f64) -> f64 {
-        let pressure = if self.pressure.converges { self.pressure.across_for(target) } else { 0.0 };
-        self.main.across_for(target).max(self.singular.across_for(target)).max(pressure)
+    /// Cells across for the accuracy.
+    pub(super) fn across_for(&self, accuracy: Accuracy, area: bool) -> f64 {
+        let left = self.steps.left_for_mesh(accuracy);
+        let main = self.main.across_for(left).max(self.singular.across_for(left));
+        let others = [Some(self.pressure).filter(|law| law.converges), Some(self.radius).filter(|_| area)];
+        others.into_iter().flatten().map(|law| law.across_for(accuracy.space())).fold(main, f64::max)
     }
 
     /// Whether the greatest pressure of the run converges with the mesh.
     pub(super) fn pressure_converges(&self) -> bool {
         self.pressure.converges
-    }
-
-    pub(super) fn across_for_radius(&self, target: f64) -> f64 {
-        self.radius.across_for(target)
-    }
-
-    pub(super) fn convolutions(&self, across: f64) -> f64 {
-        self.convolutions.at(across)
     }
 }
 
@@ -192,7 +197,7 @@ impl Meshes {
         self.pressure.push(relative((before - now).abs(), now));
         self.pressure_over_time.push(over(|state| state.pressure, false));
         self.radius.push(over(|state| state.radius, false));
-        self.growth = (finer.convolutions / self.finest.convolutions).log2().clamp(0.0, 1.0);
+        self.growth = (finer.convolutions / self.finest.convolutions).log2().clamp(0.0, MAX_WORK_ORDER);
         self.finest = finer;
         Ok(())
     }
@@ -215,24 +220,24 @@ impl Meshes {
         Convergence { error, order: 1.0, across: self.across, converges: true }
     }
 
-    fn radius(&self) -> Convergence {
-        Convergence::by_cells(&self.radius, self.across)
+    fn work(&self) -> Convergence {
+        let Run { convolutions, .. } = self.finest;
+        Convergence { error: convolutions, order: -self.growth, across: self.across, converges: true }
     }
 
-    /// The greatest pressure of the run; a small contact must be resolved before it can be said not to converge.
+    /// The greatest pressure of the run. Differences of a single number may be small or large by chance: where they agree
+    /// with the estimate from the rim, the pressure is as smooth as in an elastic contact. A small contact must be resolved
+    /// before its pressure can be said not to converge.
     fn pressure(&self) -> Convergence {
-        let smooth = Convergence::smooth(&self.pressure, self.across);
         let states = &self.finest.states;
         let highest = greatest(states, |state| state.pressure);
-        // Differences of a single number may be small by chance: then the rim tells more. Where it explains them, the
-        // pressure is as smooth as in an elastic contact.
         let rim = states.iter().find(|state| state.pressure == highest).map_or(0.0, |state| state.rim);
-        let second = Convergence::second_order(&self.pressure);
-        if std::env::var("PLAN_DEBUG").is_ok() { println!("  {} p {:?} second {second:.2e} smooth {:.2e} {:.2} rim {rim:.2e} main {:?}", self.across, self.pressure, smooth.error, smooth.order, self.main); }
-        if smooth.converges && rim > second {
-            return Convergence { error: rim, order: ORDERS[1], ..smooth };
+        let law = Convergence::smooth(&self.pressure, self.across);
+        if self.pressure.last().is_some_and(|&last| last <= MAX_DIFFERENCE_OVER_RIM * rim) {
+            let error = Convergence::second_order(&self.pressure).max(rim);
+            return Convergence { error, order: ORDERS[1], converges: true, ..law };
         }
-        Convergence { converges: smooth.converges || !self.peak_resolved, ..smooth }
+        Convergence { converges: law.converges || !self.peak_resolved, ..law }
     }
 }
 
@@ -242,39 +247,33 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
     let first = grid_with(extent, STEPS_ACROSS)?;
     let punch = scene.has_edge(&first);
     let steps = Steps::find(scene, &first)?;
-    let target = steps.left_for_mesh(scene.accuracy);
     let scene = &Scene { tolerance: steps.tolerance, ..*scene };
     let zoomed = match scene.before_growth(&steps.run) {
-        Some(until) => Some(small_contact(scene, until, extent, target)?),
+        Some(until) => Some(small_contact(scene, until, extent)?),
         None => None,
     };
     let base = scene.repeat(grid_with(extent, LEAST_ACROSS as f64)?, &steps.run.steps)?;
-    let meshes = Meshes::refine(scene, extent, base, |meshes| {
-        let pressure = if zoomed.is_some() { None } else { Some(meshes.pressure()) };
-        let radius = if area { Some(meshes.radius()) } else { None };
-        let wanted = [Some(meshes.main(punch)), Some(meshes.singular(punch)), radius, pressure.filter(|p| p.converges)];
-        wanted.into_iter().flatten().map(|quantity| quantity.across_for(target)).fold(0.0, f64::max)
-    })?;
-    let across = meshes.across;
-    let touched = meshes.finest.extent.reach;
-    Ok(Found {
-        reach: [0, 1].map(|axis| extent.reach[axis].max(touched[axis])),
+    let found = |meshes: &Meshes| Found {
+        reach: [0, 1].map(|axis| extent.reach[axis].max(meshes.finest.extent.reach[axis])),
         main: meshes.main(punch),
         singular: meshes.singular(punch),
         pressure: zoomed.unwrap_or_else(|| meshes.pressure()),
-        pressure_over_time: Convergence::smooth(&meshes.pressure_over_time, across),
-        radius: meshes.radius(),
-        convolutions: Convergence {
-            error: meshes.finest.convolutions,
-            order: -meshes.growth,
-            across,
-            converges: true,
-        },
-        steps,
-    })
+        pressure_over_time: Convergence::smooth(&meshes.pressure_over_time, meshes.across),
+        radius: Convergence::by_cells(&meshes.radius, meshes.across),
+        work: meshes.work(),
+        steps: steps.clone(),
+    };
+    // a pressure on a domain of its own asks nothing of these meshes
+    let unzoomed = |found: Found| match zoomed {
+        Some(law) => Found { pressure: Convergence { converges: false, ..law }, ..found },
+        None => found,
+    };
+    let needed = |meshes: &Meshes| unzoomed(found(meshes)).across_for(scene.accuracy, area);
+    Ok(found(&Meshes::refine(scene, extent, base, needed)?))
 }
 
 /// The steps of a run, and the error in time that they leave.
+#[derive(Clone)]
 pub(super) struct Steps {
     pub(super) tolerance: f64,
     pub(super) run: Run,
@@ -284,39 +283,51 @@ pub(super) struct Steps {
 }
 
 impl Steps {
-    /// The error of the mesh that the error in time leaves.
+    /// The error of approach and force due to the mesh that the error in time leaves.
     pub(super) fn left_for_mesh(&self, accuracy: Accuracy) -> f64 {
         let target = accuracy.target();
-        let left = target - self.error.map_or(0.0, |error| error[0]);
-        left.clamp((1.0 - MAX_TIME_SHARE) * target, accuracy.space())
+        let left = BOTH_SHARES * target - self.worst();
+        left.clamp(MIN_MESH_SHARE * target, accuracy.space())
     }
 
-    /// Shortens the steps until the error of approach or force is what was asked.
+    /// Shortens the steps while the error of approach or force is more than its share and falls with them.
     fn find(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
         let target = scene.accuracy.target();
-        let mut tolerance = scene.tolerance;
-        let mut tries = 0;
-        loop {
-            let scene = Scene { tolerance, ..*scene };
-            let run = scene.follow(grid.clone())?;
-            let error = scene.with_shorter_steps(&run, grid.clone())?.map(|finer| {
-                let [approach, force] = [|state: &State| state.approach, |state: &State| state.force];
-                let main = difference(&run.states, &finer, approach, true);
-                [main.max(difference(&run.states, &finer, force, true)), difference(&run.states, &finer, |s| s.pressure, false)]
-            });
-            tries += 1;
-            let worst = error.map_or(0.0, |error| error[0]);
-            if worst <= MAX_TIME_SHARE * target || tries == MAX_STEP_TRIES || tolerance <= LEAST_TOLERANCE {
-                return Ok(Steps { tolerance, run, error });
+        let mut steps = Steps::with_tolerance(scene, grid)?;
+        for _ in 0..MAX_STEP_TRIES {
+            let worst = steps.worst();
+            if worst <= MAX_TIME_SHARE * target {
+                break;
             }
-            tolerance = (tolerance * (0.5 * target / worst).max(0.1)).max(LEAST_TOLERANCE);
+            let tolerance = (steps.tolerance * (0.5 * target / worst).max(MAX_SHORTENING)).max(LEAST_TOLERANCE);
+            match Steps::with_tolerance(&Scene { tolerance, ..*scene }, grid) {
+                Ok(shorter) if shorter.error.is_some() && shorter.worst() <= MIN_GAIN * worst => steps = shorter,
+                Err(error @ (Error::ContactAtEdge { .. } | Error::OutOfMemory { .. })) => return Err(error),
+                _ => break,
+            }
         }
+        Ok(steps)
+    }
+
+    /// The error of approach or force, 0 where it is unknown.
+    fn worst(&self) -> f64 {
+        self.error.map_or(0.0, |error| error[0])
+    }
+
+    fn with_tolerance(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
+        let run = scene.follow(grid.clone())?;
+        let error = scene.with_shorter_steps(&run, grid.clone())?.map(|finer| {
+            let over = |of: fn(&State) -> f64, all: bool| difference(&run.states, &finer, of, all);
+            let main = over(|state| state.approach, true).max(over(|state| state.force, true));
+            [main, over(|state| state.pressure, false)]
+        });
+        Ok(Steps { tolerance: scene.tolerance, run, error })
     }
 }
 
 /// The greatest pressure of a run in which the contact grows much afterwards: of the run to `until`, on a domain of its
 /// own.
-fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent, target: f64) -> Result<Convergence> {
+fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Convergence> {
     let (mut until, mut zooms) = (until, 0);
     let (part, extent, base) = loop {
         let part = Scene { until, ..*scene };
@@ -332,7 +343,7 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent, target: f64) -> 
         let base = part.repeat(grid_with(extent, LEAST_ACROSS as f64)?, &base.steps)?;
         Meshes::refine(&part, extent, base, |meshes| {
             let pressure = meshes.pressure();
-            if pressure.converges { pressure.across_for(target) } else { 0.0 }
+            if pressure.converges { pressure.across_for(scene.accuracy.space()) } else { 0.0 }
         })
     })?;
     let larger = [0, 1].map(|axis| whole.width[axis] / extent.width[axis]);

@@ -110,9 +110,7 @@ impl Plan {
         let extent = scene.extent()?;
         let found = extent.held(|extent| converge(&scene, extent, area))?;
         let extent = Extent { reach: found.reach, ..extent };
-        let target = found.steps.left_for_mesh(accuracy);
-        let radius = if area { found.across_for_radius(target) } else { 0.0 };
-        let across = found.across_for(target).max(radius).max(LEAST_ACROSS);
+        let across = found.across_for(accuracy, area).max(LEAST_ACROSS);
         let sides = [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * extent.reach[axis] / extent.width[axis]);
         let wanted = sides[0].max(sides[1]);
         if wanted.is_nan() || wanted > MOST_CELLS as f64 {
@@ -138,7 +136,7 @@ impl Plan {
             steps: found.steps.run.steps.len(),
             tolerance: found.steps.tolerance,
             time_error: found.steps.error.map(|error| error[0]),
-            convolutions: found.convolutions(across),
+            convolutions: found.work.at(across),
             error,
             pressure_converges: found.pressure_converges(),
             pressure_over_time: found.pressure_over_time.at(across) + found.steps.error.map_or(0.0, |error| error[1]),

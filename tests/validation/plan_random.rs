@@ -94,24 +94,16 @@ fn scene(seed: u64) -> Scene {
     ) = match kind {
         0 | 1 => {
             let exact = GrowingSphere::step(radius, &material, 1.0).unwrap();
-            let state = move |t: f64| [Some(exact.approach(t)), Some(exact.contact_radius(t)), Some(highest(&exact, t))];
+            let state =
+                move |t: f64| [Some(exact.approach(t)), Some(exact.contact_radius(t)), Some(highest(&exact, t))];
             let held = Box::new(StepLoad::new(Load::force(1.0)).unwrap());
             ("held sphere", Box::new(Sphere::new(radius).unwrap()), held, Some(Box::new(state)), false)
         }
         2 => {
             let entries = [(0.0, Load::force(0.0)), (ramp, Load::force(1.0)), (2.0, Load::force(1.0))];
             let exact = GrowingSphere::new(radius, &material, PiecewiseLinear::new(&entries).unwrap()).unwrap();
-            let state = move |t: f64| [Some(exact.approach(t)), Some(exact.contact_radius(t)), Some(highest(&exact, t))];
-            if env::var("PLAN_CHECK").is_ok() {
-                let exact = GrowingSphere::new(radius, &material, PiecewiseLinear::new(&entries).unwrap()).unwrap();
-                let mut foundation = viscocontact::analytic::AxisymmetricContact::new(
-                    &viscocontact::analytic::Profile::sphere(radius).unwrap(), &material, 4000, 1.3 * exact.contact_radius(1.0)).unwrap();
-                for k in 1..=4000 {
-                    let t = f64::from(k) / 4000.0;
-                    foundation.press(1.0 / 4000.0, (t / ramp).min(1.0)).unwrap();
-                    if k % 1000 == 0 { println!("ramp {ramp:.3} t {t}: {:.6e} exact {:.6e} by hand {:.6e}", foundation.approach(), exact.approach(t), 0.0); }
-                }
-            }
+            let state =
+                move |t: f64| [Some(exact.approach(t)), Some(exact.contact_radius(t)), Some(highest(&exact, t))];
             ("ramped sphere", Box::new(Sphere::new(radius).unwrap()), table(&entries), Some(Box::new(state)), false)
         }
         3 => {
@@ -128,7 +120,13 @@ fn scene(seed: u64) -> Scene {
             };
             let held = Box::new(StepLoad::new(Load::force(1.0)).unwrap());
             let _ = b;
-            ("held ellipsoid", Box::new(Ellipsoid::new(radii[0], radii[1]).unwrap()), held, Some(Box::new(state)), false)
+            (
+                "held ellipsoid",
+                Box::new(Ellipsoid::new(radii[0], radii[1]).unwrap()),
+                held,
+                Some(Box::new(state)),
+                false,
+            )
         }
         4 => {
             let compliance = material.clone();
@@ -140,7 +138,8 @@ fn scene(seed: u64) -> Scene {
         5 => {
             let exact = GrowingSphere::step(radius, &material, 1.0).unwrap();
             let far = exact.contact_radius(1.0) * random.between(0.2, 4.0);
-            let state = move |t: f64| [Some(exact.approach(t)), Some(exact.contact_radius(t)), Some(highest(&exact, t))];
+            let state =
+                move |t: f64| [Some(exact.approach(t)), Some(exact.contact_radius(t)), Some(highest(&exact, t))];
             let held = Box::new(StepLoad::new(Load::force(1.0)).unwrap());
             let shape = Shifted::new(Sphere::new(radius).unwrap(), [far, -0.3 * far]).unwrap();
             ("sphere off the centre", Box::new(shape), held, Some(Box::new(state)), false)
@@ -273,7 +272,8 @@ fn deliver(scene: &Scene, target: f64, area: bool) -> Result<Option<Outcome>, Er
     };
     // approach, radius and pressure at all times, then the greatest pressure of the run
     let error = plan.mesh_error();
-    let promised = [target, target.max(0.5 * error.area), target.max(plan.pressure_error_at_all_times()), target];
+    let asked = target.max(plan.time_error().unwrap_or(0.0));
+    let promised = [asked, asked.max(0.5 * error.area), asked.max(plan.pressure_error_at_all_times()), asked];
     let (mut over, mut at) = ([None; 4], [0.0; 3]);
     for which in 0..3 {
         if truth[0][which].is_none() {
@@ -331,4 +331,7 @@ fn random_scenes_are_as_accurate_as_planned() {
         }
     }
     println!("missed: {} of {count}\n{}", missed.len(), missed.join("\n"));
+    if env::var("PLAN_REPORT").is_err() {
+        assert!(missed.is_empty(), "{} scenes missed: {}", missed.len(), missed.join("\n"));
+    }
 }
