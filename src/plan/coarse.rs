@@ -6,7 +6,6 @@ use crate::error::{Error, Result};
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory};
 use crate::plan::Accuracy;
-use crate::plan::convergence::greatest;
 use crate::rheology::Material;
 
 /// Cells along a side of the runs that find the domain.
@@ -162,7 +161,8 @@ impl Scene<'_> {
         Ok(run)
     }
 
-    /// The states of a run from one with shorter steps on the same mesh. `None` if its steps are too short for `f64`.
+    /// The states of a run from one with shorter steps on the same mesh. `None` if these are too short for `f64`
+    /// or the solver cannot do them.
     pub(super) fn with_shorter_steps(&self, run: &Run, grid: Grid) -> Result<Option<Vec<State>>> {
         let times: Vec<f64> = run.states.iter().map(|state| state.time).collect();
         let tolerance = (SHORTER * self.tolerance).max(LEAST_TOLERANCE);
@@ -170,7 +170,7 @@ impl Scene<'_> {
         let middles = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
         let stops: Vec<f64> = times.iter().copied().chain(middles).collect();
         match self.follow_over(grid, tolerance, &stops) {
-            Err(Error::StepTooShort { .. }) => Ok(None),
+            Err(Error::StepTooShort { .. } | Error::NotConverged { .. }) => Ok(None),
             other => {
                 let mut states = other?.states.into_iter().peekable();
                 // of several states at a time, the run ends with the last
@@ -263,4 +263,20 @@ fn advance(contact: &mut ViscoelasticContact, dt: f64, load: Load, halvings: u32
         }
         other => other,
     }
+}
+
+/// The greatest difference between the states of two runs at the same times, relative to the greatest value; of all states
+/// or of those resolved in the first.
+pub(super) fn difference(coarse: &[State], fine: &[State], of: impl Fn(&State) -> f64, all: bool) -> f64 {
+    let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
+    let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
+    relative(most, greatest(fine, of))
+}
+
+pub(super) fn relative(value: f64, scale: f64) -> f64 {
+    if scale > 0.0 { value / scale } else { 0.0 }
+}
+
+pub(super) fn greatest(states: &[State], of: impl Fn(&State) -> f64) -> f64 {
+    states.iter().map(|state| of(state).abs()).fold(0.0, f64::max)
 }

@@ -3,34 +3,24 @@
 use crate::Grid;
 use crate::error::{Error, Result};
 use crate::plan::Accuracy;
-use crate::plan::coarse::{Extent, LEAST_TOLERANCE, Run, Scene, State};
+use crate::plan::coarse::{Extent, Run, Scene, State, difference, greatest, relative};
+use crate::plan::law::{Convergence, ORDERS};
+use crate::plan::steps::Steps;
 
 /// Cells across the widest contact on the coarsest mesh, and on the finest that a plan computes.
 const LEAST_ACROSS: usize = 16;
 const MOST_ACROSS: usize = 128;
-/// The error in time may take this share of what was asked, both errors together the second, and that of the mesh at least
-/// the third.
-const MAX_TIME_SHARE: f64 = 0.6;
-const BOTH_SHARES: f64 = 0.9;
-const MIN_MESH_SHARE: f64 = 0.2;
-/// Cells across the widest contact where the steps are found, and how often they are shortened.
+/// Cells across the widest contact where the steps are found.
 const STEPS_ACROSS: f64 = 32.0;
-const MAX_STEP_TRIES: u32 = 3;
-/// The least factor of their tolerance at a time, and the most of the error that may remain for it to be of use.
-const MAX_SHORTENING: f64 = 0.2;
-const MIN_GAIN: f64 = 0.8;
+/// Most cells along a side of a domain in which the contact is small, as far off the centre.
+const MOST_CELLS: usize = 2048;
 /// A plan extrapolates to meshes at most this many times finer, unless `MOST_ACROSS` is reached.
 const MAX_EXTRAPOLATION: f64 = 3.0;
-/// Orders of convergence that are believed; below the first the quantity counts as not converging.
-const ORDERS: [f64; 2] = [0.7, 2.0];
 /// Most domains for ever smaller contacts.
 const MAX_ZOOMS: usize = 12;
 /// On finer meshes the contact may reach the edge of the domain: that grows by this factor, so many times.
 const GROWTH: f64 = 1.2;
 const MAX_GROWTHS: u32 = 5;
-/// Errors that are fractions of a cell have either sign on two meshes: the greatest difference is that much more than the
-/// error on the finer one.
-const DIFFERENCE_OVER_ERROR: f64 = 1.5;
 /// Differences of a greatest pressure of second order are three times the error on the finer mesh; up to this many times the
 /// estimate from the rim they count as such.
 const MAX_DIFFERENCE_OVER_RIM: f64 = 4.0;
@@ -38,62 +28,6 @@ const MAX_DIFFERENCE_OVER_RIM: f64 = 4.0;
 const MAX_WORK_ORDER: f64 = 0.4;
 /// Ratio of the domain to the rectangle of the contact.
 pub(super) const DOMAIN_TO_CONTACT: f64 = 1.12;
-
-/// The error of a quantity, relative to the greatest value of the run, as a power of the number of cells across.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Convergence {
-    error: f64,
-    order: f64,
-    /// Cells across the widest contact at which the error is that.
-    across: f64,
-    /// Whether the differences fall with the mesh.
-    converges: bool,
-}
-
-impl Convergence {
-    /// Of smooth quantities, from the differences between successive meshes, the finest with `across` cells.
-    fn smooth(differences: &[f64], across: f64) -> Convergence {
-        let (error, order, converges) = match *differences {
-            [] => (1.0, 1.0, true),
-            [only] => (only, 1.0, true),
-            [.., before, last] => {
-                let last = last.max(before * 0.5f64.powf(ORDERS[1]));
-                let order = if last > 0.0 { (before / last).log2() } else { ORDERS[1] };
-                let believed = order.clamp(ORDERS[0], ORDERS[1]);
-                (last / (2f64.powf(believed) - 1.0), believed, order >= ORDERS[0])
-            }
-        };
-        Convergence { error, order, across, converges }
-    }
-
-    /// The error if the order is the highest.
-    fn second_order(differences: &[f64]) -> f64 {
-        let finest = 2f64.powf(ORDERS[1]);
-        let last = differences.last().copied().unwrap_or(1.0);
-        let before = differences.iter().rev().nth(1).map_or(0.0, |before| before / finest);
-        last.max(before) / (finest - 1.0)
-    }
-
-    /// Of quantities that err by a fraction of a cell.
-    fn by_cells(differences: &[f64], across: f64) -> Convergence {
-        let last = match *differences {
-            [] => 1.0,
-            [only] => only,
-            [.., before, last] => last.max(0.5 * before),
-        };
-        Convergence { error: last / DIFFERENCE_OVER_ERROR, order: 1.0, across, converges: true }
-    }
-
-    /// The error with so many cells across.
-    pub(super) fn at(&self, across: f64) -> f64 {
-        self.error * (self.across / across).powf(self.order)
-    }
-
-    /// Cells across for a given error.
-    fn across_for(&self, target: f64) -> f64 {
-        self.across * (self.error / target).powf(1.0 / self.order)
-    }
-}
 
 /// What the coarse runs found. Cells are those across the widest contact of the whole run.
 pub(super) struct Found {
@@ -161,6 +95,9 @@ struct Meshes {
     finest: Run,
     /// Whether the contact was resolved on the mesh before when the pressure was greatest.
     peak_resolved: bool,
+    /// Cells along the longer side.
+    side: usize,
+    /// Power of the cells across with which the convolutions grow.
     growth: f64,
 }
 
@@ -175,12 +112,14 @@ impl Meshes {
             radius: Vec::new(),
             finest: base,
             peak_resolved: false,
+            side: 0,
             growth: 0.0,
         };
         loop {
             meshes.halve(scene, extent)?;
             let reach = if meshes.main.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
-            if meshes.across >= MOST_ACROSS as f64 || needed(&meshes) <= reach * meshes.across {
+            let last = meshes.across >= MOST_ACROSS as f64 || 2 * meshes.side > MOST_CELLS;
+            if last || needed(&meshes) <= reach * meshes.across {
                 return Ok(meshes);
             }
         }
@@ -188,7 +127,10 @@ impl Meshes {
 
     fn halve(&mut self, scene: &Scene<'_>, extent: &Extent) -> Result<()> {
         self.across *= 2.0;
-        let finer = scene.repeat(grid_with(extent, self.across)?, &self.finest.steps)?;
+        let grid = grid_with(extent, self.across)?;
+        let [n1, n2] = grid.cells();
+        self.side = n1.max(n2);
+        let finer = scene.repeat(grid, &self.finest.steps)?;
         let (coarse, fine) = (&self.finest.states, &finer.states);
         let over = |of: fn(&State) -> f64, all: bool| difference(coarse, fine, of, all);
         let [before, now] = [coarse, fine].map(|states| greatest(states, |state| state.pressure));
@@ -197,7 +139,8 @@ impl Meshes {
         self.pressure.push(relative((before - now).abs(), now));
         self.pressure_over_time.push(over(|state| state.pressure, false));
         self.radius.push(over(|state| state.radius, false));
-        self.growth = (finer.convolutions / self.finest.convolutions).log2().clamp(0.0, MAX_WORK_ORDER);
+        let growth = relative(finer.convolutions, self.finest.convolutions);
+        self.growth = growth.max(1.0).log2().min(MAX_WORK_ORDER);
         self.finest = finer;
         Ok(())
     }
@@ -272,59 +215,6 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
     Ok(found(&Meshes::refine(scene, extent, base, needed)?))
 }
 
-/// The steps of a run, and the error in time that they leave.
-#[derive(Clone)]
-pub(super) struct Steps {
-    pub(super) tolerance: f64,
-    pub(super) run: Run,
-    /// Of approach or force, and of the greatest pressure at any time, relative to the greatest values of the run; `None`
-    /// where steps short enough to compare with do not exist.
-    pub(super) error: Option<[f64; 2]>,
-}
-
-impl Steps {
-    /// The error of approach and force due to the mesh that the error in time leaves.
-    pub(super) fn left_for_mesh(&self, accuracy: Accuracy) -> f64 {
-        let target = accuracy.target();
-        let left = BOTH_SHARES * target - self.worst();
-        left.clamp(MIN_MESH_SHARE * target, accuracy.space())
-    }
-
-    /// Shortens the steps while the error of approach or force is more than its share and falls with them.
-    fn find(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
-        let target = scene.accuracy.target();
-        let mut steps = Steps::with_tolerance(scene, grid)?;
-        for _ in 0..MAX_STEP_TRIES {
-            let worst = steps.worst();
-            if worst <= MAX_TIME_SHARE * target {
-                break;
-            }
-            let tolerance = (steps.tolerance * (0.5 * target / worst).max(MAX_SHORTENING)).max(LEAST_TOLERANCE);
-            match Steps::with_tolerance(&Scene { tolerance, ..*scene }, grid) {
-                Ok(shorter) if shorter.error.is_some() && shorter.worst() <= MIN_GAIN * worst => steps = shorter,
-                Err(error @ (Error::ContactAtEdge { .. } | Error::OutOfMemory { .. })) => return Err(error),
-                _ => break,
-            }
-        }
-        Ok(steps)
-    }
-
-    /// The error of approach or force, 0 where it is unknown.
-    fn worst(&self) -> f64 {
-        self.error.map_or(0.0, |error| error[0])
-    }
-
-    fn with_tolerance(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
-        let run = scene.follow(grid.clone())?;
-        let error = scene.with_shorter_steps(&run, grid.clone())?.map(|finer| {
-            let over = |of: fn(&State) -> f64, all: bool| difference(&run.states, &finer, of, all);
-            let main = over(|state| state.approach, true).max(over(|state| state.force, true));
-            [main, over(|state| state.pressure, false)]
-        });
-        Ok(Steps { tolerance: scene.tolerance, run, error })
-    }
-}
-
 /// The greatest pressure of a run in which the contact grows much afterwards: of the run to `until`, on a domain of its
 /// own.
 fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Convergence> {
@@ -349,22 +239,6 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Conver
     let larger = [0, 1].map(|axis| whole.width[axis] / extent.width[axis]);
     let across = meshes.across * larger[0].max(larger[1]);
     Ok(Convergence { across, ..meshes.pressure() })
-}
-
-/// The greatest difference between the states of two runs at the same times, relative to the greatest value; of all states
-/// or of those resolved in the first.
-fn difference(coarse: &[State], fine: &[State], of: impl Fn(&State) -> f64, all: bool) -> f64 {
-    let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
-    let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
-    relative(most, greatest(fine, of))
-}
-
-fn relative(value: f64, scale: f64) -> f64 {
-    if scale > 0.0 { value / scale } else { 0.0 }
-}
-
-pub(super) fn greatest(states: &[State], of: impl Fn(&State) -> f64) -> f64 {
-    states.iter().map(|state| of(state).abs()).fold(0.0, f64::max)
 }
 
 /// The next number of cells whose double has no prime factor above 5, for fast transforms.

@@ -3,6 +3,8 @@
 mod accuracy;
 mod coarse;
 mod convergence;
+mod law;
+mod steps;
 
 pub use accuracy::Accuracy;
 
@@ -18,9 +20,29 @@ use crate::rheology::Material;
 
 /// A scene planned for an accuracy: the extent of the contact, the cells and steps needed, and their cost.
 ///
-/// Cheap runs on a coarse mesh find the domain, the steps and the error of the mesh. That error is extrapolated, with
-/// second order where the contact is smooth and first order at singular edges, to the number of cells that meets the
-/// target. The plan returns a builder, which can be changed before the contact is built.
+/// The plan runs the scene on coarse meshes, on each with the same steps. The differences between successive meshes, each
+/// twice as fine as the last, show how fine the mesh must be: they are extrapolated at most threefold, beyond 128 cells
+/// across the contact further. The difference from a run with shorter steps shows the error in time; where it is more
+/// than its share, the steps are shortened. Where the pressure is greatest while the contact is small, as under a force
+/// held on a body that creeps much, that part of the run gets coarse runs on a domain of its own. The domain reaches from
+/// the origin as far as the contact does; cells are as long along each axis as the shape of the contact asks for.
+///
+/// # What is promised
+/// For twice the accuracy at most, relative to the greatest value of the run:
+/// * approach and force at all times,
+/// * the greatest pressure of the run, if it converges with the mesh ([`Plan::pressure_converges`]),
+/// * with [`Plan::with_area`], the contact radius wherever the contact is at least 8 cells across.
+///
+/// The plan says what it does not promise: [`Plan::mesh_error`] estimates the error of the area,
+/// [`Plan::pressure_error_at_all_times`] that of the greatest pressure at each time, which steps and cells resolve less well
+/// at growing edges, and [`Plan::time_error`] the error in time, which stays above the accuracy if shorter steps do not
+/// lower it. A scene that differs from the coarse runs only in what they cannot see, such as roughness finer than their
+/// cells or loads shorter than their steps, is beyond it. A contact far from the origin takes many cells that nothing
+/// touches: shift the shape ([`Shifted`](crate::geometry::Shifted)) and the points of the load.
+///
+/// A plan takes about as long as a third of a run with so many cells, and longer than a run with few.
+///
+/// The plan returns a builder, which can be changed before the contact is built.
 ///
 /// ```
 /// use viscocontact::plan::{Accuracy, Plan};
@@ -197,15 +219,15 @@ impl Plan {
         self.pressure_converges
     }
 
-    /// Expected greatest error of the mesh, over all times, of the greatest pressure at that time, relative to the greatest
-    /// of the run. It may exceed the accuracy: creep leaves a narrow rim of high pressure at a growing edge, which neither
+    /// Expected greatest error of mesh and steps, over all times, of the greatest pressure at that time, relative to the
+    /// greatest of the run. It may exceed the accuracy: creep leaves a narrow rim of high pressure at a growing edge, which neither
     /// cells nor steps resolve.
     pub fn pressure_error_at_all_times(&self) -> f64 {
         self.pressure_over_time
     }
 
-    /// Expected errors of the mesh: of approach and force, and of the contact area, at all times, and of the greatest
-    /// pressure of the run.
+    /// Expected errors of the mesh, relative to the greatest values of the run: of approach and force and of the contact area
+    /// at all times, and of the greatest pressure of the run.
     pub fn mesh_error(&self) -> MeshError {
         self.error
     }
@@ -225,6 +247,16 @@ impl std::fmt::Display for Plan {
             self.error.approach,
             self.error.greatest_pressure,
             self.error.area
-        )
+        )?;
+        if !self.pressure_converges {
+            write!(f, "; the peak pressure does not converge with the mesh")?;
+        }
+        match self.time_error {
+            None => write!(f, "; the error in time is unknown"),
+            Some(error) if error > self.accuracy.target() => {
+                write!(f, "; the error in time stays at {error:.1e} with shorter steps")
+            }
+            Some(_) => Ok(()),
+        }
     }
 }
