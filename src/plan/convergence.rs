@@ -26,6 +26,9 @@ const MAX_GROWTHS: u32 = 5;
 const MAX_DIFFERENCE_OVER_RIM: f64 = 4.0;
 /// Bound of the power of the number of cells across with which the convolutions of a run grow.
 const MAX_WORK_ORDER: f64 = 0.4;
+/// A greatest pressure that depends on the steps on a coarse mesh does so more on a finer one, whose cells a growing edge
+/// crosses faster: beyond this share of what was asked it is not promised.
+const MAX_PEAK_TIME_SHARE: f64 = 0.2;
 /// Ratio of the domain to the rectangle of the contact.
 pub(super) const DOMAIN_TO_CONTACT: f64 = 1.12;
 
@@ -57,9 +60,10 @@ impl Found {
         others.into_iter().flatten().map(|law| law.across_for(accuracy.space())).fold(main, f64::max)
     }
 
-    /// Whether the greatest pressure of the run converges with the mesh.
-    pub(super) fn pressure_converges(&self) -> bool {
+    /// Whether the greatest pressure of the run converges with the mesh and does not depend on the steps.
+    pub(super) fn pressure_converges(&self, accuracy: Accuracy) -> bool {
         self.pressure.converges
+            && self.steps.error.is_none_or(|error| error.pressure <= MAX_PEAK_TIME_SHARE * accuracy.target())
     }
 }
 

@@ -4,7 +4,7 @@
 pub(super) const ORDERS: [f64; 2] = [0.7, 2.0];
 /// Errors that are fractions of a cell have either sign on two meshes: the greatest difference is that much more than the
 /// error on the finer one.
-const DIFFERENCE_OVER_ERROR: f64 = 1.5;
+const DIFFERENCE_OVER_ERROR: f64 = 1.25;
 
 /// The error of a quantity, relative to the greatest value of the run, as a power of the number of cells across.
 #[derive(Debug, Clone, Copy)]

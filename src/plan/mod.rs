@@ -30,7 +30,7 @@ use crate::rheology::Material;
 /// # What is promised
 /// For twice the accuracy at most, relative to the greatest value of the run:
 /// * approach and force at all times,
-/// * the greatest pressure of the run, if it converges with the mesh ([`Plan::pressure_converges`]),
+/// * the greatest pressure of the run, if it converges ([`Plan::pressure_converges`]),
 /// * with [`Plan::with_area`], the contact radius wherever the contact is at least 8 cells across.
 ///
 /// The plan says what it does not promise: [`Plan::mesh_error`] estimates the error of the area,
@@ -40,7 +40,7 @@ use crate::rheology::Material;
 /// cells or loads shorter than their steps, is beyond it. A contact far from the origin takes many cells that nothing
 /// touches: shift the shape ([`Shifted`](crate::geometry::Shifted)) and the points of the load.
 ///
-/// A plan takes about as long as a third of a run with so many cells, and longer than a run with few.
+/// Planning takes longer than a run on few cells: as long as some runs on up to 128 cells across the contact.
 ///
 /// The plan returns a builder, which can be changed before the contact is built.
 ///
@@ -74,9 +74,9 @@ pub struct Plan {
     time_error: Option<f64>,
     convolutions: f64,
     error: MeshError,
-    /// Whether the greatest pressure of the run converges with the mesh.
+    /// Whether the greatest pressure of the run converges with mesh and steps.
     pressure_converges: bool,
-    /// Greatest error of the mesh of the greatest pressure at any time.
+    /// Greatest error of mesh and steps of the greatest pressure at any time.
     pressure_over_time: f64,
     bytes: u64,
 }
@@ -157,11 +157,12 @@ impl Plan {
             reach: extent.reach,
             steps: found.steps.run.steps.len(),
             tolerance: found.steps.tolerance,
-            time_error: found.steps.error.map(|error| error[0]),
+            time_error: found.steps.error.map(|error| error.main),
             convolutions: found.work.at(across),
             error,
-            pressure_converges: found.pressure_converges(),
-            pressure_over_time: found.pressure_over_time.at(across) + found.steps.error.map_or(0.0, |error| error[1]),
+            pressure_converges: found.pressure_converges(accuracy),
+            pressure_over_time: found.pressure_over_time.at(across)
+                + found.steps.error.map_or(0.0, |error| error.pressure_over_time),
             bytes: memory.total() + slope,
         })
     }
@@ -213,8 +214,8 @@ impl Plan {
         self.time_error
     }
 
-    /// Whether the greatest pressure of the run converges with the mesh. If not, as under the edges of punches and the tips
-    /// of cones, where it is infinite, and under moving edges of bodies that creep fast, the plan does not refine for it.
+    /// Whether the greatest pressure of the run converges with mesh and steps. If not, as under the edges of punches and the
+    /// tips of cones, where it is infinite, and under moving edges of bodies that creep fast, it is not promised.
     pub fn pressure_converges(&self) -> bool {
         self.pressure_converges
     }
@@ -249,7 +250,7 @@ impl std::fmt::Display for Plan {
             self.error.area
         )?;
         if !self.pressure_converges {
-            write!(f, "; the peak pressure does not converge with the mesh")?;
+            write!(f, "; the peak pressure does not converge")?;
         }
         match self.time_error {
             None => write!(f, "; the error in time is unknown"),

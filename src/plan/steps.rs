@@ -3,7 +3,7 @@
 use crate::Grid;
 use crate::error::{Error, Result};
 use crate::plan::Accuracy;
-use crate::plan::coarse::{LEAST_TOLERANCE, Run, Scene, State, difference};
+use crate::plan::coarse::{LEAST_TOLERANCE, Run, Scene, State, difference, greatest, relative};
 
 /// The error in time may take this share of what was asked, both errors together the second, and that of the mesh at least
 /// the third.
@@ -16,25 +16,35 @@ const MAX_STEP_TRIES: u32 = 3;
 const MAX_SHORTENING: f64 = 0.2;
 const MIN_GAIN: f64 = 0.8;
 
+/// Errors in time, relative to the greatest values of the run.
+#[derive(Clone, Copy)]
+pub(super) struct TimeError {
+    /// Of approach or force.
+    pub(super) main: f64,
+    /// Of the greatest pressure of the run.
+    pub(super) pressure: f64,
+    /// Of the greatest pressure at any time.
+    pub(super) pressure_over_time: f64,
+}
+
 /// The steps of a run, and the error in time that they leave.
 #[derive(Clone)]
 pub(super) struct Steps {
     pub(super) tolerance: f64,
     pub(super) run: Run,
-    /// Of approach or force, and of the greatest pressure at any time, relative to the greatest values of the run; `None`
-    /// where steps short enough to compare with do not exist.
-    pub(super) error: Option<[f64; 2]>,
+    /// `None` where steps short enough to compare with do not exist.
+    pub(super) error: Option<TimeError>,
 }
 
 impl Steps {
     /// The error of approach and force due to the mesh that the error in time leaves.
     pub(super) fn left_for_mesh(&self, accuracy: Accuracy) -> f64 {
         let target = accuracy.target();
-        let left = BOTH_SHARES * target - self.worst();
+        let left = BOTH_SHARES * target - self.error.map_or(0.0, |error| error.main);
         left.clamp(MIN_MESH_SHARE * target, accuracy.space())
     }
 
-    /// Shortens the steps while the error of approach or force is more than its share and falls with them.
+    /// Shortens the steps while the error of approach, force or greatest pressure is more than its share and falls with them.
     pub(super) fn find(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
         let target = scene.accuracy.target();
         let mut steps = Steps::with_tolerance(scene, grid)?;
@@ -53,17 +63,21 @@ impl Steps {
         Ok(steps)
     }
 
-    /// The error of approach or force, 0 where it is unknown.
+    /// The greater error of approach or force and of the greatest pressure of the run, 0 where they are unknown.
     fn worst(&self) -> f64 {
-        self.error.map_or(0.0, |error| error[0])
+        self.error.map_or(0.0, |error| error.main.max(error.pressure))
     }
 
     fn with_tolerance(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
         let run = scene.follow(grid.clone())?;
         let error = scene.with_shorter_steps(&run, grid.clone())?.map(|finer| {
             let over = |of: fn(&State) -> f64, all: bool| difference(&run.states, &finer, of, all);
-            let main = over(|state| state.approach, true).max(over(|state| state.force, true));
-            [main, over(|state| state.pressure, false)]
+            let [highest, finest] = [&run.states, &finer].map(|states| greatest(states, |state| state.pressure));
+            TimeError {
+                main: over(|state| state.approach, true).max(over(|state| state.force, true)),
+                pressure: relative((highest - finest).abs(), finest),
+                pressure_over_time: over(|state| state.pressure, false),
+            }
         });
         Ok(Steps { tolerance: scene.tolerance, run, error })
     }
