@@ -30,7 +30,7 @@ const PEAK: f64 = 0.12;
 const SINGULAR: f64 = 1.4;
 /// Error of the area, 0.13 (rim cells/2 cells)^1.2 on spheres.
 const AREA: f64 = 0.13;
-pub(crate) const AREA_ORDER: f64 = 1.2;
+const AREA_ORDER: f64 = 1.2;
 
 impl Pressed<'_> {
     /// The errors due to the mesh, estimated from the cells on the rim of a contact of so many cells.

@@ -54,7 +54,12 @@ impl Accuracy {
 
     /// Adaptive steps for this accuracy.
     pub fn stepping(&self) -> Stepping {
-        Stepping::adaptive((TIME_SHARE * self.target()).clamp(1e-9, 0.1))
+        Stepping::adaptive(self.step_tolerance())
+    }
+
+    /// Tolerance of adaptive steps for this accuracy.
+    pub(crate) fn step_tolerance(&self) -> f64 {
+        (TIME_SHARE * self.target()).clamp(1e-9, 0.1)
     }
 
     /// Settings for this accuracy; the others may be changed.

@@ -1,22 +1,48 @@
 //! Mesh, domain and steps for a given accuracy.
 
 mod accuracy;
+mod coarse;
+mod convergence;
+mod law;
+mod steps;
 
 pub use accuracy::Accuracy;
 
 use crate::Grid;
-use crate::contact::{Builder, Stepping, ViscoelasticContact};
+use crate::contact::{Builder, Stepping};
 use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
-use crate::load::{Load, LoadHistory};
-use crate::observe::mesh_error::{AREA_ORDER, MeshError};
+use crate::load::LoadHistory;
+use crate::observe::mesh_error::MeshError;
+use crate::plan::coarse::{Extent, Scene};
+use crate::plan::convergence::{DOMAIN_TO_CONTACT, converge, grid_with};
 use crate::rheology::Material;
 
 /// A scene planned for an accuracy: the extent of the contact, the cells and steps needed, and their cost.
 ///
-/// Cheap runs on a coarse mesh find the domain, the steps and the error of the mesh. That error is extrapolated, with
-/// second order where the contact is smooth and first order at singular edges, to the number of cells that meets the
-/// target. The plan returns a builder, which can be changed before the contact is built.
+/// The plan runs the scene on coarse meshes, on each with the same steps. The differences between successive meshes, each
+/// twice as fine as the last, show how fine the mesh must be: they are extrapolated at most threefold, beyond 128 cells
+/// across the contact further. The difference from a run with shorter steps shows the error in time; where it is more
+/// than its share, the steps are shortened. Where the pressure is greatest while the contact is small, as under a force
+/// held on a body that creeps much, that part of the run gets coarse runs on a domain of its own. The domain reaches from
+/// the origin as far as the contact does; cells are as long along each axis as the shape of the contact asks for.
+///
+/// # What is promised
+/// For twice the accuracy at most, relative to the greatest value of the run:
+/// * approach and force at all times,
+/// * the greatest pressure of the run, if it converges ([`Plan::pressure_converges`]),
+/// * with [`Plan::with_area`], the contact radius wherever the contact is at least 8 cells across.
+///
+/// The plan says what it does not promise: [`Plan::mesh_error`] estimates the error of the area,
+/// [`Plan::pressure_error_at_all_times`] that of the greatest pressure at each time, which steps and cells resolve less well
+/// at growing edges, and [`Plan::time_error`] the error in time, which stays above the accuracy if shorter steps do not
+/// lower it. A scene that differs from the coarse runs only in what they cannot see, such as roughness finer than their
+/// cells or loads shorter than their steps, is beyond it. A contact far from the origin takes many cells that nothing
+/// touches: shift the shape ([`Shifted`](crate::geometry::Shifted)) and the points of the load.
+///
+/// Planning takes longer than a run on few cells: as long as some runs on up to 128 cells across the contact.
+///
+/// The plan returns a builder, which can be changed before the contact is built.
 ///
 /// ```
 /// use viscocontact::plan::{Accuracy, Plan};
@@ -43,22 +69,22 @@ pub struct Plan {
     /// Half sides of the rectangle that contains the contact at all times.
     reach: [f64; 2],
     steps: usize,
+    /// Tolerance of the steps, and the error in time that it was seen to leave.
+    tolerance: f64,
+    time_error: Option<f64>,
     convolutions: f64,
     error: MeshError,
+    /// Whether the greatest pressure of the run converges with mesh and steps.
+    pressure_converges: bool,
+    /// Greatest error of mesh and steps of the greatest pressure at any time.
+    pressure_over_time: f64,
     bytes: u64,
 }
 
-/// Cells along a side of the coarse runs.
-const COARSE_CELLS: usize = 24;
-/// Ratio of the domain to the rectangle of the contact.
-const DOMAIN_TO_CONTACT: f64 = 1.12;
-/// Greatest number of domains tried, each at most ten times as large or as small as the last.
-const MAX_DOMAINS: usize = 60;
-/// A domain is accepted if the contact spans a fraction of it in this range.
-const CONTACT_FRACTION: [f64; 2] = [0.45, 0.92];
-/// Cells along a side of a plan: fewer do not resolve a contact, more exceed a workstation.
-const LEAST_CELLS: usize = 16;
+/// Most cells along a side of a plan: more exceed a workstation.
 const MOST_CELLS: usize = 1 << 13;
+/// Fewest cells across the widest contact: fewer do not resolve it.
+const LEAST_ACROSS: f64 = 14.0;
 
 impl Plan {
     /// Plans a run of one body from rest to the time `until` \[s\].
@@ -73,36 +99,72 @@ impl Plan {
         until: f64,
         accuracy: Accuracy,
     ) -> Result<Plan> {
+        Plan::made(geometry, material, history, until, accuracy, false)
+    }
+
+    /// As [`Plan::new`], with a mesh on which the contact radius, √(area/π), is as accurate too, at all times at which the
+    /// contact is at least 8 cells across: under growing contacts it errs by a fraction of a cell.
+    ///
+    /// # Errors
+    /// As [`Plan::new`].
+    pub fn with_area(
+        geometry: &dyn Geometry,
+        material: &Material,
+        history: &dyn LoadHistory,
+        until: f64,
+        accuracy: Accuracy,
+    ) -> Result<Plan> {
+        Plan::made(geometry, material, history, until, accuracy, true)
+    }
+
+    fn made(
+        geometry: &dyn Geometry,
+        material: &Material,
+        history: &dyn LoadHistory,
+        until: f64,
+        accuracy: Accuracy,
+        area: bool,
+    ) -> Result<Plan> {
         positive("end of the run", until)?;
         Accuracy::target_of(accuracy.target())?;
-        let coarse = Coarse { geometry, material, history, until, accuracy };
-        let (reach, found) = coarse.domain()?;
-        let lengths = reach.map(|half| 2.0 * DOMAIN_TO_CONTACT * half);
-
-        // error(n) = second (COARSE_CELLS/n)² + first COARSE_CELLS/n
-        let (first, target) = (found.error.singular, accuracy.space());
-        let second = (found.error.approach.max(found.error.greatest_pressure) - first).max(0.0);
-        let shrink = (first + (first * first + 4.0 * second * target).sqrt()) / (2.0 * target);
-        let wanted = (COARSE_CELLS as f64 * shrink).ceil();
-        if wanted > MOST_CELLS as f64 {
+        let tolerance = accuracy.step_tolerance();
+        let scene = Scene { geometry, material, history, until, whole: until, accuracy, tolerance };
+        let extent = scene.extent()?;
+        let found = extent.held(|extent| converge(&scene, extent, area))?;
+        let extent = Extent { reach: found.reach, ..extent };
+        let across = found.across_for(accuracy, area).max(LEAST_ACROSS);
+        let sides = [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * extent.reach[axis] / extent.width[axis]);
+        let wanted = sides[0].max(sides[1]);
+        if wanted.is_nan() || wanted > MOST_CELLS as f64 {
             let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
             return Err(Error::CountOutOfRange { field, value: wanted.min(1e18) as usize, allowed });
         }
-        let cells = smooth_size((wanted as usize).max(LEAST_CELLS));
-        let ratio = COARSE_CELLS as f64 / cells as f64;
-        let grid = Grid::new([cells; 2], lengths)?;
-        let finer = |error: f64| (error - first) * ratio * ratio + first * ratio;
+        let grid = grid_with(&extent, across)?;
+        let across = across * grid.cells()[0] as f64 / sides[0];
         let error = MeshError {
-            approach: finer(found.error.approach),
-            greatest_pressure: finer(found.error.greatest_pressure),
-            area: found.error.area * ratio.powf(AREA_ORDER),
-            singular: first * ratio,
+            approach: found.main.at(across).max(found.singular.at(across)),
+            greatest_pressure: found.pressure.at(across),
+            area: 2.0 * found.radius.at(across),
+            singular: found.singular.at(across),
         };
-        let builder = coarse.builder(grid.clone());
+        let builder = scene.builder(grid.clone());
         let memory = builder.memory()?;
         let slope = 8 * memory.computed_cells as u64; // the rate that adaptive steps store
-        let bytes = memory.total() + slope;
-        Ok(Plan { accuracy, builder, grid, reach, steps: found.steps, convolutions: found.convolutions, error, bytes })
+        Ok(Plan {
+            accuracy: scene.accuracy,
+            builder,
+            grid,
+            reach: extent.reach,
+            steps: found.steps.run.steps.len(),
+            tolerance: found.steps.tolerance,
+            time_error: found.steps.error.map(|error| error.main),
+            convolutions: found.work.at(across),
+            error,
+            pressure_converges: found.pressure_converges(accuracy),
+            pressure_over_time: found.pressure_over_time.at(across)
+                + found.steps.error.map_or(0.0, |error| error.pressure_over_time),
+            bytes: memory.total() + slope,
+        })
     }
 
     /// A builder with grid, geometry, material and settings, each of which can be replaced.
@@ -117,7 +179,7 @@ impl Plan {
 
     /// The stepping, for [`ViscoelasticContact::follow`].
     pub fn stepping(&self) -> Stepping {
-        self.accuracy.stepping()
+        Stepping::adaptive(self.tolerance)
     }
 
     /// The accuracy.
@@ -146,7 +208,27 @@ impl Plan {
         self.bytes
     }
 
-    /// Expected errors of the mesh.
+    /// Expected error in time of approach and force, relative to their greatest values: the difference from a run with
+    /// shorter steps on a coarse mesh. `None` where these are too short for `f64`.
+    pub fn time_error(&self) -> Option<f64> {
+        self.time_error
+    }
+
+    /// Whether the greatest pressure of the run converges with mesh and steps. If not, as under the edges of punches and the
+    /// tips of cones, where it is infinite, and under moving edges of bodies that creep fast, it is not promised.
+    pub fn pressure_converges(&self) -> bool {
+        self.pressure_converges
+    }
+
+    /// Expected greatest error of mesh and steps, over all times, of the greatest pressure at that time, relative to the
+    /// greatest of the run. It may exceed the accuracy: creep leaves a narrow rim of high pressure at a growing edge, which neither
+    /// cells nor steps resolve.
+    pub fn pressure_error_at_all_times(&self) -> f64 {
+        self.pressure_over_time
+    }
+
+    /// Expected errors of the mesh, relative to the greatest values of the run: of approach and force and of the contact area
+    /// at all times, and of the greatest pressure of the run.
     pub fn mesh_error(&self) -> MeshError {
         self.error
     }
@@ -166,126 +248,16 @@ impl std::fmt::Display for Plan {
             self.error.approach,
             self.error.greatest_pressure,
             self.error.area
-        )
-    }
-}
-
-/// The scene on a coarse mesh.
-struct Coarse<'a> {
-    geometry: &'a dyn Geometry,
-    material: &'a Material,
-    history: &'a dyn LoadHistory,
-    until: f64,
-    accuracy: Accuracy,
-}
-
-/// The result of a coarse run.
-struct Found {
-    /// Half sides of the rectangle about the origin that contained the contact.
-    reach: [f64; 2],
-    steps: usize,
-    convolutions: f64,
-    /// Greatest errors of the mesh while the force is not small.
-    error: MeshError,
-}
-
-impl Coarse<'_> {
-    fn builder(&self, grid: Grid) -> Builder {
-        let builder = ViscoelasticContact::builder(grid).geometry(self.geometry).material(self.material.clone());
-        builder.settings(self.accuracy.settings()).times_of(self.history, self.until)
-    }
-
-    /// Runs on domains until the contact fills one well; returns its extent.
-    fn domain(&self) -> Result<([f64; 2], Found)> {
-        let mut lengths = [self.first_length()?; 2];
-        for _ in 0..MAX_DOMAINS {
-            match self.run(lengths) {
-                Err(Error::ContactAtEdge { .. }) => lengths = lengths.map(|length| 1.7 * length),
-                Err(Error::NothingToTouch { .. }) => lengths = lengths.map(|length| 0.3 * length),
-                Err(error) => return Err(error),
-                Ok(found) => {
-                    let filled = [0, 1].map(|axis| 2.0 * found.reach[axis] / lengths[axis]);
-                    if filled.iter().all(|part| (CONTACT_FRACTION[0]..=CONTACT_FRACTION[1]).contains(part)) {
-                        return Ok((found.reach, found));
-                    }
-                    let least = 2.0 / COARSE_CELLS as f64;
-                    lengths = [0, 1].map(|axis| lengths[axis] * (filled[axis].max(least) * 1.3).clamp(0.1, 1.7));
-                }
+        )?;
+        if !self.pressure_converges {
+            write!(f, "; the peak pressure does not converge")?;
+        }
+        match self.time_error {
+            None => write!(f, "; the error in time is unknown"),
+            Some(error) if error > self.accuracy.target() => {
+                write!(f, "; the error in time stays at {error:.1e} with shorter steps")
             }
+            Some(_) => Ok(()),
         }
-        Err(Error::NoDomain { length: lengths[0].max(lengths[1]) })
     }
-
-    fn run(&self, lengths: [f64; 2]) -> Result<Found> {
-        let grid = Grid::new([COARSE_CELLS; 2], lengths)?;
-        let mut contact = self.builder(grid).build()?;
-        let mut found = Found { reach: [0.0; 2], steps: 0, convolutions: 0.0, error: MeshError::default() };
-        let (mut deepest, mut highest, mut states) = (0.0_f64, 0.0_f64, Vec::new());
-        let mut run = contact.follow(self.history, self.accuracy.stepping(), self.until);
-        while let Some(report) = run.next_step()? {
-            found.steps += 1;
-            found.convolutions += report.convolution_equivalents();
-            let peak = run.contact().pressure().iter().copied().fold(0.0, f64::max);
-            (deepest, highest) = (deepest.max(report.approach), highest.max(peak));
-            states.push((report.approach, peak, run.contact().mesh_error()));
-            let touched = run.contact().reach_of_contact();
-            found.reach = [0, 1].map(|axis| found.reach[axis].max(touched[axis]));
-        }
-        // errors relative to the greatest values of the run: a small contact may be coarse if its share is small
-        for (approach, peak, error) in states {
-            let (approach, peak) = ((approach / deepest).clamp(0.0, 1.0), peak / highest);
-            if approach.is_nan() || peak.is_nan() {
-                continue;
-            }
-            found.error = MeshError {
-                approach: found.error.approach.max(approach * error.approach),
-                greatest_pressure: found.error.greatest_pressure.max(peak * error.greatest_pressure),
-                area: found.error.area.max(approach * error.area),
-                singular: found.error.singular.max(approach * error.singular),
-            };
-        }
-        Ok(found)
-    }
-
-    /// Initial length of the domain: a contact of half width L/4 is indented by the gap there, under a force of about
-    /// E* L times that gap.
-    fn first_length(&self) -> Result<f64> {
-        let (mut force, mut approach) = (0.0_f64, 0.0_f64);
-        for k in 0..=64 {
-            let time = self.until * f64::from(k) / 64.0;
-            match self.history.at(time).validated_at(time)? {
-                Load::Force { normal, .. } => force = force.max(normal),
-                Load::Approach { approach: depth, .. } => approach = approach.max(depth),
-            }
-        }
-        let mut compliance = self.material.contact_compliance(self.until.min(self.material.known_until()));
-        if !compliance.is_finite() {
-            compliance = self.material.contact_compliance(0.0);
-        }
-        let lowest = self.geometry.initial_gap(0.0, 0.0);
-        let rise = |length: f64| {
-            let around = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
-            let gaps = around.map(|[x1, x2]| self.geometry.initial_gap(0.25 * length * x1, 0.25 * length * x2));
-            gaps.into_iter().fold(f64::INFINITY, f64::min) - lowest
-        };
-        let depth = |length: f64| {
-            let rise = rise(length);
-            rise >= approach.max(force * compliance / length) || rise.is_nan() || rise == f64::INFINITY
-        };
-        let lengths = (-48..=36).map(|k| 10f64.powf(0.25 * f64::from(k)));
-        lengths.into_iter().find(|&length| depth(length)).ok_or(Error::NoDomain { length: 1e9 })
-    }
-}
-
-/// The next number of cells whose double has no prime factor above 5, for fast transforms.
-fn smooth_size(least: usize) -> usize {
-    let smooth = |mut n: usize| {
-        for factor in [2, 3, 5] {
-            while n.is_multiple_of(factor) {
-                n /= factor;
-            }
-        }
-        n == 1
-    };
-    (least..).find(|&n| n.is_multiple_of(2) && smooth(n)).unwrap_or(least)
 }

@@ -5,6 +5,7 @@ mod analytic;
 mod common;
 mod hertz;
 mod plan;
+mod plan_random;
 mod plane;
 mod rolling;
 mod step_loaded_sphere;

@@ -1,0 +1,282 @@
+//! The scene on coarse meshes: its domain, its steps, and its states.
+
+use crate::Grid;
+use crate::contact::{Builder, StepReport, Stepping, ViscoelasticContact, Warning};
+use crate::error::{Error, Result};
+use crate::geometry::Geometry;
+use crate::load::{Load, LoadHistory};
+use crate::plan::Accuracy;
+use crate::rheology::Material;
+
+/// Cells along a side of the runs that find the domain.
+const DOMAIN_CELLS: usize = 24;
+/// Greatest number of domains tried, each at most ten times as large or as small as the last.
+const MAX_DOMAINS: usize = 60;
+/// A domain is accepted if the contact spans a fraction of it in this range.
+const CONTACT_FRACTION: [f64; 2] = [0.45, 0.92];
+/// A step that the solver cannot do is halved so many times.
+const MAX_HALVINGS: u32 = 5;
+
+/// A greatest pressure in a contact smaller than this fraction of the largest gets a domain of its own, which holds the
+/// contact until it has grown to the second fraction.
+const SMALL_CONTACT: [f64; 2] = [1.0 / 3.0, 0.4];
+
+/// Ratio of the tolerances of two runs whose difference is taken for the error in time of the first, and the smallest
+/// tolerance of a run.
+const SHORTER: f64 = 0.125;
+pub(super) const LEAST_TOLERANCE: f64 = 1e-9;
+
+/// A scene to plan.
+#[derive(Clone, Copy)]
+pub(super) struct Scene<'a> {
+    pub(super) geometry: &'a dyn Geometry,
+    pub(super) material: &'a Material,
+    pub(super) history: &'a dyn LoadHistory,
+    pub(super) until: f64,
+    /// End of the run for which the material is fitted.
+    pub(super) whole: f64,
+    pub(super) accuracy: Accuracy,
+    /// Tolerance of the steps.
+    pub(super) tolerance: f64,
+}
+
+/// Where the contact is during a run, in the middle between cells.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extent {
+    /// Half sides of the rectangle about the origin that contained the contact.
+    pub(super) reach: [f64; 2],
+    /// Greatest widths of the contact at any one time.
+    pub(super) width: [f64; 2],
+}
+
+impl Extent {
+    /// Reaches of so much more.
+    pub(super) fn enlarged(&self, factor: f64) -> Extent {
+        Extent { reach: self.reach.map(|half| factor * half), ..*self }
+    }
+}
+
+/// A state at the end of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct State {
+    pub(super) time: f64,
+    pub(super) approach: f64,
+    pub(super) force: f64,
+    pub(super) radius: f64,
+    pub(super) pressure: f64,
+    /// Second-order error of the greatest pressure, estimated from the rim.
+    pub(super) rim: f64,
+    /// First-order share of the error of the mesh, estimated from the rim: that of singular edges.
+    pub(super) singular: f64,
+    /// Whether the contact is enough cells wide for radius and pressure to be resolved.
+    pub(super) resolved: bool,
+}
+
+/// A run on a coarse mesh.
+#[derive(Clone)]
+pub(super) struct Run {
+    pub(super) extent: Extent,
+    /// Steps taken: their lengths, and the loads at their ends.
+    pub(super) steps: Vec<(f64, Load)>,
+    pub(super) states: Vec<State>,
+    pub(super) convolutions: f64,
+}
+
+impl Run {
+    fn new() -> Run {
+        let extent = Extent { reach: [0.0; 2], width: [0.0; 2] };
+        Run { extent, steps: Vec::new(), states: Vec::new(), convolutions: 0.0 }
+    }
+
+    fn add(&mut self, contact: &ViscoelasticContact, report: &StepReport) {
+        let error = contact.mesh_error();
+        self.convolutions += report.convolution_equivalents();
+        self.steps.push((report.dt, contact.load()));
+        self.states.push(State {
+            time: report.time,
+            approach: report.approach,
+            force: report.force,
+            radius: (contact.contact_area() / std::f64::consts::PI).sqrt(),
+            pressure: contact.greatest_pressure(),
+            rim: error.greatest_pressure - error.singular,
+            singular: error.singular,
+            resolved: !report.warnings.contains(Warning::FewCells),
+        });
+        let reach = contact.reach_of_contact();
+        let (cells, spacing) = (contact.grid().cells(), contact.grid().spacing());
+        let (mut first, mut last) = (cells, [0; 2]);
+        for (k, _) in contact.pressure().iter().enumerate().filter(|(_, p)| **p > 0.0) {
+            let cell = [k / cells[1], k % cells[1]];
+            first = [0, 1].map(|axis| first[axis].min(cell[axis]));
+            last = [0, 1].map(|axis| last[axis].max(cell[axis] + 1));
+        }
+        for axis in [0, 1] {
+            self.extent.reach[axis] = self.extent.reach[axis].max(reach[axis]);
+            let width = last[axis].saturating_sub(first[axis]) as f64 * spacing[axis];
+            self.extent.width[axis] = self.extent.width[axis].max(width);
+        }
+    }
+}
+
+impl Scene<'_> {
+    pub(super) fn builder(&self, grid: Grid) -> Builder {
+        let builder = ViscoelasticContact::builder(grid).geometry(self.geometry).material(self.material.clone());
+        builder.settings(self.accuracy.settings()).times_of(self.history, self.whole)
+    }
+
+    /// Runs on domains until the contact fills one well; returns where the contact was.
+    pub(super) fn extent(&self) -> Result<Extent> {
+        let mut lengths = [self.first_length()?; 2];
+        for _ in 0..MAX_DOMAINS {
+            match self.follow(Grid::new([DOMAIN_CELLS; 2], lengths)?) {
+                Err(Error::ContactAtEdge { .. }) => lengths = lengths.map(|length| 1.7 * length),
+                Err(Error::NothingToTouch { .. }) => lengths = lengths.map(|length| 0.3 * length),
+                Err(error) => return Err(error),
+                Ok(run) => {
+                    let filled = [0, 1].map(|axis| 2.0 * run.extent.reach[axis] / lengths[axis]);
+                    if filled.iter().all(|part| (CONTACT_FRACTION[0]..=CONTACT_FRACTION[1]).contains(part)) {
+                        return Ok(run.extent);
+                    }
+                    let least = 2.0 / DOMAIN_CELLS as f64;
+                    lengths = [0, 1].map(|axis| lengths[axis] * (filled[axis].max(least) * 1.3).clamp(0.1, 1.7));
+                }
+            }
+        }
+        Err(Error::NoDomain { length: lengths[0].max(lengths[1]) })
+    }
+
+    /// The run in steps as long as the scene's tolerance allows.
+    pub(super) fn follow(&self, grid: Grid) -> Result<Run> {
+        self.follow_over(grid, self.tolerance, &[])
+    }
+
+    /// The run with another tolerance of the steps, some of which end on given times.
+    fn follow_over(&self, grid: Grid, tolerance: f64, times: &[f64]) -> Result<Run> {
+        let mut contact = self.builder(grid).build()?;
+        let mut follow = contact.follow(self.history, Stepping::adaptive(tolerance), self.until).stop_at(times)?;
+        let mut run = Run::new();
+        while let Some(report) = follow.next_step()? {
+            run.add(follow.contact(), &report);
+        }
+        Ok(run)
+    }
+
+    /// The states of a run from one with shorter steps on the same mesh. `None` if these are too short for `f64`
+    /// or the solver cannot do them.
+    pub(super) fn with_shorter_steps(&self, run: &Run, grid: Grid) -> Result<Option<Vec<State>>> {
+        let times: Vec<f64> = run.states.iter().map(|state| state.time).collect();
+        let tolerance = (SHORTER * self.tolerance).max(LEAST_TOLERANCE);
+        // No step of the run remains: its control may have been blind to what happens within one.
+        let middles = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
+        let stops: Vec<f64> = times.iter().copied().chain(middles).collect();
+        match self.follow_over(grid, tolerance, &stops) {
+            Err(Error::StepTooShort { .. } | Error::NotConverged { .. }) => Ok(None),
+            other => {
+                let mut states = other?.states.into_iter().peekable();
+                // of several states at a time, the run ends with the last
+                let mut at = |time: f64| {
+                    let mut found = None;
+                    while let Some(state) = states.next_if(|state| state.time <= time) {
+                        found = Some(state);
+                        if state.time == time {
+                            break;
+                        }
+                    }
+                    found.filter(|state| state.time == time)
+                };
+                Ok(times.iter().map(|&time| at(time)).collect())
+            }
+        }
+    }
+
+    /// The run in given steps.
+    pub(super) fn repeat(&self, grid: Grid, steps: &[(f64, Load)]) -> Result<Run> {
+        let mut contact = self.builder(grid).build()?;
+        let mut run = Run::new();
+        for &(dt, load) in steps {
+            let report = advance(&mut contact, dt, load, MAX_HALVINGS)?;
+            run.add(&contact, &report);
+        }
+        Ok(run)
+    }
+
+    /// Whether there is nothing to touch in a part of the domain: the face of a punch ends.
+    pub(super) fn has_edge(&self, grid: &Grid) -> bool {
+        let [n1, n2] = grid.cells();
+        let mut cells = (0..n1 * n2).map(|k| grid.center(k / n2, k % n2));
+        cells.any(|[x1, x2]| self.geometry.initial_gap(x1, x2) == f64::INFINITY)
+    }
+
+    /// Where the pressure is greatest in a contact that is small compared with what it becomes: the time until which it
+    /// stays small.
+    pub(super) fn before_growth(&self, run: &Run) -> Option<f64> {
+        let largest = greatest(&run.states, |state| state.radius);
+        let highest = greatest(&run.states, |state| state.pressure);
+        let peak = run.states.iter().position(|state| state.pressure == highest)?;
+        let small = run.states.iter().take_while(|state| state.radius <= SMALL_CONTACT[1] * largest).count();
+        if peak >= small || run.states[peak].radius > SMALL_CONTACT[0] * largest {
+            return None;
+        }
+        let last = run.states[small - 1].time;
+        let next = run.states.get(small).map_or(self.until, |state| state.time);
+        let until = if last > 0.0 { last } else { 0.1 * next };
+        (until < self.until).then_some(until)
+    }
+
+    /// Initial length of the domain: a contact of half width L/4 is indented by the gap there, under a force of about
+    /// E* L times that gap.
+    fn first_length(&self) -> Result<f64> {
+        let (mut force, mut approach) = (0.0_f64, 0.0_f64);
+        for k in 0..=64 {
+            let time = self.until * f64::from(k) / 64.0;
+            match self.history.at(time).validated_at(time)? {
+                Load::Force { normal, .. } => force = force.max(normal),
+                Load::Approach { approach: depth, .. } => approach = approach.max(depth),
+            }
+        }
+        let mut compliance = self.material.contact_compliance(self.until.min(self.material.known_until()));
+        if !compliance.is_finite() {
+            compliance = self.material.contact_compliance(0.0);
+        }
+        let lowest = self.geometry.initial_gap(0.0, 0.0);
+        let rise = |length: f64| {
+            let around = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+            let gaps = around.map(|[x1, x2]| self.geometry.initial_gap(0.25 * length * x1, 0.25 * length * x2));
+            gaps.into_iter().fold(f64::INFINITY, f64::min) - lowest
+        };
+        let depth = |length: f64| {
+            let rise = rise(length);
+            rise >= approach.max(force * compliance / length) || rise.is_nan() || rise == f64::INFINITY
+        };
+        let lengths = (-48..=36).map(|k| 10f64.powf(0.25 * f64::from(k)));
+        lengths.into_iter().find(|&length| depth(length)).ok_or(Error::NoDomain { length: 1e9 })
+    }
+}
+
+/// One step, in halves where the solver cannot do it at once.
+fn advance(contact: &mut ViscoelasticContact, dt: f64, load: Load, halvings: u32) -> Result<StepReport> {
+    let before = contact.load();
+    match contact.step(dt, load) {
+        Err(Error::NotConverged { .. }) if halvings > 0 && dt > 0.0 => {
+            advance(contact, 0.5 * dt, before.towards(&load, 0.5), halvings - 1)?;
+            advance(contact, 0.5 * dt, load, halvings - 1)
+        }
+        other => other,
+    }
+}
+
+/// The greatest difference between the states of two runs at the same times, relative to the greatest value; of all states
+/// or of those resolved in the first.
+pub(super) fn difference(coarse: &[State], fine: &[State], of: impl Fn(&State) -> f64, all: bool) -> f64 {
+    let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
+    let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
+    relative(most, greatest(fine, of))
+}
+
+pub(super) fn relative(value: f64, scale: f64) -> f64 {
+    if scale > 0.0 { value / scale } else { 0.0 }
+}
+
+pub(super) fn greatest(states: &[State], of: impl Fn(&State) -> f64) -> f64 {
+    states.iter().map(|state| of(state).abs()).fold(0.0, f64::max)
+}

@@ -1,0 +1,259 @@
+//! How the states of a run converge with the mesh.
+
+use crate::Grid;
+use crate::error::{Error, Result};
+use crate::plan::Accuracy;
+use crate::plan::coarse::{Extent, Run, Scene, State, difference, greatest, relative};
+use crate::plan::law::{Convergence, ORDERS};
+use crate::plan::steps::Steps;
+
+/// Cells across the widest contact on the coarsest mesh, and on the finest that a plan computes.
+const LEAST_ACROSS: usize = 16;
+const MOST_ACROSS: usize = 128;
+/// Cells across the widest contact where the steps are found.
+const STEPS_ACROSS: f64 = 32.0;
+/// Most cells along a side of a domain in which the contact is small, as far off the centre.
+const MOST_CELLS: usize = 2048;
+/// A plan extrapolates to meshes at most this many times finer, unless `MOST_ACROSS` is reached.
+const MAX_EXTRAPOLATION: f64 = 3.0;
+/// Most domains for ever smaller contacts.
+const MAX_ZOOMS: usize = 12;
+/// On finer meshes the contact may reach the edge of the domain: that grows by this factor, so many times.
+const GROWTH: f64 = 1.2;
+const MAX_GROWTHS: u32 = 5;
+/// Differences of a greatest pressure of second order are three times the error on the finer mesh; up to this many times the
+/// estimate from the rim they count as such.
+const MAX_DIFFERENCE_OVER_RIM: f64 = 4.0;
+/// Bound of the power of the number of cells across with which the convolutions of a run grow.
+const MAX_WORK_ORDER: f64 = 0.4;
+/// A greatest pressure that depends on the steps on a coarse mesh does so more on a finer one, whose cells a growing edge
+/// crosses faster: beyond this share of what was asked it is not promised.
+const MAX_PEAK_TIME_SHARE: f64 = 0.2;
+/// Ratio of the domain to the rectangle of the contact.
+pub(super) const DOMAIN_TO_CONTACT: f64 = 1.12;
+
+/// What the coarse runs found. Cells are those across the widest contact of the whole run.
+pub(super) struct Found {
+    /// Half sides of the rectangle about the origin that contained the contact.
+    pub(super) reach: [f64; 2],
+    /// Of approach and force.
+    pub(super) main: Convergence,
+    /// First-order part of that: singular edges.
+    pub(super) singular: Convergence,
+    /// Of the greatest pressure of the run.
+    pub(super) pressure: Convergence,
+    /// Of the greatest pressure at any time.
+    pub(super) pressure_over_time: Convergence,
+    /// Of the contact radius at any time.
+    pub(super) radius: Convergence,
+    pub(super) steps: Steps,
+    /// Convolution equivalents of the run, which grow with the cells.
+    pub(super) work: Convergence,
+}
+
+impl Found {
+    /// Cells across for the accuracy.
+    pub(super) fn across_for(&self, accuracy: Accuracy, area: bool) -> f64 {
+        let left = self.steps.left_for_mesh(accuracy);
+        let main = self.main.across_for(left).max(self.singular.across_for(left));
+        let others = [Some(self.pressure).filter(|law| law.converges), Some(self.radius).filter(|_| area)];
+        others.into_iter().flatten().map(|law| law.across_for(accuracy.space())).fold(main, f64::max)
+    }
+
+    /// Whether the greatest pressure of the run converges with the mesh and does not depend on the steps.
+    pub(super) fn pressure_converges(&self, accuracy: Accuracy) -> bool {
+        self.pressure.converges
+            && self.steps.error.is_none_or(|error| error.pressure <= MAX_PEAK_TIME_SHARE * accuracy.target())
+    }
+}
+
+/// The grid with so many cells across the widest contact.
+pub(super) fn grid_with(extent: &Extent, across: f64) -> Result<Grid> {
+    let lengths = extent.reach.map(|half| 2.0 * DOMAIN_TO_CONTACT * half);
+    let cells = [0, 1].map(|axis| smooth_size((across * lengths[axis] / extent.width[axis]).ceil() as usize));
+    Grid::new(cells, lengths)
+}
+
+impl Extent {
+    /// Computes on domains that grow until they hold the contact.
+    pub(super) fn held<T>(&self, compute: impl Fn(&Extent) -> Result<T>) -> Result<T> {
+        let mut extent = *self;
+        for _ in 0..MAX_GROWTHS {
+            match compute(&extent) {
+                Err(Error::ContactAtEdge { .. }) => extent = extent.enlarged(GROWTH),
+                other => return other,
+            }
+        }
+        compute(&extent)
+    }
+}
+
+/// Runs on successive meshes, each twice as fine as the last.
+struct Meshes {
+    across: f64,
+    /// Greatest differences between each mesh and the one before, relative to the greatest values of the run.
+    main: Vec<f64>,
+    pressure: Vec<f64>,
+    pressure_over_time: Vec<f64>,
+    radius: Vec<f64>,
+    finest: Run,
+    /// Whether the contact was resolved on the mesh before when the pressure was greatest.
+    peak_resolved: bool,
+    /// Cells along the longer side.
+    side: usize,
+    /// Power of the cells across with which the convolutions grow.
+    growth: f64,
+}
+
+impl Meshes {
+    /// Refines until the mesh that is `needed` is within reach.
+    fn refine(scene: &Scene<'_>, extent: &Extent, base: Run, needed: impl Fn(&Meshes) -> f64) -> Result<Meshes> {
+        let mut meshes = Meshes {
+            across: LEAST_ACROSS as f64,
+            main: Vec::new(),
+            pressure: Vec::new(),
+            pressure_over_time: Vec::new(),
+            radius: Vec::new(),
+            finest: base,
+            peak_resolved: false,
+            side: 0,
+            growth: 0.0,
+        };
+        loop {
+            meshes.halve(scene, extent)?;
+            let reach = if meshes.main.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
+            let last = meshes.across >= MOST_ACROSS as f64 || 2 * meshes.side > MOST_CELLS;
+            if last || needed(&meshes) <= reach * meshes.across {
+                return Ok(meshes);
+            }
+        }
+    }
+
+    fn halve(&mut self, scene: &Scene<'_>, extent: &Extent) -> Result<()> {
+        self.across *= 2.0;
+        let grid = grid_with(extent, self.across)?;
+        let [n1, n2] = grid.cells();
+        self.side = n1.max(n2);
+        let finer = scene.repeat(grid, &self.finest.steps)?;
+        let (coarse, fine) = (&self.finest.states, &finer.states);
+        let over = |of: fn(&State) -> f64, all: bool| difference(coarse, fine, of, all);
+        let [before, now] = [coarse, fine].map(|states| greatest(states, |state| state.pressure));
+        self.peak_resolved = coarse.iter().any(|state| state.pressure == before && state.resolved);
+        self.main.push(over(|state| state.approach, true).max(over(|state| state.force, true)));
+        self.pressure.push(relative((before - now).abs(), now));
+        self.pressure_over_time.push(over(|state| state.pressure, false));
+        self.radius.push(over(|state| state.radius, false));
+        let growth = relative(finer.convolutions, self.finest.convolutions);
+        self.growth = growth.max(1.0).log2().min(MAX_WORK_ORDER);
+        self.finest = finer;
+        Ok(())
+    }
+
+    /// Approach and force; with a rim of cells on a face that ends, by fractions of a cell.
+    fn main(&self, punch: bool) -> Convergence {
+        let law = if punch { Convergence::by_cells } else { Convergence::smooth };
+        law(&self.main, self.across)
+    }
+
+    /// The first-order part, estimated from the rim. Creep raises the pressure towards a growing rim too: at edges of the
+    /// shape it is raised from the start.
+    fn singular(&self, punch: bool) -> Convergence {
+        let states = &self.finest.states;
+        let deepest = greatest(states, |state| state.approach);
+        let shares = states.iter().map(|state| state.singular * relative(state.approach.abs(), deepest));
+        let touching = states.iter().filter(|state| state.force > 0.0);
+        let lasts = punch || touching.map(|state| state.singular).fold(f64::INFINITY, f64::min) > 0.0;
+        let error = if lasts { shares.fold(0.0, f64::max) } else { 0.0 };
+        Convergence { error, order: 1.0, across: self.across, converges: true }
+    }
+
+    fn work(&self) -> Convergence {
+        let Run { convolutions, .. } = self.finest;
+        Convergence { error: convolutions, order: -self.growth, across: self.across, converges: true }
+    }
+
+    /// The greatest pressure of the run. Differences of a single number may be small or large by chance: where they agree
+    /// with the estimate from the rim, the pressure is as smooth as in an elastic contact. A small contact must be resolved
+    /// before its pressure can be said not to converge.
+    fn pressure(&self) -> Convergence {
+        let states = &self.finest.states;
+        let highest = greatest(states, |state| state.pressure);
+        let rim = states.iter().find(|state| state.pressure == highest).map_or(0.0, |state| state.rim);
+        let law = Convergence::smooth(&self.pressure, self.across);
+        if self.pressure.last().is_some_and(|&last| last <= MAX_DIFFERENCE_OVER_RIM * rim) {
+            let error = Convergence::second_order(&self.pressure).max(rim);
+            return Convergence { error, order: ORDERS[1], converges: true, ..law };
+        }
+        Convergence { converges: law.converges || !self.peak_resolved, ..law }
+    }
+}
+
+/// Finds the steps and how approach, force, radius and greatest pressure converge with the mesh; `area` tells whether the
+/// radius has to be resolved.
+pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result<Found> {
+    let first = grid_with(extent, STEPS_ACROSS)?;
+    let punch = scene.has_edge(&first);
+    let steps = Steps::find(scene, &first)?;
+    let scene = &Scene { tolerance: steps.tolerance, ..*scene };
+    let zoomed = match scene.before_growth(&steps.run) {
+        Some(until) => Some(small_contact(scene, until, extent)?),
+        None => None,
+    };
+    let base = scene.repeat(grid_with(extent, LEAST_ACROSS as f64)?, &steps.run.steps)?;
+    let found = |meshes: &Meshes| Found {
+        reach: [0, 1].map(|axis| extent.reach[axis].max(meshes.finest.extent.reach[axis])),
+        main: meshes.main(punch),
+        singular: meshes.singular(punch),
+        pressure: zoomed.unwrap_or_else(|| meshes.pressure()),
+        pressure_over_time: Convergence::smooth(&meshes.pressure_over_time, meshes.across),
+        radius: Convergence::by_cells(&meshes.radius, meshes.across),
+        work: meshes.work(),
+        steps: steps.clone(),
+    };
+    // a pressure on a domain of its own asks nothing of these meshes
+    let unzoomed = |found: Found| match zoomed {
+        Some(law) => Found { pressure: Convergence { converges: false, ..law }, ..found },
+        None => found,
+    };
+    let needed = |meshes: &Meshes| unzoomed(found(meshes)).across_for(scene.accuracy, area);
+    Ok(found(&Meshes::refine(scene, extent, base, needed)?))
+}
+
+/// The greatest pressure of a run in which the contact grows much afterwards: of the run to `until`, on a domain of its
+/// own.
+fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Convergence> {
+    let (mut until, mut zooms) = (until, 0);
+    let (part, extent, base) = loop {
+        let part = Scene { until, ..*scene };
+        let extent = part.extent()?;
+        let base = part.follow(grid_with(&extent, LEAST_ACROSS as f64)?)?;
+        zooms += 1;
+        match part.before_growth(&base).filter(|_| zooms < MAX_ZOOMS) {
+            Some(earlier) => until = earlier,
+            None => break (part, extent, base),
+        }
+    };
+    let meshes = extent.held(|extent| {
+        let base = part.repeat(grid_with(extent, LEAST_ACROSS as f64)?, &base.steps)?;
+        Meshes::refine(&part, extent, base, |meshes| {
+            let pressure = meshes.pressure();
+            if pressure.converges { pressure.across_for(scene.accuracy.space()) } else { 0.0 }
+        })
+    })?;
+    let larger = [0, 1].map(|axis| whole.width[axis] / extent.width[axis]);
+    let across = meshes.across * larger[0].max(larger[1]);
+    Ok(Convergence { across, ..meshes.pressure() })
+}
+
+/// The next number of cells whose double has no prime factor above 5, for fast transforms.
+fn smooth_size(least: usize) -> usize {
+    let smooth = |mut n: usize| {
+        for factor in [2, 3, 5] {
+            while n.is_multiple_of(factor) {
+                n /= factor;
+            }
+        }
+        n == 1
+    };
+    (least..).find(|&n| n.is_multiple_of(2) && smooth(n)).unwrap_or(least)
+}
