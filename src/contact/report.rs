@@ -22,8 +22,9 @@ pub struct StepReport {
     pub preconditioner_applications: usize,
     /// Residual reached, in the measure of [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub residual: f64,
-    /// Estimated error in time of the step, relative to the displacement; 0 for fixed steps, for which nothing is
-    /// estimated, and for the first step after a jump or a corner of the load.
+    /// Estimated error in time of the step: of the approach under a given force, of the force under a given motion. 0 where
+    /// nothing is estimated, see [`ErrorBudget::time`](crate::contact::ErrorBudget::time), and in jumps; the first step after
+    /// a jump or a corner of the load knows of the cells alone that join the contact.
     pub time_error: f64,
     /// Reasons why the result may be less accurate than expected; mostly none.
     pub warnings: Warnings,

@@ -32,6 +32,8 @@ pub(crate) struct ErrorMeasure<'a> {
 pub(crate) struct TimeError {
     /// Relative to displacement or force; 0 where nothing is known.
     pub(crate) relative: f64,
+    /// The greatest defect of v in a cell in contact, relative to the mean of v.
+    pub(crate) greatest: f64,
     /// Means over the contact of displacement and v, weighted by the pressure.
     pub(crate) sizes: [f64; 2],
     /// Mean defect of v, and mean of its absolute value.
@@ -69,7 +71,7 @@ impl History {
             sizes = [sizes[0] + w * u.abs(), sizes[1] + w * v.abs()];
         }
         let means = sizes.map(|size| if weight > 0.0 { size / weight } else { 0.0 });
-        let Defect { signed, smooth, kinks } = self.defect(rule, measure, &weights, weight);
+        let Defect { signed, smooth, kinks, greatest } = self.defect(rule, measure, &weights, weight);
         let growth = 1.0 + measure.agreement * (measure.amplification - 1.0);
         let relative = [0, 1].map(|which| {
             let size = means[which].max(least[which]);
@@ -79,7 +81,8 @@ impl History {
             if !matters[which] || defect == 0.0 { 0.0 } else { defect / size }
         });
         let worst = if relative.iter().any(|error| error.is_nan()) { f64::INFINITY } else { relative[0].max(relative[1]) };
-        TimeError { relative: worst, sizes: if weights.pressed { means } else { [0.0; 2] }, defect: [signed, smooth] }
+        let greatest = if greatest > 0.0 { greatest / means[1].max(least[1]) } else { 0.0 };
+        TimeError { relative: worst, greatest, sizes: if weights.pressed { means } else { [0.0; 2] }, defect: [signed, smooth] }
     }
 
     fn defect(&self, rule: &ExponentialRule, measure: ErrorMeasure<'_>, weights: &Weighting<'_>, weight: f64) -> Defect {
@@ -92,7 +95,7 @@ impl History {
         let [to_first, to_second] = rule.tried.ratios;
         let (new, old) = (&self.displacement.trial, &self.displacement.now);
         let (mut signed, mut absolute, mut left, mut touching) = (0.0, 0.0, 0.0_f64, 0_usize);
-        let (mut kinks, mut squares) = (0.0_f64, 0.0_f64);
+        let (mut kinks, mut squares, mut sharpest, mut steepest) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
         for k in 0..new.len() {
             let going_on = if lacking > 0 { to_first * first[k] } else { 0.0 };
             let bend = (new[k] - old[k]) - going_on;
@@ -101,11 +104,15 @@ impl History {
             touching += usize::from(touches);
             if touches && now[k] <= 0.0 {
                 let jump = advance(k) - going_on;
-                kinks += rule.kink(jump, bend);
-                squares += rule.kink(jump, 0.5 * jump).powi(2);
+                let (kink, widest) = (rule.kink(jump, bend), rule.kink(jump, 0.5 * jump));
+                (kinks, squares) = (kinks + kink, squares + widest * widest);
+                sharpest = sharpest.max(kink.abs()).max(widest.abs());
             } else {
                 let w = weights.of(k);
                 (signed, absolute) = (signed + w * last, absolute + w * last.abs());
+                if touches {
+                    steepest = steepest.max(last.abs());
+                }
             }
             if !touches && (now[k] > 0.0 || before[k] > 0.0) {
                 left = left.max(last.abs());
@@ -122,7 +129,7 @@ impl History {
         let smooth = scale * (absolute / weight).max(LEFT * left);
         let counts = !rule.has_dashpot() || rule.tried.dt > measure.resolution;
         let kinks = if counts { kinks.abs().max(squares.sqrt()) / touching.max(1) as f64 } else { 0.0 };
-        Defect { signed: scale * signed / weight, smooth, kinks }
+        Defect { signed: scale * signed / weight, smooth, kinks, greatest: sharpest.max(scale * steepest) }
     }
 }
 
@@ -134,6 +141,8 @@ struct Defect {
     smooth: f64,
     /// By cells that joined.
     kinks: f64,
+    /// The greatest of a cell.
+    greatest: f64,
 }
 
 /// The weight of each cell in a mean over the contact.

@@ -19,6 +19,8 @@ pub struct Watched {
     pub steps: u64,
     pub rejected: u64,
     pub equivalents: f64,
+    /// What the budget says of the pressure.
+    pub pressure_budget: f64,
 }
 
 impl Watched {
@@ -114,5 +116,6 @@ pub fn watch(
         }
     }
     seen.rejected = run.rejected_steps();
+    seen.pressure_budget = run.error_budget().pressure;
     Ok(seen)
 }

@@ -14,7 +14,8 @@ use crate::common::watched_runs::watch;
 use viscocontact::prelude::*;
 
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
-const QUANTITIES: [&str; 3] = ["approach or force", "greatest pressure", "central pressure"];
+const QUANTITIES: [&str; 5] =
+    ["approach or force", "greatest pressure", "central pressure", "greatest over budget", "central over budget"];
 /// A run of so many contact problems does not end.
 const MOST_PROBLEMS: u64 = 20_000;
 /// Steps of the finest run for the truth.
@@ -25,8 +26,9 @@ struct Outcome {
     scene: String,
     /// The kinds of body and of history.
     kinds: [String; 2],
-    /// True error over the one asked for, of each quantity; `None` where the truth is not known well enough.
-    ratios: [Option<f64>; 3],
+    /// True error over the one asked for, of each quantity, and those of the pressures over what the budget says of them;
+    /// `None` where the truth is not known well enough.
+    ratios: [Option<f64>; 5],
     /// Whether many steps were taken where few long ones would hardly err.
     wasteful: bool,
     problems: u64,
@@ -114,11 +116,14 @@ fn judge(scene: &RandomScene, truth: &Truth, tolerance: f64, tally: &mut Tally) 
             // an error far beyond what was asked for is known well enough by a poorer truth
             let known =
                 |k: usize| (truth.uncertainty[k] <= 0.1 * tolerance.max(errors[k])).then_some(errors[k] / tolerance);
+            // an error below what was asked for in approach or force is no news
+            let budget = run.pressure_budget.max(tolerance);
+            let of_budget = |k: usize| known(k).map(|ratio| ratio * tolerance / budget);
             tally.unjudged += usize::from(known(0).is_none());
             tally.outcomes.push(Outcome {
                 scene: scene.name.clone(),
                 kinds: scene.kinds(),
-                ratios: [0, 1, 2].map(known),
+                ratios: [known(0), known(1), known(2), of_budget(1), of_budget(2)],
                 wasteful: errors[0] < 0.01 * tolerance && run.problems() > 20 + 3 * run.times.len() as u64,
                 problems: run.problems(),
                 rejected: run.rejected,

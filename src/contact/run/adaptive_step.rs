@@ -70,7 +70,7 @@ impl Follow<'_> {
                 }
                 report.convolutions += wasted[0];
                 report.preconditioner_applications += wasted[1];
-                self.progress.include(report.time_error, report.residual);
+                self.progress.include([error.relative, error.greatest, report.residual]);
                 return Ok(report);
             }
             events::rejected(time, dt, error.relative, control.tolerance);

@@ -193,8 +193,8 @@ impl<'a> Follow<'a> {
             let scale = self.progress.scale.get_or_insert_with(new);
             Outlook { expected: scale.expected(scene, &load, time - computation.state.clock.undisturbed_until), ..Outlook::default() }
         };
-        let report = self.contact.take_expecting(step, outlook)?;
-        self.progress.include(report.time_error, report.residual);
+        let (report, error) = self.contact.take_expecting(step, outlook)?;
+        self.progress.include([error.relative, error.greatest, report.residual]);
         Ok(report)
     }
 
@@ -226,8 +226,8 @@ impl<'a> Follow<'a> {
 
     /// What is known of the error of the answer so far.
     pub fn error_budget(&self) -> ErrorBudget {
-        let [time, solver] = self.progress.worst;
-        ErrorBudget { time, mesh: self.contact.mesh_error(), solver }
+        let [time, pressure, solver] = self.progress.worst;
+        ErrorBudget { time, pressure, mesh: self.contact.mesh_error(), solver }
     }
 
     /// Steps that were tried and found too long, with [`Stepping::adaptive`].

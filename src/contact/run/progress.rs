@@ -20,8 +20,8 @@ pub(crate) struct Progress {
     pub(super) control: Option<StepControl>,
     /// The sizes of a run by equal steps.
     pub(super) scale: Option<RunScale>,
-    /// Greatest estimated error in time of a step, and greatest residual.
-    pub(super) worst: [f64; 2],
+    /// Greatest estimated errors in time of a step, in all and in a cell, and greatest residual.
+    pub(super) worst: [f64; 3],
 }
 
 impl Progress {
@@ -30,7 +30,7 @@ impl Progress {
             Stepping::Fixed { dt } => (None, dt),
             Stepping::Adaptive { tolerance } => (Some(StepControl::new(tolerance)), 0.0),
         };
-        Progress { start: now, now, steps: 0, dt, control, scale: None, worst: [0.0; 2] }
+        Progress { start: now, now, steps: 0, dt, control, scale: None, worst: [0.0; 3] }
     }
 
     /// Whether it is that of a run that begins like this one.
@@ -54,8 +54,8 @@ impl Progress {
     }
 
     /// Takes account of the errors of a step.
-    pub(super) fn include(&mut self, time_error: f64, residual: f64) {
-        self.worst = [self.worst[0].max(time_error), self.worst[1].max(residual)];
+    pub(super) fn include(&mut self, errors: [f64; 3]) {
+        self.worst = [0, 1, 2].map(|which| self.worst[which].max(errors[which]));
     }
 }
 

@@ -92,14 +92,14 @@ impl ViscoelasticContact {
 
     /// Computes a step and accepts it.
     pub(in crate::contact) fn take(&mut self, step: Step<'_>) -> Result<StepReport> {
-        self.take_expecting(step, Outlook::default())
+        Ok(self.take_expecting(step, Outlook::default())?.0)
     }
 
     /// Computes a step and accepts it; its error is estimated with regard to the `outlook`.
-    pub(in crate::contact) fn take_expecting(&mut self, step: Step<'_>, outlook: Outlook) -> Result<StepReport> {
+    pub(in crate::contact) fn take_expecting(&mut self, step: Step<'_>, outlook: Outlook) -> Result<(StepReport, TimeError)> {
         let attempt = self.attempt(&step)?;
         let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, outlook);
-        Ok(self.accept(attempt, step, error))
+        Ok((self.accept(attempt, step, error), error))
     }
 
     /// Computes a step. The state stays as it is.
