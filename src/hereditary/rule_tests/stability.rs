@@ -1,0 +1,167 @@
+//! What free cells do, step after step: nothing may grow.
+
+use faer::Mat;
+
+use super::{bodies, kelvin_voigt};
+use crate::hereditary::{ExponentialRule, Interpolant, RememberedField};
+use crate::rheology::CreepSpectrum;
+
+const CORRECTED: [Interpolant; 2] = [Interpolant::CorrectedLinear, Interpolant::CorrectedQuadratic];
+
+/// Free cells, v = 0, each of which begins with one of u, its differences and q_i/E(0) alone.
+struct Free {
+    rule: ExponentialRule,
+    field: RememberedField,
+    interpolant: Interpolant,
+    /// E(0), or 1 for a dashpot alone.
+    modulus: f64,
+}
+
+impl Free {
+    fn new(body: &CreepSpectrum, interpolant: Interpolant) -> Free {
+        let (rule, relaxation) = (ExponentialRule::new(body), body.relaxation());
+        let differences = if rule.has_dashpot() || interpolant == Interpolant::CorrectedQuadratic { 2 } else { 1 };
+        let field = RememberedField::new(rule.branches(), 1 + differences + rule.branches());
+        let modulus = relaxation.modulus(0.0);
+        Free { rule, field, interpolant, modulus: if modulus > 0.0 { modulus } else { 1.0 } }
+    }
+
+    fn step(&mut self, dt: f64) {
+        self.rule.weigh(dt, self.interpolant);
+        self.field.predict(&self.rule);
+        self.rule.commit();
+        self.field.commit();
+    }
+
+    /// Calls `change` with each part of the state: a field in which each cell holds what became of its beginning.
+    fn parts(&mut self, mut change: impl FnMut(usize, f64, &mut [f64])) {
+        self.field.settle(&self.rule);
+        let (cells, branches) = (self.field.now.len(), self.rule.branches());
+        change(0, 1.0, &mut self.field.now);
+        let (mut part, modulus) = (0, self.modulus);
+        self.field.past.change(&mut vec![0.0; cells], |own| {
+            part += 1;
+            change(part, if part <= branches { modulus } else { 1.0 }, own);
+        });
+        assert_eq!(part + 1, cells);
+    }
+
+    fn begin(&mut self) {
+        self.parts(|part, unit, own| {
+            own.fill(0.0);
+            own[part] = unit;
+        });
+    }
+
+    /// From the beginnings to the present state.
+    fn matrix(&mut self) -> Mat<f64> {
+        let cells = self.field.now.len();
+        let mut matrix = Mat::zeros(cells, cells);
+        self.parts(|part, unit, own| own.iter().enumerate().for_each(|(k, &value)| matrix[(part, k)] = value / unit));
+        matrix
+    }
+}
+
+/// The greatest absolute eigenvalue of a period of steps that begins with a step `first`, to the power of one step.
+fn radius(body: &CreepSpectrum, interpolant: Interpolant, first: f64, ratios: &[f64]) -> f64 {
+    let mut free = Free::new(body, interpolant);
+    let mut dt = first;
+    let mut period = |free: &mut Free| {
+        for ratio in ratios {
+            free.step(dt);
+            dt *= ratio;
+        }
+        dt = first; // but for rounding
+    };
+    for _ in 0..4 {
+        period(&mut free);
+    }
+    free.begin();
+    period(&mut free);
+    let values = free.matrix().eigenvalues().unwrap();
+    values.iter().map(|value| value.norm()).fold(0.0, f64::max).powf(1.0 / ratios.len() as f64)
+}
+
+/// Steps from 1e-12 to 1e12 relaxation times, closer together where they are about as long as one.
+fn lengths() -> Vec<f64> {
+    let near = (-4..8).map(|k| 10f64.powf(0.25 * f64::from(k)));
+    (-12..=12).map(|k| 10f64.powi(k)).chain(near).collect()
+}
+
+#[test]
+fn no_periodic_sequence_of_steps_grows() {
+    for interpolant in CORRECTED {
+        let mut worst = (0.0, String::new());
+        for (name, body) in bodies() {
+            for r in [1.0, 1.5, 2.0, 2.4, 3.0, 3.9, 5.0_f64] {
+                let i = 1.0 / r;
+                for ratios in [&[r, i][..], &[r, r, i * i], &[r, 1.0, i], &[r, r, r, i, i, i], &[i, i, r * r]] {
+                    for first in lengths() {
+                        let radius = radius(&body, interpolant, first, ratios);
+                        if radius > worst.0 {
+                            worst = (radius, format!("{name}, ratios {ratios:.2?} from {first:.1e}"));
+                        }
+                    }
+                }
+            }
+        }
+        println!("{interpolant:?}: radius - 1 = {:.1e}, {}", worst.0 - 1.0, worst.1);
+        assert!(worst.0 <= 1.0 + 1e-12, "{interpolant:?}: {:e}, {}", worst.0 - 1.0, worst.1);
+    }
+}
+
+/// Steps that go on growing, or shrinking, by the same ratio over 24 decades: the greatest that any state becomes.
+#[test]
+fn growing_steps_amplify_little() {
+    for interpolant in CORRECTED {
+        for (name, body) in bodies() {
+            let mut line = String::new();
+            for ratio in [1.5, 2.0, 2.4, 3.0, 3.9, 5.0, 0.5, 0.2_f64] {
+                let mut dt = if ratio > 1.0 { 1e-12 } else { 1e12 };
+                let mut free = Free::new(&body, interpolant);
+                (1..=5).rev().for_each(|k| free.step(dt / ratio.powi(k)));
+                free.begin();
+                let mut most = 0.0_f64;
+                while (1e-12..=1e12).contains(&dt) {
+                    free.step(dt);
+                    let matrix = free.matrix();
+                    let row = |i: usize| (0..matrix.ncols()).map(|j| matrix[(i, j)].abs()).sum::<f64>();
+                    most = (0..matrix.nrows()).map(row).fold(most, f64::max);
+                    dt *= ratio;
+                }
+                line += &format!(" {ratio}: {most:.3}");
+                assert!(
+                    most < if name == "seventeen decades" { 2e4 } else { 30.0 },
+                    "{name}, {interpolant:?}, {ratio}: {most}"
+                );
+            }
+            println!("{interpolant:?}, {name}: {line}");
+        }
+    }
+}
+
+/// A free cell after a step of very many times: recovered, but for what flowed.
+#[test]
+fn a_long_step_recovers_all() {
+    for interpolant in CORRECTED {
+        for (name, body) in bodies().into_iter().chain([("Kelvin-Voigt", kelvin_voigt())]) {
+            let mut free = Free::new(&body, interpolant);
+            (0..4).for_each(|_| free.step(0.1));
+            free.begin();
+            free.step(1e22);
+            free.step(1e22);
+            let (fluid, matrix) = (body.fluidity() > 0.0, free.matrix());
+            for i in 0..matrix.nrows() {
+                for j in 0..matrix.ncols() {
+                    // all that was remembered ends as flow, and its differences in one of these steps
+                    let lasts = fluid && i == 0;
+                    assert!(
+                        lasts || matrix[(i, j)].abs() < 1e-9,
+                        "{name}, {interpolant:?}: {i} {j} {:e}",
+                        matrix[(i, j)]
+                    );
+                }
+            }
+        }
+    }
+}
