@@ -7,7 +7,11 @@ mod orders;
 mod positivity;
 mod stability;
 
+use crate::hereditary::Interpolant;
 use crate::rheology::CreepSpectrum;
+
+const INTERPOLANTS: [Interpolant; 3] =
+    [Interpolant::Linear, Interpolant::CorrectedLinear, Interpolant::CorrectedQuadratic];
 
 /// Independent numbers between 0 and 1.
 struct Random(u64);

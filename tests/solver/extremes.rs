@@ -247,7 +247,7 @@ fn a_million_steps_of_a_body_that_remembers_do_not_drift() {
     let kelvin = Material::incompressible(GeneralizedKelvin::new(0.0, 0.0, &[(1.0e-6, 0.03), (1.0e-6, 3.0)]).unwrap());
     for (material, steps) in [(three_times(), 1_000_000_u32), (kelvin, 200_000)] {
         let settings = Settings { tolerance: 1e-11, ..Settings::default() };
-        let mut contact = builder(8, 4.0e-3, material).settings(settings).build().unwrap();
+        let mut contact = builder(8, 8.0e-3, material).settings(settings).build().unwrap();
         let (mut settled, mut approach) = (Vec::new(), 0.0);
         let mut worst = 0.0_f64;
         for step in 1..=steps {

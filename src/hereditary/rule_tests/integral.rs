@@ -14,7 +14,7 @@ const GAUSS: [(f64, f64); 5] = [
 /// What is older by so many relaxation times is forgotten.
 const FORGOTTEN: f64 = 45.0;
 
-/// Σ E_i ∫ e^(−s/τ_i) u′ ds over a span of the past that ended `end` ago, for u′ at each age s.
+/// Σ E_i ∫ e^(−t/τ_i) u′ dt over a span of the past that ended `end` ago, for u′ at each time before its end.
 pub fn relaxing(body: &RelaxationSpectrum, end: f64, length: f64, slope: impl Fn(f64) -> f64) -> f64 {
     let of_branch = |&(modulus, tau): &(f64, f64)| {
         let reach = length.min(FORGOTTEN * tau);
@@ -22,10 +22,10 @@ pub fn relaxing(body: &RelaxationSpectrum, end: f64, length: f64, slope: impl Fn
         let half = 0.5 * reach / panels;
         let mut sum = 0.0;
         for panel in 0..panels as usize {
-            let middle = end + (2 * panel + 1) as f64 * half;
+            let middle = (2 * panel + 1) as f64 * half;
             for (at, weight) in GAUSS {
-                for age in [middle - half * at, middle + half * at] {
-                    sum += half * weight * (-age / tau).exp() * slope(age);
+                for before in [middle - half * at, middle + half * at] {
+                    sum += half * weight * (-(end + before) / tau).exp() * slope(before);
                 }
             }
         }
@@ -96,24 +96,29 @@ impl Past {
                 let left: f64 = self.body.terms().iter().map(|&(modulus, tau)| modulus * (-ages[k] / tau).exp()).sum();
                 parts.push(left * (u - self.nodes[k - 1].u));
             } else {
-                parts.push(relaxing(&self.body, ages[k], length, |age| self.slope(&ages, through, age)));
+                parts.push(relaxing(&self.body, ages[k], length, |before| self.slope(k, through, before)));
             }
         }
         if self.body.viscosity() > 0.0 && last.length > 0.0 {
-            parts.push(self.body.viscosity() * self.slope(&ages, &last.through, 0.0));
+            parts.push(self.body.viscosity() * self.slope(ages.len() - 1, &last.through, 0.0));
         }
         [parts.iter().sum(), parts.iter().map(|part| part.abs()).sum()]
     }
 
-    /// u′ at some age of the polynomial through nodes, by Lagrange's form.
-    fn slope(&self, ages: &[f64], through: &[usize], age: f64) -> f64 {
+    /// u′ of the polynomial through nodes at a time before one of them, by Lagrange's form.
+    fn slope(&self, end: usize, through: &[usize], before: f64) -> f64 {
+        // how long after a node another one was
+        let after = |a: usize, b: usize| {
+            let length: f64 = self.nodes[a.min(b) + 1..=a.max(b)].iter().map(|node| node.length).sum();
+            if b > a { length } else { -length }
+        };
         let mut sum = 0.0;
         for &node in through {
             let others = || through.iter().filter(move |&&other| other != node);
             for &one in others() {
                 let rest = others().filter(|&&other| other != one);
-                let rest: f64 = rest.map(|&other| (ages[other] - age) / (ages[other] - ages[node])).product();
-                sum += self.nodes[node].u * rest / (ages[one] - ages[node]);
+                let rest: f64 = rest.map(|&other| (after(other, end) - before) / after(other, node)).product();
+                sum += self.nodes[node].u * rest / after(one, node);
             }
         }
         sum

@@ -135,6 +135,12 @@ fn no_periodic_sequence_of_steps_grows() {
 fn growing_steps_amplify_little() {
     for interpolant in CORRECTED {
         for (name, body) in bodies() {
+            // the moduli of seventeen decades add up to so much more than that of the last
+            let most_allowed = match name {
+                "seventeen decades" => 12000.0,
+                _ if body.glassy() == 0.0 => 75.0,
+                _ => 12.0,
+            };
             let mut line = String::new();
             for ratio in [1.5, 2.0, 2.4, 3.0, 3.9, 5.0, 0.5, 0.2_f64] {
                 let mut dt = if ratio > 1.0 { 1e-12 } else { 1e12 };
@@ -148,17 +154,14 @@ fn growing_steps_amplify_little() {
                     dt *= ratio;
                 }
                 line += &format!(" {ratio}: {most:.3}");
-                assert!(
-                    most < if name == "seventeen decades" { 2e4 } else { 30.0 },
-                    "{name}, {interpolant:?}, {ratio}: {most}"
-                );
+                assert!(most < most_allowed, "{name}, {interpolant:?}, {ratio}: {most}");
             }
             println!("{interpolant:?}, {name}: {line}");
         }
     }
 }
 
-/// A free cell after a step of very many times: recovered, but for what flowed.
+/// A free cell after steps of very many times: recovered, but for what flowed.
 #[test]
 fn a_long_step_recovers_all() {
     for interpolant in CORRECTED {
@@ -166,17 +169,13 @@ fn a_long_step_recovers_all() {
             let mut free = Free::new(&body, interpolant);
             (0..4).for_each(|_| free.step(0.1));
             free.begin();
-            free.step(1e22);
-            free.step(1e22);
+            (0..4).for_each(|_| free.step(1e22));
             let (fluid, matrix) = (body.fluidity() > 0.0, free.matrix());
             for (i, row) in matrix.iter().enumerate() {
                 for (j, left) in row.iter().enumerate() {
                     // all that was remembered ends as flow
                     let lasts = fluid && i == 0;
-                    assert!(
-                        lasts || left.abs() < 1e-9,
-                        "{name}, {interpolant:?}: {i} {j} {left:e}"
-                    );
+                    assert!(lasts || left.abs() < 1e-9, "{name}, {interpolant:?}: {i} {j} {left:e}");
                 }
             }
         }

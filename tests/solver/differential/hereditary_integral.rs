@@ -86,14 +86,14 @@ pub struct HereditaryIntegral {
     spans: Vec<Span>,
     /// With the step predicted last.
     tried: Vec<Span>,
-    /// How often a prediction was made again, because it lay above the undeformed surface.
-    pub repeated: usize,
+    /// Whether the next step is more than linear, or corrects the one before.
+    pub continues: bool,
 }
 
 impl HereditaryIntegral {
     pub fn new(body: &Body, rule: TimeRule, cells: usize) -> HereditaryIntegral {
         let (fields, relaxation) = (vec![vec![0.0; cells]], Relaxation::of(body));
-        HereditaryIntegral { relaxation, rule, fields, spans: Vec::new(), tried: Vec::new(), repeated: 0 }
+        HereditaryIntegral { relaxation, rule, fields, spans: Vec::new(), tried: Vec::new(), continues: true }
     }
 
     /// u at the last node.
@@ -104,7 +104,7 @@ impl HereditaryIntegral {
     /// u at the end of the next step is c v + u_old: returns c and u_old.
     pub fn predict(&mut self, dt: f64) -> (f64, Vec<f64>) {
         let dashpot = self.relaxation.dashpot > 0.0;
-        let corrected = self.rule == TimeRule::Exponential && dt > 0.0;
+        let corrected = self.rule == TimeRule::Exponential && dt > 0.0 && self.continues;
         let last = self.spans.last().map_or(0.0, |span| span.length);
         let known = self.spans.iter().rev().take_while(|span| span.length > 0.0).count();
         let longest = if dashpot { 2.41 } else { 4.0 } * last;
@@ -116,7 +116,6 @@ impl HereditaryIntegral {
             if degree == 1 && !corrects || u_old.iter().all(|&u| u >= -1e-9 * deepest) {
                 return (c, u_old);
             }
-            self.repeated += 1;
             (degree, corrects) = (1, corrects && degree > 1);
         }
     }

@@ -125,6 +125,9 @@ fn a_dense_reference_of_the_linear_rule_agrees() {
     agrees_with_a_dense_reference(TimeRule::ExponentialLinear);
 }
 
+/// Displacements \[m\] that the convolution of no pressure leaves.
+const ROUNDING: f64 = 1e-18;
+
 fn agrees_with_a_dense_reference(time_rule: TimeRule) {
     let (count, first) = (wanted("DIFFERENTIAL_SCENES", 500), wanted("DIFFERENTIAL_SEED", 1));
     let (mut steps, mut refused, mut unsolved, mut worst) = (0, 0, 0, [0.0_f64; 3]);
@@ -137,6 +140,9 @@ fn agrees_with_a_dense_reference(time_rule: TimeRule) {
         };
         let mut reference = Reference::new(&scene.grid, &scene.shapes, &scene.rheology, time_rule);
         for (step, (dt, loads)) in scene.steps.iter().enumerate() {
+            // a displacement of rounding alone is negative at some cells, and no polynomial continues it
+            let deepest = contact.displacement().iter().copied().fold(0.0, f64::max);
+            reference.continues(deepest == 0.0 || deepest > ROUNDING);
             match contact.step_each(*dt, loads) {
                 Ok(_) => {}
                 Err(Error::LoadOutsideHull { .. }) => {

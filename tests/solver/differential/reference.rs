@@ -59,6 +59,11 @@ impl Reference {
         }
     }
 
+    /// Whether the next step continues the displacement by what is known of its past; else it is linear, and corrects nothing.
+    pub fn continues(&mut self, continues: bool) {
+        self.past.continues = continues;
+    }
+
     /// One step; false if the interior-point method finds no answer.
     pub fn step(&mut self, dt: f64, loads: &[Load]) -> bool {
         let (c, past) = self.past.predict(dt);
