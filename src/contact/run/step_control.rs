@@ -92,7 +92,7 @@ impl StepControl {
         self.nodes.insert(0, (time, load));
         if at_corner {
             self.corner();
-        } else if dt < wanted && self.last * (wanted / dt).powi(order as i32) <= 1.0 {
+        } else if dt < 0.99 * wanted && self.last * (wanted / dt).powi(order as i32) <= 1.0 {
             self.next = self.next.map(|next| next.max(wanted));
         }
     }
