@@ -90,13 +90,12 @@ impl Past {
         (1..ages.len()).rev().for_each(|k| ages[k - 1] = ages[k] + self.nodes[k].length);
         let last = &self.nodes[ages.len() - 1];
         let mut parts = vec![self.body.equilibrium() * last.u];
-        for k in 1..ages.len() {
-            let Node { u, length, ref through, .. } = self.nodes[k];
-            if length == 0.0 {
+        for (k, Node { u, length, through, .. }) in self.nodes.iter().enumerate().skip(1) {
+            if *length == 0.0 {
                 let left: f64 = self.body.terms().iter().map(|&(modulus, tau)| modulus * (-ages[k] / tau).exp()).sum();
                 parts.push(left * (u - self.nodes[k - 1].u));
             } else {
-                parts.push(relaxing(&self.body, ages[k], length, |before| self.slope(k, through, before)));
+                parts.push(relaxing(&self.body, ages[k], *length, |before| self.slope(k, through, before)));
             }
         }
         if self.body.viscosity() > 0.0 && last.length > 0.0 {
