@@ -154,7 +154,11 @@ impl Settings {
 
     /// How it changes within a step chosen by its error.
     pub(crate) fn adaptive_interpolant(&self) -> Interpolant {
-        if self.time_rule == TimeRule::ExponentialLinear { Interpolant::Linear } else { Interpolant::CorrectedQuadratic }
+        if self.time_rule == TimeRule::ExponentialLinear {
+            Interpolant::Linear
+        } else {
+            Interpolant::CorrectedQuadratic
+        }
     }
 
     pub(crate) fn validate(&self) -> Result<()> {

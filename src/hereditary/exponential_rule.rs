@@ -53,6 +53,8 @@ pub(crate) struct ExponentialRule {
     pub(super) tried: Weights,
     /// Of the step committed last, which the fields take in with the next prediction.
     pub(super) committed: Weights,
+    /// The greatest displacement so far.
+    pub(super) greatest: f64,
     /// How often a prediction was made again, because u_old was negative somewhere.
     pub(super) repeated: u64,
 }
@@ -123,6 +125,7 @@ impl ExponentialRule {
             lacking: 0,
             committed: weights.clone(),
             tried: weights,
+            greatest: 0.0,
             repeated: 0,
         }
     }
@@ -177,7 +180,8 @@ impl ExponentialRule {
         if !(share > 0.0 && share < 1.0) {
             return 0.0;
         }
-        let answered = |&(modulus, tau): &(f64, f64)| -modulus * tau / self.tried.dt * (-share * self.tried.dt / tau).exp_m1();
+        let answered =
+            |&(modulus, tau): &(f64, f64)| -modulus * tau / self.tried.dt * (-share * self.tried.dt / tau).exp_m1();
         let relaxing: f64 = self.relaxation.terms().iter().map(answered).sum();
         (relaxing + self.relaxation.viscosity() / self.tried.dt) * jump - self.tried.answer * bend
     }
@@ -197,7 +201,13 @@ impl ExponentialRule {
         match interpolant {
             Interpolant::Linear => 2,
             Interpolant::CorrectedLinear => 3,
-            Interpolant::CorrectedQuadratic => if self.has_dashpot() { 3 } else { 4 },
+            Interpolant::CorrectedQuadratic => {
+                if self.has_dashpot() {
+                    3
+                } else {
+                    4
+                }
+            }
         }
     }
 
@@ -208,7 +218,7 @@ impl ExponentialRule {
             return;
         }
         (self.spans, self.known, self.kept, self.lacking) = (other.spans, other.known, other.kept, other.lacking);
-        self.repeated = other.repeated;
+        (self.greatest, self.repeated) = (other.greatest, other.repeated);
         self.tried.copy_from(&other.tried);
         self.committed.copy_from(&other.committed);
     }
@@ -279,7 +289,8 @@ impl ExponentialRule {
             if lacking > 0 {
                 let late = moments_of(self.spans[0] / tau, late_past);
                 // over Δ^k instead of Δ′^k
-                own[lacking - 1] += decay * modulus * late[lacking - 1] * past.powi(lacking as i32) / products[lacking - 1];
+                own[lacking - 1] +=
+                    decay * modulus * late[lacking - 1] * past.powi(lacking as i32) / products[lacking - 1];
             }
             (0..3).for_each(|k| gains[k] += own[k]);
             *weights = [decay, own[0], own[1], own[2]];

@@ -264,16 +264,23 @@ impl History {
             Rule::MovingFrame(own, frame) => {
                 own.weigh(step.dt, step.interpolant);
                 displacement.settle(own);
-                frame.predict(own, step.stride);
-                let (c, trial) = (own.compliance(), &mut displacement.trial);
                 if !own.remembers() {
-                    trial.fill(0.0);
-                    return Ok((c, 0));
+                    frame.predict(own, step.stride);
+                    displacement.trial.fill(0.0);
+                    return Ok((own.compliance(), 0));
                 }
-                let [source, remainder] = frame.predicted();
-                kernel.apply(source, trial, work);
-                trial.iter_mut().zip(remainder).for_each(|(u_old, &e)| *u_old += e);
-                Ok((c, 1))
+                let mut convolutions = 0;
+                loop {
+                    frame.predict(own, step.stride);
+                    let ([source, remainder], trial) = (frame.predicted(), &mut displacement.trial);
+                    kernel.apply(source, trial, work);
+                    trial.iter_mut().zip(remainder).for_each(|(u_old, &e)| *u_old += e);
+                    convolutions += 1;
+                    if kernel.mean_is_held() || !own.has_less() || !displacement.dips(own) {
+                        return Ok((own.compliance(), convolutions));
+                    }
+                    own.weigh_less();
+                }
             }
             Rule::DirectSum(own) => {
                 let RememberedField { now, trial, .. } = displacement;

@@ -25,6 +25,8 @@ mod moments;
 mod moving_frame;
 mod past;
 mod remembered_field;
+#[cfg(test)]
+mod rule_tests;
 mod step_polynomial;
 mod time_error;
 

@@ -153,7 +153,9 @@ impl Past {
         let differences = self.differences.iter().enumerate();
         self.branches == branches
             && Some(self.fields.len()) == cells.checked_mul(branches)
-            && differences.into_iter().all(|(k, own)| own.is_empty() && (k >= kept || self.waiting) || own.len() == cells)
+            && differences
+                .into_iter()
+                .all(|(k, own)| own.is_empty() && (k >= kept || self.waiting) || own.len() == cells)
     }
 
     /// The ranges of the field q_i.

@@ -51,15 +51,16 @@ impl RememberedField {
     pub(crate) fn predict_non_negative(&mut self, rule: &mut ExponentialRule, dt: f64, interpolant: Interpolant) {
         rule.weigh(dt, interpolant);
         self.predict(rule);
-        while rule.has_less() && self.dips() {
+        while rule.has_less() && self.dips(rule) {
             rule.weigh_less();
             self.predict(rule);
         }
     }
 
-    /// Whether the trial is negative somewhere, by more than rounding.
-    fn dips(&self) -> bool {
-        let greatest = self.now.iter().fold(0.0, |most: f64, &value| if value > most { value } else { most });
+    /// Whether the trial is negative somewhere, by more than the rounding of the greatest field so far.
+    pub(super) fn dips(&self, rule: &mut ExponentialRule) -> bool {
+        let greatest = self.now.iter().fold(rule.greatest, |most, &value| if value > most { value } else { most });
+        rule.greatest = greatest;
         self.trial.iter().any(|&value| value < DIP * greatest)
     }
 

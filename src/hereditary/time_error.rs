@@ -75,17 +75,31 @@ impl History {
         let growth = 1.0 + measure.agreement * (measure.amplification - 1.0);
         let relative = [0, 1].map(|which| {
             let size = means[which].max(least[which]);
+            // bodies apart have no force that could be wrong, but a surface
+            let matters = if weights.pressed { matters[which] } else { which == 0 };
             let defect =
                 if which == 0 { rule.compliance() * kinks.max(growth * smooth) } else { (EDGE * kinks).max(smooth) };
             // nothing over nothing is nothing, but overflow must not pass for accuracy
-            if !matters[which] || defect == 0.0 { 0.0 } else { defect / size }
+            if !matters || defect == 0.0 || size == 0.0 { 0.0 } else { defect / size }
         });
-        let worst = if relative.iter().any(|error| error.is_nan()) { f64::INFINITY } else { relative[0].max(relative[1]) };
+        let worst =
+            if relative.iter().any(|error| error.is_nan()) { f64::INFINITY } else { relative[0].max(relative[1]) };
         let greatest = if greatest > 0.0 { greatest / means[1].max(least[1]) } else { 0.0 };
-        TimeError { relative: worst, greatest, sizes: if weights.pressed { means } else { [0.0; 2] }, defect: [signed, smooth] }
+        TimeError {
+            relative: worst,
+            greatest,
+            sizes: if weights.pressed { means } else { [0.0; 2] },
+            defect: [signed, smooth],
+        }
     }
 
-    fn defect(&self, rule: &ExponentialRule, measure: ErrorMeasure<'_>, weights: &Weighting<'_>, weight: f64) -> Defect {
+    fn defect(
+        &self,
+        rule: &ExponentialRule,
+        measure: ErrorMeasure<'_>,
+        weights: &Weighting<'_>,
+        weight: f64,
+    ) -> Defect {
         if weight == 0.0 {
             return Defect::default();
         }

@@ -24,8 +24,11 @@ impl Scene {
 
     /// A grid that holds the contact of a sphere under 1 N.
     pub fn contact(&self, cells: usize, tolerance: f64) -> ViscoelasticContact {
+        self.contact_with(cells, Settings { tolerance, ..Settings::default() })
+    }
+
+    pub fn contact_with(&self, cells: usize, settings: Settings) -> ViscoelasticContact {
         let widest = (0.75 * RADIUS * self.material.contact_compliance(self.until)).cbrt();
-        let settings = Settings { tolerance, ..Settings::default() };
         sphere_on(Grid::square(cells, 2.3 * widest).unwrap(), self.material.clone(), settings)
     }
 }

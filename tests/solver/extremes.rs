@@ -1,6 +1,6 @@
 //! Steps, times, moduli, lengths and loads at the ends of their ranges.
 
-use crate::common::bodies::{elastic, maxwell, zener};
+use crate::common::bodies::{elastic, maxwell, three_times, zener};
 use crate::common::noise::uniform;
 use crate::common::spheres::{RADIUS, builder_on};
 use viscocontact::Error;
@@ -238,6 +238,32 @@ fn a_million_steps_do_not_drift() {
     }
     println!("K p after a million steps: {worst:.1e}");
     assert!(worst < 1e-10, "{worst:e}");
+}
+
+/// A body with several times under a periodic load: once the beginning is forgotten, all periods are the same.
+#[test]
+fn a_million_steps_of_a_body_that_remembers_do_not_drift() {
+    let period = 500;
+    let kelvin = Material::incompressible(GeneralizedKelvin::new(0.0, 0.0, &[(1.0e-6, 0.03), (1.0e-6, 3.0)]).unwrap());
+    for (material, steps) in [(three_times(), 1_000_000_u32), (kelvin, 200_000)] {
+        let settings = Settings { tolerance: 1e-11, ..Settings::default() };
+        let mut contact = builder(8, 8.0e-3, material).settings(settings).build().unwrap();
+        let (mut settled, mut approach) = (Vec::new(), 0.0);
+        let mut worst = 0.0_f64;
+        for step in 1..=steps {
+            let phase = std::f64::consts::TAU * f64::from(step % period) / f64::from(period);
+            contact.step(1e-2, Load::force(0.6 + 0.3 * phase.sin())).unwrap();
+            // the longest retardation time is about 20 s
+            if step == 200 * period {
+                (settled, approach) = (contact.displacement().to_vec(), contact.approach());
+            } else if step > 200 * period && step % (10 * period) == 0 {
+                let far = contact.displacement().iter().zip(&settled).map(|(u, v)| (u - v).abs()).fold(0.0, f64::max);
+                worst = worst.max((far + (contact.approach() - approach).abs()) / approach);
+            }
+        }
+        println!("after {steps} steps: {worst:.1e}");
+        assert!(worst < 1e-9, "{worst:e}");
+    }
 }
 
 #[test]

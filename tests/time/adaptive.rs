@@ -113,19 +113,32 @@ fn closures_are_watched() {
 /// A run that rejects steps goes on exactly as one that never tried them.
 #[test]
 fn rejected_steps_leave_no_trace() {
-    let scene = scenes().into_iter().find(|scene| scene.name.contains("unload")).unwrap();
-    let mut contact = scene.contact(32, 1e-7);
-    let mut follow = contact.follow(&*scene.history, Stepping::adaptive(1e-3), scene.until);
-    let mut times = Vec::new();
-    while let Some(report) = follow.next_step().unwrap() {
-        times.push(report.time);
+    for time_rule in [TimeRule::Exponential, TimeRule::ExponentialLinear] {
+        let scene = scenes().into_iter().find(|scene| scene.name.contains("unload")).unwrap();
+        let contact = |tolerance| scene.contact_with(32, Settings { tolerance, time_rule, ..Settings::default() });
+        let adaptive = |contact: &mut ViscoelasticContact, stops: &[f64]| {
+            let run = contact.follow(&*scene.history, Stepping::adaptive(1e-3), scene.until);
+            let (mut run, mut times) = (run.stop_at(stops).unwrap(), Vec::new());
+            while let Some(report) = run.next_step().unwrap() {
+                times.push(report.time);
+            }
+            (times, run.rejected_steps())
+        };
+        let mut rejecting = contact(1e-7);
+        let (times, rejected) = adaptive(&mut rejecting, &[]);
+        assert!(rejected > 0);
+        // no step that ends where a step was accepted is too long
+        let mut again = contact(1e-7);
+        assert_eq!(adaptive(&mut again, &times), (times.clone(), 0));
+        assert!(again.pressure() == rejecting.pressure() && again.displacement() == rejecting.displacement());
+        if time_rule == TimeRule::ExponentialLinear {
+            // the same steps, given, follow the same rule; the solver's tolerance is that of the adaptive run
+            let mut given = contact(1e-3 * 0.02);
+            let mut run = given.follow(&*scene.history, Stepping::fixed(10.0), scene.until).stop_at(&times).unwrap();
+            while run.next_step().unwrap().is_some() {}
+            assert!(given.pressure() == rejecting.pressure() && given.displacement() == rejecting.displacement());
+        }
     }
-    assert!(follow.rejected_steps() > 0);
-    // the same steps, given; the solver's tolerance is that of the adaptive run
-    let mut again = scene.contact(32, 1e-3 * 0.02);
-    let mut follow = again.follow(&*scene.history, Stepping::fixed(10.0), scene.until).stop_at(&times).unwrap();
-    while follow.next_step().unwrap().is_some() {}
-    assert!(again.pressure() == contact.pressure() && again.displacement() == contact.displacement());
 }
 
 #[test]

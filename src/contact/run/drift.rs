@@ -34,7 +34,8 @@ impl Drift {
 
     /// How far the defects so far agree: 1 if they are all of one sign, 0 if they cancel.
     pub(super) fn agreement(&self) -> f64 {
-        let [signed, absolute] = [0, 1].map(|which| self.flow[which] + self.terms.iter().map(|term| term.2[which]).sum::<f64>());
+        let [signed, absolute] =
+            [0, 1].map(|which| self.flow[which] + self.terms.iter().map(|term| term.2[which]).sum::<f64>());
         if absolute > 0.0 { (signed / absolute).abs().min(1.0) } else { 1.0 }
     }
 }

@@ -118,8 +118,9 @@ impl<'a> Follow<'a> {
     /// # Errors
     /// If the end is not finite or lies before the contact's time, the fixed step is not finite and positive or too short to
     /// change the time, the tolerance is out of range or asks for steps too short to change the time, the history returns an
-    /// invalid load at any time that is evaluated ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); adaptive
-    /// steps look between their ends, and ahead), or a step fails. The contact is then as it was after the last good step,
+    /// invalid load at any time that is evaluated ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); a run looks
+    /// over the whole history when it begins, for the greatest loads, and adaptive steps look between their ends, and ahead),
+    /// or a step fails. The contact is then as it was after the last good step,
     /// and the call may be repeated.
     ///
     /// If the file of `Follow::autosave_to` cannot be written: the step is then taken all the same, and the next call tries
@@ -188,11 +189,12 @@ impl<'a> Follow<'a> {
         let loads = [load];
         let step = self.contact.request(time, dt, &loads, tolerance);
         let ViscoelasticContact { scene, computation, .. } = &*self.contact;
-        let outlook = {
-            let new = || RunScale::new(scene, &computation.state, self.history, self.until);
-            let scale = self.progress.scale.get_or_insert_with(new);
-            Outlook { expected: scale.expected(scene, &load, time - computation.state.clock.undisturbed_until), ..Outlook::default() }
-        };
+        if self.progress.scale.is_none() {
+            self.progress.scale = Some(RunScale::new(scene, &computation.state, self.history, self.until)?);
+        }
+        let age = time - computation.state.clock.undisturbed_until;
+        let expected = self.progress.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, &load, age));
+        let outlook = Outlook { expected, ..Outlook::default() };
         let (report, error) = self.contact.take_expecting(step, outlook)?;
         self.progress.include([error.relative, error.greatest, report.residual]);
         Ok(report)

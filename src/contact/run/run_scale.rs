@@ -3,6 +3,7 @@
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::window::placement::resting_depth;
+use crate::error::Result;
 use crate::load::{Load, LoadHistory};
 
 /// Loads and displacements below this part of the greatest of the run are measured relative to that part.
@@ -25,22 +26,21 @@ pub(super) struct RunScale {
     touch: f64,
     /// The greatest force.
     force: f64,
-    /// The greatest depth below first touch that is prescribed.
+    /// The greatest depth below first touch that is prescribed, and the greatest v that it is likely to take to get there.
     depth: f64,
-    /// The compliance in the end.
-    compliance: f64,
+    stress: f64,
     /// The depth at which the greatest force is likely to come to rest in the end, over the compliance then.
     depth_over_compliance: f64,
 }
 
 impl RunScale {
-    /// Of a run from the state along a history to the time `until`.
-    pub(super) fn new(scene: &Scene, state: &State, history: &dyn LoadHistory, until: f64) -> RunScale {
+    /// Of a run from the state along a history to the time `until`. Rejects invalid loads of the history.
+    pub(super) fn new(scene: &Scene, state: &State, history: &dyn LoadHistory, until: f64) -> Result<RunScale> {
         let touch = state.indenter.first_touch()[0].approach;
         let now = state.clock.time;
         let span = until - now;
         let compliance = scene.material.contact_compliance(span.min(scene.material.known_until()));
-        let mut scale = RunScale { touch, force: 0.0, depth: 0.0, compliance, depth_over_compliance: 0.0 };
+        let mut scale = RunScale { touch, force: 0.0, depth: 0.0, stress: 0.0, depth_over_compliance: 0.0 };
         let equal = (0..=EQUAL_PARTS).map(|k| now + span * f64::from(k) / f64::from(EQUAL_PARTS));
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
@@ -50,14 +50,19 @@ impl RunScale {
             Some(corner)
         });
         for time in equal.chain(decades).chain(corners.take(BREAKPOINTS)) {
-            // what is not allowed is reported when the run comes to it
-            let loads = [history.before(time), history.at(time)];
-            loads.iter().filter(|load| load.validate().is_ok()).for_each(|load| scale.include(load));
+            for load in [history.before(time), history.at(time)] {
+                let load = load.validated_at(time)?;
+                scale.include(&load);
+                let age = (time - now).min(scene.material.known_until());
+                if let (Load::Approach { .. }, true) = (load, time > now) {
+                    scale.stress = scale.stress.max(scale.magnitude(&load) / scene.material.contact_compliance(age));
+                }
+            }
         }
         if scale.force > 0.0 && compliance > 0.0 {
             scale.depth_over_compliance = resting_depth(scene, &state.indenter, scale.force * compliance) / compliance;
         }
-        scale
+        Ok(scale)
     }
 
     /// Takes account of a load that acts.
@@ -92,7 +97,7 @@ impl RunScale {
                 [self.depth_over_compliance * scene.material.contact_compliance(age), 0.0]
             }
             Load::Force { .. } => [0.0; 2],
-            Load::Approach { .. } => [self.depth, self.depth / self.compliance],
+            Load::Approach { .. } => [self.depth, self.stress],
         }
     }
 

@@ -60,7 +60,18 @@ const NODES: usize = 3;
 impl StepControl {
     pub(super) fn new(tolerance: f64) -> StepControl {
         let nodes = Vec::with_capacity(NODES + 1);
-        StepControl { tolerance, next: None, last: 1.0, nodes, corner: None, scale: None, drift: None, steps: 0, since: 0.0, rejected: 0 }
+        StepControl {
+            tolerance,
+            next: None,
+            last: 1.0,
+            nodes,
+            corner: None,
+            scale: None,
+            drift: None,
+            steps: 0,
+            since: 0.0,
+            rejected: 0,
+        }
     }
 
     /// Whether a run can be continued with it: a file may hold anything.
@@ -100,7 +111,7 @@ impl StepControl {
         self.nodes.insert(0, (time, load));
         if at_corner {
             self.corner();
-        } else if dt < wanted && self.last * (wanted / dt).powi(order as i32) <= 1.0 {
+        } else if dt < 0.99 * wanted && self.last * (wanted / dt).powi(order as i32) <= 1.0 {
             self.next = self.next.map(|next| next.max(wanted));
         }
     }
@@ -123,8 +134,10 @@ impl StepControl {
             self.nodes.push((now, history.at(now).validated_at(now)?));
             self.since = now;
         }
-        let scale = self.scale.get_or_insert_with(|| RunScale::new(scene, state, history, until));
-        scale.include(&state.loads[0]);
+        if self.scale.is_none() {
+            self.scale = Some(RunScale::new(scene, state, history, until)?);
+        }
+        self.scale.iter_mut().for_each(|scale| scale.include(&state.loads[0]));
         if self.drift.is_none() {
             self.drift = scene.material.contact_spectrum()?.map(|creep| Drift::new(&creep));
         }
@@ -184,7 +197,8 @@ impl StepControl {
             } else {
                 let load = history.before(now + dt).validated_at(now + dt)?;
                 let change = (magnitude(&load) - held - slope * dt).abs();
-                let scale = self.scale.as_ref().map_or(0.0, |scale| scale.of_load(&state.loads[0], &load)).max(held + change);
+                let scale =
+                    self.scale.as_ref().map_or(0.0, |scale| scale.of_load(&state.loads[0], &load)).max(held + change);
                 0.125 * (creep - glassy) / creep * change / scale.max(f64::MIN_POSITIVE)
             };
             if deviation.abs() <= self.tolerance && self.watch(history, now, now + dt)? <= self.tolerance {

@@ -1,8 +1,8 @@
 //! The estimated error in time of a step that was tried.
 
 use crate::contact::computation::Computation;
-use crate::contact::scene::Scene;
 use crate::contact::request::Step;
+use crate::contact::scene::Scene;
 use crate::contact::settings::TimeRule;
 use crate::contact::window::growth::motion_tried;
 use crate::hereditary::{ErrorMeasure, TimeError};
@@ -62,7 +62,8 @@ pub(in crate::contact) fn error_in_time(
     let (pressure, before) = (&trial.solution.pressure, &state.current.solution);
     if let TimeRule::Rectangle | TimeRule::Backward = scene.settings.time_rule {
         let (mut change, mut size, mut sum) = (0.0, 0.0, 0.0);
-        let fields = pressure.iter().zip(state.history.trial()).zip(trial.solution.potential.iter().zip(&before.potential));
+        let fields =
+            pressure.iter().zip(state.history.trial()).zip(trial.solution.potential.iter().zip(&before.potential));
         for ((&p, &u), (&v, &old)) in fields {
             (change, size, sum) = (change + p * (v - old).abs(), size + p * u.abs(), sum + p);
         }
@@ -80,6 +81,7 @@ pub(in crate::contact) fn error_in_time(
     let matters = [forces > 0, forces < trial.free.len()];
     let advance = |k: usize| tried.advance(step, k);
     let potential = &trial.solution.potential;
-    let measure = ErrorMeasure { pressure, potential, matters, least, advance: &advance, amplification, agreement, resolution };
+    let measure =
+        ErrorMeasure { pressure, potential, matters, least, advance: &advance, amplification, agreement, resolution };
     state.history.time_error(measure)
 }

@@ -39,10 +39,10 @@ use crate::events;
 use crate::hereditary::{Interval, TimeError};
 use crate::load::Load;
 use crate::solver::Stop;
-use error_in_time::{Outlook, error_in_time};
 use checks::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use collect_warnings::collect_warnings;
 use constraints::{Prescribed, find_free_motions, surface_follows_bodies, validate_loads};
+use error_in_time::{Outlook, error_in_time};
 use gap::RigidBodies;
 use initial_guess::initial_guess;
 use jump::jump_without_response;
@@ -96,7 +96,11 @@ impl ViscoelasticContact {
     }
 
     /// Computes a step and accepts it; its error is estimated with regard to the `outlook`.
-    pub(in crate::contact) fn take_expecting(&mut self, step: Step<'_>, outlook: Outlook) -> Result<(StepReport, TimeError)> {
+    pub(in crate::contact) fn take_expecting(
+        &mut self,
+        step: Step<'_>,
+        outlook: Outlook,
+    ) -> Result<(StepReport, TimeError)> {
         let attempt = self.attempt(&step)?;
         let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, outlook);
         Ok((self.accept(attempt, step, error), error))

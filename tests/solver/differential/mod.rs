@@ -1,5 +1,6 @@
 //! The whole stepper on random scenes, against a dense reference that shares no code with it.
 
+mod hereditary_integral;
 mod quadratic;
 mod reference;
 mod scenes;
@@ -116,16 +117,25 @@ fn distance(a: &[f64], b: &[f64]) -> f64 {
 
 #[test]
 fn a_dense_reference_agrees() {
+    agrees_with_a_dense_reference(TimeRule::Exponential);
+}
+
+#[test]
+fn a_dense_reference_of_the_linear_rule_agrees() {
+    agrees_with_a_dense_reference(TimeRule::ExponentialLinear);
+}
+
+fn agrees_with_a_dense_reference(time_rule: TimeRule) {
     let (count, first) = (wanted("DIFFERENTIAL_SCENES", 500), wanted("DIFFERENTIAL_SEED", 1));
     let (mut steps, mut refused, mut unsolved, mut worst) = (0, 0, 0, [0.0_f64; 3]);
     for seed in (first as u64 * 1_000_000..).take(count) {
         let scene = Scene::any(seed, 6);
-        let settings = Settings { edge: Edge::Allow, tolerance: 1e-10, ..Settings::default() };
+        let settings = Settings { edge: Edge::Allow, tolerance: 1e-10, time_rule, ..Settings::default() };
         let mut contact = match scene.contact(settings) {
             Err(Error::NothingToTouch { .. }) => continue, // no cell's centre lies under a body
             contact => contact.unwrap(),
         };
-        let mut reference = Reference::new(&scene.grid, &scene.shapes, &scene.rheology);
+        let mut reference = Reference::new(&scene.grid, &scene.shapes, &scene.rheology, time_rule);
         for (step, (dt, loads)) in scene.steps.iter().enumerate() {
             match contact.step_each(*dt, loads) {
                 Ok(_) => {}

@@ -1,64 +1,12 @@
-//! A contact stepper of its own: dense matrices, an interior-point method, and the hereditary integral of a relaxation
-//! spectrum found by bisection. Slow, for a hundred cells or two, and sure.
+//! A contact stepper of its own: dense matrices, an interior-point method, and the hereditary integral over the whole past.
+//! Slow, for a hundred cells or two, and sure.
 
 use std::f64::consts::PI;
 
 use viscocontact::prelude::*;
 
+use super::hereditary_integral::HereditaryIntegral;
 use super::scenes::Body;
-
-/// E(t) = `equilibrium` + Σ E e^(−t/τ) + `dashpot` δ(t), the inverse of the contact compliance C = J/4.
-#[derive(Debug, Clone)]
-struct Relaxation {
-    equilibrium: f64,
-    dashpot: f64,
-    /// (E, 1/τ).
-    terms: Vec<(f64, f64)>,
-}
-
-impl Relaxation {
-    /// With x = −s, s·Ĉ(s) = C0 − f/x + Σ C/(1 − xλ) rises from −∞ to +∞ between its poles; its zeros are 1/τ.
-    fn of(body: &Body) -> Relaxation {
-        let (c0, f) = (0.25 * body.glassy, 0.25 * body.fluidity);
-        let mut terms: Vec<(f64, f64)> = body.terms.iter().map(|&(c, lambda)| (0.25 * c, lambda)).collect();
-        terms.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let value = |x: f64| c0 - f / x + terms.iter().map(|(c, l)| c / (1.0 - x * l)).sum::<f64>();
-        let slope =
-            |x: f64| f / (x * x) + terms.iter().map(|(c, l)| c * l / ((1.0 - x * l) * (1.0 - x * l))).sum::<f64>();
-        let mut poles: Vec<f64> = terms.iter().map(|(_, lambda)| 1.0 / lambda).collect();
-        if f > 0.0 {
-            poles.insert(0, 0.0);
-        }
-        let mut zeros = Vec::new();
-        for (k, &pole) in poles.iter().enumerate() {
-            let end = match poles.get(k + 1) {
-                Some(&next) => next,
-                None if c0 > 0.0 => {
-                    let mut far = 2.0 * pole.max(f / c0);
-                    while value(far) < 0.0 {
-                        far *= 2.0;
-                    }
-                    far
-                }
-                None => break,
-            };
-            let (mut low, mut high) = (pole, end);
-            for _ in 0..200 {
-                let middle = 0.5 * (low + high);
-                if value(middle) < 0.0 { low = middle } else { high = middle }
-            }
-            let x = 0.5 * (low + high);
-            zeros.push((1.0 / (x * slope(x)), x));
-        }
-        let held: f64 = c0 + terms.iter().map(|(c, _)| c).sum::<f64>();
-        let rate: f64 = f + terms.iter().map(|(c, lambda)| c / lambda).sum::<f64>();
-        Relaxation {
-            equilibrium: if f > 0.0 { 0.0 } else { 1.0 / held },
-            dashpot: if c0 > 0.0 { 0.0 } else { 1.0 / rate },
-            terms: zeros,
-        }
-    }
-}
 
 /// What is known of one rigid body in a step.
 #[derive(Debug, Clone)]
@@ -75,20 +23,18 @@ pub struct Reference {
     grid: Grid,
     /// K(i, j) from cell to cell.
     influence: Vec<f64>,
-    relaxation: Relaxation,
     /// Gap, and the body that each cell belongs to.
     gap: Vec<f64>,
     owner: Vec<usize>,
     bodies: usize,
-    displacement: Vec<f64>,
-    branches: Vec<Vec<f64>>,
+    past: HereditaryIntegral,
     pub pressure: Vec<f64>,
     /// Approach at the origin and tilts of each body; NaN where nothing determines them.
     pub motions: Vec<[f64; 3]>,
 }
 
 impl Reference {
-    pub fn new(grid: &Grid, shapes: &[Box<dyn Geometry>], body: &Body) -> Reference {
+    pub fn new(grid: &Grid, shapes: &[Box<dyn Geometry>], body: &Body, rule: TimeRule) -> Reference {
         let cells = grid.len();
         let centre = |k: usize| grid.center(k / grid.cells()[1], k % grid.cells()[1]);
         // of the bodies over a cell the lowest
@@ -101,37 +47,21 @@ impl Reference {
             let (a, b) = (centre(at / cells), centre(at % cells));
             love([a[0] - b[0], a[1] - b[1]], grid.spacing())
         });
-        let relaxation = Relaxation::of(body);
         Reference {
             influence: influence.collect(),
             gap: (0..cells).map(|k| over(k).0).collect(),
             owner: (0..cells).map(|k| over(k).1).collect(),
             bodies: shapes.len(),
-            displacement: vec![0.0; cells],
-            branches: vec![vec![0.0; cells]; relaxation.terms.len()],
+            past: HereditaryIntegral::new(body, rule, cells),
             pressure: vec![0.0; cells],
             motions: vec![[f64::NAN; 3]; shapes.len()],
             grid: grid.clone(),
-            relaxation,
         }
     }
 
     /// One step; false if the interior-point method finds no answer.
     pub fn step(&mut self, dt: f64, loads: &[Load]) -> bool {
-        let Relaxation { equilibrium, dashpot, terms } = &self.relaxation;
-        // u linear in time over the step: mean of e^(−t/τ) over it, and what is left of the past at its end
-        let mean = |x: f64| if x * dt > 0.0 { -(-x * dt).exp_m1() / (x * dt) } else { 1.0 };
-        let stiffness = equilibrium
-            + terms.iter().map(|&(e, x)| e * mean(x)).sum::<f64>()
-            + if dt > 0.0 { dashpot / dt } else { 0.0 };
-        let c = 1.0 / stiffness;
-        let past: Vec<f64> = (0..self.grid.len())
-            .map(|k| {
-                let u = self.displacement[k];
-                let kept: f64 = terms.iter().zip(&self.branches).map(|(&(_, x), q)| (-x * dt).exp() * q[k]).sum();
-                u - c * (equilibrium * u + kept)
-            })
-            .collect();
+        let (c, past) = self.past.predict(dt);
         let motions: Vec<Motion> = loads.iter().enumerate().map(|(body, load)| self.motion(body, load)).collect();
         let Some((pressure, found)) = self.solve(c, &past, &motions) else { return false };
         self.pressure = pressure;
@@ -139,14 +69,11 @@ impl Reference {
             self.motions[body] = physical(load, &found[body], motions[body].released);
         }
         let n = self.grid.len();
-        for k in 0..n {
+        let end = (0..n).map(|k| {
             let kp: f64 = (0..n).map(|l| self.influence[k * n + l] * self.pressure[l]).sum();
-            let u = past[k] + c * kp;
-            for (&(e, x), q) in self.relaxation.terms.iter().zip(&mut self.branches) {
-                q[k] = (-x * dt).exp() * q[k] + e * mean(x) * (u - self.displacement[k]);
-            }
-            self.displacement[k] = u;
-        }
+            past[k] + c * kp
+        });
+        self.past.commit(end.collect());
         true
     }
 
@@ -161,7 +88,7 @@ impl Reference {
 
     /// The greatest displacement.
     pub fn deepest(&self) -> f64 {
-        self.displacement.iter().copied().fold(0.0, f64::max)
+        self.past.displacement().iter().copied().fold(0.0, f64::max)
     }
 
     fn motion(&self, body: usize, load: &Load) -> Motion {
