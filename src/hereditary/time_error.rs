@@ -42,11 +42,14 @@ pub(crate) struct TimeError {
 
 /// Share of the defect of a step that is left once the next has put it right, and of one that is not put right.
 const CORRECTED: f64 = 0.4;
+const CORRECTED_OF_DASHPOT: f64 = 0.8;
 const NOT_CORRECTED: f64 = 0.25;
 /// Defects of cells that leave the contact count twice.
 const LEFT: f64 = 2.0;
 /// A force answers a cell at the edge of the contact more than others: a rigid body presses hardest there.
 const EDGE: f64 = 3.0;
+/// The kinks of cells that joined stay in the past, and those of one step and the next do not cancel.
+const LASTING: f64 = 1.3;
 
 impl History {
     /// The estimated error of the step tried; 0 where too few steps before it are known.
@@ -133,7 +136,7 @@ impl History {
             }
         }
         let scale = if rule.corrects() {
-            CORRECTED * missing
+            missing * if rule.has_dashpot() { CORRECTED_OF_DASHPOT } else { CORRECTED }
         } else if lacking == 0 {
             0.0
         } else {
@@ -142,7 +145,7 @@ impl History {
         };
         let smooth = scale * (absolute / weight).max(LEFT * left);
         let counts = !rule.has_dashpot() || rule.tried.dt > measure.resolution;
-        let kinks = if counts { kinks.abs().max(squares.sqrt()) / touching.max(1) as f64 } else { 0.0 };
+        let kinks = if counts { kinks.abs().max(LASTING * squares.sqrt()) / touching.max(1) as f64 } else { 0.0 };
         Defect { signed: scale * signed / weight, smooth, kinks, greatest: sharpest.max(scale * steepest) }
     }
 }

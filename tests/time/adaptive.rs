@@ -133,7 +133,7 @@ fn rejected_steps_leave_no_trace() {
         assert!(again.pressure() == rejecting.pressure() && again.displacement() == rejecting.displacement());
         if time_rule == TimeRule::ExponentialLinear {
             // the same steps, given, follow the same rule; the solver's tolerance is that of the adaptive run
-            let mut given = contact(1e-3 * 0.02);
+            let mut given = contact(1e-3 * 0.03);
             let mut run = given.follow(&*scene.history, Stepping::fixed(10.0), scene.until).stop_at(&times).unwrap();
             while run.next_step().unwrap().is_some() {}
             assert!(given.pressure() == rejecting.pressure() && given.displacement() == rejecting.displacement());

@@ -55,7 +55,7 @@ impl Follow<'_> {
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
             let computed = attempt.computation(computation);
             let age = time - computed.state.clock.undisturbed_until;
-            let outlook = control.outlook(scene, &loads[0], age, corner.min(self.until));
+            let outlook = control.outlook(scene, &loads[0], [age, corner.min(self.until)]);
             let mut error = error_in_time(scene, computed, &step, outlook);
             // how bodies moved that stayed apart makes no difference
             if !(parted && computed.trial.solution.pressure.iter().all(|&p| p == 0.0)) {

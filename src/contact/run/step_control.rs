@@ -43,7 +43,7 @@ const SAFETY: f64 = 0.9;
 const INTEGRAL: f64 = 0.7;
 const PROPORTIONAL: f64 = 0.2;
 /// Error of the solver relative to that in time.
-const SOLVER_SHARE: f64 = 0.02;
+const SOLVER_SHARE: f64 = 0.03;
 /// The first step after a jump is chosen from the material alone: this many lengths per decade are tried, ...
 const LENGTHS_PER_DECADE: i32 = 4;
 /// ... over this many decades below the time that is left.
@@ -51,7 +51,7 @@ const DECADES: i32 = 40;
 /// A body without elastic response has no shortest time: its first step is this fraction of the time left.
 const FIRST_FRACTION: f64 = 1e-6;
 /// Events shorter than this part of the time between corners, times the tolerance, do not matter.
-const SHORTEST: f64 = 0.1;
+const SHORTEST: f64 = 0.03;
 /// Where loads are looked at within a step: unevenly, so that no oscillation hits a zero at all of them.
 const SHARES: [f64; 5] = [0.153, 0.381, 0.5, 0.677, 0.891];
 /// Nodes that a quadratic and its correction go through, besides the end of the step.
@@ -156,9 +156,9 @@ impl StepControl {
         scale.map_or(f64::INFINITY, |scale| scale.first_touch(history, state.clock.time, stop))
     }
 
-    /// What is known of the run at a step under `load` that ends when the bodies have been pressed for `age`, before a corner or
-    /// the end of the run.
-    pub(super) fn outlook(&self, scene: &Scene, load: &Load, age: f64, stop: f64) -> Outlook {
+    /// What is known of the run at a step under `load`, at the end of which the bodies have been pressed for `age`, before a
+    /// corner or the end of the run at `stop`.
+    pub(super) fn outlook(&self, scene: &Scene, load: &Load, [age, stop]: [f64; 2]) -> Outlook {
         Outlook {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
             agreement: self.drift.as_ref().map_or(1.0, Drift::agreement),

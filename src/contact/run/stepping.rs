@@ -11,7 +11,7 @@ pub enum Stepping {
     },
     /// Steps as long as the error in time allows; short after jumps and corners of the load, long when little happens.
     Adaptive {
-        /// Error in time of a step, relative to the displacement.
+        /// Error in time of approach or force.
         tolerance: f64,
     },
 }
@@ -22,10 +22,12 @@ impl Stepping {
         Stepping::Fixed { dt }
     }
 
-    /// Steps whose error in time, relative to the displacement, is estimated to be at most `tolerance`, in
-    /// \[1e-9, 0.1\]. The solver is not asked for more than suits:
-    /// [`Settings::tolerance`](crate::contact::Settings::tolerance) or a fiftieth of `tolerance`, whichever is
-    /// greater.
+    /// Steps whose error in time is estimated to be at most `tolerance`, in \[1e-9, 0.1\]: that of the approach where a force
+    /// is given, that of the force where the approach is. It is relative to displacement or force, where these are large, and
+    /// else to the greatest of the run, of which small loads, and those that begin from nothing, are a part. Errors of the
+    /// pressure at a point may be larger, see [`ErrorBudget::pressure`](crate::contact::ErrorBudget::pressure). The solver is
+    /// not asked for more than suits: [`Settings::tolerance`](crate::contact::Settings::tolerance) or 0.03 of `tolerance`,
+    /// whichever is greater.
     pub fn adaptive(tolerance: f64) -> Stepping {
         Stepping::Adaptive { tolerance }
     }

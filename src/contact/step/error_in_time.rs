@@ -6,13 +6,19 @@ use crate::contact::scene::Scene;
 use crate::contact::settings::TimeRule;
 use crate::contact::window::growth::motion_tried;
 use crate::hereditary::{ErrorMeasure, TimeError};
+use crate::load::Load;
 use crate::solver::RigidMotion;
 
 impl Computation {
-    /// By how much the body above a cell advances in the step tried.
+    /// By how much the body above a cell advances in the step tried; NaN if it lay nowhere in particular, since nothing pressed
+    /// it.
     pub(super) fn advance(&self, step: &Step<'_>, k: usize) -> f64 {
         let Computation { state, window, trial } = self;
         let body = window.gap(&step.indenter).owner(k);
+        let released = matches!(state.loads[body], Load::Force { normal: 0.0, .. }) || state.current.contact_cells == 0;
+        if released && trial.free[body].translation {
+            return f64::NAN;
+        }
         let (start, end) = (state.current.motions[body], motion_tried(&state.region, trial, step, body));
         let approach = step.indenter.gap().datum + end.approach - start.approach;
         let tilt = [0, 1].map(|axis| end.tilt[axis] - start.tilt[axis]);
