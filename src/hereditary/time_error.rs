@@ -46,7 +46,8 @@ const CORRECTED_OF_DASHPOT: f64 = 0.8;
 const NOT_CORRECTED: f64 = 0.25;
 /// Defects of cells that leave the contact count twice.
 const LEFT: f64 = 2.0;
-/// A force answers a cell at the edge of the contact more than others: a rigid body presses hardest there.
+/// A force, and an immediate dashpot, answer a cell at the edge of the contact more than others: a rigid body presses hardest
+/// there.
 const EDGE: f64 = 3.0;
 /// The kinks of cells that joined stay in the past, and those of one step and the next do not cancel.
 const LASTING: f64 = 1.3;
@@ -75,13 +76,17 @@ impl History {
         }
         let means = sizes.map(|size| if weight > 0.0 { size / weight } else { 0.0 });
         let Defect { signed, smooth, kinks, greatest } = self.defect(rule, measure, &weights, weight);
+        let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
         let growth = 1.0 + measure.agreement * (measure.amplification - 1.0);
         let relative = [0, 1].map(|which| {
             let size = means[which].max(least[which]);
             // bodies apart have no force that could be wrong, but a surface
             let matters = if weights.pressed { matters[which] } else { which == 0 };
-            let defect =
-                if which == 0 { rule.compliance() * kinks.max(growth * smooth) } else { (EDGE * kinks).max(smooth) };
+            let defect = if which == 0 {
+                rule.compliance() * (edge * kinks).max(growth * smooth)
+            } else {
+                (EDGE * kinks).max(smooth)
+            };
             // nothing over nothing is nothing, but overflow must not pass for accuracy
             if !matters || defect == 0.0 || size == 0.0 { 0.0 } else { defect / size }
         });
@@ -143,8 +148,8 @@ impl History {
             // the greatest of |s (s − Δ)| is Δ²/4, that of the error of u
             NOT_CORRECTED * 0.25 / rule.tried.span / rule.compliance()
         };
-        let smooth = scale * (absolute / weight).max(LEFT * left);
         let counts = !rule.has_dashpot() || rule.tried.dt > measure.resolution;
+        let smooth = scale * (absolute / weight).max(if counts { LEFT * left } else { 0.0 });
         let kinks = if counts { kinks.abs().max(LASTING * squares.sqrt()) / touching.max(1) as f64 } else { 0.0 };
         Defect { signed: scale * signed / weight, smooth, kinks, greatest: sharpest.max(scale * steepest) }
     }

@@ -112,6 +112,8 @@ pub fn random_history(draws: &mut Draws, control: Control, until: f64, jumps: bo
         }
         6 | 7 => {
             let power = draws.power_of_ten(0.3_f64.log10(), 3_f64.log10());
+            // a body without elastic response would answer the infinite rate of a root with an infinite force
+            let power = if control.is_approach() && !jumps { power.max(1.0) } else { power };
             let part = move |t: f64| (t / until).powf(power);
             RandomHistory { name: format!("t^{power:.2}"), history: control.function(part, &[]), corners: Vec::new() }
         }
