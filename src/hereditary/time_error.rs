@@ -42,8 +42,10 @@ pub(crate) struct TimeError {
 
 /// Share of the defect of a step that is left once the next has put it right, and of one that is not put right.
 const CORRECTED: f64 = 0.4;
-const CORRECTED_OF_DASHPOT: f64 = 0.8;
+const CORRECTED_OF_DASHPOT: f64 = 1.2;
 const NOT_CORRECTED: f64 = 0.25;
+/// Rounding of a difference of displacements, relative to these.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Defects of cells that leave the contact count twice.
 const LEFT: f64 = 2.0;
 /// A force, and an immediate dashpot, answer a cell at the edge of the contact more than others: a rigid body presses hardest
@@ -122,6 +124,8 @@ impl History {
             let going_on = if lacking > 0 { to_first * first[k] } else { 0.0 };
             let bend = (new[k] - old[k]) - going_on;
             let last = if lacking < 3 { bend } else { bend - to_second * second[k] };
+            // the rounding of u is no error in time
+            let last = last.signum() * (last.abs() - ROUNDING * new[k].abs()).max(0.0);
             let touches = tried[k] > 0.0;
             touching += usize::from(touches);
             if touches && now[k] <= 0.0 {
