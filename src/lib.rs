@@ -84,7 +84,8 @@
 //! Memory: about 183 bytes per computed cell (369 for a line contact, whose transform tables are as long as the line),
 //! and 8 for each further relaxation time, 16 where the grid follows the indenter (an elastic bulk doubles their
 //! number). [`contact::Builder::memory`] returns it before a contact is built; insufficient memory is an error
-//! ([`Error::OutOfMemory`]) and does not abort the process. A step allocates nothing, except when a window grows, and the first adaptive one.
+//! ([`Error::OutOfMemory`]) and does not abort the process. A step allocates nothing, except when a window grows, and
+//! the first adaptive one.
 //!
 //! # Co-simulation and long runs
 //!
@@ -128,9 +129,10 @@
 //! periodic or not, with contact plasticity; adhesion is in a separate package.
 //! [CONTACT](https://www.kalkersoftware.org) (Fortran) computes rolling and sliding with friction, conformal and
 //! transient, also of viscoelastic bodies. Their friction, adhesion and plasticity are not available here. This crate
-//! offers any linear rheology, measured or fitted, in a recursion of third to fourth order whose cost does not grow with the number
-//! of steps; eccentric loads that tilt; steps chosen by their error; all of it as a typed library that another program
-//! drives step by step. Its accuracy is given claim by claim in `docs/validation.md` and `docs/accuracy.md`.
+//! offers any linear rheology, measured or fitted, in a recursion of third to fourth order whose cost does not grow
+//! with the number of steps; eccentric loads that tilt; steps chosen by their error; all of it as a typed library that
+//! another program drives step by step. Its accuracy is given claim by claim in `docs/validation.md` and
+//! `docs/accuracy.md`.
 
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
