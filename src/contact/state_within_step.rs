@@ -21,6 +21,9 @@ use crate::solver::RigidMotion;
 /// jump, a corner of the load or a new indenter, in steps more than four times as long as the one before, and with direct sums.
 /// So is the displacement of an elastic body.
 ///
+/// Bodies that stay apart take long steps however they move: the approach inside such a step may be far from the one the load
+/// prescribes.
+///
 /// ```
 /// use viscocontact::prelude::*;
 ///
