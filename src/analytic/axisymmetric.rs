@@ -173,7 +173,8 @@ impl AxisymmetricContact {
         if !is_known(time, known_until) {
             return Err(Error::BeyondMaterial { time, age: time, known_until });
         }
-        self.displacement.predict_non_negative(&mut self.rule, dt, Interpolant::CorrectedLinear);
+        let step = (dt, Interpolant::CorrectedLinear);
+        self.displacement.predict_non_negative(&mut self.rule, step, self.width);
         let c = self.rule.compliance();
         if c == 0.0 && dt == 0.0 {
             return Err(Error::NoElasticResponse { time, what: "a jump of the foundation (ramp the load instead)" });

@@ -27,6 +27,7 @@ pub(crate) struct Scene {
 impl Scene {
     /// Inputs of the time rule.
     pub(super) fn history_inputs(&self) -> HistoryInputs<'_> {
-        HistoryInputs { material: &self.material, history_limit: self.settings.history_limit }
+        let least_side = self.grid.spacing().into_iter().fold(f64::INFINITY, f64::min);
+        HistoryInputs { material: &self.material, history_limit: self.settings.history_limit, least_side }
     }
 }

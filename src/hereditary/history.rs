@@ -51,6 +51,8 @@ pub(crate) struct HistoryInputs<'a> {
     pub(crate) material: &'a Material,
     /// Bytes that a direct sum may fill with its past.
     pub(crate) history_limit: usize,
+    /// The shorter side of a cell \[m\].
+    pub(crate) least_side: f64,
 }
 
 /// Carries fields to other cells.
@@ -256,7 +258,7 @@ impl History {
                     own.weigh(step.dt, step.interpolant);
                     displacement.predict(own);
                 } else {
-                    displacement.predict_non_negative(own, step.dt, step.interpolant);
+                    displacement.predict_non_negative(own, (step.dt, step.interpolant), inputs.least_side);
                 }
                 far.iter_mut().for_each(|far| far.predict(own));
                 Ok((own.compliance(), 0))
@@ -276,7 +278,7 @@ impl History {
                     kernel.apply(source, trial, work);
                     trial.iter_mut().zip(remainder).for_each(|(u_old, &e)| *u_old += e);
                     convolutions += 1;
-                    if kernel.mean_is_held() || !own.has_less() || !displacement.dips(own) {
+                    if kernel.mean_is_held() || !own.has_less() || !displacement.dips(own, inputs.least_side) {
                         return Ok((own.compliance(), convolutions));
                     }
                     own.weigh_less();

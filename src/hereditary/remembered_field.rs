@@ -5,6 +5,8 @@ use crate::hereditary::past::Past;
 
 /// What lies below zero by less than this part of the greatest value is rounding.
 const DIP: f64 = -1e-9;
+/// So small a part of the side of a cell is what a convolution leaves of nothing.
+const NOISE: f64 = -1e-14;
 
 /// A field, and what it remembers of its past. The bodies being linear, whatever the displacement is a convolution of
 /// follows the recursion of the displacement itself.
@@ -47,21 +49,27 @@ impl RememberedField {
     }
 
     /// Finds the weights of a step and predicts its end. No pressure has pulled the surface up yet: where the field would fall
-    /// below zero, the polynomial does not suit the step, and one of less degree is taken.
-    pub(crate) fn predict_non_negative(&mut self, rule: &mut ExponentialRule, dt: f64, interpolant: Interpolant) {
+    /// below zero, the polynomial does not suit the step, and one of less degree is taken. Cells are so wide as `side` \[m\].
+    pub(crate) fn predict_non_negative(
+        &mut self,
+        rule: &mut ExponentialRule,
+        (dt, interpolant): (f64, Interpolant),
+        side: f64,
+    ) {
         rule.weigh(dt, interpolant);
         self.predict(rule);
-        while rule.has_less() && self.dips(rule) {
+        while rule.has_less() && self.dips(rule, side) {
             rule.weigh_less();
             self.predict(rule);
         }
     }
 
-    /// Whether the trial is negative somewhere, by more than the rounding of the greatest field so far.
-    pub(super) fn dips(&self, rule: &mut ExponentialRule) -> bool {
+    /// Whether the trial is negative somewhere, by more than the rounding of the greatest field so far, or of a convolution that
+    /// leaves nothing.
+    pub(super) fn dips(&self, rule: &mut ExponentialRule, side: f64) -> bool {
         let greatest = self.now.iter().fold(rule.greatest, |most, &value| if value > most { value } else { most });
         rule.greatest = greatest;
-        self.trial.iter().any(|&value| value < DIP * greatest)
+        self.trial.iter().any(|&value| value < (DIP * greatest).min(NOISE * side))
     }
 
     /// Adds c times a source to the trial.

@@ -153,7 +153,7 @@ fn a_gap_in_a_history_is_not_leapt_over() {
         panic!("{error}")
     };
     assert!((0.9..1.1).contains(&time) && value.is_nan());
-    assert!(error.to_string().contains("normal force = NaN at t = 1"), "{error}");
+    assert!(error.to_string().contains(&format!("normal force = NaN at t = {time}")), "{error}");
 }
 
 /// What else asks users for numbers names them, or says NaN.

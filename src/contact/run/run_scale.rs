@@ -50,8 +50,8 @@ impl RunScale {
             Some(corner)
         });
         for time in equal.chain(decades).chain(corners.take(BREAKPOINTS)) {
-            for load in [history.before(time), history.at(time)] {
-                let load = load.validated_at(time)?;
+            for load in [LoadHistory::before, LoadHistory::at] {
+                let load = load(history, time).validated_at(time)?;
                 scale.include(&load);
                 let age = (time - now).min(scene.material.known_until());
                 if let (Load::Approach { .. }, true) = (load, time > now) {

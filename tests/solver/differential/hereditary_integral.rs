@@ -88,12 +88,22 @@ pub struct HereditaryIntegral {
     tried: Vec<Span>,
     /// The greatest displacement so far.
     greatest: f64,
+    /// What a convolution leaves of nothing \[m\].
+    noise: f64,
 }
 
 impl HereditaryIntegral {
-    pub fn new(body: &Body, rule: TimeRule, cells: usize) -> HereditaryIntegral {
+    pub fn new(body: &Body, rule: TimeRule, cells: usize, side: f64) -> HereditaryIntegral {
         let (fields, relaxation) = (vec![vec![0.0; cells]], Relaxation::of(body));
-        HereditaryIntegral { relaxation, rule, fields, spans: Vec::new(), tried: Vec::new(), greatest: 0.0 }
+        HereditaryIntegral {
+            relaxation,
+            rule,
+            fields,
+            spans: Vec::new(),
+            tried: Vec::new(),
+            greatest: 0.0,
+            noise: 1e-14 * side,
+        }
     }
 
     /// u at the last node.
@@ -113,7 +123,7 @@ impl HereditaryIntegral {
         loop {
             let (c, u_old) = self.predict_as(dt, degree, corrects);
             self.greatest = self.displacement().iter().copied().fold(self.greatest, f64::max);
-            if degree == 1 && !corrects || u_old.iter().all(|&u| u >= -1e-9 * self.greatest) {
+            if degree == 1 && !corrects || u_old.iter().all(|&u| u >= -(1e-9 * self.greatest).max(self.noise)) {
                 return (c, u_old);
             }
             (degree, corrects) = (1, corrects && degree > 1);

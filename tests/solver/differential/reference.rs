@@ -52,7 +52,7 @@ impl Reference {
             gap: (0..cells).map(|k| over(k).0).collect(),
             owner: (0..cells).map(|k| over(k).1).collect(),
             bodies: shapes.len(),
-            past: HereditaryIntegral::new(body, rule, cells),
+            past: HereditaryIntegral::new(body, rule, cells, grid.spacing()[0].min(grid.spacing()[1])),
             pressure: vec![0.0; cells],
             motions: vec![[f64::NAN; 3]; shapes.len()],
             grid: grid.clone(),
