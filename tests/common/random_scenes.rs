@@ -108,25 +108,30 @@ impl RandomScene {
     /// The approach of first touch, and the force on an elastic body of compliance 1/Pa pressed deeper by `depth`.
     fn elastic_force(&self, depth: f64) -> (f64, f64) {
         let unit = Material::incompressible(Elastic::new(0.25).unwrap());
-        let mut contact = self.contact_of(unit, 1e-6);
+        let mut contact = self.contact_of(unit, TimeRule::Exponential, 1e-6);
         let touch = contact.approach();
         contact.step(0.0, Load::approach(touch + depth)).unwrap();
         (touch, contact.force())
     }
 
-    fn contact_of(&self, material: Material, tolerance: f64) -> ViscoelasticContact {
+    fn contact_of(&self, material: Material, time_rule: TimeRule, tolerance: f64) -> ViscoelasticContact {
         ViscoelasticContact::builder(self.grid.clone())
             .geometry(&*self.geometry)
             .material(material)
             .kernel(self.kernel.clone())
-            .settings(Settings { tolerance, edge: Edge::Allow, ..Settings::default() })
+            .settings(Settings { tolerance, time_rule, edge: Edge::Allow, ..Settings::default() })
             .build()
             .unwrap()
     }
 
     /// The contact before any load, whose problems are solved to `tolerance`.
     pub fn contact(&self, tolerance: f64) -> ViscoelasticContact {
-        self.contact_of(self.body.material.clone(), tolerance)
+        self.contact_by(TimeRule::Exponential, tolerance)
+    }
+
+    /// The same by a rule of time.
+    pub fn contact_by(&self, time_rule: TimeRule, tolerance: f64) -> ViscoelasticContact {
+        self.contact_of(self.body.material.clone(), time_rule, tolerance)
     }
 
     /// The kinds of body and of history, with what is given.

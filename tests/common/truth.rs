@@ -50,7 +50,8 @@ impl Truth {
         let mut work = 0;
         loop {
             let times = scene.graded_times(runs.len() as u32);
-            let mut contact = scene.contact(1e-9);
+            // by the linear rule, which shares less with what is judged
+            let mut contact = scene.contact_by(TimeRule::ExponentialLinear, 1e-9);
             let stepping = Stepping::fixed(10.0 * scene.body.until);
             let run = watch(scene, &mut contact, scene.load(), stepping, &times, u64::MAX)?;
             work += run.steps;

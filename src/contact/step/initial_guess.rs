@@ -67,9 +67,12 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
 fn share_left(state: &State, trial: &Trial, c: f64) -> Option<f64> {
     let (mut overlap, mut square) = (0.0, 0.0);
     let now = &state.current.solution;
-    let pressed = now.pressure.iter().zip(&now.potential).zip(&trial.gap).filter(|((p, _), _)| **p > 0.0);
-    for ((_, &v), &gap) in pressed {
-        (overlap, square) = (overlap - gap * c * v, square + c * v * (c * v));
+    let pressed = || now.pressure.iter().zip(&now.potential).zip(&trial.gap).filter(|((p, _), _)| **p > 0.0);
+    // a pressure that has relaxed by many decades has no square
+    let greatest = pressed().map(|((_, v), _)| (c * v).abs()).fold(f64::MIN_POSITIVE, f64::max);
+    for ((_, &v), &gap) in pressed() {
+        let (u, gap) = (c * v / greatest, gap / greatest);
+        (overlap, square) = (overlap - gap * u, square + u * u);
     }
     let share = overlap / square;
     (share < MAX_SHARE_LEFT).then_some(share.max(0.0))
