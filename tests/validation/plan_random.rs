@@ -27,6 +27,9 @@ struct Scene {
 
 struct Random(Box<dyn FnMut() -> f64>);
 
+/// Name, shape, history, exact solution, and whether the shape has an edge.
+type Drawn = (&'static str, Box<dyn Geometry>, Box<dyn LoadHistory>, Option<Box<dyn Fn(f64) -> State>>, bool);
+
 impl Random {
     fn new(seed: u64) -> Random {
         Random(Box::new(uniform(seed.wrapping_mul(0xD129_0B26_88CC_2169).rotate_left(29) ^ seed)))
@@ -86,13 +89,7 @@ fn scene(seed: u64) -> Scene {
     let ratio = random.scale(1.1, if kind <= 3 { 3.0e4 } else { 100.0 });
     let (body_name, material) = body(random, ratio, if kind == 2 { 2 } else { 4 });
     let ramp = random.scale(1e-3, 1.0);
-    let (name, geometry, history, exact, singular): (
-        &str,
-        Box<dyn Geometry>,
-        Box<dyn LoadHistory>,
-        Option<Box<dyn Fn(f64) -> State>>,
-        bool,
-    ) = match kind {
+    let (name, geometry, history, exact, singular): Drawn = match kind {
         0 | 1 => {
             let exact = GrowingSphere::step(radius, &material, 1.0).unwrap();
             let state =
