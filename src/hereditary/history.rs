@@ -254,12 +254,8 @@ impl History {
         match rule {
             Rule::Exponential(own) => {
                 // on periodic bodies u is measured from its mean
-                if kernel.mean_is_held() {
-                    own.weigh(step.dt, step.interpolant);
-                    displacement.predict(own);
-                } else {
-                    displacement.predict_non_negative(own, (step.dt, step.interpolant), inputs.least_side);
-                }
+                let least_side = if kernel.mean_is_held() { f64::INFINITY } else { inputs.least_side };
+                displacement.predict_non_negative(own, (step.dt, step.interpolant), least_side);
                 far.iter_mut().for_each(|far| far.predict(own));
                 Ok((own.compliance(), 0))
             }

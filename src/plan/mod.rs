@@ -177,7 +177,7 @@ impl Plan {
         &self.grid
     }
 
-    /// The stepping, for [`ViscoelasticContact::follow`].
+    /// The stepping, for [`ViscoelasticContact::follow`](crate::ViscoelasticContact::follow).
     pub fn stepping(&self) -> Stepping {
         Stepping::adaptive(self.tolerance)
     }
