@@ -72,7 +72,7 @@ impl History {
         let weights = Weighting::new(measure.pressure, rule.has_dashpot());
         let (mut weight, mut sizes) = (0.0, [0.0; 2]);
         for (k, (&u, &v)) in self.displacement.trial.iter().zip(potential).enumerate() {
-            let w = weights.of(k);
+            let w = if weights.plain { weights.pressure[0][k] } else { weights.of(k) };
             weight += w;
             sizes = [sizes[0] + w * u.abs(), sizes[1] + w * v.abs()];
         }
@@ -134,7 +134,7 @@ impl History {
                 (kinks, squares) = (kinks + kink, squares + widest * widest);
                 sharpest = sharpest.max(kink.abs()).max(widest.abs());
             } else {
-                let w = weights.of(k);
+                let w = if weights.plain { tried[k] } else { weights.of(k) };
                 (signed, absolute) = (signed + w * last, absolute + w * last.abs());
                 if touches {
                     steepest = steepest.max(last.abs());
@@ -177,6 +177,8 @@ struct Weighting<'a> {
     pressed: bool,
     was_pressed: bool,
     inside: bool,
+    /// Whether the weight is the pressure.
+    plain: bool,
 }
 
 impl<'a> Weighting<'a> {
@@ -185,7 +187,8 @@ impl<'a> Weighting<'a> {
         let any = |pressure: &[f64]| pressure.iter().any(|&p| p > 0.0);
         // cells that join a dashpot have a finite pressure at once, and a kink
         let inside = dashpot && (0..tried.len()).any(|k| tried[k].min(now[k]).min(before[k]) > 0.0);
-        Weighting { pressure, pressed: any(tried), was_pressed: any(now), inside }
+        let pressed = any(tried);
+        Weighting { pressure, pressed, was_pressed: any(now), inside, plain: pressed && !inside }
     }
 
     fn of(&self, k: usize) -> f64 {
