@@ -5,13 +5,10 @@ use std::sync::Arc;
 use crate::contact::extrapolation::Extrapolation;
 use crate::contact::indenter::Indenter;
 use crate::contact::window::region::Region;
-use crate::hereditary::{History, Interval};
+use crate::hereditary::{History, Interval, MAX_GROWTH};
 use crate::load::Load;
 use crate::solver::{RigidMotion, Solution};
 use crate::sum::sum;
-
-/// A step longer than so many times the one before does not follow the polynomial through its start.
-const MAX_GROWTH: f64 = 4.0;
 
 /// The state of a contact between two steps. A clone of it is a snapshot, its bytes are a checkpoint, and a step that is
 /// tried on a larger region changes a copy.

@@ -92,7 +92,7 @@ pub(crate) struct Weights {
 /// e^(−700) is near the smallest normal number: what decays further counts as zero.
 const MAX_EXPONENT: f64 = 700.0;
 /// A step that is longer than so many times the one before is not continued from it by a quadratic, ...
-const MAX_GROWTH: f64 = 4.0;
+pub(crate) const MAX_GROWTH: f64 = 4.0;
 /// ... nor one of a body with an immediate dashpot, whose errors grow beyond 1 + √2.
 const MAX_GROWTH_OF_DASHPOT: f64 = 2.41;
 /// A step that is shorter than this part of the one before was cut short by something that happened: the step before is not
@@ -201,13 +201,8 @@ impl ExponentialRule {
         match interpolant {
             Interpolant::Linear => 2,
             Interpolant::CorrectedLinear => 3,
-            Interpolant::CorrectedQuadratic => {
-                if self.has_dashpot() {
-                    3
-                } else {
-                    4
-                }
-            }
+            Interpolant::CorrectedQuadratic if self.has_dashpot() => 3,
+            Interpolant::CorrectedQuadratic => 4,
         }
     }
 

@@ -31,7 +31,7 @@ mod step_polynomial;
 mod time_error;
 
 pub(crate) use direct_sum::Weighting;
-pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
+pub(crate) use exponential_rule::{ExponentialRule, Interpolant, MAX_GROWTH};
 pub(crate) use history::{History, HistoryInputs, Interval, Transfer, no_elastic_response};
 pub(crate) use remembered_field::RememberedField;
 pub(crate) use step_polynomial::StepPolynomial;

@@ -2,6 +2,7 @@
 
 use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
 use crate::hereditary::past::Past;
+use crate::sum::greatest;
 
 /// What lies below zero by less than this part of the greatest value is rounding.
 const DIP: f64 = -1e-9;
@@ -67,9 +68,9 @@ impl RememberedField {
     /// Whether the trial is negative somewhere, by more than the rounding of the greatest field so far, or of a convolution that
     /// leaves nothing.
     pub(super) fn dips(&self, rule: &mut ExponentialRule, side: f64) -> bool {
-        let greatest = self.now.iter().fold(rule.greatest, |most, &value| if value > most { value } else { most });
-        rule.greatest = greatest;
-        self.trial.iter().any(|&value| value < (DIP * greatest).min(NOISE * side))
+        rule.greatest = rule.greatest.max(greatest(&self.now));
+        let least = (DIP * rule.greatest).min(NOISE * side);
+        self.trial.iter().any(|&value| value < least)
     }
 
     /// Adds c times a source to the trial.

@@ -32,6 +32,8 @@ pub(crate) struct ErrorMeasure<'a> {
 pub(crate) struct TimeError {
     /// Relative to displacement or force; 0 where nothing is known.
     pub(crate) relative: f64,
+    /// Whether it comes of cells that joined.
+    pub(crate) by_kinks: bool,
     /// The greatest defect of v in a cell in contact, relative to the mean of v.
     pub(crate) greatest: f64,
     /// Means over the contact of displacement and v, weighted by the pressure.
@@ -60,7 +62,7 @@ impl History {
     /// With d_k the last difference, of the first degree k that u lacks on the step, and Γ_k what it would weigh, the defect of v
     /// is
     ///
-    /// ½ Γ_k Σ p |d_k| / Σ p,
+    /// λ Γ_k Σ p |d_k| / Σ p, where λ is the share that is left once the next step has put this one right,
     ///
     /// weighted by the pressure: the greatest error over all cells is that of the kink of u at a moving edge, which carries no
     /// force. Cells that have just left, and have no weight, count by the greatest of them. Those that joined in this step count
@@ -68,99 +70,100 @@ impl History {
     /// Under a given force, the error of u is c times it, or more if the defects of many steps add up.
     pub(crate) fn time_error(&self, measure: ErrorMeasure<'_>) -> TimeError {
         let Some(rule) = self.exponential_rule().filter(|rule| rule.remembers()) else { return TimeError::default() };
-        let ErrorMeasure { potential, matters, least, .. } = measure;
-        let weights = Weighting::new(measure.pressure, rule.has_dashpot());
-        let (mut weight, mut sizes) = (0.0, [0.0; 2]);
-        for (k, (&u, &v)) in self.displacement.trial.iter().zip(potential).enumerate() {
-            let w = if weights.plain { weights.pressure[0][k] } else { weights.of(k) };
-            weight += w;
-            sizes = [sizes[0] + w * u.abs(), sizes[1] + w * v.abs()];
+        let weight = Weight::new(measure.pressure, rule.has_dashpot());
+        let pressed = weight.is_of_a_contact();
+        let sums = self.sums(rule, &measure, weight);
+        if sums.weight == 0.0 {
+            return TimeError::default();
         }
-        let means = sizes.map(|size| if weight > 0.0 { size / weight } else { 0.0 });
-        let Defect { signed, smooth, kinks, greatest } = self.defect(rule, measure, &weights, weight);
+        let sizes = sums.sizes.map(|size| size / sums.weight);
+        let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
+        let Defect { signed, smooth, kinks, greatest } = sums.defect(rule, measure.resolution);
         let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
         let growth = 1.0 + measure.agreement * (measure.amplification - 1.0);
-        let relative = [0, 1].map(|which| {
-            let size = means[which].max(least[which]);
-            // bodies apart have no force that could be wrong, but a surface
-            let matters = if weights.pressed { matters[which] } else { which == 0 };
-            let defect = if which == 0 {
-                rule.compliance() * (edge * kinks).max(growth * smooth)
-            } else {
-                (EDGE * kinks).max(smooth)
-            };
-            // nothing over nothing is nothing, but overflow must not pass for accuracy
-            if !matters || defect == 0.0 || size == 0.0 { 0.0 } else { defect / size }
-        });
-        let worst =
-            if relative.iter().any(|error| error.is_nan()) { f64::INFINITY } else { relative[0].max(relative[1]) };
-        let greatest = if greatest > 0.0 { greatest / means[1].max(least[1]) } else { 0.0 };
+        let of_u = rule.compliance() * (edge * kinks).max(growth * smooth);
+        let of_v = (EDGE * kinks).max(smooth);
+        // bodies apart have no force that could be wrong, but a surface
+        let [u_matters, v_matters] = if pressed { measure.matters } else { [true, false] };
+        let error_of_u = if u_matters { relative(of_u, scales[0]) } else { 0.0 };
+        let error_of_v = if v_matters { relative(of_v, scales[1]) } else { 0.0 };
         TimeError {
-            relative: worst,
-            greatest,
-            sizes: if weights.pressed { means } else { [0.0; 2] },
+            relative: error_of_u.max(error_of_v),
+            by_kinks: if error_of_u > error_of_v { edge * kinks > growth * smooth } else { EDGE * kinks > smooth },
+            greatest: relative(greatest, scales[1]),
+            sizes: if pressed { sizes } else { [0.0; 2] },
             defect: [signed, smooth],
         }
     }
 
-    fn defect(
-        &self,
-        rule: &ExponentialRule,
-        measure: ErrorMeasure<'_>,
-        weights: &Weighting<'_>,
-        weight: f64,
-    ) -> Defect {
-        if weight == 0.0 {
-            return Defect::default();
-        }
-        let (lacking, missing) = rule.missing().unwrap_or((0, 0.0));
-        let ErrorMeasure { pressure: [tried, now, before], advance, .. } = measure;
+    /// Sums over the cells of the step tried.
+    fn sums(&self, rule: &ExponentialRule, measure: &ErrorMeasure<'_>, weight: Weight) -> Sums {
+        let lacking = rule.missing().map_or(0, |(degree, _)| degree);
         let [first, second] = self.displacement.past.differences();
         let [to_first, to_second] = rule.tried.ratios;
         let (new, old) = (&self.displacement.trial, &self.displacement.now);
-        let (mut signed, mut absolute, mut left, mut touching) = (0.0, 0.0, 0.0_f64, 0_usize);
-        let (mut kinks, mut squares, mut sharpest, mut steepest) = (0.0_f64, 0.0_f64, 0.0_f64, 0.0_f64);
-        for k in 0..new.len() {
+        let [tried, now, before] = measure.pressure;
+        let mut sums = Sums::default();
+        for (k, ((&u, &u_before), &v)) in new.iter().zip(old).zip(measure.potential).enumerate() {
+            let pressure = [tried[k], now[k], before[k]];
+            let (w, [touches, touched, had_touched]) = (weight.of(pressure), pressure.map(|p| p > 0.0));
+            let leaves = !touches && (touched || had_touched);
+            if w == 0.0 && !touches && !leaves {
+                continue;
+            }
+            sums.weight += w;
+            sums.sizes = [sums.sizes[0] + w * u.abs(), sums.sizes[1] + w * v.abs()];
+            sums.touching += usize::from(touches);
             let going_on = if lacking > 0 { to_first * first[k] } else { 0.0 };
-            let bend = (new[k] - old[k]) - going_on;
+            let bend = (u - u_before) - going_on;
+            if touches && !touched {
+                let jump = (measure.advance)(k) - going_on;
+                let (kink, widest) = (rule.kink(jump, bend), rule.kink(jump, 0.5 * jump));
+                (sums.kinks, sums.squares) = (sums.kinks + kink, sums.squares + widest * widest);
+                sums.sharpest = sums.sharpest.max(kink.abs()).max(widest.abs());
+                continue;
+            }
             let last = if lacking < 3 { bend } else { bend - to_second * second[k] };
             // the rounding of u is no error in time
-            let last = last.signum() * (last.abs() - ROUNDING * new[k].abs()).max(0.0);
-            let touches = tried[k] > 0.0;
-            touching += usize::from(touches);
-            if touches && now[k] <= 0.0 {
-                let jump = advance(k) - going_on;
-                let (kink, widest) = (rule.kink(jump, bend), rule.kink(jump, 0.5 * jump));
-                (kinks, squares) = (kinks + kink, squares + widest * widest);
-                sharpest = sharpest.max(kink.abs()).max(widest.abs());
-            } else {
-                let w = if weights.plain { tried[k] } else { weights.of(k) };
-                (signed, absolute) = (signed + w * last, absolute + w * last.abs());
-                if touches {
-                    steepest = steepest.max(last.abs());
-                }
-            }
-            if !touches && (now[k] > 0.0 || before[k] > 0.0) {
-                left = left.max(last.abs());
+            let size = (last.abs() - ROUNDING * u.abs()).max(0.0);
+            (sums.signed, sums.absolute) = (sums.signed + w * size.copysign(last), sums.absolute + w * size);
+            if touches {
+                sums.steepest = sums.steepest.max(size);
+            } else if leaves {
+                sums.left = sums.left.max(size);
             }
         }
-        let scale = if rule.corrects() {
-            missing * if rule.has_dashpot() { CORRECTED_OF_DASHPOT } else { CORRECTED }
-        } else if lacking == 0 {
-            0.0
-        } else {
-            // the greatest of |s (s − Δ)| is Δ²/4, that of the error of u
-            NOT_CORRECTED * 0.25 / rule.tried.span / rule.compliance()
-        };
-        let counts = !rule.has_dashpot() || rule.tried.dt > measure.resolution;
-        let smooth = scale * (absolute / weight).max(if counts { LEFT * left } else { 0.0 });
-        let kinks = if counts { kinks.abs().max(LASTING * squares.sqrt()) / touching.max(1) as f64 } else { 0.0 };
-        Defect { signed: scale * signed / weight, smooth, kinks, greatest: sharpest.max(scale * steepest) }
+        sums
     }
 }
 
-/// Mean defects of v.
+/// The part of a whole; 0 where there is no whole. Overflow must not pass for accuracy.
+fn relative(part: f64, whole: f64) -> f64 {
+    let ratio = if part == 0.0 || whole == 0.0 { 0.0 } else { part / whole };
+    if ratio.is_nan() { f64::INFINITY } else { ratio }
+}
+
+/// Sums over the cells, with their weights w.
 #[derive(Default)]
+struct Sums {
+    weight: f64,
+    /// Of w |u| and w |v|.
+    sizes: [f64; 2],
+    /// Of w d and w |d|, where d is the last difference; cells that join do not count.
+    signed: f64,
+    absolute: f64,
+    /// The greatest |d| of cells in contact, and of those that left it.
+    steepest: f64,
+    left: f64,
+    /// Cells in contact.
+    touching: usize,
+    /// Of what v lacks by kinks, of the squares of the most that it can lack, and the greatest of either.
+    kinks: f64,
+    squares: f64,
+    sharpest: f64,
+}
+
+/// Mean defects of v.
 struct Defect {
     signed: f64,
     /// In absolute value, of cells that are in contact or leave it.
@@ -171,34 +174,65 @@ struct Defect {
     greatest: f64,
 }
 
-/// The weight of each cell in a mean over the contact.
-struct Weighting<'a> {
-    pressure: [&'a [f64]; 3],
-    pressed: bool,
-    was_pressed: bool,
-    inside: bool,
-    /// Whether the weight is the pressure.
-    plain: bool,
-}
-
-impl<'a> Weighting<'a> {
-    fn new(pressure: [&'a [f64]; 3], dashpot: bool) -> Weighting<'a> {
-        let [tried, now, before] = pressure;
-        let any = |pressure: &[f64]| pressure.iter().any(|&p| p > 0.0);
-        // cells that join a dashpot have a finite pressure at once, and a kink
-        let inside = dashpot && (0..tried.len()).any(|k| tried[k].min(now[k]).min(before[k]) > 0.0);
-        let pressed = any(tried);
-        Weighting { pressure, pressed, was_pressed: any(now), inside, plain: pressed && !inside }
-    }
-
-    fn of(&self, k: usize) -> f64 {
-        let [tried, now, before] = self.pressure;
-        match (self.pressed, self.was_pressed) {
-            (true, _) if self.inside => tried[k].min(now[k]).min(before[k]),
-            (true, _) => tried[k],
-            (false, true) => now[k],
-            // bodies apart: the surface recovers everywhere alike
-            _ => 1.0,
+impl Sums {
+    fn defect(&self, rule: &ExponentialRule, resolution: f64) -> Defect {
+        let scale = match rule.missing() {
+            Some((_, missing)) if rule.corrects() && rule.has_dashpot() => CORRECTED_OF_DASHPOT * missing,
+            Some((_, missing)) if rule.corrects() => CORRECTED * missing,
+            // the greatest of |s (s − Δ)| is Δ²/4, that of the error of u
+            Some(_) => NOT_CORRECTED * 0.25 / rule.tried.span / rule.compliance(),
+            None => 0.0,
+        };
+        let counts = !rule.has_dashpot() || rule.tried.dt > resolution;
+        let left = if counts { LEFT * self.left } else { 0.0 };
+        let kinks = if counts { self.kinks.abs().max(LASTING * self.squares.sqrt()) } else { 0.0 };
+        Defect {
+            signed: scale * self.signed / self.weight,
+            smooth: scale * (self.absolute / self.weight).max(left),
+            kinks: kinks / self.touching.max(1) as f64,
+            greatest: self.sharpest.max(scale * self.steepest),
         }
     }
+}
+
+/// The weight of a cell in a mean.
+#[derive(Clone, Copy, PartialEq)]
+enum Weight {
+    Pressure,
+    /// The least pressure of the last steps: cells that join a dashpot have a finite pressure at once, and a kink.
+    LeastPressure,
+    /// Of bodies that parted in this step.
+    PressureBefore,
+    /// Of bodies apart: the surface recovers everywhere alike.
+    Even,
+}
+
+impl Weight {
+    fn new(pressure: [&[f64]; 3], dashpot: bool) -> Weight {
+        let [pressed, was_pressed, _] = pressure.map(|pressure| pressure.iter().any(|&p| p > 0.0));
+        let inside = || (0..pressure[0].len()).any(|k| least(pressure.map(|p| p[k])) > 0.0);
+        match (pressed, was_pressed) {
+            (true, true) if dashpot && inside() => Weight::LeastPressure,
+            (true, _) => Weight::Pressure,
+            (false, true) => Weight::PressureBefore,
+            (false, false) => Weight::Even,
+        }
+    }
+
+    fn of(self, pressure: [f64; 3]) -> f64 {
+        match self {
+            Weight::Pressure => pressure[0],
+            Weight::LeastPressure => least(pressure),
+            Weight::PressureBefore => pressure[1],
+            Weight::Even => 1.0,
+        }
+    }
+
+    fn is_of_a_contact(self) -> bool {
+        matches!(self, Weight::Pressure | Weight::LeastPressure)
+    }
+}
+
+fn least([tried, now, before]: [f64; 3]) -> f64 {
+    tried.min(now).min(before)
 }

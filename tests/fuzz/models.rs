@@ -193,9 +193,15 @@ pub fn history(source: &mut Source, length: f64, softness: f64) -> viscocontact:
     })
 }
 
-/// A history that turns a few times in a second or so.
+/// A history that turns a few times in a second or so. Tilts stay: a tilt that changes lets the contact wander over a domain
+/// many times its width, in as many steps as it crosses cells.
 pub fn few_turns(source: &mut Source, length: f64, softness: f64) -> viscocontact::Result<Box<dyn LoadHistory>> {
-    let (first, second) = (load(source, length, softness), load(source, length, softness));
+    let (first, other) = (load(source, length, softness), load(source, length, softness));
+    let second = match (first, other) {
+        (Load::Force { tilt, .. }, Load::Force { normal, .. }) => Load::Force { normal, tilt },
+        (Load::Approach { tilt, .. }, Load::Approach { approach, .. }) => Load::Approach { approach, tilt },
+        _ => other,
+    };
     Ok(match source.below(4) {
         0 | 1 => Box::new(StepLoad::new(first)?),
         2 => Box::new(Ramp::new(first, second, source.scale(0.1, 10.0))?),

@@ -13,6 +13,8 @@ use crate::events;
 
 /// A step that the solver cannot do is tried again so many times, shorter.
 const MAX_SOLVER_RETRIES: u32 = 5;
+/// The order, in the length of a step, of the error due to cells that join in it: a shorter step ends sooner after they do.
+const ORDER_OF_KINKS: u32 = 2;
 
 impl Follow<'_> {
     /// One step as long as its error allows.
@@ -61,6 +63,8 @@ impl Follow<'_> {
             if !(parted && computed.trial.solution.pressure.iter().all(|&p| p == 0.0)) {
                 error.relative = error.relative.max(straying);
             }
+            let by_kinks = error.by_kinks && error.relative > control.tolerance;
+            let order = if by_kinks { ORDER_OF_KINKS } else { order };
             if control.judge(dt, error.relative, order, dashpot) {
                 control.include(dt, error.defect);
                 control.accept(time, loads[0], [wanted, dt], time == corner, order);

@@ -21,6 +21,15 @@ impl Drift {
         Drift { fluidity: creep.fluidity(), flow: [0.0; 2], terms }
     }
 
+    /// Whether a run can be continued with it: a file may hold anything.
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn fits(&self) -> bool {
+        let known = |values: [f64; 2]| values.iter().all(|value| value.is_finite());
+        known(self.flow)
+            && self.fluidity >= 0.0
+            && self.terms.iter().all(|&(c, lambda, crept)| c >= 0.0 && lambda > 0.0 && known(crept))
+    }
+
     /// Takes account of a step of length `dt` with such a mean defect of v, and mean of its absolute value.
     pub(super) fn include(&mut self, dt: f64, defect: [f64; 2]) {
         for which in [0, 1] {

@@ -49,6 +49,7 @@ impl Progress {
     pub(crate) fn fits(&self) -> bool {
         match &self.control {
             Some(control) => control.fits(),
+            None if !self.scale.as_ref().is_none_or(RunScale::fits) => false,
             None => (self.now - self.start - self.steps as f64 * self.dt).abs() <= 2.0 * self.dt,
         }
     }

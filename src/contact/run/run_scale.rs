@@ -65,6 +65,13 @@ impl RunScale {
         Ok(scale)
     }
 
+    /// Whether a run can be continued with it: a file may hold anything.
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn fits(&self) -> bool {
+        let sizes = [self.force, self.depth, self.stress, self.depth_over_compliance];
+        !self.touch.is_nan() && sizes.iter().all(|&size| size >= 0.0)
+    }
+
     /// Takes account of a load that acts.
     pub(super) fn include(&mut self, load: &Load) {
         let magnitude = self.magnitude(load);

@@ -80,6 +80,8 @@ impl StepControl {
         self.nodes.len() <= NODES
             && self.nodes.windows(2).all(|pair| pair[0].0 > pair[1].0)
             && self.nodes.iter().all(|(time, load)| time.is_finite() && load.validate().is_ok())
+            && self.drift.as_ref().is_none_or(Drift::fits)
+            && self.scale.as_ref().is_none_or(RunScale::fits)
     }
 
     /// At a jump of the load.

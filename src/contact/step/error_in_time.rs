@@ -76,7 +76,7 @@ pub(in crate::contact) fn error_in_time(
         let creep = compliance(interval.dt) - compliance(0.0);
         let over = |part: f64, whole: f64| if whole > 0.0 { part / whole } else { 0.0 };
         let relative = SHARE_OF_DIRECT_SUM * creep * over(change, size.max(least[0] * sum));
-        return TimeError { relative, greatest: relative, sizes: [over(size, sum), 0.0], defect: [0.0; 2] };
+        return TimeError { relative, greatest: relative, sizes: [over(size, sum), 0.0], ..TimeError::default() };
     }
     let age = state.clock.time - state.clock.undisturbed_until;
     let (old, young) = (compliance(age + interval.dt), compliance(interval.dt));

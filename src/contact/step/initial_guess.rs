@@ -86,8 +86,10 @@ fn best_reach(state: &State, gap: &[f64], c: f64, wanted: f64) -> Option<f64> {
     for (k, &gap) in gap.iter().enumerate() {
         let (p, v) = (now.pressure[k], now.potential[k]);
         let (dp, dv) = (p - before.pressure[k], v - before.potential[k]);
-        // outside a punch the gap is infinite
-        let gap = if (p != 0.0) | (dp != 0.0) { gap } else { 0.0 };
+        // outside a punch, where the gap is infinite, nothing presses
+        if p == 0.0 && dp == 0.0 {
+            continue;
+        }
         sums = [sums[0] + p, sums[1] + dp];
         gaps = [gaps[0] + gap * p, gaps[1] + gap * dp];
         energies = [energies[0] + p * v, energies[1] + p * dv, energies[2] + dp * dv];
