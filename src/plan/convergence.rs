@@ -75,6 +75,15 @@ pub(super) fn grid_with(extent: &Extent, across: f64) -> Result<Grid> {
 }
 
 impl Extent {
+    /// Where the contact is, on a mesh that resolves it: one far off the middle is a few cells wide on a domain that holds both.
+    pub(super) fn of(scene: &Scene<'_>) -> Result<Extent> {
+        let extent = scene.extent()?;
+        if [0, 1].iter().all(|&axis| extent.width[axis] > extent.reach[axis]) {
+            return Ok(extent);
+        }
+        extent.held(|extent| Ok(scene.follow(grid_with(extent, LEAST_ACROSS as f64)?)?.extent))
+    }
+
     /// Computes on domains that grow until they hold the contact.
     pub(super) fn held<T>(&self, compute: impl Fn(&Extent) -> Result<T>) -> Result<T> {
         let mut extent = *self;
@@ -225,7 +234,7 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Conver
     let (mut until, mut zooms) = (until, 0);
     let (part, extent, base) = loop {
         let part = Scene { until, ..*scene };
-        let extent = part.extent()?;
+        let extent = Extent::of(&part)?;
         let base = part.follow(grid_with(&extent, LEAST_ACROSS as f64)?)?;
         zooms += 1;
         match part.before_growth(&base).filter(|_| zooms < MAX_ZOOMS) {

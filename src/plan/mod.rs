@@ -129,7 +129,7 @@ impl Plan {
         Accuracy::target_of(accuracy.target())?;
         let tolerance = accuracy.step_tolerance();
         let scene = Scene { geometry, material, history, until, whole: until, accuracy, tolerance };
-        let extent = scene.extent()?;
+        let extent = Extent::of(&scene)?;
         let found = extent.held(|extent| converge(&scene, extent, area))?;
         let extent = Extent { reach: found.reach, ..extent };
         let across = found.across_for(accuracy, area).max(LEAST_ACROSS);
