@@ -29,6 +29,8 @@ const MAX_WORK_ORDER: f64 = 0.4;
 /// A greatest pressure that depends on the steps on a coarse mesh does so more on a finer one, whose cells a growing edge
 /// crosses faster: beyond this share of what was asked it is not promised.
 const MAX_PEAK_TIME_SHARE: f64 = 0.2;
+/// The least that a finer mesh may find the width of the contact to be, of what a coarse one found.
+const MIN_NARROWING: f64 = 0.25;
 /// Ratio of the domain to the rectangle of the contact.
 pub(super) const DOMAIN_TO_CONTACT: f64 = 1.12;
 
@@ -81,7 +83,12 @@ impl Extent {
         if [0, 1].iter().all(|&axis| extent.width[axis] > extent.reach[axis]) {
             return Ok(extent);
         }
-        extent.held(|extent| Ok(scene.follow(grid_with(extent, LEAST_ACROSS as f64)?)?.extent))
+        extent.held(|extent| {
+            let finer = scene.follow(grid_with(extent, LEAST_ACROSS as f64)?)?.extent;
+            // a contact may be a few cells wide on any mesh
+            let width = [0, 1].map(|axis| finer.width[axis].max(MIN_NARROWING * extent.width[axis]));
+            Ok(Extent { width, ..finer })
+        })
     }
 
     /// Computes on domains that grow until they hold the contact.
@@ -200,7 +207,10 @@ impl Meshes {
 /// Finds the steps and how approach, force, radius and greatest pressure converge with the mesh; `area` tells whether the
 /// radius has to be resolved.
 pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result<Found> {
-    let first = grid_with(extent, STEPS_ACROSS)?;
+    let mut first = grid_with(extent, STEPS_ACROSS)?;
+    if first.cells().into_iter().any(|cells| cells > MOST_CELLS) {
+        first = grid_with(extent, LEAST_ACROSS as f64)?;
+    }
     let punch = scene.has_edge(&first);
     let steps = Steps::find(scene, &first)?;
     let scene = &Scene { tolerance: steps.tolerance, ..*scene };

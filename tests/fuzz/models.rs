@@ -193,15 +193,14 @@ pub fn history(source: &mut Source, length: f64, softness: f64) -> viscocontact:
     })
 }
 
-/// A history that turns a few times in a second or so. Tilts stay: a tilt that changes lets the contact wander over a domain
-/// many times its width, in as many steps as it crosses cells.
+/// A history that turns a few times in a second or so. Nothing tilts: tilts drawn at random put the contact hundreds of its
+/// widths off the middle of a domain that must hold both, which is no small input.
 pub fn few_turns(source: &mut Source, length: f64, softness: f64) -> viscocontact::Result<Box<dyn LoadHistory>> {
-    let (first, other) = (load(source, length, softness), load(source, length, softness));
-    let second = match (first, other) {
-        (Load::Force { tilt, .. }, Load::Force { normal, .. }) => Load::Force { normal, tilt },
-        (Load::Approach { tilt, .. }, Load::Approach { approach, .. }) => Load::Approach { approach, tilt },
-        _ => other,
-    };
+    let [first, second] = [load(source, length, softness), load(source, length, softness)].map(|load| match load {
+        Load::Force { normal, .. } => Load::force(normal),
+        Load::Approach { approach, .. } => Load::approach(approach),
+        other => other,
+    });
     Ok(match source.below(4) {
         0 | 1 => Box::new(StepLoad::new(first)?),
         2 => Box::new(Ramp::new(first, second, source.scale(0.1, 10.0))?),
