@@ -25,6 +25,8 @@ pub(crate) struct ErrorMeasure<'a> {
     /// An immediate dashpot answers a body that meets a cell with a finite pressure at once, however short the step: that counts
     /// in steps longer than this.
     pub(crate) resolution: f64,
+    /// In steps shorter than this, a body with an immediate dashpot hardly moves.
+    pub(crate) beginning: f64,
 }
 
 /// What is known of the error in time of a step.
@@ -72,6 +74,18 @@ impl History {
         let Some(rule) = self.exponential_rule().filter(|rule| rule.remembers()) else { return TimeError::default() };
         let weight = Weight::new(measure.pressure, rule.has_dashpot());
         let pressed = weight.is_of_a_contact();
+        let dt = rule.tried.dt;
+        if rule.has_dashpot() && dt <= measure.beginning {
+            return TimeError::default();
+        }
+        // a contact that opened in a step of which nothing can be told: it has to be seen to open
+        if weight == Weight::PressureBefore
+            && rule.missing().is_none()
+            && measure.resolution > 0.0
+            && dt > measure.resolution
+        {
+            return TimeError { relative: f64::INFINITY, ..TimeError::default() };
+        }
         let sums = self.sums(rule, &measure, weight);
         if sums.weight == 0.0 {
             return TimeError::default();

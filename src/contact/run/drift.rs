@@ -30,6 +30,11 @@ impl Drift {
             && self.terms.iter().all(|&(c, lambda, crept)| c >= 0.0 && lambda > 0.0 && known(crept))
     }
 
+    /// The shortest retardation time; infinite if there is none.
+    pub(super) fn shortest_time(&self) -> f64 {
+        self.terms.iter().map(|&(_, lambda, _)| lambda).fold(f64::INFINITY, f64::min)
+    }
+
     /// Takes account of a step of length `dt` with such a mean defect of v, and mean of its absolute value.
     pub(super) fn include(&mut self, dt: f64, defect: [f64; 2]) {
         for which in [0, 1] {

@@ -161,11 +161,14 @@ impl StepControl {
     /// What is known of the run at a step under `load`, at the end of which the bodies have been pressed for `age`, before a
     /// corner or the end of the run at `stop`.
     pub(super) fn outlook(&self, scene: &Scene, load: &Load, [age, stop]: [f64; 2]) -> Outlook {
+        let span = stop - self.since;
+        let shortest = self.drift.as_ref().map_or(f64::INFINITY, Drift::shortest_time);
         Outlook {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
             agreement: self.drift.as_ref().map_or(1.0, Drift::agreement),
             steps: self.steps as f64 + 1.0,
-            resolution: SHORTEST * self.tolerance * (stop - self.since),
+            resolution: SHORTEST * self.tolerance * span,
+            beginning: SHORTEST * self.tolerance * span.min(shortest),
         }
     }
 

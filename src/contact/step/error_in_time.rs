@@ -38,13 +38,15 @@ pub(in crate::contact) struct Outlook {
     pub(in crate::contact) agreement: f64,
     /// Steps so far, this one included.
     pub(in crate::contact) steps: f64,
-    /// Events that take less time than this do not matter.
+    /// Events that take less time than this do not matter, ...
     pub(in crate::contact) resolution: f64,
+    /// ... nor does anything that happens on a body without elastic response in so short a time, in which it hardly moves.
+    pub(in crate::contact) beginning: f64,
 }
 
 impl Default for Outlook {
     fn default() -> Outlook {
-        Outlook { expected: [0.0; 2], agreement: 1.0, steps: f64::INFINITY, resolution: 0.0 }
+        Outlook { expected: [0.0; 2], agreement: 1.0, steps: f64::INFINITY, resolution: 0.0, beginning: 0.0 }
     }
 }
 
@@ -57,8 +59,9 @@ pub(in crate::contact) fn error_in_time(
     scene: &Scene,
     tried: &Computation,
     step: &Step<'_>,
-    Outlook { expected, agreement, steps, resolution }: Outlook,
+    outlook: Outlook,
 ) -> TimeError {
+    let Outlook { expected, agreement, steps, resolution, beginning } = outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();
@@ -87,7 +90,8 @@ pub(in crate::contact) fn error_in_time(
     let matters = [forces > 0, forces < trial.free.len()];
     let advance = |k: usize| tried.advance(step, k);
     let potential = &trial.solution.potential;
+    let advance = &advance;
     let measure =
-        ErrorMeasure { pressure, potential, matters, least, advance: &advance, amplification, agreement, resolution };
+        ErrorMeasure { pressure, potential, matters, least, advance, amplification, agreement, resolution, beginning };
     state.history.time_error(measure)
 }
