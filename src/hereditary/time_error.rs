@@ -72,12 +72,12 @@ impl History {
     /// Under a given force, the error of u is c times it, or more if the defects of many steps add up.
     pub(crate) fn time_error(&self, measure: ErrorMeasure<'_>) -> TimeError {
         let Some(rule) = self.exponential_rule().filter(|rule| rule.remembers()) else { return TimeError::default() };
-        let weight = Weight::new(measure.pressure, rule.has_dashpot());
-        let pressed = weight.is_of_a_contact();
         let dt = rule.tried.dt;
         if rule.has_dashpot() && dt <= measure.beginning {
             return TimeError::default();
         }
+        let weight = Weight::new(measure.pressure, rule.has_dashpot());
+        let pressed = weight.is_of_a_contact();
         // a contact that opened in a step of which nothing can be told: it has to be seen to open
         if weight == Weight::PressureBefore
             && rule.missing().is_none()
@@ -223,8 +223,9 @@ enum Weight {
 
 impl Weight {
     fn new(pressure: [&[f64]; 3], dashpot: bool) -> Weight {
-        let [pressed, was_pressed, _] = pressure.map(|pressure| pressure.iter().any(|&p| p > 0.0));
-        let inside = || (0..pressure[0].len()).any(|k| least(pressure.map(|p| p[k])) > 0.0);
+        let [tried, now, _] = pressure;
+        let [pressed, was_pressed] = [tried, now].map(|pressure| pressure.iter().any(|&p| p > 0.0));
+        let inside = || (0..tried.len()).any(|k| least(pressure.map(|p| p[k])) > 0.0);
         match (pressed, was_pressed) {
             (true, true) if dashpot && inside() => Weight::LeastPressure,
             (true, _) => Weight::Pressure,

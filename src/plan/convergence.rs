@@ -8,8 +8,8 @@ use crate::plan::law::{Convergence, ORDERS};
 use crate::plan::steps::Steps;
 
 /// Cells across the widest contact on the coarsest mesh, and on the finest that a plan computes.
-const LEAST_ACROSS: usize = 16;
-const MOST_ACROSS: usize = 128;
+const LEAST_ACROSS: f64 = 16.0;
+const MOST_ACROSS: f64 = 128.0;
 /// Cells across the widest contact where the steps are found.
 const STEPS_ACROSS: f64 = 32.0;
 /// Most cells along a side of a domain in which the contact is small, as far off the centre.
@@ -84,7 +84,7 @@ impl Extent {
             return Ok(extent);
         }
         extent.held(|extent| {
-            let finer = scene.follow(grid_with(extent, LEAST_ACROSS as f64)?)?.extent;
+            let finer = scene.follow(grid_with(extent, LEAST_ACROSS)?)?.extent;
             // a contact may be a few cells wide on any mesh
             let width = [0, 1].map(|axis| finer.width[axis].max(MIN_NARROWING * extent.width[axis]));
             Ok(Extent { width, ..finer })
@@ -125,7 +125,7 @@ impl Meshes {
     /// Refines until the mesh that is `needed` is within reach.
     fn refine(scene: &Scene<'_>, extent: &Extent, base: Run, needed: impl Fn(&Meshes) -> f64) -> Result<Meshes> {
         let mut meshes = Meshes {
-            across: LEAST_ACROSS as f64,
+            across: LEAST_ACROSS,
             main: Vec::new(),
             pressure: Vec::new(),
             pressure_over_time: Vec::new(),
@@ -138,7 +138,7 @@ impl Meshes {
         loop {
             meshes.halve(scene, extent)?;
             let reach = if meshes.main.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
-            let last = meshes.across >= MOST_ACROSS as f64 || 2 * meshes.side > MOST_CELLS;
+            let last = meshes.across >= MOST_ACROSS || 2 * meshes.side > MOST_CELLS;
             if last || needed(&meshes) <= reach * meshes.across {
                 return Ok(meshes);
             }
@@ -209,7 +209,7 @@ impl Meshes {
 pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result<Found> {
     let mut first = grid_with(extent, STEPS_ACROSS)?;
     if first.cells().into_iter().any(|cells| cells > MOST_CELLS) {
-        first = grid_with(extent, LEAST_ACROSS as f64)?;
+        first = grid_with(extent, LEAST_ACROSS)?;
     }
     let punch = scene.has_edge(&first);
     let steps = Steps::find(scene, &first)?;
@@ -218,7 +218,7 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
         Some(until) => Some(small_contact(scene, until, extent)?),
         None => None,
     };
-    let base = scene.repeat(grid_with(extent, LEAST_ACROSS as f64)?, &steps.run.steps)?;
+    let base = scene.repeat(grid_with(extent, LEAST_ACROSS)?, &steps.run.steps)?;
     let found = |meshes: &Meshes| Found {
         reach: [0, 1].map(|axis| extent.reach[axis].max(meshes.finest.extent.reach[axis])),
         main: meshes.main(punch),
@@ -245,7 +245,7 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Conver
     let (part, extent, base) = loop {
         let part = Scene { until, ..*scene };
         let extent = Extent::of(&part)?;
-        let base = part.follow(grid_with(&extent, LEAST_ACROSS as f64)?)?;
+        let base = part.follow(grid_with(&extent, LEAST_ACROSS)?)?;
         zooms += 1;
         match part.before_growth(&base).filter(|_| zooms < MAX_ZOOMS) {
             Some(earlier) => until = earlier,
@@ -253,7 +253,7 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Conver
         }
     };
     let meshes = extent.held(|extent| {
-        let base = part.repeat(grid_with(extent, LEAST_ACROSS as f64)?, &base.steps)?;
+        let base = part.repeat(grid_with(extent, LEAST_ACROSS)?, &base.steps)?;
         Meshes::refine(&part, extent, base, |meshes| {
             let pressure = meshes.pressure();
             if pressure.converges { pressure.across_for(scene.accuracy.space()) } else { 0.0 }

@@ -47,11 +47,12 @@ impl Progress {
     /// Whether a run can be continued from it: a file may hold anything.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self) -> bool {
-        match &self.control {
-            Some(control) => control.fits(),
-            None if !self.scale.as_ref().is_none_or(RunScale::fits) => false,
-            None => (self.now - self.start - self.steps as f64 * self.dt).abs() <= 2.0 * self.dt,
-        }
+        let scale_fits = self.scale.as_ref().is_none_or(RunScale::fits);
+        scale_fits
+            && match &self.control {
+                Some(control) => control.fits(),
+                None => (self.now - self.start - self.steps as f64 * self.dt).abs() <= 2.0 * self.dt,
+            }
     }
 
     /// Takes account of the errors of a step.
