@@ -10,6 +10,7 @@ use crate::error::{Result, count_within};
 use crate::hereditary;
 use crate::kernel::InfluenceKernel;
 use crate::memory;
+use crate::solver::Bands;
 
 /// Bytes that a contact takes, made by [`Builder::memory`](crate::contact::Builder::memory) before it is built.
 ///
@@ -20,7 +21,7 @@ use crate::memory;
 /// | state and trial step | 72 |
 /// | history | 8 per relaxation time, and 8 for the change in the last step (16 without elastic response, none of an elastic body); with [`Frame::Indenter`](crate::contact::Frame::Indenter) 40, 16 per relaxation time and 24 (48, none); direct sums: 8 per step taken |
 /// | displacement outside a window | 16, and the history again |
-/// | solver | 37, and 8 per body; [`Solver::PolonskyKeer`]: 24, and 4 per body |
+/// | solver | 41; [`Solver::PolonskyKeer`]: 29; for each body 0.02 more |
 /// | its preconditioner | 11: a quarter of a spectrum of the grid without padding, 2, and work space, 9 |
 /// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
 /// | transforms on several threads | 16 + 8 more |
@@ -121,11 +122,12 @@ impl Footprint<'_> {
         let history = self.history.bytes_per_cell() as u128 * n;
         let far = if covers { 0 } else { 16 * n + history };
         let [kernel, inverse] = self.kernel.bytes_on(cells, folded);
+        let sums = Bands::bytes(count, self.bodies) as u128;
         let solver = match self.settings.solver {
-            // four fields, a mark, and runs of cells; lists of those that touch and those that leave for each body
-            Solver::ActiveSet => (32 + 1 + 4 + 8 * bodies) * n + inverse,
-            // three fields; a list of the cells that touch for each body
-            Solver::PolonskyKeer => (24 + 4 * bodies) * n,
+            // four fields, a mark, runs of cells, and a list of those that leave
+            Solver::ActiveSet => (32 + 1 + 4 + 4) * n + sums + inverse,
+            // three fields, a mark, and runs of cells
+            Solver::PolonskyKeer => (24 + 1 + 4) * n + sums,
         };
         let saturated = |bytes: u128| u64::try_from(bytes).unwrap_or(u64::MAX);
         Memory {

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use crate::solver::contact_set::ContactSet;
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::resting_position::RestingPosition;
 use crate::solver::rigid_motion::ModeCoefficients;
@@ -9,11 +10,8 @@ use crate::solver::rigid_motion::ModeCoefficients;
 /// Bisections for the level, far beyond the accuracy that a guess needs.
 const LEVEL_BISECTIONS: usize = 40;
 
-/// Cells summed together before they are added to the total, so that rounding does not grow with their number.
-const SUM_BLOCK: usize = 256;
-
-/// Fills the pressure under `body` with a guess whose force and moments are in balance; `cells` becomes the list of the
-/// cells that it may touch.
+/// Fills the pressure under `body` with a guess whose force and moments are in balance; takes all cells that it
+/// may touch into `set`.
 ///
 /// `sharpen` may improve the pressures where the whole face is pressed, as under a punch, whose pressure
 /// rises to its rim. Its result is kept if no part of the face has to open for the balance.
@@ -23,74 +21,68 @@ const SUM_BLOCK: usize = 256;
 pub(crate) fn cold_start(
     problem: &Problem<'_>,
     body: usize,
-    cells: &mut Vec<u32>,
+    set: &mut ContactSet,
     solution: &mut Solution,
-    sharpen: impl FnOnce(&[u32], &mut Solution),
+    sharpen: impl FnOnce(&ContactSet, &mut Solution),
 ) -> bool {
-    list_possible(problem, body, cells);
-    let pressed = |solution: &Solution| cells.iter().all(|&k| solution.pressure[k as usize] > 0.0);
-    fill_hertz(problem, body, cells, solution);
+    set.press_possible(problem, body);
+    let pressed = |solution: &Solution| set.cells(problem, body).all(|k| solution.pressure[k] > 0.0);
+    fill_hertz(problem, body, set, solution);
     if pressed(solution) {
-        sharpen(cells, solution);
-        if balance(problem, body, cells, solution) && pressed(solution) {
+        sharpen(set, solution);
+        if balance(problem, body, set, solution) && pressed(solution) {
             return true;
         }
-        fill_hertz(problem, body, cells, solution);
+        fill_hertz(problem, body, set, solution);
     }
-    balance_with_supports(problem, body, cells, solution)
+    balance_with_supports(problem, body, set, solution)
 }
 
 /// Presses every cell that the body may touch, evenly but for the moments: a guess that does not depend on the gap.
-pub(crate) fn press_everywhere(problem: &Problem<'_>, body: usize, cells: &mut Vec<u32>, solution: &mut Solution) {
-    list_possible(problem, body, cells);
-    let mean = problem.bodies[body].total / cells.len() as f64;
-    cells.iter().for_each(|&k| solution.pressure[k as usize] = mean);
-    balance_with_supports(problem, body, cells, solution);
+pub(crate) fn press_everywhere(problem: &Problem<'_>, body: usize, set: &mut ContactSet, solution: &mut Solution) {
+    set.press_possible(problem, body);
+    let mean = problem.bodies[body].total / set.count_under(body) as f64;
+    set.cells(problem, body).for_each(|k| solution.pressure[k] = mean);
+    balance_with_supports(problem, body, set, solution);
 }
 
-/// Lists the cells that a body may touch.
-pub(crate) fn list_possible(problem: &Problem<'_>, body: usize, cells: &mut Vec<u32>) {
-    cells.clear();
-    let own = (0..problem.gap.len()).filter(|&k| problem.owner(k) == body && problem.gap[k].is_finite());
-    cells.extend(own.map(|k| k as u32));
-}
-
-/// Balances the pressures on `cells`. Where that cannot be, as under a load so near the rim that next to no cell can carry it, the
+/// Balances the pressures in contact. Where that cannot be, as under a load so near the rim that next to no cell can carry it, the
 /// cells that the body would rest on if nothing yielded are pressed more: they balance the load if any cells do.
-fn balance_with_supports(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) -> bool {
-    if balance(problem, body, cells, solution) {
+fn balance_with_supports(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &mut Solution) -> bool {
+    if balance(problem, body, set, solution) {
         return true;
     }
     let freedom = problem.bodies[body];
     if freedom.translation {
-        let resting = RestingPosition::new(&problem.modes(body), cells, problem.gap);
+        let resting = RestingPosition::new(&problem.modes(body), set.cells(problem, body), problem.gap);
         for (k, share) in resting.supports.into_iter().flatten() {
-            solution.pressure[k as usize] += share * freedom.total;
+            solution.pressure[k] += share * freedom.total;
         }
     }
-    balance(problem, body, cells, solution)
+    balance(problem, body, set, solution)
 }
 
-/// Fills the pressure on `cells` with p ∝ √(level − gap) where the gap is below a level: Hertz's shape for a
+/// Fills the pressure in contact with p ∝ √(level − gap) where the gap is below a level: Hertz's shape for a
 /// paraboloid, uniform on a flat face.
 ///
 /// Under a force, the level is where the gap has risen by Hertz's a²/2R = (3√π/8) c W/√(m A) on m cells of
 /// area A, from a³ = (3/4) R c W. At a given approach δ below the first touch it is half of that,
 /// a²/2R = δ/2, and the peak pressure is (2/π) δ/(c a).
-fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) {
+fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &mut Solution) {
     let (freedom, modes) = (problem.bodies[body], problem.modes(body));
-    cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
+    let cells = || set.cells(problem, body);
+    cells().for_each(|k| solution.pressure[k] = 0.0);
     // a body that tilts under a force starts from its resting position
     let motion = if modes.tilts() && modes.translates() {
-        RestingPosition::new(&modes, cells, problem.gap).motion
+        RestingPosition::new(&modes, cells(), problem.gap).motion
     } else {
         ModeCoefficients::default()
     };
     if modes.tilts() {
         solution.motions[body] = motion;
     }
-    let gap = |k: u32| problem.gap[k as usize] - modes.displacement(motion, k as usize);
-    let heights = || cells.iter().map(|&k| gap(k));
+    let gap = |k: usize| problem.gap[k] - modes.displacement(motion, k);
+    let heights = || cells().map(gap);
     let lowest = heights().fold(f64::INFINITY, f64::min);
     let highest = heights().fold(f64::NEG_INFINITY, f64::max);
     let (area, images) = (problem.kernel.grid().cell_area(), problem.kernel.images());
@@ -123,40 +115,38 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut 
 
     let depth = level - lowest;
     let mut sum = 0.0;
-    for &k in cells {
+    for k in cells() {
         let above = if depth > 0.0 { ((level - gap(k)) / depth).max(0.0).sqrt() } else { 0.0 };
         // where the rise is below rounding, the lowest cells are pressed evenly
         let share = if depth > 0.0 { above } else { f64::from(u8::from(gap(k) <= lowest)) };
-        solution.pressure[k as usize] = peak * share;
+        solution.pressure[k] = peak * share;
         sum += peak * share;
     }
     if freedom.translation {
         let scale = freedom.total / sum;
-        cells.iter().for_each(|&k| solution.pressure[k as usize] *= scale);
+        cells().for_each(|k| solution.pressure[k] *= scale);
     }
 }
 
-/// Brings pressures ≥ 0 on `cells` into balance with the load by a factor 1 + B y, clipped at zero; false
+/// Brings pressures ≥ 0 in contact into balance with the load by a factor 1 + B y, clipped at zero; false
 /// if that cannot be.
-pub(crate) fn balance(problem: &Problem<'_>, body: usize, cells: &[u32], solution: &mut Solution) -> bool {
+pub(crate) fn balance(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &mut Solution) -> bool {
     let modes = problem.modes(body);
     if !modes.tilts() && !modes.translates() {
         return true;
     }
-    let p = |k: usize| solution.pressure[k];
-    if !modes.tilts() && cells.iter().all(|&k| p(k as usize) >= 0.0) {
-        let sum: f64 = cells.chunks(SUM_BLOCK).map(|block| block.iter().map(|&k| p(k as usize)).sum::<f64>()).sum();
-        let scale = problem.bodies[body].total / sum;
+    let pressure = &mut solution.pressure;
+    if !modes.tilts() && set.cells(problem, body).all(|k| pressure[k] >= 0.0) {
+        let scale = problem.bodies[body].total / set.sum(problem, body, pressure);
         if !scale.is_finite() {
             return false;
         }
-        cells.iter().for_each(|&k| solution.pressure[k as usize] *= scale);
+        set.cells(problem, body).for_each(|k| pressure[k] *= scale);
         return true;
     }
-    let Some(y) = modes.balance(cells, p, p) else { return false };
-    for &k in cells {
-        let p = &mut solution.pressure[k as usize];
-        *p = modes.balanced(y, k as usize, *p, *p);
+    let Some(y) = modes.balance(set.pieces(problem, body), |k| pressure[k], |k| pressure[k]) else { return false };
+    for (k, factor) in set.displacements(problem, body, y) {
+        pressure[k] = (pressure[k] + pressure[k] * factor).max(0.0);
     }
     true
 }

@@ -1,8 +1,9 @@
 //! The contact problem of one step, and two solvers for it.
 
 mod active_set;
+mod bands;
 mod cold_start;
-mod contact_cells;
+mod contact_set;
 mod outcome;
 mod passes;
 mod polonsky_keer;
@@ -15,6 +16,7 @@ mod stiffness;
 mod trace;
 
 pub(crate) use active_set::ActiveSet;
+pub(crate) use bands::Bands;
 pub(crate) use outcome::{Outcome, PENETRATION_SLACK, Stop};
 pub(crate) use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::{Counts, Problem, Solution};

@@ -1,31 +1,26 @@
-//! The passes of the active set over its fields, for a single body that does not tilt: the common scene.
+//! The passes of the solvers over their fields.
 //!
-//! Each pass works on whole [`Runs`] of cells, and does everything that needs the same fields at once.
+//! Each pass works on pieces of [`Runs`], along which the motion of a body is affine, and does everything that needs the
+//! same fields at once. Sums are taken for each body: Σ B f of its modes B from Σ f and Σ j f of every piece.
 
-use std::ops::Range;
-
-use crate::kernel::{join, lanes};
-use crate::solver::runs::Runs;
+use crate::solver::bands::{Bands, Found};
+use crate::solver::problem::Problem;
+use crate::solver::rigid_motion::{Line, ModeCoefficients};
+use crate::solver::runs::{PIECE_CELLS, Piece, Runs};
 use crate::sum::{sum, sum_of_pairs};
 
-/// Lanes in which maxima are taken.
-const LANES: usize = 8;
-
-/// Result of [`Passes::survey`].
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Survey {
-    /// Σ r, Σ r², Σ (c v)², Σ min(p, 0)² over the cells in contact.
-    pub(crate) residual: f64,
-    pub(crate) square: f64,
-    pub(crate) displacement: f64,
-    pub(crate) negative: f64,
-    /// The greatest −(c v + gap) of all others.
-    pub(crate) depth: f64,
-}
+/// The numbers of the cells of a piece.
+pub(crate) static NUMBERS: [f64; PIECE_CELLS] = {
+    let (mut numbers, mut j) = ([0.0; PIECE_CELLS], 0);
+    while j < PIECE_CELLS {
+        numbers[j] = j as f64;
+        j += 1;
+    }
+    numbers
+};
 
 /// The fields of [`Passes::survey`].
 pub(crate) struct Fields<'a> {
-    pub(crate) gap: &'a [f64],
     pub(crate) direction: &'a [f64],
     pub(crate) image: &'a [f64],
     pub(crate) pressure: &'a mut [f64],
@@ -33,190 +28,197 @@ pub(crate) struct Fields<'a> {
     pub(crate) residual: &'a mut [f64],
 }
 
-/// Sums and maximum of a pass over a band.
-#[derive(Debug, Clone, Copy)]
-struct Found {
-    sums: [f64; 4],
-    greatest: f64,
-}
-
-impl Found {
-    const NOTHING: Found = Found { sums: [0.0; 4], greatest: f64::NEG_INFINITY };
-
-    fn and(self, other: Found) -> Found {
-        let sums = [0, 1, 2, 3].map(|m| self.sums[m] + other.sums[m]);
-        Found { sums, greatest: self.greatest.max(other.greatest) }
-    }
-}
-
 /// The passes over the fields of one contact.
 #[derive(Debug, Clone)]
 pub(crate) struct Passes {
-    pub(crate) runs: Runs,
     bands: Bands,
 }
 
-/// The fields cut into bands, which threads may share.
-#[derive(Debug, Clone)]
-struct Bands {
-    found: Vec<Found>,
-    shared: bool,
-}
-
-/// Cells passed over by one thread at a time. Sums are taken band by band, whatever the number of threads.
-const BAND_CELLS: usize = 1 << 13;
-
 impl Passes {
-    pub(crate) fn new(cells: usize) -> Passes {
-        let bands = Bands { found: vec![Found::NOTHING; cells.div_ceil(BAND_CELLS)], shared: lanes(cells) > 1 };
-        Passes { runs: Runs::with_capacity(cells), bands }
+    pub(crate) fn new(cells: usize, bodies: usize) -> Passes {
+        Passes { bands: Bands::new(cells, bodies) }
     }
 
-    /// p += a d, v += a K d, and r = motion − (c v + gap) on the cells in contact, with the sums over them.
-    pub(crate) fn survey(&mut self, a: f64, c: f64, motion: f64, fields: Fields<'_>) -> Survey {
-        let Fields { gap, direction, image, pressure, potential, residual } = fields;
-        let Passes { runs, bands } = self;
-        let found = bands.over([pressure, potential, residual], gap.len(), |band, [p, v, r]| {
-            let [image, direction, gap] = [image, direction, gap].map(|field| &field[band.clone()]);
-            let (mut found, mut depth) = ([0.0; 4], [f64::NEG_INFINITY; LANES]);
-            runs.walk(&band, |piece, inside| {
-                let (v, h) = (&mut v[piece.clone()], &gap[piece.clone()]);
+    /// p += a d, v += a K d, and r = motion − (c v + gap) on the cells in contact. Finds Σ B r, Σ r², Σ (c v)² and
+    /// Σ min(p, 0)² over them, and the greatest motion − (c v + gap) of all others that may carry pressure.
+    pub(crate) fn survey(
+        &mut self,
+        problem: &Problem<'_>,
+        runs: &Runs,
+        a: f64,
+        motions: &[ModeCoefficients],
+        fields: Fields<'_>,
+    ) -> &[Found] {
+        let Fields { direction, image, pressure, potential, residual } = fields;
+        let (c, cut) = (problem.compliance, problem.cut());
+        self.bands.over([pressure, potential, residual], |band, [p, v, r], found| {
+            runs.walk(&band, cut, |Piece { cells, body }, inside| {
+                let here = cells.start - band.start..cells.end - band.start;
+                let (v, h, found) = (&mut v[here.clone()], &problem.gap[cells.clone()], &mut found[body]);
                 if a != 0.0 {
-                    add(v, a, &image[piece.clone()]);
+                    add(v, a, &image[cells.clone()]);
                 }
+                let line = problem.modes(body).line(cells.start);
+                let motion = line.of(motions[body]);
                 if !inside {
-                    reduce([&*v, h], &mut depth, |depth, [v, h]| {
-                        let below = -(c * v + h);
-                        if below > depth { below } else { depth }
-                    });
+                    if !problem.released(body) {
+                        note_depth(found, motion, c, v, h);
+                    }
                     return;
                 }
-                let (p, r) = (&mut p[piece.clone()], &mut r[piece.clone()]);
+                let (p, r) = (&mut p[here.clone()], &mut r[here]);
                 if a != 0.0 {
-                    add(p, a, &direction[piece]);
+                    add(p, a, &direction[cells]);
                 }
-                for ((r, &v), &h) in r.iter_mut().zip(&*v).zip(h) {
-                    *r = motion - (c * v + h);
-                }
-                found[0] += sum(r);
-                found[1] += sum_of_pairs(r, r, |r, _| r * r);
-                found[2] += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
-                found[3] += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
+                map(motion, r, [&*v, h], |_, v, h, motion| motion - (c * v + h));
+                add_modes(&mut found.sums[..3], &line, r);
+                found.sums[3] += sum_of_pairs(r, r, |r, _| r * r);
+                found.sums[4] += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
+                found.sums[5] += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
             });
-            Found { sums: found, greatest: depth.into_iter().fold(f64::NEG_INFINITY, f64::max) }
-        });
-        let [residual, square, displacement, negative] = found.sums;
-        Survey { residual, square, displacement, negative, depth: found.greatest }
+        })
     }
 
-    /// r ← r − mean, and z = r in contact, zero elsewhere; returns Σ r².
-    pub(crate) fn center(&mut self, mean: f64, residual: &mut [f64], z: &mut [f64]) -> f64 {
-        let Passes { runs, bands } = self;
-        let cells = z.len();
-        let found = bands.over([residual, z], cells, |band, [r, z]| {
-            let mut square = 0.0;
-            runs.walk(&band, |piece, inside| {
-                let (r, z) = (&mut r[piece.clone()], &mut z[piece]);
+    /// The deepest penetration of the cells outside that may carry pressure, 0 if there is none.
+    pub(crate) fn penetration(
+        &mut self,
+        problem: &Problem<'_>,
+        runs: &Runs,
+        motions: &[ModeCoefficients],
+        potential: &[f64],
+    ) -> f64 {
+        let (c, cut) = (problem.compliance, problem.cut());
+        let found = self.bands.over([], |band, [], found| {
+            runs.walk(&band, cut, |Piece { cells, body }, inside| {
+                if !inside && !problem.released(body) {
+                    let motion = problem.modes(body).line(cells.start).of(motions[body]);
+                    note_depth(&mut found[body], motion, c, &potential[cells.clone()], &problem.gap[cells]);
+                }
+            });
+        });
+        found.iter().map(Found::greatest).fold(0.0, f64::max)
+    }
+
+    /// r ← r − motion, and z = r in contact, zero elsewhere; returns Σ r².
+    pub(crate) fn subtract(
+        &mut self,
+        problem: &Problem<'_>,
+        runs: &Runs,
+        motions: &[ModeCoefficients],
+        residual: &mut [f64],
+        z: &mut [f64],
+    ) -> f64 {
+        let cut = problem.cut();
+        let found = self.bands.over([residual, z], |band, [r, z], found| {
+            runs.walk(&band, cut, |Piece { cells, body }, inside| {
+                let here = cells.start - band.start..cells.end - band.start;
+                let (r, z) = (&mut r[here.clone()], &mut z[here]);
                 if !inside {
                     return z.fill(0.0);
                 }
-                for (r, z) in r.iter_mut().zip(&mut *z) {
-                    *r -= mean;
-                    *z = *r;
-                }
-                square += sum_of_pairs(z, z, |z, _| z * z);
+                let motion = problem.modes(body).line(cells.start).of(motions[body]);
+                map(motion, z, [&*r, &*r], |_, r, _, motion| r - motion);
+                r.copy_from_slice(z);
+                found[body].sums[0] += sum_of_pairs(z, z, |z, _| z * z);
             });
-            Found { sums: [square, 0.0, 0.0, 0.0], ..Found::NOTHING }
         });
-        found.sums[0]
+        found.iter().map(|found| found.sums[0]).sum()
     }
 
-    /// Σ z, Σ z·Kd, Σ Kd and Σ d in contact.
-    pub(crate) fn overlaps(&mut self, z: &[f64], image: &[f64], direction: &[f64]) -> [f64; 4] {
-        let Passes { runs, bands } = self;
-        let found = bands.over([], z.len(), |band, []| {
-            let mut sums = [0.0; 4];
-            for run in runs.within(&band) {
-                let (z, kd, d) = (&z[run.clone()], &image[run.clone()], &direction[run]);
-                sums[0] += sum(z);
-                sums[1] += sum_of_pairs(z, kd, |z, kd| z * kd);
-                sums[2] += sum(kd);
-                sums[3] += sum(d);
-            }
-            Found { sums, ..Found::NOTHING }
-        });
-        found.sums
-    }
-
-    /// d ← scale (z + β d + shift) in contact, 0 elsewhere; with β = 0 for any d, NaN included.
-    pub(crate) fn redirect(&mut self, [scale, beta, shift]: [f64; 3], z: &[f64], direction: &mut [f64]) {
-        let Passes { runs, bands } = self;
-        bands.over([direction], z.len(), |band, [d]| {
-            let z = &z[band.clone()];
-            runs.walk(&band, |piece, inside| {
-                let (d, z) = (&mut d[piece.clone()], &z[piece]);
-                if !inside {
-                    d.fill(0.0);
-                } else if beta == 0.0 {
-                    d.iter_mut().zip(z).for_each(|(d, &z)| *d = scale * (z + shift));
-                } else {
-                    d.iter_mut().zip(z).for_each(|(d, &z)| *d = scale * (z + beta * *d + shift));
-                }
-            });
-            Found::NOTHING
-        });
-    }
-
-    /// Σ r·d and Σ d·Kd in contact.
-    pub(crate) fn slope_and_curvature(&mut self, residual: &[f64], direction: &[f64], image: &[f64]) -> [f64; 2] {
-        let Passes { runs, bands } = self;
-        let found = bands.over([], residual.len(), |band, []| {
-            let mut sums = [0.0; 4];
-            for run in runs.within(&band) {
-                let (r, d, kd) = (&residual[run.clone()], &direction[run.clone()], &image[run]);
-                sums[0] += sum_of_pairs(r, d, |r, d| r * d);
-                sums[1] += sum_of_pairs(d, kd, |d, kd| d * kd);
-            }
-            Found { sums, ..Found::NOTHING }
-        });
-        [found.sums[0], found.sums[1]]
-    }
-}
-
-impl Bands {
-    /// Calls `job` with each band and its part of `outputs`; returns the sums and the maximum over all of them.
-    fn over<const M: usize>(
+    /// Finds Σ B z, Σ B Kd, Σ B d and Σ z·Kd in contact.
+    pub(crate) fn overlaps(
         &mut self,
-        outputs: [&mut [f64]; M],
-        cells: usize,
-        job: impl Fn(Range<usize>, [&mut [f64]; M]) -> Found + Sync,
-    ) -> Found {
-        let found = &mut self.found[..cells.div_ceil(BAND_CELLS)];
-        halve(0..cells, outputs, found, self.shared, &job);
-        found.iter().fold(Found::NOTHING, |all, found| all.and(*found))
+        problem: &Problem<'_>,
+        runs: &Runs,
+        z: &[f64],
+        image: &[f64],
+        direction: &[f64],
+    ) -> &[Found] {
+        let cut = problem.cut();
+        self.bands.over([], |band, [], found| {
+            for Piece { cells, body } in runs.inside(&band, cut) {
+                let (sums, line) = (&mut found[body].sums, problem.modes(body).line(cells.start));
+                let (z, kd, d) = (&z[cells.clone()], &image[cells.clone()], &direction[cells]);
+                add_modes(&mut sums[..3], &line, z);
+                add_modes(&mut sums[3..6], &line, kd);
+                add_modes(&mut sums[6..9], &line, d);
+                sums[9] += sum_of_pairs(z, kd, |z, kd| z * kd);
+            }
+        })
     }
-}
 
-/// Halves the cells down to single bands, and calls `job` with each.
-fn halve<const M: usize>(
-    cells: Range<usize>,
-    outputs: [&mut [f64]; M],
-    found: &mut [Found],
-    shared: bool,
-    job: &(impl Fn(Range<usize>, [&mut [f64]; M]) -> Found + Sync),
-) {
-    if let [found] = found {
-        *found = job(cells, outputs);
-        return;
+    /// d ← scale (z + β d + motion) in contact, 0 elsewhere; with β = 0 for any d, NaN included.
+    pub(crate) fn redirect(
+        &mut self,
+        problem: &Problem<'_>,
+        runs: &Runs,
+        [scale, beta]: [f64; 2],
+        motions: &[ModeCoefficients],
+        z: &[f64],
+        direction: &mut [f64],
+    ) {
+        let cut = problem.cut();
+        self.bands.over([direction], |band, [d], _| {
+            runs.walk(&band, cut, |Piece { cells, body }, inside| {
+                let d = &mut d[cells.start - band.start..cells.end - band.start];
+                if !inside {
+                    return d.fill(0.0);
+                }
+                let motion = problem.modes(body).line(cells.start).of(motions[body]);
+                let z = &z[cells];
+                if beta == 0.0 {
+                    map(motion, d, [z, z], |_, z, _, motion| scale * (z + motion));
+                } else {
+                    map(motion, d, [z, z], |d, z, _, motion| scale * (z + beta * d + motion));
+                }
+            });
+        });
     }
-    let bands = found.len() / 2;
-    let middle = bands * BAND_CELLS;
-    let mut halves = outputs.map(|output| output.split_at_mut(middle));
-    let first = halves.each_mut().map(|(first, _)| std::mem::take(first));
-    let second = halves.map(|(_, second)| second);
-    let (found, others) = found.split_at_mut(bands);
-    let (before, after) = (cells.start..cells.start + middle, cells.start + middle..cells.end);
-    join(shared, || halve(before, first, found, shared, job), || halve(after, second, others, shared, job));
+
+    /// d += max(0, p + shape · motion) − p in contact, with p ≥ 0 for negative pressures.
+    pub(crate) fn correct(
+        &mut self,
+        problem: &Problem<'_>,
+        runs: &Runs,
+        motions: &[ModeCoefficients],
+        [pressure, shape]: [&[f64]; 2],
+        direction: &mut [f64],
+    ) {
+        let cut = problem.cut();
+        self.bands.over([direction], |band, [d], _| {
+            for Piece { cells, body } in runs.inside(&band, cut) {
+                let d = &mut d[cells.start - band.start..cells.end - band.start];
+                let motion = problem.modes(body).line(cells.start).of(motions[body]);
+                map(motion, d, [&pressure[cells.clone()], &shape[cells]], |d, p, shape, motion| {
+                    let p = p.max(0.0);
+                    d + ((p + shape * motion).max(0.0) - p)
+                });
+            }
+        });
+    }
+
+    /// Finds Σ B Kd of bodies that tilt, and Σ r·d and Σ d·Kd, in contact.
+    pub(crate) fn slope_and_curvature(
+        &mut self,
+        problem: &Problem<'_>,
+        runs: &Runs,
+        residual: &[f64],
+        direction: &[f64],
+        image: &[f64],
+    ) -> &[Found] {
+        let cut = problem.cut();
+        self.bands.over([], |band, [], found| {
+            for Piece { cells, body } in runs.inside(&band, cut) {
+                let sums = &mut found[body].sums;
+                let (r, d, kd) = (&residual[cells.clone()], &direction[cells.clone()], &image[cells.clone()]);
+                if problem.bodies[body].tilts() {
+                    add_modes(&mut sums[..3], &problem.modes(body).line(cells.start), kd);
+                }
+                sums[3] += sum_of_pairs(r, d, |r, d| r * d);
+                sums[4] += sum_of_pairs(d, kd, |d, kd| d * kd);
+            }
+        })
+    }
 }
 
 /// x += a y.
@@ -226,80 +228,136 @@ fn add(x: &mut [f64], a: f64, y: &[f64]) {
     }
 }
 
-/// Combines every pair of values with one of the lanes.
-fn reduce([x, y]: [&[f64]; 2], lanes: &mut [f64; LANES], join: impl Fn(f64, [f64; 2]) -> f64) {
-    let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<LANES>(), y.as_chunks::<LANES>());
-    for (x, y) in x.iter().zip(y) {
-        for lane in 0..LANES {
-            lanes[lane] = join(lanes[lane], [x[lane], y[lane]]);
-        }
+/// Adds Σ B f over a piece.
+fn add_modes(sums: &mut [f64], line: &Line, f: &[f64]) {
+    // the sum of a body that does not tilt is all that it costs
+    let moment = if line.changes() { sum_of_pairs(f, &NUMBERS[..f.len()], |f, j| f * j) } else { 0.0 };
+    let part = line.sums([sum(f), moment]);
+    sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+}
+
+/// Takes the depths of a piece into the greatest.
+fn note_depth(found: &mut Found, [start, slope]: [f64; 2], c: f64, v: &[f64], h: &[f64]) {
+    if slope == 0.0 {
+        found.raise([v, h, h], |v, h, _| start - (c * v + h));
+    } else {
+        found.raise([v, h, &NUMBERS[..v.len()]], |v, h, j| start + slope * j - (c * v + h));
     }
-    for (lane, (&x, &y)) in lanes.iter_mut().zip(x_rest.iter().zip(y_rest)) {
-        *lane = join(*lane, [x, y]);
+}
+
+/// z ← f(z, x, y, start + slope j) on the cells of a piece.
+#[inline(always)]
+fn map([start, slope]: [f64; 2], z: &mut [f64], [x, y]: [&[f64]; 2], f: impl Fn(f64, f64, f64, f64) -> f64) {
+    let values = z.iter_mut().zip(x.iter().zip(y));
+    if slope == 0.0 {
+        values.for_each(|(z, (&x, &y))| *z = f(*z, x, y, start));
+    } else {
+        values.zip(&NUMBERS).for_each(|((z, (&x, &y)), &j)| *z = f(*z, x, y, start + slope * j));
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Grid;
+    use crate::kernel::InfluenceKernel;
+    use crate::solver::contact_set::ContactSet;
+    use crate::solver::rigid_motion::Freedom;
 
-    /// Every pass against its definition, cell by cell.
+    /// Every pass against its definition, cell by cell, with one body and with several, on one band and on more.
     #[test]
     fn passes_match_their_definitions() {
-        for n in [77, BAND_CELLS, 3 * BAND_CELLS + 100] {
-            check_passes(n);
+        let freedom = |translation, tilt, total| Freedom { translation, tilt, point: [0.1, -0.2], total };
+        let [upright, tilting] = [freedom(true, [false; 2], 1.0), freedom(true, [true; 2], 1.0)];
+        let several = [freedom(false, [true, false], 0.0), tilting, freedom(true, [false; 2], 0.0), upright];
+        for cells in [[11, 7], [3, 5000], [180, 151]] {
+            check_passes(cells, &[upright]);
+            check_passes(cells, &[tilting]);
+            check_passes(cells, &several);
         }
     }
 
-    fn check_passes(n: usize) {
+    fn check_passes(cells: [usize; 2], bodies: &[Freedom]) {
+        let grid = Grid::new(cells, [2.0, 3.0]).unwrap();
+        let (n, columns) = (grid.len(), cells[1]);
+        let kernel = InfluenceKernel::half_space(&grid).unwrap().on(&grid, [false; 2]);
         let field = |seed: f64| (0..n).map(|k| (seed * k as f64 + seed).sin()).collect::<Vec<f64>>();
-        let member: Vec<bool> = (0..n).map(|k| (10..40).contains(&k) || k == 50 || k > 70 && k % 1000 != 7).collect();
-        let mut passes = Passes::new(n);
-        passes.runs.find(&member);
-        let (gap, d, kd, c, motion, a) = (field(0.3), field(0.7), field(1.1), 0.8, 0.2, 0.4);
+        let owner: Vec<u16> = (0..n).map(|k| ((k % columns / 3 + k / columns) % bodies.len()) as u16).collect();
+        let (gap, d, kd, a, c) = (field(0.3), field(0.7), field(1.1), 0.4, 0.8);
+        let owner = (bodies.len() > 1).then_some(owner.as_slice());
+        let problem = Problem { kernel: &kernel, compliance: c, gap: &gap, prescribed: 0.0, bodies, owner };
+        let mut set = ContactSet::new(n, bodies.len());
+        for (k, member) in set.member.iter_mut().enumerate() {
+            *member = k % 1000 > 9 && k % 1000 != 50 && !problem.released(problem.owner(k));
+        }
+        set.update(&problem);
+        let motions: Vec<ModeCoefficients> = (0..bodies.len())
+            .map(|body| {
+                let (size, Freedom { tilt, .. }) = (1.0 + body as f64, bodies[body]);
+                let [tilt1, tilt2] = tilt.map(|free| if free { 0.1 * size } else { 0.0 });
+                ModeCoefficients([0.2 * size, tilt1, tilt2])
+            })
+            .collect();
+        let at = |k: usize| problem.modes(problem.owner(k)).displacement(motions[problem.owner(k)], k);
+        let modes = |k: usize| problem.modes(problem.owner(k)).line(k).sums([1.0, 0.0]);
+        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-12 * (1.0 + a.abs()), "{a} {b}");
+        let inside = |body: usize, f: &dyn Fn(usize) -> f64| {
+            (0..n).filter(|&k| set.member[k] && problem.owner(k) == body).map(f).sum::<f64>()
+        };
+        let (mut passes, runs) = (Passes::new(n, bodies.len()), &set.runs);
+
         let (mut p, mut v, mut r) = (field(1.3), field(1.7), vec![0.0; n]);
         let (p0, v0) = (p.clone(), v.clone());
-        let fields =
-            Fields { gap: &gap, direction: &d, image: &kd, pressure: &mut p, potential: &mut v, residual: &mut r };
-        let found = passes.survey(a, c, motion, fields);
-        let (mut sums, mut deepest, mut highest) = ([0.0; 4], f64::NEG_INFINITY, 0.0_f64);
+        let fields = Fields { direction: &d, image: &kd, pressure: &mut p, potential: &mut v, residual: &mut r };
+        let found = passes.survey(&problem, runs, a, &motions, fields).to_vec();
+        let mut deepest = 0.0_f64;
         for k in 0..n {
-            let u = c * (v0[k] + a * kd[k]);
             assert_eq!(v[k], v0[k] + a * kd[k]);
-            assert_eq!(p[k], if member[k] { p0[k] + a * d[k] } else { p0[k] });
-            if !member[k] {
-                deepest = deepest.max(-(u + gap[k]));
-                continue;
+            assert_eq!(p[k], if set.member[k] { p0[k] + a * d[k] } else { p0[k] });
+            let residual = at(k) - (c * v[k] + gap[k]);
+            if set.member[k] {
+                near(r[k], residual);
+            } else if !problem.released(problem.owner(k)) {
+                deepest = deepest.max(residual);
             }
-            let residual = motion - (u + gap[k]);
-            assert_eq!(r[k], residual);
-            highest = highest.max(gap[k].abs());
-            let parts = [residual, residual * residual, u * u, p[k].min(0.0).powi(2)];
-            (0..4).for_each(|m| sums[m] += parts[m]);
         }
-        let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-13 * (1.0 + a.abs()), "{a} {b}");
-        near(found.residual, sums[0]);
-        near(found.square, sums[1]);
-        near(found.displacement, sums[2]);
-        near(found.negative, sums[3]);
-        assert_eq!((passes.runs.greatest(&gap), found.depth), (highest, deepest));
+        for (body, found) in found.iter().enumerate() {
+            (0..3).for_each(|m| near(found.sums[m], inside(body, &|k| modes(k)[m] * r[k])));
+            near(found.sums[3], inside(body, &|k| r[k] * r[k]));
+            near(found.sums[4], inside(body, &|k| c * v[k] * c * v[k]));
+            near(found.sums[5], inside(body, &|k| p[k].min(0.0).powi(2)));
+        }
+        near(found.iter().map(Found::greatest).fold(0.0, f64::max), deepest);
+        near(passes.penetration(&problem, runs, &motions, &v), deepest);
 
-        let mut z = field(2.0);
-        let square = passes.center(0.1, &mut r, &mut z);
-        near(square, z.iter().map(|z| z * z).sum::<f64>());
-        assert!((0..n).all(|k| z[k] == if member[k] { r[k] } else { 0.0 }));
-        let inside = |f: &dyn Fn(usize) -> f64| (0..n).filter(|&k| member[k]).map(f).sum::<f64>();
+        let (before, mut z) = (r.clone(), field(2.0));
+        near(passes.subtract(&problem, runs, &motions, &mut r, &mut z), z.iter().map(|z| z * z).sum());
+        for k in 0..n {
+            near(z[k], if set.member[k] { before[k] - at(k) } else { 0.0 });
+            assert!(!set.member[k] || r[k] == z[k]);
+        }
         let z = field(2.2);
-        let sums = passes.overlaps(&z, &kd, &d);
-        near(sums[0], inside(&|k| z[k]));
-        near(sums[1], inside(&|k| z[k] * kd[k]));
-        near(sums[2], inside(&|k| kd[k]));
-        near(sums[3], inside(&|k| d[k]));
-        let [slope, curvature] = passes.slope_and_curvature(&r, &d, &kd);
-        near(slope, inside(&|k| r[k] * d[k]));
-        near(curvature, inside(&|k| d[k] * kd[k]));
+        for (body, found) in passes.overlaps(&problem, runs, &z, &kd, &d).iter().enumerate() {
+            for m in 0..3 {
+                near(found.sums[m], inside(body, &|k| modes(k)[m] * z[k]));
+                near(found.sums[3 + m], inside(body, &|k| modes(k)[m] * kd[k]));
+                near(found.sums[6 + m], inside(body, &|k| modes(k)[m] * d[k]));
+            }
+            near(found.sums[9], inside(body, &|k| z[k] * kd[k]));
+        }
+        for (body, found) in passes.slope_and_curvature(&problem, runs, &r, &d, &kd).iter().enumerate() {
+            let tilts = if bodies[body].tilts() { 1.0 } else { 0.0 };
+            (0..3).for_each(|m| near(found.sums[m], tilts * inside(body, &|k| modes(k)[m] * kd[k])));
+            near(found.sums[3], inside(body, &|k| r[k] * d[k]));
+            near(found.sums[4], inside(body, &|k| d[k] * kd[k]));
+        }
         let mut turned = d.clone();
-        passes.redirect([2.0, 0.5, 0.1], &z, &mut turned);
-        assert!((0..n).all(|k| turned[k] == if member[k] { 2.0 * (z[k] + 0.5 * d[k] + 0.1) } else { 0.0 }));
+        passes.redirect(&problem, runs, [2.0, 0.5], &motions, &z, &mut turned);
+        passes.correct(&problem, runs, &motions, [&p, &gap], &mut turned);
+        for k in 0..n {
+            let held = p[k].max(0.0);
+            let turn = 2.0 * (z[k] + 0.5 * d[k] + at(k)) + ((held + gap[k] * at(k)).max(0.0) - held);
+            near(turned[k], if set.member[k] { turn } else { 0.0 });
+        }
     }
 }

@@ -1,9 +1,10 @@
 //! The reference solver of the source paper.
 
 use crate::kernel::Workspace;
-use crate::solver::cold_start::{balance, cold_start, list_possible, press_everywhere};
-use crate::solver::contact_cells::{self, ContactCells};
-use crate::solver::outcome::{Outcome, Stop};
+use crate::solver::cold_start::{balance, cold_start, press_everywhere};
+use crate::solver::contact_set::ContactSet;
+use crate::solver::outcome::{Outcome, ResidualSums, Stop};
+use crate::solver::passes::{Fields, Passes};
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::resting_position::RestingPosition;
 use crate::solver::rigid_motion::{Freedom, ModeCoefficients, Modes};
@@ -15,18 +16,22 @@ const FORCE_TOLERANCE: f64 = 1e-9;
 /// convolutions per iteration, one for the gap and one for the step length.
 #[derive(Debug, Clone)]
 pub(crate) struct PolonskyKeer {
-    contacts: Vec<ContactCells>,
+    set: ContactSet,
+    passes: Passes,
     /// −h in contact.
     residual: Vec<f64>,
     direction: Vec<f64>,
     image: Vec<f64>,
+    /// The fit of the residual under each body, by which its motion was corrected.
+    shifts: Vec<ModeCoefficients>,
 }
 
 impl PolonskyKeer {
     pub(crate) fn new(cells: usize, bodies: usize) -> PolonskyKeer {
         let field = vec![0.0; cells];
-        let contacts = ContactCells::of_bodies(bodies, cells);
-        PolonskyKeer { contacts, residual: field.clone(), direction: field.clone(), image: field }
+        let shifts = vec![ModeCoefficients::default(); bodies];
+        let (set, passes) = (ContactSet::new(cells, bodies), Passes::new(cells, bodies));
+        PolonskyKeer { set, passes, residual: field.clone(), direction: field.clone(), image: field, shifts }
     }
 
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent.
@@ -44,9 +49,8 @@ impl PolonskyKeer {
         let (mut square_old, mut conjugate) = (1.0, false);
         loop {
             solution.convolve(problem, work);
-            self.list_cells(problem, solution);
-            let mut state = contact_cells::fit_motions(problem, &self.contacts, solution, &mut self.residual);
-            let penetration = problem.penetration(solution, |k| solution.pressure[k] == 0.0);
+            self.find_contact(problem, solution);
+            let (mut state, penetration) = self.fit_motions(problem, solution);
             state.note(problem, penetration, 0.0, solution);
             if let Some(outcome) = stop.outcome(solution, || self.carries_the_forces(problem, solution)) {
                 return outcome;
@@ -70,30 +74,44 @@ impl PolonskyKeer {
             let p = &mut solution.pressure[k];
             *p = if problem.possible(k) { p.max(0.0) } else { 0.0 };
         }
-        self.list_cells(problem, solution);
-        for (body, ContactCells { cells, .. }) in self.contacts.iter_mut().enumerate() {
-            if problem.released(body) {
-                continue;
-            }
-            let balanced = !cells.is_empty() && balance(problem, body, cells, solution);
-            if !balanced && !cold_start(problem, body, cells, solution, |_, _| ()) {
+        self.find_contact(problem, solution);
+        for body in (0..problem.bodies.len()).filter(|&body| !problem.released(body)) {
+            let balanced = self.set.count_under(body) > 0 && balance(problem, body, &self.set, solution);
+            if !balanced && !cold_start(problem, body, &mut self.set, solution, |_, _| ()) {
                 return Err(body);
             }
         }
         Ok(())
     }
 
-    /// Lists the cells in contact of each body.
-    fn list_cells(&mut self, problem: &Problem<'_>, solution: &Solution) {
-        let pressed = (0..solution.pressure.len()).filter(|&k| solution.pressure[k] > 0.0);
-        contact_cells::list(problem, &mut self.contacts, pressed);
+    /// Cells in contact are those that carry pressure.
+    fn find_contact(&mut self, problem: &Problem<'_>, solution: &Solution) {
+        self.set.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
+        self.set.update(problem);
+    }
+
+    /// Sets the free motion of each body to the best fit in contact, and the residual to −h there; returns the sums over it
+    /// and the deepest penetration outside.
+    fn fit_motions(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> (ResidualSums, f64) {
+        let Solution { motions, pressure, potential, .. } = solution;
+        let (set, direction, image) = (&self.set, &self.direction, &mut self.image);
+        let fields = Fields { direction, image, pressure, potential, residual: &mut self.residual };
+        let mut state = ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() };
+        for (body, found) in self.passes.survey(problem, &set.runs, 0.0, motions, fields).iter().enumerate() {
+            self.shifts[body] = set.fit(problem, body, &found.sums);
+            motions[body] = motions[body].plus(-1.0, self.shifts[body]);
+            state.displacement += found.sums[4];
+            state.negative += found.sums[5];
+        }
+        state.square = self.passes.subtract(problem, &set.runs, &self.shifts, &mut self.residual, image);
+        (state, self.passes.penetration(problem, &set.runs, motions, potential))
     }
 
     /// Whether the pressures carry every force: they may not where no balance was found.
     fn carries_the_forces(&self, problem: &Problem<'_>, solution: &Solution) -> bool {
         (0..problem.bodies.len()).all(|body| {
             let freedom = problem.bodies[body];
-            let sum: f64 = self.contacts[body].cells.iter().map(|&k| solution.pressure[k as usize]).sum();
+            let sum = self.set.sum(problem, body, &solution.pressure);
             !freedom.translation || (sum - freedom.total).abs() <= FORCE_TOLERANCE * freedom.total
         })
     }
@@ -102,13 +120,15 @@ impl PolonskyKeer {
     fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) -> f64 {
         problem.kernel.apply(&self.direction, &mut self.image, work);
         solution.counts.convolutions += 1;
+        let PolonskyKeer { set, passes, residual, direction, image, .. } = self;
         let (mut numerator, mut denominator) = (0.0, 0.0);
-        for (body, ContactCells { cells, gram }) in self.contacts.iter().enumerate() {
-            problem.modes(body).project_out(gram, cells, &mut self.image);
-            for k in cells.iter().map(|&k| k as usize) {
-                numerator -= self.residual[k] * self.direction[k];
-                denominator += self.direction[k] * self.image[k];
-            }
+        for found in passes.slope_and_curvature(problem, &set.runs, residual, direction, image) {
+            numerator -= found.sums[3];
+            denominator += found.sums[4];
+        }
+        for (body, found) in passes.overlaps(problem, &set.runs, residual, image, direction).iter().enumerate() {
+            let fit = set.fit(problem, body, &found.sums[3..6]);
+            denominator -= (0..3).map(|m| fit.0[m] * found.sums[6 + m]).sum::<f64>();
         }
         if denominator > 0.0 {
             return numerator / (problem.compliance * denominator);
@@ -132,39 +152,39 @@ impl PolonskyKeer {
                 }
             }
         }
-        self.list_cells(problem, solution);
-        let loaded = self.contacts.iter_mut().enumerate().filter(|(body, _)| !problem.released(*body));
-        for (body, ContactCells { cells, .. }) in loaded {
+        self.find_contact(problem, solution);
+        for body in (0..problem.bodies.len()).filter(|&body| !problem.released(body)) {
             let modes = problem.modes(body);
-            let balanced = balance(problem, body, cells, solution);
+            let balanced = balance(problem, body, &self.set, solution);
             if modes.translates() {
                 if !balanced {
-                    press_everywhere(problem, body, cells, solution);
+                    press_everywhere(problem, body, &mut self.set, solution);
                 }
-            } else if modes.tilts() && (!balanced || is_unloaded(problem, cells, solution)) {
+            } else if modes.tilts() && (!balanced || self.is_unloaded(problem, body, solution)) {
                 // held at its pivot, and touching on one side of it only: unloaded, and turned to where its deepest
                 // penetration is least, on both sides of the pivot if it cannot swing clear
-                cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
-                solution.motions[body] = least_penetrating_tilt(problem, body, cells);
+                self.set.cells(problem, body).for_each(|k| solution.pressure[k] = 0.0);
+                self.set.press_possible(problem, body);
+                solution.motions[body] = least_penetrating_tilt(problem, body, &self.set);
             }
         }
         joined
     }
-}
 
-/// Whether there are no pressures, or too small ones to show in the gap.
-fn is_unloaded(problem: &Problem<'_>, cells: &[u32], solution: &Solution) -> bool {
-    let greatest = |field: &[f64]| cells.iter().map(|&k| field[k as usize].abs()).fold(0.0, f64::max);
-    let sunk = problem.compliance * problem.kernel.self_influence() * greatest(&solution.pressure);
-    sunk <= f64::EPSILON * greatest(problem.gap)
+    /// Whether there are no pressures under a body, or too small ones to show in the gap.
+    fn is_unloaded(&self, problem: &Problem<'_>, body: usize, solution: &Solution) -> bool {
+        let greatest = |field: &[f64]| self.set.cells(problem, body).map(|k| field[k].abs()).fold(0.0, f64::max);
+        let sunk = problem.compliance * problem.kernel.self_influence() * greatest(&solution.pressure);
+        sunk <= f64::EPSILON * greatest(problem.gap)
+    }
 }
 
 /// The tilt at which a body held at its pivot penetrates the undeformed surface least: where it would rest if it could also
-/// move up and down, its load at the pivot. `cells` becomes the list of the cells that it may touch.
-fn least_penetrating_tilt(problem: &Problem<'_>, body: usize, cells: &mut Vec<u32>) -> ModeCoefficients {
+/// move up and down, its load at the pivot. `set` contains all cells that it may touch.
+fn least_penetrating_tilt(problem: &Problem<'_>, body: usize, set: &ContactSet) -> ModeCoefficients {
     let free = Freedom { translation: true, total: 1.0, ..problem.bodies[body] };
-    list_possible(problem, body, cells);
-    let resting = RestingPosition::new(&Modes::new(problem.kernel.grid(), free), cells, problem.gap);
+    let modes = Modes::new(problem.kernel.grid(), free);
+    let resting = RestingPosition::new(&modes, set.cells(problem, body), problem.gap);
     let ModeCoefficients([_, tilt1, tilt2]) = resting.motion;
     ModeCoefficients([0.0, tilt1, tilt2])
 }

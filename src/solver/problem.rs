@@ -2,6 +2,7 @@
 
 use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::rigid_motion::{Freedom, ModeCoefficients, Modes};
+use crate::solver::runs::Cut;
 use crate::solver::trace::Trace;
 use crate::sum::greatest;
 
@@ -58,6 +59,12 @@ impl<'a> Problem<'a> {
         Modes::new(self.kernel.grid(), self.bodies[body])
     }
 
+    /// How the cells are cut into pieces along which the motion of a body is affine.
+    pub(crate) fn cut(&self) -> Cut<'a> {
+        let tilts = self.bodies.iter().any(Freedom::tilts);
+        Cut { columns: if tilts { self.kernel.grid().cells()[1] } else { usize::MAX }, owner: self.owner }
+    }
+
     /// Rounding of the gap where a prescribed motion closes it, and of c K p on bodies whose mean displacement is held: a
     /// nearly uniform pressure displaces them hardly at all.
     pub(crate) fn rounding(&self, pressure: &[f64]) -> f64 {
@@ -93,18 +100,6 @@ impl<'a> Problem<'a> {
         let body = self.owner(k);
         self.modes(body).displacement(solution.motions[body], k)
             - (self.compliance * solution.potential[k] + self.gap[k])
-    }
-
-    /// The deepest penetration on cells that may carry pressure and for which `outside` holds, 0 if there is none.
-    pub(crate) fn penetration(&self, solution: &Solution, outside: impl Fn(usize) -> bool) -> f64 {
-        // one body without tilt, the common scene, needs no look-up
-        if self.owner.is_none() && !self.modes(0).tilts() {
-            let motion = solution.motions[0].0[0];
-            let depth = |k: usize| motion - (self.compliance * solution.potential[k] + self.gap[k]);
-            return (0..self.gap.len()).filter(|&k| outside(k)).map(depth).fold(0.0, f64::max);
-        }
-        let cells = (0..self.gap.len()).filter(|&k| outside(k) && self.possible(k));
-        cells.map(|k| self.depth(solution, k)).fold(0.0, f64::max)
     }
 }
 

@@ -13,7 +13,7 @@ const DEPENDENT_PIVOT: f64 = 1e-14;
 pub(crate) struct RestingPosition {
     pub(crate) motion: ModeCoefficients,
     /// The cells that it rests on, and the share of the load that each of them carries.
-    pub(crate) supports: [Option<(u32, f64)>; 3],
+    pub(crate) supports: [Option<(usize, f64)>; 3],
 }
 
 /// A column of the basis, B of a cell or of an artificial one, and its cost.
@@ -27,12 +27,12 @@ impl RestingPosition {
     ///
     /// whose dual is the motion. Solved by the revised simplex method on bases of three columns, begun from artificial
     /// columns that cost more than any cell. The column of a motion that is not free costs nothing, and never leaves.
-    pub(crate) fn new(modes: &Modes<'_>, cells: &[u32], gap: &[f64]) -> RestingPosition {
-        let heights = || cells.iter().map(|&k| gap[k as usize]);
+    pub(crate) fn new(modes: &Modes<'_>, cells: impl Iterator<Item = usize> + Clone, gap: &[f64]) -> RestingPosition {
+        let heights = || cells.clone().map(|k| gap[k]);
         let lowest = heights().fold(f64::INFINITY, f64::min);
         let highest = heights().fold(f64::NEG_INFINITY, f64::max);
         let range = (highest - lowest).max(f64::MIN_POSITIVE);
-        let artificial = 1e3 * range * cells.len() as f64;
+        let artificial = 1e3 * range * cells.clone().count() as f64;
 
         // heights are taken from the lowest point
         let mut basis = [0, 1, 2].map(|m| (unit(m), if modes.free()[m] { artificial } else { 0.0 }));
@@ -41,10 +41,10 @@ impl RestingPosition {
         for _ in 0..MAX_PIVOTS {
             let Some(next) = solve_dual(&basis) else { break };
             dual = ModeCoefficients(next);
-            let cost = |k: u32| (gap[k as usize] - lowest) - modes.displacement(dual, k as usize);
-            let entering = cells.iter().copied().min_by(|&a, &b| cost(a).total_cmp(&cost(b)));
+            let cost = |k: usize| (gap[k] - lowest) - modes.displacement(dual, k);
+            let entering = cells.clone().min_by(|&a, &b| cost(a).total_cmp(&cost(b)));
             let Some(entering) = entering.filter(|&k| cost(k) < -1e-12 * range) else { break };
-            let column = modes.at(entering as usize);
+            let column = modes.at(entering);
             // the first weight to reach zero, as that of the new column grows, leaves the basis
             let (Some(weights), Some(change)) = (solve_primal(&basis, modes.load()), solve_primal(&basis, column))
             else {
@@ -53,7 +53,7 @@ impl RestingPosition {
             let ratio = |m: usize| weights[m].max(0.0) / change[m];
             let leaving = (0..3).filter(|&m| change[m] > 1e-12).min_by(|&a, &b| ratio(a).total_cmp(&ratio(b)));
             let Some(leaving) = leaving else { break };
-            basis[leaving] = (column, gap[entering as usize] - lowest);
+            basis[leaving] = (column, gap[entering] - lowest);
             cell_of_column[leaving] = Some(entering);
         }
         if modes.translates() {

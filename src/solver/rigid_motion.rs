@@ -1,6 +1,8 @@
 //! The rigid motion of a body: the part of it that a load leaves free, and the balance of force and moments that
 //! belongs to every freedom.
 
+use std::ops::Range;
+
 use crate::Grid;
 use crate::linalg;
 
@@ -14,6 +16,12 @@ pub(crate) struct Freedom {
     pub(crate) point: [f64; 2],
     /// The force divided by the area of a cell \[Pa\]; unused without translation.
     pub(crate) total: f64,
+}
+
+impl Freedom {
+    pub(crate) fn tilts(&self) -> bool {
+        self.tilt != [false; 2]
+    }
 }
 
 /// A motion ω + α1 x1 + α2 x2 of a rigid body, x measured from the origin of the grid.
@@ -47,6 +55,13 @@ impl std::ops::Add for RigidMotion {
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ModeCoefficients(pub(crate) [f64; 3]);
 
+impl ModeCoefficients {
+    /// The sum of this motion and `a` times another one.
+    pub(crate) fn plus(self, a: f64, other: ModeCoefficients) -> ModeCoefficients {
+        ModeCoefficients([0, 1, 2].map(|m| self.0[m] + a * other.0[m]))
+    }
+}
+
 /// Part of the square of a mode, independent of the other modes, that counts as zero: the cells at hand do not determine
 /// the motion (fewer than three, or all on a line).
 const DEPENDENT_FRACTION: f64 = 1e-11;
@@ -57,9 +72,6 @@ const MAX_BALANCE_ITERATIONS: usize = 60;
 /// Imbalance, relative to the load, that counts as rounding.
 const BALANCE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
 
-/// Cells summed together before they are added to the total.
-const SUM_BLOCK: usize = 256;
-
 /// The free motions of a body as functions on the grid.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Modes<'a> {
@@ -67,6 +79,13 @@ pub(crate) struct Modes<'a> {
     freedom: Freedom,
     /// Unit lengths of the tilts, half those of the grid.
     scale: [f64; 2],
+}
+
+/// The free modes of a body along a row: first + (0, 0, step) j on the j-th cell of a piece.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Line {
+    first: [f64; 3],
+    step: f64,
 }
 
 /// Σ w B Bᵀ over some cells.
@@ -81,7 +100,7 @@ impl<'a> Modes<'a> {
     }
 
     pub(crate) fn tilts(&self) -> bool {
-        self.freedom.tilt != [false; 2]
+        self.freedom.tilts()
     }
 
     pub(crate) fn translates(&self) -> bool {
@@ -96,6 +115,15 @@ impl<'a> Modes<'a> {
             if tilt[axis] { (self.grid.coordinate(axis, index) - point[axis]) / self.scale[axis] } else { 0.0 }
         };
         [if translation { 1.0 } else { 0.0 }, mode(0, k / n2), mode(1, k % n2)]
+    }
+
+    /// The free modes along the row of cell `k`, from there on. A body that does not tilt has the mode 1, even if it is held.
+    pub(crate) fn line(&self, k: usize) -> Line {
+        if !self.tilts() {
+            return Line::UPRIGHT;
+        }
+        let step = if self.freedom.tilt[1] { self.grid.spacing()[1] / self.scale[1] } else { 0.0 };
+        Line { first: self.at(k), step }
     }
 
     /// Which of ω, α1 and α2 are free.
@@ -133,73 +161,53 @@ impl<'a> Modes<'a> {
         self.load().map(|share| share * self.freedom.total)
     }
 
-    /// B Bᵀ over `cells`, zero without tilt, where [`Modes::fit`] does not need it.
-    pub(crate) fn gram(&self, cells: &[u32]) -> Gram {
-        let mut gram = Gram::default();
+    /// The motion that fits a field best on `cells` cells, by least squares, from Σ B f over them; `gram` is that of the
+    /// cells, and not needed without tilt.
+    pub(crate) fn fit(&self, gram: &Gram, cells: usize, sums: [f64; 3]) -> ModeCoefficients {
         if self.tilts() {
-            cells.iter().for_each(|&k| gram.add(self.at(k as usize), 1.0));
+            return ModeCoefficients(gram.solve(sums));
         }
-        gram
+        ModeCoefficients([if self.freedom.translation { sums[0] / cells.max(1) as f64 } else { 0.0 }, 0.0, 0.0])
     }
 
-    /// The motion that fits `field` on `cells` best, by least squares; `gram` is that of `cells`.
-    pub(crate) fn fit(&self, gram: &Gram, cells: &[u32], field: &[f64]) -> ModeCoefficients {
-        if !self.tilts() {
-            let sum: f64 = cells.iter().map(|&k| field[k as usize]).sum();
-            let count = cells.len().max(1) as f64;
-            return ModeCoefficients([if self.freedom.translation { sum / count } else { 0.0 }, 0.0, 0.0]);
-        }
-        let mut sums = [0.0; 3];
-        for &k in cells {
-            let modes = self.at(k as usize);
-            (0..3).for_each(|m| sums[m] += modes[m] * field[k as usize]);
-        }
-        ModeCoefficients(gram.solve(sums))
-    }
-
-    /// Subtracts the free motion that fits best from `field` on `cells`, and returns it.
-    pub(crate) fn project_out(&self, gram: &Gram, cells: &[u32], field: &mut [f64]) -> ModeCoefficients {
-        let motion = self.fit(gram, cells, field);
-        if self.tilts() {
-            cells.iter().for_each(|&k| field[k as usize] -= dot(self.at(k as usize), motion.0));
-        } else if self.freedom.translation {
-            cells.iter().for_each(|&k| field[k as usize] -= motion.0[0]);
-        }
-        motion
-    }
-
-    /// Finds y such that the pressures max(0, base + weight · B y) on `cells` carry the force and moments
+    /// Finds y such that the pressures max(0, base + weight · B y) on the `pieces` of rows carry the force and moments
     /// of the load: the minimum of the convex ½ Σ weight (base/weight + B y)₊² − b·y, by
     /// Newton's method with step halving. `None` if there is none, because the load does not act inside
     /// the convex hull of the cells.
     pub(crate) fn balance(
         &self,
-        cells: &[u32],
+        pieces: impl Iterator<Item = Range<usize>> + Clone,
         base: impl Fn(usize) -> f64,
         weight: impl Fn(usize) -> f64,
     ) -> Option<ModeCoefficients> {
         let wanted = self.wanted();
         let evaluate = |y: [f64; 3]| {
             let (mut gram, mut sums, mut value) = (Gram::default(), wanted.map(|b| -b), -dot(wanted, y));
-            // in blocks, so that rounding does not grow with the number of cells
-            for block in cells.chunks(SUM_BLOCK) {
-                let mut part = [0.0; 3];
-                for k in block.iter().map(|&k| k as usize) {
-                    let (modes, w) = (self.at(k), weight(k));
-                    let p = base(k) + w * dot(modes, y);
+            // piece by piece, so that rounding does not grow with the number of cells
+            for piece in pieces.clone() {
+                let middle = 0.5 * (piece.len() - 1) as f64;
+                let line = self.line(piece.start).from(middle);
+                let [start, slope] = line.of(ModeCoefficients(y));
+                let (mut weights, mut pressures) = ([0.0; 3], [0.0; 2]);
+                for (j, k) in piece.enumerate() {
+                    let (j, w) = (j as f64 - middle, weight(k));
+                    let moved = start + slope * j;
+                    let p = base(k) + w * moved;
                     if p > 0.0 {
-                        gram.add(modes, w);
-                        (0..3).for_each(|m| part[m] += modes[m] * p);
+                        weights = [weights[0] + w, weights[1] + w * j, weights[2] + w * j * j];
+                        pressures = [pressures[0] + p, pressures[1] + p * j];
                         // without weight p does not depend on y
-                        value += if w > 0.0 { 0.5 * p * p / w } else { p * dot(modes, y) };
+                        value += if w > 0.0 { 0.5 * p * p / w } else { p * moved };
                     }
                 }
+                gram.add(&line, weights);
+                let part = line.sums(pressures);
                 (0..3).for_each(|m| sums[m] += part[m]);
             }
             (gram, sums, value)
         };
         // in these units a moment is at most that of the whole force at the end of the grid
-        let size = cells.iter().map(|&k| base(k as usize).abs()).sum::<f64>().max(wanted[0].abs());
+        let size = pieces.clone().flatten().map(|k| base(k).abs()).sum::<f64>().max(wanted[0].abs());
         if size == 0.0 {
             return Some(ModeCoefficients::default());
         }
@@ -232,20 +240,55 @@ impl<'a> Modes<'a> {
         }
         sums.iter().all(|sum| sum.abs() <= 1e-12 * size).then_some(ModeCoefficients(y))
     }
+}
 
-    /// base + weight · B y, clipped at zero: the pressure balanced by the y of [`Modes::balance`].
-    pub(crate) fn balanced(&self, y: ModeCoefficients, k: usize, base: f64, weight: f64) -> f64 {
-        (base + weight * dot(self.at(k), y.0)).max(0.0)
+impl Line {
+    /// Of a body that does not tilt.
+    const UPRIGHT: Line = Line { first: [1.0, 0.0, 0.0], step: 0.0 };
+
+    /// The same modes, with j counted from elsewhere.
+    fn from(self, j: f64) -> Line {
+        let [mode0, mode1, mode2] = self.first;
+        Line { first: [mode0, mode1, mode2 + self.step * j], ..self }
+    }
+
+    /// Whether the modes change along the row.
+    pub(crate) fn changes(&self) -> bool {
+        self.step != 0.0
+    }
+
+    /// A motion on the first cell, and its increase from cell to cell.
+    pub(crate) fn of(&self, motion: ModeCoefficients) -> [f64; 2] {
+        [dot(self.first, motion.0), self.step * motion.0[2]]
+    }
+
+    /// Σ B f, from Σ f and Σ j f.
+    pub(crate) fn sums(&self, [sum, moment]: [f64; 2]) -> [f64; 3] {
+        let [mode0, mode1, mode2] = self.first;
+        [mode0 * sum, mode1 * sum, mode2 * sum + self.step * moment]
     }
 }
 
 impl Gram {
-    fn add(&mut self, modes: [f64; 3], weight: f64) {
-        for (row, a) in self.entries.iter_mut().zip(modes) {
-            for (entry, b) in row.iter_mut().zip(modes) {
-                *entry += weight * a * b;
-            }
+    /// Adds Σ w B Bᵀ of a line, from Σ w, Σ w j and Σ w j².
+    fn add(&mut self, line: &Line, [weight, moment, square]: [f64; 3]) {
+        let modes = line.first;
+        for (m, row) in self.entries.iter_mut().enumerate() {
+            let part = line.sums([weight, moment]).map(|sum| modes[m] * sum);
+            row.iter_mut().zip(part).for_each(|(entry, part)| *entry += part);
         }
+        // the third mode is modes[2] + step j
+        let others = line.step * moment;
+        self.entries[2][0] += modes[0] * others;
+        self.entries[2][1] += modes[1] * others;
+        self.entries[2][2] += modes[2] * others + line.step * line.step * square;
+    }
+
+    /// Adds B Bᵀ of the first cells of a line.
+    pub(crate) fn add_cells(&mut self, line: &Line, cells: usize) {
+        let count = cells as f64;
+        // about their middle Σ j vanishes
+        self.add(&line.from(0.5 * (count - 1.0)), [count, 0.0, count * (count * count - 1.0) / 12.0]);
     }
 
     /// Solves Gram x = `right`; x is zero for a mode that depends on the others.

@@ -1,25 +1,39 @@
-//! Runs: cells in contact that follow each other in memory, as pieces of rows do.
+//! Runs: cells in contact that follow each other in memory, and the pieces of rows in which passes visit them.
 
 use std::ops::Range;
-
-use crate::sum::{greatest, sum};
 
 /// Cells checked together in the search for runs.
 const SEARCH_BLOCK: usize = 32;
 
-/// Cells passed over together: their fields remain in the fastest cache.
-const PIECE_CELLS: usize = 256;
+/// Cells visited together: their fields remain in the fastest cache.
+pub(crate) const PIECE_CELLS: usize = 256;
+
+/// Cells that follow each other and belong to one body. Where bodies tilt, they lie in one row, along which the motion of
+/// the body is affine.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Piece {
+    pub(crate) cells: Range<usize>,
+    pub(crate) body: usize,
+}
+
+/// How the cells of a grid are cut into pieces.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cut<'a> {
+    /// Cells of a row; `usize::MAX` where no body tilts, and pieces may reach over the end of a row.
+    pub(crate) columns: usize,
+    /// The body that each cell belongs to; `None` where there is one.
+    pub(crate) owner: Option<&'a [u16]>,
+}
 
 /// The runs, each as its first cell and the one after its last.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Runs {
     runs: Vec<[u32; 2]>,
-    cells: usize,
 }
 
 impl Runs {
     pub(crate) fn with_capacity(cells: usize) -> Runs {
-        Runs { runs: Vec::with_capacity(cells.div_ceil(2)), cells: 0 }
+        Runs { runs: Vec::with_capacity(cells.div_ceil(2)) }
     }
 
     /// Finds the runs of members of a set.
@@ -45,50 +59,73 @@ impl Runs {
             }
         }
         self.runs.extend(start.map(|first| [first, member.len() as u32]));
-        self.cells = self.ranges().map(|run| run.len()).sum();
     }
 
-    /// Number of cells in all runs.
-    pub(crate) fn count(&self) -> usize {
-        self.cells
-    }
-
-    /// Σ values over the runs.
-    pub(crate) fn sum(&self, values: &[f64]) -> f64 {
-        self.ranges().map(|run| sum(&values[run])).sum()
-    }
-
-    /// The greatest |value| over the runs.
-    pub(crate) fn greatest(&self, values: &[f64]) -> f64 {
-        self.ranges().map(|run| greatest(&values[run])).fold(0.0, f64::max)
+    /// The cells of all runs.
+    pub(crate) fn cells(&self) -> impl Iterator<Item = usize> {
+        self.runs.iter().flat_map(|&[start, end]| start as usize..end as usize)
     }
 
     /// The parts of runs that lie in a band.
-    pub(crate) fn within(&self, band: &Range<usize>) -> impl Iterator<Item = Range<usize>> {
+    fn within(&self, band: &Range<usize>) -> impl Iterator<Item = Range<usize>> + Clone {
         let (start, end) = (band.start, band.end);
         let first = self.runs.partition_point(|run| run[1] as usize <= start);
         let runs = self.runs[first..].iter().map(|run| run.map(|k| k as usize)).take_while(move |run| run[0] < end);
         runs.map(move |run| run[0].max(start)..run[1].min(end))
     }
 
-    /// Calls `visit` with pieces of a band, counted from its beginning, and whether they are in contact.
-    pub(crate) fn walk(&self, band: &Range<usize>, mut visit: impl FnMut(Range<usize>, bool)) {
-        let mut outside = 0;
-        for run in self.within(band).map(|run| run.start - band.start..run.end - band.start) {
-            pieces(outside..run.start).for_each(|piece| visit(piece, false));
-            outside = run.end;
-            pieces(run).for_each(|piece| visit(piece, true));
-        }
-        pieces(outside..band.len()).for_each(|piece| visit(piece, false));
+    /// The pieces in contact that lie in a band.
+    pub(crate) fn inside(&self, band: &Range<usize>, cut: Cut<'_>) -> impl Iterator<Item = Piece> + Clone {
+        self.within(band).flat_map(move |run| cut.pieces(run))
     }
 
-    pub(crate) fn ranges(&self) -> impl Iterator<Item = Range<usize>> {
-        self.runs.iter().map(|[start, end]| *start as usize..*end as usize)
+    /// Calls `visit` with the pieces of a band, and whether they are in contact.
+    pub(crate) fn walk(&self, band: &Range<usize>, cut: Cut<'_>, mut visit: impl FnMut(Piece, bool)) {
+        let mut outside = band.start;
+        for run in self.within(band) {
+            cut.pieces(outside..run.start).for_each(|piece| visit(piece, false));
+            outside = run.end;
+            cut.pieces(run).for_each(|piece| visit(piece, true));
+        }
+        cut.pieces(outside..band.end).for_each(|piece| visit(piece, false));
     }
 }
 
-fn pieces(run: Range<usize>) -> impl Iterator<Item = Range<usize>> {
-    run.clone().step_by(PIECE_CELLS).map(move |start| start..(start + PIECE_CELLS).min(run.end))
+impl<'a> Cut<'a> {
+    /// Cuts cells that follow each other.
+    pub(crate) fn pieces(self, cells: Range<usize>) -> impl Iterator<Item = Piece> + Clone + use<'a> {
+        let Cut { columns, owner } = self;
+        let (mut start, mut row_end) = (cells.start, (cells.start / columns + 1).saturating_mul(columns));
+        std::iter::from_fn(move || {
+            if start == cells.end {
+                return None;
+            }
+            let mut piece = start..(start + PIECE_CELLS).min(cells.end).min(row_end);
+            let mut body = 0;
+            if let Some(owner) = owner {
+                body = owner[start].into();
+                piece.end = start + same(&owner[piece.clone()]);
+            }
+            start = piece.end;
+            if start == row_end {
+                row_end += columns;
+            }
+            Some(Piece { cells: piece, body })
+        })
+    }
+}
+
+/// How many of the first values are the same.
+fn same(values: &[u16]) -> usize {
+    let mut count = 0;
+    for block in values.chunks(SEARCH_BLOCK) {
+        // most blocks belong to one body
+        if !block.iter().fold(true, |same, &value| same & (value == values[0])) {
+            return count + block.iter().take_while(|&&value| value == values[0]).count();
+        }
+        count += block.len();
+    }
+    count
 }
 
 #[cfg(test)]
@@ -102,9 +139,40 @@ mod tests {
             let mut runs = Runs::with_capacity(cells);
             runs.find(&member);
             let mut found = vec![false; cells];
-            runs.ranges().for_each(|run| found[run].fill(true));
+            runs.cells().for_each(|k| found[k] = true);
             assert_eq!(found, member);
             assert!(runs.runs.windows(2).all(|pair| pair[0][1] < pair[1][0]), "runs do not touch");
+        }
+    }
+
+    /// Pieces cover the cells in order, and each lies in one row and under one body.
+    #[test]
+    fn pieces_are_cut_at_rows_and_bodies() {
+        let cells = 4000;
+        let member: Vec<bool> = (0..cells).map(|k| k % 1000 > 30 && k != 500).collect();
+        let owner: Vec<u16> =
+            (0..cells).map(|k| u16::from(k % 700 > 130) + u16::from(k % 9 == 4 && k > 3500)).collect();
+        let mut runs = Runs::with_capacity(cells);
+        runs.find(&member);
+        for (columns, owner) in
+            [(usize::MAX, None), (300, None), (7, None), (300, Some(&owner)), (usize::MAX, Some(&owner))]
+        {
+            let cut = Cut { columns, owner: owner.map(Vec::as_slice) };
+            for band in [0..cells, 450..2070, 1..2] {
+                let (mut next, mut members) = (band.start, Vec::new());
+                runs.walk(&band, cut, |piece, inside| {
+                    assert_eq!(piece.cells.start, next);
+                    next = piece.cells.end;
+                    let (first, last) = (piece.cells.start, next - 1);
+                    assert!(piece.cells.len() <= PIECE_CELLS && first / columns == last / columns);
+                    for k in piece.cells.clone() {
+                        assert_eq!((member[k], owner.map_or(0, |owner| owner[k].into())), (inside, piece.body));
+                    }
+                    members.extend(inside.then_some(piece));
+                });
+                assert_eq!(next, band.end);
+                assert_eq!(runs.inside(&band, cut).collect::<Vec<_>>(), members);
+            }
         }
     }
 }

@@ -4,6 +4,7 @@ use super::{ActiveSet, Shape};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::problem::{Problem, Solution};
+use crate::solver::rigid_motion::ModeCoefficients;
 
 /// Change of the force by which a converged pressure may be closed.
 const MAX_CLOSING_FORCE_CHANGE: f64 = 1e-9;
@@ -11,7 +12,7 @@ const MAX_CLOSING_FORCE_CHANGE: f64 = 1e-9;
 impl ActiveSet {
     /// Fills the shape of corrections on A.
     fn fill_shape(&mut self, shape: Shape, solution: &mut Solution) {
-        self.shape.resize(self.set.member.len(), 0.0);
+        self.shape.resize(solution.pressure.len(), 0.0);
         match shape {
             Shape::Pressure => self.shape.copy_from_slice(&solution.pressure),
             Shape::Punch => {
@@ -38,18 +39,18 @@ impl ActiveSet {
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Result<(), usize> {
-        let single = self.set.contacts.len() == 1;
-        if !single || problem.modes(0).tilts() {
+        let single = problem.bodies.len() == 1;
+        if !single || problem.bodies[0].tilts() {
             self.fill_shape(shape, solution);
         }
-        for body in 0..self.set.contacts.len() {
-            let (contact, change, modes) = (&mut self.set.contacts[body], &mut self.changes[body], problem.modes(body));
-            change.correction = None;
+        for body in 0..problem.bodies.len() {
+            let modes = problem.modes(body);
+            self.changes.corrections[body] = ModeCoefficients::default();
             if problem.released(body) || !(modes.translates() || modes.tilts()) {
                 continue;
             }
             if single && !modes.tilts() {
-                let scale = problem.bodies[body].total / self.passes.runs.sum(&solution.pressure);
+                let scale = problem.bodies[body].total / self.set.sum(problem, body, &solution.pressure);
                 if scale != 1.0 {
                     solution.pressure.iter_mut().for_each(|p| *p *= scale);
                     solution.potential.iter_mut().for_each(|v| *v *= scale);
@@ -57,25 +58,28 @@ impl ActiveSet {
                 continue;
             }
             let p = |k: usize| solution.pressure[k].max(0.0);
-            if let Some(y) = modes.balance(&contact.cells, p, |k| self.shape[k]) {
-                change.correction = (y != Default::default()).then_some(y);
+            if let Some(y) = modes.balance(self.set.pieces(problem, body), p, |k| self.shape[k]) {
+                self.changes.corrections[body] = y;
                 continue;
             }
             // the load acts outside the hull of what is left of A: begin again under this body
-            contact.cells.iter().for_each(|&k| self.set.member[k as usize] = false);
-            change.leaving.drain(..).for_each(|k| solution.pressure[k as usize] = 0.0);
+            self.changes.leaving.retain(|&k| {
+                let stays = problem.owner(k as usize) != body;
+                if !stays {
+                    solution.pressure[k as usize] = 0.0;
+                }
+                stays
+            });
             if !modes.translates() {
                 // held at a pivot, and touching on one side of it only: unloaded, it may turn away
-                contact.cells.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
+                self.set.cells(problem, body).for_each(|k| solution.pressure[k] = 0.0);
             } else if shape == Shape::Punch {
                 // the iterations may have begun from a cold start: another one could lead to the same state
-                press_everywhere(problem, body, &mut contact.cells, solution);
-            } else if !cold_start(problem, body, &mut contact.cells, solution, |_, _| ()) {
+                press_everywhere(problem, body, &mut self.set, solution);
+            } else if !cold_start(problem, body, &mut self.set, solution, |_, _| ()) {
                 return Err(body);
             }
-            contact.keep_pressed(modes, &solution.pressure);
-            contact.cells.iter().for_each(|&k| self.set.member[k as usize] = true);
-            self.find_runs(problem);
+            self.set.keep_pressed(problem, body, &solution.pressure);
             solution.convolve(problem, work);
         }
         Ok(())
@@ -84,26 +88,13 @@ impl ActiveSet {
     /// Removes from a converged pressure the imbalance of force and moments that rounding has left: too little to show in v.
     /// False if it is more than rounding.
     pub(super) fn close_balance(&self, problem: &Problem<'_>, solution: &mut Solution) -> bool {
-        if self.is_upright(problem) {
-            if problem.modes(0).translates() {
-                let scale = problem.bodies[0].total / self.passes.runs.sum(&solution.pressure);
-                for run in self.passes.runs.ranges() {
-                    solution.pressure[run].iter_mut().for_each(|p| *p *= scale);
-                }
-                return (scale - 1.0).abs() <= MAX_CLOSING_FORCE_CHANGE;
-            }
-            return true;
-        }
-        for (body, contact) in self.set.contacts.iter().enumerate().filter(|(body, _)| !problem.released(*body)) {
-            let sum = |solution: &Solution| contact.cells.iter().map(|&k| solution.pressure[k as usize]).sum::<f64>();
+        (0..problem.bodies.len()).filter(|&body| !problem.released(body)).all(|body| {
+            let sum = |solution: &Solution| self.set.sum(problem, body, &solution.pressure);
             let before = sum(solution);
-            let closed = balance(problem, body, &contact.cells, solution);
+            let closed = balance(problem, body, &self.set, solution);
             // where no force is prescribed, the pressure may be rounding itself
-            let forced = problem.modes(body).translates();
-            if forced && (!closed || (sum(solution) - before).abs() > MAX_CLOSING_FORCE_CHANGE * before) {
-                return false;
-            }
-        }
-        true
+            let forced = problem.bodies[body].translation;
+            !forced || closed && (sum(solution) - before).abs() <= MAX_CLOSING_FORCE_CHANGE * before
+        })
     }
 }

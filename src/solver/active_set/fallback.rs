@@ -14,8 +14,7 @@
 use super::{ActiveSet, JOIN_OVER_RMS};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::{balance, cold_start};
-use crate::solver::contact_cells;
-use crate::solver::outcome::{Outcome, Stop};
+use crate::solver::outcome::{Outcome, ResidualSums, Stop};
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::rigid_motion::ModeCoefficients;
 
@@ -57,8 +56,7 @@ impl ActiveSet {
         let (mut gained, mut joins_without_gain) = (true, 0);
         self.search.energy = 0.0;
         loop {
-            let mut state = contact_cells::fit_motions(problem, &self.set.contacts, solution, &mut self.residual);
-            let penetration = problem.penetration(solution, |k| !self.set.member[k]);
+            let (mut state, penetration) = self.advance(problem, solution, 0.0);
             state.note(problem, penetration, self.guess_rounding, solution);
             if let Some(outcome) = stop.outcome(solution, || true) {
                 return outcome;
@@ -70,16 +68,14 @@ impl ActiveSet {
                     return Outcome::Stagnated;
                 }
                 gained = false;
-                // where several cells have joined without any gain, only the deepest one
-                let least = if joins_without_gain == 0 { state.joining_depth(penetration) } else { penetration };
-                self.add_cells_deeper_than(problem, least, solution);
-                contact_cells::fit_motions(problem, &self.set.contacts, solution, &mut self.residual);
+                self.add_deepest_cells(problem, joins_without_gain > 0, state, solution);
+                self.advance(problem, solution, 0.0);
             }
             solution.counts.iterations += 1;
             solution.counts.fallback_iterations += 1;
             let cells = state.cells;
             match self.step_downhill(problem, joins_without_gain > 1, solution, work) {
-                0.0 if !joins && contact_cells::all(&self.set.contacts).count() == cells => return Outcome::Stagnated,
+                0.0 if !joins && self.set.count() == cells => return Outcome::Stagnated,
                 gain => gained |= gain > 0.0,
             }
         }
@@ -99,29 +95,32 @@ impl ActiveSet {
                 *p = 0.0;
             }
         }
-        self.list_all_cells(problem);
-        for (body, (contact, change)) in self.set.contacts.iter_mut().zip(&mut self.changes).enumerate() {
-            change.leaving.clear();
-            change.correction = None;
-            if !problem.released(body)
-                && (contact.cells.is_empty() || !balance(problem, body, &contact.cells, solution))
-                && !cold_start(problem, body, &mut contact.cells, solution, |_, _| ())
+        self.set.update(problem);
+        self.changes.clear();
+        for body in (0..problem.bodies.len()).filter(|&body| !problem.released(body)) {
+            if (self.set.count_under(body) == 0 || !balance(problem, body, &self.set, solution))
+                && !cold_start(problem, body, &mut self.set, solution, |_, _| ())
             {
                 return Err(body);
             }
         }
         self.set.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
-        self.list_all_cells(problem);
+        self.set.update(problem);
         solution.convolve(problem, work);
         Ok(())
     }
 
-    /// Takes cells into A that penetrate by `least` or more.
-    fn add_cells_deeper_than(&mut self, problem: &Problem<'_>, least: f64, solution: &Solution) {
+    /// Takes penetrating cells into A: the deeper ones, or the deepest alone.
+    fn add_deepest_cells(&mut self, problem: &Problem<'_>, alone: bool, state: ResidualSums, solution: &Solution) {
+        let outside = |k: &usize| !self.set.member[*k] && problem.possible(*k);
+        let cells = (0..self.set.member.len()).filter(outside);
+        let deepest = cells.map(|k| problem.depth(solution, k)).fold(0.0, f64::max);
+        // where several cells have joined without any gain, only the deepest one
+        let least = if alone { deepest } else { state.joining_depth(deepest) };
         for k in 0..self.set.member.len() {
             self.set.member[k] |= problem.possible(k) && least > 0.0 && problem.depth(solution, k) >= least;
         }
-        self.list_all_cells(problem);
+        self.set.update(problem);
         self.search.energy = 0.0;
     }
 
@@ -134,10 +133,10 @@ impl ActiveSet {
         work: &mut Workspace,
     ) -> f64 {
         let c = problem.compliance;
-        self.find_descent(problem, plain, solution);
+        self.find_direction(problem, plain, solution);
         problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
         solution.counts.convolutions += 1;
-        let [slope, curvature] = self.slope_and_curvature(&self.search.direction, &self.search.image);
+        let [slope, curvature] = self.slope_and_curvature(problem);
         self.search.energy = curvature;
         let free = Gain::along(slope, c * curvature, f64::INFINITY);
         if free.energy <= 0.0 {
@@ -148,9 +147,9 @@ impl ActiveSet {
             let (p, d) = (solution.pressure[k], self.search.direction[k]);
             if d < 0.0 { -p / d } else { f64::INFINITY }
         };
-        let first_zero = contact_cells::all(&self.set.contacts).map(to_zero).fold(f64::INFINITY, f64::min);
+        let first_zero = self.set.runs.cells().map(to_zero).fold(f64::INFINITY, f64::min);
         if free.length <= first_zero {
-            for k in contact_cells::all(&self.set.contacts) {
+            for k in self.set.runs.cells() {
                 solution.pressure[k] = (solution.pressure[k] + free.length * self.search.direction[k]).max(0.0);
             }
             add(&mut solution.potential, free.length, &self.search.image);
@@ -160,18 +159,16 @@ impl ActiveSet {
         let straight = Gain::along(slope, c * curvature, first_zero);
         // s of the clipped step takes the place of z, and c K s that of r, which is made anew for the next step
         let clipped = if self.find_clipped_step(problem, free.length, solution) {
-            let slope = contact_cells::all(&self.set.contacts)
-                .fold(0.0, |slope, k| slope + self.residual[k] * self.preconditioned[k]);
+            let slope = self.set.runs.cells().fold(0.0, |slope, k| slope + self.residual[k] * self.preconditioned[k]);
             problem.kernel.apply(&self.preconditioned, &mut self.residual, work);
             solution.counts.convolutions += 1;
-            let curvature = contact_cells::all(&self.set.contacts)
-                .fold(0.0, |sum, k| sum + self.preconditioned[k] * self.residual[k]);
+            let curvature = self.set.runs.cells().fold(0.0, |sum, k| sum + self.preconditioned[k] * self.residual[k]);
             Gain::along(slope, c * curvature, 1.0)
         } else {
             Gain::default()
         };
         let clips = clipped.energy > straight.energy;
-        for k in contact_cells::all(&self.set.contacts) {
+        for k in self.set.runs.cells() {
             let (p, d) = (&mut solution.pressure[k], self.search.direction[k]);
             *p = if clips {
                 (*p + clipped.length * self.preconditioned[k]).max(0.0)
@@ -186,40 +183,26 @@ impl ActiveSet {
         }
         let (gain, image) = if clips { (clipped, &self.residual) } else { (straight, &self.search.image) };
         add(&mut solution.potential, gain.length, image);
-        self.list_all_cells(problem);
+        self.set.update(problem);
         self.search.energy = 0.0;
         gain.energy
-    }
-
-    /// d ← z + β d without free motion on A, with z = r if `plain`.
-    fn find_descent(&mut self, problem: &Problem<'_>, plain: bool, solution: &mut Solution) {
-        self.preconditioned.fill(0.0);
-        contact_cells::all(&self.set.contacts).for_each(|k| self.preconditioned[k] = self.residual[k]);
-        if !plain {
-            self.preconditioner.apply(&mut self.preconditioned);
-            solution.counts.preconditioner_applications += 1;
-        }
-        self.conjugate_preconditioned(problem, false);
-        self.search.direction.fill(0.0);
-        for k in contact_cells::all(&self.set.contacts) {
-            self.search.direction[k] = self.preconditioned[k];
-        }
     }
 
     /// Writes s, the way from p to the balanced max(0, p + a d), to `preconditioned`; false if there is no such balance on A.
     fn find_clipped_step(&mut self, problem: &Problem<'_>, a: f64, solution: &Solution) -> bool {
         self.preconditioned.fill(0.0);
-        for (body, contact) in self.set.contacts.iter().enumerate().filter(|(body, _)| !problem.released(*body)) {
+        for body in (0..problem.bodies.len()).filter(|&body| !problem.released(body)) {
             let modes = problem.modes(body);
             let clipped = |k: usize| (solution.pressure[k] + a * self.search.direction[k]).max(0.0);
             let y = if modes.tilts() || modes.translates() {
-                let Some(y) = modes.balance(&contact.cells, clipped, clipped) else { return false };
+                let Some(y) = modes.balance(self.set.pieces(problem, body), clipped, clipped) else { return false };
                 y
             } else {
                 ModeCoefficients::default()
             };
-            for k in contact.cells.iter().map(|&k| k as usize) {
-                self.preconditioned[k] = modes.balanced(y, k, clipped(k), clipped(k)) - solution.pressure[k];
+            for (k, factor) in self.set.displacements(problem, body, y) {
+                let balanced = (clipped(k) + clipped(k) * factor).max(0.0);
+                self.preconditioned[k] = balanced - solution.pressure[k];
             }
         }
         true

@@ -1,14 +1,18 @@
 //! One iteration of the active set: its residual, its direction and its length.
 
-use super::{ActiveSet, CORRECTION_LENGTH, JOIN_OVER_RMS};
+use super::{ActiveSet, CORRECTION_LENGTH, JOIN_OVER_RMS, Search};
 use crate::kernel::Workspace;
-use crate::solver::contact_cells::{self, ContactCells};
 use crate::solver::outcome::{Outcome, ResidualSums, Stop};
-use crate::solver::passes::{Fields, Survey};
+use crate::solver::passes::Fields;
 use crate::solver::problem::{Problem, Solution};
+use crate::solver::rigid_motion::ModeCoefficients;
 
 /// Σ (r − mean)² is computed afresh, not from Σ r², where less than this fraction of Σ r² is left.
 const MIN_CENTRED_FRACTION: f64 = 1e-6;
+
+/// Penetration outside is found anew where the motion of a tilting body has changed by more than this fraction of rms |r|
+/// since the penetration was found.
+const MAX_TURN_OVER_RMS: f64 = 1e-6;
 
 /// Iterations without a new lowest residual after which the fall-back takes over.
 const MAX_ITERATIONS_WITHOUT_GAIN: usize = 40;
@@ -35,7 +39,7 @@ impl ActiveSet {
                 (state, penetration) = self.advance(problem, solution, 0.0);
             }
             state.note(problem, penetration, self.guess_rounding, solution);
-            let mut ended = stop.outcome(solution, || !self.pending() && state.negative == 0.0);
+            let mut ended = stop.outcome(solution, || !self.changes.any() && state.negative == 0.0);
             if ended == Some(Outcome::Converged) && !solution.pressure.iter().all(|&p| p >= 0.0) {
                 // tiny tensile pressures, whose squares vanish, still violate p ≥ 0
                 if let Err(body) = self.remove_tensile_cells(problem, solution, work) {
@@ -58,7 +62,7 @@ impl ActiveSet {
             }
 
             solution.counts.iterations += 1;
-            self.find_direction(problem, solution);
+            self.find_direction(problem, false, solution);
             problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
             solution.counts.convolutions += 1;
             step = self.step_length(problem, solution);
@@ -67,162 +71,121 @@ impl ActiveSet {
 
     /// p += a d, v += a K d; sets r and the free motions, and returns the sums over A and the deepest penetration outside.
     pub(super) fn advance(&mut self, problem: &Problem<'_>, solution: &mut Solution, a: f64) -> (ResidualSums, f64) {
-        if self.is_upright(problem) {
-            return self.advance_upright(problem, solution, a);
-        }
+        let Solution { motions, pressure, potential, .. } = solution;
         if a != 0.0 {
-            for k in contact_cells::all(&self.set.contacts) {
-                solution.pressure[k] += a * self.search.direction[k];
-            }
-            for (v, &kd) in solution.potential.iter_mut().zip(&self.search.image) {
-                *v += a * kd;
+            // r had no motion on A before the step: what K d adds is known, but for rounding
+            for (motion, &image) in motions.iter_mut().zip(&self.search.image_motions) {
+                *motion = motion.plus(a * problem.compliance, image);
             }
         }
-        let state = contact_cells::fit_motions(problem, &self.set.contacts, solution, &mut self.residual);
-        (state, problem.penetration(solution, |k| !self.set.member[k]))
+        let Search { direction, image, .. } = &self.search;
+        let fields = Fields { direction, image, pressure, potential, residual: &mut self.residual };
+        let mut state =
+            ResidualSums { greatest_gap: self.set.greatest_gap, cells: self.set.count(), ..ResidualSums::default() };
+        let (mut square, mut penetration, mut turned) = (0.0, 0.0_f64, 0.0_f64);
+        for (body, found) in self.passes.survey(problem, &self.set.runs, a, motions, fields).iter().enumerate() {
+            // The fit is that of a change of the last motion: what the cells at hand do not determine remains as it was.
+            let fit = self.set.fit(problem, body, &found.sums);
+            motions[body] = motions[body].plus(-1.0, fit);
+            self.residual_motions[body] = fit;
+            let (all, fitted) = (found.sums[3], (0..3).map(|m| fit.0[m] * found.sums[m]).sum::<f64>());
+            square += all;
+            state.square += all - fitted;
+            state.displacement += found.sums[4];
+            state.negative += found.sums[5];
+            if problem.bodies[body].tilts() {
+                turned = fit.0.iter().fold(turned, |most, y| most.max(y.abs()));
+                penetration = penetration.max(found.greatest());
+            } else {
+                penetration = penetration.max(found.greatest() - fit.0[0]);
+            }
+        }
+        // where a motion was far off, the difference is mostly rounding
+        if state.square < MIN_CENTRED_FRACTION * square {
+            state.square = self.subtract_motions(problem);
+        }
+        if turned > MAX_TURN_OVER_RMS * state.rms() {
+            penetration = self.passes.penetration(problem, &self.set.runs, motions, potential);
+        }
+        (state, penetration)
     }
 
-    fn advance_upright(&mut self, problem: &Problem<'_>, solution: &mut Solution, a: f64) -> (ResidualSums, f64) {
-        let motion = solution.motions[0].0[0];
-        let found = self.passes.survey(
-            a,
-            problem.compliance,
-            motion,
-            Fields {
-                gap: problem.gap,
-                direction: &self.search.direction,
-                image: &self.search.image,
-                pressure: &mut solution.pressure,
-                potential: &mut solution.potential,
-                residual: &mut self.residual,
-            },
-        );
-        let cells = self.passes.runs.count();
-        let count = cells.max(1) as f64;
-        self.residual_mean = if problem.modes(0).translates() { found.residual / count } else { 0.0 };
-        solution.motions[0].0[0] = motion - self.residual_mean;
-        let mut square = found.square - count * self.residual_mean * self.residual_mean;
-        // where the motion was far off, the difference is mostly rounding
-        if square < MIN_CENTRED_FRACTION * found.square {
-            square = self.passes.center(self.residual_mean, &mut self.residual, &mut self.preconditioned);
-            self.residual_mean = 0.0;
-        }
-        let Survey { displacement, negative, .. } = found;
-        let state = ResidualSums {
-            square,
-            displacement,
-            negative,
-            greatest_gap: self.set.greatest_gap,
-            cancellation: 0.0,
-            cells,
-        };
-        (state, (found.depth + solution.motions[0].0[0]).max(0.0))
+    /// Subtracts from r what is still to be subtracted, and sets z to it; returns Σ r².
+    fn subtract_motions(&mut self, problem: &Problem<'_>) -> f64 {
+        let (motions, z) = (&mut self.residual_motions, &mut self.preconditioned);
+        let square = self.passes.subtract(problem, &self.set.runs, motions, &mut self.residual, z);
+        motions.fill(ModeCoefficients::default());
+        square
     }
 
-    /// d ← z + β d without free motion on A; with pressures to bring to zero or into balance, d is the
-    /// whole change of p.
-    pub(super) fn find_direction(&mut self, problem: &Problem<'_>, solution: &mut Solution) {
-        let (length, pending) = (CORRECTION_LENGTH / problem.compliance, self.pending());
-        if self.is_upright(problem) {
-            return self.find_direction_upright(problem, solution, length, pending);
-        }
-        let z = &mut self.preconditioned;
-        z.fill(0.0);
-        for (contact, change) in self.set.contacts.iter().zip(&self.changes) {
-            contact.cells.iter().for_each(|&k| z[k as usize] = self.residual[k as usize]);
-            for &k in &change.leaving {
-                z[k as usize] = -solution.pressure[k as usize] / (length * self.preconditioner.diagonal());
-            }
-        }
-        self.preconditioner.apply(z);
-        solution.counts.preconditioner_applications += 1;
-
-        self.conjugate_preconditioned(problem, pending);
-
-        self.search.direction.fill(0.0);
-        let scale = if pending { length } else { 1.0 };
-        for (body, (contact, change)) in self.set.contacts.iter().zip(&self.changes).enumerate() {
-            let z = &self.preconditioned;
-            contact.cells.iter().for_each(|&k| self.search.direction[k as usize] = scale * z[k as usize]);
-            change.leaving.iter().for_each(|&k| self.search.direction[k as usize] = -solution.pressure[k as usize]);
-            if let Some(y) = change.correction {
-                let modes = problem.modes(body);
-                for k in contact.cells.iter().map(|&k| k as usize) {
-                    let p = solution.pressure[k].max(0.0);
-                    self.search.direction[k] += modes.balanced(y, k, p, self.shape[k]) - p;
-                }
-            }
-        }
-    }
-
-    fn find_direction_upright(&mut self, problem: &Problem<'_>, solution: &mut Solution, length: f64, pending: bool) {
-        let change = &self.changes[0];
-        self.passes.center(self.residual_mean, &mut self.residual, &mut self.preconditioned);
-        self.residual_mean = 0.0;
-        for &k in &change.leaving {
+    /// d ← z + β d without free motion on A, with z = r if `plain`; with pressures to bring to zero or into balance, d is
+    /// the whole change of p.
+    pub(super) fn find_direction(&mut self, problem: &Problem<'_>, plain: bool, solution: &mut Solution) {
+        let (length, pending) = (CORRECTION_LENGTH / problem.compliance, self.changes.any());
+        self.subtract_motions(problem);
+        for &k in &self.changes.leaving {
             let response = -solution.pressure[k as usize] / (length * self.preconditioner.diagonal());
             self.preconditioned[k as usize] = response;
         }
-        self.preconditioner.apply(&mut self.preconditioned);
-        solution.counts.preconditioner_applications += 1;
-
-        let [z, z_kd, kd, d] = self.passes.overlaps(&self.preconditioned, &self.search.image, &self.search.direction);
-        let share = if problem.modes(0).translates() { 1.0 / self.passes.runs.count().max(1) as f64 } else { 0.0 };
-        let beta = conjugate(self.search.energy, z_kd - share * z * kd, pending);
-        let scale = if pending { length } else { 1.0 };
-        // without a last direction, d holds values of an earlier solve
-        let shift = -share * if beta == 0.0 { z } else { z + beta * d };
-        self.passes.redirect([scale, beta, shift], &self.preconditioned, &mut self.search.direction);
-        for &k in &change.leaving {
-            self.search.direction[k as usize] = -solution.pressure[k as usize];
+        if !plain {
+            self.preconditioner.apply(&mut self.preconditioned);
+            solution.counts.preconditioner_applications += 1;
         }
-    }
 
-    /// z ← z + β d without free motion on A.
-    pub(super) fn conjugate_preconditioned(&mut self, problem: &Problem<'_>, pending: bool) {
-        let z = &mut self.preconditioned;
+        let (runs, z) = (&self.set.runs, &self.preconditioned);
+        let Search { direction, image, energy, shifts, .. } = &mut self.search;
         let mut overlap = 0.0;
-        for (body, ContactCells { cells, gram }) in self.set.contacts.iter().enumerate() {
-            problem.modes(body).project_out(gram, cells, z);
-            overlap += cells.iter().map(|&k| z[k as usize] * self.search.image[k as usize]).sum::<f64>();
+        let found = self.passes.overlaps(problem, runs, z, image, direction);
+        for (body, found) in found.iter().enumerate() {
+            let fit = self.set.fit(problem, body, &found.sums[..3]);
+            shifts[body] = ModeCoefficients::default().plus(-1.0, fit);
+            overlap += found.sums[9] - (0..3).map(|m| fit.0[m] * found.sums[3 + m]).sum::<f64>();
         }
-        let beta = conjugate(self.search.energy, overlap, pending);
-        if beta == 0.0 {
-            return;
+        let beta = conjugate(*energy, overlap, pending);
+        // without a last direction, d holds values of an earlier solve
+        if beta != 0.0 {
+            for (body, found) in found.iter().enumerate() {
+                shifts[body] = shifts[body].plus(-beta, self.set.fit(problem, body, &found.sums[6..9]));
+            }
         }
-        for (body, ContactCells { cells, gram }) in self.set.contacts.iter().enumerate() {
-            cells.iter().for_each(|&k| z[k as usize] += beta * self.search.direction[k as usize]);
-            problem.modes(body).project_out(gram, cells, z);
+        let scale = if pending { length } else { 1.0 };
+        self.passes.redirect(problem, runs, [scale, beta], shifts, z, direction);
+        for &k in &self.changes.leaving {
+            direction[k as usize] = -solution.pressure[k as usize];
+        }
+        if self.changes.corrects() {
+            let fields = [&*solution.pressure, &*self.shape];
+            self.passes.correct(problem, runs, &self.changes.corrections, fields, direction);
         }
     }
 
     /// The length a of the step along d, 1 for a correction. Brings cells that leave to p = 0.
     pub(super) fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> f64 {
-        let [slope, curvature] = if self.is_upright(problem) {
-            self.passes.slope_and_curvature(&self.residual, &self.search.direction, &self.search.image)
-        } else {
-            self.slope_and_curvature(&self.search.direction, &self.search.image)
-        };
-        let leaving = self.changes.iter().flat_map(|change| &change.leaving).map(|&k| k as usize);
-        self.search.energy = curvature + leaving.map(|k| self.search.direction[k] * self.search.image[k]).sum::<f64>();
-        if !self.pending() {
+        let [slope, curvature] = self.slope_and_curvature(problem);
+        let Search { direction, image, energy, .. } = &mut self.search;
+        let leaving = self.changes.leaving.iter().map(|&k| k as usize);
+        *energy = curvature + leaving.map(|k| direction[k] * image[k]).sum::<f64>();
+        if !self.changes.any() {
             // a direction that vanishes, as on a single cell, gains nothing
             let downhill = slope > 0.0 && curvature > 0.0;
             return if downhill { slope / (problem.compliance * curvature) } else { 0.0 };
         }
-        for change in &mut self.changes {
-            change.leaving.drain(..).for_each(|k| solution.pressure[k as usize] = 0.0);
-            change.correction = None;
-        }
+        self.changes.leaving.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
+        self.changes.clear();
         1.0
     }
 
-    /// Σ r d and Σ d·Kd on the listed cells of A.
-    pub(super) fn slope_and_curvature(&self, direction: &[f64], image: &[f64]) -> [f64; 2] {
-        let cells = contact_cells::all(&self.set.contacts);
-        cells.fold([0.0; 2], |[slope, curvature], k| {
-            [slope + self.residual[k] * direction[k], curvature + direction[k] * image[k]]
-        })
+    /// Σ r d and Σ d·Kd on A; notes how K d moves the bodies that tilt.
+    pub(super) fn slope_and_curvature(&mut self, problem: &Problem<'_>) -> [f64; 2] {
+        let Search { direction, image, image_motions, .. } = &mut self.search;
+        let found = self.passes.slope_and_curvature(problem, &self.set.runs, &self.residual, direction, image);
+        let mut sums = [0.0; 2];
+        for (body, found) in found.iter().enumerate() {
+            let tilts = problem.bodies[body].tilts();
+            image_motions[body] = if tilts { self.set.fit(problem, body, &found.sums) } else { Default::default() };
+            sums = [sums[0] + found.sums[3], sums[1] + found.sums[4]];
+        }
+        sums
     }
 }
 

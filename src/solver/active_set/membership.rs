@@ -3,9 +3,11 @@
 use super::{ActiveSet, LEAVE_OVER_RMS, Shape};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::cold_start;
-use crate::solver::contact_cells;
+use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{ResidualSums, Stop};
+use crate::solver::passes::NUMBERS;
 use crate::solver::problem::{Problem, Solution};
+use crate::solver::runs::Piece;
 
 impl ActiveSet {
     /// A = {p > 0}; other cells that carry pressure are to leave; the pressure on A is in balance. Fails with the body whose
@@ -17,98 +19,72 @@ impl ActiveSet {
         work: &mut Workspace,
     ) -> Result<(), usize> {
         self.search.energy = 0.0;
-        let upright = self.is_upright(problem);
-        if upright {
-            let fields = solution.pressure.iter().zip(problem.gap);
-            for (member, (&p, &gap)) in self.set.member.iter_mut().zip(fields) {
-                *member = (p > 0.0) & (gap < f64::INFINITY);
-            }
-        } else {
-            self.search.direction.fill(0.0);
-            self.search.image.fill(0.0);
-            for (k, (member, &p)) in self.set.member.iter_mut().zip(&solution.pressure).enumerate() {
-                *member = p > 0.0 && problem.possible(k);
-            }
+        let fields = solution.pressure.iter().zip(problem.gap);
+        for (member, (&p, &gap)) in self.set.member.iter_mut().zip(fields) {
+            *member = (p > 0.0) & (gap < f64::INFINITY);
         }
-        self.list_cells(problem);
+        if (0..problem.bodies.len()).any(|body| problem.released(body)) {
+            let members = self.set.member.iter_mut().enumerate();
+            members.for_each(|(k, member)| *member &= !problem.released(problem.owner(k)));
+        }
+        self.set.update(problem);
         let mut fresh = false;
-        for (body, contact) in self.set.contacts.iter_mut().enumerate() {
-            if contact.cells.is_empty() && (!upright || self.passes.runs.count() == 0) && !problem.released(body) {
+        for body in 0..problem.bodies.len() {
+            if self.set.count_under(body) == 0 && !problem.released(body) {
                 // a guess without positive pressure may hold negative ones, which v includes
                 fresh |= solution.pressure.iter().any(|&p| p != 0.0);
                 // K⁻¹ of a uniform displacement, but for its scale, is the pressure under a flat punch
-                let sharpen = |cells: &[u32], solution: &mut Solution| {
+                let sharpen = |set: &ContactSet, solution: &mut Solution| {
                     let shape = &mut self.preconditioned;
                     shape.fill(0.0);
-                    cells.iter().for_each(|&k| shape[k as usize] = solution.pressure[k as usize]);
+                    let cells = || set.cells(problem, body);
+                    cells().for_each(|k| shape[k] = solution.pressure[k]);
                     self.preconditioner.apply(shape);
                     solution.counts.preconditioner_applications += 1;
-                    let sum = |field: &[f64]| cells.iter().map(|&k| field[k as usize].max(0.0)).sum::<f64>();
+                    let sum = |field: &[f64]| cells().map(|k| field[k].max(0.0)).sum::<f64>();
                     let scale = sum(&solution.pressure) / sum(shape);
-                    cells.iter().for_each(|&k| solution.pressure[k as usize] = scale * shape[k as usize].max(0.0));
+                    cells().for_each(|k| solution.pressure[k] = scale * shape[k].max(0.0));
                 };
-                if !cold_start(problem, body, &mut contact.cells, solution, sharpen) {
+                if !cold_start(problem, body, &mut self.set, solution, sharpen) {
                     return Err(body);
                 }
-                contact.keep_pressed(problem.modes(body), &solution.pressure);
-                contact.cells.iter().for_each(|&k| self.set.member[k as usize] = true);
-                fresh |= !contact.cells.is_empty();
+                self.set.keep_pressed(problem, body, &solution.pressure);
+                fresh |= self.set.count_under(body) > 0;
             }
         }
         if fresh {
-            self.find_runs(problem);
             solution.convolve(problem, work);
         }
-        self.changes.iter_mut().for_each(|change| change.leaving.clear());
+        self.changes.clear();
         for (k, (&p, &member)) in solution.pressure.iter().zip(&self.set.member).enumerate() {
             if (p != 0.0) & !member {
-                self.changes[problem.owner(k)].leaving.push(k as u32);
+                self.changes.leaving.push(k as u32);
             }
         }
         self.balance(problem, Shape::Pressure, solution, work)
     }
 
-    /// Whether the next direction has pressures to bring to zero or into balance.
-    pub(super) fn pending(&self) -> bool {
-        self.changes.iter().any(|change| !change.leaving.is_empty() || change.correction.is_some())
-    }
-
-    /// Finds the runs of cells in A.
-    pub(super) fn find_runs(&mut self, problem: &Problem<'_>) {
-        self.passes.runs.find(&self.set.member);
-        self.set.greatest_gap = self.passes.runs.greatest(problem.gap);
-    }
-
-    /// Finds the runs of cells in A, and lists its cells unless the runs say it all.
-    fn list_cells(&mut self, problem: &Problem<'_>) {
-        if self.is_upright(problem) {
-            self.find_runs(problem);
-            self.set.contacts[0].cells.clear();
-        } else {
-            self.list_all_cells(problem);
-        }
-    }
-
-    /// Finds the runs of cells in A, and lists its cells.
-    pub(super) fn list_all_cells(&mut self, problem: &Problem<'_>) {
-        self.find_runs(problem);
-        contact_cells::list(problem, &mut self.set.contacts, self.passes.runs.ranges().flatten());
-    }
-
     /// Takes cells into A that penetrate deeper than `least`, but for those that are about to leave: they would bring a
     /// negative pressure with them, and change the force.
     pub(super) fn add_penetrating_cells(&mut self, problem: &Problem<'_>, least: f64, solution: &Solution) {
-        let upright = self.is_upright(problem);
-        let (c, motion) = (problem.compliance, solution.motions[0].0[0]);
-        for k in 0..self.set.member.len() {
-            self.set.member[k] |= solution.pressure[k] == 0.0
-                && if upright {
-                    motion - (c * solution.potential[k] + problem.gap[k]) > least
-                } else {
-                    problem.possible(k) && problem.depth(solution, k) > least
-                };
-        }
-        self.list_cells(problem);
+        let c = problem.compliance;
+        let ContactSet { member, runs, .. } = &mut self.set;
+        runs.walk(&(0..problem.gap.len()), problem.cut(), |Piece { cells, body }, inside| {
+            if inside || problem.released(body) {
+                return;
+            }
+            let [start, slope] = problem.modes(body).line(cells.start).of(solution.motions[body]);
+            let joins = |p: f64, v: f64, h: f64, motion: f64| (p == 0.0) & (motion - (c * v + h) > least);
+            let fields = solution.potential[cells.clone()].iter().zip(&problem.gap[cells.clone()]);
+            let values = member[cells.clone()].iter_mut().zip(&solution.pressure[cells]).zip(fields);
+            if slope == 0.0 {
+                values.for_each(|((member, &p), (&v, &h))| *member = joins(p, v, h, start));
+            } else {
+                let values = values.zip(&NUMBERS);
+                values.for_each(|(((member, &p), (&v, &h)), &j)| *member = joins(p, v, h, start + slope * j));
+            }
+        });
+        self.set.update(problem);
     }
 
     /// Whether negative pressures are the larger part of the error, or all that is left of it.
@@ -125,20 +101,11 @@ impl ActiveSet {
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Result<(), usize> {
-        if self.is_upright(problem) {
-            for k in self.passes.runs.ranges().flatten().filter(|&k| solution.pressure[k] < 0.0) {
-                self.set.member[k] = false;
-                self.changes[0].leaving.push(k as u32);
-            }
-        } else {
-            for (contact, change) in self.set.contacts.iter().zip(&mut self.changes) {
-                for &k in contact.cells.iter().filter(|&&k| solution.pressure[k as usize] < 0.0) {
-                    self.set.member[k as usize] = false;
-                    change.leaving.push(k);
-                }
-            }
+        for k in self.set.runs.cells().filter(|&k| solution.pressure[k] < 0.0) {
+            self.set.member[k] = false;
+            self.changes.leaving.push(k as u32);
         }
-        self.list_cells(problem);
+        self.set.update(problem);
         self.balance(problem, Shape::Punch, solution, work)
     }
 }

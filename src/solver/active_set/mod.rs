@@ -32,7 +32,7 @@ mod iteration;
 mod membership;
 
 use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::contact_cells::ContactCells;
+use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{Outcome, PENETRATION_SLACK, Stop};
 use crate::solver::passes::Passes;
 use crate::solver::preconditioner::Preconditioner;
@@ -55,31 +55,20 @@ const CORRECTION_LENGTH: f64 = 0.5;
 #[derive(Debug, Clone)]
 pub(crate) struct ActiveSet {
     preconditioner: Preconditioner,
-    set: Members,
-    /// The runs of cells in A, and the passes over them.
+    /// The active set A.
+    set: ContactSet,
     passes: Passes,
     /// Rounding of c K p of the guess: where an approach is given, the pressure may fall far below that of the guess.
     guess_rounding: f64,
-    changes: Vec<PendingChange>,
+    changes: PendingChanges,
     /// r on A.
     residual: Vec<f64>,
-    /// What is still to be subtracted from it: its mean, by which the motion was corrected.
-    residual_mean: f64,
+    /// The fit of r on A under each body, by which its motion was corrected: still to be subtracted from r.
+    residual_motions: Vec<ModeCoefficients>,
     preconditioned: Vec<f64>,
     search: Search,
     /// The shape of corrections of the balance: allocated by the first solve with a tilting load or several bodies.
     shape: Vec<f64>,
-}
-
-/// The active set A.
-#[derive(Debug, Clone)]
-struct Members {
-    /// Whether a cell is in A.
-    member: Vec<bool>,
-    /// The cells of A by body; of a single body that does not tilt the runs are enough.
-    contacts: Vec<ContactCells>,
-    /// The greatest |gap| on A.
-    greatest_gap: f64,
 }
 
 /// The search direction d.
@@ -90,15 +79,34 @@ struct Search {
     image: Vec<f64>,
     /// d·Kd.
     energy: f64,
+    /// The fit of K d on A under each body that tilts.
+    image_motions: Vec<ModeCoefficients>,
+    /// What makes d free of motion on A.
+    shifts: Vec<ModeCoefficients>,
 }
 
-/// What the next direction changes of the pressure under one body.
+/// What the next direction changes of the pressure.
 #[derive(Debug, Clone)]
-struct PendingChange {
+struct PendingChanges {
     /// Cells outside A whose pressure it brings to zero.
     leaving: Vec<u32>,
-    /// The y of the change shape · B y by which it balances the pressure.
-    correction: Option<ModeCoefficients>,
+    /// For each body the y of the change shape · B y by which it balances the pressure, zero if it is in balance.
+    corrections: Vec<ModeCoefficients>,
+}
+
+impl PendingChanges {
+    fn corrects(&self) -> bool {
+        self.corrections.iter().any(|y| *y != ModeCoefficients::default())
+    }
+
+    fn any(&self) -> bool {
+        !self.leaving.is_empty() || self.corrects()
+    }
+
+    fn clear(&mut self) {
+        self.leaving.clear();
+        self.corrections.fill(ModeCoefficients::default());
+    }
 }
 
 /// The shape of a correction of the balance.
@@ -113,23 +121,23 @@ enum Shape {
 impl ActiveSet {
     pub(crate) fn new(kernel: &LocalKernel, bodies: usize) -> ActiveSet {
         let cells = kernel.grid().len();
-        let field = vec![0.0; cells];
+        let (field, motions) = (vec![0.0; cells], vec![ModeCoefficients::default(); bodies]);
         ActiveSet {
             preconditioner: Preconditioner::new(kernel),
-            set: Members {
-                member: vec![false; cells],
-                contacts: ContactCells::of_bodies(bodies, cells),
-                greatest_gap: 0.0,
-            },
-            passes: Passes::new(cells),
+            set: ContactSet::new(cells, bodies),
+            passes: Passes::new(cells, bodies),
             guess_rounding: 0.0,
-            residual_mean: 0.0,
-            changes: (0..bodies)
-                .map(|_| PendingChange { leaving: Vec::with_capacity(cells), correction: None })
-                .collect(),
+            changes: PendingChanges { leaving: Vec::with_capacity(cells), corrections: motions.clone() },
             residual: field.clone(),
+            residual_motions: motions.clone(),
             preconditioned: field.clone(),
-            search: Search { direction: field.clone(), image: field, energy: 0.0 },
+            search: Search {
+                direction: field.clone(),
+                image: field,
+                energy: 0.0,
+                image_motions: motions.clone(),
+                shifts: motions,
+            },
             shape: Vec::new(),
         }
     }
@@ -159,10 +167,5 @@ impl ActiveSet {
             Outcome::Converged if !self.close_balance(problem, solution) => Outcome::Stagnated,
             outcome => outcome,
         }
-    }
-
-    /// Whether there is one body that does not tilt: then everything is done in a few passes ([`Passes`]).
-    fn is_upright(&self, problem: &Problem<'_>) -> bool {
-        self.set.contacts.len() == 1 && !problem.modes(0).tilts()
     }
 }

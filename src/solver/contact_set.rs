@@ -1,0 +1,180 @@
+//! The set of cells in contact, and the fit of the free motions on them.
+
+use std::ops::Range;
+
+use crate::solver::problem::Problem;
+use crate::solver::rigid_motion::{Gram, ModeCoefficients};
+use crate::solver::runs::Runs;
+use crate::sum::{greatest, sum};
+
+/// The cells in contact under all bodies.
+#[derive(Debug, Clone)]
+pub(crate) struct ContactSet {
+    /// Whether a cell is in contact. After changes, [`ContactSet::update`] is due.
+    pub(crate) member: Vec<bool>,
+    pub(crate) runs: Runs,
+    bodies: Vec<BodyContact>,
+    /// The greatest |gap| in contact.
+    pub(crate) greatest_gap: f64,
+}
+
+/// What the set says of one body.
+#[derive(Debug, Clone, Default)]
+struct BodyContact {
+    /// Number of cells.
+    cells: usize,
+    /// The products of the free modes over the cells of a body that tilts.
+    gram: Gram,
+    /// From the first cell to the last.
+    span: Range<usize>,
+}
+
+impl ContactSet {
+    pub(crate) fn new(cells: usize, bodies: usize) -> ContactSet {
+        ContactSet {
+            member: vec![false; cells],
+            runs: Runs::with_capacity(cells),
+            bodies: vec![BodyContact::default(); bodies],
+            greatest_gap: 0.0,
+        }
+    }
+
+    /// Finds the runs of the members, and what belongs to them.
+    pub(crate) fn update(&mut self, problem: &Problem<'_>) {
+        self.runs.find(&self.member);
+        self.bodies.fill(BodyContact::default());
+        self.greatest_gap = 0.0;
+        for piece in self.runs.inside(&(0..self.member.len()), problem.cut()) {
+            let contact = &mut self.bodies[piece.body];
+            if problem.bodies[piece.body].tilts() {
+                contact.gram.add_cells(&problem.modes(piece.body).line(piece.cells.start), piece.cells.len());
+            }
+            let first = if contact.cells == 0 { piece.cells.start } else { contact.span.start };
+            contact.span = first..piece.cells.end;
+            contact.cells += piece.cells.len();
+            self.greatest_gap = self.greatest_gap.max(greatest(&problem.gap[piece.cells]));
+        }
+    }
+
+    /// Number of cells in contact under any body.
+    pub(crate) fn count(&self) -> usize {
+        self.bodies.iter().map(|contact| contact.cells).sum()
+    }
+
+    /// Number of cells in contact under one body.
+    pub(crate) fn count_under(&self, body: usize) -> usize {
+        self.bodies[body].cells
+    }
+
+    /// The cells in contact under one body, in pieces along which its modes are affine.
+    pub(crate) fn pieces(&self, problem: &Problem<'_>, body: usize) -> impl Iterator<Item = Range<usize>> + Clone {
+        let pieces = self.runs.inside(&self.bodies[body].span, problem.cut());
+        pieces.filter(move |piece| piece.body == body).map(|piece| piece.cells)
+    }
+
+    /// The cells in contact under one body.
+    pub(crate) fn cells(&self, problem: &Problem<'_>, body: usize) -> impl Iterator<Item = usize> + Clone {
+        self.pieces(problem, body).flatten()
+    }
+
+    /// Σ values over the cells in contact under one body.
+    pub(crate) fn sum(&self, problem: &Problem<'_>, body: usize, values: &[f64]) -> f64 {
+        self.pieces(problem, body).map(|piece| sum(&values[piece])).sum()
+    }
+
+    /// The cells in contact under one body, and the value of a motion on each of them.
+    pub(crate) fn displacements(
+        &self,
+        problem: &Problem<'_>,
+        body: usize,
+        motion: ModeCoefficients,
+    ) -> impl Iterator<Item = (usize, f64)> {
+        let modes = problem.modes(body);
+        self.pieces(problem, body).flat_map(move |piece| {
+            let [start, slope] = modes.line(piece.start).of(motion);
+            piece.enumerate().map(move |(j, k)| (k, start + slope * j as f64))
+        })
+    }
+
+    /// The motion of a body that fits a field best on its cells in contact, from Σ B f over them; zero for what they do not
+    /// determine.
+    pub(crate) fn fit(&self, problem: &Problem<'_>, body: usize, sums: &[f64]) -> ModeCoefficients {
+        let BodyContact { cells, ref gram, .. } = self.bodies[body];
+        problem.modes(body).fit(gram, cells, [sums[0], sums[1], sums[2]])
+    }
+
+    /// Takes in all cells that a body may touch.
+    pub(crate) fn press_possible(&mut self, problem: &Problem<'_>, body: usize) {
+        for (k, member) in self.member.iter_mut().enumerate() {
+            *member |= problem.gap[k].is_finite() && problem.owner(k) == body;
+        }
+        self.update(problem);
+    }
+
+    /// Keeps of the cells of a body only those with positive pressure.
+    pub(crate) fn keep_pressed(&mut self, problem: &Problem<'_>, body: usize, pressure: &[f64]) {
+        let own = self.member.iter_mut().enumerate().filter(|(k, _)| problem.owner(*k) == body);
+        own.for_each(|(k, member)| *member &= pressure[k] > 0.0);
+        self.update(problem);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Grid;
+    use crate::kernel::InfluenceKernel;
+    use crate::solver::rigid_motion::Freedom;
+
+    /// The fit finds a motion again, and a balance carries force and moments.
+    #[test]
+    fn fit_and_balance_hold_for_every_body() {
+        let grid = Grid::new([40, 300], [2.0, 3.0]).unwrap();
+        let kernel = InfluenceKernel::half_space(&grid).unwrap().on(&grid, [false; 2]);
+        let owner: Vec<u16> = (0..grid.len()).map(|k| u16::from(k % 300 > 120) + u16::from(k % 300 > 280)).collect();
+        let freedom = |translation, tilt, point| Freedom { translation, tilt, point, total: 5.0 };
+        let bodies = [
+            freedom(true, [true; 2], [0.1, -1.0]),
+            freedom(true, [false, true], [0.0, 0.4]),
+            freedom(false, [true, false], [0.2, 0.0]),
+        ];
+        let gap = vec![0.5; grid.len()];
+        let problem = Problem {
+            kernel: &kernel,
+            compliance: 1.0,
+            gap: &gap,
+            prescribed: 0.0,
+            bodies: &bodies,
+            owner: Some(&owner),
+        };
+        let mut set = ContactSet::new(grid.len(), 3);
+        set.member.iter_mut().enumerate().for_each(|(k, member)| *member = k % 17 > 3);
+        set.update(&problem);
+        assert_eq!(set.count(), set.member.iter().filter(|member| **member).count());
+        assert_eq!(set.greatest_gap, 0.5);
+        let pressure: Vec<f64> = (0..grid.len()).map(|k| 1.0 + 0.5 * (0.3 * k as f64).sin()).collect();
+        for (body, freedom) in bodies.iter().enumerate() {
+            let modes = problem.modes(body);
+            let cells: Vec<usize> = set.cells(&problem, body).collect();
+            assert!(cells.iter().all(|&k| set.member[k] && problem.owner(k) == body));
+            assert_eq!(cells.len(), set.count_under(body));
+            let motion = ModeCoefficients([0, 1, 2].map(|m| if modes.free()[m] { 0.3 - m as f64 } else { 0.0 }));
+            let mut sums = [0.0; 3];
+            for (k, displacement) in set.displacements(&problem, body, motion) {
+                assert!((displacement - modes.displacement(motion, k)).abs() < 1e-14);
+                (0..3).for_each(|m| sums[m] += modes.at(k)[m] * displacement);
+            }
+            let fit = set.fit(&problem, body, &sums);
+            assert!((0..3).all(|m| (fit.0[m] - motion.0[m]).abs() < 1e-12), "{body}: {fit:?}");
+
+            let p = |k: usize| pressure[k];
+            let y = modes.balance(set.pieces(&problem, body), p, p).unwrap();
+            let mut carried = [0.0; 3];
+            for (k, factor) in set.displacements(&problem, body, y) {
+                (0..3).for_each(|m| carried[m] += modes.at(k)[m] * (p(k) + p(k) * factor).max(0.0));
+            }
+            let wanted = modes.load().map(|share| share * freedom.total);
+            assert!((0..3).all(|m| (carried[m] - wanted[m]).abs() < 1e-11), "{body}: {carried:?}");
+        }
+    }
+}
