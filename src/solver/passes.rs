@@ -58,7 +58,7 @@ impl Passes {
                 if a != 0.0 {
                     add(v, a, &image[cells.clone()]);
                 }
-                let line = problem.modes(body).line(cells.start);
+                let line = problem.line(body, cells.start);
                 let motion = line.of(motions[body]);
                 if !inside {
                     if !problem.released(body) {
@@ -91,7 +91,7 @@ impl Passes {
         let found = self.bands.over([], |band, [], found| {
             runs.walk(&band, cut, |Piece { cells, body }, inside| {
                 if !inside && !problem.released(body) {
-                    let motion = problem.modes(body).line(cells.start).of(motions[body]);
+                    let motion = problem.line(body, cells.start).of(motions[body]);
                     note_depth(&mut found[body], motion, c, &potential[cells.clone()], &problem.gap[cells]);
                 }
             });
@@ -116,7 +116,7 @@ impl Passes {
                 if !inside {
                     return z.fill(0.0);
                 }
-                let motion = problem.modes(body).line(cells.start).of(motions[body]);
+                let motion = problem.line(body, cells.start).of(motions[body]);
                 map(motion, z, [&*r, &*r], |_, r, _, motion| r - motion);
                 r.copy_from_slice(z);
                 found[body].sums[0] += sum_of_pairs(z, z, |z, _| z * z);
@@ -137,7 +137,7 @@ impl Passes {
         let cut = problem.cut();
         self.bands.over([], |band, [], found| {
             for Piece { cells, body } in runs.inside(&band, cut) {
-                let (sums, line) = (&mut found[body].sums, problem.modes(body).line(cells.start));
+                let (sums, line) = (&mut found[body].sums, problem.line(body, cells.start));
                 let (z, kd, d) = (&z[cells.clone()], &image[cells.clone()], &direction[cells]);
                 add_modes(&mut sums[..3], &line, z);
                 add_modes(&mut sums[3..6], &line, kd);
@@ -164,7 +164,7 @@ impl Passes {
                 if !inside {
                     return d.fill(0.0);
                 }
-                let motion = problem.modes(body).line(cells.start).of(motions[body]);
+                let motion = problem.line(body, cells.start).of(motions[body]);
                 let z = &z[cells];
                 if beta == 0.0 {
                     map(motion, d, [z, z], |_, z, _, motion| scale * (z + motion));
@@ -188,7 +188,7 @@ impl Passes {
         self.bands.over([direction], |band, [d], _| {
             for Piece { cells, body } in runs.inside(&band, cut) {
                 let d = &mut d[cells.start - band.start..cells.end - band.start];
-                let motion = problem.modes(body).line(cells.start).of(motions[body]);
+                let motion = problem.line(body, cells.start).of(motions[body]);
                 map(motion, d, [&pressure[cells.clone()], &shape[cells]], |d, p, shape, motion| {
                     let p = p.max(0.0);
                     d + ((p + shape * motion).max(0.0) - p)
@@ -212,7 +212,7 @@ impl Passes {
                 let sums = &mut found[body].sums;
                 let (r, d, kd) = (&residual[cells.clone()], &direction[cells.clone()], &image[cells.clone()]);
                 if problem.bodies[body].tilts() {
-                    add_modes(&mut sums[..3], &problem.modes(body).line(cells.start), kd);
+                    add_modes(&mut sums[..3], &problem.line(body, cells.start), kd);
                 }
                 sums[3] += sum_of_pairs(r, d, |r, d| r * d);
                 sums[4] += sum_of_pairs(d, kd, |d, kd| d * kd);
@@ -229,14 +229,16 @@ fn add(x: &mut [f64], a: f64, y: &[f64]) {
 }
 
 /// Adds Σ B f over a piece.
+#[inline]
 fn add_modes(sums: &mut [f64], line: &Line, f: &[f64]) {
-    // the sum of a body that does not tilt is all that it costs
+    // a body that does not tilt does not pay for Σ j f
     let moment = if line.changes() { sum_of_pairs(f, &NUMBERS[..f.len()], |f, j| f * j) } else { 0.0 };
     let part = line.sums([sum(f), moment]);
     sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
 }
 
 /// Takes the depths of a piece into the greatest.
+#[inline]
 fn note_depth(found: &mut Found, [start, slope]: [f64; 2], c: f64, v: &[f64], h: &[f64]) {
     if slope == 0.0 {
         found.raise([v, h, h], |v, h, _| start - (c * v + h));

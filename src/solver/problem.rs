@@ -1,7 +1,7 @@
 //! The contact problem of one step, and its solution.
 
 use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::rigid_motion::{Freedom, ModeCoefficients, Modes};
+use crate::solver::rigid_motion::{Freedom, Line, ModeCoefficients, Modes};
 use crate::solver::runs::Cut;
 use crate::solver::trace::Trace;
 use crate::sum::greatest;
@@ -57,6 +57,13 @@ pub(crate) struct Counts {
 impl<'a> Problem<'a> {
     pub(crate) fn modes(&self, body: usize) -> Modes<'a> {
         Modes::new(self.kernel.grid(), self.bodies[body])
+    }
+
+    /// The free modes of a body along a row, from cell `k` on.
+    #[inline]
+    pub(crate) fn line(&self, body: usize, k: usize) -> Line {
+        // without tilt, the common scene, there is nothing to compute
+        if self.bodies[body].tilts() { self.modes(body).line(k) } else { Line::UPRIGHT }
     }
 
     /// How the cells are cut into pieces along which the motion of a body is affine.

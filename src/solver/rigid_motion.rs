@@ -244,7 +244,7 @@ impl<'a> Modes<'a> {
 
 impl Line {
     /// Of a body that does not tilt.
-    const UPRIGHT: Line = Line { first: [1.0, 0.0, 0.0], step: 0.0 };
+    pub(crate) const UPRIGHT: Line = Line { first: [1.0, 0.0, 0.0], step: 0.0 };
 
     /// The same modes, with j counted from elsewhere.
     fn from(self, j: f64) -> Line {

@@ -27,7 +27,7 @@ pub(crate) struct Window {
 #[derive(Debug, Clone)]
 enum ContactSolver {
     ActiveSet(Box<ActiveSet>),
-    PolonskyKeer(PolonskyKeer),
+    PolonskyKeer(Box<PolonskyKeer>),
 }
 
 impl Window {
@@ -35,7 +35,9 @@ impl Window {
         let kernel = scene.kernel.on(region.grid(), region.folded());
         let solver = match scene.settings.solver {
             Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, scene.bodies))),
-            Solver::PolonskyKeer => ContactSolver::PolonskyKeer(PolonskyKeer::new(region.len(), scene.bodies)),
+            Solver::PolonskyKeer => {
+                ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(region.len(), scene.bodies)))
+            }
         };
         Window {
             work: kernel.workspace(),

@@ -73,7 +73,7 @@ impl ActiveSet {
             if inside || problem.released(body) {
                 return;
             }
-            let [start, slope] = problem.modes(body).line(cells.start).of(solution.motions[body]);
+            let [start, slope] = problem.line(body, cells.start).of(solution.motions[body]);
             let joins = |p: f64, v: f64, h: f64, motion: f64| (p == 0.0) & (motion - (c * v + h) > least);
             let fields = solution.potential[cells.clone()].iter().zip(&problem.gap[cells.clone()]);
             let values = member[cells.clone()].iter_mut().zip(&solution.pressure[cells]).zip(fields);
