@@ -24,20 +24,21 @@ impl Found {
         self.greatest.into_iter().fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Takes the values of `f` for every pair of values, and a third, into the maximum.
+    /// Takes the values of `f` for every pair of values, and its number, into the maximum.
     #[inline(always)]
-    pub(crate) fn raise(&mut self, [x, y, z]: [&[f64]; 3], f: impl Fn(f64, f64, f64) -> f64) {
+    pub(crate) fn raise(&mut self, [x, y]: [&[f64]; 2], f: impl Fn(f64, f64, f64) -> f64) {
         let mut lanes = self.greatest;
         let larger = |a: f64, b: f64| if b > a { b } else { a };
-        let ((x, x_rest), (y, y_rest), (z, z_rest)) = (x.as_chunks(), y.as_chunks(), z.as_chunks());
-        for ((x, y), z) in x.iter().zip(y).zip(z) {
-            let (x, y, z): (&[f64; LANES], &[f64; LANES], &[f64; LANES]) = (x, y, z);
+        let ((x, x_rest), (y, y_rest)) = (x.as_chunks::<LANES>(), y.as_chunks::<LANES>());
+        let mut numbers = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+        for (x, y) in x.iter().zip(y) {
             for lane in 0..LANES {
-                lanes[lane] = larger(lanes[lane], f(x[lane], y[lane], z[lane]));
+                lanes[lane] = larger(lanes[lane], f(x[lane], y[lane], numbers[lane]));
             }
+            numbers.iter_mut().for_each(|number| *number += LANES as f64);
         }
-        for (lane, ((&x, &y), &z)) in lanes.iter_mut().zip(x_rest.iter().zip(y_rest).zip(z_rest)) {
-            *lane = larger(*lane, f(x, y, z));
+        for ((lane, number), (&x, &y)) in lanes.iter_mut().zip(numbers).zip(x_rest.iter().zip(y_rest)) {
+            *lane = larger(*lane, f(x, y, number));
         }
         self.greatest = lanes;
     }

@@ -117,8 +117,15 @@ impl Passes {
                     return z.fill(0.0);
                 }
                 let motion = problem.line(body, cells.start).of(motions[body]);
-                map(motion, z, [&*r, &*r], |_, r, _, motion| r - motion);
-                r.copy_from_slice(z);
+                if motion[1] == 0.0 {
+                    for (z, r) in z.iter_mut().zip(r) {
+                        *r -= motion[0];
+                        *z = *r;
+                    }
+                } else {
+                    map(motion, z, [&*r, &*r], |_, r, _, motion| r - motion);
+                    r.copy_from_slice(z);
+                }
                 found[body].sums[0] += sum_of_pairs(z, z, |z, _| z * z);
             });
         });
@@ -231,7 +238,10 @@ fn add(x: &mut [f64], a: f64, y: &[f64]) {
 /// Adds Σ B f over a piece.
 #[inline]
 fn add_modes(sums: &mut [f64], line: &Line, f: &[f64]) {
-    // a body that does not tilt does not pay for Σ j f
+    if line.upright {
+        sums[0] += sum(f);
+        return;
+    }
     let moment = if line.changes() { sum_of_pairs(f, &NUMBERS[..f.len()], |f, j| f * j) } else { 0.0 };
     let part = line.sums([sum(f), moment]);
     sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
@@ -241,9 +251,9 @@ fn add_modes(sums: &mut [f64], line: &Line, f: &[f64]) {
 #[inline]
 fn note_depth(found: &mut Found, [start, slope]: [f64; 2], c: f64, v: &[f64], h: &[f64]) {
     if slope == 0.0 {
-        found.raise([v, h, h], |v, h, _| start - (c * v + h));
+        found.raise([v, h], |v, h, _| start - (c * v + h));
     } else {
-        found.raise([v, h, &NUMBERS[..v.len()]], |v, h, j| start + slope * j - (c * v + h));
+        found.raise([v, h], |v, h, j| start + slope * j - (c * v + h));
     }
 }
 

@@ -86,6 +86,8 @@ pub(crate) struct Modes<'a> {
 pub(crate) struct Line {
     first: [f64; 3],
     step: f64,
+    /// Whether the body does not tilt, which is quicker.
+    pub(crate) upright: bool,
 }
 
 /// Σ w B Bᵀ over some cells.
@@ -123,7 +125,7 @@ impl<'a> Modes<'a> {
             return Line::UPRIGHT;
         }
         let step = if self.freedom.tilt[1] { self.grid.spacing()[1] / self.scale[1] } else { 0.0 };
-        Line { first: self.at(k), step }
+        Line { first: self.at(k), step, upright: false }
     }
 
     /// Which of ω, α1 and α2 are free.
@@ -244,7 +246,7 @@ impl<'a> Modes<'a> {
 
 impl Line {
     /// Of a body that does not tilt.
-    pub(crate) const UPRIGHT: Line = Line { first: [1.0, 0.0, 0.0], step: 0.0 };
+    pub(crate) const UPRIGHT: Line = Line { first: [1.0, 0.0, 0.0], step: 0.0, upright: true };
 
     /// The same modes, with j counted from elsewhere.
     fn from(self, j: f64) -> Line {
@@ -258,7 +260,11 @@ impl Line {
     }
 
     /// A motion on the first cell, and its increase from cell to cell.
+    #[inline]
     pub(crate) fn of(&self, motion: ModeCoefficients) -> [f64; 2] {
+        if self.upright {
+            return [motion.0[0], 0.0];
+        }
         [dot(self.first, motion.0), self.step * motion.0[2]]
     }
 
