@@ -14,6 +14,9 @@ pub(crate) struct Trial {
     pub(super) free: Vec<Freedom>,
     /// How many times the last step the guess reaches ahead.
     pub(super) reach: f64,
+    /// Cells that are likely to be in contact, and whether that is known.
+    pub(super) likely: Vec<bool>,
+    pub(super) foreseen: bool,
 }
 
 impl Trial {
@@ -24,6 +27,8 @@ impl Trial {
             gap: vec![0.0; cells],
             free: vec![nothing_free; bodies],
             reach: 0.0,
+            likely: vec![false; cells],
+            foreseen: false,
         }
     }
 }

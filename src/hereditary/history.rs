@@ -200,6 +200,12 @@ impl History {
         self.before_is_kept.then(|| self.trial())
     }
 
+    /// The change of the displacement in the last step, once the next is predicted; none where it is not kept.
+    pub(crate) fn last_change(&self) -> Option<&[f64]> {
+        let [change, _] = self.displacement.past.differences();
+        (!change.is_empty()).then_some(change)
+    }
+
     /// Whether the displacement followed a quadratic in the step committed last; that of an elastic body, which depends on no
     /// past, may follow any.
     pub(crate) fn followed_quadratic(&self, last: Interval) -> bool {

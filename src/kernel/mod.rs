@@ -240,6 +240,11 @@ impl LocalKernel {
         SpectralOperator::from_symbol(layout, symbol)
     }
 
+    /// Axes along which the cells are one whole period.
+    pub(crate) fn periodic_axes(&self) -> [bool; 2] {
+        [0, 1].map(|axis| self.influence.ends()[axis] == Ends::Periodic && !self.folded[axis])
+    }
+
     /// Number of mirror images of each cell, itself included.
     pub(crate) fn images(&self) -> f64 {
         images(self.folded) as f64

@@ -16,6 +16,8 @@ pub(crate) struct ContactSet {
     bodies: Vec<BodyContact>,
     /// The greatest |gap| in contact.
     pub(crate) greatest_gap: f64,
+    /// How often the set was updated: what is made for the set is made anew where this has changed.
+    pub(crate) version: u64,
 }
 
 /// What the set says of one body.
@@ -36,11 +38,13 @@ impl ContactSet {
             runs: Runs::with_capacity(cells),
             bodies: vec![BodyContact::default(); bodies],
             greatest_gap: 0.0,
+            version: 0,
         }
     }
 
     /// Finds the runs of the members, and what belongs to them.
     pub(crate) fn update(&mut self, problem: &Problem<'_>) {
+        self.version += 1;
         self.runs.find(&self.member);
         self.bodies.fill(BodyContact::default());
         self.greatest_gap = 0.0;
@@ -146,6 +150,7 @@ mod tests {
             prescribed: 0.0,
             bodies: &bodies,
             owner: Some(&owner),
+            likely: None,
         };
         let mut set = ContactSet::new(grid.len(), 3);
         set.member.iter_mut().enumerate().for_each(|(k, member)| *member = k % 17 > 3);

@@ -4,6 +4,7 @@ mod active_set;
 mod bands;
 mod cold_start;
 mod contact_set;
+mod extension;
 mod outcome;
 mod passes;
 mod polonsky_keer;
@@ -17,6 +18,7 @@ mod trace;
 
 pub(crate) use active_set::ActiveSet;
 pub(crate) use bands::Bands;
+pub(crate) use extension::Extension;
 pub(crate) use outcome::{Outcome, PENETRATION_SLACK, Stop};
 pub(crate) use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::{Counts, Problem, Solution};

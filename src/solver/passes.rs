@@ -182,12 +182,14 @@ impl Passes {
         });
     }
 
-    /// d += max(0, p + shape · motion) − p in contact, with p ≥ 0 for negative pressures.
+    /// d += max(0, p + shape · motion) − p in contact, with p = 0 for negative pressures; if `whole`,
+    /// d ← max(0, p + d + shape · motion) − p. Bodies without motion keep their d.
     pub(crate) fn correct(
         &mut self,
         problem: &Problem<'_>,
         runs: &Runs,
-        motions: &[ModeCoefficients],
+        motions: &[Option<ModeCoefficients>],
+        whole: bool,
         [pressure, shape]: [&[f64]; 2],
         direction: &mut [f64],
     ) {
@@ -195,8 +197,12 @@ impl Passes {
         self.bands.over([direction], |band, [d], _| {
             for Piece { cells, body } in runs.inside(&band, cut) {
                 let d = &mut d[cells.start - band.start..cells.end - band.start];
-                let motion = problem.line(body, cells.start).of(motions[body]);
+                let Some(motion) = motions[body] else { continue };
+                let motion = problem.line(body, cells.start).of(motion);
                 map(motion, d, [&pressure[cells.clone()], &shape[cells]], |d, p, shape, motion| {
+                    if whole {
+                        return (p + d + shape * motion).max(0.0) - p;
+                    }
                     let p = p.max(0.0);
                     d + ((p + shape * motion).max(0.0) - p)
                 });
@@ -229,7 +235,7 @@ impl Passes {
 }
 
 /// x += a y.
-fn add(x: &mut [f64], a: f64, y: &[f64]) {
+pub(crate) fn add(x: &mut [f64], a: f64, y: &[f64]) {
     for (x, &y) in x.iter_mut().zip(y) {
         *x += a * y;
     }
@@ -297,7 +303,8 @@ mod tests {
         let owner: Vec<u16> = (0..n).map(|k| ((k % columns / 3 + k / columns) % bodies.len()) as u16).collect();
         let (gap, d, kd, a, c) = (field(0.3), field(0.7), field(1.1), 0.4, 0.8);
         let owner = (bodies.len() > 1).then_some(owner.as_slice());
-        let problem = Problem { kernel: &kernel, compliance: c, gap: &gap, prescribed: 0.0, bodies, owner };
+        let problem =
+            Problem { kernel: &kernel, compliance: c, gap: &gap, prescribed: 0.0, bodies, owner, likely: None };
         let mut set = ContactSet::new(n, bodies.len());
         for (k, member) in set.member.iter_mut().enumerate() {
             *member = k % 1000 > 9 && k % 1000 != 50 && !problem.released(problem.owner(k));
@@ -365,11 +372,20 @@ mod tests {
         }
         let mut turned = d.clone();
         passes.redirect(&problem, runs, [2.0, 0.5], &motions, &z, &mut turned);
-        passes.correct(&problem, runs, &motions, [&p, &gap], &mut turned);
-        for k in 0..n {
-            let held = p[k].max(0.0);
-            let turn = 2.0 * (z[k] + 0.5 * d[k] + at(k)) + ((held + gap[k] * at(k)).max(0.0) - held);
-            near(turned[k], if set.member[k] { turn } else { 0.0 });
+        (0..n).for_each(|k| {
+            near(turned[k], if set.member[k] { 2.0 * (z[k] + 0.5 * d[k] + at(k)) } else { 0.0 });
+        });
+        let corrected = |body: usize| (body != 1).then_some(motions[body]);
+        let corrections: Vec<_> = (0..bodies.len()).map(corrected).collect();
+        for whole in [false, true] {
+            let before = turned.clone();
+            passes.correct(&problem, runs, &corrections, whole, [&p, &gap], &mut turned);
+            for k in 0..n {
+                let (base, kept) =
+                    if whole { (p[k] + before[k], -p[k]) } else { (p[k].max(0.0), before[k] - p[k].max(0.0)) };
+                let correct = set.member[k] && corrections[problem.owner(k)].is_some();
+                near(turned[k], if correct { (base + gap[k] * at(k)).max(0.0) + kept } else { before[k] });
+            }
         }
     }
 }

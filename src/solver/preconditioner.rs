@@ -1,16 +1,24 @@
-//! An approximate inverse of the influence operator.
+//! An approximate inverse of the kernel.
 
 use std::sync::Arc;
 
 use crate::kernel::{LocalKernel, SpectralOperator, TransformWorkspace};
+use crate::solver::contact_set::ContactSet;
+use crate::solver::extension::Extension;
 
-/// M ≈ K⁻¹, a multiplication in wave space on a grid without padding ([`LocalKernel::inverse`]): for the half-space a quarter
-/// of the size of a convolution.
+/// Eᵀ M E ≈ (K on A)⁻¹, with M ≈ K⁻¹, a multiplication in wave space on a grid without padding ([`LocalKernel::inverse`]): for the
+/// half-space a quarter of the size of a convolution.
+///
+/// M alone, cut off at the edge of the set A of cells in contact, would be wrong over a strip along the edge whose width is that
+/// of a cell, and the more so the finer the mesh. The [`Extension`] E continues the residual smoothly beyond the edge instead.
 #[derive(Debug, Clone)]
 pub(crate) struct Preconditioner {
     operator: Arc<SpectralOperator>,
     work: TransformWorkspace,
     diagonal: f64,
+    extension: Extension,
+    /// The version of A that `extension` is made for.
+    version: u64,
 }
 
 impl Preconditioner {
@@ -18,22 +26,44 @@ impl Preconditioner {
         let cells = kernel.grid().cells();
         let operator = kernel.inverse();
         let work = operator.workspace();
-        let mut preconditioner = Preconditioner { operator: Arc::new(operator), work, diagonal: 0.0 };
+        let extension = Extension::new(cells, kernel.periodic_axes());
+        let mut preconditioner =
+            Preconditioner { operator: Arc::new(operator), work, diagonal: 0.0, extension, version: 0 };
         let mut impulse = vec![0.0; kernel.grid().len()];
         // in the middle, as far as possible from its mirror images
         let middle = cells[0] / 2 * cells[1] + cells[1] / 2;
         impulse[middle] = 1.0;
-        preconditioner.apply(&mut impulse);
+        preconditioner.filter(&mut impulse);
         preconditioner.diagonal = impulse[middle];
         preconditioner
     }
 
+    /// field ← Eᵀ M E field, which is zero outside A.
+    pub(crate) fn apply(&mut self, field: &mut [f64], set: &ContactSet) {
+        self.fit(set);
+        self.extension.extend(field, &set.member);
+        self.filter(field);
+        self.extension.gather(field, &set.member);
+    }
+
+    /// field ← Eᵀ field: what other cells hold is brought to the cells of A around, whose sum becomes that of all.
+    pub(crate) fn gather(&mut self, field: &mut [f64], set: &ContactSet) {
+        self.fit(set);
+        self.extension.gather(field, &set.member);
+    }
+
+    fn fit(&mut self, set: &ContactSet) {
+        if std::mem::replace(&mut self.version, set.version) != set.version {
+            self.extension.fit(&set.member);
+        }
+    }
+
     /// field ← M field.
-    pub(crate) fn apply(&mut self, field: &mut [f64]) {
+    pub(crate) fn filter(&mut self, field: &mut [f64]) {
         self.operator.apply_in_place(field, &mut self.work);
     }
 
-    /// The diagonal m of M, the same for every cell.
+    /// The diagonal of M.
     pub(crate) fn diagonal(&self) -> f64 {
         self.diagonal
     }

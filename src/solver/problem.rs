@@ -21,6 +21,8 @@ pub(crate) struct Problem<'a> {
     pub(crate) bodies: &'a [Freedom],
     /// The body that each cell belongs to; `None` where there is one.
     pub(crate) owner: Option<&'a [u16]>,
+    /// Cells that are likely to be in contact, where the steps before tell.
+    pub(crate) likely: Option<&'a [bool]>,
 }
 
 /// A guess on entry, the answer on return.

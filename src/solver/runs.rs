@@ -66,6 +66,12 @@ impl Runs {
         self.runs.iter().flat_map(|&[start, end]| start as usize..end as usize)
     }
 
+    /// The cells between the runs, before them and behind them.
+    pub(crate) fn outside(&self, cells: usize) -> impl Iterator<Item = Range<usize>> {
+        let starts = std::iter::once(0).chain(self.runs.iter().map(|run| run[1] as usize));
+        starts.zip(self.runs.iter().map(|run| run[0] as usize).chain([cells])).map(|(start, end)| start..end)
+    }
+
     /// The parts of runs that lie in a band.
     fn within(&self, band: &Range<usize>) -> impl Iterator<Item = Range<usize>> + Clone {
         let (start, end) = (band.start, band.end);

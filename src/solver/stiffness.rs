@@ -29,7 +29,7 @@ pub(crate) fn flat_punch(kernel: &LocalKernel, touches: impl Fn(usize) -> bool) 
         let failure = (iterations, (square / limit).sqrt() * FLAT_PUNCH_TOLERANCE);
         iterations += 1;
         image.copy_from_slice(&residual);
-        preconditioner.apply(&mut image);
+        preconditioner.filter(&mut image);
         restrict(&mut image);
         let energy = sum_of_pairs(&residual, &image, |a, b| a * b);
         let beta = if last > 0.0 { energy / last } else { 0.0 };

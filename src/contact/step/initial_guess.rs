@@ -2,7 +2,7 @@
 
 use crate::contact::extrapolation::MAX_REACH;
 use crate::contact::request::Step;
-use crate::contact::state::State;
+use crate::contact::state::{Equilibrium, State};
 use crate::contact::trial::Trial;
 use crate::contact::window::window::Window;
 use crate::solver::{Counts, Freedom, Modes, RigidMotion};
@@ -60,6 +60,48 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
         return trial.solution.release();
     }
     extrapolate(state, window, trial, reach);
+    if reach > 0.0 && window.needs_potential() && step.interval.stride == [0; 2] {
+        trial.foreseen = foresee_contact(state, window, trial, step, c);
+    }
+}
+
+/// Finds the cells that are likely to be in contact at the end of a step that goes a times as far as the last one. At a moving
+/// edge the pressure goes to zero like the root of the distance, and the gap opens like its power 3/2 (Hertz): a pressure that
+/// fell to less than √(a/(1 + a)) of itself vanishes, a gap that fell to less than the third power of that closes. False where
+/// the last two gaps are not known.
+fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
+    let (now, before) = (&state.current, &state.previous);
+    let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.remembers());
+    let change = state.history.last_change();
+    if change.is_none() && !elastic {
+        return false;
+    }
+    let ahead = state.extrapolation.reach(step.interval.dt);
+    let share = (ahead / (1.0 + ahead)).sqrt();
+    let share_open = share * share * share;
+    let (initial, u) = (window.gap(&step.indenter), state.history.displacement());
+    let still = now.motions.iter().chain(&before.motions).all(|motion| motion.tilt == [0.0; 2]);
+    let motion = |k: usize, of: &Equilibrium| {
+        let body = of.motions[initial.owner(k)];
+        if still { body.approach } else { body.at(state.region.center(k)) }
+    };
+    for (k, likely) in trial.likely.iter_mut().enumerate() {
+        let (p, p_before) = (now.solution.pressure[k], before.solution.pressure[k]);
+        *likely = if p > 0.0 {
+            p >= share * p_before
+        } else if p_before > 0.0 {
+            false
+        } else {
+            let [motion, motion_before] = [motion(k, now), motion(k, before)];
+            let receded = match change {
+                Some(change) => change[k],
+                None => c * (now.solution.potential[k] - before.solution.potential[k]),
+            };
+            let gap = initial.above[k] + u[k] - motion;
+            gap < share_open * (gap - receded + (motion - motion_before))
+        };
+    }
+    true
 }
 
 /// The share of the last pressure that best closes the gap of the step, if it is small. On a fixed contact a single
@@ -107,7 +149,7 @@ pub(super) fn begin(state: &State, trial: &mut Trial, step: &Step<'_>) {
     trial.solution.counts = Counts::default();
     trial.solution.rounding = 0.0;
     trial.solution.trace.clear();
-    trial.reach = 0.0;
+    (trial.reach, trial.foreseen) = (0.0, false);
     let datum = step.indenter.gap().datum;
     for (body, motion) in trial.solution.motions.iter_mut().enumerate() {
         let RigidMotion { approach, tilt } = state.current.motions[body];

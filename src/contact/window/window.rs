@@ -94,9 +94,17 @@ impl Window {
         trial: &mut Trial,
     ) -> Outcome {
         let Window { kernel, work, solver, gap, .. } = self;
-        let Trial { solution, gap: open, free, .. } = trial;
+        let Trial { solution, gap: open, free, likely, foreseen, .. } = trial;
         let owner = gap.as_ref().unwrap_or(indenter.gap()).owner.as_deref();
-        let problem = Problem { kernel, compliance: c, gap: open, prescribed, bodies: free, owner };
+        let problem = Problem {
+            kernel,
+            compliance: c,
+            gap: open,
+            prescribed,
+            bodies: free,
+            owner,
+            likely: foreseen.then_some(&likely[..]),
+        };
         let outcome = match solver {
             _ if c == 0.0 => Outcome::Converged,
             _ if problem.all_released() => {

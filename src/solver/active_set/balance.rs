@@ -1,27 +1,23 @@
 //! Balance of force and moments on the active set.
 
-use super::{ActiveSet, Shape};
+use super::{ActiveSet, MAX_MOVED_SHARE, Shape};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::problem::{Problem, Solution};
-use crate::solver::rigid_motion::ModeCoefficients;
+use crate::sum::sum;
 
 /// Change of the force by which a converged pressure may be closed.
 const MAX_CLOSING_FORCE_CHANGE: f64 = 1e-9;
 
 impl ActiveSet {
     /// Fills the shape of corrections on A.
-    fn fill_shape(&mut self, shape: Shape, solution: &mut Solution) {
+    fn fill_shape(&mut self, shape: Shape, solution: &Solution) {
         self.shape.resize(solution.pressure.len(), 0.0);
         match shape {
             Shape::Pressure => self.shape.copy_from_slice(&solution.pressure),
             Shape::Punch => {
-                self.shape
-                    .iter_mut()
-                    .zip(&self.set.member)
-                    .for_each(|(shape, &member)| *shape = f64::from(u8::from(member)));
-                self.preconditioner.apply(&mut self.shape);
-                solution.counts.preconditioner_applications += 1;
+                self.shape.fill(1.0);
+                self.preconditioner.gather(&mut self.shape, &self.set);
             }
         }
         // cells that join A before the correction is applied add nothing to it
@@ -40,18 +36,22 @@ impl ActiveSet {
         work: &mut Workspace,
     ) -> Result<(), usize> {
         let single = problem.bodies.len() == 1;
+        let all = sum(&solution.pressure);
+        let pressed: f64 = (0..problem.bodies.len()).map(|body| self.set.sum(problem, body, &solution.pressure)).sum();
+        self.changes.moves = self.changes.leaving && (all - pressed).abs() < MAX_MOVED_SHARE * pressed;
+        let carried = if self.changes.moves { all } else { pressed };
         if !single || problem.bodies[0].tilts() {
             self.fill_shape(shape, solution);
         }
         for body in 0..problem.bodies.len() {
             let modes = problem.modes(body);
-            self.changes.corrections[body] = ModeCoefficients::default();
+            self.changes.corrections[body] = None;
             if problem.released(body) || !(modes.translates() || modes.tilts()) {
                 continue;
             }
             if single && !modes.tilts() {
-                let scale = problem.bodies[body].total / self.set.sum(problem, body, &solution.pressure);
-                if scale != 1.0 {
+                let scale = problem.bodies[body].total / carried;
+                if (scale - 1.0).abs() > f64::EPSILON {
                     solution.pressure.iter_mut().for_each(|p| *p *= scale);
                     solution.potential.iter_mut().for_each(|v| *v *= scale);
                 }
@@ -59,17 +59,16 @@ impl ActiveSet {
             }
             let p = |k: usize| solution.pressure[k].max(0.0);
             if let Some(y) = modes.balance(self.set.pieces(problem, body), p, |k| self.shape[k]) {
-                self.changes.corrections[body] = y;
+                // pressures that are moved change the moments, and the force of the bodies beside their own
+                self.changes.corrections[body] = (self.changes.moves || y != Default::default()).then_some(y);
                 continue;
             }
             // the load acts outside the hull of what is left of A: begin again under this body
-            self.changes.leaving.retain(|&k| {
-                let stays = problem.owner(k as usize) != body;
-                if !stays {
-                    solution.pressure[k as usize] = 0.0;
+            for (k, p) in solution.pressure.iter_mut().enumerate() {
+                if !self.set.member[k] && problem.owner(k) == body {
+                    *p = 0.0;
                 }
-                stays
-            });
+            }
             if !modes.translates() {
                 // held at a pivot, and touching on one side of it only: unloaded, it may turn away
                 self.set.cells(problem, body).for_each(|k| solution.pressure[k] = 0.0);

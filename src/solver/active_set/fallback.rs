@@ -236,8 +236,15 @@ mod tests {
         let stop = Stop { tolerance: 1e-10, max_iterations: 1000 };
         let mut work = kernel.workspace();
         for compliance in [5.0, 0.5, 1e-3, 1e-9] {
-            let problem =
-                Problem { kernel: &kernel, compliance, gap: &gap, prescribed: 0.0, bodies: &[freedom], owner: None };
+            let problem = Problem {
+                kernel: &kernel,
+                compliance,
+                gap: &gap,
+                prescribed: 0.0,
+                bodies: &[freedom],
+                owner: None,
+                likely: None,
+            };
             let mut solver = ActiveSet::new(&kernel, 1);
             let mut exact = Solution::zero(grid.len(), 1);
             assert_eq!(solver.solve(&problem, stop, &mut exact, &mut work), Outcome::Converged);

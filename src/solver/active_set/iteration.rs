@@ -3,9 +3,10 @@
 use super::{ActiveSet, CORRECTION_LENGTH, JOIN_OVER_RMS, Search};
 use crate::kernel::Workspace;
 use crate::solver::outcome::{Outcome, ResidualSums, Stop};
-use crate::solver::passes::Fields;
+use crate::solver::passes::{Fields, add};
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::rigid_motion::ModeCoefficients;
+use crate::sum::sum_of_pairs;
 
 /// Σ (r − mean)² is computed afresh, not from Σ r², where less than this fraction of Σ r² is left.
 const MIN_CENTRED_FRACTION: f64 = 1e-6;
@@ -56,7 +57,9 @@ impl ActiveSet {
             if without_gain > MAX_ITERATIONS_WITHOUT_GAIN {
                 return Outcome::Stagnated;
             }
-            if penetration > JOIN_OVER_RMS * state.rms() {
+            // the set that was foreseen is not judged before it carries pressure
+            let foreseen = problem.likely.is_some() && solution.counts.iterations == 0;
+            if penetration > JOIN_OVER_RMS * state.rms() && !foreseen {
                 self.add_penetrating_cells(problem, state.joining_depth(penetration), solution);
                 self.advance(problem, solution, 0.0);
             }
@@ -123,12 +126,8 @@ impl ActiveSet {
     pub(super) fn find_direction(&mut self, problem: &Problem<'_>, plain: bool, solution: &mut Solution) {
         let (length, pending) = (CORRECTION_LENGTH / problem.compliance, self.changes.any());
         self.subtract_motions(problem);
-        for &k in &self.changes.leaving {
-            let response = -solution.pressure[k as usize] / (length * self.preconditioner.diagonal());
-            self.preconditioned[k as usize] = response;
-        }
         if !plain {
-            self.preconditioner.apply(&mut self.preconditioned);
+            self.preconditioner.apply(&mut self.preconditioned, &self.set);
             solution.counts.preconditioner_applications += 1;
         }
 
@@ -150,27 +149,60 @@ impl ActiveSet {
         }
         let scale = if pending { length } else { 1.0 };
         self.passes.redirect(problem, runs, [scale, beta], shifts, z, direction);
-        for &k in &self.changes.leaving {
-            direction[k as usize] = -solution.pressure[k as usize];
+        if pending {
+            self.correct_direction(problem, solution);
         }
-        if self.changes.corrects() {
-            let fields = [&*solution.pressure, &*self.shape];
-            self.passes.correct(problem, runs, &self.changes.corrections, fields, direction);
+    }
+
+    /// Lets the direction bring the pressures that leave to zero, move them to the cells around, and balance what it leads to.
+    fn correct_direction(&mut self, problem: &Problem<'_>, solution: &Solution) {
+        if self.changes.moves {
+            self.move_leaving(solution);
+            add(&mut self.search.direction, 1.0, &self.preconditioned);
         }
+        let Search { direction, shifts: balances, .. } = &mut self.search;
+        let (runs, p) = (&self.set.runs, &solution.pressure);
+        if self.changes.leaving {
+            runs.outside(p.len()).for_each(|cells| {
+                direction[cells.clone()].iter_mut().zip(&p[cells]).for_each(|(d, &p)| *d = -p);
+            });
+        }
+        let corrections = &mut self.changes.corrections;
+        if corrections.iter().all(Option::is_none) {
+            return;
+        }
+        let mut bodies = corrections.iter().zip(balances.iter_mut()).enumerate();
+        let whole = bodies.all(|(body, (correction, balance))| {
+            let next = |k: usize| p[k] + direction[k];
+            let cells = || self.set.pieces(problem, body);
+            let found = correction.and_then(|_| problem.modes(body).balance(cells(), next, |k| self.shape[k]));
+            *balance = found.unwrap_or_default();
+            found.is_some() == correction.is_some()
+        });
+        if whole {
+            let corrections = corrections.iter_mut().zip(balances);
+            corrections.for_each(|(correction, y)| *correction = correction.map(|_| *y));
+        } else if self.changes.moves {
+            // what leaves is dropped: the balance of the rest is known
+            runs.cells().for_each(|k| direction[k] -= self.preconditioned[k]);
+        }
+        self.passes.correct(problem, runs, &self.changes.corrections, whole, [p, &self.shape], direction);
     }
 
     /// The length a of the step along d, 1 for a correction. Brings cells that leave to p = 0.
     pub(super) fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> f64 {
         let [slope, curvature] = self.slope_and_curvature(problem);
         let Search { direction, image, energy, .. } = &mut self.search;
-        let leaving = self.changes.leaving.iter().map(|&k| k as usize);
-        *energy = curvature + leaving.map(|k| direction[k] * image[k]).sum::<f64>();
+        *energy = curvature;
         if !self.changes.any() {
             // a direction that vanishes, as on a single cell, gains nothing
             let downhill = slope > 0.0 && curvature > 0.0;
             return if downhill { slope / (problem.compliance * curvature) } else { 0.0 };
         }
-        self.changes.leaving.iter().for_each(|&k| solution.pressure[k as usize] = 0.0);
+        *energy = sum_of_pairs(direction, image, |d, kd| d * kd);
+        if self.changes.leaving {
+            self.set.runs.outside(solution.pressure.len()).for_each(|cells| solution.pressure[cells].fill(0.0));
+        }
         self.changes.clear();
         1.0
     }

@@ -10,8 +10,8 @@ use crate::solver::problem::{Problem, Solution};
 use crate::solver::runs::Piece;
 
 impl ActiveSet {
-    /// A = {p > 0}; other cells that carry pressure are to leave; the pressure on A is in balance. Fails with the body whose
-    /// load no pressure can balance.
+    /// A = {p > 0}, or the cells that are likely to be in contact; other cells that carry pressure are to leave; the pressure
+    /// on A is in balance. Fails with the body whose load no pressure can balance.
     pub(super) fn start(
         &mut self,
         problem: &Problem<'_>,
@@ -22,6 +22,11 @@ impl ActiveSet {
         let fields = solution.pressure.iter().zip(problem.gap);
         for (member, (&p, &gap)) in self.set.member.iter_mut().zip(fields) {
             *member = (p > 0.0) & (gap < f64::INFINITY);
+        }
+        if let Some(likely) = problem.likely {
+            for (k, (member, &likely)) in self.set.member.iter_mut().zip(likely).enumerate() {
+                *member = likely && solution.pressure[k] >= 0.0 && problem.gap[k].is_finite();
+            }
         }
         if (0..problem.bodies.len()).any(|body| problem.released(body)) {
             let members = self.set.member.iter_mut().enumerate();
@@ -39,7 +44,7 @@ impl ActiveSet {
                     shape.fill(0.0);
                     let cells = || set.cells(problem, body);
                     cells().for_each(|k| shape[k] = solution.pressure[k]);
-                    self.preconditioner.apply(shape);
+                    self.preconditioner.filter(shape);
                     solution.counts.preconditioner_applications += 1;
                     let sum = |field: &[f64]| cells().map(|k| field[k].max(0.0)).sum::<f64>();
                     let scale = sum(&solution.pressure) / sum(shape);
@@ -56,11 +61,9 @@ impl ActiveSet {
             solution.convolve(problem, work);
         }
         self.changes.clear();
-        for (k, (&p, &member)) in solution.pressure.iter().zip(&self.set.member).enumerate() {
-            if (p != 0.0) & !member {
-                self.changes.leaving.push(k as u32);
-            }
-        }
+        let pressure = &solution.pressure;
+        let pressed = |cells: std::ops::Range<usize>| pressure[cells].iter().any(|&p| p != 0.0);
+        self.changes.leaving = self.set.runs.outside(pressure.len()).any(pressed);
         self.balance(problem, Shape::Pressure, solution, work)
     }
 
@@ -94,18 +97,27 @@ impl ActiveSet {
         solved || equivalent_gap * equivalent_gap * state.negative > LEAVE_OVER_RMS * LEAVE_OVER_RMS * state.square
     }
 
-    /// Takes cells with negative pressure out of A.
+    /// Takes cells with negative pressure out of A, and those whose pressure becomes negative by what the first leave to them.
     pub(super) fn remove_tensile_cells(
         &mut self,
         problem: &Problem<'_>,
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Result<(), usize> {
-        for k in self.set.runs.cells().filter(|&k| solution.pressure[k] < 0.0) {
-            self.set.member[k] = false;
-            self.changes.leaving.push(k as u32);
-        }
+        self.changes.leaving = true;
+        self.set.runs.cells().for_each(|k| self.set.member[k] = solution.pressure[k] >= 0.0);
+        self.set.update(problem);
+        self.move_leaving(solution);
+        let next = |k: usize| solution.pressure[k] + self.preconditioned[k];
+        self.set.runs.cells().for_each(|k| self.set.member[k] = next(k) >= 0.0);
         self.set.update(problem);
         self.balance(problem, Shape::Punch, solution, work)
+    }
+
+    /// Writes what the pressures that leave bring to the cells of A around to `preconditioned`.
+    pub(super) fn move_leaving(&mut self, solution: &Solution) {
+        self.preconditioned.copy_from_slice(&solution.pressure);
+        self.set.runs.cells().for_each(|k| self.preconditioned[k] = 0.0);
+        self.preconditioner.gather(&mut self.preconditioned, &self.set);
     }
 }

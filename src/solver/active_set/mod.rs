@@ -3,10 +3,10 @@
 //! On the set A of cells in contact the problem is linear: r = −(c v + gap − motion) = 0, with the free
 //! motion of each body fitted by least squares, and force and moments fixed. One iteration is
 //!
-//! z = P M P r,  d = z + β d,  p += a d,  v += a K d
+//! z = P Eᵀ M E P r,  d = z + β d,  p += a d,  v += a K d
 //!
-//! with M ≈ K⁻¹ ([`Preconditioner`]), P the restriction to A less the free motions, β from conjugacy
-//! z·Kd + β d·Kd = 0 (which remains exact when cells join A) and a the exact minimum along d.
+//! with M ≈ K⁻¹ on residuals that E extends beyond A ([`Preconditioner`]), P the restriction to A less the free motions, β
+//! from conjugacy z·Kd + β d·Kd = 0 (which remains exact when cells join A) and a the exact minimum along d.
 //!
 //! An iteration costs one convolution, whatever happens to A:
 //!
@@ -14,11 +14,10 @@
 //!   residual ([`JOIN_OVER_RMS`]).
 //! * Cells whose pressure is negative leave when their error is large compared with the residual ([`LEAVE_OVER_RMS`]). The
 //!   *next* direction brings them to p = 0: it contains δ = −p on them, so that the convolution it needs anyway updates v.
-//!   Its length is then 1, and the rest of it is z with the usual length ([`CORRECTION_LENGTH`]). The response of the
-//!   other cells to δ is M δ/m, m the diagonal of M (by block inversion −K_AA⁻¹ K_AN = M_AN M_NN⁻¹), and
-//!   is computed by the same application of M.
-//! * Less pressure on A is less force; scaling p and v together restores it. With moments to balance, or
-//!   several bodies, the factor 1 + B y differs from cell to cell, and joins the next direction too.
+//!   Its length is then 1, and the rest of it is z with the usual length ([`CORRECTION_LENGTH`]). What they carried is moved
+//!   to the cells around by Eᵀ, which keeps the force. Cells whose pressure that would make negative leave with them.
+//! * Where the force is out of balance, p and v are scaled together. With moments to balance, or several bodies, the
+//!   correction B y times a shape differs from cell to cell, and joins the next direction too.
 //! * A guess extrapolated from earlier steps comes with its own v.
 //!
 //! Measured on a creeping Maxwell sphere (256², 100 steps, convolution equivalents per step, residual
@@ -42,15 +41,18 @@ use crate::sum::greatest;
 
 /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
 /// slack that the residual grants to penetration, or a state could neither improve nor converge.
-const JOIN_OVER_RMS: f64 = 0.4 * PENETRATION_SLACK;
+const JOIN_OVER_RMS: f64 = 0.2 * PENETRATION_SLACK;
 
 /// Cells leave A when rms (c p⁻/m), the gap equivalent to their negative pressure, exceeds this
 /// fraction of rms |r|.
-const LEAVE_OVER_RMS: f64 = 0.4;
+const LEAVE_OVER_RMS: f64 = 0.1;
 
-/// c a of a direction that corrects the pressure and has no line search. Searches along
-/// plain z = P M P r, with M ≈ K⁻¹, end between 0.4 and 0.8; measured best of 0.4 … 0.8.
-const CORRECTION_LENGTH: f64 = 0.5;
+/// c a of a direction that corrects the pressure and has no line search.
+const CORRECTION_LENGTH: f64 = 0.9;
+
+/// Pressures that leave are moved to the cells around, unless they carry more than this part of the force: then the
+/// contact is another one, and they are dropped.
+const MAX_MOVED_SHARE: f64 = 0.1;
 
 #[derive(Debug, Clone)]
 pub(crate) struct ActiveSet {
@@ -88,24 +90,26 @@ struct Search {
 /// What the next direction changes of the pressure.
 #[derive(Debug, Clone)]
 struct PendingChanges {
-    /// Cells outside A whose pressure it brings to zero.
-    leaving: Vec<u32>,
-    /// For each body the y of the change shape · B y by which it balances the pressure, zero if it is in balance.
-    corrections: Vec<ModeCoefficients>,
+    /// Whether cells outside A carry pressure, which it brings to zero.
+    leaving: bool,
+    /// Whether it moves that pressure to the cells around.
+    moves: bool,
+    /// For each body the y of the change shape · B y by which it balances the pressure, where that is needed.
+    corrections: Vec<Option<ModeCoefficients>>,
 }
 
 impl PendingChanges {
     fn corrects(&self) -> bool {
-        self.corrections.iter().any(|y| *y != ModeCoefficients::default())
+        self.corrections.iter().any(Option::is_some)
     }
 
     fn any(&self) -> bool {
-        !self.leaving.is_empty() || self.corrects()
+        self.leaving || self.corrects()
     }
 
     fn clear(&mut self) {
-        self.leaving.clear();
-        self.corrections.fill(ModeCoefficients::default());
+        (self.leaving, self.moves) = (false, false);
+        self.corrections.fill(None);
     }
 }
 
@@ -114,7 +118,7 @@ impl PendingChanges {
 enum Shape {
     /// The pressure itself: right for a load that changes as a whole.
     Pressure,
-    /// The pressure under a flat punch with the face A, M 1: nearly all of its displacement is rigid.
+    /// Eᵀ 1, which is greater at the edge of A, like the pressure under a flat punch: nearly all of its displacement is rigid.
     Punch,
 }
 
@@ -127,7 +131,7 @@ impl ActiveSet {
             set: ContactSet::new(cells, bodies),
             passes: Passes::new(cells, bodies),
             guess_rounding: 0.0,
-            changes: PendingChanges { leaving: Vec::with_capacity(cells), corrections: motions.clone() },
+            changes: PendingChanges { leaving: false, moves: false, corrections: vec![None; bodies] },
             residual: field.clone(),
             residual_motions: motions.clone(),
             preconditioned: field.clone(),
