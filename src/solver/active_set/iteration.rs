@@ -6,7 +6,6 @@ use crate::solver::outcome::{Outcome, ResidualSums, Stop};
 use crate::solver::passes::{Fields, add};
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::rigid_motion::ModeCoefficients;
-use crate::sum::sum_of_pairs;
 
 /// Σ (r − mean)² is computed afresh, not from Σ r², where less than this fraction of Σ r² is left.
 const MIN_CENTRED_FRACTION: f64 = 1e-6;
@@ -192,14 +191,15 @@ impl ActiveSet {
     /// The length a of the step along d, 1 for a correction. Brings cells that leave to p = 0.
     pub(super) fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> f64 {
         let [slope, curvature] = self.slope_and_curvature(problem);
-        let Search { direction, image, energy, .. } = &mut self.search;
+        let energy = &mut self.search.energy;
         *energy = curvature;
         if !self.changes.any() {
             // a direction that vanishes, as on a single cell, gains nothing
             let downhill = slope > 0.0 && curvature > 0.0;
             return if downhill { slope / (problem.compliance * curvature) } else { 0.0 };
         }
-        *energy = sum_of_pairs(direction, image, |d, kd| d * kd);
+        // nothing is conjugate to a correction, which has no line search
+        *energy = 0.0;
         if self.changes.leaving {
             self.set.runs.outside(solution.pressure.len()).for_each(|cells| solution.pressure[cells].fill(0.0));
         }
