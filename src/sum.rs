@@ -27,6 +27,18 @@ pub(crate) fn greatest(values: &[f64]) -> f64 {
     lanes.iter().chain(rest).fold(0.0, |greatest, value| value.abs().max(greatest))
 }
 
+/// The greatest value, −∞ of none.
+pub(crate) fn most(values: &[f64]) -> f64 {
+    let (chunks, rest) = values.as_chunks::<LANES>();
+    let mut lanes = [f64::NEG_INFINITY; LANES];
+    for chunk in chunks {
+        for (lane, value) in lanes.iter_mut().zip(chunk) {
+            *lane = if value > lane { *value } else { *lane };
+        }
+    }
+    lanes.iter().chain(rest).fold(f64::NEG_INFINITY, |most, value| value.max(most))
+}
+
 /// Σ f(a, b) over the values of two fields.
 pub(crate) fn sum_of_pairs(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
     let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<LANES>(), b.as_chunks::<LANES>());
@@ -82,6 +94,7 @@ mod tests {
             let a: Vec<f64> = (0..n).map(f64::from).collect();
             assert_eq!(sum(&a), a.iter().sum());
             assert_eq!(greatest(&a.iter().map(|a| -a).collect::<Vec<_>>()), a.iter().copied().fold(0.0, f64::max));
+            assert_eq!(most(&a), a.iter().copied().fold(f64::NEG_INFINITY, f64::max));
             assert_eq!(sum_of_pairs(&a, &a, |a, b| 2.0 * a * b), a.iter().map(|a| 2.0 * a * a).sum());
         }
     }

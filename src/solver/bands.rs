@@ -15,10 +15,12 @@ pub(crate) const LANES: usize = 8;
 pub(crate) struct Found {
     pub(crate) sums: [f64; 10],
     greatest: [f64; LANES],
+    /// The greatest of other values, taken one piece at a time.
+    pub(crate) peak: f64,
 }
 
 impl Found {
-    const NOTHING: Found = Found { sums: [0.0; 10], greatest: [f64::NEG_INFINITY; LANES] };
+    const NOTHING: Found = Found { sums: [0.0; 10], greatest: [f64::NEG_INFINITY; LANES], peak: f64::NEG_INFINITY };
 
     pub(crate) fn greatest(&self) -> f64 {
         self.greatest.into_iter().fold(f64::NEG_INFINITY, f64::max)
@@ -80,6 +82,7 @@ impl Bands {
         for band in others.chunks(bodies) {
             for (all, found) in all.iter_mut().zip(band) {
                 all.sums.iter_mut().zip(found.sums).for_each(|(sum, part)| *sum += part);
+                all.peak = all.peak.max(found.peak);
                 all.greatest.iter_mut().zip(found.greatest).for_each(|(most, found)| *most = most.max(found));
             }
         }

@@ -55,6 +55,8 @@ pub(crate) struct ResidualSums {
     /// Rounding of gap and c K p where they are small differences of large parts.
     pub(crate) cancellation: f64,
     pub(crate) cells: usize,
+    /// The deepest penetration.
+    pub(crate) deepest: f64,
 }
 
 /// Penetration may exceed the root mean square of the residual by this factor, being a maximum.
@@ -77,7 +79,7 @@ impl ResidualSums {
     /// How far a state is from solving its [`Problem`], relative to rms (c v) in contact: the larger of rms |h| in contact
     /// and a tenth of the deepest penetration outside. Rounding of the gap itself does not count.
     fn relative_residual(&self, penetration: f64) -> f64 {
-        let error = self.rms().max(penetration / PENETRATION_SLACK) - self.rounding();
+        let error = self.rms().max(self.deepest.max(penetration) / PENETRATION_SLACK) - self.rounding();
         if error <= 0.0 { 0.0 } else { error / self.yielding() }
     }
 

@@ -7,7 +7,7 @@ use crate::solver::bands::{Bands, Found};
 use crate::solver::problem::Problem;
 use crate::solver::rigid_motion::{Line, ModeCoefficients};
 use crate::solver::runs::{PIECE_CELLS, Piece, Runs};
-use crate::sum::{sum, sum_of_pairs};
+use crate::sum::{most, sum, sum_of_pairs};
 
 /// The numbers of the cells of a piece.
 pub(crate) static NUMBERS: [f64; PIECE_CELLS] = {
@@ -40,7 +40,7 @@ impl Passes {
     }
 
     /// p += a d, v += a K d, and r = motion − (c v + gap) on the cells in contact. Finds Σ B r, Σ r², Σ (c v)² and
-    /// Σ min(p, 0)² over them, and the greatest motion − (c v + gap) of all others that may carry pressure.
+    /// Σ min(p, 0)² over them, the greatest r of them, and the greatest motion − (c v + gap) of all others that may carry pressure.
     pub(crate) fn survey(
         &mut self,
         problem: &Problem<'_>,
@@ -72,6 +72,7 @@ impl Passes {
                 }
                 map(motion, r, [&*v, h], |_, v, h, motion| motion - (c * v + h));
                 add_modes(&mut found.sums[..3], &line, r);
+                found.peak = found.peak.max(most(r));
                 found.sums[3] += sum_of_pairs(r, r, |r, _| r * r);
                 found.sums[4] += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
                 found.sums[5] += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
@@ -345,6 +346,8 @@ mod tests {
             near(found.sums[3], inside(body, &|k| r[k] * r[k]));
             near(found.sums[4], inside(body, &|k| c * v[k] * c * v[k]));
             near(found.sums[5], inside(body, &|k| p[k].min(0.0).powi(2)));
+            let own = (0..n).filter(|&k| set.member[k] && problem.owner(k) == body);
+            assert_eq!(found.peak, own.map(|k| r[k]).fold(f64::NEG_INFINITY, f64::max));
         }
         near(found.iter().map(Found::greatest).fold(0.0, f64::max), deepest);
         near(passes.penetration(&problem, runs, &motions, &v), deepest);

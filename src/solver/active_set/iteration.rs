@@ -90,16 +90,20 @@ impl ActiveSet {
             let fit = self.set.fit(problem, body, &found.sums);
             motions[body] = motions[body].plus(-1.0, fit);
             self.residual_motions[body] = fit;
+            let tilts = problem.bodies[body].tilts();
+            // of a body that tilts, no cell moves more than this
+            let moved = if tilts { fit.0.iter().map(|y| y.abs()).sum() } else { -fit.0[0] };
             let (all, fitted) = (found.sums[3], (0..3).map(|m| fit.0[m] * found.sums[m]).sum::<f64>());
             square += all;
             state.square += all - fitted;
             state.displacement += found.sums[4];
             state.negative += found.sums[5];
-            if problem.bodies[body].tilts() {
-                turned = fit.0.iter().fold(turned, |most, y| most.max(y.abs()));
+            state.deepest = state.deepest.max(found.peak + moved);
+            if tilts {
+                turned = turned.max(moved);
                 penetration = penetration.max(found.greatest());
             } else {
-                penetration = penetration.max(found.greatest() - fit.0[0]);
+                penetration = penetration.max(found.greatest() + moved);
             }
         }
         // where a motion was far off, the difference is mostly rounding
