@@ -104,6 +104,7 @@ impl PolonskyKeer {
             state.negative += found.sums[5];
         }
         state.square = self.passes.subtract(problem, &set.runs, &self.shifts, &mut self.residual, image);
+        state.deepest = self.set.runs.cells().fold(0.0, |deepest, k| self.residual[k].max(deepest));
         (state, self.passes.penetration(problem, &set.runs, motions, potential))
     }
 

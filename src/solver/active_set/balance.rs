@@ -80,6 +80,8 @@ impl ActiveSet {
             }
             self.set.keep_pressed(problem, body, &solution.pressure);
             solution.convolve(problem, work);
+            self.changes.leaving = self.some_leave(solution);
+            self.search.energy = 0.0;
         }
         Ok(())
     }

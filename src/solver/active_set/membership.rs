@@ -1,5 +1,7 @@
 //! Which cells are in the active set.
 
+use std::ops::Range;
+
 use super::{ActiveSet, LEAVE_OVER_RMS, Shape};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::cold_start;
@@ -61,10 +63,14 @@ impl ActiveSet {
             solution.convolve(problem, work);
         }
         self.changes.clear();
-        let pressure = &solution.pressure;
-        let pressed = |cells: std::ops::Range<usize>| pressure[cells].iter().any(|&p| p != 0.0);
-        self.changes.leaving = self.set.runs.outside(pressure.len()).any(pressed);
+        self.changes.leaving = self.some_leave(solution);
         self.balance(problem, Shape::Pressure, solution, work)
+    }
+
+    /// Whether cells outside A carry pressure.
+    pub(super) fn some_leave(&self, solution: &Solution) -> bool {
+        let pressed = |cells: Range<usize>| solution.pressure[cells].iter().any(|&p| p != 0.0);
+        self.set.runs.outside(solution.pressure.len()).any(pressed)
     }
 
     /// Takes cells into A that penetrate deeper than `least`, but for those that are about to leave: they would bring a
