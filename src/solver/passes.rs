@@ -100,7 +100,7 @@ impl Passes {
         found.iter().map(Found::greatest).fold(0.0, f64::max)
     }
 
-    /// r ← r − motion, and z = r in contact, zero elsewhere; returns Σ r².
+    /// r ← r − motion, and z = r in contact, zero elsewhere; returns Σ r² and the greatest r.
     pub(crate) fn subtract(
         &mut self,
         problem: &Problem<'_>,
@@ -108,7 +108,7 @@ impl Passes {
         motions: &[ModeCoefficients],
         residual: &mut [f64],
         z: &mut [f64],
-    ) -> f64 {
+    ) -> [f64; 2] {
         let cut = problem.cut();
         let found = self.bands.over([residual, z], |band, [r, z], found| {
             runs.walk(&band, cut, |Piece { cells, body }, inside| {
@@ -128,9 +128,11 @@ impl Passes {
                     r.copy_from_slice(z);
                 }
                 found[body].sums[0] += sum_of_pairs(z, z, |z, _| z * z);
+                found[body].peak = found[body].peak.max(most(z));
             });
         });
-        found.iter().map(|found| found.sums[0]).sum()
+        let of = |[square, deepest]: [f64; 2], found: &Found| [square + found.sums[0], deepest.max(found.peak)];
+        found.iter().fold([0.0; 2], of)
     }
 
     /// Finds Σ B z, Σ B Kd, Σ B d and Σ z·Kd in contact.
@@ -353,7 +355,9 @@ mod tests {
         near(passes.penetration(&problem, runs, &motions, &v), deepest);
 
         let (before, mut z) = (r.clone(), field(2.0));
-        near(passes.subtract(&problem, runs, &motions, &mut r, &mut z), z.iter().map(|z| z * z).sum());
+        let [square, deepest] = passes.subtract(&problem, runs, &motions, &mut r, &mut z);
+        near(square, z.iter().map(|z| z * z).sum());
+        assert_eq!(deepest, z.iter().copied().fold(0.0, f64::max));
         for k in 0..n {
             near(z[k], if set.member[k] { before[k] - at(k) } else { 0.0 });
             assert!(!set.member[k] || r[k] == z[k]);

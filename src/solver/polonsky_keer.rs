@@ -103,8 +103,8 @@ impl PolonskyKeer {
             state.displacement += found.sums[4];
             state.negative += found.sums[5];
         }
-        state.square = self.passes.subtract(problem, &set.runs, &self.shifts, &mut self.residual, image);
-        state.deepest = self.set.runs.cells().fold(0.0, |deepest, k| self.residual[k].max(deepest));
+        [state.square, state.deepest] =
+            self.passes.subtract(problem, &set.runs, &self.shifts, &mut self.residual, image);
         (state, self.passes.penetration(problem, &set.runs, motions, potential))
     }
 

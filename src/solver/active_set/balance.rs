@@ -27,11 +27,13 @@ impl ActiveSet {
     }
 
     /// Makes the pressure on A carry the force and moments of each body: at once, by scaling p and v, where the force of a
-    /// single body is the only load; else by the next direction.
+    /// single body is the only load; else by the next direction. Where that cannot be, a step that was `searched` is cut short;
+    /// after another, the body begins again.
     pub(super) fn balance(
         &mut self,
         problem: &Problem<'_>,
         shape: Shape,
+        searched: bool,
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Result<(), usize> {
@@ -63,7 +65,12 @@ impl ActiveSet {
                 self.changes.corrections[body] = (self.changes.moves || y != Default::default()).then_some(y);
                 continue;
             }
-            // the load acts outside the hull of what is left of A: begin again under this body
+            // the load acts outside the hull of what is left of A
+            if searched {
+                self.cut_step(problem, solution);
+                return Ok(());
+            }
+            // begin again under this body
             for (k, p) in solution.pressure.iter_mut().enumerate() {
                 if !self.set.member[k] && problem.owner(k) == body {
                     *p = 0.0;

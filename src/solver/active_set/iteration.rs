@@ -29,11 +29,11 @@ impl ActiveSet {
         if let Err(body) = self.start(problem, solution, work) {
             return Outcome::Unbalanced(body);
         }
-        let (mut lowest, mut without_gain, mut step) = (f64::INFINITY, 0, 0.0);
+        let (mut lowest, mut without_gain, mut step, mut searched) = (f64::INFINITY, 0, 0.0, false);
         loop {
             let (mut state, mut penetration) = self.advance(problem, solution, step);
             if state.negative > 0.0 && self.should_remove_tensile(problem, stop, state) {
-                if let Err(body) = self.remove_tensile_cells(problem, solution, work) {
+                if let Err(body) = self.remove_tensile_cells(problem, searched, solution, work) {
                     return Outcome::Unbalanced(body);
                 }
                 (state, penetration) = self.advance(problem, solution, 0.0);
@@ -42,7 +42,7 @@ impl ActiveSet {
             let mut ended = stop.outcome(solution, || !self.changes.any() && state.negative == 0.0);
             if ended == Some(Outcome::Converged) && !solution.pressure.iter().all(|&p| p >= 0.0) {
                 // tiny tensile pressures, whose squares vanish, still violate p ≥ 0
-                if let Err(body) = self.remove_tensile_cells(problem, solution, work) {
+                if let Err(body) = self.remove_tensile_cells(problem, searched, solution, work) {
                     return Outcome::Unbalanced(body);
                 }
                 (state, penetration) = self.advance(problem, solution, 0.0);
@@ -64,6 +64,7 @@ impl ActiveSet {
             }
 
             solution.counts.iterations += 1;
+            searched = !self.changes.any();
             self.find_direction(problem, false, solution);
             problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
             solution.counts.convolutions += 1;
@@ -108,20 +109,21 @@ impl ActiveSet {
         }
         // where a motion was far off, the difference is mostly rounding
         if state.square < MIN_CENTRED_FRACTION * square {
-            state.square = self.subtract_motions(problem);
+            [state.square, state.deepest] = self.subtract_motions(problem);
         }
         if turned > MAX_TURN_OVER_RMS * state.rms() {
             penetration = self.passes.penetration(problem, &self.set.runs, motions, potential);
+            [_, state.deepest] = self.subtract_motions(problem);
         }
         (state, penetration)
     }
 
-    /// Subtracts from r what is still to be subtracted, and sets z to it; returns Σ r².
-    fn subtract_motions(&mut self, problem: &Problem<'_>) -> f64 {
+    /// Subtracts from r what is still to be subtracted, and sets z to it; returns Σ r² and the greatest r.
+    fn subtract_motions(&mut self, problem: &Problem<'_>) -> [f64; 2] {
         let (motions, z) = (&mut self.residual_motions, &mut self.preconditioned);
-        let square = self.passes.subtract(problem, &self.set.runs, motions, &mut self.residual, z);
+        let found = self.passes.subtract(problem, &self.set.runs, motions, &mut self.residual, z);
         motions.fill(ModeCoefficients::default());
-        square
+        found
     }
 
     /// d ← z + β d without free motion on A, with z = r if `plain`; with pressures to bring to zero or into balance, d is

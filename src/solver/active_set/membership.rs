@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use super::{ActiveSet, LEAVE_OVER_RMS, Shape};
+use super::{ActiveSet, LEAVE_OVER_RMS, Search, Shape};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::cold_start;
 use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{ResidualSums, Stop};
-use crate::solver::passes::NUMBERS;
+use crate::solver::passes::{NUMBERS, add};
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::runs::Piece;
 
@@ -64,7 +64,7 @@ impl ActiveSet {
         }
         self.changes.clear();
         self.changes.leaving = self.some_leave(solution);
-        self.balance(problem, Shape::Pressure, solution, work)
+        self.balance(problem, Shape::Pressure, false, solution, work)
     }
 
     /// Whether cells outside A carry pressure.
@@ -104,9 +104,11 @@ impl ActiveSet {
     }
 
     /// Takes cells with negative pressure out of A, and those whose pressure becomes negative by what the first leave to them.
+    /// Where the others cannot carry the load, the last step is cut short instead if it was `searched`, not a correction.
     pub(super) fn remove_tensile_cells(
         &mut self,
         problem: &Problem<'_>,
+        searched: bool,
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Result<(), usize> {
@@ -117,7 +119,24 @@ impl ActiveSet {
         let next = |k: usize| solution.pressure[k] + self.preconditioned[k];
         self.set.runs.cells().for_each(|k| self.set.member[k] = next(k) >= 0.0);
         self.set.update(problem);
-        self.balance(problem, Shape::Punch, solution, work)
+        self.balance(problem, Shape::Punch, searched, solution, work)
+    }
+
+    /// Goes back along the last direction to where the first pressure became zero: in front of it all pressures were ≥ 0 and
+    /// in balance.
+    pub(super) fn cut_step(&mut self, problem: &Problem<'_>, solution: &mut Solution) {
+        let Search { direction, image, energy, .. } = &mut self.search;
+        let beyond = |p: f64, d: f64| if p < 0.0 && d < 0.0 { p / d } else { 0.0 };
+        let pairs = solution.pressure.iter().zip(&*direction);
+        let back = pairs.fold(0.0_f64, |back, (&p, &d)| back.max(beyond(p, d)));
+        for (p, &d) in solution.pressure.iter_mut().zip(&*direction) {
+            *p = if beyond(*p, d) == back { 0.0 } else { (*p - back * d).max(0.0) };
+        }
+        add(&mut solution.potential, -back, image);
+        *energy = 0.0;
+        self.changes.clear();
+        self.set.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
+        self.set.update(problem);
     }
 
     /// Writes what the pressures that leave bring to the cells of A around to `preconditioned`.
