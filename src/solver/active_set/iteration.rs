@@ -14,6 +14,9 @@ const MIN_CENTRED_FRACTION: f64 = 1e-6;
 /// since the penetration was found.
 const MAX_TURN_OVER_RMS: f64 = 1e-6;
 
+/// Fraction of the deepest penetration that counts as the deepest.
+const DEEPEST: f64 = 0.999;
+
 /// Iterations without a new lowest residual after which the fall-back takes over.
 const MAX_ITERATIONS_WITHOUT_GAIN: usize = 40;
 
@@ -59,7 +62,12 @@ impl ActiveSet {
             // the set that was foreseen is not judged before it carries pressure
             let foreseen = problem.likely.is_some() && solution.counts.iterations == 0;
             if penetration > JOIN_OVER_RMS * state.rms() && !foreseen {
-                self.add_penetrating_cells(problem, state.joining_depth(penetration), solution);
+                let least = if std::mem::take(&mut self.was_cut) {
+                    DEEPEST * penetration
+                } else {
+                    state.joining_depth(penetration)
+                };
+                self.add_penetrating_cells(problem, least, solution);
                 self.advance(problem, solution, 0.0);
             }
 

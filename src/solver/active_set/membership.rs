@@ -20,7 +20,7 @@ impl ActiveSet {
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Result<(), usize> {
-        self.search.energy = 0.0;
+        (self.search.energy, self.was_cut) = (0.0, false);
         let fields = solution.pressure.iter().zip(problem.gap);
         for (member, (&p, &gap)) in self.set.member.iter_mut().zip(fields) {
             *member = (p > 0.0) & (gap < f64::INFINITY);
@@ -135,6 +135,7 @@ impl ActiveSet {
         add(&mut solution.potential, -back, image);
         *energy = 0.0;
         self.changes.clear();
+        self.was_cut = true;
         self.set.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
         self.set.update(problem);
     }

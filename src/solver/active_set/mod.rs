@@ -63,6 +63,9 @@ pub(crate) struct ActiveSet {
     /// Rounding of c K p of the guess: where an approach is given, the pressure may fall far below that of the guess.
     guess_rounding: f64,
     changes: PendingChanges,
+    /// Whether the last step was cut short: cells that joined together may have held each other off, and the deepest one joins
+    /// alone.
+    was_cut: bool,
     /// r on A.
     residual: Vec<f64>,
     /// The fit of r on A under each body, by which its motion was corrected: still to be subtracted from r.
@@ -131,6 +134,7 @@ impl ActiveSet {
             set: ContactSet::new(cells, bodies),
             passes: Passes::new(cells, bodies),
             guess_rounding: 0.0,
+            was_cut: false,
             changes: PendingChanges { leaving: false, moves: false, corrections: vec![None; bodies] },
             residual: field.clone(),
             residual_motions: motions.clone(),

@@ -137,7 +137,6 @@ fn agrees_with_a_dense_reference(time_rule: TimeRule) {
         };
         let mut reference = Reference::new(&scene.grid, &scene.shapes, &scene.rheology, time_rule);
         for (step, (dt, loads)) in scene.steps.iter().enumerate() {
-            eprintln!("SCENE {seed} {step}");
             match contact.step_each(*dt, loads) {
                 Ok(_) => {}
                 Err(Error::LoadOutsideHull { .. }) => {
