@@ -27,13 +27,13 @@ impl ActiveSet {
     }
 
     /// Makes the pressure on A carry the force and moments of each body: at once, by scaling p and v, where the force of a
-    /// single body is the only load; else by the next direction. Where that cannot be, a step that was `searched` is cut short;
+    /// single body is the only load; else by the next direction. Where that cannot be, a step that was `searched`, so long, is cut short;
     /// after another, the body begins again.
     pub(super) fn balance(
         &mut self,
         problem: &Problem<'_>,
         shape: Shape,
-        searched: bool,
+        searched: f64,
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Result<(), usize> {
@@ -66,8 +66,7 @@ impl ActiveSet {
                 continue;
             }
             // the load acts outside the hull of what is left of A
-            if searched {
-                self.cut_step(problem, solution);
+            if searched > 0.0 && self.cut_step(problem, searched, solution) {
                 return Ok(());
             }
             // begin again under this body

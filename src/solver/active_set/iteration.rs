@@ -14,6 +14,9 @@ const MIN_CENTRED_FRACTION: f64 = 1e-6;
 /// since the penetration was found.
 const MAX_TURN_OVER_RMS: f64 = 1e-6;
 
+/// Iterations without a new lowest residual after which no correction follows another one: a search comes between them.
+const MAX_CORRECTIONS_WITHOUT_GAIN: usize = 3;
+
 /// Fraction of the deepest penetration that counts as the deepest.
 const DEEPEST: f64 = 0.999;
 
@@ -32,10 +35,11 @@ impl ActiveSet {
         if let Err(body) = self.start(problem, solution, work) {
             return Outcome::Unbalanced(body);
         }
-        let (mut lowest, mut without_gain, mut step, mut searched) = (f64::INFINITY, 0, 0.0, false);
+        let (mut lowest, mut without_gain, mut step, mut searched) = (f64::INFINITY, 0, 0.0, 0.0);
         loop {
             let (mut state, mut penetration) = self.advance(problem, solution, step);
-            if state.negative > 0.0 && self.should_remove_tensile(problem, stop, state) {
+            let hasty = without_gain > MAX_CORRECTIONS_WITHOUT_GAIN && searched == 0.0 && step != 0.0;
+            if state.negative > 0.0 && self.should_remove_tensile(problem, stop, state, hasty) {
                 if let Err(body) = self.remove_tensile_cells(problem, searched, solution, work) {
                     return Outcome::Unbalanced(body);
                 }
@@ -72,11 +76,12 @@ impl ActiveSet {
             }
 
             solution.counts.iterations += 1;
-            searched = !self.changes.any();
+            let corrects = self.changes.any();
             self.find_direction(problem, false, solution);
             problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
             solution.counts.convolutions += 1;
             step = self.step_length(problem, solution);
+            searched = if corrects { 0.0 } else { step };
         }
     }
 

@@ -64,7 +64,7 @@ impl ActiveSet {
         }
         self.changes.clear();
         self.changes.leaving = self.some_leave(solution);
-        self.balance(problem, Shape::Pressure, false, solution, work)
+        self.balance(problem, Shape::Pressure, 0.0, solution, work)
     }
 
     /// Whether cells outside A carry pressure.
@@ -96,19 +96,26 @@ impl ActiveSet {
         self.set.update(problem);
     }
 
-    /// Whether negative pressures are the larger part of the error, or all that is left of it.
-    pub(super) fn should_remove_tensile(&self, problem: &Problem<'_>, stop: Stop, state: ResidualSums) -> bool {
+    /// Whether negative pressures are all that is left of the error, or, unless it is `hasty` to remove them, a large part of it.
+    pub(super) fn should_remove_tensile(
+        &self,
+        problem: &Problem<'_>,
+        stop: Stop,
+        state: ResidualSums,
+        hasty: bool,
+    ) -> bool {
         let equivalent_gap = problem.compliance / self.preconditioner.diagonal();
         let solved = state.square <= stop.tolerance * stop.tolerance * state.displacement;
-        solved || equivalent_gap * equivalent_gap * state.negative > LEAVE_OVER_RMS * LEAVE_OVER_RMS * state.square
+        let large = equivalent_gap * equivalent_gap * state.negative > LEAVE_OVER_RMS * LEAVE_OVER_RMS * state.square;
+        solved || !hasty && large
     }
 
     /// Takes cells with negative pressure out of A, and those whose pressure becomes negative by what the first leave to them.
-    /// Where the others cannot carry the load, the last step is cut short instead if it was `searched`, not a correction.
+    /// Where the others cannot carry the load, the last step is cut short instead, if it was a search, `searched` long.
     pub(super) fn remove_tensile_cells(
         &mut self,
         problem: &Problem<'_>,
-        searched: bool,
+        searched: f64,
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Result<(), usize> {
@@ -122,22 +129,27 @@ impl ActiveSet {
         self.balance(problem, Shape::Punch, searched, solution, work)
     }
 
-    /// Goes back along the last direction to where the first pressure became zero: in front of it all pressures were ≥ 0 and
-    /// in balance.
-    pub(super) fn cut_step(&mut self, problem: &Problem<'_>, solution: &mut Solution) {
+    /// Goes back along the last direction, `step` long, to where the first pressure became zero: before that all pressures
+    /// were in balance. False if some were negative all the while.
+    pub(super) fn cut_step(&mut self, problem: &Problem<'_>, step: f64, solution: &mut Solution) -> bool {
         let Search { direction, image, energy, .. } = &mut self.search;
-        let beyond = |p: f64, d: f64| if p < 0.0 && d < 0.0 { p / d } else { 0.0 };
+        let beyond = |p: f64, d: f64| if p < 0.0 { if d < 0.0 { p / d } else { f64::INFINITY } } else { 0.0 };
         let pairs = solution.pressure.iter().zip(&*direction);
         let back = pairs.fold(0.0_f64, |back, (&p, &d)| back.max(beyond(p, d)));
-        for (p, &d) in solution.pressure.iter_mut().zip(&*direction) {
-            *p = if beyond(*p, d) == back { 0.0 } else { (*p - back * d).max(0.0) };
+        if back > step * (1.0 + f64::EPSILON) {
+            return false;
+        }
+        for ((p, &d), member) in solution.pressure.iter_mut().zip(&*direction).zip(&mut self.set.member) {
+            let blocked = back > 0.0 && beyond(*p, d) == back;
+            *member = (*member || *p != 0.0) && !blocked;
+            *p = if blocked { 0.0 } else { *p - back * d };
         }
         add(&mut solution.potential, -back, image);
         *energy = 0.0;
         self.changes.clear();
         self.was_cut = true;
-        self.set.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
         self.set.update(problem);
+        true
     }
 
     /// Writes what the pressures that leave bring to the cells of A around to `preconditioned`.
