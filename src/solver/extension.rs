@@ -10,8 +10,8 @@ const TRUST: f64 = 1.5;
 ///
 /// x_l = w_l m_l + (1 − w_l) up(x_(l+1)),  m_(l+1) = Σ w_l m_l / Σ w_l over the block,  w_(l+1) = κ s/(1 + (κ − 1) s),
 ///
-/// where s is the mean of w_l over the block, and w_0 is 1 on A and 0 elsewhere. The coarsest weight is 1, so that constants are
-/// reproduced. Its transpose brings what all cells hold to A, and keeps the sum.
+/// where s is the mean of w_l over the block, and w_0 is 1 on A and 0 elsewhere; x = m on the coarsest level, a single block. E
+/// reproduces constants. Its transpose brings what all cells hold to A, and keeps the sum.
 ///
 /// Axes that are not periodic are mirrored at their ends, which is what they are on the parts that symmetry leaves of a grid.
 #[derive(Debug, Clone)]
@@ -19,8 +19,7 @@ pub(crate) struct Extension {
     cells: [usize; 2],
     periodic: [bool; 2],
     levels: Vec<Level>,
-    /// One row of a level while it is interpolated.
-    row: Vec<f64>,
+    rows: Rows,
 }
 
 /// Blocks of cells.
@@ -29,10 +28,15 @@ struct Level {
     cells: [usize; 2],
     /// w_l.
     weight: Vec<f64>,
-    /// 1/Σ w of the blocks that each block is made of, 0 where none is known.
-    share: Vec<f64>,
     /// m_l, then x_l.
     value: Vec<f64>,
+}
+
+/// Single rows in work: of blocks, with a neighbour at either end, and of the finer level, with two.
+#[derive(Debug, Clone)]
+struct Rows {
+    blocks: Vec<f64>,
+    fine: Vec<f64>,
 }
 
 impl Extension {
@@ -42,9 +46,11 @@ impl Extension {
         while size != [1, 1] {
             size = size.map(|n| n.div_ceil(2));
             let field = vec![0.0; size[0] * size[1]];
-            levels.push(Level { cells: size, weight: field.clone(), share: field.clone(), value: field });
+            levels.push(Level { cells: size, weight: field.clone(), value: field });
         }
-        Extension { cells, periodic, levels, row: vec![0.0; 2 * cells[1] + 8] }
+        let blocks = cells[1].div_ceil(2);
+        let rows = Rows { blocks: vec![0.0; blocks + 2], fine: vec![0.0; 2 * blocks + 4] };
+        Extension { cells, periodic, levels, rows }
     }
 
     /// Bytes that it takes.
@@ -54,115 +60,106 @@ impl Extension {
             size = size.map(|n| n.div_ceil(2));
             blocks += size[0] as u128 * size[1] as u128;
         }
-        8 * (3 * blocks + 2 * cells[1] as u128 + 8)
+        8 * (2 * blocks + 3 * cells[1].div_ceil(2) as u128 + 6)
     }
 
     /// Makes E that of the set of members.
     pub(crate) fn fit(&mut self, member: &[bool]) {
+        let this = self;
         Arch::new().dispatch(
             #[inline(always)]
-            || self.find_weights(member),
+            move || {
+                let this = this;
+                this.find_weights(member)
+            },
         );
     }
 
     /// Fills all cells outside the set, where `field` is zero.
     pub(crate) fn extend(&mut self, field: &mut [f64], member: &[bool]) {
+        let this = self;
         Arch::new().dispatch(
             #[inline(always)]
-            || self.push_and_pull(field, member),
+            move || {
+                let this = this;
+                this.push_and_pull(field, member)
+            },
         );
     }
 
     /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere.
     pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool]) {
+        let this = self;
         Arch::new().dispatch(
             #[inline(always)]
-            || self.transpose(field, member),
+            move || {
+                let this = this;
+                this.transpose(field, member)
+            },
         );
     }
 
     #[inline(always)]
     fn find_weights(&mut self, member: &[bool]) {
-        let Extension { cells, levels, .. } = self;
+        let Extension { cells, levels, rows, .. } = self;
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
-            let level = &mut level[0];
-            let [m1, m2] = level.cells;
-            for i in 0..m1 {
-                let sums = &mut level.share[i * m2..][..m2];
-                sums.fill(0.0);
-                match finer.last() {
-                    None => rows_of(i, *cells, member).for_each(|row| {
-                        add_pairs(
-                            sums,
-                            row,
-                            #[inline(always)]
-                            |&m| f64::from(u8::from(m)),
-                        )
-                    }),
-                    Some(fine) => rows_of(i, fine.cells, &fine.weight).for_each(|row| {
-                        add_pairs(
-                            sums,
-                            row,
-                            #[inline(always)]
-                            |&w| w,
-                        )
-                    }),
+            let Level { cells: [m1, m2], weight, .. } = &mut level[0];
+            let fine = finer.last().map_or(*cells, |fine| fine.cells);
+            for (i, out) in weight.chunks_exact_mut(*m2).enumerate().take(*m1) {
+                out.fill(0.0);
+                for row in rows_under(i, fine) {
+                    match finer.last() {
+                        Some(fine) => add_pairs(out, &fine.weight[row]),
+                        None => {
+                            let ones = &mut rows.fine[..row.len()];
+                            let marks = ones.iter_mut().zip(&member[row]);
+                            marks.for_each(|(one, &m)| *one = f64::from(u8::from(m)));
+                            add_pairs(out, ones);
+                        }
+                    }
                 }
-                for (share, weight) in sums.iter_mut().zip(&mut level.weight[i * m2..]) {
-                    let s = 0.25 * *share;
-                    *weight = TRUST * s / (1.0 + (TRUST - 1.0) * s);
-                    *share = if *share > 0.0 { 1.0 / *share } else { 0.0 };
+                for w in out {
+                    let s = 0.25 * *w;
+                    *w = TRUST * s / (1.0 + (TRUST - 1.0) * s);
                 }
             }
-        }
-        if let Some(coarsest) = levels.last_mut() {
-            coarsest.weight[0] = 1.0;
         }
     }
 
     #[inline(always)]
     fn push_and_pull(&mut self, field: &mut [f64], member: &[bool]) {
-        let Extension { cells, periodic, levels, row } = self;
+        let Extension { cells, periodic, levels, rows } = self;
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
-            let Level { cells: [m1, m2], share, value, .. } = &mut level[0];
-            for i in 0..*m1 {
-                let out = &mut value[i * *m2..][..*m2];
+            let Level { cells: [m1, m2], weight, value } = &mut level[0];
+            let fine = finer.last().map_or(*cells, |fine| fine.cells);
+            for (i, out) in value.chunks_exact_mut(*m2).enumerate().take(*m1) {
                 out.fill(0.0);
-                match finer.last() {
-                    None => rows_of(i, *cells, field).for_each(|row| {
-                        add_pairs(
-                            out,
-                            row,
-                            #[inline(always)]
-                            |&f| f,
-                        )
-                    }),
-                    Some(fine) => {
-                        let rows = rows_of(i, fine.cells, &fine.value).zip(rows_of(i, fine.cells, &fine.weight));
-                        rows.for_each(|(values, weights)| add_weighted_pairs(out, values, weights));
+                for row in rows_under(i, fine) {
+                    match finer.last() {
+                        Some(fine) => add_weighted_pairs(out, &fine.value[row.clone()], &fine.weight[row]),
+                        None => add_pairs(out, &field[row]),
                     }
                 }
-                out.iter_mut().zip(&share[i * *m2..]).for_each(|(out, &share)| *out *= share);
+                let weights = &weight[i * *m2..][..*m2];
+                out.iter_mut().zip(weights).for_each(|(out, &w)| *out *= share(w));
             }
         }
         for l in (1..levels.len()).rev() {
             let (finer, coarser) = levels.split_at_mut(l);
-            let Level { cells, weight, value, .. } = &mut finer[l - 1];
-            let n2 = cells[1];
-            for i in 0..cells[0] {
-                let up = interpolate(&coarser[0], i, *periodic, row);
-                for ((x, &w), &up) in value[i * n2..][..n2].iter_mut().zip(&weight[i * n2..]).zip(up) {
-                    *x = w * *x + (1.0 - w) * up;
+            let Level { cells: [_, n2], weight, value } = &mut finer[l - 1];
+            for (i, (values, weights)) in value.chunks_exact_mut(*n2).zip(weight.chunks_exact(*n2)).enumerate() {
+                let up = coarser[0].interpolate(i, *periodic, rows);
+                for ((x, &w), &up) in values.iter_mut().zip(weights).zip(up) {
+                    *x = up + w * (*x - up);
                 }
             }
         }
         let Some(finest) = levels.first() else { return };
-        let n2 = cells[1];
-        for i in 0..cells[0] {
-            let up = interpolate(finest, i, *periodic, row);
-            for ((x, &inside), &up) in field[i * n2..][..n2].iter_mut().zip(&member[i * n2..]).zip(up) {
+        for (i, (values, inside)) in field.chunks_exact_mut(cells[1]).zip(member.chunks_exact(cells[1])).enumerate() {
+            let up = finest.interpolate(i, *periodic, rows);
+            for ((x, &inside), &up) in values.iter_mut().zip(inside).zip(up) {
                 *x = if inside { *x } else { up };
             }
         }
@@ -170,82 +167,139 @@ impl Extension {
 
     #[inline(always)]
     fn transpose(&mut self, field: &mut [f64], member: &[bool]) {
-        let Extension { cells, periodic, levels, row } = self;
+        let Extension { cells, periodic, levels, rows } = self;
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
-            let level = &mut level[0];
+            level[0].value.fill(0.0);
             match finer.last_mut() {
-                None => spread(
-                    level,
-                    *cells,
-                    *periodic,
-                    row,
-                    #[inline(always)]
-                    |range, factor, out| {
-                        for ((out, &f), &inside) in out.iter_mut().zip(&field[range.clone()]).zip(&member[range]) {
-                            *out += if inside { 0.0 } else { factor * f };
+                None => {
+                    let n2 = cells[1];
+                    for (i, (values, inside)) in field.chunks_exact(n2).zip(member.chunks_exact(n2)).enumerate() {
+                        let open = rows.fine[2..].iter_mut().zip(values.iter().zip(inside));
+                        open.for_each(|(out, (&f, &inside))| *out = if inside { 0.0 } else { f });
+                        level[0].restrict(i, n2, *periodic, rows);
+                    }
+                }
+                Some(Level { cells: [_, n2], weight, value }) => {
+                    let lines = value.chunks_exact_mut(*n2).zip(weight.chunks_exact(*n2));
+                    for (i, (values, weights)) in lines.enumerate() {
+                        for (out, (f, &w)) in rows.fine[2..].iter_mut().zip(values.iter_mut().zip(weights)) {
+                            let known = w * *f;
+                            *out = *f - known;
+                            *f = known;
                         }
-                    },
-                ),
-                Some(Level { cells, weight, value, .. }) => {
-                    spread(
-                        level,
-                        *cells,
-                        *periodic,
-                        row,
-                        #[inline(always)]
-                        |range, factor, out| {
-                            for ((out, &f), &w) in out.iter_mut().zip(&value[range.clone()]).zip(&weight[range]) {
-                                *out += factor * (1.0 - w) * f;
-                            }
-                        },
-                    );
-                    value.iter_mut().zip(&*weight).for_each(|(value, &w)| *value *= w);
+                        level[0].restrict(i, *n2, *periodic, rows);
+                    }
                 }
             }
         }
         for l in (1..levels.len()).rev() {
             let (finer, coarser) = levels.split_at_mut(l);
-            let Level { cells: [n1, n2], weight, value, .. } = &mut finer[l - 1];
-            for i in 0..*n1 {
-                let (out, weights) = (&mut value[i * *n2..][..*n2], &weight[i * *n2..][..*n2]);
-                add_shares(
-                    &coarser[0],
-                    i,
-                    out,
-                    #[inline(always)]
-                    |j, f, x| f + weights[j] * x,
-                );
+            let Level { cells: [_, n2], weight, value } = &mut finer[l - 1];
+            for (i, (values, weights)) in value.chunks_exact_mut(*n2).zip(weight.chunks_exact(*n2)).enumerate() {
+                let shares = coarser[0].shares(i, rows);
+                values.iter_mut().zip(weights).zip(shares).for_each(|((f, &w), &x)| *f += w * x);
             }
         }
         let Some(finest) = levels.first() else { return };
-        let [n1, n2] = *cells;
-        for i in 0..n1 {
-            let (out, inside) = (&mut field[i * n2..][..n2], &member[i * n2..][..n2]);
-            add_shares(
-                finest,
-                i,
-                out,
-                #[inline(always)]
-                |j, f, x| if inside[j] { f + x } else { 0.0 },
-            );
+        for (i, (values, inside)) in field.chunks_exact_mut(cells[1]).zip(member.chunks_exact(cells[1])).enumerate() {
+            let shares = finest.shares(i, rows);
+            for ((f, &inside), &x) in values.iter_mut().zip(inside).zip(shares) {
+                *f = if inside { *f + x } else { 0.0 };
+            }
         }
     }
 }
 
+impl Level {
+    /// Row `i` of the finer level, interpolated from this one: 9/16 of the block, 3/16 of two neighbours and 1/16 of the third.
+    #[inline(always)]
+    fn interpolate<'a>(&self, i: usize, periodic: [bool; 2], rows: &'a mut Rows) -> &'a [f64] {
+        let m2 = self.cells[1];
+        let [near, far] = self.blocks_beside(i, periodic[0]).map(|i| &self.value[i * m2..][..m2]);
+        let across = &mut rows.blocks[..m2 + 2];
+        for ((a, &near), &far) in across[1..=m2].iter_mut().zip(near).zip(far) {
+            *a = 0.75 * near + 0.25 * far;
+        }
+        let [before, after] = if periodic[1] { [m2, 1] } else { [1, m2] };
+        (across[0], across[m2 + 1]) = (across[before], across[after]);
+        let (a, b, c) = (&across[..m2], &across[1..][..m2], &across[2..][..m2]);
+        let fine = &mut rows.fine[..2 * m2];
+        for (((pair, a), b), c) in fine.as_chunks_mut::<2>().0.iter_mut().zip(a).zip(b).zip(c) {
+            *pair = [0.75 * b + 0.25 * a, 0.75 * b + 0.25 * c];
+        }
+        fine
+    }
+
+    /// The transpose of [`Level::interpolate`]: adds what row `i` of the finer level, of length `n2`, holds.
+    #[inline(always)]
+    fn restrict(&mut self, i: usize, n2: usize, periodic: [bool; 2], rows: &mut Rows) {
+        let m2 = self.cells[1];
+        let fine = &mut rows.fine[..2 * m2 + 4];
+        fine[n2 + 2..2 * m2 + 2].fill(0.0);
+        let [before, after] = if periodic[1] { [2 * m2 + 1, 2] } else { [2, 2 * m2 + 1] };
+        (fine[1], fine[2 * m2 + 2]) = (fine[before], fine[after]);
+        let pairs = fine.as_chunks::<2>().0;
+        let blocks = &mut rows.blocks[..m2];
+        let (a, b, c) = (&pairs[..m2], &pairs[1..][..m2], &pairs[2..][..m2]);
+        for (((out, a), b), c) in blocks.iter_mut().zip(a).zip(b).zip(c) {
+            *out = 0.75 * (b[0] + b[1]) + 0.25 * (a[1] + c[0]);
+        }
+        for (i, factor) in self.blocks_beside(i, periodic[0]).into_iter().zip([0.75, 0.25]) {
+            let out = &mut self.value[i * m2..][..m2];
+            out.iter_mut().zip(&*blocks).for_each(|(out, &block)| *out += factor * block);
+        }
+    }
+
+    /// What the cells of row `i` of the finer level get of their blocks, but for their own weight.
+    #[inline(always)]
+    fn shares<'a>(&self, i: usize, rows: &'a mut Rows) -> &'a [f64] {
+        let m2 = self.cells[1];
+        let at = i / 2 * m2;
+        let fine = &mut rows.fine[..2 * m2];
+        // both rows of a block get the same
+        if i.is_multiple_of(2) {
+            let blocks = self.value[at..][..m2].iter().zip(&self.weight[at..]);
+            for (pair, (&value, &w)) in fine.as_chunks_mut::<2>().0.iter_mut().zip(blocks) {
+                *pair = [value * share(w); 2];
+            }
+        }
+        fine
+    }
+
+    /// The blocks that row `i` of the finer level lies between, the nearer one first.
+    #[inline(always)]
+    fn blocks_beside(&self, i: usize, periodic: bool) -> [usize; 2] {
+        let (near, m1) = (i / 2, self.cells[0]);
+        let far = match (i.is_multiple_of(2), periodic) {
+            (true, true) => (near + m1 - 1) % m1,
+            (true, false) => near.saturating_sub(1),
+            (false, true) => (near + 1) % m1,
+            (false, false) => (near + 1).min(m1 - 1),
+        };
+        [near, far]
+    }
+}
+
+/// 1/Σ w over the block of weight `w`, 0 where nothing in it is known.
+#[inline(always)]
+fn share(w: f64) -> f64 {
+    if w > 0.0 { (TRUST - (TRUST - 1.0) * w) / (4.0 * w) } else { 0.0 }
+}
+
 /// The rows of a finer level that row `i` of blocks covers.
 #[inline(always)]
-fn rows_of<T>(i: usize, [n1, n2]: [usize; 2], field: &[T]) -> impl Iterator<Item = &[T]> {
-    field[2 * i * n2..(2 * i + 2).min(n1) * n2].chunks_exact(n2)
+fn rows_under(i: usize, [n1, n2]: [usize; 2]) -> impl Iterator<Item = std::ops::Range<usize>> {
+    (2 * i..(2 * i + 2).min(n1)).map(move |row| row * n2..(row + 1) * n2)
 }
 
 /// Adds pairs of values to each block.
 #[inline(always)]
-fn add_pairs<T>(out: &mut [f64], row: &[T], value: impl Fn(&T) -> f64) {
+fn add_pairs(out: &mut [f64], row: &[f64]) {
     let (pairs, rest) = row.as_chunks::<2>();
-    out.iter_mut().zip(pairs).for_each(|(out, [a, b])| *out += value(a) + value(b));
+    out.iter_mut().zip(pairs).for_each(|(out, [a, b])| *out += a + b);
     if let ([last], Some(out)) = (rest, out.last_mut()) {
-        *out += value(last);
+        *out += last;
     }
 }
 
@@ -255,79 +309,6 @@ fn add_weighted_pairs(out: &mut [f64], values: &[f64], weights: &[f64]) {
     out.iter_mut().zip(f.iter().zip(w)).for_each(|(out, (f, w))| *out += w[0] * f[0] + w[1] * f[1]);
     if let ([f], [w], Some(out)) = (last_f, last_w, out.last_mut()) {
         *out += w * f;
-    }
-}
-
-/// Row `i` of the finer level, interpolated from a level: 9/16 of the block, 3/16 of two neighbours and 1/16 of the third.
-#[inline(always)]
-fn interpolate<'a>(level: &Level, i: usize, periodic: [bool; 2], row: &'a mut [f64]) -> &'a [f64] {
-    let [m1, m2] = level.cells;
-    let near = i / 2;
-    let far = match (i % 2, periodic[0]) {
-        (0, true) => (near + m1 - 1) % m1,
-        (0, false) => near.saturating_sub(1),
-        (_, true) => (near + 1) % m1,
-        (_, false) => (near + 1).min(m1 - 1),
-    };
-    let (across, fine) = row.split_at_mut(m2 + 2);
-    let (near, far) = (&level.value[near * m2..][..m2], &level.value[far * m2..][..m2]);
-    for ((a, &near), &far) in across[1..=m2].iter_mut().zip(near).zip(far) {
-        *a = 0.75 * near + 0.25 * far;
-    }
-    let [before, after] = if periodic[1] { [m2, 1] } else { [1, m2] };
-    (across[0], across[m2 + 1]) = (across[before], across[after]);
-    let (a, b, c) = (&across[..m2], &across[1..][..m2], &across[2..][..m2]);
-    let fine = &mut fine[..2 * m2];
-    for (((pair, a), b), c) in fine.as_chunks_mut::<2>().0.iter_mut().zip(a).zip(b).zip(c) {
-        *pair = [0.75 * b + 0.25 * a, 0.75 * b + 0.25 * c];
-    }
-    fine
-}
-
-/// The transpose of [`interpolate`] for all rows: `add` adds a multiple of a range of the finer level.
-#[inline(always)]
-fn spread(
-    level: &mut Level,
-    [n1, n2]: [usize; 2],
-    periodic: [bool; 2],
-    row: &mut [f64],
-    add: impl Fn(std::ops::Range<usize>, f64, &mut [f64]),
-) {
-    let [m1, m2] = level.cells;
-    // the fine row, a pair before it and a pair after it
-    let row = &mut row[..2 * m2 + 4];
-    let ends = if periodic[0] { [2 * m1 - 1, 0] } else { [0, 2 * m1 - 1] };
-    for j in 0..m1 {
-        row.fill(0.0);
-        let before = if j > 0 { 2 * j - 1 } else { ends[0] };
-        let after = if j + 1 < m1 { 2 * j + 2 } else { ends[1] };
-        for (i, factor) in [(2 * j, 0.75), (2 * j + 1, 0.75), (before, 0.25), (after, 0.25)] {
-            if i < n1 {
-                add(i * n2..(i + 1) * n2, factor, &mut row[2..n2 + 2]);
-            }
-        }
-        let [first, last] = [row[2], row[2 * m2 + 1]];
-        let out = &mut level.value[j * m2..][..m2];
-        let pairs = row.as_chunks::<2>().0;
-        let (a, b, c) = (&pairs[..m2], &pairs[1..][..m2], &pairs[2..][..m2]);
-        for (((out, a), b), c) in out.iter_mut().zip(a).zip(b).zip(c) {
-            *out = 0.75 * (b[0] + b[1]) + 0.25 * (a[1] + c[0]);
-        }
-        let [at_first, at_last] = if periodic[1] { [m2 - 1, 0] } else { [0, m2 - 1] };
-        out[at_first] += 0.25 * first;
-        out[at_last] += 0.25 * last;
-    }
-}
-
-/// Adds to row `i` of the finer level what its blocks hold, each cell its share.
-#[inline(always)]
-fn add_shares(level: &Level, i: usize, out: &mut [f64], add: impl Fn(usize, f64, f64) -> f64) {
-    let m2 = level.cells[1];
-    let at = i / 2 * m2;
-    let blocks = level.value[at..][..m2].iter().zip(&level.share[at..]);
-    for (j, (pair, (&value, &share))) in out.chunks_mut(2).zip(blocks).enumerate() {
-        let x = value * share;
-        pair.iter_mut().enumerate().for_each(|(k, f)| *f = add(2 * j + k, *f, x));
     }
 }
 
