@@ -21,8 +21,8 @@ use crate::solver::{Bands, Extension};
 /// | state and trial step | 73 |
 /// | history | 8 per relaxation time, and 8 for the change in the last step (16 without elastic response, none of an elastic body); with [`Frame::Indenter`](crate::contact::Frame::Indenter) 40, 16 per relaxation time and 24 (48, none); direct sums: 8 per step taken |
 /// | displacement outside a window | 16, and the history again |
-/// | solver | 37; [`Solver::PolonskyKeer`]: 29; for each body 0.02 more |
-/// | its preconditioner | 19: a quarter of a spectrum of the grid without padding, 2, work space, 9, and the extension of the residual, 8 |
+/// | solver | 29, as [`Solver::PolonskyKeer`]; for each body 0.02 more |
+/// | its preconditioner | 16.4, none of [`Solver::PolonskyKeer`]: a quarter of a spectrum of the grid without padding, 2, work space, 9, and the extension of the residual, 5.4 |
 /// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
 /// | transforms on several threads | 16 + 8 more |
 ///
@@ -124,8 +124,8 @@ impl Footprint<'_> {
         let [kernel, inverse] = self.kernel.bytes_on(cells, folded);
         let sums = Bands::bytes(count, self.bodies) as u128;
         let solver = match self.settings.solver {
-            // four fields, a mark, and runs of cells
-            Solver::ActiveSet => (32 + 1 + 4) * n + sums + inverse + Extension::bytes(cells),
+            // three fields, a mark, and runs of cells
+            Solver::ActiveSet => (24 + 1 + 4) * n + sums + inverse + Extension::bytes(cells),
             // three fields, a mark, and runs of cells
             Solver::PolonskyKeer => (24 + 1 + 4) * n + sums,
         };

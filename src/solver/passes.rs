@@ -25,7 +25,6 @@ pub(crate) struct Fields<'a> {
     pub(crate) image: &'a [f64],
     pub(crate) pressure: &'a mut [f64],
     pub(crate) potential: &'a mut [f64],
-    pub(crate) residual: &'a mut [f64],
 }
 
 /// The passes over the fields of one contact.
@@ -39,7 +38,7 @@ impl Passes {
         Passes { bands: Bands::new(cells, bodies) }
     }
 
-    /// p += a d, v += a K d, and r = motion − (c v + gap) on the cells in contact. Finds Σ B r, Σ r², Σ (c v)² and
+    /// p += a d, v += a K d, with r = motion − (c v + gap) on the cells in contact. Finds Σ B r, Σ r², Σ (c v)² and
     /// Σ min(p, 0)² over them, the greatest r of them, and the greatest motion − (c v + gap) of all others that may carry pressure.
     pub(crate) fn survey(
         &mut self,
@@ -49,9 +48,10 @@ impl Passes {
         motions: &[ModeCoefficients],
         fields: Fields<'_>,
     ) -> &[Found] {
-        let Fields { direction, image, pressure, potential, residual } = fields;
+        let Fields { direction, image, pressure, potential } = fields;
         let (c, cut) = (problem.compliance, problem.cut());
-        self.bands.over([pressure, potential, residual], |band, [p, v, r], found| {
+        self.bands.over([pressure, potential], |band, [p, v], found| {
+            let mut residual = [0.0; PIECE_CELLS];
             runs.walk(&band, cut, |Piece { cells, body }, inside| {
                 let here = cells.start - band.start..cells.end - band.start;
                 let (v, h, found) = (&mut v[here.clone()], &problem.gap[cells.clone()], &mut found[body]);
@@ -66,11 +66,11 @@ impl Passes {
                     }
                     return;
                 }
-                let (p, r) = (&mut p[here.clone()], &mut r[here]);
+                let (p, r) = (&mut p[here], &mut residual[..cells.len()]);
                 if a != 0.0 {
                     add(p, a, &direction[cells]);
                 }
-                map(motion, r, [&*v, h], |_, v, h, motion| motion - (c * v + h));
+                fill_residual(motion, r, c, v, h);
                 add_modes(&mut found.sums[..3], &line, r);
                 found.peak = found.peak.max(most(r));
                 found.sums[3] += sum_of_pairs(r, r, |r, _| r * r);
@@ -100,33 +100,24 @@ impl Passes {
         found.iter().map(Found::greatest).fold(0.0, f64::max)
     }
 
-    /// r ← r − motion, and z = r in contact, zero elsewhere; returns Σ r² and the greatest r.
-    pub(crate) fn subtract(
+    /// z ← r = motion − (c v + gap) in contact, zero elsewhere; returns Σ r² and the greatest r.
+    pub(crate) fn residual(
         &mut self,
         problem: &Problem<'_>,
         runs: &Runs,
         motions: &[ModeCoefficients],
-        residual: &mut [f64],
+        potential: &[f64],
         z: &mut [f64],
     ) -> [f64; 2] {
-        let cut = problem.cut();
-        let found = self.bands.over([residual, z], |band, [r, z], found| {
+        let (c, cut) = (problem.compliance, problem.cut());
+        let found = self.bands.over([z], |band, [z], found| {
             runs.walk(&band, cut, |Piece { cells, body }, inside| {
-                let here = cells.start - band.start..cells.end - band.start;
-                let (r, z) = (&mut r[here.clone()], &mut z[here]);
+                let z = &mut z[cells.start - band.start..cells.end - band.start];
                 if !inside {
                     return z.fill(0.0);
                 }
                 let motion = problem.line(body, cells.start).of(motions[body]);
-                if motion[1] == 0.0 {
-                    for (z, r) in z.iter_mut().zip(r) {
-                        *r -= motion[0];
-                        *z = *r;
-                    }
-                } else {
-                    map(motion, z, [&*r, &*r], |_, r, _, motion| r - motion);
-                    r.copy_from_slice(z);
-                }
+                fill_residual(motion, z, c, &potential[cells.clone()], &problem.gap[cells]);
                 found[body].sums[0] += sum_of_pairs(z, z, |z, _| z * z);
                 found[body].peak = found[body].peak.max(most(z));
             });
@@ -218,23 +209,30 @@ impl Passes {
         &mut self,
         problem: &Problem<'_>,
         runs: &Runs,
-        residual: &[f64],
-        direction: &[f64],
-        image: &[f64],
+        motions: &[ModeCoefficients],
+        [potential, direction, image]: [&[f64]; 3],
     ) -> &[Found] {
-        let cut = problem.cut();
+        let (c, cut) = (problem.compliance, problem.cut());
         self.bands.over([], |band, [], found| {
+            let mut residual = [0.0; PIECE_CELLS];
             for Piece { cells, body } in runs.inside(&band, cut) {
-                let sums = &mut found[body].sums;
-                let (r, d, kd) = (&residual[cells.clone()], &direction[cells.clone()], &image[cells.clone()]);
+                let (sums, line) = (&mut found[body].sums, problem.line(body, cells.start));
+                let (d, kd, r) = (&direction[cells.clone()], &image[cells.clone()], &mut residual[..cells.len()]);
+                fill_residual(line.of(motions[body]), r, c, &potential[cells.clone()], &problem.gap[cells]);
                 if problem.bodies[body].tilts() {
-                    add_modes(&mut sums[..3], &problem.line(body, cells.start), kd);
+                    add_modes(&mut sums[..3], &line, kd);
                 }
                 sums[3] += sum_of_pairs(r, d, |r, d| r * d);
                 sums[4] += sum_of_pairs(d, kd, |d, kd| d * kd);
             }
         })
     }
+}
+
+/// r = motion − (c v + gap) on the cells of a piece.
+#[inline]
+fn fill_residual(motion: [f64; 2], r: &mut [f64], c: f64, v: &[f64], gap: &[f64]) {
+    map(motion, r, [v, gap], |_, v, h, motion| motion - (c * v + h));
 }
 
 /// x += a y.
@@ -328,21 +326,19 @@ mod tests {
         };
         let (mut passes, runs) = (Passes::new(n, bodies.len()), &set.runs);
 
-        let (mut p, mut v, mut r) = (field(1.3), field(1.7), vec![0.0; n]);
+        let (mut p, mut v) = (field(1.3), field(1.7));
         let (p0, v0) = (p.clone(), v.clone());
-        let fields = Fields { direction: &d, image: &kd, pressure: &mut p, potential: &mut v, residual: &mut r };
+        let fields = Fields { direction: &d, image: &kd, pressure: &mut p, potential: &mut v };
         let found = passes.survey(&problem, runs, a, &motions, fields).to_vec();
         let mut deepest = 0.0_f64;
         for k in 0..n {
             assert_eq!(v[k], v0[k] + a * kd[k]);
             assert_eq!(p[k], if set.member[k] { p0[k] + a * d[k] } else { p0[k] });
-            let residual = at(k) - (c * v[k] + gap[k]);
-            if set.member[k] {
-                near(r[k], residual);
-            } else if !problem.released(problem.owner(k)) {
-                deepest = deepest.max(residual);
+            if !set.member[k] && !problem.released(problem.owner(k)) {
+                deepest = deepest.max(at(k) - (c * v[k] + gap[k]));
             }
         }
+        let r: Vec<f64> = (0..n).map(|k| at(k) - (c * v[k] + gap[k])).collect();
         for (body, found) in found.iter().enumerate() {
             (0..3).for_each(|m| near(found.sums[m], inside(body, &|k| modes(k)[m] * r[k])));
             near(found.sums[3], inside(body, &|k| r[k] * r[k]));
@@ -354,14 +350,11 @@ mod tests {
         near(found.iter().map(Found::greatest).fold(0.0, f64::max), deepest);
         near(passes.penetration(&problem, runs, &motions, &v), deepest);
 
-        let (before, mut z) = (r.clone(), field(2.0));
-        let [square, deepest] = passes.subtract(&problem, runs, &motions, &mut r, &mut z);
+        let mut z = field(2.0);
+        let [square, highest] = passes.residual(&problem, runs, &motions, &v, &mut z);
         near(square, z.iter().map(|z| z * z).sum());
-        assert_eq!(deepest, z.iter().copied().fold(0.0, f64::max));
-        for k in 0..n {
-            near(z[k], if set.member[k] { before[k] - at(k) } else { 0.0 });
-            assert!(!set.member[k] || r[k] == z[k]);
-        }
+        assert_eq!(highest, z.iter().copied().fold(0.0, f64::max));
+        (0..n).for_each(|k| near(z[k], if set.member[k] { r[k] } else { 0.0 }));
         let z = field(2.2);
         for (body, found) in passes.overlaps(&problem, runs, &z, &kd, &d).iter().enumerate() {
             for m in 0..3 {
@@ -371,7 +364,7 @@ mod tests {
             }
             near(found.sums[9], inside(body, &|k| z[k] * kd[k]));
         }
-        for (body, found) in passes.slope_and_curvature(&problem, runs, &r, &d, &kd).iter().enumerate() {
+        for (body, found) in passes.slope_and_curvature(&problem, runs, &motions, [&v, &d, &kd]).iter().enumerate() {
             let tilts = if bodies[body].tilts() { 1.0 } else { 0.0 };
             (0..3).for_each(|m| near(found.sums[m], tilts * inside(body, &|k| modes(k)[m] * kd[k])));
             near(found.sums[3], inside(body, &|k| r[k] * d[k]));

@@ -22,16 +22,13 @@ pub(crate) struct PolonskyKeer {
     residual: Vec<f64>,
     direction: Vec<f64>,
     image: Vec<f64>,
-    /// The fit of the residual under each body, by which its motion was corrected.
-    shifts: Vec<ModeCoefficients>,
 }
 
 impl PolonskyKeer {
     pub(crate) fn new(cells: usize, bodies: usize) -> PolonskyKeer {
         let field = vec![0.0; cells];
-        let shifts = vec![ModeCoefficients::default(); bodies];
         let (set, passes) = (ContactSet::new(cells, bodies), Passes::new(cells, bodies));
-        PolonskyKeer { set, passes, residual: field.clone(), direction: field.clone(), image: field, shifts }
+        PolonskyKeer { set, passes, residual: field.clone(), direction: field.clone(), image: field }
     }
 
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent.
@@ -94,17 +91,16 @@ impl PolonskyKeer {
     /// and the deepest penetration outside.
     fn fit_motions(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> (ResidualSums, f64) {
         let Solution { motions, pressure, potential, .. } = solution;
-        let (set, direction, image) = (&self.set, &self.direction, &mut self.image);
-        let fields = Fields { direction, image, pressure, potential, residual: &mut self.residual };
+        let set = &self.set;
+        let fields = Fields { direction: &self.direction, image: &self.image, pressure, potential };
         let mut state = ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() };
         for (body, found) in self.passes.survey(problem, &set.runs, 0.0, motions, fields).iter().enumerate() {
-            self.shifts[body] = set.fit(problem, body, &found.sums);
-            motions[body] = motions[body].plus(-1.0, self.shifts[body]);
+            motions[body] = motions[body].plus(-1.0, set.fit(problem, body, &found.sums));
             state.displacement += found.sums[4];
             state.negative += found.sums[5];
         }
         [state.square, state.deepest] =
-            self.passes.subtract(problem, &set.runs, &self.shifts, &mut self.residual, image);
+            self.passes.residual(problem, &set.runs, motions, potential, &mut self.residual);
         (state, self.passes.penetration(problem, &set.runs, motions, potential))
     }
 
@@ -123,7 +119,9 @@ impl PolonskyKeer {
         solution.counts.convolutions += 1;
         let PolonskyKeer { set, passes, residual, direction, image, .. } = self;
         let (mut numerator, mut denominator) = (0.0, 0.0);
-        for found in passes.slope_and_curvature(problem, &set.runs, residual, direction, image) {
+        for found in
+            passes.slope_and_curvature(problem, &set.runs, &solution.motions, [&solution.potential, direction, image])
+        {
             numerator -= found.sums[3];
             denominator += found.sums[4];
         }

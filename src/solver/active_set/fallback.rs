@@ -136,7 +136,7 @@ impl ActiveSet {
         self.find_direction(problem, plain, solution);
         problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
         solution.counts.convolutions += 1;
-        let [slope, curvature] = self.slope_and_curvature(problem);
+        let [slope, curvature] = self.slope_and_curvature(problem, solution);
         self.search.energy = curvature;
         let free = Gain::along(slope, c * curvature, f64::INFINITY);
         if free.energy <= 0.0 {
@@ -157,12 +157,14 @@ impl ActiveSet {
         }
 
         let straight = Gain::along(slope, c * curvature, first_zero);
-        // s of the clipped step takes the place of z, and c K s that of r, which is made anew for the next step
+        // s of the clipped step takes the place of z
         let clipped = if self.find_clipped_step(problem, free.length, solution) {
-            let slope = self.set.runs.cells().fold(0.0, |slope, k| slope + self.residual[k] * self.preconditioned[k]);
-            problem.kernel.apply(&self.preconditioned, &mut self.residual, work);
+            let part = |slope: f64, k: usize| slope + problem.depth(solution, k) * self.preconditioned[k];
+            let slope = self.set.runs.cells().fold(0.0, part);
+            self.shape.resize(solution.pressure.len(), 0.0);
+            problem.kernel.apply(&self.preconditioned, &mut self.shape, work);
             solution.counts.convolutions += 1;
-            let curvature = self.set.runs.cells().fold(0.0, |sum, k| sum + self.preconditioned[k] * self.residual[k]);
+            let curvature = self.set.runs.cells().fold(0.0, |sum, k| sum + self.preconditioned[k] * self.shape[k]);
             Gain::along(slope, c * curvature, 1.0)
         } else {
             Gain::default()
@@ -181,7 +183,7 @@ impl ActiveSet {
                 self.set.member[k] = false;
             }
         }
-        let (gain, image) = if clips { (clipped, &self.residual) } else { (straight, &self.search.image) };
+        let (gain, image) = if clips { (clipped, &self.shape) } else { (straight, &self.search.image) };
         add(&mut solution.potential, gain.length, image);
         self.set.update(problem);
         self.search.energy = 0.0;

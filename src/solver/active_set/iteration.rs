@@ -95,7 +95,7 @@ impl ActiveSet {
             }
         }
         let Search { direction, image, .. } = &self.search;
-        let fields = Fields { direction, image, pressure, potential, residual: &mut self.residual };
+        let fields = Fields { direction, image, pressure, potential };
         let mut state =
             ResidualSums { greatest_gap: self.set.greatest_gap, cells: self.set.count(), ..ResidualSums::default() };
         let (mut square, mut penetration, mut turned) = (0.0, 0.0_f64, 0.0_f64);
@@ -103,7 +103,6 @@ impl ActiveSet {
             // The fit is that of a change of the last motion: what the cells at hand do not determine remains as it was.
             let fit = self.set.fit(problem, body, &found.sums);
             motions[body] = motions[body].plus(-1.0, fit);
-            self.residual_motions[body] = fit;
             let tilts = problem.bodies[body].tilts();
             // of a body that tilts, no cell moves more than this
             let moved = if tilts { fit.0.iter().map(|y| y.abs()).sum() } else { -fit.0[0] };
@@ -122,28 +121,27 @@ impl ActiveSet {
         }
         // where a motion was far off, the difference is mostly rounding
         if state.square < MIN_CENTRED_FRACTION * square {
-            [state.square, state.deepest] = self.subtract_motions(problem);
+            [state.square, state.deepest] = self.find_residual(problem, solution);
         }
         if turned > MAX_TURN_OVER_RMS * state.rms() {
+            let Solution { motions, potential, .. } = &*solution;
             penetration = self.passes.penetration(problem, &self.set.runs, motions, potential);
-            [_, state.deepest] = self.subtract_motions(problem);
+            [_, state.deepest] = self.find_residual(problem, solution);
         }
         (state, penetration)
     }
 
-    /// Subtracts from r what is still to be subtracted, and sets z to it; returns Σ r² and the greatest r.
-    fn subtract_motions(&mut self, problem: &Problem<'_>) -> [f64; 2] {
-        let (motions, z) = (&mut self.residual_motions, &mut self.preconditioned);
-        let found = self.passes.subtract(problem, &self.set.runs, motions, &mut self.residual, z);
-        motions.fill(ModeCoefficients::default());
-        found
+    /// z ← r on A, zero elsewhere; returns Σ r² and the greatest r.
+    fn find_residual(&mut self, problem: &Problem<'_>, solution: &Solution) -> [f64; 2] {
+        let Solution { motions, potential, .. } = solution;
+        self.passes.residual(problem, &self.set.runs, motions, potential, &mut self.preconditioned)
     }
 
     /// d ← z + β d without free motion on A, with z = r if `plain`; with pressures to bring to zero or into balance, d is
     /// the whole change of p.
     pub(super) fn find_direction(&mut self, problem: &Problem<'_>, plain: bool, solution: &mut Solution) {
         let (length, pending) = (CORRECTION_LENGTH / problem.compliance, self.changes.any());
-        self.subtract_motions(problem);
+        self.find_residual(problem, solution);
         if !plain {
             self.preconditioner.apply(&mut self.preconditioned, &self.set);
             solution.counts.preconditioner_applications += 1;
@@ -209,7 +207,7 @@ impl ActiveSet {
 
     /// The length a of the step along d, 1 for a correction. Brings cells that leave to p = 0.
     pub(super) fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> f64 {
-        let [slope, curvature] = self.slope_and_curvature(problem);
+        let [slope, curvature] = self.slope_and_curvature(problem, solution);
         let energy = &mut self.search.energy;
         *energy = curvature;
         if !self.changes.any() {
@@ -227,9 +225,10 @@ impl ActiveSet {
     }
 
     /// Σ r d and Σ d·Kd on A; notes how K d moves the bodies that tilt.
-    pub(super) fn slope_and_curvature(&mut self, problem: &Problem<'_>) -> [f64; 2] {
+    pub(super) fn slope_and_curvature(&mut self, problem: &Problem<'_>, solution: &Solution) -> [f64; 2] {
         let Search { direction, image, image_motions, .. } = &mut self.search;
-        let found = self.passes.slope_and_curvature(problem, &self.set.runs, &self.residual, direction, image);
+        let (motions, fields) = (&solution.motions, [&*solution.potential, &*direction, &*image]);
+        let found = self.passes.slope_and_curvature(problem, &self.set.runs, motions, fields);
         let mut sums = [0.0; 2];
         for (body, found) in found.iter().enumerate() {
             let tilts = problem.bodies[body].tilts();

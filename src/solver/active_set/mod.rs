@@ -66,13 +66,11 @@ pub(crate) struct ActiveSet {
     /// Whether the last step was cut short: cells that joined together may have held each other off, and the deepest one joins
     /// alone.
     was_cut: bool,
-    /// r on A.
-    residual: Vec<f64>,
-    /// The fit of r on A under each body, by which its motion was corrected: still to be subtracted from r.
-    residual_motions: Vec<ModeCoefficients>,
+    /// r, and what is made of it.
     preconditioned: Vec<f64>,
     search: Search,
-    /// The shape of corrections of the balance: allocated by the first solve with a tilting load or several bodies.
+    /// The shape of corrections of the balance, in the fall-back K s: allocated by the first solve with a tilting load, several
+    /// bodies or the fall-back.
     shape: Vec<f64>,
 }
 
@@ -136,8 +134,6 @@ impl ActiveSet {
             guess_rounding: 0.0,
             was_cut: false,
             changes: PendingChanges { leaving: false, moves: false, corrections: vec![None; bodies] },
-            residual: field.clone(),
-            residual_motions: motions.clone(),
             preconditioned: field.clone(),
             search: Search {
                 direction: field.clone(),
