@@ -77,7 +77,7 @@ pub struct InfluenceKernel {
 
 /// Buffers of [`InfluenceKernel::convolve`], made by [`InfluenceKernel::workspace`].
 #[derive(Debug, Clone)]
-pub struct Workspace(TransformWorkspace);
+pub struct Workspace(pub(crate) TransformWorkspace);
 
 /// The influence operator on a part of a grid, and on its mirror images along folded axes.
 #[derive(Debug, Clone)]
@@ -145,7 +145,7 @@ impl InfluenceKernel {
         let made = layout == whole && self.operators[index(folded)].get().is_some();
         let operator = if made { 0 } else { layout.operator_bytes() };
         let inverse = layout.wrapped();
-        [operator + layout.workspace_bytes(), inverse.operator_bytes() + inverse.workspace_bytes()]
+        [operator + layout.workspace_bytes(), inverse.operator_bytes() + inverse.workspace_bytes_beside(&layout)]
     }
 
     /// The operator on the whole grid.
@@ -238,6 +238,11 @@ impl LocalKernel {
     pub(crate) fn inverse(&self) -> SpectralOperator {
         let (layout, symbol) = self.influence.inverse(&self.grid, self.grid.cells(), self.folded);
         SpectralOperator::from_symbol(layout, symbol)
+    }
+
+    /// Buffers for the [`inverse`](LocalKernel::inverse), beside those of [`LocalKernel::workspace`].
+    pub(crate) fn inverse_workspace(&self, inverse: &SpectralOperator) -> TransformWorkspace {
+        inverse.workspace_beside(&self.operator)
     }
 
     /// Axes along which the cells are one whole period.

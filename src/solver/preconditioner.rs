@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::kernel::{LocalKernel, SpectralOperator, TransformWorkspace};
+use crate::kernel::{LocalKernel, SpectralOperator, TransformWorkspace, Workspace};
 use crate::solver::contact_set::ContactSet;
 use crate::solver::extension::Extension;
 
@@ -22,10 +22,11 @@ pub(crate) struct Preconditioner {
 }
 
 impl Preconditioner {
-    pub(crate) fn new(kernel: &LocalKernel) -> Preconditioner {
+    /// That of a kernel, whose buffers it borrows.
+    pub(crate) fn new(kernel: &LocalKernel, lender: &mut Workspace) -> Preconditioner {
         let cells = kernel.grid().cells();
         let operator = kernel.inverse();
-        let work = operator.workspace();
+        let work = kernel.inverse_workspace(&operator);
         let extension = Extension::new(cells, kernel.periodic_axes());
         let mut preconditioner =
             Preconditioner { operator: Arc::new(operator), work, diagonal: 0.0, extension, version: 0 };
@@ -33,16 +34,16 @@ impl Preconditioner {
         // in the middle, as far as possible from its mirror images
         let middle = cells[0] / 2 * cells[1] + cells[1] / 2;
         impulse[middle] = 1.0;
-        preconditioner.filter(&mut impulse);
+        preconditioner.filter(&mut impulse, lender);
         preconditioner.diagonal = impulse[middle];
         preconditioner
     }
 
     /// field ← Eᵀ M E field, which is zero outside A.
-    pub(crate) fn apply(&mut self, field: &mut [f64], set: &ContactSet) {
+    pub(crate) fn apply(&mut self, field: &mut [f64], set: &ContactSet, lender: &mut Workspace) {
         self.fit(set);
         self.extension.extend(field, &set.member);
-        self.filter(field);
+        self.filter(field, lender);
         self.extension.gather(field, &set.member);
     }
 
@@ -59,8 +60,8 @@ impl Preconditioner {
     }
 
     /// field ← M field.
-    pub(crate) fn filter(&mut self, field: &mut [f64]) {
-        self.operator.apply_in_place(field, &mut self.work);
+    pub(crate) fn filter(&mut self, field: &mut [f64], lender: &mut Workspace) {
+        self.operator.apply_beside(field, &mut self.work, &mut lender.0);
     }
 
     /// The diagonal of M.

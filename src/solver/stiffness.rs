@@ -13,8 +13,8 @@ const MAX_ITERATIONS: usize = 500;
 /// iterations and the residual reached.
 pub(crate) fn flat_punch(kernel: &LocalKernel, touches: impl Fn(usize) -> bool) -> Result<f64, (usize, f64)> {
     let cells = kernel.grid().len();
-    let mut preconditioner = Preconditioner::new(kernel);
     let mut work = kernel.workspace();
+    let mut preconditioner = Preconditioner::new(kernel, &mut work);
     let inside: Vec<f64> = (0..cells).map(|k| f64::from(u8::from(touches(k)))).collect();
     let restrict = |field: &mut [f64]| field.iter_mut().zip(&inside).for_each(|(value, inside)| *value *= inside);
     let (mut q, mut residual, mut image) = (vec![0.0; cells], inside.clone(), vec![0.0; cells]);
@@ -29,7 +29,7 @@ pub(crate) fn flat_punch(kernel: &LocalKernel, touches: impl Fn(usize) -> bool) 
         let failure = (iterations, (square / limit).sqrt() * FLAT_PUNCH_TOLERANCE);
         iterations += 1;
         image.copy_from_slice(&residual);
-        preconditioner.filter(&mut image);
+        preconditioner.filter(&mut image, &mut work);
         restrict(&mut image);
         let energy = sum_of_pairs(&residual, &image, |a, b| a * b);
         let beta = if last > 0.0 { energy / last } else { 0.0 };

@@ -33,14 +33,15 @@ enum ContactSolver {
 impl Window {
     pub(crate) fn new(scene: &Scene, region: &Region, indenter: &Indenter) -> Window {
         let kernel = scene.kernel.on(region.grid(), region.folded());
+        let mut work = kernel.workspace();
         let solver = match scene.settings.solver {
-            Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, scene.bodies))),
+            Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, scene.bodies, &mut work))),
             Solver::PolonskyKeer => {
                 ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(region.len(), scene.bodies)))
             }
         };
         Window {
-            work: kernel.workspace(),
+            work,
             kernel,
             solver,
             gap: region.cut_gap(indenter.gap()),

@@ -38,6 +38,18 @@ impl Layout {
         COMPLEX * (self.tiles() * if lanes > 1 { 2 } else { 1 } + lanes * lane)
     }
 
+    /// Bytes of the buffers of an operator beside one of this layout.
+    pub(crate) fn workspace_bytes_beside(&self, lender: &Layout) -> u128 {
+        let lanes = lanes(self.cells[0].saturating_mul(self.cells[1]));
+        let lent = COMPLEX * self.tiles() * if lanes > 1 { 2 } else { 1 };
+        self.workspace_bytes() - if lender.lends_to(self) { lent } else { 0 }
+    }
+
+    /// Whether the buffers of an operator of this layout suffice for one of another, on the same cells.
+    pub(super) fn lends_to(&self, other: &Layout) -> bool {
+        !self.is_single_column() && !other.is_single_column() && self.tiles() >= other.tiles()
+    }
+
     /// Number of values that the buffers hold between the passes: it differs between workspaces of different sizes.
     pub(crate) fn numbers(&self) -> usize {
         let numbers = match self.is_single_column() {

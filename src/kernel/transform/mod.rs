@@ -62,6 +62,11 @@ impl SpectralOperator {
         self.rows.independent().div_ceil(TILE)
     }
 
+    /// Number of complex values in all tiles.
+    fn tiles(&self) -> usize {
+        self.across() * self.down() * AREA
+    }
+
     /// Number of tiles below each other.
     fn down(&self) -> usize {
         self.layout.cells[0].div_ceil(self.rows_in_a_tile())
@@ -89,6 +94,23 @@ impl SpectralOperator {
         self.read(field, work);
     }
 
+    /// [`SpectralOperator::apply_in_place`] with buffers of a [`SpectralOperator::workspace_beside`] another one.
+    pub(crate) fn apply_beside(
+        &self,
+        field: &mut [f64],
+        work: &mut TransformWorkspace,
+        lender: &mut TransformWorkspace,
+    ) {
+        let lent = work.tiles.is_empty();
+        if lent {
+            work.trade_tiles(lender);
+        }
+        self.apply_in_place(field, work);
+        if lent {
+            work.trade_tiles(lender);
+        }
+    }
+
     /// Convolves `input`: the result remains in the workspace, its rows still transformed.
     fn convolve(&self, input: &[f64], work: &mut TransformWorkspace) {
         if let Some(column) = &self.column {
@@ -96,14 +118,16 @@ impl SpectralOperator {
         }
         let share = self.down().div_ceil(work.lanes.len());
         let task = RowsForward { operator: self, input, share };
-        for_each_share(&task, &mut work.lanes, &mut work.tiles, share * self.across() * AREA);
+        // buffers that are lent may be longer
+        let tiles = &mut work.tiles[..self.tiles()];
+        for_each_share(&task, &mut work.lanes, tiles, share * self.across() * AREA);
         if let [lane] = &mut work.lanes[..] {
             let task = ColumnsInPlace { operator: self };
-            return for_each_share(&task, std::slice::from_mut(lane), &mut work.tiles, usize::MAX);
+            return for_each_share(&task, std::slice::from_mut(lane), tiles, usize::MAX);
         }
         let share = self.across().div_ceil(work.lanes.len());
-        let task = Columns { operator: self, tiles: &work.tiles, share };
-        for_each_share(&task, &mut work.lanes, &mut work.result, share * self.down() * AREA);
+        let task = Columns { operator: self, tiles, share };
+        for_each_share(&task, &mut work.lanes, &mut work.result[..self.tiles()], share * self.down() * AREA);
     }
 
     /// Reads the result of [`SpectralOperator::convolve`] from the workspace.

@@ -5,7 +5,7 @@ use std::fmt;
 use num_complex::Complex64;
 
 use super::column::ColumnWorkspace;
-use super::{AREA, SpectralOperator, TILE};
+use super::{SpectralOperator, TILE};
 use crate::kernel::lanes::lanes;
 use crate::kernel::layout::Layout;
 
@@ -62,8 +62,19 @@ impl SpectralOperator {
         self.workspace_for(lanes(self.layout.cells[0] * self.layout.cells[1]))
     }
 
+    /// Buffers for [`SpectralOperator::apply_beside`] an operator of the same cells, which lends its tiles if they suffice.
+    pub(crate) fn workspace_beside(&self, lender: &SpectralOperator) -> TransformWorkspace {
+        let lanes = lanes(self.layout.cells[0] * self.layout.cells[1]);
+        self.buffers(lanes, if lender.layout.lends_to(&self.layout) { 0 } else { self.tiles() })
+    }
+
     /// Buffers for `lanes` threads.
     pub(crate) fn workspace_for(&self, lanes: usize) -> TransformWorkspace {
+        self.buffers(lanes, self.tiles())
+    }
+
+    /// Buffers for `lanes` threads, `tiles` values between the passes.
+    fn buffers(&self, lanes: usize, tiles: usize) -> TransformWorkspace {
         let layout = self.layout;
         if let Some(column) = &self.column {
             let column = column.workspace(&self.columns);
@@ -75,10 +86,17 @@ impl SpectralOperator {
             block: Buffer::zeros(TILE * self.stride()),
             scratch: Buffer::zeros(self.rows.scratch().max(self.columns.scratch())),
         };
-        let tiles = self.across() * self.down() * AREA;
         let result = zeros(if lanes > 1 { tiles } else { 0 });
         let column = ColumnWorkspace::default();
         TransformWorkspace { layout, tiles: zeros(tiles), result, lanes: vec![lane; lanes.max(1)], column }
+    }
+}
+
+impl TransformWorkspace {
+    /// Exchanges what is stored between the passes.
+    pub(super) fn trade_tiles(&mut self, other: &mut TransformWorkspace) {
+        std::mem::swap(&mut self.tiles, &mut other.tiles);
+        std::mem::swap(&mut self.result, &mut other.result);
     }
 }
 

@@ -133,7 +133,7 @@ impl ActiveSet {
         work: &mut Workspace,
     ) -> f64 {
         let c = problem.compliance;
-        self.find_direction(problem, plain, solution);
+        self.find_direction(problem, plain, solution, work);
         problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
         solution.counts.convolutions += 1;
         let [slope, curvature] = self.slope_and_curvature(problem, solution);
@@ -247,7 +247,7 @@ mod tests {
                 owner: None,
                 likely: None,
             };
-            let mut solver = ActiveSet::new(&kernel, 1);
+            let mut solver = ActiveSet::new(&kernel, 1, &mut work);
             let mut exact = Solution::zero(grid.len(), 1);
             assert_eq!(solver.solve(&problem, stop, &mut exact, &mut work), Outcome::Converged);
 

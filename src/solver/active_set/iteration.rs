@@ -77,7 +77,7 @@ impl ActiveSet {
 
             solution.counts.iterations += 1;
             let corrects = self.changes.any();
-            self.find_direction(problem, false, solution);
+            self.find_direction(problem, false, solution, work);
             problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
             solution.counts.convolutions += 1;
             step = self.step_length(problem, solution);
@@ -139,11 +139,17 @@ impl ActiveSet {
 
     /// d ← z + β d without free motion on A, with z = r if `plain`; with pressures to bring to zero or into balance, d is
     /// the whole change of p.
-    pub(super) fn find_direction(&mut self, problem: &Problem<'_>, plain: bool, solution: &mut Solution) {
+    pub(super) fn find_direction(
+        &mut self,
+        problem: &Problem<'_>,
+        plain: bool,
+        solution: &mut Solution,
+        work: &mut Workspace,
+    ) {
         let (length, pending) = (CORRECTION_LENGTH / problem.compliance, self.changes.any());
         self.find_residual(problem, solution);
         if !plain {
-            self.preconditioner.apply(&mut self.preconditioned, &self.set);
+            self.preconditioner.apply(&mut self.preconditioned, &self.set, work);
             solution.counts.preconditioner_applications += 1;
         }
 

@@ -46,7 +46,7 @@ impl ActiveSet {
                     shape.fill(0.0);
                     let cells = || set.cells(problem, body);
                     cells().for_each(|k| shape[k] = solution.pressure[k]);
-                    self.preconditioner.filter(shape);
+                    self.preconditioner.filter(shape, work);
                     solution.counts.preconditioner_applications += 1;
                     let sum = |field: &[f64]| cells().map(|k| field[k].max(0.0)).sum::<f64>();
                     let scale = sum(&solution.pressure) / sum(shape);

@@ -124,11 +124,12 @@ enum Shape {
 }
 
 impl ActiveSet {
-    pub(crate) fn new(kernel: &LocalKernel, bodies: usize) -> ActiveSet {
+    /// A solver that works in the buffers of the kernel.
+    pub(crate) fn new(kernel: &LocalKernel, bodies: usize, work: &mut Workspace) -> ActiveSet {
         let cells = kernel.grid().len();
         let (field, motions) = (vec![0.0; cells], vec![ModeCoefficients::default(); bodies]);
         ActiveSet {
-            preconditioner: Preconditioner::new(kernel),
+            preconditioner: Preconditioner::new(kernel, work),
             set: ContactSet::new(cells, bodies),
             passes: Passes::new(cells, bodies),
             guess_rounding: 0.0,
