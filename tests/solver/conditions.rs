@@ -289,7 +289,7 @@ fn work_is_what_the_documents_say() {
     let work = |cells, tolerance| scene.run(cells, 100, Settings { tolerance, ..Settings::default() }).unwrap().1;
     let measured = [work(64, 1e-6), work(128, 1e-6), work(256, 1e-6), work(256, 1e-4)];
     println!("{measured:?}");
-    for (work, most) in measured.into_iter().zip([4.5, 5.0, 6.0, 3.2]) {
+    for (work, most) in measured.into_iter().zip([3.1, 3.2, 4.0, 1.6]) {
         assert!(work < most && work > 0.6 * most, "{measured:?}");
     }
 }
@@ -367,7 +367,7 @@ fn pressures_are_never_negative_when_iterations_run_out() {
     let wavy = Sum::new(Sphere::new(5.0e-3).unwrap(), Wavy::new(2.0e-5, 0.7e-3).unwrap());
     let (mut solved, mut given_up) = (0, 0);
     for max_iterations in 1..6 {
-        for tolerance in [1e-3, 1e-2, 0.1] {
+        for tolerance in [1e-4, 1e-3, 1e-2, 0.1] {
             let settings = Settings { max_iterations, tolerance, edge: Edge::Allow, ..Settings::default() };
             let mut contact = ViscoelasticContact::builder(Grid::square(16, 2.0e-3).unwrap())
                 .geometry(&wavy)

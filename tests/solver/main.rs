@@ -7,3 +7,4 @@ mod differential;
 mod extremes;
 mod loads;
 mod region;
+mod work;
