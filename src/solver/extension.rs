@@ -13,12 +13,17 @@ const TRUST: f64 = 1.5;
 /// where s is the mean of w_l over the block, and w_0 is 1 on A and 0 elsewhere; x = m on the coarsest level, a single block. E
 /// reproduces constants. Its transpose brings what all cells hold to A, and keeps the sum.
 ///
+/// Blocks hold the sums S = Σ w m over what they consist of, and the factor φ = κ/(4 + 4 (κ − 1) s), in which everything is
+/// linear: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
+///
 /// Axes that are not periodic are mirrored at their ends, which is what they are on the parts that symmetry leaves of a grid.
 #[derive(Debug, Clone)]
 pub(crate) struct Extension {
     cells: [usize; 2],
     periodic: [bool; 2],
     levels: Vec<Level>,
+    /// 1/Σ w over the coarsest block, 0 if nothing is known.
+    share: f64,
     rows: Rows,
 }
 
@@ -26,9 +31,9 @@ pub(crate) struct Extension {
 #[derive(Debug, Clone)]
 struct Level {
     cells: [usize; 2],
-    /// w_l.
-    weight: Vec<f64>,
-    /// m_l, then x_l.
+    /// φ.
+    factor: Vec<f64>,
+    /// S, then x.
     value: Vec<f64>,
 }
 
@@ -46,11 +51,11 @@ impl Extension {
         while size != [1, 1] {
             size = size.map(|n| n.div_ceil(2));
             let field = vec![0.0; size[0] * size[1]];
-            levels.push(Level { cells: size, weight: field.clone(), value: field });
+            levels.push(Level { cells: size, factor: field.clone(), value: field });
         }
         let blocks = cells[1].div_ceil(2);
         let rows = Rows { blocks: vec![0.0; blocks + 2], fine: vec![0.0; 2 * blocks + 4] };
-        Extension { cells, periodic, levels, rows }
+        Extension { cells, periodic, levels, share: 0.0, rows }
     }
 
     /// Bytes that it takes.
@@ -65,18 +70,20 @@ impl Extension {
 
     /// Makes E that of the set of members.
     pub(crate) fn fit(&mut self, member: &[bool]) {
+        // a closure that consumes what it captures: only then is it inlined, and compiled for the vector units of the machine
         let this = self;
         Arch::new().dispatch(
             #[inline(always)]
             move || {
                 let this = this;
-                this.find_weights(member)
+                this.find_factors(member)
             },
         );
     }
 
     /// Fills all cells outside the set, where `field` is zero.
     pub(crate) fn extend(&mut self, field: &mut [f64], member: &[bool]) {
+        // a closure that consumes what it captures: only then is it inlined, and compiled for the vector units of the machine
         let this = self;
         Arch::new().dispatch(
             #[inline(always)]
@@ -89,6 +96,7 @@ impl Extension {
 
     /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere.
     pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool]) {
+        // a closure that consumes what it captures: only then is it inlined, and compiled for the vector units of the machine
         let this = self;
         Arch::new().dispatch(
             #[inline(always)]
@@ -100,65 +108,64 @@ impl Extension {
     }
 
     #[inline(always)]
-    fn find_weights(&mut self, member: &[bool]) {
-        let Extension { cells, levels, rows, .. } = self;
+    fn find_factors(&mut self, member: &[bool]) {
+        let Extension { cells, levels, rows, share, .. } = self;
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
-            let Level { cells: [m1, m2], weight, .. } = &mut level[0];
+            // the values are Σ w here, the sums of a field of ones
+            let Level { cells: [_, m2], factor, value } = &mut level[0];
             let fine = finer.last().map_or(*cells, |fine| fine.cells);
-            for (i, out) in weight.chunks_exact_mut(*m2).enumerate().take(*m1) {
+            for (i, (out, factors)) in value.chunks_exact_mut(*m2).zip(factor.chunks_exact_mut(*m2)).enumerate() {
                 out.fill(0.0);
                 for row in rows_under(i, fine) {
                     match finer.last() {
-                        Some(fine) => add_pairs(out, &fine.weight[row]),
+                        Some(fine) => add_weighted_pairs(out, &fine.value[row.clone()], &fine.factor[row]),
                         None => {
                             let ones = &mut rows.fine[..row.len()];
-                            let marks = ones.iter_mut().zip(&member[row]);
-                            marks.for_each(|(one, &m)| *one = f64::from(u8::from(m)));
+                            ones.iter_mut().zip(&member[row]).for_each(|(one, &m)| *one = f64::from(u8::from(m)));
                             add_pairs(out, ones);
                         }
                     }
                 }
-                for w in out {
-                    let s = 0.25 * *w;
-                    *w = TRUST * s / (1.0 + (TRUST - 1.0) * s);
-                }
+                let factors = factors.iter_mut().zip(out);
+                factors.for_each(|(factor, &mut sum)| *factor = TRUST / (4.0 + (TRUST - 1.0) * sum));
             }
         }
+        let known = levels.last().map_or(0.0, |coarsest| coarsest.value[0]);
+        *share = if known > 0.0 { 1.0 / known } else { 0.0 };
     }
 
     #[inline(always)]
     fn push_and_pull(&mut self, field: &mut [f64], member: &[bool]) {
-        let Extension { cells, periodic, levels, rows } = self;
+        let Extension { cells, periodic, levels, share, rows } = self;
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
-            let Level { cells: [m1, m2], weight, value } = &mut level[0];
+            let Level { cells: [_, m2], value, .. } = &mut level[0];
             let fine = finer.last().map_or(*cells, |fine| fine.cells);
-            for (i, out) in value.chunks_exact_mut(*m2).enumerate().take(*m1) {
+            for (i, out) in value.chunks_exact_mut(*m2).enumerate() {
                 out.fill(0.0);
                 for row in rows_under(i, fine) {
                     match finer.last() {
-                        Some(fine) => add_weighted_pairs(out, &fine.value[row.clone()], &fine.weight[row]),
+                        Some(fine) => add_weighted_pairs(out, &fine.value[row.clone()], &fine.factor[row]),
                         None => add_pairs(out, &field[row]),
                     }
                 }
-                let weights = &weight[i * *m2..][..*m2];
-                out.iter_mut().zip(weights).for_each(|(out, &w)| *out *= share(w));
             }
         }
+        let Some(coarsest) = levels.last_mut() else { return };
+        coarsest.value[0] *= *share;
         for l in (1..levels.len()).rev() {
             let (finer, coarser) = levels.split_at_mut(l);
-            let Level { cells: [_, n2], weight, value } = &mut finer[l - 1];
-            for (i, (values, weights)) in value.chunks_exact_mut(*n2).zip(weight.chunks_exact(*n2)).enumerate() {
+            let Level { cells: [_, n2], factor, value } = &mut finer[l - 1];
+            for (i, (values, factors)) in value.chunks_exact_mut(*n2).zip(factor.chunks_exact(*n2)).enumerate() {
                 let up = coarser[0].interpolate(i, *periodic, rows);
-                for ((x, &w), &up) in values.iter_mut().zip(weights).zip(up) {
-                    *x = up + w * (*x - up);
+                for ((x, &factor), &up) in values.iter_mut().zip(factors).zip(up) {
+                    *x = factor * *x + (1.0 - weight(factor)) * up;
                 }
             }
         }
-        let Some(finest) = levels.first() else { return };
         for (i, (values, inside)) in field.chunks_exact_mut(cells[1]).zip(member.chunks_exact(cells[1])).enumerate() {
-            let up = finest.interpolate(i, *periodic, rows);
+            let up = levels[0].interpolate(i, *periodic, rows);
             for ((x, &inside), &up) in values.iter_mut().zip(inside).zip(up) {
                 *x = if inside { *x } else { up };
             }
@@ -167,7 +174,7 @@ impl Extension {
 
     #[inline(always)]
     fn transpose(&mut self, field: &mut [f64], member: &[bool]) {
-        let Extension { cells, periodic, levels, rows } = self;
+        let Extension { cells, periodic, levels, share, rows } = self;
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
             level[0].value.fill(0.0);
@@ -180,32 +187,29 @@ impl Extension {
                         level[0].restrict(i, n2, *periodic, rows);
                     }
                 }
-                Some(Level { cells: [_, n2], weight, value }) => {
-                    let lines = value.chunks_exact_mut(*n2).zip(weight.chunks_exact(*n2));
-                    for (i, (values, weights)) in lines.enumerate() {
-                        for (out, (f, &w)) in rows.fine[2..].iter_mut().zip(values.iter_mut().zip(weights)) {
-                            let known = w * *f;
-                            *out = *f - known;
-                            *f = known;
-                        }
+                Some(Level { cells: [_, n2], factor, value }) => {
+                    for (i, (values, factors)) in value.chunks_exact(*n2).zip(factor.chunks_exact(*n2)).enumerate() {
+                        let open = rows.fine[2..].iter_mut().zip(values.iter().zip(factors));
+                        open.for_each(|(out, (&f, &factor))| *out = (1.0 - weight(factor)) * f);
                         level[0].restrict(i, *n2, *periodic, rows);
                     }
                 }
             }
         }
+        let Some(coarsest) = levels.last_mut() else { return };
+        coarsest.value[0] *= *share;
         for l in (1..levels.len()).rev() {
             let (finer, coarser) = levels.split_at_mut(l);
-            let Level { cells: [_, n2], weight, value } = &mut finer[l - 1];
-            for (i, (values, weights)) in value.chunks_exact_mut(*n2).zip(weight.chunks_exact(*n2)).enumerate() {
-                let shares = coarser[0].shares(i, rows);
-                values.iter_mut().zip(weights).zip(shares).for_each(|((f, &w), &x)| *f += w * x);
+            let Level { cells: [_, n2], factor, value } = &mut finer[l - 1];
+            for (i, (values, factors)) in value.chunks_exact_mut(*n2).zip(factor.chunks_exact(*n2)).enumerate() {
+                let sums = coarser[0].spread(i, rows);
+                values.iter_mut().zip(factors).zip(sums).for_each(|((f, &factor), &sum)| *f = factor * (*f + sum));
             }
         }
-        let Some(finest) = levels.first() else { return };
         for (i, (values, inside)) in field.chunks_exact_mut(cells[1]).zip(member.chunks_exact(cells[1])).enumerate() {
-            let shares = finest.shares(i, rows);
-            for ((f, &inside), &x) in values.iter_mut().zip(inside).zip(shares) {
-                *f = if inside { *f + x } else { 0.0 };
+            let sums = levels[0].spread(i, rows);
+            for ((f, &inside), &sum) in values.iter_mut().zip(inside).zip(sums) {
+                *f = if inside { *f + sum } else { 0.0 };
             }
         }
     }
@@ -251,18 +255,15 @@ impl Level {
         }
     }
 
-    /// What the cells of row `i` of the finer level get of their blocks, but for their own weight.
+    /// Row `i` of the finer level with the value of each block on all of its parts.
     #[inline(always)]
-    fn shares<'a>(&self, i: usize, rows: &'a mut Rows) -> &'a [f64] {
+    fn spread<'a>(&self, i: usize, rows: &'a mut Rows) -> &'a [f64] {
         let m2 = self.cells[1];
-        let at = i / 2 * m2;
         let fine = &mut rows.fine[..2 * m2];
-        // both rows of a block get the same
+        // both rows of a block are the same
         if i.is_multiple_of(2) {
-            let blocks = self.value[at..][..m2].iter().zip(&self.weight[at..]);
-            for (pair, (&value, &w)) in fine.as_chunks_mut::<2>().0.iter_mut().zip(blocks) {
-                *pair = [value * share(w); 2];
-            }
+            let pairs = fine.as_chunks_mut::<2>().0;
+            pairs.iter_mut().zip(&self.value[i / 2 * m2..]).for_each(|(pair, &value)| *pair = [value; 2]);
         }
         fine
     }
@@ -281,10 +282,10 @@ impl Level {
     }
 }
 
-/// 1/Σ w over the block of weight `w`, 0 where nothing in it is known.
+/// w of a block with this φ.
 #[inline(always)]
-fn share(w: f64) -> f64 {
-    if w > 0.0 { (TRUST - (TRUST - 1.0) * w) / (4.0 * w) } else { 0.0 }
+fn weight(factor: f64) -> f64 {
+    (TRUST - 4.0 * factor) / (TRUST - 1.0)
 }
 
 /// The rows of a finer level that row `i` of blocks covers.
