@@ -15,8 +15,8 @@ use crate::hereditary::Interpolant;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[expect(clippy::exhaustive_structs, reason = "users write it with ..Default::default()")]
 pub struct Settings {
-    /// Tolerance of the contact problem of a step: rms |h| in contact, relative to rms (c K p) there; the penetration
-    /// outside may be ten times that (default: 1e-6; range \[1e-13, 0.1\]).
+    /// Tolerance of the contact problem of a step: rms |h| in contact, relative to rms (c K p) there; the
+    /// deepest penetration, in contact or outside, may be ten times that (default: 1e-6; range \[1e-13, 0.1\]).
     pub tolerance: f64,
     /// Iterations a step may take before it fails (default: 1000; range: 1 or more).
     pub max_iterations: usize,

@@ -202,15 +202,12 @@ impl History {
 
     /// The change of the displacement in the last step, once the next is predicted; none where it is not kept.
     pub(crate) fn last_change(&self) -> Option<&[f64]> {
-        let [change, _] = self.displacement.past.differences();
-        (!change.is_empty()).then_some(change)
+        Some(self.displacement.past.differences()[0]).filter(|change| !change.is_empty())
     }
 
-    /// Whether the displacement followed a quadratic in the step committed last; that of an elastic body, which depends on no
-    /// past, may follow any.
+    /// Whether the displacement followed a quadratic in the last step; that of an elastic body, without past, may follow any.
     pub(crate) fn followed_quadratic(&self, last: Interval) -> bool {
-        let rule = self.exponential_rule();
-        rule.is_some_and(|rule| match rule.remembers() {
+        self.exponential_rule().is_some_and(|rule| match rule.remembers() {
             true => rule.followed_quadratic(),
             false => last.interpolant == Interpolant::CorrectedQuadratic,
         })

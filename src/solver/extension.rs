@@ -12,7 +12,6 @@ const TRUST: f64 = 1.5;
 ///
 /// where s is the mean of w_l over the block, and w_0 is 1 on A and 0 elsewhere; x = m on the coarsest level, a single block. E
 /// reproduces constants. Its transpose brings what all cells hold to A, and keeps the sum.
-///
 /// Blocks hold the sums S = Σ w m over what they consist of, and the factor φ = κ/(4 + 4 (κ − 1) s), in which everything is
 /// linear: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
 ///
@@ -70,8 +69,7 @@ impl Extension {
 
     /// Makes E that of the set of members.
     pub(crate) fn fit(&mut self, member: &[bool]) {
-        // a closure that consumes what it captures: only then is it inlined, and compiled for the vector units of the machine
-        let this = self;
+        let this = self; // a closure that consumes what it captures is inlined
         Arch::new().dispatch(
             #[inline(always)]
             move || {
@@ -83,8 +81,7 @@ impl Extension {
 
     /// Fills all cells outside the set, where `field` is zero.
     pub(crate) fn extend(&mut self, field: &mut [f64], member: &[bool]) {
-        // a closure that consumes what it captures: only then is it inlined, and compiled for the vector units of the machine
-        let this = self;
+        let this = self; // a closure that consumes what it captures is inlined
         Arch::new().dispatch(
             #[inline(always)]
             move || {
@@ -96,8 +93,7 @@ impl Extension {
 
     /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere.
     pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool]) {
-        // a closure that consumes what it captures: only then is it inlined, and compiled for the vector units of the machine
-        let this = self;
+        let this = self; // a closure that consumes what it captures is inlined
         Arch::new().dispatch(
             #[inline(always)]
             move || {

@@ -77,7 +77,7 @@ impl ResidualSums {
     }
 
     /// How far a state is from solving its [`Problem`], relative to rms (c v) in contact: the larger of rms |h| in contact
-    /// and a tenth of the deepest penetration outside. Rounding of the gap itself does not count.
+    /// and a tenth of the deepest penetration. Rounding of the gap itself does not count.
     fn relative_residual(&self, penetration: f64) -> f64 {
         let error = self.rms().max(self.deepest.max(penetration) / PENETRATION_SLACK) - self.rounding();
         if error <= 0.0 { 0.0 } else { error / self.yielding() }
