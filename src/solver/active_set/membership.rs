@@ -37,7 +37,10 @@ impl ActiveSet {
         self.set.update(problem);
         let mut fresh = false;
         for body in 0..problem.bodies.len() {
-            if self.set.count_under(body) == 0 && !problem.released(body) {
+            // cells that are likely to touch may carry nothing yet
+            let pressed = || self.set.sum(problem, body, &solution.pressure) > 0.0;
+            let forced = problem.likely.is_some() && problem.bodies[body].translation;
+            if !problem.released(body) && (self.set.count_under(body) == 0 || forced && !pressed()) {
                 // a guess without positive pressure may hold negative ones, which v includes
                 fresh |= solution.pressure.iter().any(|&p| p != 0.0);
                 // K⁻¹ of a uniform displacement, but for its scale, is the pressure under a flat punch
