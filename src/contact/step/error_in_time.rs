@@ -8,6 +8,7 @@ use crate::contact::window::growth::motion_tried;
 use crate::hereditary::{ErrorMeasure, TimeError};
 use crate::load::Load;
 use crate::solver::RigidMotion;
+use crate::sum::greatest;
 
 impl Computation {
     /// By how much the body above a cell advances in the step tried; NaN if it lay nowhere in particular, since nothing pressed
@@ -71,9 +72,12 @@ pub(in crate::contact) fn error_in_time(
     let (pressure, before) = (&trial.solution.pressure, &state.current.solution);
     if let TimeRule::Rectangle | TimeRule::Backward = scene.settings.time_rule {
         let (mut change, mut size, mut sum) = (0.0, 0.0, 0.0);
+        // products of great pressures and displacements would overflow
+        let most = greatest(pressure);
         let fields =
             pressure.iter().zip(state.history.trial()).zip(trial.solution.potential.iter().zip(&before.potential));
-        for ((&p, &u), (&v, &old)) in fields {
+        for ((&p, &u), (&v, &old)) in fields.filter(|((p, _), _)| **p > 0.0) {
+            let p = p / most;
             (change, size, sum) = (change + p * (v - old).abs(), size + p * u.abs(), sum + p);
         }
         let creep = compliance(interval.dt) - compliance(0.0);

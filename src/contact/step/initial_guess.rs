@@ -73,7 +73,7 @@ fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Ste
     let (now, before) = (&state.current, &state.previous);
     let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.remembers());
     let change = state.history.last_change();
-    if change.is_none() && !elastic {
+    if now.contact_cells == 0 || change.is_none() && !elastic {
         return false;
     }
     let ahead = state.extrapolation.reach(step.interval.dt);

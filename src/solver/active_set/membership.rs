@@ -39,8 +39,8 @@ impl ActiveSet {
         for body in 0..problem.bodies.len() {
             // cells that are likely to touch may carry nothing yet
             let pressed = || self.set.sum(problem, body, &solution.pressure) > 0.0;
-            let forced = problem.likely.is_some() && problem.bodies[body].translation;
-            if !problem.released(body) && (self.set.count_under(body) == 0 || forced && !pressed()) {
+            let bare = self.set.count_under(body) == 0 || problem.likely.is_some() && !pressed();
+            if bare && !problem.released(body) {
                 // a guess without positive pressure may hold negative ones, which v includes
                 fresh |= solution.pressure.iter().any(|&p| p != 0.0);
                 // K⁻¹ of a uniform displacement, but for its scale, is the pressure under a flat punch
