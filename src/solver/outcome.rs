@@ -62,6 +62,9 @@ pub(crate) struct ResidualSums {
 /// Penetration may exceed the root mean square of the residual by this factor, being a maximum.
 pub(crate) const PENETRATION_SLACK: f64 = 10.0;
 
+/// Lengths whose squares underflow \[m\].
+const UNDERFLOW: f64 = 1.5e-154;
+
 /// Of the penetrating cells, those join the contact that are deeper than this fraction of the deepest.
 const JOIN_OVER_DEEPEST: f64 = 0.2;
 
@@ -79,7 +82,7 @@ impl ResidualSums {
     /// How far a state is from solving its [`Problem`], relative to rms (c v) in contact: the larger of rms |h| in contact
     /// and a tenth of the deepest penetration. Rounding of the gap itself does not count.
     fn relative_residual(&self, penetration: f64) -> f64 {
-        let error = self.rms().max(self.deepest.max(penetration) / PENETRATION_SLACK) - self.rounding();
+        let error = self.rms().max(self.deepest.max(penetration) / PENETRATION_SLACK) - self.rounding() - UNDERFLOW;
         if error <= 0.0 { 0.0 } else { error / self.yielding() }
     }
 

@@ -218,8 +218,9 @@ impl ActiveSet {
         *energy = curvature;
         if !self.changes.any() {
             // a direction that vanishes, as on a single cell, gains nothing
-            let downhill = slope > 0.0 && curvature > 0.0;
-            return if downhill { slope / (problem.compliance * curvature) } else { 0.0 };
+            let length = slope / (problem.compliance * curvature);
+            let downhill = slope > 0.0 && curvature > 0.0 && length.is_finite();
+            return if downhill { length } else { 0.0 };
         }
         // nothing is conjugate to a correction, which has no line search
         *energy = 0.0;
