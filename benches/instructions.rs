@@ -33,7 +33,7 @@ fn held_sphere() -> Scene {
     (contact.build().unwrap(), |_| Load::force(0.3), 0.02, 20)
 }
 
-/// The load wanders, and the punch tilts: the general path of the solver.
+/// The load wanders, and the punch tilts.
 fn eccentric_punch() -> Scene {
     let contact = ViscoelasticContact::builder(Grid::new([48, 60], [1.0e-3, 1.0e-3]).unwrap())
         .geometry(&FlatPunch::circular(0.4e-3).unwrap())

@@ -1,0 +1,185 @@
+//! This crate's side of the comparison with Tamaas, `benches/versus_tamaas.py`, which calls it and says how to run it. Without
+//! arguments, as in `cargo bench`, it does nothing.
+//!
+//! * `reference SCENE FOLDER` writes the gap of a scene and its pressures, solved to far below every error compared.
+//! * `measure SCENE FOLDER ERROR` looks for the cheapest steps and tolerance whose pressures differ from those by at most
+//!   ERROR, and prints `way error seconds steps tolerance iterations`, by default and on the whole grid.
+
+use std::env;
+use std::error::Error;
+use std::fs;
+use std::path::Path;
+use std::sync::{Arc, LazyLock};
+use std::time::Instant;
+
+use viscocontact::InfluenceKernel;
+use viscocontact::prelude::*;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let args: Vec<String> = env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    match args.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["reference", scene, folder] => write_reference(&Scene::named(scene)?, Path::new(folder)),
+        ["measure", scene, folder, error] => measure(&Scene::named(scene)?, Path::new(folder), error.parse()?),
+        _ => Ok(()),
+    }
+}
+
+/// Runs whose mean time is taken.
+const RUNS: f64 = 8.0;
+
+/// A body under a constant force from t = 0, and when its pressures are compared.
+struct Scene {
+    grid: Grid,
+    geometry: Box<dyn Geometry>,
+    material: Material,
+    kernel: Arc<InfluenceKernel>,
+    force: f64,
+    /// Intervals between the times at which pressures are compared \[s\], and steps of each that may do; none if they are
+    /// compared at t = 0 alone.
+    intervals: &'static [f64],
+    steps: &'static [usize],
+    reference_steps: usize,
+}
+
+impl Scene {
+    /// In units in which lengths and moduli are near 1.
+    fn named(name: &str) -> Result<Scene, Box<dyn Error>> {
+        Ok(if name == "sphere" {
+            // long-term modulus 1, retardation time 1; on a square 2.25 radii wide of the contact of the compliance at 2 s
+            let material = Material::incompressible(Zener::new(2.0, 2.0, 2.0)?);
+            let force = 0.01;
+            let radius = (0.75 * force * material.contact_compliance(2.0)).cbrt();
+            let grid = Grid::square(256, 2.25 * radius)?;
+            Scene {
+                kernel: Arc::new(InfluenceKernel::half_space(&grid)?),
+                grid,
+                geometry: Box::new(FnGeometry::new(|x1: f64, x2: f64| 0.5 * (x1 * x1 + x2 * x2))),
+                material,
+                force,
+                intervals: &[1.0, 1.0],
+                steps: &[1, 2, 3, 4, 6, 8, 12],
+                reference_steps: 400,
+            }
+        } else {
+            let grid = Grid::square(512, 1.0)?;
+            let spec = RoughSpec {
+                hurst: 0.8,
+                longest: 1.0,
+                roll_off: 0.25,
+                shortest: 8.0 / 512.0,
+                anisotropy: Anisotropy::default(),
+                roughness: Roughness::RmsSlope(0.1),
+                seed: 1,
+            };
+            Scene {
+                kernel: Arc::new(InfluenceKernel::periodic(&grid)?),
+                geometry: Box::new(Rough::new(&grid, spec)?),
+                grid,
+                material: Material::incompressible(Elastic::new(0.25)?), // E* = 1
+                force: 0.03,
+                intervals: &[],
+                steps: &[0],
+                reference_steps: 0,
+            }
+        })
+    }
+
+    fn contact(&self, settings: Settings) -> Result<ViscoelasticContact, viscocontact::Error> {
+        ViscoelasticContact::builder(self.grid.clone())
+            .geometry(&*self.geometry)
+            .material(self.material.clone())
+            .kernel(self.kernel.clone())
+            .settings(Settings { edge: Edge::Allow, ..settings })
+            .build()
+    }
+
+    /// The pressures compared, the seconds that the steps take, and their iterations.
+    fn run(&self, contact: &mut ViscoelasticContact, steps: usize) -> Result<(Vec<f64>, f64, usize), Box<dyn Error>> {
+        let load = Load::force(self.force);
+        let (mut pressures, mut seconds) = (Vec::new(), 0.0);
+        let start = processor_seconds();
+        let mut iterations = contact.step(0.0, load)?.iterations;
+        seconds += processor_seconds() - start;
+        if self.intervals.is_empty() {
+            pressures.extend_from_slice(contact.pressure());
+        }
+        for interval in self.intervals {
+            let start = processor_seconds();
+            for _ in 0..steps {
+                iterations += contact.step(interval / steps as f64, load)?.iterations;
+            }
+            seconds += processor_seconds() - start;
+            pressures.extend_from_slice(contact.pressure());
+        }
+        Ok((pressures, seconds, iterations))
+    }
+}
+
+/// Seconds of processor time that this process has taken, in all its threads, so that other processes on the machine count
+/// little; where the system does not tell (Linux does, every few milliseconds), seconds.
+fn processor_seconds() -> f64 {
+    static START: LazyLock<Instant> = LazyLock::new(Instant::now);
+    let nanoseconds = || -> Option<f64> {
+        let of = |task: fs::DirEntry| {
+            fs::read_to_string(task.path().join("schedstat")).ok()?.split(' ').next()?.parse::<f64>().ok()
+        };
+        fs::read_dir("/proc/self/task").ok()?.map(|task| of(task.ok()?)).sum()
+    };
+    nanoseconds().map_or_else(|| START.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
+}
+
+fn write_reference(scene: &Scene, folder: &Path) -> Result<(), Box<dyn Error>> {
+    let write = |name, values: &[f64]| {
+        fs::write(folder.join(name), values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<_>>())
+    };
+    let mut gap = vec![0.0; scene.grid.len()];
+    scene.geometry.fill_gap(&scene.grid, &mut gap);
+    write("gap", &gap)?;
+    let mut contact = scene.contact(Settings { tolerance: 1e-10, ..Settings::default() })?;
+    write("pressures", &scene.run(&mut contact, scene.reference_steps)?.0)?;
+    let share = contact.contact_cells() as f64 / scene.grid.len() as f64;
+    println!("{:e} {} {share:.3}", scene.grid.lengths()[0], scene.force);
+    Ok(())
+}
+
+fn measure(scene: &Scene, folder: &Path, allowed: f64) -> Result<(), Box<dyn Error>> {
+    let bytes = fs::read(folder.join("pressures"))?;
+    let reference: Vec<f64> =
+        bytes.chunks_exact(8).map(|value| f64::from_le_bytes(value.try_into().unwrap())).collect();
+    let size = reference.len() / scene.intervals.len().max(1);
+    let error = |pressures: &[f64]| {
+        let of =
+            |(p, r): (&[f64], &[f64])| p.iter().zip(r).map(|(p, r)| (p - r).abs()).sum::<f64>() / r.iter().sum::<f64>();
+        pressures.chunks_exact(size).zip(reference.chunks_exact(size)).map(of).fold(0.0, f64::max)
+    };
+    for (way, part) in [("default", true), ("whole-grid", false)] {
+        let mut cheapest = (f64::INFINITY, String::new());
+        for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
+            let settings = Settings { tolerance, symmetry: part, window: part, ..Settings::default() };
+            let mut contact = scene.contact(settings)?;
+            let at_rest = contact.snapshot();
+            for &steps in scene.steps {
+                let (mut sum, mut runs, mut last) = (0.0, 0.0, String::new());
+                while runs < RUNS {
+                    contact.restore(&at_rest)?;
+                    let (pressures, seconds, iterations) = scene.run(&mut contact, steps)?;
+                    let error = error(&pressures);
+                    (sum, runs) = (sum + seconds, runs + 1.0);
+                    last = format!(
+                        "{error:e} {:e} {} {tolerance:e} {iterations}",
+                        sum / runs,
+                        steps * scene.intervals.len()
+                    );
+                    if error > allowed || sum > (1.2 * runs + 0.3) * cheapest.0 {
+                        break; // not worth another run
+                    }
+                }
+                if runs == RUNS && sum / runs < cheapest.0 {
+                    cheapest = (sum / runs, last);
+                }
+            }
+        }
+        println!("{way} {}", cheapest.1);
+    }
+    Ok(())
+}
