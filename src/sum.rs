@@ -17,26 +17,25 @@ pub(crate) fn sum(values: &[f64]) -> f64 {
 
 /// The greatest |value|.
 pub(crate) fn greatest(values: &[f64]) -> f64 {
-    let (chunks, rest) = values.as_chunks::<LANES>();
-    let mut lanes = [0.0; LANES];
-    for chunk in chunks {
-        for (lane, value) in lanes.iter_mut().zip(chunk) {
-            *lane = if value.abs() > *lane { value.abs() } else { *lane };
-        }
-    }
-    lanes.iter().chain(rest).fold(0.0, |greatest, value| value.abs().max(greatest))
+    greatest_of(values, 0.0, f64::abs)
 }
 
 /// The greatest value, −∞ of none.
 pub(crate) fn most(values: &[f64]) -> f64 {
+    greatest_of(values, f64::NEG_INFINITY, |value| value)
+}
+
+/// The greatest of `least` and f of the values; NaN is passed over.
+fn greatest_of(values: &[f64], least: f64, f: impl Fn(f64) -> f64) -> f64 {
     let (chunks, rest) = values.as_chunks::<LANES>();
-    let mut lanes = [f64::NEG_INFINITY; LANES];
+    let mut lanes = [least; LANES];
     for chunk in chunks {
-        for (lane, value) in lanes.iter_mut().zip(chunk) {
-            *lane = if value > lane { *value } else { *lane };
+        for (lane, &value) in lanes.iter_mut().zip(chunk) {
+            *lane = if f(value) > *lane { f(value) } else { *lane };
         }
     }
-    lanes.iter().chain(rest).fold(f64::NEG_INFINITY, |most, value| value.max(most))
+    let rest = rest.iter().map(|&value| f(value));
+    lanes.into_iter().chain(rest).fold(least, |greatest, value| value.max(greatest))
 }
 
 /// Σ f(a, b) over the values of two fields.

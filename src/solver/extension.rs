@@ -43,6 +43,13 @@ struct Rows {
     fine: Vec<f64>,
 }
 
+#[derive(Debug, Clone, Copy)]
+enum Pass {
+    Fit,
+    Extend,
+    Gather,
+}
+
 impl Extension {
     pub(crate) fn new(cells: [usize; 2], periodic: [bool; 2]) -> Extension {
         let mut levels = Vec::new();
@@ -69,36 +76,32 @@ impl Extension {
 
     /// Makes E that of the set of members.
     pub(crate) fn fit(&mut self, member: &[bool]) {
-        let this = self; // a closure that consumes what it captures is inlined
-        Arch::new().dispatch(
-            #[inline(always)]
-            move || {
-                let this = this;
-                this.find_factors(member)
-            },
-        );
+        self.run(Pass::Fit, &mut [], member);
     }
 
     /// Fills all cells outside the set, where `field` is zero.
     pub(crate) fn extend(&mut self, field: &mut [f64], member: &[bool]) {
-        let this = self; // a closure that consumes what it captures is inlined
-        Arch::new().dispatch(
-            #[inline(always)]
-            move || {
-                let this = this;
-                this.push_and_pull(field, member)
-            },
-        );
+        self.run(Pass::Extend, field, member);
     }
 
     /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere.
     pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool]) {
-        let this = self; // a closure that consumes what it captures is inlined
+        self.run(Pass::Gather, field, member);
+    }
+
+    /// Runs a pass compiled for the vector units of the machine.
+    fn run(&mut self, pass: Pass, field: &mut [f64], member: &[bool]) {
+        let arguments = (self, field, member);
         Arch::new().dispatch(
             #[inline(always)]
             move || {
-                let this = this;
-                this.transpose(field, member)
+                // a closure is inlined, and so compiled for these units, if it consumes what it captures
+                let (extension, field, member) = arguments;
+                match pass {
+                    Pass::Fit => extension.find_factors(member),
+                    Pass::Extend => extension.push_and_pull(field, member),
+                    Pass::Gather => extension.transpose(field, member),
+                }
             },
         );
     }

@@ -27,8 +27,8 @@ impl ActiveSet {
     }
 
     /// Makes the pressure on A carry the force and moments of each body: at once, by scaling p and v, where the force of a
-    /// single body is the only load; else by the next direction. Where that cannot be, a step that was `searched`, so long, is cut short;
-    /// after another, the body begins again.
+    /// single body is the only load; else by the next direction. Where that cannot be, the last step is cut short, if it was a
+    /// search, `searched` long; else the body begins again.
     pub(super) fn balance(
         &mut self,
         problem: &Problem<'_>,
@@ -38,8 +38,8 @@ impl ActiveSet {
         work: &mut Workspace,
     ) -> Result<(), usize> {
         let single = problem.bodies.len() == 1;
-        let all = sum(&solution.pressure);
         let pressed: f64 = (0..problem.bodies.len()).map(|body| self.set.sum(problem, body, &solution.pressure)).sum();
+        let all = if self.changes.leaving { sum(&solution.pressure) } else { pressed };
         self.changes.moves = self.changes.leaving && (all - pressed).abs() < MAX_MOVED_SHARE * pressed;
         let carried = if self.changes.moves { all } else { pressed };
         if !single || problem.bodies[0].tilts() {

@@ -21,14 +21,12 @@ impl ActiveSet {
         work: &mut Workspace,
     ) -> Result<(), usize> {
         (self.search.energy, self.was_cut) = (0.0, false);
-        let fields = solution.pressure.iter().zip(problem.gap);
-        for (member, (&p, &gap)) in self.set.member.iter_mut().zip(fields) {
-            *member = (p > 0.0) & (gap < f64::INFINITY);
-        }
-        if let Some(likely) = problem.likely {
-            for (k, (member, &likely)) in self.set.member.iter_mut().zip(likely).enumerate() {
-                *member = likely && solution.pressure[k] >= 0.0 && problem.gap[k].is_finite();
-            }
+        let fields = self.set.member.iter_mut().zip(solution.pressure.iter().zip(problem.gap));
+        match problem.likely {
+            None => fields.for_each(|(member, (&p, &gap))| *member = (p > 0.0) & (gap < f64::INFINITY)),
+            Some(likely) => fields.zip(likely).for_each(|((member, (&p, &gap)), &likely)| {
+                *member = likely & (p >= 0.0) & (gap < f64::INFINITY);
+            }),
         }
         if (0..problem.bodies.len()).any(|body| problem.released(body)) {
             let members = self.set.member.iter_mut().enumerate();
