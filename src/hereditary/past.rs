@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::hereditary::exponential_rule::{ExponentialRule, Weights};
+use crate::kernel::{BAND_CELLS, join, lanes};
 
 /// The past of a field that follows the exponential rule: q_i for each relaxation time, and its differences over the last
 /// steps.
@@ -25,6 +26,7 @@ pub(super) struct Past {
 /// step takes 1.1 times as long as with one; 1.4 times if each branch is an array of its own, whose start must be fetched
 /// from memory for every block.
 const BLOCK: usize = 512;
+const _: () = assert!(BAND_CELLS.is_multiple_of(BLOCK));
 
 /// d₁, d₂ and d₃ of the step committed last, on the cells of a block.
 type Steps = [[f64; BLOCK]; 3];
@@ -59,33 +61,10 @@ impl Past {
     /// after it.
     pub(super) fn predict(&mut self, rule: &ExponentialRule, field: &[f64], u_old: &mut [f64]) {
         self.keep(rule.kept(), field.len());
-        let (tried, committed, waiting) = (&rule.tried, &rule.committed, std::mem::take(&mut self.waiting));
-        let mut steps = [[0.0; BLOCK]; 3];
-        let [mut first, mut second] = self.differences.each_mut().map(|own| own.chunks_mut(BLOCK));
-        let mut blocks = self.fields.chunks_mut((BLOCK * self.branches).max(1));
-        for (old, new) in u_old.chunks_mut(BLOCK).zip(field.chunks(BLOCK)) {
-            let (first, second) = (first.next().unwrap_or_default(), second.next().unwrap_or_default());
-            if waiting {
-                take_differences(committed, old, new, first, second, &mut steps);
-            }
-            let [kept, of_first, of_second] = tried.past;
-            old.iter_mut().zip(new).for_each(|(old, &new)| *old = kept * new);
-            if of_first != 0.0 {
-                old.iter_mut().zip(&*first).for_each(|(old, &d)| *old += of_first * d);
-            }
-            if of_second != 0.0 {
-                old.iter_mut().zip(&*second).for_each(|(old, &d)| *old += of_second * d);
-            }
-            let branches = blocks.next().into_iter().flat_map(|fields| fields.chunks_mut(new.len()));
-            for ((q, weights), gains) in branches.zip(&tried.branches).zip(&committed.branches) {
-                let weight = tried.c * weights[0];
-                if waiting {
-                    take_in(q, gains, committed.terms, &steps, old, weight);
-                } else {
-                    old.iter_mut().zip(&*q).for_each(|(old, &q)| *old -= weight * q);
-                }
-            }
-        }
+        let waiting = std::mem::take(&mut self.waiting);
+        let [first, second] = self.differences.each_mut().map(|own| &mut own[..]);
+        let part = Part { branches: self.branches, fields: &mut self.fields, first, second, field, u_old };
+        part.share(lanes(field.len()) > 1, &|part: Part<'_>| part.predict(rule, waiting));
     }
 
     /// Takes in the step committed last, in which the field went from `before` to `field`.
@@ -211,6 +190,67 @@ impl Past {
             carried.differences[k] = carry(own, companion.map(|companion| &companion.differences[k][..]));
         }
         carried
+    }
+}
+
+/// What a past is predicted from, on some cells that follow each other: whole blocks, but for the last.
+struct Part<'a> {
+    branches: usize,
+    fields: &'a mut [f64],
+    first: &'a mut [f64],
+    second: &'a mut [f64],
+    field: &'a [f64],
+    u_old: &'a mut [f64],
+}
+
+impl Part<'_> {
+    /// Calls `job` with parts of this one, between threads where the work is `shared`.
+    fn share(self, shared: bool, job: &(impl Fn(Part<'_>) + Sync)) {
+        let cells = self.field.len();
+        if !shared || cells <= BAND_CELLS {
+            return job(self);
+        }
+        let middle = cells.div_ceil(BAND_CELLS) / 2 * BAND_CELLS;
+        let Part { branches, fields, first, second, field, u_old } = self;
+        let fields = fields.split_at_mut(middle * branches);
+        let [first, second] = [first, second].map(|own| own.split_at_mut(middle.min(own.len())));
+        let (field, u_old) = (field.split_at(middle), u_old.split_at_mut(middle));
+        let before =
+            Part { branches, fields: fields.0, first: first.0, second: second.0, field: field.0, u_old: u_old.0 };
+        let after =
+            Part { branches, fields: fields.1, first: first.1, second: second.1, field: field.1, u_old: u_old.1 };
+        join(true, || before.share(true, job), || after.share(true, job));
+    }
+
+    /// See [`Past::predict`]; `waiting` tells whether the last step has yet to be taken in.
+    fn predict(self, rule: &ExponentialRule, waiting: bool) {
+        let (tried, committed) = (&rule.tried, &rule.committed);
+        let mut steps = [[0.0; BLOCK]; 3];
+        let (mut first, mut second) = (self.first.chunks_mut(BLOCK), self.second.chunks_mut(BLOCK));
+        let mut blocks = self.fields.chunks_mut((BLOCK * self.branches).max(1));
+        for (old, new) in self.u_old.chunks_mut(BLOCK).zip(self.field.chunks(BLOCK)) {
+            let (first, second) = (first.next().unwrap_or_default(), second.next().unwrap_or_default());
+            if waiting {
+                take_differences(committed, old, new, first, second, &mut steps);
+            }
+            let [kept, of_first, of_second] = tried.past;
+            old.iter_mut().zip(new).for_each(|(old, &new)| *old = kept * new);
+            if of_first != 0.0 {
+                old.iter_mut().zip(&*first).for_each(|(old, &d)| *old += of_first * d);
+            }
+            if of_second != 0.0 {
+                old.iter_mut().zip(&*second).for_each(|(old, &d)| *old += of_second * d);
+            }
+            let branches = blocks.next().into_iter().flat_map(|fields| fields.chunks_mut(new.len()));
+            for ((q, weights), gains) in branches.zip(&tried.branches).zip(&committed.branches) {
+                let weight = tried.c * weights[0];
+                if waiting {
+                    take_in(q, gains, committed.terms, &steps, old, weight);
+                } else {
+                    old.iter_mut().zip(&*q).for_each(|(old, &q)| *old -= weight * q);
+                }
+            }
+        }
     }
 }
 

@@ -1,7 +1,10 @@
 //! The error in time of a step, from what its polynomial lacks.
 
+use std::ops::Range;
+
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::history::History;
+use crate::kernel::merge_bands;
 
 /// What the error in time of a step is measured by, besides the displacement.
 #[derive(Clone, Copy)]
@@ -16,7 +19,7 @@ pub(crate) struct ErrorMeasure<'a> {
     /// The least means over the contact of displacement and v that errors are taken relative to.
     pub(crate) least: [f64; 2],
     /// By how much the rigid body above a cell advances in the step.
-    pub(crate) advance: &'a dyn Fn(usize) -> f64,
+    pub(crate) advance: &'a (dyn Fn(usize) -> f64 + Sync),
     /// C(age)/C(Δ), by which an error in u grows in the end if those of the next steps are like it: a step answers a defect of v
     /// with the compliance of a step, all steps together with that of their age.
     pub(crate) amplification: f64,
@@ -117,37 +120,41 @@ impl History {
         let [to_first, to_second] = rule.tried.ratios;
         let (new, old) = (&self.displacement.trial, &self.displacement.now);
         let [tried, now, before] = measure.pressure;
-        let mut sums = Sums::default();
-        for (k, ((&u, &u_before), &v)) in new.iter().zip(old).zip(measure.potential).enumerate() {
-            let pressure = [tried[k], now[k], before[k]];
-            let (w, [touches, touched, had_touched]) = (weight.of(pressure), pressure.map(|p| p > 0.0));
-            let leaves = !touches && (touched || had_touched);
-            if w == 0.0 && !touches && !leaves {
-                continue;
+        let part = |cells: Range<usize>| {
+            let mut sums = Sums::default();
+            for k in cells {
+                let (u, u_before, v) = (new[k], old[k], measure.potential[k]);
+                let pressure = [tried[k], now[k], before[k]];
+                let (w, [touches, touched, had_touched]) = (weight.of(pressure), pressure.map(|p| p > 0.0));
+                let leaves = !touches && (touched || had_touched);
+                if w == 0.0 && !touches && !leaves {
+                    continue;
+                }
+                sums.weight += w;
+                sums.sizes = [sums.sizes[0] + w * u.abs(), sums.sizes[1] + w * v.abs()];
+                sums.touching += usize::from(touches);
+                let going_on = if lacking > 0 { to_first * first[k] } else { 0.0 };
+                let bend = (u - u_before) - going_on;
+                if touches && !touched {
+                    let jump = (measure.advance)(k) - going_on;
+                    let (kink, widest) = (rule.kink(jump, bend), rule.kink(jump, 0.5 * jump));
+                    (sums.kinks, sums.squares) = (sums.kinks + kink, sums.squares + widest * widest);
+                    sums.sharpest = sums.sharpest.max(kink.abs()).max(widest.abs());
+                    continue;
+                }
+                let last = if lacking < 3 { bend } else { bend - to_second * second[k] };
+                // the rounding of u is no error in time
+                let size = (last.abs() - ROUNDING * u.abs()).max(0.0);
+                (sums.signed, sums.absolute) = (sums.signed + w * size.copysign(last), sums.absolute + w * size);
+                if touches {
+                    sums.steepest = sums.steepest.max(size);
+                } else if leaves {
+                    sums.left = sums.left.max(size);
+                }
             }
-            sums.weight += w;
-            sums.sizes = [sums.sizes[0] + w * u.abs(), sums.sizes[1] + w * v.abs()];
-            sums.touching += usize::from(touches);
-            let going_on = if lacking > 0 { to_first * first[k] } else { 0.0 };
-            let bend = (u - u_before) - going_on;
-            if touches && !touched {
-                let jump = (measure.advance)(k) - going_on;
-                let (kink, widest) = (rule.kink(jump, bend), rule.kink(jump, 0.5 * jump));
-                (sums.kinks, sums.squares) = (sums.kinks + kink, sums.squares + widest * widest);
-                sums.sharpest = sums.sharpest.max(kink.abs()).max(widest.abs());
-                continue;
-            }
-            let last = if lacking < 3 { bend } else { bend - to_second * second[k] };
-            // the rounding of u is no error in time
-            let size = (last.abs() - ROUNDING * u.abs()).max(0.0);
-            (sums.signed, sums.absolute) = (sums.signed + w * size.copysign(last), sums.absolute + w * size);
-            if touches {
-                sums.steepest = sums.steepest.max(size);
-            } else if leaves {
-                sums.left = sums.left.max(size);
-            }
-        }
-        sums
+            sums
+        };
+        merge_bands(new.len(), part, Sums::merge)
     }
 }
 
@@ -189,6 +196,21 @@ struct Defect {
 }
 
 impl Sums {
+    fn merge(self, other: Sums) -> Sums {
+        Sums {
+            weight: self.weight + other.weight,
+            sizes: [0, 1].map(|which| self.sizes[which] + other.sizes[which]),
+            signed: self.signed + other.signed,
+            absolute: self.absolute + other.absolute,
+            steepest: self.steepest.max(other.steepest),
+            left: self.left.max(other.left),
+            touching: self.touching + other.touching,
+            kinks: self.kinks + other.kinks,
+            squares: self.squares + other.squares,
+            sharpest: self.sharpest.max(other.sharpest),
+        }
+    }
+
     fn defect(&self, rule: &ExponentialRule, resolution: f64) -> Defect {
         let scale = match rule.missing() {
             Some((_, missing)) if rule.corrects() && rule.has_dashpot() => CORRECTED_OF_DASHPOT * missing,

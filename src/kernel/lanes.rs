@@ -1,5 +1,7 @@
 //! Loops over fields: compiled for the vector units of the machine that runs them, and shared between threads.
 
+use std::ops::Range;
+
 use pulp::{Arch, Simd, WithSimd};
 
 /// Work of a thread on its share of a field. `run` must be `#[inline(always)]`: only then is it compiled for vectors
@@ -50,15 +52,17 @@ impl<T: Task> WithSimd for Vectorised<'_, T> {
 }
 
 /// Runs both closures, in parallel if they are `shared` and the feature `rayon` is on.
-pub(crate) fn join(shared: bool, first: impl FnOnce() + Send, second: impl FnOnce() + Send) {
+pub(crate) fn join<A: Send, B: Send>(
+    shared: bool,
+    first: impl FnOnce() -> A + Send,
+    second: impl FnOnce() -> B + Send,
+) -> (A, B) {
     #[cfg(feature = "rayon")]
     if shared {
-        rayon::join(first, second);
-        return;
+        return rayon::join(first, second);
     }
     let _ = shared;
-    first();
-    second();
+    (first(), second())
 }
 
 /// Number of threads that share the work on a field of `cells` cells.
@@ -74,3 +78,53 @@ pub(crate) fn lanes(cells: usize) -> usize {
 /// Below this number of cells the overhead of threads exceeds their gain.
 #[cfg(feature = "rayon")]
 const MIN_SHARED_CELLS: usize = 1 << 15;
+
+/// Cells that a thread passes over at a time. Sums are taken band by band, whatever the number of threads.
+pub(crate) const BAND_CELLS: usize = 1 << 13;
+
+/// Calls `job` with pieces of some fields and the number of their first cell: bands if threads share the work, else all at once.
+pub(crate) fn for_each_band<T: Send, const M: usize>(fields: [&mut [T]; M], job: impl Fn(usize, [&mut [T]; M]) + Sync) {
+    let cells = fields.first().map_or(0, |field| field.len());
+    if lanes(cells) > 1 { halve(0, cells, fields, &job) } else { job(0, fields) }
+}
+
+fn halve<T: Send, const M: usize>(
+    first: usize,
+    cells: usize,
+    fields: [&mut [T]; M],
+    job: &(impl Fn(usize, [&mut [T]; M]) + Sync),
+) {
+    if cells <= BAND_CELLS {
+        return job(first, fields);
+    }
+    let middle = cells.div_ceil(BAND_CELLS) / 2 * BAND_CELLS;
+    let mut halves = fields.map(|field| field.split_at_mut(middle));
+    let before = halves.each_mut().map(|(before, _)| std::mem::take(before));
+    let after = halves.map(|(_, after)| after);
+    join(true, || halve(first, middle, before, job), || halve(first + middle, cells - middle, after, job));
+}
+
+/// What `part` finds on each band of so many cells, `merge`d in their order.
+pub(crate) fn merge_bands<R: Send>(
+    cells: usize,
+    part: impl Fn(Range<usize>) -> R + Sync,
+    merge: impl Fn(R, R) -> R + Sync,
+) -> R {
+    merge_halves(0..cells, lanes(cells) > 1, &part, &merge)
+}
+
+fn merge_halves<R: Send>(
+    cells: Range<usize>,
+    shared: bool,
+    part: &(impl Fn(Range<usize>) -> R + Sync),
+    merge: &(impl Fn(R, R) -> R + Sync),
+) -> R {
+    if cells.len() <= BAND_CELLS {
+        return part(cells);
+    }
+    let middle = cells.start + cells.len().div_ceil(BAND_CELLS) / 2 * BAND_CELLS;
+    let [before, after] =
+        [cells.start..middle, middle..cells.end].map(|half| move || merge_halves(half, shared, part, merge));
+    let (before, after) = join(shared, before, after);
+    merge(before, after)
+}

@@ -2,10 +2,7 @@
 
 use std::ops::Range;
 
-use crate::kernel::{join, lanes};
-
-/// Cells passed over by one thread at a time. Sums are taken band by band, whatever the number of threads.
-pub(crate) const BAND_CELLS: usize = 1 << 13;
+use crate::kernel::{BAND_CELLS, join, lanes};
 
 /// Lanes in which maxima are taken.
 pub(crate) const LANES: usize = 8;

@@ -5,6 +5,7 @@ use crate::contact::trial::Trial;
 use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 use crate::hereditary::History;
+use crate::kernel::for_each_band;
 use crate::solver::{Freedom, Modes, RigidMotion};
 
 /// The rigid bodies over the region of a step.
@@ -19,9 +20,11 @@ pub(super) struct RigidBodies<'a> {
 impl RigidBodies<'_> {
     /// The gap before any pressure and free motion, hi + u_old − what is prescribed of ω + α·x.
     pub(super) fn fill_gap(&self, u_old: &[f64], gap: &mut [f64]) {
-        for ((gap, &initial), &u_old) in gap.iter_mut().zip(&self.initial.above).zip(u_old) {
-            *gap = initial + u_old;
-        }
+        for_each_band([&mut *gap], |first, [gap]| {
+            for ((gap, &initial), &u_old) in gap.iter_mut().zip(&self.initial.above[first..]).zip(&u_old[first..]) {
+                *gap = initial + u_old;
+            }
+        });
         let bodies = self.prescribed.bodies();
         for body in 0..bodies {
             let motion = self.prescribed.motion(body);
@@ -53,17 +56,19 @@ impl RigidBodies<'_> {
         let Trial { solution, gap, free, .. } = trial;
         if let (true, &[Freedom { tilt: [false, false], .. }]) = (integrated, &free[..]) {
             let motion = Modes::new(self.region.grid(), free[0]).displacement(solution.motions[0], 0);
-            let state = solution.pressure.iter().zip(&solution.potential).zip(gap);
-            for (u, ((&p, &v), &gap)) in u.iter_mut().zip(state) {
-                let cv = c * v;
-                let h = gap + cv - motion;
-                *u = (*u + cv) - if (p > 0.0) | (h < 0.0) { h } else { 0.0 };
-            }
+            for_each_band([u], |first, [u]| {
+                let state = solution.pressure[first..].iter().zip(&solution.potential[first..]).zip(&gap[first..]);
+                for (u, ((&p, &v), &gap)) in u.iter_mut().zip(state) {
+                    let cv = c * v;
+                    let h = gap + cv - motion;
+                    *u = (*u + cv) - if (p > 0.0) | (h < 0.0) { h } else { 0.0 };
+                }
+            });
             return;
         }
-        for (u, &v) in u.iter_mut().zip(&solution.potential) {
-            *u += c * v;
-        }
+        for_each_band([&mut *u], |first, [u]| {
+            u.iter_mut().zip(&solution.potential[first..]).for_each(|(u, &v)| *u += c * v);
+        });
         if !integrated {
             return;
         }

@@ -1,10 +1,13 @@
 //! The first guess of a step.
 
+use std::ops::Range;
+
 use crate::contact::extrapolation::MAX_REACH;
 use crate::contact::request::Step;
 use crate::contact::state::{Equilibrium, State};
 use crate::contact::trial::Trial;
 use crate::contact::window::window::Window;
+use crate::kernel::{for_each_band, merge_bands};
 use crate::solver::{Counts, Freedom, Modes, RigidMotion};
 use crate::sum::{sum, sum_of_pairs};
 
@@ -85,22 +88,24 @@ fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Ste
         let body = of.motions[initial.owner(k)];
         if still { body.approach } else { body.at(state.region.center(k)) }
     };
-    for (k, likely) in trial.likely.iter_mut().enumerate() {
+    let is_likely = |k: usize| {
         let (p, p_before) = (now.solution.pressure[k], before.solution.pressure[k]);
-        *likely = if p > 0.0 {
-            p >= share * p_before
+        if p > 0.0 {
+            return p >= share * p_before;
         } else if p_before > 0.0 {
-            false
-        } else {
-            let [motion, motion_before] = [motion(k, now), motion(k, before)];
-            let receded = match change {
-                Some(change) => change[k],
-                None => c * (now.solution.potential[k] - before.solution.potential[k]),
-            };
-            let gap = initial.above[k] + u[k] - motion;
-            gap < share_open * (gap - receded + (motion - motion_before))
+            return false;
+        }
+        let [motion, motion_before] = [motion(k, now), motion(k, before)];
+        let receded = match change {
+            Some(change) => change[k],
+            None => c * (now.solution.potential[k] - before.solution.potential[k]),
         };
-    }
+        let gap = initial.above[k] + u[k] - motion;
+        gap < share_open * (gap - receded + (motion - motion_before))
+    };
+    for_each_band([&mut trial.likely], |first, [likely]| {
+        likely.iter_mut().zip(first..).for_each(|(likely, k)| *likely = is_likely(k));
+    });
     true
 }
 
@@ -124,18 +129,22 @@ fn share_left(state: &State, trial: &Trial, c: f64) -> Option<f64> {
 /// no convolution, K p₀ and K p₁ being known, and follows a creep that slows down better than the length of the step does.
 fn best_reach(state: &State, gap: &[f64], c: f64, wanted: f64) -> Option<f64> {
     let (now, before) = (&state.current.solution, &state.previous.solution);
-    let (mut sums, mut gaps, mut energies) = ([0.0; 2], [0.0; 2], [0.0; 3]);
-    for (k, &gap) in gap.iter().enumerate() {
-        let (p, v) = (now.pressure[k], now.potential[k]);
-        let (dp, dv) = (p - before.pressure[k], v - before.potential[k]);
-        // outside a punch, where the gap is infinite, nothing presses
-        if p == 0.0 && dp == 0.0 {
-            continue;
+    let part = |cells: Range<usize>| {
+        let mut sums = [0.0; 7];
+        for k in cells {
+            let (p, v) = (now.pressure[k], now.potential[k]);
+            let (dp, dv) = (p - before.pressure[k], v - before.potential[k]);
+            // outside a punch, where the gap is infinite, nothing presses
+            if p != 0.0 || dp != 0.0 {
+                let terms = [p, dp, gap[k] * p, gap[k] * dp, p * v, p * dv, dp * dv];
+                sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+            }
         }
-        sums = [sums[0] + p, sums[1] + dp];
-        gaps = [gaps[0] + gap * p, gaps[1] + gap * dp];
-        energies = [energies[0] + p * v, energies[1] + p * dv, energies[2] + dp * dv];
-    }
+        sums
+    };
+    let add = |a: [f64; 7], b: [f64; 7]| std::array::from_fn(|n| a[n] + b[n]);
+    let [p, dp, gap_p, gap_dp, pv, pdv, dpdv] = merge_bands(gap.len(), part, add);
+    let (sums, gaps, energies) = ([p, dp], [gap_p, gap_dp], [pv, pdv, dpdv]);
     // the direction is p₀ − p₁ less so much of p₀ that it carries no force
     let (scale, share) = (wanted / sums[0], sums[1] / sums[0]);
     let slope = gaps[1] - share * gaps[0] + c * scale * (energies[1] - share * energies[0]);
@@ -162,9 +171,11 @@ pub(super) fn begin(state: &State, trial: &mut Trial, step: &Step<'_>) {
 pub(super) fn extrapolate(state: &State, window: &mut Window, trial: &mut Trial, reach: f64) {
     let (now, before) = (&state.current.solution, &state.previous.solution);
     let extrapolate = |trial: &mut [f64], now: &[f64], before: &[f64]| {
-        for ((guess, &now), &before) in trial.iter_mut().zip(now).zip(before) {
-            *guess = now + reach * (now - before);
-        }
+        for_each_band([trial], |first, [guesses]| {
+            for ((guess, &now), &before) in guesses.iter_mut().zip(&now[first..]).zip(&before[first..]) {
+                *guess = now + reach * (now - before);
+            }
+        });
     };
     extrapolate(&mut trial.solution.pressure, &now.pressure, &before.pressure);
     if !state.extrapolation.refresh_is_due() {

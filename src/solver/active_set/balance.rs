@@ -1,7 +1,7 @@
 //! Balance of force and moments on the active set.
 
 use super::{ActiveSet, MAX_MOVED_SHARE, Shape};
-use crate::kernel::Workspace;
+use crate::kernel::{Workspace, for_each_band};
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::problem::{Problem, Solution};
 use crate::sum::sum;
@@ -54,8 +54,10 @@ impl ActiveSet {
             if single && !modes.tilts() {
                 let scale = problem.bodies[body].total / carried;
                 if (scale - 1.0).abs() > f64::EPSILON {
-                    solution.pressure.iter_mut().for_each(|p| *p *= scale);
-                    solution.potential.iter_mut().for_each(|v| *v *= scale);
+                    for_each_band([&mut solution.pressure, &mut solution.potential], |_, [p, v]| {
+                        p.iter_mut().for_each(|p| *p *= scale);
+                        v.iter_mut().for_each(|v| *v *= scale);
+                    });
                 }
                 continue;
             }

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::{ActiveSet, LEAVE_OVER_RMS, Search, Shape};
-use crate::kernel::Workspace;
+use crate::kernel::{Workspace, for_each_band};
 use crate::solver::cold_start::cold_start;
 use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{ResidualSums, Stop};
@@ -21,13 +21,15 @@ impl ActiveSet {
         work: &mut Workspace,
     ) -> Result<(), usize> {
         (self.search.energy, self.was_cut) = (0.0, false);
-        let fields = self.set.member.iter_mut().zip(solution.pressure.iter().zip(problem.gap));
-        match problem.likely {
-            None => fields.for_each(|(member, (&p, &gap))| *member = (p > 0.0) & (gap < f64::INFINITY)),
-            Some(likely) => fields.zip(likely).for_each(|((member, (&p, &gap)), &likely)| {
-                *member = likely & (p >= 0.0) & (gap < f64::INFINITY);
-            }),
-        }
+        for_each_band([&mut self.set.member], |first, [member]| {
+            let fields = member.iter_mut().zip(solution.pressure[first..].iter().zip(&problem.gap[first..]));
+            match problem.likely {
+                None => fields.for_each(|(member, (&p, &gap))| *member = (p > 0.0) & (gap < f64::INFINITY)),
+                Some(likely) => fields.zip(&likely[first..]).for_each(|((member, (&p, &gap)), &likely)| {
+                    *member = likely & (p >= 0.0) & (gap < f64::INFINITY);
+                }),
+            }
+        });
         if (0..problem.bodies.len()).any(|body| problem.released(body)) {
             let members = self.set.member.iter_mut().enumerate();
             members.for_each(|(k, member)| *member &= !problem.released(problem.owner(k)));
@@ -79,20 +81,23 @@ impl ActiveSet {
     pub(super) fn add_penetrating_cells(&mut self, problem: &Problem<'_>, least: f64, solution: &Solution) {
         let c = problem.compliance;
         let ContactSet { member, runs, .. } = &mut self.set;
-        runs.walk(&(0..problem.gap.len()), problem.cut(), |Piece { cells, body }, inside| {
-            if inside || problem.released(body) {
-                return;
-            }
-            let [start, slope] = problem.line(body, cells.start).of(solution.motions[body]);
-            let joins = |p: f64, v: f64, h: f64, motion: f64| (p == 0.0) & (motion - (c * v + h) > least);
-            let fields = solution.potential[cells.clone()].iter().zip(&problem.gap[cells.clone()]);
-            let values = member[cells.clone()].iter_mut().zip(&solution.pressure[cells]).zip(fields);
-            if slope == 0.0 {
-                values.for_each(|((member, &p), (&v, &h))| *member = joins(p, v, h, start));
-            } else {
-                let values = values.zip(&NUMBERS);
-                values.for_each(|(((member, &p), (&v, &h)), &j)| *member = joins(p, v, h, start + slope * j));
-            }
+        let joins = |p: f64, v: f64, h: f64, motion: f64| (p == 0.0) & (motion - (c * v + h) > least);
+        for_each_band([member], |first, [member]| {
+            runs.walk(&(first..first + member.len()), problem.cut(), |Piece { cells, body }, inside| {
+                if inside || problem.released(body) {
+                    return;
+                }
+                let [start, slope] = problem.line(body, cells.start).of(solution.motions[body]);
+                let member = &mut member[cells.start - first..cells.end - first];
+                let fields = solution.potential[cells.clone()].iter().zip(&problem.gap[cells.clone()]);
+                let values = member.iter_mut().zip(&solution.pressure[cells]).zip(fields);
+                if slope == 0.0 {
+                    values.for_each(|((member, &p), (&v, &h))| *member = joins(p, v, h, start));
+                } else {
+                    let values = values.zip(&NUMBERS);
+                    values.for_each(|(((member, &p), (&v, &h)), &j)| *member = joins(p, v, h, start + slope * j));
+                }
+            });
         });
         self.set.update(problem);
     }

@@ -1,0 +1,146 @@
+//! The smooth extension of a field from the contact to all cells, and its transpose.
+
+mod passes;
+
+#[cfg(test)]
+mod tests;
+
+use crate::kernel::{Task, for_each_share, lanes};
+use crate::solver::extension::passes::{Known, Pull, Push, Restrict, Rows, Spread, Values};
+
+/// κ: how far the mean of a block of cells is trusted, of which only the share s is known, w = κ s/(1 + (κ − 1) s).
+const TRUST: f64 = 1.5;
+
+/// E: from the cells of a set A to all cells, by means over blocks of 2 × 2 cells, over blocks of such blocks and so on, and
+/// bilinear interpolation back (a push–pull pyramid),
+///
+/// x_l = w_l m_l + (1 − w_l) up(x_(l+1)),  m_(l+1) = Σ w_l m_l / Σ w_l over the block,  w_(l+1) = κ s/(1 + (κ − 1) s),
+///
+/// where s is the mean of w_l over the block, and w_0 is 1 on A and 0 elsewhere; x = m on the coarsest level, a single block. E
+/// reproduces constants. Its transpose brings what all cells hold to A, and keeps the sum.
+/// Blocks hold the sums S = Σ w m over what they consist of, and the factor φ = κ/(4 + 4 (κ − 1) s), in which everything is
+/// linear: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
+///
+/// Axes that are not periodic are mirrored at their ends, which is what they are on the parts that symmetry leaves of a grid.
+///
+/// Every row of a level is computed from finished rows of another one: threads share the rows, and the answer does not depend on
+/// their number.
+#[derive(Debug, Clone)]
+pub(crate) struct Extension {
+    cells: [usize; 2],
+    periodic: [bool; 2],
+    levels: Vec<Level>,
+    /// 1/Σ w over the coarsest block, 0 if nothing is known.
+    share: f64,
+    /// For each thread.
+    rows: Vec<Rows>,
+}
+
+/// Blocks of cells.
+#[derive(Debug, Clone)]
+struct Level {
+    cells: [usize; 2],
+    /// φ.
+    factor: Vec<f64>,
+    /// S, then x.
+    value: Vec<f64>,
+}
+
+impl Extension {
+    pub(crate) fn new(cells: [usize; 2], periodic: [bool; 2]) -> Extension {
+        let mut levels = Vec::new();
+        let mut size = cells;
+        while size != [1, 1] {
+            size = size.map(|n| n.div_ceil(2));
+            let field = vec![0.0; size[0] * size[1]];
+            levels.push(Level { cells: size, factor: field.clone(), value: field });
+        }
+        let rows = vec![Rows::new(cells[1]); lanes(cells[0] * cells[1])];
+        Extension { cells, periodic, levels, share: 0.0, rows }
+    }
+
+    /// Bytes that it takes.
+    pub(crate) fn bytes(cells: [usize; 2]) -> u128 {
+        let (mut size, mut blocks) = (cells, 0);
+        while size != [1, 1] {
+            size = size.map(|n| n.div_ceil(2));
+            blocks += size[0] as u128 * size[1] as u128;
+        }
+        16 * blocks + lanes(cells[0].saturating_mul(cells[1])) as u128 * Rows::bytes(cells[1])
+    }
+
+    /// Makes E that of the set of members.
+    pub(crate) fn fit(&mut self, member: &[bool]) {
+        // the values are Σ w here, the sums of a field of ones
+        self.push(Values::Members(member), |level| {
+            let factors = level.factor.iter_mut().zip(&level.value);
+            factors.for_each(|(factor, &sum)| *factor = TRUST / (4.0 + (TRUST - 1.0) * sum));
+        });
+        let known = self.levels.last().map_or(0.0, |coarsest| coarsest.value[0]);
+        self.share = if known > 0.0 { 1.0 / known } else { 0.0 };
+    }
+
+    /// Fills all cells outside the set, where `field` is zero.
+    pub(crate) fn extend(&mut self, field: &mut [f64], member: &[bool]) {
+        self.push(Values::Field(field), |_| ());
+        let Extension { cells, periodic, levels, share, rows } = self;
+        let Some(coarsest) = levels.last_mut() else { return };
+        coarsest.value[0] *= *share;
+        for l in (1..levels.len()).rev() {
+            let (finer, coarser) = levels.split_at_mut(l);
+            let Level { cells, factor, value } = &mut finer[l - 1];
+            let (blocks, known) = (&coarser[0].value, Known::Factors(factor));
+            run(&Pull { blocks, known, fine: *cells, periodic: *periodic }, rows, value, *cells);
+        }
+        let (blocks, known) = (&levels[0].value, Known::Members(member));
+        run(&Pull { blocks, known, fine: *cells, periodic: *periodic }, rows, field, *cells);
+    }
+
+    /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere.
+    pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool]) {
+        let Extension { cells, periodic, levels, share, rows } = self;
+        for l in 0..levels.len() {
+            let (finer, level) = levels.split_at_mut(l);
+            let (values, known, fine) = match finer.last() {
+                None => (&*field, Known::Members(member), *cells),
+                Some(Level { cells, factor, value }) => (&value[..], Known::Factors(factor), *cells),
+            };
+            let restrict = Restrict { values, known, fine, periodic: *periodic };
+            run(&restrict, rows, &mut level[0].value, level[0].cells);
+        }
+        let Some(coarsest) = levels.last_mut() else { return };
+        coarsest.value[0] *= *share;
+        for l in (1..levels.len()).rev() {
+            let (finer, coarser) = levels.split_at_mut(l);
+            let Level { cells, factor, value } = &mut finer[l - 1];
+            let (blocks, known) = (&coarser[0].value, Known::Factors(factor));
+            run(&Spread { blocks, known, fine: *cells }, rows, value, *cells);
+        }
+        let (blocks, known) = (&levels[0].value, Known::Members(member));
+        run(&Spread { blocks, known, fine: *cells }, rows, field, *cells);
+    }
+
+    /// Finds S level by level, and calls `finish` with each of them.
+    fn push(&mut self, values: Values<'_>, finish: impl Fn(&mut Level)) {
+        let Extension { cells, levels, rows, .. } = self;
+        for l in 0..levels.len() {
+            let (finer, level) = levels.split_at_mut(l);
+            let (values, fine) = match finer.last() {
+                None => (values, *cells),
+                Some(Level { cells, factor, value }) => (Values::Weighted(value, factor), *cells),
+            };
+            run(&Push { values, fine }, rows, &mut level[0].value, level[0].cells);
+            finish(&mut level[0]);
+        }
+    }
+}
+
+/// Runs a pass over the rows of a level, each thread with some of them.
+fn run<T: Task<Lane = Rows, Item = f64> + Sync>(task: &T, rows: &mut [Rows], values: &mut [f64], [n1, n2]: [usize; 2]) {
+    let threads = rows.len().min(lanes(n1 * n2));
+    let share = n1.div_ceil(threads);
+    for (k, rows) in rows.iter_mut().enumerate() {
+        rows.first = k * share;
+    }
+    for_each_share(task, &mut rows[..threads], values, share * n2);
+}
