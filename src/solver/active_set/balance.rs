@@ -6,8 +6,8 @@ use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::problem::{Problem, Solution};
 use crate::sum::sum;
 
-/// Change of the force by which a converged pressure may be closed.
-const MAX_CLOSING_FORCE_CHANGE: f64 = 1e-9;
+/// Share of the force by which a converged pressure may be changed in order to balance it.
+const MAX_CLOSING_CHANGE: f64 = 1e-9;
 
 impl ActiveSet {
     /// Fills the shape of corrections on A.
@@ -96,14 +96,38 @@ impl ActiveSet {
 
     /// Removes from a converged pressure the imbalance of force and moments that rounding has left: too little to show in v.
     /// False if it is more than rounding.
-    pub(super) fn close_balance(&self, problem: &Problem<'_>, solution: &mut Solution) -> bool {
+    pub(super) fn close_balance(&mut self, problem: &Problem<'_>, tolerance: f64, solution: &mut Solution) -> bool {
         (0..problem.bodies.len()).filter(|&body| !problem.released(body)).all(|body| {
-            let sum = |solution: &Solution| self.set.sum(problem, body, &solution.pressure);
-            let before = sum(solution);
+            let modes = problem.modes(body);
+            if !modes.tilts() {
+                let sum = |solution: &Solution| self.set.sum(problem, body, &solution.pressure);
+                let carried = sum(solution);
+                let closed = balance(problem, body, &self.set, solution);
+                return !modes.translates()
+                    || closed && (sum(solution) - carried).abs() <= MAX_CLOSING_CHANGE * carried;
+            }
+            let before = &mut self.preconditioned;
+            before.copy_from_slice(&solution.pressure);
             let closed = balance(problem, body, &self.set, solution);
-            // where no force is prescribed, the pressure may be rounding itself
-            let forced = problem.bodies[body].translation;
-            !forced || closed && (sum(solution) - before).abs() <= MAX_CLOSING_FORCE_CHANGE * before
+            let cells = || self.set.cells(problem, body);
+            let carried: f64 = cells().map(|k| before[k]).sum();
+            // what cannot be balanced should not be there at all
+            let changed =
+                if closed { cells().map(|k| (solution.pressure[k] - before[k]).abs()).sum() } else { carried };
+            if modes.translates() {
+                return closed && changed <= MAX_CLOSING_CHANGE * carried;
+            }
+            // where no force is prescribed, the pressure may be rounding itself: no cell moves more than by this
+            let moved = problem.compliance * problem.kernel.self_influence() * changed;
+            moved <= self.unseen(problem, tolerance, solution)
         })
+    }
+
+    /// The displacement that a residual below the tolerance does not show.
+    fn unseen(&self, problem: &Problem<'_>, tolerance: f64, solution: &Solution) -> f64 {
+        let square = self.set.runs.cells().map(|k| (problem.compliance * solution.potential[k]).powi(2)).sum::<f64>();
+        let yielding = (square / self.set.count().max(1) as f64).sqrt();
+        let cancellation = problem.rounding(&solution.pressure) + self.guess_rounding;
+        tolerance * yielding + 4.0 * f64::EPSILON * self.set.greatest_gap + cancellation
     }
 }

@@ -162,12 +162,12 @@ impl ActiveSet {
             Outcome::Stagnated => self.descend(problem, stop, solution, work),
             outcome => outcome,
         };
-        if outcome != Outcome::Converged || self.close_balance(problem, solution) {
+        if outcome != Outcome::Converged || self.close_balance(problem, stop.tolerance, solution) {
             return outcome;
         }
         // the converged pressure does not carry the loads
         match self.descend(problem, stop, solution, work) {
-            Outcome::Converged if !self.close_balance(problem, solution) => Outcome::Stagnated,
+            Outcome::Converged if !self.close_balance(problem, stop.tolerance, solution) => Outcome::Stagnated,
             outcome => outcome,
         }
     }
