@@ -18,6 +18,9 @@ const MAX_FORCE_RATIO: f64 = 1.5;
 /// guide: the last pressure is scaled by what is left.
 const MAX_SHARE_LEFT: f64 = 0.5;
 
+/// The contact of a step is foreseen where its edge is likely to move by so many cells or more.
+const MIN_EDGE_SPEED: f64 = 1.0;
+
 /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike. Bodies of given motion whose
 /// pressure falls a lot in this step of compliance `c` get the last one scaled: K p would keep the rounding of a greater
 /// one.
@@ -71,7 +74,8 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
 /// Finds the cells that are likely to be in contact at the end of a step that goes a times as far as the last one. At a moving
 /// edge the pressure goes to zero like the root of the distance, and the gap opens like its power 3/2 (Hertz): a pressure that
 /// fell to less than √(a/(1 + a)) of itself vanishes, a gap that fell to less than the third power of that closes. False where
-/// the last two gaps are not known.
+/// the last two gaps are not known, or the edge moves so slowly that single cells join: their gaps fall evenly until they touch,
+/// which is what the extrapolated pressure shows by itself.
 fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
     let (now, before) = (&state.current, &state.previous);
     let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.remembers());
@@ -80,6 +84,9 @@ fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Ste
         return false;
     }
     let ahead = state.extrapolation.reach(step.interval.dt);
+    if ahead * edge_speed(now, before) < MIN_EDGE_SPEED {
+        return false;
+    }
     let share = (ahead / (1.0 + ahead)).sqrt();
     let share_open = share * share * share;
     let (initial, u) = (window.gap(&step.indenter), state.history.displacement());
@@ -107,6 +114,24 @@ fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Ste
         likely.iter_mut().zip(first..).for_each(|(likely, k)| *likely = is_likely(k));
     });
     true
+}
+
+/// By how many cells the edge of the contact moved in the last step, on average: of cells that joined or left, over the ends of the
+/// runs of cells in contact.
+fn edge_speed(now: &Equilibrium, before: &Equilibrium) -> f64 {
+    let (pressure, pressure_before) = (&now.solution.pressure, &before.solution.pressure);
+    let part = |cells: Range<usize>| {
+        let (mut moved, mut ends, mut last) = (0, 0, false);
+        for (&p, &p_before) in pressure[cells.clone()].iter().zip(&pressure_before[cells]) {
+            let touches = p > 0.0;
+            moved += usize::from(touches != (p_before > 0.0));
+            ends += usize::from(touches != last);
+            last = touches;
+        }
+        [moved, ends]
+    };
+    let [moved, ends] = merge_bands(pressure.len(), part, |a, b| [a[0] + b[0], a[1] + b[1]]);
+    moved as f64 / ends.max(1) as f64
 }
 
 /// The share of the last pressure that best closes the gap of the step, if it is small. On a fixed contact a single
