@@ -18,7 +18,8 @@
 //! Periodic bodies, line contacts in plane strain, and user-defined bodies have another $K$ ([`InfluenceKernel`]).
 //!
 //! Pressure and contact area are unknown, and both change even when the force does not. The discretisation follows S.
-//! Spinu, *The surface contact of viscoelastic materials, Part I*; time rule and solver go beyond it.
+//! Spinu, *The surface contact of viscoelastic materials, Part I*; time rule and solver go beyond it. Where each of its
+//! equations and figures is found: [`paper`].
 //!
 //! # A simulation
 //!
@@ -156,6 +157,12 @@ mod memory;
 pub mod motion;
 pub mod observe;
 pub mod output;
+#[cfg(doc)]
+pub mod paper {
+    #![doc = include_str!("../docs/paper.md")]
+
+    use crate::*;
+}
 pub mod plan;
 #[cfg(feature = "plot")]
 pub mod plot;

@@ -6,7 +6,7 @@
 //!
 //! | body | K |
 //! |---|---|
-//! | half-space | (K p)(x) = ∬ p(x′) / (π \|x − x′\|) dx′ |
+//! | half-space (Eq. 6 of the paper) | (K p)(x) = ∬ p(x′) / (π \|x − x′\|) dx′ |
 //! | periodic along both axes | 2/\|q\| for each wave q, nothing for the mean |
 //! | periodic along one axis | (2/π) ∫ K0(κ \|x − s\|) p(s) ds for each wave κ along it, of the mean as for a line |
 //! | line contact | −(2/π) ∫ ln(\|x − s\|/d) p(s) ds |
@@ -131,7 +131,7 @@ impl InfluenceKernel {
 
     /// The influence coefficient K(i, j) \[m\]: the displacement, over C, of a cell under a unit pressure on the cell `i`
     /// cells away along x1 and `j` along x2. [`InfluenceKernel::convolve`] is the double sum of
-    /// K(i − k, j − l) p(k, l) over all cells (k, l).
+    /// K(i − k, j − l) p(k, l) over all cells (k, l), Eq. 7.
     ///
     /// K is purely geometric. The coefficients of the source paper follow from it and the contact compliance C
     /// ([`Material::contact_compliance`](crate::rheology::Material::contact_compliance)):
