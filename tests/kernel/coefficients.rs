@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
+use approx::abs_diff_eq;
 use viscocontact::rheology::{Material, Maxwell, Zener};
 use viscocontact::{Error, Grid, InfluenceKernel, KernelError};
 
@@ -59,7 +60,7 @@ fn coefficients_are_even_and_of_the_period() {
                 [at(-i, j), at(i, -j), at(-i, -j)].iter().all(|&mirrored| mirrored == at(i, j)),
                 "{kernel} {i} {j}"
             );
-            let near = |a: f64, b: f64| (a - b).abs() < 1e-15 * at(0, 0);
+            let near = |a: f64, b: f64| abs_diff_eq!(a, b, epsilon = 1e-15 * at(0, 0));
             assert!(!first || i == 0 || near(at(12 - i, j), at(i, j)), "{kernel} {i} {j}");
             assert!(!second || j == 0 || near(at(i, 9 - j), at(i, j)), "{kernel} {i} {j}");
         }
