@@ -106,7 +106,7 @@ impl InfluenceKernel {
     }
 
     /// Writes K p into `displacement` \[Pa·m\]: the surface displacement \[m\] under `pressure` \[Pa\] of
-    /// a body of contact compliance 1 Pa⁻¹.
+    /// a body of contact compliance 1 Pa⁻¹ (Eq. 7 of the [paper](crate::paper)).
     ///
     /// # Errors
     /// If a field does not hold one value per cell, `work` was made by a kernel of another size, a pressure is not
