@@ -135,7 +135,7 @@ impl TimeRule {
 }
 
 impl Settings {
-    /// The whole algorithm of the source [paper](crate::paper), its Figure 1: Polonsky–Keer solver, rectangle rule, direct sums. The baseline of every
+    /// The whole algorithm of the source paper: Polonsky–Keer solver, rectangle rule, direct sums. The baseline of every
     /// comparison.
     pub fn paper() -> Settings {
         Settings {
