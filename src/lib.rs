@@ -7,18 +7,19 @@
 //! approach $\omega$ and tilt $\alpha$ of the indenter. Inside the contact there is pressure and no gap, outside a gap
 //! and no pressure. The pressure carries the force $W$ and, where the tilt is free, its moments:
 //!
-//! $$ h = h_i + u - \omega - \alpha \cdot x, \qquad p \ge 0, \quad h \ge 0, \quad p\,h = 0, \qquad
-//!    W = \iint p \,dx, \quad W e = \iint p\,x \,dx $$
+//! $$ h = h_i + u - \omega - \alpha \cdot x, \qquad p \ge 0, \quad h \ge 0, \quad p h = 0, \qquad
+//!    W = \iint p \thinspace dx, \quad W e = \iint p x \thinspace dx $$
 //!
 //! The displacement depends on the whole pressure history through the contact creep compliance $C(t)$:
 //!
-//! $$ u(t) = \int_{0^-}^t C(t-s)\, d\left[K p(s)\right], \qquad
-//!    (K p)(x) = \iint \frac{p(x')}{\pi\,|x-x'|}\,dx' $$
+//! $$ u(t) = \int_{0^-}^t C(t-s) \thinspace d\left[K p(s)\right], \qquad
+//!    (K p)(x) = \iint \frac{p(x^\prime)}{\pi |x-x^\prime|} \thinspace dx^\prime $$
 //!
 //! Periodic bodies, line contacts in plane strain, and user-defined bodies have another $K$ ([`InfluenceKernel`]).
 //!
 //! Pressure and contact area are unknown, and both change even when the force does not. The discretisation follows S.
-//! Spinu, *The surface contact of viscoelastic materials, Part I*; time rule and solver go beyond it.
+//! Spinu, *The surface contact of viscoelastic materials, Part I*; time rule and solver go beyond it. Where each of its
+//! equations and figures is found: [`paper`].
 //!
 //! # A simulation
 //!
@@ -156,6 +157,12 @@ mod memory;
 pub mod motion;
 pub mod observe;
 pub mod output;
+#[cfg(doc)]
+pub mod paper {
+    #![doc = include_str!("../docs/paper.md")]
+
+    use crate::*;
+}
 pub mod plan;
 #[cfg(feature = "plot")]
 pub mod plot;

@@ -3,7 +3,8 @@ use std::f64::consts::PI;
 use crate::error::{Result, finite, non_negative, positive, within};
 
 /// A rigid flat circular punch on an elastic half-space, loaded at a distance e ≤ R/3 from its axis, so
-/// that its whole face stays in contact (Boussinesq for e = 0, Lur'e 1964 for e > 0):
+/// that its whole face stays in contact (Boussinesq for e = 0, Lur'e 1964 for e > 0; Figure 2 of the
+/// [paper](crate::paper)):
 ///
 /// p = W/(2πR²) (1 + 3 e x1/R²)/√(1 − r²/R²), ω = W/(2RE*), α1 = 3We/(4R³E*).
 ///

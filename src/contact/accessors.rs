@@ -62,7 +62,7 @@ impl ViscoelasticContact {
         self.view.displacement(&self.scene, &self.computation.state)
     }
 
-    /// Writes the gap between the deformed bodies into `out` \[m\]: zero in contact to within the tolerance, +∞ where there
+    /// Writes the gap between the deformed bodies, Eq. 1 of the [paper](crate::paper), into `out` \[m\]: zero in contact to within the tolerance, +∞ where there
     /// is nothing to touch.
     ///
     /// # Errors
@@ -97,13 +97,13 @@ impl ViscoelasticContact {
         self.computation.state.current.motions[0].tilt
     }
 
-    /// Normal force Σ p ΔA on all bodies together \[N\].
+    /// Normal force Σ p ΔA on all bodies together \[N\], Eq. 4 of the [paper](crate::paper).
     pub fn force(&self) -> f64 {
         let state = &self.computation.state;
         state.force_of(&state.current)
     }
 
-    /// Moments of the whole pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\].
+    /// Moments of the whole pressure about the origin, \[∬ p x1, ∬ p x2\] \[N·m\], Eq. 5 of the [paper](crate::paper).
     pub fn moment(&self) -> [f64; 2] {
         self.sums(|_| true).1
     }

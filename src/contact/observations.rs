@@ -210,6 +210,8 @@ impl ViscoelasticContact {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use crate::analytic::Hertz;
     use crate::load::Load;
     use crate::observe::sphere;
@@ -220,8 +222,8 @@ mod tests {
         let peak = exact.pressure(0.0);
         // odd number of cells: one lies in the middle
         let mut contact = sphere([129; 2], [2.6 * exact.contact_radius(); 2], [0.0; 2], 0.5);
-        assert!((contact.greatest_pressure() / peak - 1.0).abs() < 1e-3);
-        assert!((contact.mean_pressure() / (peak / 1.5) - 1.0).abs() < 3e-3);
+        assert_abs_diff_eq!(contact.greatest_pressure() / peak, 1.0, epsilon = 1e-3);
+        assert_abs_diff_eq!(contact.mean_pressure() / (peak / 1.5), 1.0, epsilon = 3e-3);
         contact.step(0.0, Load::force(0.0)).unwrap();
         assert_eq!([contact.mean_pressure(), contact.greatest_pressure()], [0.0; 2]);
     }

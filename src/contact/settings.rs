@@ -89,7 +89,7 @@ pub enum TimeRule {
     /// The same with the displacement linear within each step, and nothing put right afterwards: second order (first without
     /// elastic response). A prediction never rises above the undeformed surface, whatever the lengths of the steps.
     ExponentialLinear,
-    /// The rule of the source paper, a direct sum over all past steps: first order, oscillates when
+    /// The rule of the source paper, a direct sum over all past steps (Eq. 11): first order, oscillates when
     /// a step is longer than the relaxation time of a Maxwell body and diverges beyond twice that; needs
     /// an elastic response.
     Rectangle,

@@ -13,6 +13,16 @@ pub enum KernelError {
         contact: ([usize; 2], [f64; 2]),
     },
 
+    /// No two cells of the grid are so far apart as the offset of an influence coefficient.
+    #[error("offset ({}, {}) in cells is not allowed: it must be in (-{}, {}) along x1 and (-{}, {}) along x2, the grid having {} × {} cells",
+        .offset[0], .offset[1], .cells[0], .cells[0], .cells[1], .cells[1], .cells[0], .cells[1])]
+    OffsetOutsideGrid {
+        /// The offset along x1 and x2, in cells.
+        offset: [isize; 2],
+        /// Cells of the grid along x1 and x2.
+        cells: [usize; 2],
+    },
+
     /// An influence coefficient, or the compliance of a wave, is not one that a body can have.
     #[error("the influence {of} [{}, {}] is {value:?}: it must be {allowed}", .at[0], .at[1])]
     InvalidInfluence {

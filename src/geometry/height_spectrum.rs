@@ -134,6 +134,8 @@ pub(super) fn wave_numbers(number: [i64; 2], lengths: [f64; 2]) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
 
     #[test]
@@ -155,9 +157,9 @@ mod tests {
                 energy += wave.count * naive.norm_sqr();
             }
             let squares = field.iter().map(|z| z * z).sum::<f64>() / (n1 * n2) as f64;
-            assert!((energy - squares).abs() < 1e-14);
+            assert_abs_diff_eq!(energy, squares, epsilon = 1e-14);
             for (a, b) in spectrum.heights().iter().zip(&field) {
-                assert!((a - b).abs() < 1e-14);
+                assert_abs_diff_eq!(a, b, epsilon = 1e-14);
             }
         }
     }
@@ -169,7 +171,7 @@ mod tests {
             spectrum.set(number, Complex64::from(0.5));
             for (k, z) in spectrum.heights().iter().enumerate() {
                 let periods = number[0] as f64 * (k / 5) as f64 / 6.0 + number[1] as f64 * (k % 5) as f64 / 5.0;
-                assert!((z - (TAU * periods).cos()).abs() < 1e-14);
+                assert_abs_diff_eq!(*z, (TAU * periods).cos(), epsilon = 1e-14);
             }
         }
     }

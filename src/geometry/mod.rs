@@ -76,7 +76,7 @@ use crate::memory;
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 pub trait Geometry: Debug + Send + Sync {
-    /// Gap at the point (x1, x2) \[m\]; `+∞` where there is nothing to touch. NaN and −∞ are errors wherever a
+    /// Gap at the point (x1, x2) \[m\], h_i in Eq. 1 of the [paper](crate::paper); `+∞` where there is nothing to touch. NaN and −∞ are errors wherever a
     /// geometry is used.
     fn initial_gap(&self, x1: f64, x2: f64) -> f64;
 

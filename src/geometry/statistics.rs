@@ -202,6 +202,8 @@ fn hann(n: usize) -> Vec<f64> {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
     use crate::Grid;
     use crate::geometry::{Anisotropy, Rough, RoughSpec, Roughness};
@@ -239,25 +241,28 @@ mod tests {
         let map = HeightMap::new([32, 24], [1.0, 2.0], heights.collect()).unwrap();
         let exact = SurfaceStatistics::of(&map.clone().periodic()).unwrap();
         let rms = 0.1 / 2_f64.sqrt();
-        let close = |a: f64, b: f64, within: f64| assert!((a - b).abs() < within, "{a} for {b}");
-        close(exact.mean, 5.0, 1e-14);
-        close(exact.rms_height, rms, 1e-14);
-        close(exact.skewness, 0.0, 1e-12);
-        close(exact.kurtosis, 1.5, 1e-12);
-        close(exact.rms_slopes[0], rms * q1, 1e-12);
-        close(exact.rms_slopes[1], rms * q2, 1e-12);
-        close(exact.rms_slope, rms * q1.hypot(q2), 1e-12);
-        close(exact.rms_curvature, rms * 0.5 * (q1 * q1 + q2 * q2), 1e-11);
+        assert_abs_diff_eq!(exact.mean, 5.0, epsilon = 1e-14);
+        assert_abs_diff_eq!(exact.rms_height, rms, epsilon = 1e-14);
+        assert_abs_diff_eq!(exact.skewness, 0.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(exact.kurtosis, 1.5, epsilon = 1e-12);
+        assert_abs_diff_eq!(exact.rms_slopes[0], rms * q1, epsilon = 1e-12);
+        assert_abs_diff_eq!(exact.rms_slopes[1], rms * q2, epsilon = 1e-12);
+        assert_abs_diff_eq!(exact.rms_slope, rms * q1.hypot(q2), epsilon = 1e-12);
+        assert_abs_diff_eq!(exact.rms_curvature, rms * 0.5 * (q1 * q1 + q2 * q2), epsilon = 1e-11);
         // Differences over two cells reduce slopes by sin(qs)/(qs), except at the ends, where they are missing.
         let seen = SurfaceStatistics::of(&map).unwrap();
-        close(seen.rms_slopes[0], rms * (q1 / 32.0).sin() * 32.0, 2e-2 * rms * q1);
+        assert_abs_diff_eq!(seen.rms_slopes[0], rms * (q1 / 32.0).sin() * 32.0, epsilon = 2e-2 * rms * q1);
         let curvature = 0.5 * (2.0 * (1.0 - (q1 / 32.0).cos()) * 1024.0 + 2.0 * (1.0 - (q2 / 12.0).cos()) * 144.0);
-        close(seen.rms_curvature, rms * curvature, 2e-2 * rms * curvature);
+        assert_abs_diff_eq!(seen.rms_curvature, rms * curvature, epsilon = 2e-2 * rms * curvature);
         // With a missing point, a periodic map is differentiated by differences too.
         let mut holed = map.heights().to_vec();
         holed[100] = f64::NAN;
         let holed = HeightMap::new([32, 24], [1.0, 2.0], holed).unwrap().periodic();
-        close(SurfaceStatistics::of(&holed).unwrap().rms_slopes[0], seen.rms_slopes[0], 2e-2 * rms * q1);
+        assert_abs_diff_eq!(
+            SurfaceStatistics::of(&holed).unwrap().rms_slopes[0],
+            seen.rms_slopes[0],
+            epsilon = 2e-2 * rms * q1
+        );
     }
 
     #[test]
@@ -288,7 +293,7 @@ mod tests {
         assert!((mean / 3e-3 - 1.0).abs() < 0.05, "{mean}");
         let row: Vec<f64> = (0..64).map(|i| (TAU * 5.0 * i as f64 / 64.0).sin()).collect();
         let row = HeightMap::new([1, 64], [1.0, 2.0], row).unwrap().periodic().power_spectrum().unwrap();
-        assert!((row.iter().map(|(_, c)| 2.0 * c * PI).sum::<f64>() - 0.5).abs() < 1e-13);
+        assert_abs_diff_eq!(row.iter().map(|(_, c)| 2.0 * c * PI).sum::<f64>(), 0.5, epsilon = 1e-13);
         assert!((row[4].0 - 5.0 * PI).abs() < 1e-12 && (row[4].1 - 0.25 / PI).abs() < 1e-13);
     }
 
@@ -299,7 +304,7 @@ mod tests {
         assert!(statistics.skewness.abs() < 0.2 && (statistics.kurtosis - 3.0).abs() < 0.3, "{statistics:?}");
         let distribution = rough(512, 0.3, 5).height_distribution(41).unwrap();
         let width = distribution[1].0 - distribution[0].0;
-        assert!((distribution.iter().map(|(_, p)| p * width).sum::<f64>() - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(distribution.iter().map(|(_, p)| p * width).sum::<f64>(), 1.0, epsilon = 1e-12);
         let normal = |z: f64| (-0.5 * (z / 3e-3).powi(2)).exp() / (3e-3 * TAU.sqrt());
         for (z, p) in distribution {
             assert!((p - normal(z)).abs() < 0.1 * normal(0.0), "{z}: {p} for {}", normal(z));

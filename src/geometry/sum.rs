@@ -57,6 +57,8 @@ impl Geometry for Sum {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
     use crate::geometry::{FlatPunch, FnGeometry, HeightMap, Shifted, Sphere};
 
@@ -85,7 +87,7 @@ mod tests {
         moved.fill_gap(&grid, &mut gap);
         for (i, h) in gap.iter().enumerate() {
             let x = i as f64 - 4.4;
-            assert!((h - (1.0 - wave(x) + 0.5 * x * x)).abs() < 1e-13);
+            assert_abs_diff_eq!(*h, 1.0 - wave(x) + 0.5 * x * x, epsilon = 1e-13);
         }
     }
 }

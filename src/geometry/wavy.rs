@@ -56,6 +56,8 @@ impl Geometry for Wavy {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
     use crate::error::Error;
 
@@ -66,10 +68,14 @@ mod tests {
         for (x1, x2) in [(0.3, -0.4), (100.1, 55.5), (-1.5, 3.5)] {
             let tau = 2.0 * PI;
             let expected = a * (1.0 - (tau * x1 / 3.0).cos()) + b * (1.0 - (tau * x2 / 7.0).cos());
-            assert!((wave.initial_gap(x1, x2) - expected).abs() < 1e-12);
+            assert_abs_diff_eq!(wave.initial_gap(x1, x2), expected, epsilon = 1e-12);
         }
         let ridge = Wavy::new(a, 3.0).unwrap();
-        assert!((ridge.initial_gap(1e-9, 5.0) / (a * (2.0 * PI * 1e-9 / 3.0).powi(2) / 2.0) - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(
+            ridge.initial_gap(1e-9, 5.0) / (a * (2.0 * PI * 1e-9 / 3.0).powi(2) / 2.0),
+            1.0,
+            epsilon = 1e-12
+        );
     }
 
     #[test]

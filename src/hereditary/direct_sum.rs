@@ -7,8 +7,8 @@ use crate::rheology::Material;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Weighting {
-    /// At the end, the rule of the source paper: u(t_n) = Σ C(t_n − t_k) (v_k − v_(k−1)). First order,
-    /// explicit in the creep, unstable for long steps.
+    /// At the end, the rule of the source paper: u(t_n) = Σ C(t_n − t_k) (v_k − v_(k−1)), Eq. 11 with the coefficients of
+    /// Eq. 12. First order, explicit in the creep, unstable for long steps.
     End,
     /// At the start: u(t_n) = Σ C(t_n − t_(k−1)) (v_k − v_(k−1)). First order and L-stable.
     Start,

@@ -1,4 +1,5 @@
-//! Hereditary integral: the part of the displacement at the end of a step that follows from the past.
+//! Hereditary integral (Eq. 9 and Eq. 10 of the paper): the part of the displacement at the end of a step that follows from
+//! the past.
 //!
 //! Every time rule writes the displacement at the end of a step as
 //!

@@ -29,8 +29,8 @@ impl InfluenceKernel {
         InfluenceKernel { grid: grid.clone(), influence, operators: Default::default(), on_itself: Default::default() }
     }
 
-    /// The kernel of an elastic half-space: Love's coefficients, right to 1e-14 at every distance
-    /// and for cells of any aspect ratio up to 1000, zero-padded so that the convolution is
+    /// The kernel of an elastic half-space (Eq. 6 of the [paper](crate::paper)): Love's coefficients, right to 1e-14 at every
+    /// distance and for cells of any aspect ratio up to 1000, zero-padded so that the convolution is
     /// linear.
     ///
     /// Cost, at the first use: one Love integral per cell and one transform.

@@ -5,7 +5,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::even_spectrum::{EvenLine, EvenSpectrum};
-use super::layout::{Ends, Layout};
+use super::layout::{Ends, Layout, waves_at};
 use super::love::Love;
 use super::strip::{Strip, wave_number};
 use crate::Grid;
@@ -127,12 +127,21 @@ impl Influence {
         }
     }
 
-    /// The coefficient of a cell on itself \[m\], if the kernel is given by coefficients.
-    pub(super) fn on_itself(&self) -> Option<f64> {
+    /// The coefficient \[m\] of the cell `at` cells away along each axis of the grid.
+    pub(super) fn coefficient(&self, grid: &Grid, at: [usize; 2]) -> f64 {
         match self {
-            Influence::HalfSpace(love) => Some(love.coefficient(0, 0)),
-            Influence::Coefficients { values, .. } => Some(values[0]),
-            Influence::Periodic | Influence::Strip { .. } | Influence::Waves { .. } => None,
+            Influence::HalfSpace(love) => love.coefficient(at[0], at[1]),
+            Influence::Coefficients { values, columns } => values[at[0] * columns + at[1]],
+            Influence::Strip { periodic, strip } => {
+                let (cells, side) = (grid.cells()[*periodic], grid.spacing()[*periodic]);
+                let across = |k: usize| strip.coefficient(at[1 - periodic], wave_number(k, cells, side));
+                let waves = (0..=cells / 2).map(|k| waves_at(at[*periodic], k, cells) * across(k));
+                waves.sum::<f64>() / cells as f64
+            }
+            Influence::Periodic | Influence::Waves { .. } => {
+                let layout = Layout { cells: grid.cells(), ends: self.ends(), folded: [false; 2] };
+                layout.coefficient(at, self.symbol(grid, layout))
+            }
         }
     }
 }

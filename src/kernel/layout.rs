@@ -1,5 +1,7 @@
 //! Cells, boundaries and symmetries of an operator, and the lengths of its transforms.
 
+use std::f64::consts::TAU;
+
 /// Number of mirror images of a cell, itself included, where axes are folded.
 pub(crate) fn images(folded: [bool; 2]) -> usize {
     folded.into_iter().map(|folded| if folded { 2 } else { 1 }).product()
@@ -50,12 +52,12 @@ impl Layout {
         Layout { ends, ..*self }
     }
 
-    /// The mean of the symbol of a real even operator over all wave numbers: the coefficient of a cell on itself.
-    pub(crate) fn average(&self, symbol: impl Fn(usize, usize) -> f64) -> f64 {
+    /// The coefficient \[m\] of the cell `at` cells away of the real even operator with this symbol: the mean of its waves
+    /// there.
+    pub(super) fn coefficient(&self, at: [usize; 2], symbol: impl Fn(usize, usize) -> f64) -> f64 {
         let [period1, period2] = [self.period(0), self.period(1)];
-        let count = |k: usize, period: usize| if k == 0 || 2 * k == period { 1.0 } else { 2.0 };
-        let waves = |k1: usize| (0..=period2 / 2).map(move |k2| (k2, count(k1, period1) * count(k2, period2)));
-        let rows = (0..=period1 / 2).map(|k1| waves(k1).map(|(k2, times)| times * symbol(k1, k2)).sum::<f64>());
+        let row = |k1: usize| (0..=period2 / 2).map(|k2| waves_at(at[1], k2, period2) * symbol(k1, k2)).sum::<f64>();
+        let rows = (0..=period1 / 2).map(|k1| waves_at(at[0], k1, period1) * row(k1));
         rows.sum::<f64>() / (period1 * period2) as f64
     }
 
@@ -63,6 +65,12 @@ impl Layout {
     pub(crate) fn period(&self, axis: usize) -> usize {
         self.line(axis) * if self.folded[axis] { 2 } else { 1 }
     }
+}
+
+/// The sum of the waves ±`k` of a period, `at` cells from their crest: one of them if they are the same.
+pub(super) fn waves_at(at: usize, k: usize, period: usize) -> f64 {
+    let count = if k == 0 || 2 * k == period { 1.0 } else { 2.0 };
+    count * (TAU * ((k as f64 * at as f64) % period as f64) / period as f64).cos()
 }
 
 /// The length ≥ `least` that is transformed fastest, of those whose only prime factors are 2, 3, 5 and 7.

@@ -1,7 +1,7 @@
 //! Influence coefficients of a rectangular cell under unit pressure on a half-space.
 //!
 //! The coefficient of the cell at distance (i Δ1, j Δ2) is Love's integral (Phil. Trans. R. Soc. A
-//! 228, 1929)
+//! 228, 1929; Eq. 8 of the paper, without its factor of the material)
 //!
 //! K(i, j) = (1/π) ∬ dx dy / √((iΔ1 − x)² + (jΔ2 − y)²)   over |x| < Δ1/2, |y| < Δ2/2.
 //!

@@ -6,7 +6,7 @@
 //!
 //! | body | K |
 //! |---|---|
-//! | half-space | (K p)(x) = ∬ p(x′) / (π \|x − x′\|) dx′ |
+//! | half-space (Eq. 6 of the paper) | (K p)(x) = ∬ p(x′) / (π \|x − x′\|) dx′ |
 //! | periodic along both axes | 2/\|q\| for each wave q, nothing for the mean |
 //! | periodic along one axis | (2/π) ∫ K0(κ \|x − s\|) p(s) ds for each wave κ along it, of the mean as for a line |
 //! | line contact | −(2/π) ∫ ln(\|x − s\|/d) p(s) ds |
@@ -34,7 +34,7 @@ use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
-use crate::error::{Error, Result, exact_length, finite};
+use crate::error::{Error, KernelError, Result, exact_length, finite};
 use crate::memory;
 use influence::Influence;
 use layout::{Ends, Layout};
@@ -71,7 +71,7 @@ pub struct InfluenceKernel {
     influence: Influence,
     /// Operators on the whole grid, for each choice of folded axes.
     operators: [OnceLock<Arc<SpectralOperator>>; 4],
-    /// The influence of a cell on itself, if the kernel is not given by coefficients.
+    /// The influence of a cell on itself, once it is needed.
     on_itself: OnceLock<f64>,
 }
 
@@ -106,7 +106,7 @@ impl InfluenceKernel {
     }
 
     /// Writes K p into `displacement` \[Pa·m\]: the surface displacement \[m\] under `pressure` \[Pa\] of
-    /// a body of contact compliance 1 Pa⁻¹.
+    /// a body of contact compliance 1 Pa⁻¹ (Eq. 7 of the [paper](crate::paper)).
     ///
     /// # Errors
     /// If a field does not hold one value per cell, `work` was made by a kernel of another size, a pressure is not
@@ -127,6 +127,56 @@ impl InfluenceKernel {
         pressure.iter().try_for_each(|&p| finite("pressure", p).map(drop))?;
         let value = displacement.iter().copied().find(|value| !value.is_finite()).unwrap_or(f64::NAN);
         Err(Error::OutOfRange { field: "K p", value, allowed: "finite: the pressure is too great for this kernel" })
+    }
+
+    /// The influence coefficient K(i, j) \[m\]: the displacement, over C, of a cell under a unit pressure on the cell `i`
+    /// cells away along x1 and `j` along x2. [`InfluenceKernel::convolve`] is the double sum of
+    /// K(i − k, j − l) p(k, l) over all cells (k, l), Eq. 7.
+    ///
+    /// K is purely geometric. The coefficients of the source paper follow from it and the contact compliance C
+    /// ([`Material::contact_compliance`](crate::rheology::Material::contact_compliance)):
+    ///
+    /// | [paper](crate::paper) | body | coefficient \[m/Pa\] |
+    /// |---|---|---|
+    /// | Eq. 8 | elastic | K_el(i, j) = K(i, j)/E* = (1 − ν) K(i, j)/2G |
+    /// | Eq. 12 | viscoelastic, a time t_k after the pressure began | K_vs(i, j, k) = C(t_k) K(i, j), that is 2G Φ(t_k) K_el(i, j) with Φ = J/2 and a constant ν |
+    ///
+    /// Along a periodic axis the pressure acts on all images of the cell, and i, i − N and −i are equivalent. Where the
+    /// mean displacement is the datum ([`InfluenceKernel::periodic`]), distant coefficients are negative.
+    ///
+    /// One coefficient of a half-space takes one Love integral; of a periodic body, a sum over all its waves, so that
+    /// for many coefficients the convolution of a unit pressure takes less time.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{Material, Maxwell};
+    /// use viscocontact::{Grid, InfluenceKernel};
+    ///
+    /// let grid = Grid::square(64, 1.0e-3)?;
+    /// let kernel = InfluenceKernel::half_space(&grid)?;
+    /// let (shear_modulus, viscosity) = (1.0e6, 2.0e6);
+    /// let body = Material::constant_poisson(Maxwell::new(shear_modulus, viscosity)?, 0.4)?;
+    ///
+    /// let k = kernel.coefficient(3, -5)?;
+    /// let elastic = (1.0 - 0.4) / (2.0 * shear_modulus) * k; // Eq. 8
+    /// let after_4_s = body.contact_compliance(4.0) * k; // Eq. 12
+    /// // J(4 s) = 3/G at a relaxation time of 2 s
+    /// assert!((after_4_s / elastic - 3.0).abs() < 1e-14);
+    /// // far away the pressure acts as a point force: K → cell area/(π r)
+    /// let r = f64::hypot(3.0, 5.0) * grid.spacing()[0];
+    /// assert!((k * std::f64::consts::PI * r / grid.cell_area() - 1.0).abs() < 2e-3);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If no two cells of the grid are so far apart: |i| must be less than the number of cells along x1, |j| less than
+    /// that along x2 ([`KernelError::OffsetOutsideGrid`]).
+    pub fn coefficient(&self, i: isize, j: isize) -> Result<f64> {
+        let (offset, cells) = ([i, j], self.grid.cells());
+        let at = offset.map(isize::unsigned_abs);
+        if at[0] >= cells[0] || at[1] >= cells[1] {
+            return Err(KernelError::OffsetOutsideGrid { offset, cells }.into());
+        }
+        Ok(self.influence.coefficient(&self.grid, at))
     }
 
     /// The operator on the whole grid, without folded axes; an error if there is not enough memory for it.
@@ -182,9 +232,7 @@ impl InfluenceKernel {
 
     /// The influence of a cell on itself \[m\].
     pub(crate) fn self_influence(&self) -> f64 {
-        let layout = self.layout([false; 2]);
-        let average = || layout.average(self.influence.symbol(&self.grid, layout));
-        self.influence.on_itself().unwrap_or_else(|| *self.on_itself.get_or_init(average))
+        *self.on_itself.get_or_init(|| self.influence.coefficient(&self.grid, [0; 2]))
     }
 
     /// Fingerprint of the kernel among those of the same kind.

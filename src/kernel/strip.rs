@@ -87,6 +87,8 @@ pub(crate) fn wave_number(k: usize, period: usize, side: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
     use crate::quadrature::GaussLegendre;
 
@@ -112,8 +114,8 @@ mod tests {
     #[test]
     fn reference_bessel_function_is_right() {
         // Abramowitz & Stegun, table 9.8
-        assert!((bessel_k0(1.0) / 0.421_024_438_240_708_3 - 1.0).abs() < 1e-12);
-        assert!((bessel_k0(0.1) / 2.427_069_024_702_017 - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(bessel_k0(1.0) / 0.421_024_438_240_708_3, 1.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(bessel_k0(0.1) / 2.427_069_024_702_017, 1.0, epsilon = 1e-12);
     }
 
     #[test]
@@ -152,6 +154,6 @@ mod tests {
         let (cells, strip) = (400, Strip::new(0.25, 300.0));
         let row = |i: usize| (0..cells).map(|j: usize| strip.coefficient(i.abs_diff(j), 0.0)).sum::<f64>();
         let mean = (0..cells).map(row).sum::<f64>() / cells as f64;
-        assert!((mean / strip.uniform(100.0) - 1.0).abs() < 1e-5);
+        assert_abs_diff_eq!(mean / strip.uniform(100.0), 1.0, epsilon = 1e-5);
     }
 }

@@ -97,13 +97,13 @@ impl fmt::Display for Load {
 const UPRIGHT: [Tilt; 2] = [Tilt::Fixed(0.0); 2];
 
 impl Load {
-    /// A normal force \[N\] on a body that cannot tilt; 0 unloads.
+    /// A normal force \[N\] on a body that cannot tilt (Eq. 4 of the [paper](crate::paper)); 0 unloads.
     pub fn force(normal: f64) -> Load {
         Load::Force { normal, tilt: UPRIGHT }
     }
 
     /// A normal force \[N\] at the point `at` \[m\]: the body tilts freely until the resultant of the pressure acts
-    /// there.
+    /// there (Eq. 5 of the [paper](crate::paper)).
     pub fn eccentric_force(normal: f64, at: [f64; 2]) -> Load {
         Load::Force { normal, tilt: at.map(|at| Tilt::Free { at }) }
     }

@@ -54,6 +54,8 @@ impl Asymmetry {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use crate::analytic::Hertz;
     use crate::observe::sphere;
 
@@ -64,12 +66,12 @@ mod tests {
         let found = contact.asymmetry([0.1e-3, -0.2e-3]).unwrap().unwrap();
         let [x1, x2] = found.center_of_pressure;
         assert!((x1 - 0.3e-3).abs() < 1e-7 && (x2 + 0.2e-3).abs() < 1e-7, "{x1:e} {x2:e}");
-        assert!((contact.moment()[0] / contact.force() - x1).abs() < 1e-15);
+        assert_abs_diff_eq!(contact.moment()[0] / contact.force(), x1, epsilon = 1e-15);
         // within a cell
         for (found, exact) in found.reach.as_flattened().iter().zip([a - 0.2e-3, a + 0.2e-3, a, a]) {
             assert!((found - exact).abs() < 20.0e-6, "{found:e} {exact:e}");
         }
-        assert!((found.skewness()[0] - 0.2e-3 / a).abs() < 0.05);
+        assert_abs_diff_eq!(found.skewness()[0], 0.2e-3 / a, epsilon = 0.05);
         assert!(found.skewness()[1].abs() < 1e-9);
         // about a point beyond its edge, all of it lies on one side
         let beyond = contact.asymmetry([1.1e-3, 0.0]).unwrap().unwrap();

@@ -71,6 +71,8 @@ impl Distribution {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
     use crate::analytic::Hertz;
     use crate::observe::sphere;
@@ -103,7 +105,7 @@ mod tests {
             assert!((density - scale * p).abs() < 0.03 * scale * peak, "{p:e}: {density:e} {:e}", scale * p);
         }
         let share = std::f64::consts::PI * (a / side).powi(2);
-        assert!((1.0 - found.share_at_zero() - share).abs() < 0.01 * share);
+        assert_abs_diff_eq!(1.0 - found.share_at_zero(), share, epsilon = 0.01 * share);
     }
 
     #[test]
@@ -121,8 +123,8 @@ mod tests {
         let found = contact.gap_distribution(50).unwrap();
         assert_eq!(found.share_at_zero(), contact.contact_cells() as f64 / 1024.0);
         let sum = found.density().iter().sum::<f64>() * found.width();
-        assert!((sum + found.share_at_zero() - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(sum + found.share_at_zero(), 1.0, epsilon = 1e-12);
         let corner = contact.profile(crate::observe::Axis::X1, -2.0e-3).unwrap().gap[0];
-        assert!((found.width() * 50.0 / corner - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(found.width() * 50.0 / corner, 1.0, epsilon = 1e-12);
     }
 }

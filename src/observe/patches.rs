@@ -162,6 +162,8 @@ impl FloodFill<'_> {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
     use crate::observe::sphere;
 
@@ -262,7 +264,7 @@ mod tests {
         assert_eq!(found.count(), 1);
         let patch = found.all()[0];
         assert_eq!(patch.cells, contact.contact_cells());
-        assert!((patch.force - 0.1).abs() < 1e-9);
+        assert_abs_diff_eq!(patch.force, 0.1, epsilon = 1e-9);
         assert!((patch.centroid[0] - 0.1e-3).abs() < 1e-5 && (patch.centroid[1] + 0.05e-3).abs() < 1e-5);
         assert_eq!(patch.greatest_pressure, contact.greatest_pressure());
     }

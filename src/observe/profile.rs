@@ -61,6 +61,8 @@ impl LineProfile {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
     use crate::error::Error;
     use crate::observe::sphere;
@@ -71,7 +73,7 @@ mod tests {
         let mut gap = vec![0.0; 24 * 32];
         contact.gap_into(&mut gap).unwrap();
         let profile = contact.profile(Axis::X1, 0.26e-3).unwrap();
-        assert!((profile.at - 0.25e-3).abs() < 1e-12);
+        assert_abs_diff_eq!(profile.at, 0.25e-3, epsilon = 1e-12);
         for i in 0..24 {
             let k = i * 32 + 18;
             assert_eq!(profile.positions[i], contact.grid().center(i, 18)[0]);

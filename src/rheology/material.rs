@@ -106,7 +106,8 @@ impl Material {
         self
     }
 
-    /// The contact creep compliance C(t) \[1/Pa\] at t ≥ 0 \[s\].
+    /// The contact creep compliance C(t) \[1/Pa\] at t ≥ 0 \[s\]: the factor of the material in Eq. 8 and Eq. 12 of the
+    /// [paper](crate::paper).
     pub fn contact_compliance(&self, t: f64) -> f64 {
         self.bodies.iter().map(|body| body.contact_compliance(t)).sum()
     }

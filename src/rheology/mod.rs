@@ -116,7 +116,7 @@ use crate::error::Result;
 /// assert!(Logarithmic.creep_spectrum().is_none());
 /// ```
 pub trait Rheology: Debug + Send + Sync {
-    /// J(t) \[1/Pa\] at t ≥ 0 \[s\].
+    /// J(t) \[1/Pa\] at t ≥ 0 \[s\], 2Φ(t) in Eq. 9 of the [paper](crate::paper).
     fn creep_compliance(&self, t: f64) -> f64;
 
     /// The exact exponential series of J, if there is one.

@@ -7,7 +7,7 @@ use crate::solver::trace::Trace;
 use crate::sum::greatest;
 
 /// Find p ≥ 0 and the free motions of the bodies with h = c K p + gap − motion ≥ 0, p h = 0, and the balance
-/// of force and moments that each freedom asks for.
+/// of force and moments that each freedom asks for (Eq. 2 and Eq. 3 of the paper).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Problem<'a> {
     pub(crate) kernel: &'a LocalKernel,

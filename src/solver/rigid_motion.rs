@@ -7,7 +7,8 @@ use crate::Grid;
 use crate::linalg;
 
 /// The motions ω + α1 ξ1 + α2 ξ2 that a load leaves free to one body, ξ = x − e measured from the point e
-/// at which the load acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0.
+/// at which the load acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0 (Eq. 4 and
+/// Eq. 5 of the paper).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Freedom {
     pub(crate) translation: bool,

@@ -2,6 +2,7 @@
 
 use crate::common::bodies::maxwell;
 use crate::common::spheres::{builder_on, sphere, sphere_on};
+use approx::assert_abs_diff_eq;
 use std::sync::Arc;
 
 use viscocontact::KernelError;
@@ -306,7 +307,7 @@ fn the_foundation_is_untouched_by_failures_too() {
     assert!(matches!(nothing, Error::NothingToTouch { .. }));
     let mut narrow = AxisymmetricContact::new(&Profile::punch(1e-4).unwrap(), &maxwell(), 30, 3e-4).unwrap();
     narrow.press(0.0, 1.0).unwrap();
-    assert!((narrow.force() - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(narrow.force(), 1.0, epsilon = 1e-12);
 }
 
 #[test]

@@ -11,6 +11,7 @@ mod errors;
 mod invalid_loads;
 #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
 mod output;
+mod paper;
 #[cfg(feature = "plot")]
 mod plot;
 mod snapshot;

@@ -1,6 +1,7 @@
 //! Pictures: what they show, that files are whole, and that no data make them fail otherwise than by an error.
 
 use crate::common::bodies::maxwell;
+use approx::assert_abs_diff_eq;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -102,7 +103,7 @@ fn pressure_is_blank_out_of_contact() {
     let pixels = 730.0 / 4.0e-3;
     let cell = 0.125e-3 * pixels;
     // 95 pixels are left of the map; its middle is 365 further
-    assert!((mean(&|k| k % width) - (95.0 + 365.0 + 0.5e-3 * pixels)).abs() < cell);
+    assert_abs_diff_eq!(mean(&|k| k % width), 95.0 + 365.0 + 0.5e-3 * pixels, epsilon = cell);
     assert!(changed.len() > 200);
 }
 

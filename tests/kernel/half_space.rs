@@ -1,5 +1,6 @@
 //! The fast convolution against the naive double sum over Love's coefficients.
 
+use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::{Error, Grid, InfluenceKernel};
@@ -60,7 +61,7 @@ fn influence_is_reciprocal() {
         convolve(&grid, &field)
     };
     let (here, there) = (17, 603);
-    assert!((impulse(here)[there] / impulse(there)[here] - 1.0).abs() < 1e-13);
+    assert_abs_diff_eq!(impulse(here)[there] / impulse(there)[here], 1.0, epsilon = 1e-13);
 }
 
 #[test]

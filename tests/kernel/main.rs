@@ -1,4 +1,5 @@
 //! Does a pressure displace the surface as the theory says, on every kind of body?
 
+mod coefficients;
 mod half_space;
 mod other_bodies;

@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
+use approx::assert_abs_diff_eq;
 use viscocontact::{Error, Grid, InfluenceKernel, KernelError};
 
 fn convolve(kernel: &InfluenceKernel, pressure: &[f64]) -> Vec<f64> {
@@ -22,9 +23,7 @@ fn noise(cells: usize) -> Vec<f64> {
 
 fn assert_close(found: &[f64], exact: &[f64], tolerance: f64) {
     let scale = exact.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-    for (k, (a, b)) in found.iter().zip(exact).enumerate() {
-        assert!((a - b).abs() <= tolerance * scale, "{k}: {a} {b}");
-    }
+    assert_abs_diff_eq!(found, exact, epsilon = tolerance * scale);
 }
 
 /// Westergaard's waves, on lengths of period even, odd and not smooth.

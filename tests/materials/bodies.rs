@@ -2,6 +2,7 @@
 
 use crate::common::bodies::maxwell;
 use crate::common::spheres::RADIUS;
+use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};
 use viscocontact::prelude::*;
@@ -29,7 +30,7 @@ fn elastic_bulk_has_the_limits_of_hertz() {
     let material = Material::elastic_bulk(shear, bulk).unwrap();
     let hertz = |g: f64| (1.0 / g) * (1.0 - (3.0 * bulk - 2.0 * g) / (2.0 * (3.0 * bulk + g))) / 2.0; // 1/E*
     for (t, g) in [(0.0, glassy), (1e9, relaxed)] {
-        assert!((material.contact_compliance(t) / hertz(g) - 1.0).abs() < 1e-11);
+        assert_abs_diff_eq!(material.contact_compliance(t) / hertz(g), 1.0, epsilon = 1e-11);
         let mut contact = builder(128, hertz(g)).material(material.clone()).build().unwrap();
         contact.step(0.0, Load::force(FORCE * 1e-6)).unwrap();
         if t > 0.0 {
@@ -79,14 +80,14 @@ fn elastic_bulk_tends_to_its_neighbours() {
     let stiff = Material::elastic_bulk(zener(), 1.0e16).unwrap();
     let incompressible = Material::incompressible(zener());
     for t in [0.0, 0.1, 1.0, 10.0] {
-        assert!((stiff.contact_compliance(t) / incompressible.contact_compliance(t) - 1.0).abs() < 1e-9);
+        assert_abs_diff_eq!(stiff.contact_compliance(t) / incompressible.contact_compliance(t), 1.0, epsilon = 1e-9);
     }
     // elastic in shear too: the constant Poisson's ratio of G and B
     let (g, bulk) = (1.0e6, 2.0e6);
     let nu = (3.0 * bulk - 2.0 * g) / (2.0 * (3.0 * bulk + g));
     let one = Material::elastic_bulk(Elastic::new(g).unwrap(), bulk).unwrap().contact_compliance(3.0);
     let other = Material::constant_poisson(Elastic::new(g).unwrap(), nu).unwrap().contact_compliance(3.0);
-    assert!((one / other - 1.0).abs() < 1e-14);
+    assert_abs_diff_eq!(one / other, 1.0, epsilon = 1e-14);
     // a rheology without a series says what to do
     let error = Material::elastic_bulk(PowerLaw::new(1.0, 1.0, 0.5).unwrap(), 1.0).unwrap_err();
     assert!(
@@ -120,7 +121,7 @@ fn two_bodies_share_the_approach() {
         for _ in 0..40 {
             swapped.step(0.05, Load::force(FORCE)).unwrap();
         }
-        assert!((swapped.approach() / contact.approach() - 1.0).abs() < 1e-6);
+        assert_abs_diff_eq!(swapped.approach() / contact.approach(), 1.0, epsilon = 1e-6);
     }
 }
 
@@ -189,7 +190,7 @@ fn a_body_without_an_exact_series_is_fitted_over_the_times_it_is_wanted_for() {
     assert!(matches!(contact.step(1e9, Load::force(1e6 * FORCE)), Err(Error::ContactAtEdge { .. })));
     contact.step(1e-3, Load::force(FORCE)).unwrap();
     let [first, _] = contact.material().fit_reports().next().unwrap().range().unwrap();
-    assert!((first / 1e-5 - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(first / 1e-5, 1.0, epsilon = 1e-12);
 
     // without an elastic response, what it has crept by the shortest time counts as immediate
     let body = PowerLaw::new(1.0e-6, 1.0, 0.5).unwrap();
@@ -240,7 +241,7 @@ fn a_history_and_its_end_give_the_times() {
     let wide = builder(64, 0.25e-6 * (1.0 + 1e4));
     let mut contact = wide.material(closure()).times_of(&load, 1e8).build().unwrap();
     let [_, last] = contact.material().fit_reports().next().unwrap().range().unwrap();
-    assert!((last / 1e8 - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(last / 1e8, 1.0, epsilon = 1e-12);
     let mut run = contact.follow(&load, Stepping::fixed(1e-3), 1e8);
     run.next_step().unwrap();
     run.next_step().unwrap();
@@ -328,7 +329,7 @@ fn direct_sums_keep_within_their_memory() {
     }
     let error = contact.step(0.1, Load::force(FORCE)).unwrap_err();
     assert!(matches!(error, Error::HistoryFull { steps: 5, limit: 10_240, .. }), "{error}");
-    assert!((contact.time() - 0.5).abs() < 1e-15);
+    assert_abs_diff_eq!(contact.time(), 0.5, epsilon = 1e-15);
 }
 
 /// Elastic bulk on the one-dimensional foundation: load, hold, unload; the stepper against an independent solution

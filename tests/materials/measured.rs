@@ -5,6 +5,7 @@ mod dialects;
 
 use crate::common::noise::noise;
 use crate::common::spheres::sphere_on;
+use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSpectrum, Isotherm, MasterCurve, Place, TableError, TimeTemperature};
@@ -97,7 +98,7 @@ fn relaxation_and_dynamic_tables_give_the_same_body() {
         let storage: Vec<f64> = omega.iter().map(|&omega| relaxation.storage_modulus(omega)).collect();
         let loss: Vec<f64> = omega.iter().map(|&omega| relaxation.loss_modulus(omega)).collect();
         let dynamic = TabulatedDynamic::new(&omega, &storage, &loss).unwrap();
-        assert!((dynamic.known_until() / last - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(dynamic.known_until() / last, 1.0, epsilon = 1e-12);
         assert_eq!(relaxed.known_until(), last);
         for (kind, body) in [("relaxation", &relaxed as &dyn Rheology), ("dynamic", &dynamic)] {
             let error = worst(body, &truth, [1e-4, 0.1 * last]);
@@ -279,7 +280,7 @@ fn temperatures_shift_time() {
     let exact = warm.creep_spectrum().unwrap();
     for t in log_spaced(1e-6, 1e3, 4) {
         assert_eq!(warm.creep_compliance(t), zener.creep_compliance(t / factor));
-        assert!((exact.compliance(t) / warm.creep_compliance(t) - 1.0).abs() < 1e-13);
+        assert_abs_diff_eq!(exact.compliance(t) / warm.creep_compliance(t), 1.0, epsilon = 1e-13);
     }
     for bad in [0.0, -1.0, f64::NAN, 320.0, 373.15 - 51.6] {
         assert!(matches!(wlf.shift_factor(bad), Err(Error::OutOfRange { .. })), "{bad}");
@@ -313,14 +314,14 @@ mod csv {
         let units = Units { abscissa: 60.0, value: 1e-9 };
         let body = TabulatedCreep::from_csv_reader("1,1\n2,1.1\n4,1.3\n8,1.4\n".as_bytes(), units).unwrap();
         assert_eq!(body.known_until(), 480.0);
-        assert!((body.creep_compliance(240.0) / 1.3e-9 - 1.0).abs() < 0.05);
+        assert_abs_diff_eq!(body.creep_compliance(240.0) / 1.3e-9, 1.0, epsilon = 0.05);
         // Hz and MPa, columns by name
         let hertz = Units { abscissa: std::f64::consts::TAU, value: 1e6 };
         let text = "Frequency [Hz],Loss modulus [MPa],Storage modulus [MPa]\n0.1,0.2,1.0\n1,0.4,1.5\n10,0.4,2.2\n100,0.1,2.5\n";
         let body = TabulatedDynamic::from_csv_reader(text.as_bytes(), hertz).unwrap();
         assert_eq!(body.report().samples()[0].function, MaterialFunction::Storage);
         assert_eq!(body.report().samples()[0].given, 1.0e6);
-        assert!((body.report().samples()[0].x - 0.1 * std::f64::consts::TAU).abs() < 1e-15);
+        assert_abs_diff_eq!(body.report().samples()[0].x, 0.1 * std::f64::consts::TAU, epsilon = 1e-15);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Creep, relaxation, and the passage between them.
 
 use crate::common::spectra::spectra;
+use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::Error;
@@ -44,7 +45,7 @@ fn simple_models_have_their_textbook_relaxation() {
     // G∞ = G G_K/(G + G_K), τ = λ G_K/(G + G_K)
     let zener = Zener::new(3.0e6, 1.0e6, 4.0e6).unwrap().creep_spectrum().unwrap().relaxation();
     let [(modulus, tau)] = zener.terms() else { panic!() };
-    assert!((zener.equilibrium() / 0.75e6 - 1.0).abs() < 1e-14);
+    assert_abs_diff_eq!(zener.equilibrium() / 0.75e6, 1.0, epsilon = 1e-14);
     assert!((modulus / 2.25e6 - 1.0).abs() < 1e-14 && (tau - 1.0).abs() < 1e-14);
 
     let elastic = Elastic::new(5.0).unwrap().creep_spectrum().unwrap().relaxation();
@@ -73,7 +74,7 @@ fn every_model_evaluates_its_formula() {
     // a generalized Maxwell body with one element is a Zener body: G = G∞ + G1, same relaxation
     let prony = GeneralizedMaxwell::new(0.75, &[(2.25, 1.0)]).unwrap();
     let zener = Zener::new(3.0, 1.0, 4.0).unwrap();
-    assert!((prony.creep_compliance(t) / zener.creep_compliance(t) - 1.0).abs() < 1e-14);
+    assert_abs_diff_eq!(prony.creep_compliance(t) / zener.creep_compliance(t), 1.0, epsilon = 1e-14);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Every rheology, geometry and load history of the crate, and random ones, against their laws.
 
 use crate::common::spectra::spectra;
+use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::prelude::*;
@@ -323,7 +324,7 @@ fn every_law_of_histories_can_be_broken() {
     let hidden: fn(f64) -> f64 = |t| if t < 0.6 { 1.0 } else { 3.0 };
     let found = broken((hidden, hidden, told));
     assert_eq!(found.law, "jumps lie on breakpoints");
-    assert!((found.t - 0.6).abs() < 1e-6);
+    assert_abs_diff_eq!(found.t, 0.6, epsilon = 1e-6);
     let corner: fn(f64) -> f64 = |t| (t - 0.61).abs() + t.exp();
     let found = broken((corner, corner, told));
     assert_eq!(found.law, "corners lie on breakpoints");

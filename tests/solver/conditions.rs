@@ -3,6 +3,7 @@
 use crate::common::bodies::{elastic, maxwell};
 use crate::common::noise::uniform;
 use crate::common::step_loaded_sphere::StepLoadedSphere;
+use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::prelude::*;
@@ -190,7 +191,11 @@ fn assert_contact_conditions(contact: &ViscoelasticContact, load: Load, toleranc
         Load::Approach { approach, tilt } => {
             let point = tilt.map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
             let held = contact.approach() + contact.tilt()[0] * point[0] + contact.tilt()[1] * point[1];
-            assert!((held - approach).abs() < 1e-12 * approach.abs().max(contact.approach().abs()) + 1e-300);
+            assert_abs_diff_eq!(
+                held,
+                approach,
+                epsilon = 1e-12 * approach.abs().max(contact.approach().abs()) + 1e-300
+            );
         }
         _ => unreachable!(),
     }
@@ -317,9 +322,9 @@ fn mirrored_and_shifted_scenes_have_such_answers() {
     for i in 0..40 {
         for j in 0..32 {
             let value = field[i * 32 + j];
-            assert!((mirrored[(39 - i) * 32 + j] - value).abs() < 1e-8 * peak);
+            assert_abs_diff_eq!(mirrored[(39 - i) * 32 + j], value, epsilon = 1e-8 * peak);
             if i < 37 && j > 0 {
-                assert!((shifted[(i + 3) * 32 + j - 1] - value).abs() < 1e-8 * peak);
+                assert_abs_diff_eq!(shifted[(i + 3) * 32 + j - 1], value, epsilon = 1e-8 * peak);
             }
         }
     }

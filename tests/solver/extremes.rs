@@ -3,6 +3,7 @@
 use crate::common::bodies::{elastic, maxwell, three_times, zener};
 use crate::common::noise::uniform;
 use crate::common::spheres::{RADIUS, builder_on};
+use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::contact::Warning;
 use viscocontact::prelude::*;
@@ -297,7 +298,7 @@ fn contact_grows_from_one_cell_to_all() {
     let mut cells = Vec::new();
     for exponent in -200..=2 {
         contact.step(1e-3, Load::force(10f64.powi(exponent))).unwrap();
-        assert!((contact.force() / 10f64.powi(exponent) - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(contact.force() / 10f64.powi(exponent), 1.0, epsilon = 1e-12);
         cells.push(contact.contact_cells());
     }
     assert!(

@@ -1,6 +1,7 @@
 //! Loads that tilt, prescribe the approach, let go and come back, on elastic and creeping bodies.
 
 use crate::common::bodies::{E_STAR, elastic};
+use approx::assert_abs_diff_eq;
 use viscocontact::analytic::{AxisymmetricContact, Hertz, Profile, RigidPunch};
 use viscocontact::load::LoadError;
 use viscocontact::prelude::*;
@@ -27,7 +28,7 @@ fn lure_errors(cells: usize, e: f64) -> [f64; 3] {
     let mut contact = punch(cells);
     let report = contact.step(0.0, Load::eccentric_force(1.0, [e * RADIUS, 0.0])).unwrap();
     assert!(report.convolution_equivalents() <= 12.0, "e = {e} R: {} equivalents", report.convolution_equivalents());
-    assert!((contact.force() - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(contact.force(), 1.0, epsilon = 1e-12);
     assert!((contact.moment()[0] - e * RADIUS).abs() < 1e-12 * RADIUS && contact.moment()[1].abs() < 1e-12 * RADIUS);
     let mut pressure: f64 = 0.0;
     for i in 0..cells {
@@ -183,8 +184,8 @@ fn controls_take_turns() {
         };
         driven.step(0.1, load).unwrap();
         assert!((driven.force() / force - 1.0).abs() < 1e-6, "step {step}: {}", driven.force());
-        assert!((driven.approach() / approach - 1.0).abs() < 1e-6);
-        assert!((driven.tilt()[0] - tilt[0]).abs() < 1e-6 * tilt[0].abs());
+        assert_abs_diff_eq!(driven.approach() / approach, 1.0, epsilon = 1e-6);
+        assert_abs_diff_eq!(driven.tilt()[0], tilt[0], epsilon = 1e-6 * tilt[0].abs());
         let peak = forced.pressure().iter().copied().fold(0.0, f64::max);
         for (a, b) in forced.pressure().iter().zip(driven.pressure()) {
             assert!((a - b).abs() < 1e-5 * peak, "step {step}");
@@ -205,9 +206,9 @@ fn tilt_creeps() {
         contact.step(0.2, load).unwrap();
         // closed contact: everything is J(t)/J(0) times the elastic answer, and the pressure does not change
         let growth = 1.0 + 0.2 * k as f64;
-        assert!((contact.approach() / (growth * approach) - 1.0).abs() < 1e-7);
-        assert!((contact.tilt()[0] / (growth * tilt[0]) - 1.0).abs() < 1e-6);
-        assert!((contact.tilt()[1] / (growth * tilt[1]) - 1.0).abs() < 1e-6);
+        assert_abs_diff_eq!(contact.approach() / (growth * approach), 1.0, epsilon = 1e-7);
+        assert_abs_diff_eq!(contact.tilt()[0] / (growth * tilt[0]), 1.0, epsilon = 1e-6);
+        assert_abs_diff_eq!(contact.tilt()[1] / (growth * tilt[1]), 1.0, epsilon = 1e-6);
     }
 }
 
@@ -248,10 +249,10 @@ fn several_bodies_carry_their_own_loads() {
             .unwrap();
         let loads = [Load::force(2.0), Load::eccentric_force(0.5, [0.5 * distance + 0.05e-3, 0.0])];
         let report = contact.step_each(0.0, &loads).unwrap();
-        assert!((report.force - 2.5).abs() < 1e-11);
+        assert_abs_diff_eq!(report.force, 2.5, epsilon = 1e-11);
         let [left, right] = [0, 1].map(|body| contact.body(body).unwrap());
         assert!((left.force - 2.0).abs() < 1e-11 && (right.force - 0.5).abs() < 1e-11);
-        assert!((right.moment[0] / right.force - 0.5 * distance - 0.05e-3).abs() < 1e-12);
+        assert_abs_diff_eq!(right.moment[0] / right.force - 0.5 * distance, 0.05e-3, epsilon = 1e-12);
         assert!(contact.body(2).is_none() && contact.bodies() == 2);
         (left, right)
     };
@@ -266,7 +267,7 @@ fn several_bodies_carry_their_own_loads() {
     // the heavy neighbour tilts the light one towards itself
     assert!(near_right.tilt[0] < far_right.tilt[0]);
     let (reference, _) = pair(0.8e-3, Solver::PolonskyKeer);
-    assert!((reference.approach / near_left.approach - 1.0).abs() < 1e-7);
+    assert_abs_diff_eq!(reference.approach / near_left.approach, 1.0, epsilon = 1e-7);
 }
 
 #[test]

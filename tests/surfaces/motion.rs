@@ -2,6 +2,7 @@
 
 use crate::common::bodies::elastic;
 use crate::common::spheres::sphere_on;
+use approx::assert_abs_diff_eq;
 use std::sync::Arc;
 
 use crate::common::rough::self_affine;
@@ -52,7 +53,7 @@ fn frames_agree_on_periodic_bodies() {
         assert!(apart < 1e-5, "step {step}: {apart}");
         let u = difference(&grid, fixed.displacement(), moving.displacement(), by);
         assert!(u < 1e-7, "step {step}: {u}");
-        assert!((fixed.approach() / moving.approach() - 1.0).abs() < 1e-7);
+        assert_abs_diff_eq!(fixed.approach() / moving.approach(), 1.0, epsilon = 1e-7);
         let (here, there) = (report.lateral_force, moving.lateral_force(&ball()));
         assert!((0..2).all(|axis| (here[axis] - there[axis]).abs() < 1e-6 * 0.3), "{here:?} {there:?}");
         assert!(step < 4 || report.power > 0.0);
@@ -149,7 +150,7 @@ fn elastic_bodies_dissipate_nothing() {
     }
     assert!(greatest > 1e-4, "the surfaces are rough: {greatest}");
     assert!((sum / 100.0).abs() < 0.02 * greatest, "{sum} {greatest}");
-    assert!((contact.approach() / approach - 1.0).abs() < 1e-6);
+    assert_abs_diff_eq!(contact.approach() / approach, 1.0, epsilon = 1e-6);
     let most = pressure.iter().copied().fold(0.0, f64::max);
     assert!(contact.pressure().iter().zip(&pressure).all(|(a, b)| (a - b).abs() < 1e-3 * most));
 }
@@ -347,6 +348,6 @@ fn motions_without_contact_end_in_words() {
     for _ in 0..40 {
         two.step_each_over([1, 0], 1.0e-3, &loads).unwrap();
     }
-    assert!((two.body(1).unwrap().force / 10.0 - 1.0).abs() < 1e-9);
+    assert_abs_diff_eq!(two.body(1).unwrap().force / 10.0, 1.0, epsilon = 1e-9);
     assert!(matches!(two.step_over([1, 0], 1.0e-3, loads[0]), Err(Error::WrongNumberOfLoads { .. })));
 }

@@ -3,6 +3,7 @@
 
 use crate::common::protocol::Protocol;
 use crate::common::spheres::builder_on;
+use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::Error;
@@ -392,7 +393,7 @@ fn lifted_indenters_move_at_once() {
         along.step_along(&travel, DT, Load::force(0.1)).unwrap();
         over.step_over([0, 0], DT, Load::force(0.1)).unwrap();
     }
-    assert!((along.approach() / over.approach() - 1.0).abs() < 1e-5);
+    assert_abs_diff_eq!(along.approach() / over.approach(), 1.0, epsilon = 1e-5);
 }
 
 /// The protocol of a creep and recovery test: approach to touch, hold a force, let go.

@@ -3,6 +3,7 @@
 use crate::common::bodies::{elastic, maxwell};
 use crate::common::spheres::sphere_on;
 use crate::common::step_loaded_sphere::StepLoadedSphere;
+use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;
 
 /// Central pressure at the end, solved far below the error in time.
@@ -75,7 +76,7 @@ fn a_step_of_length_zero_is_elastic() {
         contact.step(0.5, Load::force(1.0)).unwrap();
         let before = contact.approach();
         contact.step(0.0, Load::force(1.0)).unwrap();
-        assert!((contact.approach() / before - 1.0).abs() < 1e-9);
+        assert_abs_diff_eq!(contact.approach() / before, 1.0, epsilon = 1e-9);
     }
 }
 
@@ -99,9 +100,9 @@ fn the_default_rule_takes_steps_of_any_length() {
         assert!((step.approach / relaxed - 1.0).abs() < 1e-3, "{exponent}: {}", step.approach / relaxed);
         let center = contact.pressure()[32 * 64 + 32];
         contact.step(1e12, Load::force(scene.force)).unwrap();
-        assert!((contact.pressure()[32 * 64 + 32] / center - 1.0).abs() < 1e-4);
+        assert_abs_diff_eq!(contact.pressure()[32 * 64 + 32] / center, 1.0, epsilon = 1e-4);
     }
-    assert!((last / relaxed - 1.0).abs() < 1e-3);
+    assert_abs_diff_eq!(last / relaxed, 1.0, epsilon = 1e-3);
 }
 
 /// Beyond Δ = 2τ the paper's rule loses the very centre of a Maxwell contact, which in truth stays

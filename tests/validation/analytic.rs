@@ -2,6 +2,7 @@
 
 use crate::common::bodies::{maxwell, zener};
 use crate::common::spheres::RADIUS;
+use approx::assert_abs_diff_eq;
 use std::f64::consts::PI;
 
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Hertz, HertzEllipse, Profile, RigidPunch};
@@ -69,9 +70,9 @@ fn lee_radok_for_a_step_is_ting() {
     let step = GrowingSphere::step(RADIUS, &maxwell(), 1.0).unwrap();
     let history = GrowingSphere::new(RADIUS, &maxwell(), StepLoad::new(Load::force(1.0)).unwrap()).unwrap();
     for t in [0.0, 0.1, 1.0, 20.0] {
-        assert!((history.contact_radius(t) / step.contact_radius(t) - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(history.contact_radius(t) / step.contact_radius(t), 1.0, epsilon = 1e-12);
     }
-    assert!((history.pressure(1.3e-3, 1.0) / step.pressure(1.3e-3, 1.0) - 1.0).abs() < 1e-8);
+    assert_abs_diff_eq!(history.pressure(1.3e-3, 1.0) / step.pressure(1.3e-3, 1.0), 1.0, epsilon = 1e-8);
 }
 
 /// A ramp on a Maxwell body in closed form: a³ = (3R/4)(W′/4G)(t + t²/2τ).
@@ -96,7 +97,7 @@ fn foundation_converges_to_ting() {
         for _ in 0..steps {
             foundation.press(2.0 / steps as f64, 1.0).unwrap();
         }
-        assert!((foundation.force() - 1.0).abs() < 1e-12);
+        assert_abs_diff_eq!(foundation.force(), 1.0, epsilon = 1e-12);
         [
             foundation.approach() / exact.approach(2.0) - 1.0,
             foundation.contact_radius() / exact.contact_radius(2.0) - 1.0,
@@ -125,7 +126,7 @@ fn foundation_driven_by_its_own_approach() {
         pressed.press(0.01, 1.0 - (t - 1.0).abs()).unwrap();
         indented.indent(0.01, pressed.approach()).unwrap();
         assert!((indented.force() - pressed.force()).abs() < 1e-9, "{t}");
-        assert!((indented.contact_radius() - pressed.contact_radius()).abs() < 1e-9);
+        assert_abs_diff_eq!(indented.contact_radius(), pressed.contact_radius(), epsilon = 1e-9);
     }
     // let go: the surface has not recovered, so the bodies touch deeper than they did at first
     assert_eq!(pressed.force(), 0.0);
@@ -136,19 +137,19 @@ fn foundation_driven_by_its_own_approach() {
 fn ellipses_tend_to_the_circle_and_the_line() {
     let circle = Hertz::new(RADIUS, 4.0e6, 1.0).unwrap();
     let nearly = HertzEllipse::new([RADIUS, RADIUS * (1.0 + 1e-9)], 4.0e6, 1.0).unwrap();
-    assert!((nearly.greatest_pressure() / circle.greatest_pressure() - 1.0).abs() < 1e-8);
+    assert_abs_diff_eq!(nearly.greatest_pressure() / circle.greatest_pressure(), 1.0, epsilon = 1e-8);
     assert!(nearly.semi_axes()[1] > nearly.semi_axes()[0]);
     // Johnson 1985, eq. 4.28: for moderate ratios a/b ≈ (R_long/R_short)^(2/3)
     let moderate = HertzEllipse::new([2.0 * RADIUS, RADIUS], 4.0e6, 1.0).unwrap();
     let [a, b] = moderate.semi_axes();
-    assert!(((a / b) / 2f64.powf(2.0 / 3.0) - 1.0).abs() < 2e-2);
+    assert_abs_diff_eq!((a / b) / 2f64.powf(2.0 / 3.0), 1.0, epsilon = 2e-2);
     // W = (2π/3) p0 a b, and p(0) = p0
-    assert!((2.0 * PI / 3.0 * moderate.greatest_pressure() * a * b - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(2.0 * PI / 3.0 * moderate.greatest_pressure() * a * b, 1.0, epsilon = 1e-12);
     assert_eq!(moderate.pressure(0.0, 0.0), moderate.greatest_pressure());
     // very slender: the short axis is that of a line contact under the peak line load, b = 2 p0 R/E*
     let slender = HertzEllipse::new([1e8 * RADIUS, RADIUS], 4.0e6, 1.0).unwrap();
     let line = 2.0 * slender.greatest_pressure() * RADIUS / 4.0e6;
-    assert!((slender.semi_axes()[1] / line - 1.0).abs() < 1e-4);
+    assert_abs_diff_eq!(slender.semi_axes()[1] / line, 1.0, epsilon = 1e-4);
 }
 
 /// Force and moment of the punch by quadrature over its face.

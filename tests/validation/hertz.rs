@@ -1,6 +1,7 @@
 //! Elastic contacts against their closed forms, and how fast the mesh converges to them.
 
 use crate::common::bodies::{E_STAR, elastic};
+use approx::assert_abs_diff_eq;
 use viscocontact::analytic::{AxisymmetricContact, Hertz, HertzEllipse, Profile, RigidPunch};
 use viscocontact::prelude::*;
 
@@ -45,10 +46,10 @@ fn an_ellipsoid_is_hertzs() {
     let grid = Grid::new([192, 128], [2.5 * a1, 2.5 * a2]).unwrap();
     let contact = press(grid, &Ellipsoid::new(20.0e-3, 5.0e-3).unwrap(), 1.0, Settings::default());
     let center = contact.pressure()[96 * 128 + 64];
-    assert!((center / exact.greatest_pressure() - 1.0).abs() < 4e-4);
-    assert!((contact.approach() / exact.approach() - 1.0).abs() < 2e-4);
+    assert_abs_diff_eq!(center / exact.greatest_pressure(), 1.0, epsilon = 4e-4);
+    assert_abs_diff_eq!(contact.approach() / exact.approach(), 1.0, epsilon = 2e-4);
     let area = std::f64::consts::PI * a1 * a2;
-    assert!((contact.contact_area() / area - 1.0).abs() < 1e-2);
+    assert_abs_diff_eq!(contact.contact_area() / area, 1.0, epsilon = 1e-2);
 }
 
 /// The mesh of a punch converges at first order: its pressure is infinite on the rim.
@@ -83,10 +84,10 @@ fn a_cone_is_the_one_dimensional_foundations() {
     foundation.press(0.0, force).unwrap();
     let a = foundation.contact_radius();
     // Love 1939: W = (π/2) a² E* tan β
-    assert!((force / (0.5 * std::f64::consts::PI * a * a * E_STAR * slope) - 1.0).abs() < 1e-6);
+    assert_abs_diff_eq!(force / (0.5 * std::f64::consts::PI * a * a * E_STAR * slope), 1.0, epsilon = 1e-6);
     let contact = press(Grid::square(256, 2.4 * a).unwrap(), &Cone::new(slope).unwrap(), force, Settings::default());
-    assert!((contact.approach() / foundation.approach() - 1.0).abs() < 2e-3);
-    assert!(((contact.contact_area() / std::f64::consts::PI).sqrt() / a - 1.0).abs() < 5e-3);
+    assert_abs_diff_eq!(contact.approach() / foundation.approach(), 1.0, epsilon = 2e-3);
+    assert_abs_diff_eq!((contact.contact_area() / std::f64::consts::PI).sqrt() / a, 1.0, epsilon = 5e-3);
 }
 
 /// In the middle of a long cylinder peak pressure and line load are those of a line contact,

@@ -3,6 +3,7 @@
 mod analytic;
 #[path = "../common/mod.rs"]
 mod common;
+mod equations;
 mod hertz;
 mod plan;
 mod plan_random;

@@ -3,6 +3,7 @@
 use crate::common::bodies::{elastic, maxwell};
 use crate::common::histories::{four_terms, triangle};
 use crate::common::spheres::RADIUS;
+use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};
 use viscocontact::prelude::*;
@@ -170,7 +171,7 @@ fn plans_find_the_domain_whatever_its_size() {
     let sphere = Sphere::new(RADIUS).unwrap();
     let driven = StepLoad::new(Load::approach(1.0e-4)).unwrap();
     let plan = Plan::new(&sphere, &material, &driven, 1.0, Accuracy::Coarse).unwrap();
-    assert!((plan.reach()[0] / (RADIUS * 1.0e-4).sqrt() - 1.0).abs() < 0.12);
+    assert_abs_diff_eq!(plan.reach()[0] / (RADIUS * 1.0e-4).sqrt(), 1.0, epsilon = 0.12);
     let apart = StepLoad::new(Load::approach(-1.0e-4)).unwrap();
     assert!(matches!(Plan::new(&sphere, &material, &apart, 1.0, Accuracy::Coarse), Err(Error::NoDomain { .. })));
     for until in [0.0, -1.0, f64::NAN, f64::INFINITY] {

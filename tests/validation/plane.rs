@@ -1,6 +1,7 @@
 //! Contacts in plane strain against Westergaard's and Hertz's closed forms.
 
 use crate::common::bodies::{E_STAR, elastic};
+use approx::assert_abs_diff_eq;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -40,7 +41,7 @@ fn a_wavy_surface_in_partial_contact_is_westergaards() {
             let side = wavelength / cells as f64;
             let (width, exact_width) = (contact.contact_area() / side, 2.0 * half_width / side);
             assert!((width - exact_width).abs() < 0.6, "{share}: {width} {exact_width}");
-            assert!((contact.contact_cells() as f64 - exact_width).abs() < 2.0);
+            assert_abs_diff_eq!(contact.contact_cells() as f64, exact_width, epsilon = 2.0);
             let pairs = contact.pressure().iter().enumerate();
             let l1 = pairs.map(|(i, p)| (p - exact(grid.center(i, 0)[0])).abs()).sum::<f64>() / cells as f64 / mean;
             assert!(l1 < 4e-3, "{share}: {l1}");
@@ -62,11 +63,11 @@ fn a_wavy_surface_in_full_contact_is_westergaards() {
         let exact = mean + amplitude * (2.0 * PI * grid.center(i, 0)[0]).cos();
         assert!((p / exact - 1.0).abs() < 1e-5, "{i}: {p} {exact}");
     }
-    assert!((contact.approach() / 1e-3 - 1.0).abs() < 1e-9);
+    assert_abs_diff_eq!(contact.approach() / 1e-3, 1.0, epsilon = 1e-9);
     assert_eq!(contact.contact_area(), 1.0);
     let error = contact.step(0.0, Load::approach(1.1e-3)).unwrap_err();
     let Error::BeyondFullContact { greatest, .. } = error else { panic!("{error}") };
-    assert!((greatest / 1e-3 - 1.0).abs() < 1e-9);
+    assert_abs_diff_eq!(greatest / 1e-3, 1.0, epsilon = 1e-9);
     contact.step(0.0, Load::approach(0.5e-3)).unwrap();
     assert!(contact.contact_cells() < 64);
     let tilted = contact.step(0.0, Load::eccentric_force(1.0, [0.1, 0.0])).unwrap_err();
@@ -98,7 +99,7 @@ fn a_cylinder_in_line_contact_is_hertzs() {
         assert!((contact.approach() / approach - 1.0).abs() < 1e-4, "{} {approach}", contact.approach());
         // and by its approach it carries the same force again
         contact.step(0.0, Load::approach(approach)).unwrap();
-        assert!((contact.force() / (per_length * length) - 1.0).abs() < 1e-3);
+        assert_abs_diff_eq!(contact.force() / (per_length * length), 1.0, epsilon = 1e-3);
     }
 }
 

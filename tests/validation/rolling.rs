@@ -1,5 +1,6 @@
 //! A cylinder rolling over a standard solid, step by step to its steady state, against a formulation that has no steps.
 
+use approx::assert_abs_diff_eq;
 use std::sync::Arc;
 
 use crate::common::rolling::{RollingCylinder, scaled_e1, scaled_ei};
@@ -103,10 +104,10 @@ fn exponential_integrals_of_the_reference_are_the_tabulated_ones() {
     // Abramowitz & Stegun, tables 5.1 and 5.2
     let cases = [(1.0, 0.219_383_934_395_520_3), (2.0, 0.048_900_510_708_061_1), (0.5, 0.559_773_594_776_160_2)];
     cases.iter().for_each(|&(z, e1): &(f64, f64)| assert!((scaled_e1(z) / z.exp() / e1 - 1.0).abs() < 1e-12));
-    assert!((scaled_e1(10.0) / 0.915_633_339_397_880_8 * 10.0 - 1.0).abs() < 1e-9);
-    assert!((scaled_ei(1.0) * 1f64.exp() / 1.895_117_816_355_936_8 - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(scaled_e1(10.0) / 0.915_633_339_397_880_8 * 10.0, 1.0, epsilon = 1e-9);
+    assert_abs_diff_eq!(scaled_ei(1.0) * 1f64.exp() / 1.895_117_816_355_936_8, 1.0, epsilon = 1e-12);
     // scipy.special.expi, either side of where the series changes
-    assert!((scaled_ei(39.9) / 0.025_724_918_815_090_737 - 1.0).abs() < 1e-12);
-    assert!((scaled_ei(40.1) / 0.025_593_145_386_960_604 - 1.0).abs() < 1e-12);
-    assert!((scaled_ei(100.0) / 0.010_102_062_527_748_357 - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(scaled_ei(39.9) / 0.025_724_918_815_090_737, 1.0, epsilon = 1e-12);
+    assert_abs_diff_eq!(scaled_ei(40.1) / 0.025_593_145_386_960_604, 1.0, epsilon = 1e-12);
+    assert_abs_diff_eq!(scaled_ei(100.0) / 0.010_102_062_527_748_357, 1.0, epsilon = 1e-12);
 }

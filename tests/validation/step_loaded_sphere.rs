@@ -1,6 +1,7 @@
 //! The paper's scene against its Table 1: the figures that the README claims.
 
 use crate::common::step_loaded_sphere::{StepLoadedSphere, errors};
+use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;
 
 fn assert_figures(scene: &StepLoadedSphere) -> f64 {
@@ -11,7 +12,7 @@ fn assert_figures(scene: &StepLoadedSphere) -> f64 {
     assert!(error.l1 < 1.5e-3, "{error:?}");
     assert!(error.contact_radius.abs() < 5e-3, "{error:?}");
     assert!(error.approach.abs() < 1e-3, "{error:?}");
-    assert!((contact.force() / scene.force - 1.0).abs() < 1e-12);
+    assert_abs_diff_eq!(contact.force() / scene.force, 1.0, epsilon = 1e-12);
     work
 }
 

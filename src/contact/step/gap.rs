@@ -18,7 +18,7 @@ pub(super) struct RigidBodies<'a> {
 }
 
 impl RigidBodies<'_> {
-    /// The gap before any pressure and free motion, hi + u_old − what is prescribed of ω + α·x.
+    /// The gap before any pressure and free motion, hi + u_old − what is prescribed of ω + α·x (Eq. 1 of the paper).
     pub(super) fn fill_gap(&self, u_old: &[f64], gap: &mut [f64]) {
         for_each_band([&mut *gap], |first, [gap]| {
             for ((gap, &initial), &u_old) in gap.iter_mut().zip(&self.initial.above[first..]).zip(&u_old[first..]) {

@@ -2,12 +2,12 @@
 //!
 //! | Flow chart of the source paper (Figure 1) | here |
 //! |---|---|
-//! | load, and the motions that it leaves free (equations 4, 5) | [`constraints`] |
-//! | displacement due to the past, u_old (equations 9 to 11) | [`History::predict`](crate::hereditary::History::predict) |
-//! | gap before any pressure (equation 1) | [`gap`] |
+//! | load, and the motions that it leaves free (Eq. 4, Eq. 5) | [`constraints`] |
+//! | displacement due to the past, u_old (Eq. 9 to Eq. 12) | [`History::predict`](crate::hereditary::History::predict) |
+//! | gap before any pressure (Eq. 1) | [`gap`] |
 //! | initial guess of the pressure | [`initial_guess`] |
-//! | contact problem of an elastic body (equations 2 to 7), by conjugate gradients | [`Window::solve`] |
-//! | pressure and displacement kept for the steps to come (equation 12) | [`History::respond`](crate::hereditary::History::respond) |
+//! | contact problem of an elastic body (Eq. 2 to Eq. 8), by conjugate gradients | [`Window::solve`] |
+//! | pressure and displacement kept for the steps to come (Eq. 11) | [`History::respond`](crate::hereditary::History::respond) |
 //! | next step | [`ViscoelasticContact::accept`] |
 //!
 //! Beyond the paper, a step checks whether the bodies might touch outside the region that is computed, and then goes on in a

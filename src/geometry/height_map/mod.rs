@@ -222,6 +222,8 @@ impl Geometry for HeightMap {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
 
     /// A sum of waves on the unit square.
@@ -259,7 +261,7 @@ mod tests {
         map.fill_gap(&map.grid(), &mut gap);
         assert_eq!(gap.iter().copied().fold(f64::INFINITY, f64::min), 0.0);
         assert_eq!(gap[9], 0.0);
-        assert!((gap[2] - (9.0 / 4.0 + 2.0 / 3.0)).abs() < 1e-14);
+        assert_abs_diff_eq!(gap[2], 9.0 / 4.0 + 2.0 / 3.0, epsilon = 1e-14);
     }
 
     #[test]
@@ -314,7 +316,7 @@ mod tests {
         let mut gap = vec![0.0; 24];
         map.fill_gap_at(&map.grid(), [0.25 / 6.0, 0.0], &mut gap);
         let factor = (0.25 * std::f64::consts::PI).cos();
-        assert!((gap[0] - (1.0 - factor)).abs() < 1e-14);
-        assert!((gap[4] - (1.0 + factor)).abs() < 1e-14);
+        assert_abs_diff_eq!(gap[0], 1.0 - factor, epsilon = 1e-14);
+        assert_abs_diff_eq!(gap[4], 1.0 + factor, epsilon = 1e-14);
     }
 }

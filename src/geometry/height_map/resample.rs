@@ -93,6 +93,8 @@ impl HeightMap {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::super::tests::{map_of, waves};
     use super::*;
     use crate::error::Error;
@@ -143,7 +145,7 @@ mod tests {
         let wide = map.resampled(&Grid::new([16, 8], [2.0, 1.0]).unwrap()).unwrap().map;
         assert_eq!(wide.missing(), 64);
         assert_eq!(wide.initial_gap(-0.5, 0.0), f64::INFINITY);
-        assert!((wide.height_at(0.3, 0.2).unwrap() - map.height_at(0.3, 0.2).unwrap()).abs() < 1e-12);
+        assert_abs_diff_eq!(wide.height_at(0.3, 0.2).unwrap(), map.height_at(0.3, 0.2).unwrap(), epsilon = 1e-12);
         let beside = map.centered_at([5.0, 0.0]).unwrap();
         let refused = beside.resampled(&Grid::square(4, 1.0).unwrap()).unwrap_err();
         assert_eq!(refused, Error::Map(MapError::NothingKnown));

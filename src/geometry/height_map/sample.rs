@@ -156,6 +156,8 @@ impl HeightMap {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::super::tests::{map_of, waves};
     use crate::geometry::{Geometry, HeightMap};
 
@@ -180,13 +182,13 @@ mod tests {
     fn parabolas_are_exact_inside_and_slopes_are_derivatives() {
         let map = map_of([9, 8], |x1, x2| x1 * x1 - 0.5 * x2 * x2 + x1 * x2);
         let (x1, x2) = (0.13, -0.21);
-        assert!((map.height_at(x1, x2).unwrap() - (x1 * x1 - 0.5 * x2 * x2 + x1 * x2)).abs() < 1e-15);
+        assert_abs_diff_eq!(map.height_at(x1, x2).unwrap(), x1 * x1 - 0.5 * x2 * x2 + x1 * x2, epsilon = 1e-15);
         let map = map_of([9, 8], waves).periodic();
         let (at, step) = ((0.47, -0.49), 1e-6);
         let slope = map.slope_at(at.0, at.1).unwrap();
         let height = |d1: f64, d2: f64| map.height_at(at.0 + d1, at.1 + d2).unwrap();
-        assert!((slope[0] - (height(step, 0.0) - height(-step, 0.0)) / (2.0 * step)).abs() < 1e-7);
-        assert!((slope[1] - (height(0.0, step) - height(0.0, -step)) / (2.0 * step)).abs() < 1e-7);
+        assert_abs_diff_eq!(slope[0], (height(step, 0.0) - height(-step, 0.0)) / (2.0 * step), epsilon = 1e-7);
+        assert_abs_diff_eq!(slope[1], (height(0.0, step) - height(0.0, -step)) / (2.0 * step), epsilon = 1e-7);
     }
 
     #[test]
@@ -208,8 +210,8 @@ mod tests {
         let map = map.masked();
         assert_eq!(map.initial_gap(0.09, 0.0), f64::INFINITY);
         // Between (0.2, 0), known, and the middle, unknown: the known point counts.
-        assert!((map.initial_gap(0.15, 0.0) - (0.8 - 0.2)).abs() < 1e-14);
-        assert!((map.height_at(0.2, 0.1).unwrap() - 0.3).abs() < 1e-14);
+        assert_abs_diff_eq!(map.initial_gap(0.15, 0.0), 0.8 - 0.2, epsilon = 1e-14);
+        assert_abs_diff_eq!(map.height_at(0.2, 0.1).unwrap(), 0.3, epsilon = 1e-14);
     }
 
     #[test]
@@ -233,11 +235,11 @@ mod tests {
     #[test]
     fn maps_of_one_to_three_points_are_interpolated() {
         let constant = HeightMap::new([1, 1], [1.0, 1.0], vec![2.0]).unwrap();
-        assert!((constant.height_at(0.3, -0.4).unwrap() - 2.0).abs() < 1e-15);
-        assert!((constant.clone().periodic().height_at(7.3, -9.4).unwrap() - 2.0).abs() < 1e-14);
+        assert_abs_diff_eq!(constant.height_at(0.3, -0.4).unwrap(), 2.0, epsilon = 1e-15);
+        assert_abs_diff_eq!(constant.clone().periodic().height_at(7.3, -9.4).unwrap(), 2.0, epsilon = 1e-14);
         for n in [2, 3] {
             let line = map_of([n, 1], |x1, _| 3.0 * x1);
-            assert!((line.height_at(0.45, 0.2).unwrap() - 1.35).abs() < 1e-15);
+            assert_abs_diff_eq!(line.height_at(0.45, 0.2).unwrap(), 1.35, epsilon = 1e-15);
             let ring = map_of([n, 1], |x1, _| 3.0 * x1).periodic();
             let [x1, _] = ring.grid().center(0, 0);
             assert_eq!(ring.height_at(x1 + 1.0, 0.0), Some(ring.heights[0]));

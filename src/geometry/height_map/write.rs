@@ -107,6 +107,8 @@ fn save(mut writer: impl Write, format: &'static str, file: &[u8]) -> Result<()>
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
 
     /// Different along both axes, with a missing point, a negative zero and values of many digits.
@@ -148,7 +150,7 @@ mod tests {
         let expected = HeightMap { heights: single, ..map };
         assert_eq!(bits(&back)[2..], bits(&expected)[2..]);
         for axis in 0..2 {
-            assert!((back.spacing[axis] / expected.spacing[axis] - 1.0).abs() < 1e-15);
+            assert_abs_diff_eq!(back.spacing[axis] / expected.spacing[axis], 1.0, epsilon = 1e-15);
         }
     }
 

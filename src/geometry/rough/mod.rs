@@ -169,6 +169,8 @@ fn gaussian(random: &mut ChaCha8Rng) -> Complex64 {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
     use crate::geometry::SurfaceStatistics;
 
@@ -198,7 +200,7 @@ mod tests {
             assert!(mean.abs() < 1e-16 && (rms / 0.02 - 1.0).abs() < 1e-13);
             let by_slope = Rough::new(&grid, RoughSpec { roughness: Roughness::RmsSlope(0.3), ..SPEC }).unwrap();
             let statistics = SurfaceStatistics::of(by_slope.height_map()).unwrap();
-            assert!((statistics.rms_slope / 0.3 - 1.0).abs() < 1e-12);
+            assert_abs_diff_eq!(statistics.rms_slope / 0.3, 1.0, epsilon = 1e-12);
         }
     }
 

@@ -7,6 +7,7 @@ mod scenes;
 
 use crate::common::bodies::elastic;
 use crate::common::spheres::sphere_on;
+use approx::assert_abs_diff_eq;
 use reference::Reference;
 use scenes::Scene;
 use viscocontact::prelude::*;
@@ -77,7 +78,7 @@ fn a_load_may_jump_beyond_the_contact() {
         warm.step(0.0, jump).unwrap();
         fresh.step(0.0, jump).unwrap();
         assert!(distance(warm.pressure(), fresh.pressure()) < 1e-4);
-        assert!((warm.moment()[0] / (0.01 * x) - 1.0).abs() < 1e-9);
+        assert_abs_diff_eq!(warm.moment()[0] / (0.01 * x), 1.0, epsilon = 1e-9);
     }
 }
 

@@ -152,6 +152,8 @@ fn fitted_line(positions: &[f64], value: impl Fn(usize) -> f64) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
+    use approx::assert_abs_diff_eq;
+
     use super::*;
     use crate::Error;
 
@@ -184,7 +186,7 @@ mod tests {
         }
         let map = read(&text).unwrap();
         assert_eq!(map.cells, [2000, 2]);
-        assert!((map.spacing[0] * 3e6 - 1.0).abs() < 1e-6);
+        assert_abs_diff_eq!(map.spacing[0] * 3e6, 1.0, epsilon = 1e-6);
         for i in 0..2000 {
             assert_eq!(map.heights[2 * i], i as f64 / 1e9);
             assert!(

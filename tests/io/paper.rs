@@ -1,0 +1,149 @@
+//! docs/paper.md beside the code: every item, source, test and picture that it lists exists, and every equation and figure of
+//! the source paper has its line.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use viscocontact::geometry::Geometry;
+use viscocontact::rheology::Rheology;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn page() -> String {
+    fs::read_to_string(root().join("docs/paper.md")).unwrap()
+}
+
+/// A line of a table that has a column of sources.
+struct Line {
+    name: String,
+    sources: Vec<String>,
+    tests: Vec<String>,
+    pictures: Vec<String>,
+}
+
+/// What is in backquotes.
+fn quoted(text: &str) -> Vec<String> {
+    text.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+fn lines(page: &str) -> Vec<Line> {
+    let (mut lines, mut header) = (Vec::new(), Vec::new());
+    for line in page.lines() {
+        let Some(row) = line.strip_prefix('|') else {
+            header.clear();
+            continue;
+        };
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        if header.is_empty() {
+            header = cells;
+        } else if !cells[0].starts_with("---") && header.contains(&"source") {
+            let of = |column: &str| header.iter().position(|name| *name == column).map_or("", |at| cells[at]);
+            let [sources, tests, pictures] = ["source", "test", "picture"].map(|column| quoted(of(column)));
+            lines.push(Line { name: cells[0].to_owned(), sources, tests, pictures });
+        }
+    }
+    lines
+}
+
+/// The file of a test given as arguments of `cargo test`, and the function.
+fn test_at(arguments: &str) -> Option<(Vec<PathBuf>, &str)> {
+    let words: Vec<&str> = arguments.split(' ').collect();
+    let (folder, path) = match words[..] {
+        ["--lib", path] => ("src".to_owned(), path),
+        ["--test", binary, path] => (format!("tests/{binary}"), path),
+        _ => return None,
+    };
+    let (modules, function) = path.rsplit_once("::")?;
+    let module = modules.strip_suffix("::tests").unwrap_or(modules).replace("::", "/");
+    Some((
+        vec![root().join(format!("{folder}/{module}.rs")), root().join(format!("{folder}/{module}/mod.rs"))],
+        function,
+    ))
+}
+
+#[test]
+fn every_equation_and_figure_has_its_line() {
+    let page = page();
+    let lines = lines(&page);
+    let numbered = |kind: &str, last: usize| (1..=last).map(|n| format!("{kind} {n}")).collect::<Vec<_>>();
+    for name in [numbered("Eq.", 12), numbered("Fig.", 6), numbered("Table", 1)].concat() {
+        let line = lines.iter().find(|line| line.name == name).unwrap_or_else(|| panic!("no line of {name}"));
+        assert!(!line.sources.is_empty() && !line.tests.is_empty(), "{name}");
+    }
+    // the others are not known by their content
+    for reference in ["\\[1\\]", "\\[2\\]"] {
+        assert!(lines.iter().any(|line| line.name == reference), "{reference}");
+    }
+}
+
+#[test]
+fn sources_tests_and_pictures_of_the_page_exist() {
+    let mut missing = Vec::new();
+    for Line { name, sources, tests, pictures } in lines(&page()) {
+        for source in sources {
+            let text = fs::read_to_string(root().join(&source)).unwrap_or_default();
+            // the source of an equation says which it is
+            let numbered = !name.starts_with("Eq.")
+                || text
+                    .match_indices(&name)
+                    .any(|(at, _)| !text[at + name.len()..].starts_with(|c: char| c.is_ascii_digit()));
+            if text.is_empty() || !numbered {
+                missing.push(format!("{name}: {source}"));
+            }
+        }
+        for test in tests {
+            let defined = test_at(&test).is_some_and(|(files, function)| {
+                let texts = files.iter().filter_map(|file| fs::read_to_string(file).ok());
+                texts.into_iter().any(|text| text.contains(&format!("fn {function}(")))
+            });
+            if !defined {
+                missing.push(format!("{name}: {test}"));
+            }
+        }
+        // the package comes without pictures
+        let folder = root().join("docs/pictures");
+        missing.extend(pictures.iter().filter(|file| folder.exists() && !folder.join(file).exists()).cloned());
+    }
+    assert!(missing.is_empty(), "{missing:#?}");
+}
+
+/// Names of items that the compiler resolves: what can be imported, and functions of types.
+macro_rules! items {
+    (import $($($import:ident)::+),+; functions $($($function:ident)::+),+) => {{
+        $(const _: () = {
+            #[allow(unused_imports)]
+            use viscocontact::$($import)::+ as _;
+        };)+
+        $(let _ = viscocontact::$($function)::+;)+
+        [$(stringify!($($import)::+),)+ $(stringify!($($function)::+)),+].map(|item| item.replace(' ', ""))
+    }};
+}
+
+/// Rustdoc links what stands in brackets; here the compiler is asked.
+#[test]
+fn items_of_the_page_exist() {
+    let known = items!(
+        import
+            analytic::GrowingSphere, analytic::Hertz, analytic::RigidPunch, contact::Solver::ActiveSet,
+            contact::Solver::PolonskyKeer, contact::TimeRule, contact::TimeRule::Exponential, contact::TimeRule::Rectangle,
+            load::Sinusoid, rheology::Material, rheology::Maxwell, rheology::RelaxationSpectrum, rheology::Zener, rheology::library::find;
+        functions
+            InfluenceKernel::coefficient, InfluenceKernel::convolve, InfluenceKernel::half_space,
+            ViscoelasticContact::contact_area, ViscoelasticContact::contact_cells, ViscoelasticContact::displacement,
+            ViscoelasticContact::force, ViscoelasticContact::gap_into, ViscoelasticContact::moment,
+            ViscoelasticContact::pressure, ViscoelasticContact::step, ViscoelasticContact::step_each,
+            ViscoelasticContact::tilt, analytic::GrowingSphere::pressure, analytic::GrowingSphere::step,
+            analytic::Hertz::contact_radius, analytic::Hertz::greatest_pressure, contact::Builder::another_body,
+            contact::Settings::paper, load::Load::eccentric_force, load::Load::force,
+            rheology::Material::contact_compliance
+    );
+    let _ = (<dyn Geometry>::initial_gap, <dyn Rheology>::creep_compliance);
+    let of_traits = ["geometry::Geometry::initial_gap", "rheology::Rheology::creep_compliance"].map(str::to_owned);
+    let known: BTreeSet<String> = known.into_iter().chain(of_traits).collect();
+    let page = page();
+    let listed = page.split("[`").skip(1).map(|rest| rest.split("`]").next().unwrap().to_owned());
+    assert_eq!(listed.collect::<BTreeSet<_>>(), known);
+}
