@@ -6,8 +6,12 @@
 mod claim;
 mod creep;
 mod elastic;
+mod history;
+#[path = "../../tests/common/noise.rs"]
+mod noise;
 #[path = "../../tests/common/rolling.rs"]
 mod rolling;
+mod sliding;
 #[path = "../../tests/common/step_loaded_sphere.rs"]
 mod step_loaded_sphere;
 #[path = "../support/mod.rs"]
@@ -52,7 +56,7 @@ fn zener() -> Outcome {
     Ok(checked)
 }
 
-const SCENES: [fn() -> Outcome; 15] = [
+const SCENES: [fn() -> Outcome; 24] = [
     elastic::convolution,
     elastic::hertz,
     elastic::hertz_ellipse,
@@ -62,12 +66,21 @@ const SCENES: [fn() -> Outcome; 15] = [
     maxwell,
     zener,
     creep::order,
+    creep::step_loaded_ellipsoid,
+    creep::opened_punch,
     creep::loaded_and_unloaded,
     creep::relaxing,
     creep::oscillating,
     creep::power_law,
     creep::elastic_bulk,
+    history::many_times,
+    history::measured,
+    history::direct_sums,
+    history::cone,
     creep::rolling,
+    sliding::slow,
+    sliding::fast,
+    sliding::wave,
 ];
 
 /// The table, in Markdown.
