@@ -57,10 +57,10 @@ pub fn many_times() -> Outcome {
     )
 }
 
-/// A table of creep without noise, six values per decade; the foundation has the law that the table was made from.
+/// A table of creep without noise, twelve values per decade; the foundation has the law that the table was made from.
 pub fn measured() -> Outcome {
     let law = FractionalZener::new(10.0 * G, 0.5 * G, 1.0, 0.5)?;
-    let times: Vec<f64> = (0..=36).map(|k| 10_f64.powf(-4.0 + f64::from(k) / 6.0)).collect();
+    let times: Vec<f64> = (0..=72).map(|k| 10_f64.powf(-4.0 + f64::from(k) / 12.0)).collect();
     let values: Vec<f64> = times.iter().map(|&t| law.creep_compliance(t)).collect();
     let table = Material::incompressible(TabulatedCreep::new(&times, &values)?);
     let known = Material::incompressible(law.series(1e-6..=1e2, 1e-6)?);
@@ -114,8 +114,12 @@ pub fn cone() -> Outcome {
         let (way, share) = if t <= turn { (t, t.powf(2.0 - beta)) } else { (2.0 * turn - t, share(t)) };
         (1e6 * velocity * way, 1e3 * exact_greatest * share)
     });
-    Ok(Checked::new("cone on a power law t^0.3, in and out, 128² cells", "Ting 1966, derived in `history.rs`", &rows)
-        .drawn(["approach [µm]", "force [mN]"], Legend::UpperLeft, line.collect(), curve))
+    Ok(Checked::new("cone on a power law t^0.3, in and out, 128² cells", "Ting 1966, derived below", &rows).drawn(
+        ["approach [µm]", "force [mN]"],
+        Legend::UpperLeft,
+        line.collect(),
+        curve,
+    ))
 }
 
 /// Three retardation times, and forces that rise and fall at random, down to nothing too.

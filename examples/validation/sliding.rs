@@ -131,7 +131,7 @@ pub fn slow() -> Outcome {
         ("friction of a sphere", sphere[0], sphere[1], 5e-3),
         ("friction of an ellipsoid, R along the motion, 3R across", ellipsoid[0], ellipsoid[1], 5e-3),
     ];
-    Ok(Checked::new("slow sliding, three retardation times", "v Σ C_k τ_k/(R C∞), derived in `sliding.rs`", &rows))
+    Ok(Checked::new("slow sliding, three retardation times", "μ = v Σ C_k τ_k/(R C∞), derived below", &rows))
 }
 
 /// For v τ ≫ a, all that creeps behind the contact does so at the rate C′(0) p of its passage. After a slide of length L ≪ v τ
@@ -170,7 +170,7 @@ pub fn fast() -> Outcome {
         // what the next term, a³/L³, leaves is 4e-4
         ("the same for a/L → 0, from 6 a and 12 a", 2.0 * mean(1) - mean(0), 0.8 * scale(sphere)?, 5e-3),
     ];
-    Ok(Checked::new("fast sliding, three retardation times", "first order in C′(0)/v, derived in `sliding.rs`", &rows))
+    Ok(Checked::new("fast sliding, three retardation times", "first order in C′(0)/v, derived below", &rows))
 }
 
 /// A wave h cos(q·x) in full contact, sliding along x1: p = ½ |q| h Re[e^(i q·x)/C*(−i q₁ v)] and the mean, so that on a unit of
@@ -214,15 +214,15 @@ pub fn wave() -> Outcome {
             2e-3,
         ),
     ];
-    // over 2.5 decades of speed, the logarithm of ω in 1/s
+    // over 2.5 decades of speed, lg of q v
     let frequency = |k: i32| -1.5 + 0.25 * f64::from(k);
     let at = |exponent: f64| 10_f64.powf(exponent) / wave_number(1.0);
     let line = between(frequency(0), frequency(10)).map(|x| (x, exact([1.0, 0.0], at(x)))).collect();
     let dots = (0..=10).map(|k| Ok((frequency(k), across(at(frequency(k)))?))).collect::<Result<Vec<_>>>()?;
     Ok(Checked::new(
         "wave sliding in full contact, three retardation times",
-        "¼ q q₁ h² Im[1/C*(i q₁ v)], derived in `sliding.rs`",
+        "¼ q q₁ h² Im[1/C*(i q₁ v)], derived below",
         &rows,
     )
-    .drawn(["lg (q v · 1 s)", "lateral force per area [Pa]"], Legend::UpperLeft, line, dots))
+    .drawn(["lg of q v [1/s]", "lateral force per area [Pa]"], Legend::UpperLeft, line, dots))
 }

@@ -134,7 +134,8 @@ fn foundation_retracts_a_cone_as_ting() {
                 continue;
             }
             let back = t - 2_f64.powf(1.0 / (1.0 - beta)) * (t - 1.0);
-            if back > 0.1 {
+            // at the turn the force falls by (t − 1)^(1−β), faster than the first steps follow
+            if t > 1.01 && back > 0.1 {
                 let factor = 2.0 * (t - 1.0).powf(1.0 - beta) * ((1.0 - beta) * back + t);
                 let force = foundation.force() / greatest - (t.powf(2.0 - beta) - factor);
                 let found = foundation.contact_radius() / radius(1.0) - back;
@@ -142,7 +143,7 @@ fn foundation_retracts_a_cone_as_ting() {
             }
         }
         println!("β = {beta}: force {:.1e} of the greatest, radius {:.1e}", worst[0], worst[1]);
-        assert!(worst[0] < 1e-3 && worst[1] < 2e-3, "{beta}: {worst:?}");
+        assert!(worst[0] < 2e-4 && worst[1] < 2e-4, "{beta}: {worst:?}");
     }
 }
 
