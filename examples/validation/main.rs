@@ -107,8 +107,8 @@ w = K p. An indenter that slides along x1 at v finds the surface at u(x) = C(0) 
 resisted by F = −∫ p u′ dA; μ is F over the normal force.
 
 * Slow sliding, v τ ≪ a: u = C∞ w + v m₁ w′ with m₁ = Σ C_k τ_k, and μ = v m₁/(R C∞) for every paraboloid of radius R along
-  the motion, whatever its radius across: cylinder, sphere, ellipsoid. For other shapes, 1/R is the mean of ∂²h_i/∂x1²,
-  weighted by the pressure. What is left out is of the order v τ/a.
+  the motion, whatever its radius across: cylinder, sphere, ellipsoid. For other shapes without an edge, 1/R is the mean of
+  ∂²h_i/∂x1², weighted by the pressure. What is left out is of the order v τ/a.
 * Fast sliding, a ≪ v τ, after a slide of length L ≪ v τ from where the indenter was put down:
   F = (C′(0)/v) ∫ p(x) [w(x) − w(x + L)] dA with Hertz's p and w for C(0).
   Sphere: μ = (a²/Rv) C′(0)/C(0) [4/5 − (4a/3πL)(1 + a²/5L² + …)].

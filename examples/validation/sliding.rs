@@ -108,7 +108,8 @@ impl Slider {
 }
 
 /// For v τ ≪ a, u = C∞ w + v m₁ w′ and F = −v m₁ ∫ p w″ dA, where w″ = −h_i″/C∞ in contact: μ = v m₁/C∞ times the mean of
-/// h_i″, weighted by the pressure. That is 1/R for any paraboloid of radius R along the motion.
+/// h_i″, weighted by the pressure. That is 1/R for any paraboloid of radius R along the motion. The pressure must vanish at the rim,
+/// as it does without an edge.
 ///
 /// The next term is of the order v τ/a, far below the tolerance here. The contact moves by less than a cell, which errs
 /// in the first order of the mesh: each value is extrapolated from two meshes.
