@@ -3,7 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
-use viscocontact::analytic::{AxisymmetricContact, Hertz, Profile};
+use viscocontact::analytic::{AxisymmetricContact, Hertz, HertzEllipse, Profile};
 use viscocontact::plot::Legend;
 use viscocontact::prelude::*;
 
@@ -29,6 +29,68 @@ pub fn step_loaded(scene: &StepLoadedSphere, name: &'static str) -> Outcome {
         Legend::LowerMiddle,
         line,
         along_x1(&contact),
+    ))
+}
+
+/// While a contact grows, W = ∫ E(t − s) df, f the elastic force over E* of the ellipse that touches at s, as for the sphere (Lee &
+/// Radok 1960). Under a step of W hence f = C(t) W: the ellipse is Hertz's with the compliance of the time, and ω and the area
+/// follow C^(2/3).
+pub fn step_loaded_ellipsoid() -> Outcome {
+    let material = Material::incompressible(Maxwell::new(G, G)?);
+    let radii = [20.0e-3, 5.0e-3];
+    let exact = |t: f64| HertzEllipse::new(radii, 1.0 / material.contact_compliance(t), 1.0);
+    let [a1, a2] = exact(2.0)?.semi_axes();
+    let mut contact = ViscoelasticContact::builder(Grid::new([192, 128], [2.25 * a1, 2.25 * a2])?)
+        .geometry(&Ellipsoid::new(radii[0], radii[1])?)
+        .material(material.clone())
+        .build()?;
+    contact.step(0.0, Load::force(1.0))?;
+    let at_once = contact.approach();
+    for _ in 0..50 {
+        contact.step(0.04, Load::force(1.0))?;
+    }
+    let ratio = material.contact_compliance(2.0) / material.contact_compliance(0.0);
+    let rows = [
+        ("approach", contact.approach(), exact(2.0)?.approach(), 1e-3),
+        ("approach over that at once", contact.approach() / at_once, ratio.powf(2.0 / 3.0), 1e-3),
+        ("contact area", contact.contact_area(), PI * a1 * a2, 5e-3),
+    ];
+    Ok(Checked::new(
+        "step-loaded ellipsoid 4 : 1 on a Maxwell body, 192 × 128 cells",
+        "Hertz 1882 with C(t), f = C W",
+        &rows,
+    ))
+}
+
+/// A flat face half lifted by its force: h = C K p − ω − α x1 on it, so that pressure and contact stay, and ω and α follow C(t)
+/// (E. H. Lee, Q. Appl. Math. 13, 1955, p. 183: stresses that do not change with time).
+pub fn opened_punch() -> Outcome {
+    let material = Material::incompressible(Zener::new(G, 0.5 * G, 0.5 * G)?);
+    let mut contact = ViscoelasticContact::builder(Grid::square(96, 2.1e-3)?)
+        .geometry(&FlatPunch::circular(1.0e-3)?)
+        .material(material.clone())
+        .build()?;
+    let load = Load::eccentric_force(1.0, [0.6e-3, 0.0]);
+    let state = |contact: &ViscoelasticContact| {
+        [contact.approach(), contact.tilt()[0], contact.contact_area(), contact.greatest_pressure()]
+    };
+    contact.step(0.0, load)?;
+    let start = state(&contact);
+    for _ in 0..50 {
+        contact.step(0.04, load)?;
+    }
+    let end = state(&contact);
+    let growth = material.contact_compliance(2.0) / material.contact_compliance(0.0);
+    let rows = [
+        ("approach over that at once", end[0] / start[0], growth, 1e-4),
+        ("tilt over that at once", end[1] / start[1], growth, 1e-4),
+        ("contact area over that at once", end[2] / start[2], 1.0, 1e-4),
+        ("greatest pressure over that at once", end[3] / start[3], 1.0, 1e-4),
+    ];
+    Ok(Checked::new(
+        "flat punch on a Zener body, force at 0.6 R, half open, held",
+        "Lee 1955: p stays, u ∝ C(t)",
+        &rows,
     ))
 }
 

@@ -6,8 +6,12 @@
 mod claim;
 mod creep;
 mod elastic;
+mod history;
+#[path = "../../tests/common/noise.rs"]
+mod noise;
 #[path = "../../tests/common/rolling.rs"]
 mod rolling;
+mod sliding;
 #[path = "../../tests/common/step_loaded_sphere.rs"]
 mod step_loaded_sphere;
 #[path = "../support/mod.rs"]
@@ -52,7 +56,7 @@ fn zener() -> Outcome {
     Ok(checked)
 }
 
-const SCENES: [fn() -> Outcome; 15] = [
+const SCENES: [fn() -> Outcome; 24] = [
     elastic::convolution,
     elastic::hertz,
     elastic::hertz_ellipse,
@@ -62,12 +66,21 @@ const SCENES: [fn() -> Outcome; 15] = [
     maxwell,
     zener,
     creep::order,
+    creep::step_loaded_ellipsoid,
+    creep::opened_punch,
     creep::loaded_and_unloaded,
     creep::relaxing,
     creep::oscillating,
     creep::power_law,
     creep::elastic_bulk,
+    history::many_times,
+    history::measured,
+    history::direct_sums,
+    history::cone,
     creep::rolling,
+    sliding::slow,
+    sliding::fast,
+    sliding::wave,
 ];
 
 /// The table, in Markdown.
@@ -85,6 +98,29 @@ fn table(claims: &[&Claim]) -> Result<String, std::fmt::Error> {
     }
     Ok(table)
 }
+
+/// What the references that are derived here state, and for which shapes; the steps are beside the scenes.
+const DERIVED: &str = "\
+## Derived references
+
+w = K p. An indenter that slides along x1 at v finds the surface at u(x) = C(0) w(x) + ∫ C′(s) w(x + v s) ds, s > 0, and is
+resisted by F = −∫ p u′ dA; μ is F over the normal force.
+
+* Slow sliding, v τ ≪ a: u = C∞ w + v m₁ w′ with m₁ = Σ C_k τ_k, and μ = v m₁/(R C∞) for every paraboloid of radius R along
+  the motion, whatever its radius across: cylinder, sphere, ellipsoid. For other shapes without an edge, 1/R is the mean of
+  ∂²h_i/∂x1², weighted by the pressure. What is left out is of the order v τ/a.
+* Fast sliding, a ≪ v τ, after a slide of length L ≪ v τ from where the indenter was put down:
+  F = (C′(0)/v) ∫ p(x) [w(x) − w(x + L)] dA with Hertz's p and w for C(0).
+  Sphere: μ = (a²/Rv) C′(0)/C(0) [4/5 − (4a/3πL)(1 + a²/5L² + …)].
+  Cylinder: μ = (a²/2Rv) C′(0)/C(0) [ln(2L/a) + 1/4 − a²/4L² − …]; steadily, ln(2L/a) becomes ln(2vτ/a) − γ, γ = 0.5772….
+* A wave h cos(q·x) in full contact: F on a unit of area is ¼ |q| q₁ h² Im[1/C*(i q₁ v)], C*(iω) = C(0) + Σ C_k/(1 + iω τ_k).
+* A cone on E ∝ t^(−β), approach t up to 1, then 2 − t: with T = t − c (t − 1), c = 2^(1/(1−β)), the radius is that at T, and
+  F(t)/F(1) = t^(2−β) − 2 (t − 1)^(1−β) [(1 − β) T + t], as long as T ≥ 0.
+* A step-loaded ellipsoid: the contact grows, and W = ∫ E(t − s) df(s), f being the elastic force over E* of the ellipse at s.
+  Hence f = C(t) W: ω and the area follow C^(2/3).
+* An opened flat punch: h = C K p − ω − α x1 on its face keeps its sign when C, ω and α grow alike.
+
+";
 
 /// Errors beside what is allowed, claim by claim.
 fn errors(claims: &[&Claim]) -> Chart {
@@ -125,7 +161,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let rows = save_rows(&checked, &args.output)?;
     let mut text = format!(
         "# Validation\n\nWritten by `cargo run --release --example validation`, pictures included; it fails if an error is greater than \
-         allowed.\n\n{table}\n![Errors of all claims beside what is allowed](pictures/validation_errors.png)\n"
+         allowed.\n\n{table}\n{DERIVED}![Errors of all claims beside what is allowed](pictures/validation_errors.png)\n"
     );
     for row in 1..=rows {
         write!(text, "\n![Computed values on their references](pictures/validation_{row}.png)\n")?;

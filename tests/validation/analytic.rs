@@ -115,6 +115,39 @@ fn foundation_converges_to_ting() {
     assert!(coarse / fine > 60.0, "order in space: {coarse:e} {fine:e}");
 }
 
+/// A cone on a power law, E ∝ t^(−β), in at a constant velocity up to t = 1 and out as fast: with T = t − c (t − 1), c = 2^(1/(1−β)),
+/// F(t)/F(1) = t^(2−β) − 2 (t − 1)^(1−β) [(1 − β) T + t] (Ting 1966), and the radius is that of the time T on the way in.
+#[test]
+fn foundation_retracts_a_cone_as_ting() {
+    for beta in [0.2_f64, 0.5] {
+        let body =
+            Material::incompressible(PowerLaw::new(1.0e-6, 1.0, beta).unwrap().series(1e-6..=2.0, 1e-6).unwrap());
+        let (slope, velocity, steps) = (0.05, 1.0e-5, 1000);
+        let radius = |t: f64| 2.0 * velocity * t / (PI * slope);
+        let profile = Profile::cone(slope).unwrap();
+        let mut foundation = AxisymmetricContact::new(&profile, &body, 8000, 1.1 * radius(1.0)).unwrap();
+        let (mut greatest, mut worst) = (0.0, [0.0_f64; 2]);
+        for step in 1..=steps + steps / 4 {
+            let t = f64::from(step) / f64::from(steps);
+            foundation.indent(1.0 / f64::from(steps), velocity * t.min(2.0 - t)).unwrap();
+            if step <= steps {
+                greatest = foundation.force();
+                continue;
+            }
+            let back = t - 2_f64.powf(1.0 / (1.0 - beta)) * (t - 1.0);
+            // at the turn the force falls by (t − 1)^(1−β), faster than the first steps follow
+            if t > 1.01 && back > 0.1 {
+                let factor = 2.0 * (t - 1.0).powf(1.0 - beta) * ((1.0 - beta) * back + t);
+                let force = foundation.force() / greatest - (t.powf(2.0 - beta) - factor);
+                let found = foundation.contact_radius() / radius(1.0) - back;
+                worst = [worst[0].max(force.abs()), worst[1].max(found.abs())];
+            }
+        }
+        println!("β = {beta}: force {:.1e} of the greatest, radius {:.1e}", worst[0], worst[1]);
+        assert!(worst[0] < 2e-4 && worst[1] < 2e-4, "{beta}: {worst:?}");
+    }
+}
+
 /// Unloading: force- and approach-driven runs of the same history are the same run.
 #[test]
 fn foundation_driven_by_its_own_approach() {

@@ -99,6 +99,29 @@ fn very_slow_and_very_fast_rolling_is_hertzs() {
     }
 }
 
+/// The limits of the friction of the reference itself. Slow: v m₁/(R C∞), m₁ = C₁ λ, and a term of the order of v λ/a more, which two
+/// speeds eliminate. Fast: (a²/2Rv) (C₁/λC₀) [ln(2vλ/a) + 1/4 − γ], the mean of ln(2L/a) + 1/4 over lengths L of the past that
+/// count by e^(−L/vλ).
+#[test]
+fn friction_of_the_reference_has_the_limits_of_slow_and_fast_rolling() {
+    let scene = scene(1.0);
+    let over = |reach: f64, limit: f64| {
+        let rolling = RollingCylinder { reach, ..scene };
+        rolling.steady(400).friction(rolling.radius) / limit
+    };
+    let relaxed = scene.glassy + scene.delayed;
+    let slow = |share: f64| {
+        let reach = share * scene.hertz(relaxed).0;
+        over(reach, reach * scene.delayed / (scene.radius * relaxed))
+    };
+    let limit = 2.0 * slow(0.05) - slow(0.1);
+    let a = scene.hertz(scene.glassy).0;
+    let logarithm = 200_f64.ln() + 0.25 - 0.577_215_664_901_532_9;
+    let fast = over(100.0 * a, a / (200.0 * scene.radius) * scene.delayed / scene.glassy * logarithm);
+    println!("slow {:.1e}, fast {:.1e}", limit - 1.0, fast - 1.0);
+    assert!((limit - 1.0).abs() < 5e-4 && (fast - 1.0).abs() < 5e-4, "{limit} {fast}");
+}
+
 #[test]
 fn exponential_integrals_of_the_reference_are_the_tabulated_ones() {
     // Abramowitz & Stegun, tables 5.1 and 5.2
