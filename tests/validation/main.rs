@@ -4,9 +4,11 @@ mod analytic;
 #[path = "../common/mod.rs"]
 mod common;
 mod hertz;
+mod oscillation;
 mod plan;
 mod plan_random;
 mod plane;
 mod rolling;
+mod several_indenters;
 mod step_loaded_sphere;
 mod stiffness;
