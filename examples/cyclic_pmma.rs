@@ -1,15 +1,17 @@
-//! PMMA under a force that oscillates: the energy lost in each cycle over ten decades of frequency, against the complex
-//! compliance; the second of the two systems that the source paper builds on (see also S. Spinu, D. Cerlinca, *Adv.
-//! Tribol.* 2018, 9432894: a sphere on PMMA under a harmonic force). Published relaxation data, named by `viscocontact::rheology::library`.
+//! PMMA under a force that oscillates: the energy lost in each cycle over nine decades of frequency, against the complex
+//! compliance. It is one of the two systems that the source paper builds on; S. Spinu, D. Cerlinca, *Adv. Tribol.* 2018,
+//! 9432894, press a sphere onto PMMA in the same way. The material is the one that `viscocontact::rheology::library`
+//! names, with its source.
 //!
-//! A flat punch of radius a has a fixed contact, so that force and approach form a linear system: ω(t) = ∫ C(t − s) dW(s) / 2a.
-//! Under W = W_m + W_a cos Ωt, with C*(Ω) = C′ − i C″, the approach settles to ω_m + (W_a/2a) (C′ cos Ωt + C″ sin Ωt), and each cycle costs
+//! A flat punch of radius a has a fixed contact. Force and approach then form a linear system,
+//! ω(t) = ∫ C(t − s) dW(s) / 2a. Under W = Wm + Wa cos Ωt, with C*(Ω) = C′ − iC″, the approach settles to
+//! ωm + (Wa/2a) (C′ cos Ωt + C″ sin Ωt), and a cycle costs
 //!
-//! ΔW = ∮ W dω = π W_a² C″(Ω) / 2a
+//! ΔW = ∮ W dω = π Wa² C″(Ω) / 2a
 //!
-//! Nothing else enters: not the mean force, not the shape of the pressure. Under a sphere the contact grows and shrinks in each
-//! cycle. For small amplitudes this changes nothing, with a the radius under the mean force, a³ = ¾ R W_m C(t); for large ones the
-//! difference is shown. The reference of the sphere is the one-dimensional foundation (method of dimensionality reduction).
+//! whatever the mean force. Under a ball the contact grows and shrinks in each cycle. For small amplitudes this changes
+//! nothing, a being the radius under the mean force, a³ = ¾ R Wm C(t); for large ones the difference is shown. The
+//! reference of the ball is the one-dimensional foundation (method of dimensionality reduction).
 //!
 //! `cargo run --release --example cyclic_pmma`
 

@@ -1,12 +1,12 @@
-//! Three flat punches and a sphere on one viscoelastic body, each with a force of its own: the first of the two systems that the source
-//! paper builds on (several rigid indenters). They feel each other through the surface.
+//! Three flat punches and a sphere on one viscoelastic body, each with a force of its own: several rigid indenters that feel
+//! each other through the surface, one of the two systems that the source paper builds on.
 //!
-//! * Under forces that are held, the approaches of all four are those of an elastic body of compliance C(t) (correspondence
-//!   principle: no contact shrinks). Beside them stands the sum of lone indenters: the closed form of each, plus what the others would
-//!   displace at its centre if they were alone.
+//! * Under forces that are held, no contact shrinks, and the approaches of all four are those of an elastic body of
+//!   compliance C(t) (correspondence principle). Beside them stands the sum of lone indenters: the closed form of each,
+//!   and what the others alone would displace at its centre.
 //! * The punches carry a heavy force in turn. As long as their faces stay in contact all over, they are a linear system,
-//!   ω_i(t) = Σ_j S_ij ∫ C(t − s) dW_j(s), with the S_ij of an elastic body; the pressures are those of the forces of the moment.
-//!   A sphere between them under a constant force leans away from the punch whose turn it is: its centre of pressure moves.
+//!   ω_i(t) = Σ_j S_ij ∫ C(t − s) dW_j(s), with the S_ij of an elastic body. A sphere between them is under a constant
+//!   force; its centre of pressure moves away from the punch whose turn it is.
 //!
 //! `cargo run --release --example several_indenters`
 
@@ -102,8 +102,8 @@ fn held(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Box<d
     let mut contact = scene.on(material, 4)?;
     println!("held forces, {}² cells, {} steps a retardation time", args.cells, args.steps);
     println!(
-        "{:>6} {:>12} {:>15} {:>12} {:>8} {:>12}",
-        "t / τ", "body", "approach [µm]", "exact", "error", "sum of lone"
+        "{:>5} {:>12} {:>15} {:>9} {:>8} {:>9} {:>12}",
+        "t / τ", "body", "approach [µm]", "exact", "error", "alone", "sum of lone"
     );
     let mut table = csv::Writer::from_path(args.output.join("held.csv"))?;
     table.write_record(["time_s", "body", "approach_m", "exact_m", "sum_of_lone_m", "lone_m"])?;
@@ -220,7 +220,7 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
     chart.add("computed", COLORS[6], Style::Dots, dots);
     chart.save(args.output.join("turns.png"))?;
     let title = "A sphere under a constant force: its neighbours left, right and above are pressed in turn";
-    let mut chart = Chart::new(title, "t / τ", "centre of pressure of the sphere [µm]", Legend::LowerRight);
+    let mut chart = Chart::new(title, "t / τ", "centre of pressure of the sphere [µm]", Legend::UpperRight);
     for ((curve, name), color) in centers.into_iter().zip(["x1", "x2"]).zip(COLORS) {
         chart.add(name, color, Style::Line, curve);
     }

@@ -46,19 +46,19 @@ impl Indenters {
         builder.build()
     }
 
-    /// Approaches of an elastic body of compliance `compliance` \[1/Pa\] under `forces`: in the order of the forces \[m\].
+    /// The contact of an elastic body of compliance `compliance` \[1/Pa\] under `forces` \[N\], as many bodies as forces.
     ///
-    /// Under forces that jump to constant values at t = 0 the contact grows, so that by the correspondence principle (Lee & Radok 1960,
-    /// Ting 1966) the approaches of a creeping body are those of the elastic one with C(t) in place of 1/E*.
+    /// Under forces that jump at t = 0 and are held no contact shrinks, so that by the correspondence principle (Lee &
+    /// Radok 1960, Ting 1966) the approaches of a creeping body are those of the elastic one of compliance C(t).
     pub fn elastic(&self, compliance: f64, forces: &[f64]) -> Result<ViscoelasticContact> {
         let mut contact = self.on(&Material::incompressible(Elastic::new(0.25 / compliance)?), forces.len())?;
         contact.step_each(0.0, &forces.iter().map(|&force| Load::force(force)).collect::<Vec<_>>())?;
         Ok(contact)
     }
 
-    /// Surface displacement at the distance `r` from the centre of `body` \[m\], alone under `force` on an elastic body of compliance
-    /// `compliance`: (2/π) ω asin(a/r) outside a punch, that of Hertz outside a sphere (Johnson, *Contact Mechanics*, 1985, 3.34 and 3.42); the approach inside the
-    /// contact of the punch, and at r = 0.
+    /// Surface displacement at the distance `r` from the centre of `body` \[m\] if it is alone under `force` on an elastic
+    /// body of compliance `compliance`; its approach at r = 0. Outside a punch (2/π) ω asin(a/r), outside a sphere Hertz's
+    /// (Johnson, *Contact Mechanics*, 1985, §3.4).
     pub fn alone(&self, body: usize, force: f64, compliance: f64, r: f64) -> f64 {
         if body == SPHERE {
             let a = (0.75 * self.sphere * force * compliance).cbrt();
@@ -72,8 +72,7 @@ impl Indenters {
         if r <= self.punch { approach } else { FRAC_2_PI * approach * (self.punch / r).asin() }
     }
 
-    /// Displacement at the point `at` if the bodies were alone and what each displaces were added; at the centre of a body the
-    /// approach \[m\].
+    /// Displacement at the point `at` \[m\] if each body displaced what it does alone; the approach at the centre of one.
     pub fn sum_of_lone(&self, at: [f64; 2], forces: &[f64], compliance: f64) -> f64 {
         let of = |(body, &force): (usize, &f64)| {
             let [x, y] = self.center(body);
@@ -83,8 +82,8 @@ impl Indenters {
     }
 }
 
-/// Punches whose faces stay in contact all over are a linear system: ω_i(t) = Σ_j S_ij ∫ C(t − s) dW_j(s), the S_ij \[1/m\] being those of
-/// an elastic body.
+/// Punches whose faces stay in contact all over are a linear system, ω_i(t) = Σ_j S_ij ∫ C(t − s) dW_j(s), with the S_ij
+/// \[1/m\] of an elastic body.
 pub struct ClosedFaces {
     pub compliances: [[f64; 3]; 3],
 }

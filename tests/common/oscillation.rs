@@ -10,8 +10,8 @@ use viscocontact::rheology::CreepSpectrum;
 const HELD: f64 = 1000.0;
 const CYCLES: u32 = 4;
 
-/// A force that is held and then oscillates. It begins with a jump to its crest: the transients that this starts fade before
-/// the last cycle.
+/// A force that is held and then oscillates. It begins with a jump to its crest: the transients that this starts fade
+/// before the last cycle.
 #[derive(Debug, Clone, Copy)]
 pub struct Oscillation {
     /// Mean and amplitude \[N\].
@@ -86,7 +86,8 @@ impl Oscillation {
         (0.75 * ball * self.mean * material.contact_compliance(time)).cbrt()
     }
 
-    /// π W_a² C″ / 2a \[J\]: what a cycle loses if the contact radius stays at `radius`, on a body of contact compliance `creep`.
+    /// π Wa² C″ / 2a \[J\]: what a cycle loses if the contact radius stays at `radius`, on a body of contact compliance
+    /// `creep`.
     pub fn loss_of_fixed_contact(&self, creep: &CreepSpectrum, radius: f64) -> f64 {
         -PI * self.amplitude.powi(2) * creep.complex_compliance(TAU * self.frequency).im / (2.0 * radius)
     }
@@ -119,10 +120,10 @@ impl Cycle {
         values[1..].iter().sum::<f64>() / (values.len() - 1) as f64
     }
 
-    /// ∮ (W − W_m) dω \[J\]. A mean that still creeps is no loss of the oscillation.
+    /// ∮ (W − Wm) dω \[J\]: a mean approach that still creeps is no loss of the oscillation.
     ///
-    /// The chords cut an ellipse short by sin Δ / Δ, Δ being the phase of a step; since a sinusoidal force works on the first
-    /// harmonic of the approach only, this is so for any approach.
+    /// The chords cut an ellipse short by sin Δ / Δ, Δ being the phase of a step; since a sinusoidal force works on the
+    /// first harmonic of the approach only, this is so for any approach.
     pub fn loss(&self) -> f64 {
         let mean = Cycle::mean(&self.forces);
         let chords = self.forces.windows(2).zip(self.approaches.windows(2));

@@ -38,7 +38,7 @@ fn the_contact_of_a_ball_changes_the_loss_of_large_amplitudes() {
             AxisymmetricContact::new(&Profile::sphere(ball).unwrap(), &material, 500, 1.4 * radius).unwrap();
         let exact = force.follow_on(foundation, 256).unwrap().loss();
         assert!((exact / force.loss_of_fixed_contact(&creep, radius) - over_fixed).abs() < allowed);
-        let mut contact = ViscoelasticContact::builder(Grid::square(48, 2.7 * radius).unwrap())
+        let mut contact = ViscoelasticContact::builder(Grid::square(96, 2.7 * radius).unwrap())
             .geometry(&Sphere::new(ball).unwrap())
             .material(material.clone())
             .build()
