@@ -2,8 +2,8 @@
 //! each other through the surface, one of the two systems that the source paper builds on.
 //!
 //! * Under forces that are held, no contact shrinks, and the approaches of all four are those of an elastic body of
-//!   compliance C(t) (correspondence principle). Beside them stands the sum of lone indenters: the closed form of each,
-//!   and what the others alone would displace at its centre.
+//!   compliance C(t) (correspondence principle). What the others add to the approach of each stands beside the sum of
+//!   lone indenters: the closed forms of what they would displace at its centre.
 //! * The punches carry a heavy force in turn. As long as their faces stay in contact all over, they are a linear system,
 //!   ω_i(t) = Σ_j S_ij ∫ C(t − s) dW_j(s), with the S_ij of an elastic body. A sphere between them is under a constant
 //!   force; its centre of pressure moves away from the punch whose turn it is.
@@ -103,10 +103,10 @@ fn held(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Box<d
     println!("held forces, {}² cells, {} steps a retardation time", args.cells, args.steps);
     println!(
         "{:>5} {:>12} {:>15} {:>9} {:>8} {:>9} {:>12}",
-        "t / τ", "body", "approach [µm]", "exact", "error", "alone", "sum of lone"
+        "t / τ", "body", "approach [µm]", "exact", "error", "by others", "sum of lone"
     );
     let mut table = csv::Writer::from_path(args.output.join("held.csv"))?;
-    table.write_record(["time_s", "body", "approach_m", "exact_m", "sum_of_lone_m", "lone_m"])?;
+    table.write_record(["time_s", "body", "approach_m", "exact_m", "by_others_m", "sum_of_lone_m"])?;
     for k in 0..=HELD * args.steps {
         let dt = if k == 0 { 0.0 } else { args.tau / f64::from(args.steps) };
         contact.step_each(dt, &loads)?;
@@ -117,20 +117,20 @@ fn held(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Box<d
         let elastic = scene.elastic(compliance, &forces)?;
         for (body, name) in NAMES.iter().enumerate() {
             let [computed, exact] = [&contact, &elastic].map(|contact| approach(contact, body));
-            let [sum, lone] = [
-                scene.sum_of_lone(scene.center(body), &forces, compliance),
-                scene.alone(body, forces[body], compliance, 0.0),
-            ];
+            // what the others add, by the same cells, and if each were alone
+            let by_others = computed - scene.approach_alone(body, forces[body], compliance)?;
+            let own = scene.alone(body, forces[body], compliance, 0.0);
+            let sum = scene.sum_of_lone(scene.center(body), &forces, compliance) - own;
             println!(
                 "{:5.1} {name:>12} {:15.4} {:9.4} {:8.1e} {:9.4} {:12.4}",
                 time / args.tau,
                 1e6 * computed,
                 1e6 * exact,
                 computed / exact - 1.0,
-                1e6 * lone,
+                1e6 * by_others,
                 1e6 * sum
             );
-            table.serialize((time, name, computed, exact, sum, lone))?;
+            table.serialize((time, name, computed, exact, by_others, sum))?;
         }
     }
     table.flush()?;

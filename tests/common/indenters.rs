@@ -34,10 +34,13 @@ impl Indenters {
         })
     }
 
+    fn grid(&self) -> Result<Grid> {
+        Grid::square(self.cells, 2.2 * (self.distance + self.punch))
+    }
+
     /// The first `bodies` of them.
     pub fn on(&self, material: &Material, bodies: usize) -> Result<ViscoelasticContact> {
-        let grid = Grid::square(self.cells, 2.2 * (self.distance + self.punch))?;
-        let builder = ViscoelasticContact::builder(grid).material(material.clone());
+        let builder = ViscoelasticContact::builder(self.grid()?).material(material.clone());
         let settings = Settings { tolerance: 1e-8, ..Settings::default() };
         let mut builder = builder.settings(settings).geometry(&self.shape(0)?);
         for body in 1..bodies {
@@ -54,6 +57,15 @@ impl Indenters {
         let mut contact = self.on(&Material::incompressible(Elastic::new(0.25 / compliance)?), forces.len())?;
         contact.step_each(0.0, &forces.iter().map(|&force| Load::force(force)).collect::<Vec<_>>())?;
         Ok(contact)
+    }
+
+    /// Approach of `body` if it is alone under `force` on the elastic body, by the same cells \[m\].
+    pub fn approach_alone(&self, body: usize, force: f64, compliance: f64) -> Result<f64> {
+        let mut contact = ViscoelasticContact::builder(self.grid()?)
+            .geometry(&self.shape(body)?)
+            .material(Material::incompressible(Elastic::new(0.25 / compliance)?))
+            .build()?;
+        Ok(contact.step(0.0, Load::force(force))?.approach)
     }
 
     /// Surface displacement at the distance `r` from the centre of `body` \[m\] if it is alone under `force` on an elastic
