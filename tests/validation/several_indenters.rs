@@ -1,0 +1,66 @@
+//! Several rigid indenters on one creeping body, against exact statements.
+
+use crate::common::bodies::{three_times, zener};
+use crate::common::indenters::{ClosedFaces, Indenters};
+use viscocontact::prelude::*;
+
+const SCENE: Indenters = Indenters { punch: 0.3e-3, sphere: 10.0e-3, distance: 1.0e-3, cells: 48 };
+
+fn approaches(contact: &ViscoelasticContact) -> Vec<f64> {
+    (0..contact.bodies()).map(|body| contact.body(body).unwrap().approach).collect()
+}
+
+/// Held forces on three punches and a sphere: no contact shrinks, so that the approaches are those of an elastic body of
+/// compliance C(t) (correspondence principle). The sum of lone indenters is close, and not the answer.
+#[test]
+fn held_indenters_creep_as_elastic_ones_of_the_compliance_of_the_time() {
+    let forces = [0.05, 0.05, 0.05, 0.02];
+    let (material, loads) = (zener(), forces.map(Load::force));
+    let mut contact = SCENE.on(&material, 4).unwrap();
+    contact.step_each(0.0, &loads).unwrap();
+    for k in 1..=20 {
+        contact.step_each(0.1, &loads).unwrap();
+        if k % 10 == 0 {
+            let compliance = material.contact_compliance(contact.time());
+            let elastic = approaches(&SCENE.elastic(compliance, &forces).unwrap());
+            for (body, (computed, exact)) in approaches(&contact).iter().zip(elastic).enumerate() {
+                assert!((computed / exact - 1.0).abs() < 2e-4, "body {body}: {computed} {exact}");
+                let sum = SCENE.sum_of_lone(SCENE.center(body), &forces, compliance);
+                assert!((sum / exact - 1.0).abs() < 0.02, "body {body}: {sum} {exact}");
+            }
+        }
+    }
+}
+
+/// Punches whose faces stay closed are linear: their approaches are a matrix times the creep of their forces, the matrix is
+/// symmetric (Betti), and the pressure is the elastic one of the forces of the moment, whatever came before.
+#[test]
+fn punches_pressed_in_turn_superpose() {
+    let (least, most) = (0.0125, 0.05);
+    let faces = ClosedFaces::new(&SCENE, least, most).unwrap();
+    for (i, j) in [(0, 1), (0, 2), (1, 2)] {
+        assert!((faces.compliances[i][j] / faces.compliances[j][i] - 1.0).abs() < 1e-6);
+    }
+    let material = three_times();
+    let mut contact = SCENE.on(&material, 3).unwrap();
+    let (mut jumps, mut before) = (Vec::new(), [0.0; 3]);
+    for turn in 0..4 {
+        let forces = [0, 1, 2].map(|body| if body == turn % 3 { most } else { least });
+        jumps.push((contact.time(), [0, 1, 2].map(|body| forces[body] - before[body])));
+        before = forces;
+        let loads = forces.map(Load::force);
+        contact.step_each(0.0, &loads).unwrap();
+        for k in 0..40 {
+            contact.step_each(if k < 20 { 0.005 } else { 0.02 }, &loads).unwrap();
+        }
+        let exact = faces.approaches(&material, &jumps, contact.time());
+        for (computed, exact) in approaches(&contact).iter().zip(exact) {
+            assert!((computed / exact - 1.0).abs() < 2e-4, "turn {turn}: {computed} {exact}");
+        }
+        let elastic = SCENE.elastic(1.0e-6, &forces).unwrap();
+        let greatest = elastic.greatest_pressure();
+        for (computed, exact) in contact.pressure().iter().zip(elastic.pressure()) {
+            assert!((computed - exact).abs() < 1e-5 * greatest, "turn {turn}: {computed} {exact}");
+        }
+    }
+}
