@@ -6,6 +6,7 @@ pub mod draws;
 pub mod environment;
 pub mod histories;
 pub mod noise;
+pub mod paper_figures;
 pub mod protocol;
 pub mod random_bodies;
 pub mod random_histories;

@@ -4,6 +4,7 @@ mod analytic;
 #[path = "../common/mod.rs"]
 mod common;
 mod hertz;
+mod paper_figures;
 mod plan;
 mod plan_random;
 mod plane;
