@@ -20,8 +20,8 @@ pub const OPEN: [f64; 4] = [0.4, 0.5, 0.6, 0.8];
 pub const TIMES: [f64; 4] = [0.0, 0.5, 1.0, 2.0];
 
 /// Numbers of steps in Figure 6, each twice the one before, and those of its reference.
-pub const STEP_COUNTS: [usize; 5] = [5, 10, 20, 40, 80];
-const REFERENCE_STEPS: usize = 640;
+pub const STEP_COUNTS: [usize; 5] = [10, 20, 40, 80, 160];
+const REFERENCE_STEPS: usize = 1280;
 
 /// A figure of merit, and the range in which it must be.
 #[derive(Debug, Clone, Copy)]
@@ -105,12 +105,13 @@ fn pressure_at_end(cells: usize, steps: usize, time_rule: TimeRule) -> Result<Ve
     Ok(contact.pressure().to_vec())
 }
 
-/// Figure 6 by one rule: the pressures at 2τ for each number of steps, and their errors in time, Σ |p − p′| / Σ p′ with p′
-/// the pressure on the same cells in many steps by the default rule.
+/// Figure 6 by one rule: the pressures at 2τ for each number of steps, and their errors in time relative to the pressure p′ on
+/// the same cells in many steps by the default rule.
 pub struct TimeStudy {
     pub rule: TimeRule,
     pub pressures: Vec<Vec<f64>>,
-    pub errors: Vec<f64>,
+    /// Σ |p − p′| / Σ p′, and |p / p′ − 1| in the middle.
+    pub errors: Vec<[f64; 2]>,
 }
 
 /// Figure 6: the paper's rule and the default one.
@@ -119,9 +120,11 @@ pub fn figure_6(cells: usize) -> Result<[TimeStudy; 2]> {
     let study = |rule| -> Result<TimeStudy> {
         let pressures: Vec<_> =
             STEP_COUNTS.iter().map(|&steps| pressure_at_end(cells, steps, rule)).collect::<Result<_>>()?;
+        let middle = cells / 2 * (cells + 1);
         let error = |pressure: &Vec<f64>| {
             let differences = pressure.iter().zip(&reference).map(|(p, exact)| (p - exact).abs());
-            differences.sum::<f64>() / reference.iter().sum::<f64>()
+            let l1 = differences.sum::<f64>() / reference.iter().sum::<f64>();
+            [l1, (pressure[middle] / reference[middle] - 1.0).abs()]
         };
         Ok(TimeStudy { rule, errors: pressures.iter().map(error).collect(), pressures })
     };
@@ -129,14 +132,19 @@ pub fn figure_6(cells: usize) -> Result<[TimeStudy; 2]> {
 }
 
 impl TimeStudy {
-    /// The order of the error, from its fall over all numbers of steps.
-    pub fn order(&self) -> Merit {
-        let (first, last) = (self.errors[0], self.errors[self.errors.len() - 1]);
-        let value = (first / last).log2() / (self.errors.len() - 1) as f64;
-        if self.rule == TimeRule::Rectangle {
-            Merit { figure: 6, quantity: "order of the paper's rule", of: 2.0, value, range: [0.9, 1.1] }
+    /// The orders of the errors, from their fall over all numbers of steps. Where cells come into contact the displacement has a
+    /// kink, which the default rule meets with second order: the whole pressure converges with that order, its middle faster.
+    pub fn orders(&self) -> [Merit; 2] {
+        let doublings = STEP_COUNTS.len() - 1;
+        let order = |which: usize| (self.errors[0][which] / self.errors[doublings][which]).log2() / doublings as f64;
+        let merits = if self.rule == TimeRule::Rectangle {
+            [("order of the paper's rule, L1 of p", [0.9, 1.1]), ("order of the paper's rule, p(0)", [0.9, 1.1])]
         } else {
-            Merit { figure: 6, quantity: "order of the default rule", of: 2.0, value, range: [2.0, 4.0] }
-        }
+            [("order of the default rule, L1 of p", [2.0, 4.0]), ("order of the default rule, p(0)", [2.5, 4.0])]
+        };
+        [0, 1].map(|which| {
+            let (quantity, range) = merits[which];
+            Merit { figure: 6, quantity, of: 2.0, value: order(which), range }
+        })
     }
 }
