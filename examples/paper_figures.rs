@@ -195,8 +195,9 @@ fn steps_in_time(cells: usize) -> Drawn {
             let half = along_x1(&grid, pressure, units).into_iter().filter(|&(x, p)| x > 0.0 && p > 0.0);
             chart.add(format!("{steps} steps, error {error:.1e}"), color, Style::Line, half.collect());
         }
-        let exact =
-            (0..36).map(|k| f64::from(k) / 25.0).map(|r| (r, exact.pressure(r * units[0], 2.0 * scene.tau) / units[1]));
+        let time = 2.0 * scene.tau;
+        let radii = (0..36).map(|k| 0.04 * f64::from(k)).chain([exact.contact_radius(time) / units[0]]);
+        let exact = radii.map(|r| (r, exact.pressure(r * units[0], time) / units[1]));
         chart.add("Table 1 (dots)", Color::BLACK, Style::Dots, exact.collect());
         chart.draw()
     };
