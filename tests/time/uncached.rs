@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::common::bodies::{maxwell, three_times};
+use crate::common::step_loaded_sphere::StepLoadedSphere;
 use viscocontact::contact::Builder;
 use viscocontact::prelude::*;
 
@@ -81,6 +82,21 @@ fn uncached_sums_cost_as_many_convolutions_as_the_paper_says() {
         let [uncached, iterations] = run(steps, TimeRule::RectangleUncached);
         assert_eq!(uncached, 2 * iterations + steps + steps * (steps + 1) / 2);
     }
+}
+
+/// Twice the steps take four times the convolutions by the paper's algorithm, once the superposition prevails, and twice by the
+/// default one.
+#[test]
+fn convolutions_grow_with_the_square_of_the_steps_in_the_paper_only() {
+    let scene = StepLoadedSphere::maxwell();
+    let exponent = |settings: Settings| {
+        let [few, many] = [400, 800].map(|steps| scene.run(16, steps, settings).unwrap().1 * steps as f64);
+        (many / few).log2()
+    };
+    let paper = exponent(Settings { time_rule: TimeRule::RectangleUncached, ..Settings::paper() });
+    let default = exponent(Settings::default());
+    println!("exponents {paper} and {default}");
+    assert!((paper - 2.0).abs() < 0.1 && (default - 1.0).abs() < 0.05, "{paper} {default}");
 }
 
 #[test]
