@@ -93,6 +93,10 @@ pub enum TimeRule {
     /// a step is longer than the relaxation time of a Maxwell body and diverges beyond twice that; needs
     /// an elastic response.
     Rectangle,
+    /// [`TimeRule::Rectangle`] at the cost that the source paper states (section 4), O(N_t² N₁N₂ log(N₁N₂)): the history is
+    /// kept as pressures, and each step convolves all past increments anew. The pressures are those of
+    /// [`TimeRule::Rectangle`] to within rounding. For comparisons of cost only.
+    RectangleUncached,
     /// A direct sum over all past steps with the rheology's own J(t), without a series: first order, stable for steps of
     /// any length, one field per past step ([`Settings::history_limit`]).
     Backward,
@@ -136,7 +140,15 @@ impl TimeRule {
 
 impl Settings {
     /// The whole algorithm of the source paper: Polonsky–Keer solver, rectangle rule, direct sums. The baseline of every
-    /// comparison.
+    /// comparison. It is cheaper than the paper's in one respect: the convolutions of past increments are kept.
+    /// [`TimeRule::RectangleUncached`] repeats them in each step, as stated in the paper:
+    ///
+    /// ```
+    /// use viscocontact::contact::{Settings, TimeRule};
+    ///
+    /// let literal = Settings { time_rule: TimeRule::RectangleUncached, ..Settings::paper() };
+    /// # let _ = literal;
+    /// ```
     pub fn paper() -> Settings {
         Settings {
             solver: Solver::PolonskyKeer,

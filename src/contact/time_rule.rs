@@ -24,8 +24,11 @@ pub(super) fn history_by(settings: &Settings, material: &Material, periodic: [bo
             })
         }
         _ if settings.frame == Frame::Indenter => Err(Error::WrongFrame { what: "a direct sum" }),
-        TimeRule::Rectangle if glassy == 0.0 => Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" }),
+        TimeRule::Rectangle | TimeRule::RectangleUncached if glassy == 0.0 => {
+            Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" })
+        }
         TimeRule::Rectangle => Ok(History::direct_sum(Weighting::End)),
+        TimeRule::RectangleUncached => Ok(History::direct_sum(Weighting::EndUncached)),
         TimeRule::Backward => Ok(History::direct_sum(Weighting::Start)),
     }
 }

@@ -1,9 +1,10 @@
 //! The hereditary integral as a sum over every past increment.
 
 use crate::error::{Error, MaterialError, Result};
-use crate::rheology::Material;
+use crate::hereditary::history::HistoryInputs;
+use crate::kernel::{LocalKernel, Workspace};
 
-/// The end of a step to which its increment of pressure is assigned.
+/// The end of a step to which its increment is assigned, and what it is an increment of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Weighting {
@@ -12,12 +13,15 @@ pub(crate) enum Weighting {
     End,
     /// At the start: u(t_n) = Σ C(t_n − t_(k−1)) (v_k − v_(k−1)). First order and L-stable.
     Start,
+    /// At the end, by increments of p: u(t_n) = Σ C(t_n − t_k) K (p_k − p_(k−1)), each convolved anew in every step. The same
+    /// sum as of `End`, at the cost that the source paper states (section 4).
+    EndUncached,
 }
 
 /// Cells summed together, so that they stay in the fastest cache while the increments stream by.
 const BLOCK: usize = 2048;
 
-/// The past as all increments of v = K p: one field per step, no transforms.
+/// The past as all increments of v = K p, one field per step, no transforms; or of p, each convolved anew in every step.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct DirectSum {
@@ -27,25 +31,38 @@ pub(crate) struct DirectSum {
     /// What each increment contributes to u_old of the step predicted last, per unit of v.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     weights: Vec<f64>,
+    /// The convolution of one increment of p.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    image: Vec<f64>,
 }
 
 impl DirectSum {
     pub(crate) fn new(weighting: Weighting) -> DirectSum {
-        DirectSum { weighting, increments: Vec::new(), weights: Vec::new() }
+        DirectSum { weighting, increments: Vec::new(), weights: Vec::new(), image: Vec::new() }
     }
 
     pub(crate) fn without_increments(&self) -> DirectSum {
         DirectSum::new(self.weighting)
     }
 
-    /// Writes u_old over `u_old` and returns c; `limit` is what the increments may take \[bytes\].
-    pub(crate) fn predict(
+    /// Whether the increments are those of p.
+    fn is_uncached(&self) -> bool {
+        self.weighting == Weighting::EndUncached
+    }
+
+    /// Bytes per cell before the first increment.
+    pub(super) fn bytes_per_cell(&self) -> usize {
+        if self.is_uncached() { 8 } else { 0 }
+    }
+
+    /// Writes u_old over `u_old`; returns c and the number of convolutions taken.
+    pub(super) fn predict(
         &mut self,
         (time, dt): (f64, f64),
-        material: &Material,
-        limit: usize,
+        HistoryInputs { material, history_limit: limit, .. }: HistoryInputs<'_>,
+        (kernel, work): (&LocalKernel, &mut Workspace),
         u_old: &mut [f64],
-    ) -> Result<f64> {
+    ) -> Result<(f64, usize)> {
         let bytes = (self.increments.len() + 1).saturating_mul(std::mem::size_of_val(u_old));
         if bytes > limit {
             return Err(Error::HistoryFull { time, steps: self.increments.len(), bytes, limit });
@@ -68,6 +85,15 @@ impl DirectSum {
             self.weights.push(younger - newest);
         }
         let past = || self.increments.iter().rev().zip(&self.weights);
+        if self.is_uncached() {
+            self.image.resize(u_old.len(), 0.0);
+            u_old.fill(0.0);
+            for ((_, increment), &weight) in past() {
+                kernel.apply(increment, &mut self.image, work);
+                u_old.iter_mut().zip(&self.image).for_each(|(old, &dv)| *old += weight * dv);
+            }
+            return Ok((newest, self.increments.len()));
+        }
         for (block, old) in u_old.chunks_mut(BLOCK).enumerate() {
             old.fill(0.0);
             let first = block * BLOCK;
@@ -77,21 +103,19 @@ impl DirectSum {
                 }
             }
         }
-        Ok(newest)
+        Ok((newest, 0))
     }
 
     /// The same past on other cells; `carry` says what each increment is there.
     pub(crate) fn carried(&self, carry: impl Fn(&[f64]) -> Vec<f64>) -> DirectSum {
         let increments = self.increments.iter().map(|(when, increment)| (*when, carry(increment))).collect();
-        DirectSum { increments, weights: Vec::new(), ..*self }
+        DirectSum { increments, ..DirectSum::new(self.weighting) }
     }
 
-    /// Takes the step of length `dt` that ends at `time` into the past, where v went from `before` to `after`.
-    pub(crate) fn commit(&mut self, (time, dt): (f64, f64), [before, after]: [&[f64]; 2]) {
-        let when = match self.weighting {
-            Weighting::End => time,
-            Weighting::Start => time - dt,
-        };
+    /// Takes the step of length `dt` that ends at `time` into the past, given p and v at its start and at its end.
+    pub(super) fn commit(&mut self, (time, dt): (f64, f64), [pressure, potential]: [[&[f64]; 2]; 2]) {
+        let when = if self.weighting == Weighting::Start { time - dt } else { time };
+        let [before, after] = if self.is_uncached() { pressure } else { potential };
         let increment = after.iter().zip(before).map(|(new, old)| new - old).collect();
         self.increments.push((when, increment));
     }

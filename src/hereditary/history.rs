@@ -169,7 +169,7 @@ impl History {
         match &self.rule {
             Rule::Exponential(own) => self.displacement.bytes_per_cell(own.least_kept()),
             Rule::MovingFrame(own, frame) => 8 * own.least_kept() + frame.bytes_per_cell(own.least_kept()),
-            Rule::DirectSum(_) => 0,
+            Rule::DirectSum(own) => own.bytes_per_cell(),
         }
     }
 
@@ -285,11 +285,11 @@ impl History {
             }
             Rule::DirectSum(own) => {
                 let RememberedField { now, trial, .. } = displacement;
-                let c = own.predict((step.time, step.dt), inputs.material, inputs.history_limit, trial)?;
+                let (c, convolutions) = own.predict((step.time, step.dt), inputs, (kernel, work), trial)?;
                 if c == 0.0 {
                     trial.copy_from_slice(now); // the sum is the same but for rounding
                 }
-                Ok((c, 0))
+                Ok((c, convolutions))
             }
         }
     }
@@ -322,9 +322,9 @@ impl History {
         past.recovery(&own.tried, now.len(), wanted, |k, by_past| take(k, held * now[k] + by_past));
     }
 
-    /// Accepts the step predicted last, in which v = K p went from one field to the other; `touched` tells whether
+    /// Accepts the step predicted last, given p and v = K p, each at its start and at its end; `touched` tells whether
     /// anything has ever been displaced.
-    pub(crate) fn commit(&mut self, step: Interval, potential: [&[f64]; 2], touched: bool) {
+    pub(crate) fn commit(&mut self, step: Interval, pressed: [[&[f64]; 2]; 2], touched: bool) {
         let History { rule, displacement, far, .. } = self;
         far.iter_mut().for_each(RememberedField::commit);
         match rule {
@@ -338,7 +338,7 @@ impl History {
             }
             Rule::DirectSum(own) => {
                 if touched {
-                    own.commit((step.time, step.dt), potential);
+                    own.commit((step.time, step.dt), pressed);
                 }
                 displacement.commit();
             }

@@ -12,7 +12,8 @@
 //! * [`ExponentialRule`]: a recursion with one field per relaxation time, updated in place; stable for steps of any length.
 //!   Within a step u is a polynomial of time, see [`Interpolant`].
 //! * [`DirectSum`](direct_sum::DirectSum): every past increment of v = K p, summed anew in each step with weights from C(t).
-//!   It needs no exponential series and serves the paper's rectangle rule and the backward rule.
+//!   It needs no exponential series and serves the paper's rectangle rule and the backward rule. For the paper's own cost it
+//!   can keep the increments of p instead, and convolve each of them in every step.
 //! * [`MovingFrame`](moving_frame::MovingFrame): the exponential rule for the field whose convolution is the displacement, so
 //!   that the bodies can move under the grid.
 //!

@@ -8,6 +8,7 @@ pub mod histories;
 pub mod indenters;
 pub mod noise;
 pub mod oscillation;
+pub mod paper_figures;
 pub mod protocol;
 pub mod random_bodies;
 pub mod random_histories;

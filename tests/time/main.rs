@@ -8,3 +8,4 @@ mod honest;
 mod protocols;
 mod protocols_run;
 mod time_rules;
+mod uncached;

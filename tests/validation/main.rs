@@ -6,6 +6,7 @@ mod common;
 mod equations;
 mod hertz;
 mod oscillation;
+mod paper_figures;
 mod plan;
 mod plan_random;
 mod plane;

@@ -12,8 +12,9 @@ impl Computation {
         let (interval, datum) = (step.interval, step.indenter.gap().datum);
         let contact_cells = trial.solution.pressure.iter().filter(|&&p| p > 0.0).count();
         let touched = !state.is_undisturbed() || contact_cells > 0;
-        let potential = [&state.current.solution.potential[..], &trial.solution.potential];
-        state.history.commit(interval, potential, touched);
+        let (before, after) = (&state.current.solution, &trial.solution);
+        let pressed = [[&before.pressure[..], &after.pressure], [&before.potential, &after.potential]];
+        state.history.commit(interval, pressed, touched);
 
         state.keep_earlier(interval);
         std::mem::swap(&mut state.previous, &mut state.current);

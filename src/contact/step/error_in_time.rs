@@ -3,7 +3,6 @@
 use crate::contact::computation::Computation;
 use crate::contact::request::Step;
 use crate::contact::scene::Scene;
-use crate::contact::settings::TimeRule;
 use crate::contact::window::growth::motion_tried;
 use crate::hereditary::{ErrorMeasure, TimeError};
 use crate::load::Load;
@@ -70,7 +69,7 @@ pub(in crate::contact) fn error_in_time(
     let least = [0, 1].map(|which| SMALL[which] * expected[which].max(state.greatest[which]));
     let compliance = |t: f64| scene.material.contact_compliance(t);
     let (pressure, before) = (&trial.solution.pressure, &state.current.solution);
-    if let TimeRule::Rectangle | TimeRule::Backward = scene.settings.time_rule {
+    if !scene.settings.time_rule.needs_series() {
         let (mut change, mut size, mut sum) = (0.0, 0.0, 0.0);
         // products of great pressures and displacements would overflow
         let most = greatest(pressure);
