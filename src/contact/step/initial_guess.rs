@@ -19,7 +19,7 @@ const MAX_FORCE_RATIO: f64 = 1.5;
 const MAX_SHARE_LEFT: f64 = 0.5;
 
 /// The contact of a step is foreseen where its edge is likely to move by so many cells or more.
-const MIN_EDGE_SPEED: f64 = 1.0;
+const MIN_EDGE_SPEED: f64 = 0.5;
 
 /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike. Bodies of given motion whose
 /// pressure falls a lot in this step of compliance `c` get the last one scaled: K p would keep the rounding of a greater
