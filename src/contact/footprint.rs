@@ -22,7 +22,7 @@ use crate::solver::{Bands, Extension};
 /// | history | 8 per relaxation time, and 8 for the change in the last step (16 without elastic response, none of an elastic body); with [`Frame::Indenter`](crate::contact::Frame::Indenter) 40, 16 per relaxation time and 24 (48, none); direct sums: 8 per step taken ([`TimeRule::RectangleUncached`](crate::contact::TimeRule::RectangleUncached) 8 more) |
 /// | displacement outside a window | 16, and the history again |
 /// | solver | 29, as [`Solver::PolonskyKeer`]; for each body 0.02 more |
-/// | its preconditioner | 7.4, none of [`Solver::PolonskyKeer`]: a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4 |
+/// | its preconditioner | 7.4, none of [`Solver::PolonskyKeer`]: a quarter of a spectrum of the grid without padding, 2, and the extension of the residual, 5.4, and 12 per column for each thread |
 /// | kernel | 25: a quarter of the padded spectrum, 8, and work space, 17 |
 /// | transforms on several threads | 16 more |
 ///

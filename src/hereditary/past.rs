@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::hereditary::exponential_rule::{ExponentialRule, Weights};
-use crate::kernel::{BAND_CELLS, join, lanes};
+use crate::kernel::{BAND_CELLS, join, lanes, middle};
 
 /// The past of a field that follows the exponential rule: q_i for each relaxation time, and its differences over the last
 /// steps.
@@ -193,7 +193,7 @@ impl Past {
     }
 }
 
-/// What a past is predicted from, on some cells that follow each other: whole blocks, but for the last.
+/// Contiguous cells of a past and its field: whole blocks, except the last.
 struct Part<'a> {
     branches: usize,
     fields: &'a mut [f64],
@@ -210,7 +210,7 @@ impl Part<'_> {
         if !shared || cells <= BAND_CELLS {
             return job(self);
         }
-        let middle = cells.div_ceil(BAND_CELLS) / 2 * BAND_CELLS;
+        let middle = middle(cells);
         let Part { branches, fields, first, second, field, u_old } = self;
         let fields = fields.split_at_mut(middle * branches);
         let [first, second] = [first, second].map(|own| own.split_at_mut(middle.min(own.len())));

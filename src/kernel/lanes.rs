@@ -82,29 +82,38 @@ const MIN_SHARED_CELLS: usize = 1 << 15;
 /// Cells that a thread passes over at a time. Sums are taken band by band, whatever the number of threads.
 pub(crate) const BAND_CELLS: usize = 1 << 13;
 
-/// Calls `job` with pieces of some fields and the number of their first cell: bands if threads share the work, else all at once.
+/// Where fields of so many cells are halved between threads: at the start of a band.
+pub(crate) fn middle(cells: usize) -> usize {
+    cells.div_ceil(BAND_CELLS) / 2 * BAND_CELLS
+}
+
+/// Calls `job` with each band of some fields, and the number of its first cell.
 pub(crate) fn for_each_band<T: Send, const M: usize>(fields: [&mut [T]; M], job: impl Fn(usize, [&mut [T]; M]) + Sync) {
     let cells = fields.first().map_or(0, |field| field.len());
-    if lanes(cells) > 1 { halve(0, cells, fields, &job) } else { job(0, fields) }
+    halve([0, cells], fields, lanes(cells) > 1, &job);
 }
 
 fn halve<T: Send, const M: usize>(
-    first: usize,
-    cells: usize,
+    [first, cells]: [usize; 2],
     fields: [&mut [T]; M],
+    shared: bool,
     job: &(impl Fn(usize, [&mut [T]; M]) + Sync),
 ) {
     if cells <= BAND_CELLS {
         return job(first, fields);
     }
-    let middle = cells.div_ceil(BAND_CELLS) / 2 * BAND_CELLS;
+    let middle = middle(cells);
     let mut halves = fields.map(|field| field.split_at_mut(middle));
     let before = halves.each_mut().map(|(before, _)| std::mem::take(before));
     let after = halves.map(|(_, after)| after);
-    join(true, || halve(first, middle, before, job), || halve(first + middle, cells - middle, after, job));
+    join(
+        shared,
+        || halve([first, middle], before, shared, job),
+        || halve([first + middle, cells - middle], after, shared, job),
+    );
 }
 
-/// What `part` finds on each band of so many cells, `merge`d in their order.
+/// Applies `part` to each band of the cells, and merges the results in the order of the bands, whatever the number of threads.
 pub(crate) fn merge_bands<R: Send>(
     cells: usize,
     part: impl Fn(Range<usize>) -> R + Sync,
@@ -122,7 +131,7 @@ fn merge_halves<R: Send>(
     if cells.len() <= BAND_CELLS {
         return part(cells);
     }
-    let middle = cells.start + cells.len().div_ceil(BAND_CELLS) / 2 * BAND_CELLS;
+    let middle = cells.start + middle(cells.len());
     let [before, after] =
         [cells.start..middle, middle..cells.end].map(|half| move || merge_halves(half, shared, part, merge));
     let (before, after) = join(shared, before, after);

@@ -26,7 +26,7 @@ mod positive;
 mod strip;
 mod transform;
 
-pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, join, lanes, merge_bands};
+pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, join, lanes, merge_bands, middle};
 pub(crate) use layout::images;
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::kernel::{BAND_CELLS, join, lanes};
+use crate::kernel::{BAND_CELLS, join, lanes, middle};
 
 /// Lanes in which maxima are taken.
 pub(crate) const LANES: usize = 8;
@@ -99,8 +99,8 @@ fn halve<const M: usize>(
     if found.len() == bodies {
         return job(cells, outputs, found);
     }
-    let bands = found.len() / bodies / 2;
-    let middle = bands * BAND_CELLS;
+    let middle = middle(cells.len());
+    let bands = middle / BAND_CELLS;
     let mut halves = outputs.map(|output| output.split_at_mut(middle));
     let first = halves.each_mut().map(|(first, _)| std::mem::take(first));
     let second = halves.map(|(_, second)| second);

@@ -92,7 +92,7 @@ impl ResidualSums {
     }
 
     /// Rounding of the gap.
-    fn rounding(&self) -> f64 {
+    pub(crate) fn rounding(&self) -> f64 {
         4.0 * f64::EPSILON * self.greatest_gap + self.cancellation
     }
 

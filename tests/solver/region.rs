@@ -150,20 +150,32 @@ fn direct_sums_and_fitted_series_are_the_same_whole_or_folded() {
     }
 }
 
-/// Threads share transforms; what they return does not depend on their number.
+/// Threads share transforms and passes; what they return does not depend on their number.
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    let run = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let whole = Settings { symmetry: false, window: false, ..Settings::default() };
-            let (contact, _) = StepLoadedSphere::zener().run(192, 5, whole).unwrap();
-            contact.pressure().to_vec()
-        })
+    let whole = Settings { symmetry: false, window: false, ..Settings::default() };
+    let upright = || StepLoadedSphere::zener().run(192, 5, whole).unwrap().0.pressure().to_vec();
+    // rows that end anywhere in a band, and so many cells that threads share the coarser levels of the extension as well
+    let tilting = || {
+        let mut contact = ViscoelasticContact::builder(Grid::new([400, 370], [8.0e-3, 8.0e-3]).unwrap())
+            .geometry(&Ellipsoid::new(RADIUS, 0.7 * RADIUS).unwrap())
+            .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
+            .settings(whole)
+            .build()
+            .unwrap();
+        for dt in [0.0, 0.3, 0.5] {
+            contact.step(dt, Load::eccentric_force(0.3, [1.0e-4, -2.0e-4])).unwrap();
+        }
+        contact.pressure().to_vec()
     };
-    let one = run(1);
-    for threads in [2, 3, 5] {
-        assert!(run(threads) == one, "{threads} threads");
+    let on = |threads: usize, run: &(dyn Fn() -> Vec<f64> + Sync)| {
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run)
+    };
+    for run in [&upright as &(dyn Fn() -> Vec<f64> + Sync), &tilting] {
+        let one = on(1, run);
+        for threads in [2, 3, 5] {
+            assert!(on(threads, run) == one, "{threads} threads");
+        }
     }
 }
 

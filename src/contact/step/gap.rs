@@ -20,17 +20,20 @@ pub(super) struct RigidBodies<'a> {
 impl RigidBodies<'_> {
     /// The gap before any pressure and free motion, hi + u_old − what is prescribed of ω + α·x (Eq. 1 of the paper).
     pub(super) fn fill_gap(&self, u_old: &[f64], gap: &mut [f64]) {
+        let bodies = self.prescribed.bodies();
+        let upright = bodies == 1 && self.prescribed.motion(0).tilt == [0.0; 2];
+        let approach = if upright { self.prescribed.motion(0).approach } else { 0.0 };
         for_each_band([&mut *gap], |first, [gap]| {
             for ((gap, &initial), &u_old) in gap.iter_mut().zip(&self.initial.above[first..]).zip(&u_old[first..]) {
-                *gap = initial + u_old;
+                *gap = (initial + u_old) - approach;
             }
         });
-        let bodies = self.prescribed.bodies();
+        if upright {
+            return;
+        }
         for body in 0..bodies {
             let motion = self.prescribed.motion(body);
-            if bodies == 1 && motion.tilt == [0.0; 2] && motion.approach != 0.0 {
-                gap.iter_mut().for_each(|gap| *gap -= motion.approach);
-            } else if motion != RigidMotion::default() {
+            if motion != RigidMotion::default() {
                 for k in (0..gap.len()).filter(|&k| self.initial.owner(k) == body) {
                     gap[k] -= motion.at(self.region.center(k));
                 }

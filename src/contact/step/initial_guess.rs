@@ -18,7 +18,7 @@ const MAX_FORCE_RATIO: f64 = 1.5;
 /// guide: the last pressure is scaled by what is left.
 const MAX_SHARE_LEFT: f64 = 0.5;
 
-/// The contact of a step is foreseen where its edge is likely to move by so many cells or more.
+/// Least distance, in cells, by which the edge of the contact must be expected to move for the next contact to be foreseen.
 const MIN_EDGE_SPEED: f64 = 0.5;
 
 /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike. Bodies of given motion whose
@@ -84,7 +84,7 @@ fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Ste
         return false;
     }
     let ahead = state.extrapolation.reach(step.interval.dt);
-    if ahead * edge_speed(now, before) < MIN_EDGE_SPEED {
+    if ahead * edge_speed(now, before, state.region.cells()[1]) < MIN_EDGE_SPEED {
         return false;
     }
     let share = (ahead / (1.0 + ahead)).sqrt();
@@ -116,22 +116,25 @@ fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Ste
     true
 }
 
-/// By how many cells the edge of the contact moved in the last step, on average: of cells that joined or left, over the ends of the
-/// runs of cells in contact.
-fn edge_speed(now: &Equilibrium, before: &Equilibrium) -> f64 {
-    let (pressure, pressure_before) = (&now.solution.pressure, &before.solution.pressure);
-    let part = |cells: Range<usize>| {
-        let (mut moved, mut ends, mut last) = (0, 0, false);
-        for (&p, &p_before) in pressure[cells.clone()].iter().zip(&pressure_before[cells]) {
-            let touches = p > 0.0;
-            moved += usize::from(touches != (p_before > 0.0));
-            ends += usize::from(touches != last);
-            last = touches;
+/// Mean distance in cells by which the edge of the contact moved in the last step: cells that joined or left, over the length of
+/// the edge, that is the number of its sides along one axis or the other.
+fn edge_speed(now: &Equilibrium, before: &Equilibrium, columns: usize) -> f64 {
+    let touches = |k: usize| now.solution.pressure[k] > 0.0;
+    let touched = |k: usize| before.solution.pressure[k] > 0.0;
+    let part = |band: Range<usize>| {
+        let mut across = 0;
+        let mut row = band.start / columns * columns;
+        while row < band.end {
+            let cells = band.start.max(row + 1)..band.end.min(row + columns);
+            across += cells.filter(|&k| touches(k) != touches(k - 1)).count();
+            row += columns;
         }
-        [moved, ends]
+        let down = (band.start.max(columns)..band.end).filter(|&k| touches(k) != touches(k - columns)).count();
+        [band.filter(|&k| touches(k) != touched(k)).count(), across, down]
     };
-    let [moved, ends] = merge_bands(pressure.len(), part, |a, b| [a[0] + b[0], a[1] + b[1]]);
-    moved as f64 / ends.max(1) as f64
+    let add = |a: [usize; 3], b: [usize; 3]| [0, 1, 2].map(|n| a[n] + b[n]);
+    let [moved, across, down] = merge_bands(now.solution.pressure.len(), part, add);
+    moved as f64 / across.max(down).max(1) as f64
 }
 
 /// The share of the last pressure that best closes the gap of the step, if it is small. On a fixed contact a single

@@ -3,6 +3,7 @@
 use super::{ActiveSet, MAX_MOVED_SHARE, Shape};
 use crate::kernel::{Workspace, for_each_band};
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
+use crate::solver::outcome::ResidualSums;
 use crate::solver::problem::{Problem, Solution};
 use crate::sum::sum;
 
@@ -111,14 +112,15 @@ impl ActiveSet {
             let closed = balance(problem, body, &self.set, solution);
             let cells = || self.set.cells(problem, body);
             let carried: f64 = cells().map(|k| before[k]).sum();
-            // what cannot be balanced should not be there at all
+            // what cannot be balanced would have to be removed entirely
             let changed =
                 if closed { cells().map(|k| (solution.pressure[k] - before[k]).abs()).sum() } else { carried };
             if modes.translates() {
                 return closed && changed <= MAX_CLOSING_CHANGE * carried;
             }
             // where no force is prescribed, the pressure may be rounding itself: no cell moves more than by this
-            let moved = problem.compliance * problem.kernel.self_influence() * changed;
+            let kernel = problem.kernel;
+            let moved = problem.compliance * kernel.self_influence() * kernel.images() * changed;
             moved <= self.unseen(problem, tolerance, solution)
         })
     }
@@ -126,8 +128,13 @@ impl ActiveSet {
     /// The displacement that a residual below the tolerance does not show.
     fn unseen(&self, problem: &Problem<'_>, tolerance: f64, solution: &Solution) -> f64 {
         let square = self.set.runs.cells().map(|k| (problem.compliance * solution.potential[k]).powi(2)).sum::<f64>();
-        let yielding = (square / self.set.count().max(1) as f64).sqrt();
-        let cancellation = problem.rounding(&solution.pressure) + self.guess_rounding;
-        tolerance * yielding + 4.0 * f64::EPSILON * self.set.greatest_gap + cancellation
+        let sums = ResidualSums {
+            displacement: square,
+            cells: self.set.count(),
+            greatest_gap: self.set.greatest_gap,
+            cancellation: problem.rounding(&solution.pressure) + self.guess_rounding,
+            ..ResidualSums::default()
+        };
+        tolerance * sums.yielding() + sums.rounding()
     }
 }

@@ -32,7 +32,7 @@ pub(crate) struct Extension {
     levels: Vec<Level>,
     /// 1/Σ w over the coarsest block, 0 if nothing is known.
     share: f64,
-    /// For each thread.
+    /// Row buffers, one set per thread.
     rows: Vec<Rows>,
 }
 
@@ -55,7 +55,7 @@ impl Extension {
             let field = vec![0.0; size[0] * size[1]];
             levels.push(Level { cells: size, factor: field.clone(), value: field });
         }
-        let rows = vec![Rows::new(cells[1]); lanes(cells[0] * cells[1])];
+        let rows = vec![Rows::new(cells[1]); lanes(cells[0] * cells[1]).min(cells[0])];
         Extension { cells, periodic, levels, share: 0.0, rows }
     }
 
@@ -66,7 +66,8 @@ impl Extension {
             size = size.map(|n| n.div_ceil(2));
             blocks += size[0] as u128 * size[1] as u128;
         }
-        16 * blocks + lanes(cells[0].saturating_mul(cells[1])) as u128 * Rows::bytes(cells[1])
+        let threads = lanes(cells[0].saturating_mul(cells[1])).min(cells[0]);
+        16 * blocks + threads as u128 * Rows::bytes(cells[1])
     }
 
     /// Makes E that of the set of members.

@@ -3,7 +3,7 @@
 use crate::kernel::Task;
 use crate::solver::extension::TRUST;
 
-/// Single rows in work: of blocks, with a neighbour at either end, and of the finer level, with two.
+/// Row buffers of one thread: blocks with one neighbour at either end, cells of the finer level with two.
 #[derive(Debug, Clone)]
 pub(super) struct Rows {
     blocks: Vec<f64>,
@@ -36,7 +36,7 @@ pub(super) enum Values<'a> {
     Weighted(&'a [f64], &'a [f64]),
 }
 
-/// How much is known of each cell or block, 1 − w being open.
+/// The weights w of cells or blocks.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Known<'a> {
     Members(&'a [bool]),
@@ -207,7 +207,7 @@ impl Task for Spread<'_> {
         let (n2, m2) = (self.fine[1], self.fine[1].div_ceil(2));
         let fine = &mut fine[..2 * m2];
         for (i, values) in (*first..).zip(values.chunks_exact_mut(n2)) {
-            // both rows of a block are the same
+            // both rows of a block get the same values
             if i == *first || i.is_multiple_of(2) {
                 let pairs = fine.as_chunks_mut::<2>().0;
                 pairs.iter_mut().zip(&self.blocks[i / 2 * m2..]).for_each(|(pair, &value)| *pair = [value; 2]);
