@@ -112,7 +112,8 @@ resisted by F = −∫ p u′ dA; μ is F over the normal force.
 * Fast sliding, a ≪ v τ, after a slide of length L ≪ v τ from where the indenter was put down:
   F = (C′(0)/v) ∫ p(x) [w(x) − w(x + L)] dA with Hertz's p and w for C(0).
   Sphere: μ = (a²/Rv) C′(0)/C(0) [4/5 − (4a/3πL)(1 + a²/5L² + …)].
-  Cylinder: μ = (a²/2Rv) C′(0)/C(0) [ln(2L/a) + 1/4 − a²/4L² − …]; steadily, ln(2L/a) becomes ln(2vτ/a) − γ, γ = 0.5772….
+  Cylinder: μ = (a²/2Rv) C′(0)/C(0) [ln(2L/a) + 1/4 − a²/4L² − …]; steadily, with one
+  retardation time, ln(2L/a) becomes ln(2vτ/a) − γ, γ = 0.5772…; with several, ln τ is their mean weighted by C_k/τ_k.
 * A wave h cos(q·x) in full contact: F on a unit of area is ¼ |q| q₁ h² Im[1/C*(i q₁ v)], C*(iω) = C(0) + Σ C_k/(1 + iω τ_k).
 * A cone on E ∝ t^(−β), approach t up to 1, then 2 − t: with T = t − c (t − 1), c = 2^(1/(1−β)), the radius is that at T, and
   F(t)/F(1) = t^(2−β) − 2 (t − 1)^(1−β) [(1 − β) T + t], as long as T ≥ 0.

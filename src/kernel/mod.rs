@@ -144,8 +144,8 @@ impl InfluenceKernel {
     /// Along a periodic axis the pressure acts on all images of the cell, and i, i − N and −i are equivalent. Where the
     /// mean displacement is the datum ([`InfluenceKernel::periodic`]), distant coefficients are negative.
     ///
-    /// One coefficient of a half-space takes one Love integral; of a periodic body, a sum over all its waves, so that
-    /// for many coefficients the convolution of a unit pressure takes less time.
+    /// One coefficient of a half-space takes one Love integral; of a body given by waves, a sum over all of them (along its
+    /// periodic axis, if there is only one), so that for many coefficients the convolution of a unit pressure takes less time.
     ///
     /// ```
     /// use viscocontact::rheology::{Material, Maxwell};

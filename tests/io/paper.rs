@@ -97,7 +97,9 @@ fn sources_tests_and_pictures_of_the_page_exist() {
         for test in tests {
             let defined = test_at(&test).is_some_and(|(files, function)| {
                 let texts = files.iter().filter_map(|file| fs::read_to_string(file).ok());
-                texts.into_iter().any(|text| text.contains(&format!("fn {function}(")))
+                let is_test = |text: &str, at: usize| text[..at].trim_end().ends_with("#[test]");
+                let name = format!("fn {function}(");
+                texts.into_iter().any(|text| text.match_indices(&name).any(|(at, _)| is_test(&text, at)))
             });
             if !defined {
                 missing.push(format!("{name}: {test}"));

@@ -132,7 +132,9 @@ fn equations_6_and_8_integrate_boussinesqs_function() {
     let [d1, d2] = grid.spacing();
     let points = 200;
     for (i, j) in [(1, 0), (0, -2), (4, 3), (-13, 10)] {
-        let at = |offset: isize, point: usize, side: f64| side * (offset as f64 + (point as f64 + 0.5) / 200.0 - 0.5);
+        let at = |offset: isize, point: usize, side: f64| {
+            side * (offset as f64 + (point as f64 + 0.5) / points as f64 - 0.5)
+        };
         let distances = (0..points).flat_map(|k| (0..points).map(move |l| f64::hypot(at(i, k, d1), at(j, l, d2))));
         let b = |r: f64| (1.0 - POISSON) / (2.0 * PI * SHEAR_MODULUS * r);
         let integral = distances.map(b).sum::<f64>() * grid.cell_area() / (points * points) as f64;

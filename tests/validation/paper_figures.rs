@@ -1,6 +1,8 @@
 //! The figures of the source paper, as the example `paper_figures` draws them.
 
-use crate::common::paper_figures::{CLOSED, Merit, OPEN, figure_2, figure_3, figure_6, figures_4_and_5, pressed_punch};
+use crate::common::paper_figures::{
+    CLOSED, Merit, OPEN, TIMES, figure_2, figure_3, figure_6, figures_4_and_5, pressed_punch,
+};
 
 fn assert_merit(merit: Merit) {
     println!("{merit:?}");
@@ -25,12 +27,18 @@ fn figure_3_does_not_depend_on_the_mesh() {
 #[test]
 fn figures_4_and_5_are_table_1_at_all_times() {
     for figure in [4, 5] {
-        figures_4_and_5(figure, 256, |_, merit| assert_merit(merit)).unwrap();
+        let mut shown = 0;
+        let show = |_: &_, merit| {
+            shown += 1;
+            assert_merit(merit);
+        };
+        figures_4_and_5(figure, 256, show).unwrap();
+        assert_eq!(shown, TIMES.len());
     }
 }
 
 #[test]
-fn figure_6_shows_first_order_and_more_than_second() {
+fn figure_6_shows_first_order_and_second_or_more() {
     for study in figure_6(96).unwrap() {
         println!("{:?}: {:?}", study.rule, study.errors);
         study.orders().into_iter().for_each(assert_merit);

@@ -18,6 +18,7 @@ fn held_indenters_creep_as_elastic_ones_of_the_compliance_of_the_time() {
     let (material, loads) = (zener(), forces.map(Load::force));
     let mut contact = SCENE.on(&material, 4).unwrap();
     contact.step_each(0.0, &loads).unwrap();
+    let mut furthest = 0.0_f64;
     for k in 1..=20 {
         contact.step_each(0.1, &loads).unwrap();
         if k % 10 == 0 {
@@ -27,9 +28,12 @@ fn held_indenters_creep_as_elastic_ones_of_the_compliance_of_the_time() {
                 assert!((computed / exact - 1.0).abs() < 2e-4, "body {body}: {computed} {exact}");
                 let sum = SCENE.sum_of_lone(SCENE.center(body), &forces, compliance);
                 assert!((sum / exact - 1.0).abs() < 0.02, "body {body}: {sum} {exact}");
+                furthest = furthest.max((sum / exact - 1.0).abs());
             }
         }
     }
+    println!("the sum of lone indenters is {furthest:.1e} off");
+    assert!(furthest > 1e-3, "{furthest}");
 }
 
 /// Punches whose faces stay closed are linear: their approaches are a matrix times the creep of their forces, the matrix is
@@ -39,7 +43,7 @@ fn punches_pressed_in_turn_superpose() {
     let (least, most) = (0.0125, 0.05);
     let faces = ClosedFaces::new(&SCENE, least, most).unwrap();
     for (i, j) in [(0, 1), (0, 2), (1, 2)] {
-        assert!((faces.compliances[i][j] / faces.compliances[j][i] - 1.0).abs() < 1e-6);
+        approx::assert_relative_eq!(faces.compliances[i][j], faces.compliances[j][i], max_relative = 1e-6);
     }
     let material = three_times();
     let mut contact = SCENE.on(&material, 3).unwrap();
