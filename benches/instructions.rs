@@ -1,4 +1,4 @@
-//! Three small scenes whose instructions are counted: `benches/instructions` runs this under callgrind and compares the
+//! Small scenes whose instructions are counted: `benches/instructions` runs this under callgrind and compares the
 //! counts with those in `benches/instructions.csv`. Called with the number of a scene.
 
 use viscocontact::prelude::*;
@@ -9,7 +9,9 @@ fn main() {
     let (mut contact, load, dt, steps) = match scene {
         0 => held_sphere(),
         1 => eccentric_punch(),
-        _ => wavy_surface(),
+        2 => wavy_surface(),
+        3 => relaxation_times(1),
+        _ => relaxation_times(30),
     };
     contact.step(0.0, load(0)).unwrap();
     println!("{} convolution equivalents", measured(&mut contact, load, dt, steps));
@@ -29,7 +31,7 @@ fn held_sphere() -> Scene {
     let contact = ViscoelasticContact::builder(Grid::square(64, 2.0e-3).unwrap())
         .geometry(&Sphere::new(10.0e-3).unwrap())
         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap()))
-        .settings(Settings { window: false, ..Settings::default() });
+        .settings(Settings::default().with_window(false));
     (contact.build().unwrap(), |_| Load::force(0.3), 0.02, 20)
 }
 
@@ -49,6 +51,16 @@ fn wavy_surface() -> Scene {
     let contact = ViscoelasticContact::builder(Grid::square(64, 2.0e-3).unwrap())
         .geometry(&FnGeometry::new(wave))
         .material(Material::incompressible(GeneralizedMaxwell::new(1.0e5, &terms).unwrap()))
-        .settings(Settings { window: false, ..Settings::default() });
+        .settings(Settings::default().with_window(false));
     (contact.build().unwrap(), |_| Load::force(0.05), 0.05, 10)
+}
+
+/// Bodies that creep the same, with few or many relaxation times: the contact problems are the same.
+fn relaxation_times(count: usize) -> Scene {
+    let terms: Vec<_> = (0..count).map(|k| (1.0e-6 / count as f64, 1.0 + 1e-4 * k as f64)).collect();
+    let contact = ViscoelasticContact::builder(Grid::square(64, 2.0e-3).unwrap())
+        .geometry(&Sphere::new(10.0e-3).unwrap())
+        .material(Material::incompressible(GeneralizedKelvin::new(0.5e-6, 0.0, &terms).unwrap()))
+        .settings(Settings::default().with_window(false));
+    (contact.build().unwrap(), |_| Load::force(0.1), 0.02, 20)
 }

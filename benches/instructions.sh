@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Counts the instructions of three small scenes with callgrind, and compares them with benches/instructions.csv: each may
+# Counts the instructions of small scenes with callgrind, and compares them with benches/instructions.csv: each may
 # differ by 3 %. `benches/instructions.sh --record` writes the file anew. Counts belong to a compiler: with another one
 # they are shown, not judged. Needs valgrind; without it, says so and succeeds.
 set -euo pipefail
@@ -11,7 +11,8 @@ if ! command -v valgrind >/dev/null; then
     exit 0
 fi
 compiler=$(rustc --version | cut -d' ' -f2)
-program=$(cargo bench --bench instructions --no-run 2>&1 | sed -n 's/.*(\(.*\)).*/\1/p' | tail -1)
+cargo build --quiet --release --package viscocontact-benches --bin instructions
+program=${CARGO_TARGET_DIR:-target}/release/instructions
 mkdir -p target/instructions
 
 count() {
@@ -23,20 +24,25 @@ count() {
     sed -n 's/.*Collected : //p' "target/instructions/$1.log"
 }
 
-names=(held_sphere eccentric_punch wavy_surface)
+names=(held_sphere eccentric_punch wavy_surface one_relaxation_time thirty_relaxation_times)
 if [ "${1-}" = --record ]; then
     echo "scene,instructions,rustc" >"$recorded"
-    for k in 0 1 2; do
-        now=$(count $k)
+    for k in "${!names[@]}"; do
+        now=$(count "$k")
         echo "${names[$k]},$now,$compiler" >>"$recorded"
     done
     cat "$recorded"
     exit
 fi
 failed=0
-for k in 0 1 2; do
-    now=$(count $k)
-    IFS=, read -r _ before with < <(grep "^${names[$k]}," "$recorded")
+counts=()
+for k in "${!names[@]}"; do
+    now=$(count "$k")
+    counts+=("$now")
+    if ! IFS=, read -r _ before with < <(grep "^${names[$k]}," "$recorded"); then
+        echo "${names[$k]}: $now instructions, not recorded"
+        continue
+    fi
     change=$(awk -v a="$now" -v b="$before" 'BEGIN { printf "%+.2f", 100 * (a / b - 1) }')
     verdict=ok
     if [ "$with" != "$compiler" ]; then
@@ -47,4 +53,10 @@ for k in 0 1 2; do
     fi
     echo "${names[$k]}: $now instructions, $change %: $verdict"
 done
+ratio=$(awk -v a="${counts[4]}" -v b="${counts[3]}" 'BEGIN { printf "%.2f", a / b }')
+echo "thirty relaxation times over one: $ratio"
+if awk -v r="$ratio" 'BEGIN { exit !(r > 1.3) }'; then
+    echo "MORE THAN 1.3"
+    failed=1
+fi
 exit $failed

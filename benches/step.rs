@@ -1,6 +1,6 @@
 //! Times of the parts and of the whole: cold solve, warm step, scene.
 
-#[path = "../tests/common/step_loaded_sphere.rs"]
+#[path = "../examples/support/scenes/step_loaded_sphere.rs"]
 mod step_loaded_sphere;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, criterion_group, criterion_main};
@@ -12,11 +12,11 @@ fn choices() -> [(&'static str, Settings); 4] {
     let settings = Settings::default();
     [
         ("default", settings),
-        ("no symmetry", Settings { symmetry: false, ..settings }),
-        ("whole grid", Settings { symmetry: false, window: false, ..settings }),
+        ("no symmetry", settings.with_symmetry(false)),
+        ("whole grid", settings.with_symmetry(false).with_window(false)),
         (
             "whole grid, Polonsky–Keer",
-            Settings { symmetry: false, window: false, solver: Solver::PolonskyKeer, ..settings },
+            settings.with_symmetry(false).with_window(false).with_solver(Solver::PolonskyKeer),
         ),
     ]
 }

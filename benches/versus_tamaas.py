@@ -34,7 +34,8 @@ ROOT = Path(__file__).resolve().parent.parent
 
 def crate(*arguments):
     """What this crate's side, `benches/versus_tamaas.rs`, prints: words of each line."""
-    command = ["cargo", "bench", "--quiet", "--bench", "versus_tamaas", "--", *map(str, arguments)]
+    program = ["cargo", "run", "--quiet", "--release", "--package", "viscocontact-benches", "--bin", "versus_tamaas", "--"]
+    command = program + [str(argument) for argument in arguments]
     lines = subprocess.run(command, cwd=ROOT, check=True, capture_output=True, text=True).stdout.splitlines()
     return [line.split() for line in lines if line]
 

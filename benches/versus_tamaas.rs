@@ -1,5 +1,4 @@
-//! This crate's side of the comparison with Tamaas, `benches/versus_tamaas.py`, which calls it and says how to run it. Without
-//! arguments, as in `cargo bench`, it does nothing.
+//! This crate's side of the comparison with Tamaas, `benches/versus_tamaas.py`, which calls it and says how to run it.
 //!
 //! * `reference SCENE FOLDER` writes the gap of a scene and its pressures, solved to far below every error compared.
 //! * `measure SCENE FOLDER ERROR` looks for the cheapest steps and tolerance whose pressures differ from those by at most
@@ -16,11 +15,11 @@ use viscocontact::InfluenceKernel;
 use viscocontact::prelude::*;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let args: Vec<String> = env::args().skip(1).filter(|argument| argument != "--bench").collect();
+    let args: Vec<String> = env::args().skip(1).collect();
     match args.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["reference", scene, folder] => write_reference(&Scene::named(scene)?, Path::new(folder)),
         ["measure", scene, folder, error] => measure(&Scene::named(scene)?, Path::new(folder), error.parse()?),
-        _ => Ok(()),
+        _ => Err("`reference SCENE FOLDER` or `measure SCENE FOLDER ERROR`".into()),
     }
 }
 
@@ -62,15 +61,7 @@ impl Scene {
             }
         } else {
             let grid = Grid::square(512, 1.0)?;
-            let spec = RoughSpec {
-                hurst: 0.8,
-                longest: 1.0,
-                roll_off: 0.25,
-                shortest: 8.0 / 512.0,
-                anisotropy: Anisotropy::default(),
-                roughness: Roughness::RmsSlope(0.1),
-                seed: 1,
-            };
+            let spec = RoughSpec::new(1.0, 8.0 / 512.0, Roughness::RmsSlope(0.1)).with_roll_off(0.25).with_seed(1);
             Scene {
                 kernel: Arc::new(InfluenceKernel::periodic(&grid)?),
                 geometry: Box::new(Rough::new(&grid, spec)?),
@@ -89,7 +80,7 @@ impl Scene {
             .geometry(&*self.geometry)
             .material(self.material.clone())
             .kernel(self.kernel.clone())
-            .settings(Settings { edge: Edge::Allow, ..settings })
+            .settings(settings.with_edge(Edge::Allow))
             .build()
     }
 
@@ -135,7 +126,7 @@ fn write_reference(scene: &Scene, folder: &Path) -> Result<(), Box<dyn Error>> {
     let mut gap = vec![0.0; scene.grid.len()];
     scene.geometry.fill_gap(&scene.grid, &mut gap);
     write("gap", &gap)?;
-    let mut contact = scene.contact(Settings { tolerance: 1e-10, ..Settings::default() })?;
+    let mut contact = scene.contact(Settings::default().with_tolerance(1e-10))?;
     write("pressures", &scene.run(&mut contact, scene.reference_steps)?.0)?;
     let share = contact.contact_cells() as f64 / scene.grid.len() as f64;
     println!("{:e} {} {share:.3}", scene.grid.lengths()[0], scene.force);
@@ -155,7 +146,7 @@ fn measure(scene: &Scene, folder: &Path, allowed: f64) -> Result<(), Box<dyn Err
     for (way, part) in [("default", true), ("whole-grid", false)] {
         let mut cheapest = (f64::INFINITY, String::new());
         for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
-            let settings = Settings { tolerance, symmetry: part, window: part, ..Settings::default() };
+            let settings = Settings::default().with_tolerance(tolerance).with_symmetry(part).with_window(part);
             let mut contact = scene.contact(settings)?;
             let at_rest = contact.snapshot();
             for &steps in scene.steps {

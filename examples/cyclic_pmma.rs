@@ -13,9 +13,9 @@
 //! nothing, a being the radius under the mean force, a³ = ¾ R Wm C(t); for large ones the difference is shown. The
 //! reference of the ball is the one-dimensional foundation (method of dimensionality reduction).
 //!
-//! `cargo run --release --example cyclic_pmma`
+//! `cargo run --release --features plot --example cyclic_pmma`
 
-#[path = "../tests/common/oscillation.rs"]
+#[path = "support/scenes/oscillation.rs"]
 mod oscillation;
 mod support;
 
@@ -26,6 +26,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use indicatif::ProgressBar;
 use oscillation::{Cycle, Oscillation};
+use viscocontact::Result;
 use viscocontact::analytic::{AxisymmetricContact, Profile};
 use viscocontact::plot::{COLORS, Chart, Legend, Quantity, Scale, Style};
 use viscocontact::prelude::*;

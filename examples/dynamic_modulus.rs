@@ -2,9 +2,9 @@
 //! shifted to a master curve, which gives the WLF law and a material; a ball is then pressed onto it at three
 //! temperatures. The isotherms are made from a published material, so that everything can be compared.
 //!
-//! `cargo run --release --example dynamic_modulus`
+//! `cargo run --release --features plot --example dynamic_modulus`
 
-#[path = "../tests/common/noise.rs"]
+#[path = "support/scenes/noise.rs"]
 mod noise;
 mod support;
 
@@ -15,6 +15,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use indicatif::ProgressBar;
 use noise::noise;
+use viscocontact::Result;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::{Isotherm, MasterCurve, MaterialFunction, library};

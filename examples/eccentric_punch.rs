@@ -2,7 +2,7 @@
 //! the whole face is in contact and beyond, where it opens; then on a creeping body, where the tilt grows
 //! with time under a steady force.
 //!
-//! `cargo run --release --example eccentric_punch`
+//! `cargo run --release --features plot --example eccentric_punch`
 
 mod support;
 
@@ -12,6 +12,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use indicatif::ProgressBar;
+use viscocontact::Result;
 use viscocontact::analytic::RigidPunch;
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Style};
 use viscocontact::prelude::*;
@@ -56,7 +57,7 @@ fn punch(args: &Args, material: Material) -> Result<ViscoelasticContact> {
     ViscoelasticContact::builder(Grid::square(args.cells, 2.1 * args.radius)?)
         .geometry(&FlatPunch::circular(args.radius)?)
         .material(material)
-        .settings(Settings { tolerance: 1e-7, ..Settings::default() })
+        .settings(Settings::default().with_tolerance(1e-7))
         .build()
 }
 

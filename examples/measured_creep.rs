@@ -2,9 +2,9 @@
 //! material that it gives. The table was made from a known material, so that the error of the whole way can be
 //! told.
 //!
-//! `cargo run --release --example measured_creep`
+//! `cargo run --release --features plot --example measured_creep`
 
-#[path = "../tests/common/noise.rs"]
+#[path = "support/scenes/noise.rs"]
 mod noise;
 mod support;
 
@@ -15,6 +15,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use indicatif::ProgressBar;
 use noise::noise;
+use viscocontact::Result;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
 use viscocontact::rheology::Units;
@@ -115,7 +116,7 @@ fn measure(args: &Args, seed: u64) -> Result<(), Box<dyn Error>> {
     let truth = truth()?;
     let mut text = String::from(
         "# Creep of a fractional Zener body (G = 1 GPa, G_K = 1 MPa, 10 s, order 0.45) with 2 % noise,\n\
-         # made by: cargo run --release --example measured_creep -- --seed 1\n\
+         # made by: cargo run --release --features plot --example measured_creep -- --seed 1\n\
          time [s],creep compliance [1/Pa]\n",
     );
     let mut noise = noise(seed);

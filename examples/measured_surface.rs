@@ -4,7 +4,7 @@
 //! curved plane, with a scratch, and some points missing as an instrument leaves them. `--generate` writes it anew. Give your
 //! own with `--map`.
 //!
-//! `cargo run --release --example measured_surface`
+//! `cargo run --release --features plot --example measured_surface`
 
 mod support;
 
@@ -14,7 +14,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use indicatif::ProgressBar;
+use viscocontact::Result;
 use viscocontact::analytic::Hertz;
+use viscocontact::geometry::Form;
+use viscocontact::geometry::Sum;
 use viscocontact::observe::Axis;
 use viscocontact::output::{CsvHistory, Metadata};
 use viscocontact::plot::{COLORS, Chart, Color, Legend, Map, Quantity, Style};
@@ -145,9 +148,10 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
         .geometry(&Sum::new(Sphere::new(args.radius)?, roughness.clone()))
         .material(rubber.clone())
         .build()?;
-    let table = support::cleared(args.output.join("history.csv"))?;
+    let table = args.output.join("history.csv");
     let scene = Metadata::new("Rough ball on rubber").note("radius", format!("{} m", args.radius));
-    let mut history = CsvHistory::create(&table, &scene, &contact, &["patches", "smooth ball: contact area [m2]"])?;
+    let mut history =
+        CsvHistory::create_or_replace(&table, &scene, &contact, &["patches", "smooth ball: contact area [m2]"])?;
 
     println!("\npolyisobutylene under {} mN", args.load * 1e3);
     println!(
@@ -180,8 +184,8 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
                 hertz * 1e6,
                 patches.count(),
                 patches.largest().map_or(0.0, |patch| patch.area * 1e6),
-                contact.greatest_pressure() * 1e-3,
-                smooth.greatest_pressure() * 1e-3
+                contact.max_pressure() * 1e-3,
+                smooth.max_pressure() * 1e-3
             );
         });
         progress.inc(1);
@@ -218,15 +222,10 @@ fn generate(data: &Path) -> Result<(), Box<dyn Error>> {
     let spacing = 10.0e-6;
     let cells = [96, 64];
     let grid = Grid::new(cells, cells.map(|n| n as f64 * spacing))?;
-    let spec = RoughSpec {
-        hurst: 0.8,
-        longest: 0.3e-3,
-        roll_off: 0.15e-3,
-        shortest: 4.0 * spacing,
-        anisotropy: Anisotropy { ratio: 1.5, direction: 0.3 },
-        roughness: Roughness::RmsHeight(0.5e-6),
-        seed: 8,
-    };
+    let spec = RoughSpec::new(0.3e-3, 4.0 * spacing, Roughness::RmsHeight(0.5e-6))
+        .with_roll_off(0.15e-3)
+        .with_anisotropy(Anisotropy::new(1.5, 0.3))
+        .with_seed(8);
     // not periodic: a part of a larger surface
     let rough = Rough::windowed(&grid, spec, [160.0 * spacing, 120.0 * spacing])?;
     let mut noise = Noise(8);

@@ -4,9 +4,10 @@
 //!
 //! Times are processor times where the system tells them (Linux), so that a busy machine disturbs them little.
 //!
-//! `RAYON_NUM_THREADS=1 cargo run --release --example paper_cost` (twelve minutes), or with `-- --quick` (half a minute)
+//! `RAYON_NUM_THREADS=1 cargo run --release --features plot --example paper_cost`
+//! (twelve minutes), or with `-- --quick` (half a minute)
 
-#[path = "../tests/common/step_loaded_sphere.rs"]
+#[path = "support/scenes/step_loaded_sphere.rs"]
 mod step_loaded_sphere;
 mod support;
 
@@ -18,6 +19,7 @@ use std::time::Instant;
 use clap::Parser;
 use indicatif::ProgressBar;
 use step_loaded_sphere::{StepLoadedSphere, errors};
+use viscocontact::Result;
 use viscocontact::plot::{COLORS, Chart, Legend, Picture, Scale, Style};
 use viscocontact::prelude::*;
 
@@ -73,7 +75,7 @@ const WAYS: [&str; 3] = ["paper, literally", "paper, convolutions kept", "defaul
 
 fn settings(way: usize) -> Settings {
     match way {
-        0 => Settings { time_rule: TimeRule::RectangleUncached, ..Settings::paper() },
+        0 => Settings::paper().with_time_rule(TimeRule::RectangleUncached),
         1 => Settings::paper(),
         _ => Settings::default(),
     }
@@ -264,13 +266,13 @@ fn causes(cells: usize, steps: usize) -> Result<(), Box<dyn Error>> {
     let chain = [
         ("paper, literally", settings(0)),
         ("convolutions of the past kept", paper),
-        ("active set in place of Polonsky–Keer", Settings { solver: Solver::ActiveSet, ..paper }),
-        ("exponential time rule", Settings { symmetry: false, window: false, ..Settings::default() }),
-        ("symmetry", Settings { window: false, ..Settings::default() }),
+        ("active set in place of Polonsky–Keer", paper.with_solver(Solver::ActiveSet)),
+        ("exponential time rule", Settings::default().with_symmetry(false).with_window(false)),
+        ("symmetry", Settings::default().with_window(false)),
         ("window (default)", Settings::default()),
     ];
     println!(
-        "\n{cells}² cells, {steps} steps\n| | ms a step | convolutions a step | factor | MB |\n|---|---|---|---|---|"
+        "\n{cells}² cells, {steps} steps\n| | ms per step | convolutions per step | factor | MB |\n|---|---|---|---|---|"
     );
     let (mut first, mut last) = (None, None);
     for (name, settings) in chain {
@@ -286,7 +288,7 @@ fn causes(cells: usize, steps: usize) -> Result<(), Box<dyn Error>> {
     // the fewest steps from which on the default rule is no less exact than the paper's rule
     let scene = StepLoadedSphere::maxwell();
     let error = |steps: usize, time_rule: TimeRule| -> Result<f64> {
-        let (contact, _) = scene.run(cells, steps, Settings { time_rule, ..Settings::default() })?;
+        let (contact, _) = scene.run(cells, steps, Settings::default().with_time_rule(time_rule))?;
         Ok(errors(&contact, &scene.reference()?).l1)
     };
     let by_paper = error(steps, TimeRule::Rectangle)?;

@@ -1,11 +1,11 @@
 //! Figures 2 to 6 of the source paper, S. Spinu, *The surface contact of viscoelastic materials, Part I*, drawn to be laid
 //! beside it, with a table of how exact they are; fails if one is less exact than it should be.
 //!
-//! `cargo run --release --example paper_figures` (15 s), or with `-- --quick` (seconds, coarser)
+//! `cargo run --release --features plot --example paper_figures` (15 s), or with `-- --quick` (seconds, coarser)
 
-#[path = "../tests/common/paper_figures.rs"]
+#[path = "support/scenes/paper_figures.rs"]
 mod scenes;
-#[path = "../tests/common/step_loaded_sphere.rs"]
+#[path = "support/scenes/step_loaded_sphere.rs"]
 mod step_loaded_sphere;
 mod support;
 
@@ -21,8 +21,9 @@ use scenes::{
     pressed_punch,
 };
 use step_loaded_sphere::StepLoadedSphere;
+use viscocontact::Result;
 use viscocontact::analytic::{GrowingSphere, Hertz};
-use viscocontact::plot::{COLORS, Chart, Color, Legend, Picture, Style};
+use viscocontact::plot::{COLORS, Chart, Color, Legend, Picture, Style, scientific};
 use viscocontact::prelude::*;
 
 /// Draws Figures 2 to 6 of the source paper.
@@ -146,7 +147,7 @@ fn opening(cells: usize) -> Drawn {
 /// The radius of contact a_H and the greatest pressure p_H when the load has just been applied: the paper's units.
 fn hertz(scene: &StepLoadedSphere) -> Result<[f64; 2]> {
     let hertz = Hertz::new(scene.radius, 1.0 / scene.material.contact_compliance(0.0), scene.force)?;
-    Ok([hertz.contact_radius(), hertz.greatest_pressure()])
+    Ok([hertz.contact_radius(), hertz.max_pressure()])
 }
 
 /// The exact pressure at a time in the paper's units, dense near the rim, where it falls like a root.
@@ -193,7 +194,7 @@ fn steps_in_time(cells: usize) -> Drawn {
         let runs = study.pressures.iter().zip(STEP_COUNTS).zip(&study.errors).zip(COLORS);
         for (((pressure, steps), [error, _]), color) in runs {
             let half = along_x1(&grid, pressure, units).into_iter().filter(|&(x, p)| x > 0.0 && p > 0.0);
-            chart.add(format!("{steps} steps, error {error:.1e}"), color, Style::Line, half.collect());
+            chart.add(format!("{steps} steps, error {}", scientific(*error, 1)), color, Style::Line, half.collect());
         }
         let time = 2.0 * scene.tau;
         let radii = (0..36).map(|k| 0.04 * f64::from(k)).chain([exact.contact_radius(time) / units[0]]);

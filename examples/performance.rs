@@ -1,7 +1,8 @@
 //! What a step costs: the paper's scene on several meshes, computed in every way there is, in units of one convolution
 //! on the whole grid and of the paper's own algorithm. Writes a table (CSV) and a picture.
 //!
-//! `RAYON_NUM_THREADS=1 cargo run --release --example performance` (about a minute), or with `-- --cells 64` (a second)
+//! `RAYON_NUM_THREADS=1 cargo run --release --features plot --example performance`
+//! (about a minute), or with `-- --cells 64` (a second)
 
 mod support;
 
@@ -52,17 +53,17 @@ struct Cost {
 
 /// Ways to compute the scene, and the side of the grid over that of the tightest.
 fn ways(tolerance: f64) -> Vec<(&'static str, Settings, f64)> {
-    let settings = Settings { tolerance, ..Settings::default() };
-    let whole = Settings { symmetry: false, window: false, ..settings };
+    let settings = Settings::default().with_tolerance(tolerance);
+    let whole = settings.with_symmetry(false).with_window(false);
     // a grid that the final contact, π a², fills a sixteenth of
     let wide = 4.0 * std::f64::consts::PI.sqrt() / 2.25;
     vec![
         ("default", settings, 1.0),
         ("whole grid", whole, 1.0),
-        ("contact on 1/16, window", Settings { symmetry: false, ..settings }, wide),
+        ("contact on 1/16, window", settings.with_symmetry(false), wide),
         ("contact on 1/16, whole grid", whole, wide),
-        ("Polonsky–Keer, whole grid", Settings { solver: Solver::PolonskyKeer, ..whole }, 1.0),
-        ("paper", Settings { tolerance, ..Settings::paper() }, 1.0),
+        ("Polonsky–Keer, whole grid", whole.with_solver(Solver::PolonskyKeer), 1.0),
+        ("paper", Settings::paper().with_tolerance(tolerance), 1.0),
     ]
 }
 

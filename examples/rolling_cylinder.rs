@@ -3,11 +3,11 @@
 //!
 //! Each speed is computed step by step to its steady state, on a grid that follows the cylinder, and compared with a
 //! formulation that has no steps: exponential integrals in a dense system for the steady state itself
-//! (`tests/common/rolling.rs`).
+//! (`examples/support/scenes/rolling.rs`).
 //!
-//! `cargo run --release --example rolling_cylinder`
+//! `cargo run --release --features plot --example rolling_cylinder`
 
-#[path = "../tests/common/rolling.rs"]
+#[path = "support/scenes/rolling.rs"]
 mod reference;
 mod support;
 
@@ -19,6 +19,7 @@ use std::sync::Arc;
 use clap::Parser;
 use indicatif::ProgressBar;
 use reference::RollingCylinder;
+use viscocontact::Result;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
 
@@ -86,9 +87,9 @@ fn roll(scene: &RollingCylinder, material: &Material, velocity: f64, cells: usiz
         .geometry(&cylinder)
         .material(material.clone())
         .kernel(Arc::new(InfluenceKernel::line(&grid, 10.0 * grid.lengths()[0])?))
-        .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
+        .settings(Settings::default().with_frame(Frame::Indenter))
         .build()?;
-    let motion = SteadyMotion { axis: 0, velocity, load: Load::force(scene.per_length), tolerance: 2e-4 };
+    let motion = SteadyMotion::new(0, velocity, Load::force(scene.per_length)).with_tolerance(2e-4);
     let mut run = contact.toward_steady(motion)?;
     let (mut steps, mut convolutions) = (0, 0);
     while let Some(report) = run.next_step()? {
@@ -100,7 +101,7 @@ fn roll(scene: &RollingCylinder, material: &Material, velocity: f64, cells: usiz
     let points = contact.pressure().iter().enumerate().map(|(i, &p)| (grid.center(i, 0)[0], p));
     Ok(Rolled {
         profile: points.filter(|(x, _)| near(*x)).map(|(x, p)| (x - axis, p)).collect(),
-        peak: contact.greatest_pressure(),
+        peak: contact.max_pressure(),
         width: contact.contact_area() / grid.lengths()[1],
         friction: contact.lateral_force(&cylinder)[0] / contact.force(),
         distance,

@@ -13,7 +13,7 @@
 //! p the mean pressure and h' the rms slope (Persson, J. Chem. Phys. 115, 2001, in the form of Manners & Greenwood, Wear
 //! 261, 2006). At small loads the area is κ p C / h', with κ = √(8/π) = 1.6 from this formula and about 2 in computations.
 //!
-//! `cargo run --release --example rough_creep`
+//! `cargo run --release --features plot --example rough_creep`
 
 mod support;
 
@@ -25,8 +25,9 @@ use std::time::Instant;
 
 use clap::Parser;
 use indicatif::ProgressBar;
+use viscocontact::Result;
 use viscocontact::output::{CsvHistory, Metadata};
-use viscocontact::plot::{COLORS, Chart, Legend, Map, Scale, Style};
+use viscocontact::plot::{COLORS, Chart, Legend, Map, Scale, Style, scientific};
 use viscocontact::prelude::*;
 use viscocontact::rheology::library;
 
@@ -97,16 +98,10 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let began = Instant::now();
     let cells = if args.quick { 128 } else { args.cells };
     let grid = Grid::square(cells, args.length)?;
-    let spec = RoughSpec {
-        hurst: 0.8,
-        longest: 0.5 * args.length,
-        roll_off: 0.25 * args.length,
-        // a summit of the shortest waves is eight cells wide
-        shortest: 8.0 * args.length / cells as f64,
-        anisotropy: Anisotropy::default(),
-        roughness: Roughness::RmsSlope(args.slope),
-        seed: args.seed,
-    };
+    // a summit of the shortest waves is eight cells wide
+    let spec = RoughSpec::new(0.5 * args.length, 8.0 * args.length / cells as f64, Roughness::RmsSlope(args.slope))
+        .with_roll_off(0.25 * args.length)
+        .with_seed(args.seed);
     let surface = Rough::new(&grid, spec)?;
     let statistics = SurfaceStatistics::of(surface.height_map())?;
     println!(
@@ -137,7 +132,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             .geometry(&surface)
             .material(material.clone())
             .kernel(kernel.clone())
-            .settings(Settings { tolerance: 1e-7, ..Settings::default() })
+            .settings(Settings::default().with_tolerance(1e-7))
             .build()
     };
     let mut contact = build(&material)?;
@@ -305,7 +300,7 @@ fn observe(contact: &ViscoelasticContact) -> Result<Moment> {
 fn map(contact: &ViscoelasticContact, mean: f64, time: f64, share: f64) -> Result<Map> {
     let values = contact.pressure().iter().map(|&p| if p > 0.0 { p / mean } else { f64::NAN }).collect();
     let mut map = Map::new(contact.grid(), values, "p / mean pressure")?;
-    map.title = format!("{time:.0e} s: {:.0} % in contact", 100.0 * share);
+    map.title = format!("{} s: {:.0} % in contact", scientific(time, 0), 100.0 * share);
     map.range = [0.0, 20.0];
     Ok(map)
 }
@@ -321,18 +316,17 @@ struct Files {
 
 impl Files {
     fn create(args: &Args, scene: &Metadata, contact: &ViscoelasticContact) -> Result<Files, Box<dyn Error>> {
-        let table = support::cleared(args.output.join("history.csv"))?;
         Ok(Files {
-            history: CsvHistory::create(&table, scene, contact, &[])?,
+            history: CsvHistory::create_or_replace(args.output.join("history.csv"), scene, contact, &[])?,
             #[cfg(feature = "npy")]
-            npz: viscocontact::output::NpzSeries::create(
-                support::cleared(args.output.join("npz"))?,
+            npz: viscocontact::output::NpzSeries::create_or_replace(
+                args.output.join("npz"),
                 scene.clone(),
                 &viscocontact::output::Field::ALL,
             )?,
             #[cfg(feature = "vtk")]
-            vtk: viscocontact::output::VtkSeries::create(
-                support::cleared(args.output.join("vtk"))?,
+            vtk: viscocontact::output::VtkSeries::create_or_replace(
+                args.output.join("vtk"),
                 scene.clone(),
                 &viscocontact::output::Field::ALL,
             )?,

@@ -4,7 +4,7 @@
 //! 2. A start from rest, a stop and the way back, on a grid that stays with the solid: how friction builds up over a
 //!    length of contact, and how the sphere sinks in while it rests and climbs when it moves.
 //!
-//! `cargo run --release --example sliding_sphere`
+//! `cargo run --release --features plot --example sliding_sphere`
 
 mod support;
 
@@ -15,6 +15,7 @@ use std::path::{Path as File, PathBuf};
 
 use clap::Parser;
 use indicatif::ProgressBar;
+use viscocontact::Result;
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Scale, Style};
 use viscocontact::prelude::*;
 
@@ -83,9 +84,9 @@ impl Bodies {
         let mut contact = ViscoelasticContact::builder(grid)
             .geometry(&sphere)
             .material(self.material.clone())
-            .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
+            .settings(Settings::default().with_frame(Frame::Indenter))
             .build()?;
-        contact.toward_steady(SteadyMotion { axis: 0, velocity, load: self.load, tolerance: 1e-3 })?.run()?;
+        contact.toward_steady(SteadyMotion::new(0, velocity, self.load))?.run()?;
         Ok((contact, sphere))
     }
 }
@@ -155,9 +156,8 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     #[cfg(feature = "vtk")]
     {
         use viscocontact::output::{Field, Metadata, VtkSeries};
-        let folder = support::cleared(output.join("vtk"))?;
         let scene = Metadata::new("Sphere sliding steadily").note("friction", friction.to_string());
-        VtkSeries::create(folder, scene, &Field::ALL)?.write(&contact)?;
+        VtkSeries::create_or_replace(output.join("vtk"), scene, &Field::ALL)?.write(&contact)?;
     }
     Ok(())
 }
@@ -182,9 +182,9 @@ fn there_and_back(bodies: &Bodies, cells: usize, output: &File) -> Result<(), Bo
         .build()?;
     contact.step(0.0, bodies.load)?;
     let scene = viscocontact::output::Metadata::new("Sphere sliding there and back");
-    let history = support::cleared(output.join("there_and_back.csv"))?;
+    let history = output.join("there_and_back.csv");
     let columns = ["position [m]", "lateral force [N]", "power [W]"];
-    let mut table = viscocontact::output::CsvHistory::create(&history, &scene, &contact, &columns)?;
+    let mut table = viscocontact::output::CsvHistory::create_or_replace(&history, &scene, &contact, &columns)?;
     let (mut friction, mut sinking) = (Vec::new(), Vec::new());
     // two steps a cell while it moves; at rest they may grow
     let step = 0.5 * side / velocity;

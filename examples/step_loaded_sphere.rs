@@ -1,9 +1,9 @@
 //! The source paper's scene: a sphere pressed onto a creeping half-space by a force that is applied at
 //! once and held. Reproduces its Figures 4, 5 and 6 against the closed forms of its Table 1.
 //!
-//! `cargo run --release --example step_loaded_sphere` takes no argument; `-- --help` lists them.
+//! `cargo run --release --features plot --example step_loaded_sphere` takes no argument; `-- --help` lists them.
 
-#[path = "../tests/common/step_loaded_sphere.rs"]
+#[path = "support/scenes/step_loaded_sphere.rs"]
 mod scene;
 mod support;
 
@@ -15,6 +15,7 @@ use std::time::Instant;
 use clap::{Parser, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
 use scene::{Errors, StepLoadedSphere, errors};
+use viscocontact::Result;
 use viscocontact::analytic::{GrowingSphere, Hertz};
 use viscocontact::plot::{COLORS, Chart, Color, Legend, Scale, Style};
 use viscocontact::prelude::*;
@@ -96,7 +97,7 @@ impl Args {
             SolverName::ActiveSet => Solver::ActiveSet,
             SolverName::PolonskyKeer => Solver::PolonskyKeer,
         };
-        Settings { tolerance: self.tolerance, time_rule, solver, ..Settings::default() }
+        Settings::default().with_tolerance(self.tolerance).with_time_rule(time_rule).with_solver(solver)
     }
 
     fn scenes(&self) -> Result<Vec<StepLoadedSphere>> {
@@ -299,7 +300,7 @@ impl Run {
         let title = format!("Pressure under a step-loaded sphere, {} half-space", scene.name);
         let [x, y] = ["r / Hertz radius at t = 0", "p / Hertz pressure at t = 0"];
         let mut chart = Chart::new(&title, x, y, Legend::UpperRight);
-        let (a, p) = (self.hertz.contact_radius(), self.hertz.greatest_pressure());
+        let (a, p) = (self.hertz.contact_radius(), self.hertz.max_pressure());
         for (profile, color) in self.profiles.iter().zip(COLORS) {
             let edge = self.exact.contact_radius(profile.time);
             // dense near the rim, where the profile falls like a root
@@ -340,7 +341,7 @@ fn add_convergence(
         let mut points = Vec::new();
         for steps in STEP_COUNTS {
             // the solver below the errors in time that are shown
-            let settings = Settings { tolerance: args.tolerance.min(1e-6), time_rule, ..Settings::default() };
+            let settings = Settings::default().with_tolerance(args.tolerance.min(1e-6)).with_time_rule(time_rule);
             let (contact, _) = scene.run(args.cells / 2, steps, settings)?;
             let error = errors(&contact, &scene.reference()?);
             table.serialize((name, steps, error.central_pressure, error.l1, error.approach))?;
@@ -355,7 +356,7 @@ fn add_convergence(
 
 /// The same scene by the paper's whole algorithm, for the cost.
 fn compare_with_the_paper(scene: &StepLoadedSphere, args: &Args, run: &Run) -> Result<(), Box<dyn Error>> {
-    let settings = Settings { tolerance: args.tolerance, ..Settings::paper() };
+    let settings = Settings::paper().with_tolerance(args.tolerance);
     let started = Instant::now();
     let (contact, work) = scene.run(args.cells, args.steps, settings)?;
     let (seconds, error) = (started.elapsed().as_secs_f64(), errors(&contact, &run.exact));

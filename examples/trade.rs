@@ -1,7 +1,7 @@
 //! Speed against accuracy, measured: five scenes with a reference, every time rule, the paper's solver with its own, several meshes
 //! and step counts. Writes a table (CSV), a picture for each scene and a page of advice (accuracy.md).
 //!
-//! `cargo run --release --example trade` (about five minutes), or with `-- --quick` (seconds)
+//! `cargo run --release --features plot --example trade` (about five minutes), or with `-- --quick` (seconds)
 
 mod support;
 
@@ -12,6 +12,7 @@ use std::time::Instant;
 
 use clap::Parser;
 use indicatif::ProgressBar;
+use viscocontact::Result;
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};
 use viscocontact::contact::Builder;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
@@ -179,15 +180,13 @@ impl Scene {
 
     /// One run; `asked` is the number of steps, or the tolerance of adaptive ones. `None` if it fails, as unstable rules do.
     fn measure(&self, method: Method, cells: usize, asked: f64) -> Result<Option<Row>> {
-        let settings = Settings {
-            time_rule: method.rule,
-            solver: method.solver,
+        let settings = Settings::default()
+            .with_time_rule(method.rule)
+            .with_solver(method.solver)
             // a hundredth of the errors looked for is enough, and what the paper asks of its solver stays with it
-            tolerance: if method == METHODS[0] { 1e-6 } else { 1e-5 },
-            edge: Edge::Allow,
-            history_limit: 8 << 28,
-            ..Settings::default()
-        };
+            .with_tolerance(if method == METHODS[0] { 1e-6 } else { 1e-5 })
+            .with_edge(Edge::Allow)
+            .with_history_limit(8 << 28);
         let builder = self.builder(cells)?.settings(settings);
         let memory = builder.memory()?;
         let mut contact = builder.build()?;

@@ -3,19 +3,22 @@
 //!
 //! # The problem
 //!
-//! The gap between the deformed bodies is the gap before deformation, plus the surface displacement $u$, minus the
-//! approach $\omega$ and tilt $\alpha$ of the indenter. Inside the contact there is pressure and no gap, outside a gap
-//! and no pressure. The pressure carries the force $W$ and, where the tilt is free, its moments:
+//! The gap h between the deformed bodies is the gap h_i before deformation, plus the surface displacement u, minus the
+//! approach ω and tilt α of the indenter. Inside the contact there is pressure p and no gap, outside a gap and no
+//! pressure. The pressure carries the force W and, where the tilt is free, its moments W e:
 //!
-//! $$ h = h_i + u - \omega - \alpha \cdot x, \qquad p \ge 0, \quad h \ge 0, \quad p h = 0, \qquad
-//!    W = \iint p \thinspace dx, \quad W e = \iint p x \thinspace dx $$
+//! ```text
+//! h = h_i + u − ω − α·x,    p ≥ 0,    h ≥ 0,    p h = 0
+//! W = ∬ p dx,    W e = ∬ p x dx
+//! ```
 //!
-//! The displacement depends on the whole pressure history through the contact creep compliance $C(t)$:
+//! The displacement depends on the whole pressure history through the contact creep compliance C(t):
 //!
-//! $$ u(t) = \int_{0^-}^t C(t-s) \thinspace d\left[K p(s)\right], \qquad
-//!    (K p)(x) = \iint \frac{p(x^\prime)}{\pi |x-x^\prime|} \thinspace dx^\prime $$
+//! ```text
+//! u(t) = ∫₀₋ᵗ C(t − s) d[K p(s)],    (K p)(x) = ∬ p(x′) / (π |x − x′|) dx′
+//! ```
 //!
-//! Periodic bodies, line contacts in plane strain, and user-defined bodies have another $K$ ([`InfluenceKernel`]).
+//! Periodic bodies, line contacts in plane strain, and user-defined bodies have another K ([`InfluenceKernel`]).
 //!
 //! Pressure and contact area are unknown, and both change even when the force does not. The discretisation follows S.
 //! Spinu, *The surface contact of viscoelastic materials, Part I*; time rule and solver go beyond it. Where each of its
@@ -47,6 +50,9 @@
 //! Real surfaces are read from files ([`geometry::HeightMap`]) or generated at random ([`geometry::Rough`]). Indenters
 //! slide and roll: [`motion`]. [`observe`] evaluates a state, and [`output`] writes it to files that NumPy and ParaView
 //! open.
+//!
+//! Pages to read next, with programs to start from: [`guide::tour`], [`guide::accuracy`], [`guide::own_models`], and
+//! [`guide::coupling`] to other integrators.
 //!
 //! # Conventions
 //!
@@ -105,11 +111,15 @@
 //!
 //! `npy`: fields to NPZ and NPY files, height maps from and to NPY files.
 //!
-//! `plot`: pictures of contacts and runs as PNG files and animated GIFs, with a built-in font.
+//! `plot`: pictures of contacts and runs as PNG and SVG files, and animated GIFs, with a built-in font.
 //!
 //! `vtk`: fields to VTK image data, a time series that ParaView opens.
 //!
 //! `x3p`: height maps from X3P files (ISO 25178-72).
+//!
+//! `serde`: `Serialize` and `Deserialize` for what describes a run: [`load::Load`], [`contact::Settings`],
+//! [`contact::Stepping`], [`geometry::RoughSpec`] and what they consist of, and for the error estimates of a run. Part of
+//! `checkpoint`.
 //!
 //! `tracing`: events of the `tracing` crate: steps accepted, rejected and failed, regions moved, series fitted.
 //!
@@ -130,14 +140,18 @@
 //! periodic or not, with contact plasticity; adhesion is in a separate package.
 //! [CONTACT](https://www.kalkersoftware.org) (Fortran) computes rolling and sliding with friction, conformal and
 //! transient, also of viscoelastic bodies. Their friction, adhesion and plasticity are not available here. This crate
-//! offers any linear rheology, measured or fitted, in a recursion of third to fourth order whose cost does not grow
-//! with the number of steps; eccentric loads that tilt; steps chosen by their error; all of it as a typed library that
-//! another program drives step by step. Its accuracy is given claim by claim in `docs/validation.md` and
-//! `docs/accuracy.md`.
+//! offers any linear rheology, measured or fitted, in a recursion whose cost does not grow with the number of steps, of
+//! third order in given steps and fourth in steps chosen by their error (second at cells that join); eccentric loads
+//! that tilt; all of it as a typed library that another program drives step by step. Its accuracy is given claim by
+//! claim in `docs/validation.md` and `docs/accuracy.md`.
 
+#![cfg_attr(docsrs, feature(doc_cfg))]
 #![deny(missing_docs)]
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations)]
+
+#[macro_use]
+mod setters;
 
 pub mod analytic;
 pub mod contact;
@@ -147,6 +161,9 @@ mod events;
 mod file;
 pub mod geometry;
 mod grid;
+// its programs are run where the features that they use are there
+#[cfg(all(doc, any(not(doctest), all(feature = "csv", feature = "plot"))))]
+pub mod guide;
 mod hereditary;
 mod kernel;
 #[cfg(feature = "laws")]
@@ -172,11 +189,14 @@ mod solver;
 mod sum;
 
 pub use contact::ViscoelasticContact;
-pub use error::{Convergence, Error, KernelError, Result, Trend};
+pub use error::{Convergence, Error, KernelError, OutputError, Result, Trend};
 pub use grid::Grid;
 pub use kernel::{InfluenceKernel, Workspace};
+/// The crate of the complex numbers of moduli and compliances.
+pub use num_complex;
 
-/// Everything a scene is written with.
+/// Everything a scene is written with, except for names that mean something else elsewhere: [`geometry::Sum`],
+/// [`geometry::Form`], [`motion::Path`] and [`Result`] are imported from where they are.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -191,18 +211,18 @@ pub mod prelude {
         TimeRule, ViscoelasticContact, Warning,
     };
     pub use crate::geometry::{
-        Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Form, Geometry, HeightMap, LengthUnit, Repeated,
-        Rough, RoughSpec, Roughness, Shifted, Sphere, Sum, SurfaceStatistics, Wavy,
+        Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, HeightMap, LengthUnit, Repeated, Rough,
+        RoughSpec, Roughness, Shifted, Sphere, SurfaceStatistics, Wavy,
     };
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
-    pub use crate::motion::{FnPath, Path, Straight, Travel};
+    pub use crate::motion::{FnPath, Straight, Travel};
     pub use crate::plan::{Accuracy, Plan};
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
         KelvinVoigt, Kww, LogCreep, Material, Maxwell, PowerLaw, Rheology, SlowCreep, TabulatedCreep, TabulatedDynamic,
         TabulatedRelaxation, Zener,
     };
-    pub use crate::{Error, Grid, InfluenceKernel, Result};
+    pub use crate::{Error, Grid, InfluenceKernel};
 }
 
 #[doc = include_str!("../README.md")]

@@ -16,5 +16,5 @@ fi
 
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-READ_BACK_FOLDER="$folder" cargo test --quiet --all-features --test io -- --ignored --exact output::a_run_for_other_readers
+READ_BACK_FOLDER="$folder" cargo test --quiet --all-features --test suite -- --ignored --exact io::output::a_run_for_other_readers
 "$python" tests/read_back.py "$folder"

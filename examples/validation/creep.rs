@@ -3,6 +3,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
+use viscocontact::Result;
 use viscocontact::analytic::{AxisymmetricContact, Hertz, HertzEllipse, Profile};
 use viscocontact::plot::Legend;
 use viscocontact::prelude::*;
@@ -72,7 +73,7 @@ pub fn opened_punch() -> Outcome {
         .build()?;
     let load = Load::eccentric_force(1.0, [0.6e-3, 0.0]);
     let state = |contact: &ViscoelasticContact| {
-        [contact.approach(), contact.tilt()[0], contact.contact_area(), contact.greatest_pressure()]
+        [contact.approach(), contact.tilt()[0], contact.contact_area(), contact.max_pressure()]
     };
     contact.step(0.0, load)?;
     let start = state(&contact);
@@ -98,7 +99,7 @@ pub fn opened_punch() -> Outcome {
 pub fn order() -> Outcome {
     let scene = StepLoadedSphere::maxwell();
     // the default rule does not yet show its order in so few steps
-    let settings = Settings { tolerance: 1e-9, time_rule: TimeRule::ExponentialLinear, ..Settings::default() };
+    let settings = Settings::default().with_tolerance(1e-9).with_time_rule(TimeRule::ExponentialLinear);
     let middle = |steps: usize| -> Result<f64> {
         let (contact, _) = scene.run(96, steps, settings)?;
         let [n1, n2] = contact.grid().cells();
@@ -248,10 +249,10 @@ pub fn rolling() -> Outcome {
         .geometry(&cylinder)
         .material(Material::incompressible(Zener::new(G, 0.5 * G, 0.5 * G)?))
         .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0e3)?))
-        .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
+        .settings(Settings::default().with_frame(Frame::Indenter))
         .build()?;
     let load = Load::force(scene.per_length);
-    contact.toward_steady(SteadyMotion { axis: 0, velocity: scene.reach, load, tolerance: 2e-4 })?.run()?;
+    contact.toward_steady(SteadyMotion::new(0, scene.reach, load).with_tolerance(2e-4))?.run()?;
     let [behind, ahead] = exact.ends();
     let friction = contact.lateral_force(&cylinder)[0] / contact.force();
     let axis = 1e3 * (0.5 * grid.lengths()[0] - 2.0 * relaxed);
@@ -259,7 +260,7 @@ pub fn rolling() -> Outcome {
     let dots = along_x1(&contact).into_iter().map(|(x, p)| (x - axis, p));
     let dots = dots.filter(|(x, _)| x.abs() < 1e3 * 1.5 * relaxed).collect();
     let rows = [
-        ("greatest pressure", contact.greatest_pressure(), exact.peak(), 1e-2),
+        ("greatest pressure", contact.max_pressure(), exact.peak(), 1e-2),
         ("contact width", contact.contact_area(), ahead - behind, 1e-2),
         ("hysteretic friction", friction, exact.friction(scene.radius), 2e-2),
     ];

@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use viscocontact::Result;
 use viscocontact::analytic::{Hertz, HertzEllipse, RigidPunch};
 use viscocontact::plot::Legend;
 use viscocontact::prelude::*;
@@ -60,7 +61,7 @@ pub fn hertz() -> Outcome {
     let contact = pressed(grid, &Sphere::new(10.0e-3)?, Load::force(1.0))?;
     let rows = [
         ("approach", contact.approach(), exact.approach(), 1e-4),
-        ("greatest pressure", contact.greatest_pressure(), exact.greatest_pressure(), 1e-3),
+        ("greatest pressure", contact.max_pressure(), exact.max_pressure(), 1e-3),
         ("contact area", contact.contact_area(), PI * exact.contact_radius().powi(2), 2e-3),
         ("stiffness over E*", contact.stiffness_over_modulus()?, 2.0 * exact.contact_radius(), 5e-3),
     ];
@@ -74,7 +75,7 @@ pub fn hertz_ellipse() -> Outcome {
     let contact = pressed(grid, &Ellipsoid::new(20.0e-3, 5.0e-3)?, Load::force(1.0))?;
     let rows = [
         ("approach", contact.approach(), exact.approach(), 5e-4),
-        ("greatest pressure", contact.greatest_pressure(), exact.greatest_pressure(), 1e-3),
+        ("greatest pressure", contact.max_pressure(), exact.max_pressure(), 1e-3),
         ("contact area", contact.contact_area(), PI * a1 * a2, 5e-3),
     ];
     Ok(Checked::new("ellipsoid 4 : 1, 192 × 128 cells", "Hertz 1882", &rows))
@@ -111,7 +112,7 @@ pub fn wavy() -> Outcome {
         (1e3 * x, 1e-3 * 2.0 * mean * c / share * (share - s * s).max(0.0).sqrt())
     });
     let rows = [
-        ("greatest pressure", contact.greatest_pressure(), 2.0 * mean / share.sqrt(), 5e-3),
+        ("greatest pressure", contact.max_pressure(), 2.0 * mean / share.sqrt(), 5e-3),
         ("contact width", contact.contact_area(), 2.0 * share.sqrt().asin() / PI * wavelength, 5e-3),
     ];
     Ok(Checked::new("wavy surface, periodic, plane strain, 512 cells", "Westergaard 1939", &rows).drawn(
@@ -135,7 +136,7 @@ pub fn line() -> Outcome {
     let approach = per_length / (PI * E_STAR) * (2.0 * (2.0 / half_width).ln() + 1.0);
     let rows = [
         ("half-width", 0.5 * contact.contact_area(), half_width, 5e-3),
-        ("greatest pressure", contact.greatest_pressure(), 2.0 * per_length / (PI * half_width), 1e-3),
+        ("greatest pressure", contact.max_pressure(), 2.0 * per_length / (PI * half_width), 1e-3),
         ("approach to a datum", contact.approach(), approach, 1e-3),
     ];
     Ok(Checked::new("cylinder in line contact, 512 cells", "Hertz; Johnson 1985, 4.2 and 5.6", &rows))

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use viscocontact::Result;
 use viscocontact::analytic::{AxisymmetricContact, Profile};
 use viscocontact::plot::Legend;
 use viscocontact::prelude::*;
@@ -88,7 +89,7 @@ pub fn cone() -> Outcome {
     let mut contact = ViscoelasticContact::builder(Grid::square(128, 2.1 * radius(turn))?)
         .geometry(&Cone::new(slope)?)
         .material(material.clone())
-        .settings(Settings { series_tolerance: 1e-6, ..Settings::default() })
+        .settings(Settings::default().with_series_tolerance(1e-6))
         .times(1.0e-5..=end)
         .build()?;
     let mut run = contact.follow(&history, Stepping::fixed(turn / steps), end);
@@ -133,7 +134,7 @@ pub fn direct_sums() -> Outcome {
         ViscoelasticContact::builder(grid.clone())
             .geometry(&Sphere::new(RADIUS)?)
             .material(material.clone())
-            .settings(Settings { time_rule, tolerance, ..Settings::default() })
+            .settings(Settings::default().with_time_rule(time_rule).with_tolerance(tolerance))
             .build()
     };
 
@@ -170,7 +171,7 @@ pub fn direct_sums() -> Outcome {
         let mut contact = sphere(rule, 1e-8)?;
         let mut run = contact.follow(&history, Stepping::fixed(2.0 / f64::from(steps)), 1.9);
         while run.next_step()?.is_some() {}
-        Ok([contact.approach(), contact.greatest_pressure()])
+        Ok([contact.approach(), contact.max_pressure()])
     };
     let [own, coarse, fine] =
         [run(TimeRule::Exponential, 400)?, run(TimeRule::Backward, 400)?, run(TimeRule::Backward, 800)?];

@@ -1,18 +1,18 @@
 //! Every claim against its reference: closed forms, the method of dimensionality reduction, formulations of another kind. Computes
 //! all of them, and writes `validation.md` and its pictures, of which copies are kept in `docs`; fails if one errs by more than it may.
 //!
-//! `cargo run --release --example validation`
+//! `cargo run --release --features plot --example validation`
 
 mod claim;
 mod creep;
 mod elastic;
 mod history;
-#[path = "../../tests/common/noise.rs"]
+#[path = "../support/scenes/noise.rs"]
 mod noise;
-#[path = "../../tests/common/rolling.rs"]
+#[path = "../support/scenes/rolling.rs"]
 mod rolling;
 mod sliding;
-#[path = "../../tests/common/step_loaded_sphere.rs"]
+#[path = "../support/scenes/step_loaded_sphere.rs"]
 mod step_loaded_sphere;
 #[path = "../support/mod.rs"]
 mod support;
@@ -161,8 +161,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     errors(&claims).save(args.output.join("validation_errors.png"))?;
     let rows = save_rows(&checked, &args.output)?;
     let mut text = format!(
-        "# Validation\n\nWritten by `cargo run --release --example validation`, pictures included; it fails if an error is greater than \
-         allowed.\n\n{table}\n{DERIVED}![Errors of all claims beside what is allowed](pictures/validation_errors.png)\n"
+        "# Validation\n\nWritten by `cargo run --release --features plot --example validation`, pictures included; it \
+         fails if an error is greater than allowed.\n\n{table}\n{DERIVED}![Errors of all claims beside what is allowed](pictures/validation_errors.png)\n"
     );
     for row in 1..=rows {
         write!(text, "\n![Computed values on their references](pictures/validation_{row}.png)\n")?;

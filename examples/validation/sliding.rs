@@ -7,6 +7,7 @@
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
+use viscocontact::Result;
 use viscocontact::analytic::HertzEllipse;
 use viscocontact::plot::Legend;
 use viscocontact::prelude::*;
@@ -43,7 +44,7 @@ fn first_moment() -> f64 {
 
 fn builder(grid: &Grid, shape: &dyn Geometry) -> Result<Builder> {
     // the effect sought is a small part of the pressure
-    let settings = Settings { frame: Frame::Indenter, tolerance: 1e-11, ..Settings::default() };
+    let settings = Settings::default().with_frame(Frame::Indenter).with_tolerance(1e-11);
     Ok(ViscoelasticContact::builder(grid.clone())
         .geometry(shape)
         .material(Material::incompressible(GeneralizedKelvin::new(GLASSY, 0.0, &TERMS)?))

@@ -77,7 +77,7 @@ impl fmt::Debug for Profile {
 /// let hertz = Hertz::new(10.0e-3, 4.0e6, 1.0)?;
 /// assert!((contact.approach() / hertz.approach() - 1.0).abs() < 1e-6);
 /// assert!((contact.contact_radius() / hertz.contact_radius() - 1.0).abs() < 1e-6);
-/// assert!((contact.pressure(0.0) / hertz.greatest_pressure() - 1.0).abs() < 1e-6);
+/// assert!((contact.pressure(0.0) / hertz.max_pressure() - 1.0).abs() < 1e-6);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Clone)]

@@ -17,7 +17,7 @@ use crate::error::{Result, finite, non_negative, positive};
 pub struct Hertz {
     radius: f64,
     contact_radius: f64,
-    greatest_pressure: f64,
+    max_pressure: f64,
 }
 
 impl Hertz {
@@ -30,9 +30,9 @@ impl Hertz {
         positive("contact modulus", modulus)?;
         non_negative("force", force)?;
         let contact_radius = (0.75 * force * radius / modulus).cbrt();
-        let greatest_pressure = finite("peak pressure", 2.0 * contact_radius * modulus / (PI * radius))?;
+        let max_pressure = finite("peak pressure", 2.0 * contact_radius * modulus / (PI * radius))?;
         finite("approach", contact_radius * contact_radius / radius)?;
-        Ok(Hertz { radius, contact_radius, greatest_pressure })
+        Ok(Hertz { radius, contact_radius, max_pressure })
     }
 
     /// Contact radius a \[m\].
@@ -41,8 +41,8 @@ impl Hertz {
     }
 
     /// Peak pressure p0, at the centre \[Pa\].
-    pub fn greatest_pressure(&self) -> f64 {
-        self.greatest_pressure
+    pub fn max_pressure(&self) -> f64 {
+        self.max_pressure
     }
 
     /// Approach ω \[m\].
@@ -52,10 +52,6 @@ impl Hertz {
 
     /// Pressure at the distance `r` from the centre \[m\], p0 √(1 − r²/a²) \[Pa\].
     pub fn pressure(&self, r: f64) -> f64 {
-        if r < self.contact_radius {
-            self.greatest_pressure * (1.0 - (r / self.contact_radius).powi(2)).sqrt()
-        } else {
-            0.0
-        }
+        if r < self.contact_radius { self.max_pressure * (1.0 - (r / self.contact_radius).powi(2)).sqrt() } else { 0.0 }
     }
 }

@@ -22,7 +22,7 @@ use crate::error::{Result, finite, non_negative, positive, within};
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HertzEllipse {
     semi_axes: [f64; 2],
-    greatest_pressure: f64,
+    max_pressure: f64,
     approach: f64,
 }
 
@@ -55,12 +55,12 @@ impl HertzEllipse {
         // 1/R_short = (2p0/E*)(K − D)/b with p0 = 3W/2πab and a = b/flattening
         let b = (3.0 * force * short * flattening * (k - d) / (PI * modulus)).cbrt();
         let a = b / flattening;
-        let greatest_pressure = if force > 0.0 { 1.5 * force / (PI * a * b) } else { 0.0 };
+        let max_pressure = if force > 0.0 { 1.5 * force / (PI * a * b) } else { 0.0 };
         finite("semi-axis", a)?;
-        finite("peak pressure", greatest_pressure)?;
-        finite("approach", greatest_pressure / modulus * b * k)?;
+        finite("peak pressure", max_pressure)?;
+        finite("approach", max_pressure / modulus * b * k)?;
         let semi_axes = if radii[0] >= radii[1] { [a, b] } else { [b, a] };
-        Ok(HertzEllipse { semi_axes, greatest_pressure, approach: greatest_pressure / modulus * b * k })
+        Ok(HertzEllipse { semi_axes, max_pressure, approach: max_pressure / modulus * b * k })
     }
 
     /// Semi-axes of the contact along x1 and x2 \[m\].
@@ -69,8 +69,8 @@ impl HertzEllipse {
     }
 
     /// Peak pressure p0, at the centre \[Pa\].
-    pub fn greatest_pressure(&self) -> f64 {
-        self.greatest_pressure
+    pub fn max_pressure(&self) -> f64 {
+        self.max_pressure
     }
 
     /// Approach ω \[m\].
@@ -81,7 +81,7 @@ impl HertzEllipse {
     /// Pressure at the point (x1, x2) \[m\], p0 √(1 − x1²/a1² − x2²/a2²) \[Pa\].
     pub fn pressure(&self, x1: f64, x2: f64) -> f64 {
         let rest = 1.0 - (x1 / self.semi_axes[0]).powi(2) - (x2 / self.semi_axes[1]).powi(2);
-        if rest > 0.0 { self.greatest_pressure * rest.sqrt() } else { 0.0 }
+        if rest > 0.0 { self.max_pressure * rest.sqrt() } else { 0.0 }
     }
 }
 

@@ -62,8 +62,8 @@ impl ViscoelasticContact {
         self.view.displacement(&self.scene, &self.computation.state)
     }
 
-    /// Writes the gap between the deformed bodies, Eq. 1 of the [paper](crate::paper), into `out` \[m\]: zero in contact to within the tolerance, +∞ where there
-    /// is nothing to touch.
+    /// Writes the gap between the deformed bodies, Eq. 1 of the [paper](crate::paper), into `out` \[m\]: zero in contact
+    /// to within the tolerance, +∞ where there is nothing to touch.
     ///
     /// # Errors
     /// If `out` does not hold one value per cell, or there is no memory for the displacement, where not all of it is

@@ -5,9 +5,24 @@
 //! being tried. State, window and trial form a
 //! computation.
 
-mod accessors;
-mod build;
+// the documentation shows methods in the order of these: what drives a contact, then what it tells
 mod builder;
+
+mod step;
+
+mod run;
+
+mod moving;
+
+mod accessors;
+
+mod observations;
+
+mod state_within_step;
+
+mod snapshot;
+
+mod build;
 #[cfg(feature = "checkpoint")]
 mod checkpoint;
 mod computation;
@@ -15,18 +30,12 @@ mod extrapolation;
 mod footprint;
 mod hull;
 mod indenter;
-mod moving;
-mod observations;
 mod report;
 mod request;
-mod run;
 mod scene;
 mod set_geometry;
 mod settings;
-mod snapshot;
 mod state;
-mod state_within_step;
-mod step;
 mod time_rule;
 mod times;
 mod trial;
@@ -50,3 +59,4 @@ pub use snapshot::Snapshot;
 pub use state_within_step::StateWithinStep;
 pub use viscoelastic::ViscoelasticContact;
 pub use warning::{Warning, Warnings};
+pub(crate) use window::extent::Extent;

@@ -10,8 +10,26 @@ use crate::contact::warning::Warnings;
 pub struct StepReport {
     /// Time at the end of the step \[s\].
     pub time: f64,
+    /// Normal force on all bodies together \[N\].
+    pub force: f64,
+    /// Rigid-body approach ω of the first body, at the origin \[m\].
+    pub approach: f64,
+    /// Area of the cells in contact \[m²\], which costs nothing;
+    /// [`ViscoelasticContact::contact_area`](crate::ViscoelasticContact::contact_area) resolves fractions of a cell.
+    pub area: f64,
+    /// Cells in contact.
+    pub contact_cells: usize,
+    /// Tilt (α1, α2) of the first body \[rad\].
+    pub tilt: [f64; 2],
     /// Length of the step \[s\]; 0 for a jump of the load.
     pub dt: f64,
+    /// Estimated error in time of the step, relative: of the approach under a given force, of the force under a given motion.
+    /// 0 in jumps, which take no time, and of elastic bodies; `None` where nothing was estimated: in steps over the bodies
+    /// ([`Frame::Indenter`](crate::contact::Frame::Indenter)), and where the estimate overflows. [`ErrorBudget::time`](crate::contact::ErrorBudget::time) says
+    /// how far it can be trusted.
+    pub time_error: Option<f64>,
+    /// Reasons why the result may be less accurate than expected; mostly none.
+    pub warnings: Warnings,
     /// Iterations of the solver.
     pub iterations: usize,
     /// Those of them taken by the fall-back, which is slower and always descends.
@@ -22,20 +40,6 @@ pub struct StepReport {
     pub preconditioner_applications: usize,
     /// Residual reached, in the measure of [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub residual: f64,
-    /// Estimated error in time of the step: of the approach under a given force, of the force under a given motion. 0 where
-    /// nothing is estimated, see [`ErrorBudget::time`](crate::contact::ErrorBudget::time), and in jumps; the first step after
-    /// a jump or a corner of the load knows of the cells alone that join the contact.
-    pub time_error: f64,
-    /// Reasons why the result may be less accurate than expected; mostly none.
-    pub warnings: Warnings,
-    /// Cells in contact.
-    pub contact_cells: usize,
-    /// Rigid-body approach ω of the first body, at the origin \[m\].
-    pub approach: f64,
-    /// Tilt (α1, α2) of the first body \[rad\].
-    pub tilt: [f64; 2],
-    /// Normal force on all bodies together \[N\].
-    pub force: f64,
 }
 
 impl StepReport {
@@ -71,15 +75,22 @@ impl StepReport {
 impl fmt::Display for StepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let StepReport { time, force, approach, contact_cells, residual, .. } = *self;
-        // forces are met to rounding: six digits are enough
-        let force = format!("{force:.5e}").parse().unwrap_or(force);
+        // forces are met to rounding, times are sums of steps
+        let (time, force) = (rounded(time, 11), rounded(force, 5));
         write!(f, "t = {time} s: force {force} N, approach {approach:.4e} m, {contact_cells} cells in contact; ")?;
         write!(f, "{} convolutions, residual {residual:.1e}", self.convolution_equivalents())?;
-        if self.time_error > 0.0 {
-            write!(f, ", error in time {:.1e}", self.time_error)?;
+        match self.time_error {
+            Some(0.0) => {}
+            Some(error) => write!(f, ", error in time {error:.1e}")?,
+            None => write!(f, ", error in time not estimated")?,
         }
         self.warnings.iter().try_for_each(|warning| write!(f, "; {warning}"))
     }
+}
+
+/// The nearest number with so many decimals in scientific notation.
+fn rounded(value: f64, decimals: usize) -> f64 {
+    format!("{value:.decimals$e}").parse().unwrap_or(value)
 }
 
 /// The state of one rigid body, see [`ViscoelasticContact::body`](crate::ViscoelasticContact::body).

@@ -3,17 +3,19 @@
 use crate::error::{Result, count_within, within};
 use crate::hereditary::Interpolant;
 
-/// How a contact is computed. Plain fields with defaults, validated when a contact is built.
+/// How a contact is computed: [`Settings::default`], changed by methods `with_…`, and validated when a contact is built.
 ///
 /// ```
 /// use viscocontact::contact::{Settings, TimeRule};
 ///
-/// let settings = Settings { tolerance: 1e-8, time_rule: TimeRule::Backward, ..Settings::default() };
+/// let settings = Settings::default().with_tolerance(1e-8).with_time_rule(TimeRule::Backward);
 /// assert_eq!(Settings::default().tolerance, 1e-6);
 /// # let _ = settings;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(clippy::exhaustive_structs, reason = "users write it with ..Default::default()")]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default))]
+#[non_exhaustive]
 pub struct Settings {
     /// Tolerance of the contact problem of a step: rms |h| in contact, relative to rms (c K p) there; the
     /// deepest penetration, in contact or outside, may be ten times that (default: 1e-6; range \[1e-13, 0.1\]).
@@ -44,6 +46,7 @@ pub struct Settings {
 
 /// What the grid is fixed to. It only matters where something moves along the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Frame {
     /// The creeping bodies: an indenter moves over the grid
@@ -60,19 +63,21 @@ pub enum Frame {
 
 /// The solver of the contact problem of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Solver {
-    /// Preconditioned conjugate gradients on an active set: one convolution an iteration, and few of
-    /// them.
+    /// Preconditioned conjugate gradients on an active set: one convolution per iteration, and few
+    /// iterations.
     #[default]
     ActiveSet,
     /// The conjugate gradients of Polonsky & Keer (1999) that the source paper uses: two convolutions
-    /// an iteration.
+    /// per iteration.
     PolonskyKeer,
 }
 
 /// The time rule of the hereditary integral.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum TimeRule {
     /// Exponential integration of the relaxation form, stable for steps of any length, one field per relaxation time. Within
@@ -104,6 +109,7 @@ pub enum TimeRule {
 
 /// What happens when contact reaches the outermost cells of the grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Edge {
     /// The step fails with [`Error::ContactAtEdge`](crate::Error::ContactAtEdge): the bodies go on beyond the grid, so that the
@@ -131,6 +137,19 @@ impl Default for Settings {
     }
 }
 
+setters! { Settings {
+    with_tolerance: tolerance, f64;
+    with_max_iterations: max_iterations, usize;
+    with_solver: solver, Solver;
+    with_time_rule: time_rule, TimeRule;
+    with_edge: edge, Edge;
+    with_series_tolerance: series_tolerance, f64;
+    with_history_limit: history_limit, usize;
+    with_symmetry: symmetry, bool;
+    with_window: window, bool;
+    with_frame: frame, Frame;
+} }
+
 impl TimeRule {
     /// Whether it works with an exponential series of the creep.
     pub(crate) fn needs_series(self) -> bool {
@@ -146,7 +165,7 @@ impl Settings {
     /// ```
     /// use viscocontact::contact::{Settings, TimeRule};
     ///
-    /// let literal = Settings { time_rule: TimeRule::RectangleUncached, ..Settings::paper() };
+    /// let literal = Settings::paper().with_time_rule(TimeRule::RectangleUncached);
     /// # let _ = literal;
     /// ```
     pub fn paper() -> Settings {
@@ -180,5 +199,57 @@ impl Settings {
         within("Settings::series_tolerance", series, (1e-8..=0.1).contains(&series), "in [1e-8, 0.1]")?;
         let iterations = self.max_iterations;
         count_within("Settings::max_iterations", iterations, iterations > 0, "1 or more")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn changed() -> Settings {
+        Settings {
+            tolerance: 1e-7,
+            max_iterations: 7,
+            solver: Solver::PolonskyKeer,
+            time_rule: TimeRule::Backward,
+            edge: Edge::Allow,
+            series_tolerance: 1e-3,
+            history_limit: 1 << 20,
+            symmetry: false,
+            window: false,
+            frame: Frame::Indenter,
+        }
+    }
+
+    #[test]
+    fn each_method_changes_its_field() {
+        let settings = Settings::default()
+            .with_tolerance(1e-7)
+            .with_max_iterations(7)
+            .with_solver(Solver::PolonskyKeer)
+            .with_time_rule(TimeRule::Backward)
+            .with_edge(Edge::Allow)
+            .with_series_tolerance(1e-3)
+            .with_history_limit(1 << 20)
+            .with_symmetry(false)
+            .with_window(false)
+            .with_frame(Frame::Indenter);
+        assert_eq!(settings, changed());
+    }
+
+    #[cfg(feature = "checkpoint")]
+    #[test]
+    fn serialised_values_come_back() {
+        use crate::geometry::{RoughSpec, Roughness};
+        use crate::load::Load;
+
+        fn there_and_back<T: serde::Serialize + serde::de::DeserializeOwned>(value: T) -> T {
+            postcard::from_bytes(&postcard::to_stdvec(&value).unwrap()).unwrap()
+        }
+        assert_eq!(there_and_back(changed()), changed());
+        let load = Load::eccentric_force(1.0, [1.0e-3, 0.0]);
+        assert_eq!(there_and_back(load), load);
+        let spec = RoughSpec::new(1.0e-3, 1.0e-5, Roughness::RmsSlope(0.1)).with_seed(3);
+        assert_eq!(there_and_back(spec), spec);
     }
 }

@@ -9,6 +9,8 @@ pub enum CheckpointError {
     Unreadable {
         /// The cause.
         what: String,
+        /// Its kind.
+        kind: std::io::ErrorKind,
     },
 
     /// The magic number is missing.

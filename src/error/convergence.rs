@@ -21,7 +21,7 @@ const FEWEST: usize = 4;
 /// let mut contact = ViscoelasticContact::builder(Grid::square(48, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
 ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
-///     .settings(Settings { max_iterations: 5, tolerance: 1.0e-13, ..Settings::default() })
+///     .settings(Settings::default().with_max_iterations(5).with_tolerance(1.0e-13))
 ///     .build()?;
 /// let Err(Error::NotConverged { convergence, .. }) = contact.step(0.0, Load::force(0.5)) else { panic!() };
 /// assert_eq!(convergence.trend(), Trend::Falling);

@@ -44,6 +44,8 @@ pub enum MapError {
         file: String,
         /// The message of the system or the reader.
         reason: String,
+        /// The kind of the system's error; `None` if the contents cannot be read.
+        kind: Option<std::io::ErrorKind>,
     },
 
     /// A file could not be written.
@@ -53,6 +55,8 @@ pub enum MapError {
         format: &'static str,
         /// The message of the system.
         reason: String,
+        /// The kind of its error.
+        kind: Option<std::io::ErrorKind>,
     },
 
     /// The extension of a file is not that of a format that stores the side lengths of its map. Other formats are read

@@ -8,6 +8,7 @@ mod kernel;
 mod load;
 mod map;
 mod material;
+mod output;
 mod table;
 
 #[cfg(feature = "checkpoint")]
@@ -20,6 +21,7 @@ pub use kernel::KernelError;
 pub use load::LoadError;
 pub use map::MapError;
 pub use material::MaterialError;
+pub use output::OutputError;
 pub use table::{Place, TableError};
 
 /// Everything that can go wrong, with the numbers needed to correct it.
@@ -252,14 +254,9 @@ pub enum Error {
     #[error(transparent)]
     Map(#[from] MapError),
 
-    /// A file of results cannot be written.
-    #[error("{path} cannot be written: {what}")]
-    Output {
-        /// The file or folder.
-        path: String,
-        /// The cause.
-        what: String,
-    },
+    /// A file of results cannot be written. The cause is the [`source`](std::error::Error::source) of the error.
+    #[error(transparent)]
+    Output(#[from] OutputError),
 
     /// Something other than a regular file exists at the path. It is left unchanged: only regular files are replaced.
     #[error("{path} cannot be written: it is {kind}, not a regular file")]
@@ -270,12 +267,21 @@ pub enum Error {
         kind: &'static str,
     },
 
-    /// A run cannot be resumed from a checkpoint.
-    #[cfg(feature = "checkpoint")]
-    #[error("{path}: {source}")]
-    Checkpoint {
+    /// The extension of a file is not that of a format that can be written.
+    #[error("{path}: the extension must be .{}", .allowed.join(" or ."))]
+    Extension {
         /// The file.
         path: String,
+        /// The extensions allowed, without the point.
+        allowed: &'static [&'static str],
+    },
+
+    /// A run cannot be resumed from a checkpoint. The cause is the [`source`](std::error::Error::source) of the error.
+    #[cfg(feature = "checkpoint")]
+    #[error("no run can be resumed from {}", .path.display())]
+    Checkpoint {
+        /// The file.
+        path: std::path::PathBuf,
         /// The cause.
         source: CheckpointError,
     },

@@ -172,6 +172,8 @@ pub enum TableError {
         file: String,
         /// The message of the system or the reader.
         reason: String,
+        /// The kind of the system's error; `None` if the contents cannot be read.
+        kind: Option<std::io::ErrorKind>,
     },
 
     /// A line of a file has the wrong number of columns.

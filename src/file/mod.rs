@@ -1,9 +1,10 @@
 //! Files that are written completely or not at all, and files that grow by complete pieces.
 
-use std::fmt::Display;
+use std::fs::{self, FileType};
+use std::io;
 use std::path::Path;
 
-use crate::error::Error;
+use crate::error::{Error, OutputError, Result};
 
 #[cfg(any(feature = "csv", feature = "plot"))]
 mod appending;
@@ -18,6 +19,34 @@ pub(crate) use part::Part;
 pub(crate) use part::replace;
 
 /// The error of writing a file.
-pub(crate) fn failed(path: &Path, what: impl Display) -> Error {
-    Error::Output { path: path.display().to_string(), what: what.to_string() }
+pub(crate) fn failed(path: &Path, cause: io::Error) -> Error {
+    OutputError::new(path, cause).into()
+}
+
+/// Rejects a path at which there is something other than a regular file, or a link to one.
+pub(crate) fn check_regular(path: &Path) -> Result<()> {
+    let kind = match fs::metadata(path) {
+        Ok(found) if found.is_file() => return Ok(()),
+        Ok(found) => kind(found.file_type()),
+        Err(error) if error.kind() == io::ErrorKind::NotFound && path.is_symlink() => "a symbolic link to nothing",
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
+        Err(error) => return Err(failed(path, error)),
+    };
+    Err(Error::NotAFile { path: path.display().to_string(), kind })
+}
+
+fn kind(found: FileType) -> &'static str {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        let kinds = [
+            (found.is_fifo(), "a pipe"),
+            (found.is_socket(), "a socket"),
+            (found.is_char_device() || found.is_block_device(), "a device"),
+        ];
+        if let Some((_, kind)) = kinds.into_iter().find(|(is, _)| *is) {
+            return kind;
+        }
+    }
+    if found.is_dir() { "a folder" } else { "a special file" }
 }

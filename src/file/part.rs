@@ -1,13 +1,13 @@
 //! A file that has a temporary name until it is complete.
 
-use std::fs::{self, File, FileType};
+use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, IntoInnerError};
 use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::failed;
-use crate::error::{Error, Result};
+use super::{check_regular, failed};
+use crate::error::Result;
 
 /// Distinguishes the files that this process is writing.
 static NUMBER: AtomicU64 = AtomicU64::new(0);
@@ -24,7 +24,7 @@ impl Part {
     /// Creates the file in the folder of the one that it will replace; links are followed. Only regular files are
     /// replaced: [`Error::NotAFile`].
     pub(crate) fn create(path: &Path) -> Result<(Part, File)> {
-        path.file_name().ok_or_else(|| failed(path, "the path has no file name"))?;
+        path.file_name().ok_or_else(|| failed(path, ErrorKind::InvalidFilename.into()))?;
         check_regular(path)?;
         // a link remains, and its target is replaced
         let path = match path.is_symlink() {
@@ -77,39 +77,12 @@ pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> i
     placed
 }
 
-/// Rejects a path at which there is something other than a regular file, or a link to one.
-fn check_regular(path: &Path) -> Result<()> {
-    let kind = match fs::metadata(path) {
-        Ok(found) if found.is_file() => return Ok(()),
-        Ok(found) => kind(found.file_type()),
-        Err(error) if error.kind() == ErrorKind::NotFound && path.is_symlink() => "a symbolic link to nothing",
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
-        Err(error) => return Err(failed(path, error)),
-    };
-    Err(Error::NotAFile { path: path.display().to_string(), kind })
-}
-
-fn kind(found: FileType) -> &'static str {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::FileTypeExt;
-        let kinds = [
-            (found.is_fifo(), "a pipe"),
-            (found.is_socket(), "a socket"),
-            (found.is_char_device() || found.is_block_device(), "a device"),
-        ];
-        if let Some((_, kind)) = kinds.into_iter().find(|(is, _)| *is) {
-            return kind;
-        }
-    }
-    if found.is_dir() { "a folder" } else { "a special file" }
-}
-
 #[cfg(test)]
 mod tests {
     use std::io::Write;
 
     use super::*;
+    use crate::error::Error;
 
     /// An empty folder of this name and process.
     fn folder(name: &str) -> PathBuf {
@@ -128,15 +101,13 @@ mod tests {
             out.write_all(b"new")?;
             Err(io::Error::other("the disk is full"))
         });
-        assert_eq!(
-            error.unwrap_err(),
-            Error::Output { path: path.display().to_string(), what: "the disk is full".into() }
-        );
+        let Err(Error::Output(error)) = error else { panic!("{error:?}") };
+        assert_eq!((error.path(), error.io_error().to_string()), (&*path, "the disk is full".into()));
         assert_eq!(fs::read(&path).unwrap(), b"old");
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
         replace(&path, |out| out.write_all(b"new")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
-        assert!(matches!(replace(&folder.join(".."), |_| Ok(())), Err(Error::Output { .. })));
+        assert!(matches!(replace(&folder.join(".."), |_| Ok(())), Err(Error::Output(_))));
         fs::remove_dir_all(&folder).unwrap();
     }
 

@@ -76,8 +76,8 @@ use crate::memory;
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 pub trait Geometry: Debug + Send + Sync {
-    /// Gap at the point (x1, x2) \[m\], h_i in Eq. 1 of the [paper](crate::paper); `+∞` where there is nothing to touch. NaN and −∞ are errors wherever a
-    /// geometry is used.
+    /// Gap at the point (x1, x2) \[m\], h_i in Eq. 1 of the [paper](crate::paper); `+∞` where there is nothing to touch.
+    /// NaN and −∞ are errors wherever a geometry is used.
     fn initial_gap(&self, x1: f64, x2: f64) -> f64;
 
     /// Writes the gap at every cell centre of `grid` into `gap` \[m\], which has one value per cell.
@@ -114,7 +114,7 @@ fn fill_by_points<G: Geometry + ?Sized>(shape: &G, grid: &Grid, by: [f64; 2], ga
     }
 }
 
-/// Implements [`Geometry`] for pointers, so that shapes can be owned, shared or chosen at run time.
+/// Implements [`Geometry`] for references and pointers, so that shapes can be borrowed, owned, shared or chosen at run time.
 macro_rules! forward_geometry {
     ($($pointer:ty),*) => {$(
         impl<T: Geometry + ?Sized> Geometry for $pointer {
@@ -132,7 +132,7 @@ macro_rules! forward_geometry {
         }
     )*};
 }
-forward_geometry!(Box<T>, std::sync::Arc<T>);
+forward_geometry!(&T, Box<T>, std::sync::Arc<T>);
 
 /// The gap field of the rigid bodies, relative to its minimum: heights that are large compared with the indentation
 /// cost no digits.

@@ -22,6 +22,7 @@ use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SurfaceStatistics {
     /// Mean height \[m\].
     pub mean: f64,
@@ -145,7 +146,9 @@ impl HeightMap {
     /// Power spectral density of the heights about their mean: wave numbers q \[rad/m\] and the radial mean of C \[m⁴\]
     /// at each, normalised so that
     ///
-    /// $$ \int_0^\infty C(q)\, 2\pi q \,dq = \langle (z - \bar z)^2 \rangle $$
+    /// ```text
+    /// ∫ C(q) 2π q dq = ⟨(z − ⟨z⟩)²⟩,    0 < q < ∞
+    /// ```
     ///
     /// except for the width 2π/L of the rings, where L is the shorter side, and for the waves in the corners beyond the
     /// last ring, whose wavelength is two cells of the coarser side. For a single row of points it is the spectrum of a

@@ -41,8 +41,10 @@ impl DirectSum {
         DirectSum { weighting, increments: Vec::new(), weights: Vec::new(), image: Vec::new() }
     }
 
-    pub(crate) fn without_increments(&self) -> DirectSum {
-        DirectSum::new(self.weighting)
+    /// Without increments, on so many cells.
+    pub(crate) fn undisturbed_on(&self, cells: usize) -> DirectSum {
+        let image = if self.is_uncached() { vec![0.0; cells] } else { Vec::new() };
+        DirectSum { image, ..DirectSum::new(self.weighting) }
     }
 
     /// Whether the increments are those of p.

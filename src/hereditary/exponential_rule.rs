@@ -40,6 +40,7 @@ pub(crate) enum Interpolant {
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ExponentialRule {
+    #[cfg_attr(feature = "checkpoint", serde(with = "crate::rheology::SavedRelaxation"))]
     relaxation: RelaxationSpectrum,
     /// Lengths of the last two steps since the last jump or corner.
     spans: [f64; 2],
@@ -194,6 +195,20 @@ impl ExponentialRule {
     /// Whether the next step puts right the one predicted last.
     pub(super) fn corrects(&self) -> bool {
         self.tried.corrects[1]
+    }
+
+    /// Where the steps before do not tell how u goes on ([`Self::missing`]): what the step predicted last makes of a unit of v
+    /// that acts at once from its start on an undisturbed body, and of one that grows from 0.
+    pub(crate) fn first_step_responses(&self) -> Option<[f64; 2]> {
+        let Weights { dt, c, branches, .. } = &self.tried;
+        if *dt == 0.0 || self.missing().is_some() {
+            return None;
+        }
+        let terms = self.relaxation.terms();
+        let moduli: f64 = terms.iter().map(|&(modulus, _)| modulus).sum();
+        let elastic = if self.has_dashpot() { 0.0 } else { 1.0 / (self.equilibrium() + moduli) };
+        let left: f64 = branches.iter().zip(terms).map(|(weights, &(modulus, _))| weights[0] * modulus).sum();
+        Some([c + elastic * (1.0 - c * (self.equilibrium() + left)), *c])
     }
 
     /// The order of the error of a step in its length.

@@ -78,7 +78,7 @@ impl Rule {
             Rule::MovingFrame(own, frame) => {
                 Rule::MovingFrame(own.clone(), Box::new(frame.undisturbed_on(cells, own.least_kept())))
             }
-            Rule::DirectSum(own) => Rule::DirectSum(own.without_increments()),
+            Rule::DirectSum(own) => Rule::DirectSum(own.undisturbed_on(cells[0] * cells[1])),
         }
     }
 

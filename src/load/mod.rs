@@ -44,7 +44,7 @@ use crate::error::{Error, Result, finite, non_negative};
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
-#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Load {
     /// The normal force is prescribed, the approach follows.
     Force {
@@ -65,7 +65,8 @@ pub enum Load {
 
 /// The tilt along one axis: the rotation by which the body lowers the surface by α x.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Tilt {
     /// The angle is prescribed \[rad\].
     Fixed(f64),
@@ -275,7 +276,7 @@ pub trait LoadHistory: Debug + Send + Sync {
     }
 }
 
-/// Forwards the trait through smart pointers.
+/// Forwards the trait through references and smart pointers.
 macro_rules! forward_load {
     ($($pointer:ty),*) => {$(
         impl<T: LoadHistory + ?Sized> LoadHistory for $pointer {
@@ -293,4 +294,4 @@ macro_rules! forward_load {
         }
     )*};
 }
-forward_load!(Box<T>, std::sync::Arc<T>);
+forward_load!(&T, Box<T>, std::sync::Arc<T>);

@@ -1,6 +1,7 @@
 //! Contact area, to a fraction of a cell.
 
 use crate::Grid;
+use crate::contact::Extent;
 
 /// Weights of the two estimates of where the contact ends between a cell in contact and one that is not: the straight
 /// line through p² of the last two cells, which the coarse pressure of the last one pulls inwards, and the parabola
@@ -22,17 +23,32 @@ pub(crate) struct Pressed<'a> {
     pub(crate) pressure: &'a [f64],
     /// The initial gap above its datum, +∞ where there is nothing to touch.
     pub(crate) gap: &'a [f64],
+    /// Where there is contact, if anywhere.
+    pub(crate) extent: Option<Extent>,
 }
 
 impl Pressed<'_> {
     /// The contact area \[m²\].
     pub(crate) fn area(&self) -> f64 {
-        let [n1, n2] = self.grid.cells();
-        // squares of four cell centres, one row and column beyond the grid on every side, or across the seam of a period
-        let first = self.periodic.map(usize::from);
-        let mut cells = 0.0;
-        for i in first[0]..=n1 {
-            for j in first[1]..=n2 {
+        let Some(Extent { low, high }) = self.extent else { return 0.0 };
+        let (n, mut cells) = (self.grid.cells(), 0.0);
+        // squares of four cell centres: their lower corners are a row and a column back, beyond the grid or, at n, across the
+        // seam of a period
+        let squares = |axis: usize| match self.periodic[axis] {
+            true if low[axis] == 0 => 1..=n[axis],
+            _ => low[axis]..=high[axis] + 1,
+        };
+        for i in squares(0) {
+            for j in squares(1) {
+                if i > 0 && i < n[0] && j > 0 && j < n[1] {
+                    let k = i * n[1] + j;
+                    let corners = [k - n[1] - 1, k - n[1], k - 1, k];
+                    let inside = corners.into_iter().filter(|&k| self.pressure[k] > 0.0).count();
+                    if inside.is_multiple_of(4) {
+                        cells += (inside / 4) as f64;
+                        continue;
+                    }
+                }
                 let corners =
                     [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|[i, j]| [i as isize - 1, j as isize - 1]);
                 cells += self.covered(corners);

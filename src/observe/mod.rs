@@ -2,7 +2,7 @@
 //!
 //! | question | answer |
 //! |---|---|
-//! | How high is the pressure? | [`mean_pressure`](crate::ViscoelasticContact::mean_pressure), [`greatest_pressure`](crate::ViscoelasticContact::greatest_pressure), [`pressure_distribution`](crate::ViscoelasticContact::pressure_distribution) |
+//! | How high is the pressure? | [`mean_pressure`](crate::ViscoelasticContact::mean_pressure), [`max_pressure`](crate::ViscoelasticContact::max_pressure), [`pressure_distribution`](crate::ViscoelasticContact::pressure_distribution) |
 //! | How wide is the gap outside the contact? | [`gap_distribution`](crate::ViscoelasticContact::gap_distribution) |
 //! | What are the values along a line? | [`profile`](crate::ViscoelasticContact::profile) |
 //! | How many patches touch, and how large are they? | [`patches`](crate::ViscoelasticContact::patches) |

@@ -17,7 +17,7 @@ pub struct Patch {
     /// an axis that it winds around, the centroid is the mean of the coordinates on the grid.
     pub centroid: [f64; 2],
     /// Greatest pressure \[Pa\].
-    pub greatest_pressure: f64,
+    pub max_pressure: f64,
     /// Whether the patch connects to itself around the periodic axes x1 and x2.
     pub winds: [bool; 2],
 }
@@ -156,7 +156,7 @@ impl FloodFill<'_> {
             mean - (mean / lengths[axis]).round() * lengths[axis]
         });
         let area = grid.cell_area();
-        Patch { cells, area: cells as f64 * area, force: sum * area, centroid, greatest_pressure: greatest, winds }
+        Patch { cells, area: cells as f64 * area, force: sum * area, centroid, max_pressure: greatest, winds }
     }
 }
 
@@ -185,7 +185,7 @@ mod tests {
         // rows 0 to 2 of 4, columns 0 to 2 of 5
         assert_eq!(ring.centroid, [-0.5, -2.0]);
         assert_eq!(found.largest(), Some(&ring));
-        assert_eq!(found.all()[2].greatest_pressure, 2.0);
+        assert_eq!(found.all()[2].max_pressure, 2.0);
         assert_eq!(patches(&["00", "00"], [true; 2]).largest(), None);
     }
 
@@ -200,7 +200,7 @@ mod tests {
         // the corner cell at (−1.5, −4), its neighbours across either edge
         let expected: [f64; 2] = [-1.5 - 1.0 / 3.0, -4.0 - 2.0 / 3.0];
         assert!((0..2).all(|axis| (patch.centroid[axis] - expected[axis]).abs() < 1e-14), "{:?}", patch.centroid);
-        assert_eq!((patch.cells, patch.force, patch.greatest_pressure, patch.winds), (3, 12.0, 3.0, [false; 2]));
+        assert_eq!((patch.cells, patch.force, patch.max_pressure, patch.winds), (3, 12.0, 3.0, [false; 2]));
     }
 
     #[test]
@@ -266,7 +266,7 @@ mod tests {
         assert_eq!(patch.cells, contact.contact_cells());
         assert_abs_diff_eq!(patch.force, 0.1, epsilon = 1e-9);
         assert!((patch.centroid[0] - 0.1e-3).abs() < 1e-5 && (patch.centroid[1] + 0.05e-3).abs() < 1e-5);
-        assert_eq!(patch.greatest_pressure, contact.greatest_pressure());
+        assert_eq!(patch.max_pressure, contact.max_pressure());
     }
 
     #[test]

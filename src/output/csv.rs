@@ -1,12 +1,13 @@
 //! The history of a run as a CSV table.
 
 use std::fs::{self, File};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::ViscoelasticContact;
 use crate::contact::StepReport;
 use crate::error::{Result, exact_length};
-use crate::file::{Appending, failed};
+use crate::file::{Appending, check_regular, failed};
 use crate::output::Metadata;
 
 /// The name of a column, and its cell in the row of a step.
@@ -25,12 +26,12 @@ const COLUMNS: [Column; 17] = [
     ("contact area [m2]", |contact, _| number(contact.contact_area())),
     ("contact cells", |contact, _| contact.contact_cells().to_string()),
     ("mean pressure [Pa]", |contact, _| number(contact.mean_pressure())),
-    ("greatest pressure [Pa]", |contact, _| number(contact.greatest_pressure())),
+    ("max pressure [Pa]", |contact, _| number(contact.max_pressure())),
     ("iterations", |_, report| report.iterations.to_string()),
     ("convolutions", |_, report| report.convolutions.to_string()),
     ("preconditioner applications", |_, report| report.preconditioner_applications.to_string()),
     ("residual", |_, report| number(report.residual)),
-    ("time error", |_, report| number(report.time_error)),
+    ("time error", |_, report| report.time_error.map(number).unwrap_or_default()),
 ];
 
 /// A number with enough digits to be read back bitwise.
@@ -45,7 +46,8 @@ fn number(value: f64) -> String {
 /// The first line is `#` and the [`Metadata`] as JSON, the second the names of the columns with their units, separated
 /// by commas: `time [s]`, `step length [s]`, `force [N]`, `approach [m]`, `tilt 1 [rad]`, `tilt 2 [rad]`,
 /// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`,
-/// `greatest pressure [Pa]`, cost and accuracy of the step as in [`StepReport`], and additional columns of your choice.
+/// `max pressure [Pa]`, cost and accuracy of the step as in [`StepReport`] (`time error` is
+/// empty where nothing was estimated), and additional columns of your choice.
 /// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.
 ///
 /// ```
@@ -75,7 +77,7 @@ impl CsvHistory {
     /// A new file for the history of `contact`, with `additional` columns after those of every history.
     ///
     /// # Errors
-    /// If the file exists or cannot be written, or the name of a column is empty, already used, or contains `#`, a
+    /// If the file exists ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)) or cannot be written, or the name of a column is empty, already used, or contains `#`, a
     /// quote or a control character, which readers would misinterpret.
     pub fn create(
         path: impl AsRef<Path>,
@@ -83,18 +85,42 @@ impl CsvHistory {
         contact: &ViscoelasticContact,
         additional: &[&str],
     ) -> Result<CsvHistory> {
-        let path = path.as_ref().to_owned();
+        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), |path| File::create_new(path))
+    }
+
+    /// [`CsvHistory::create`] in the place of an earlier file, which is emptied first.
+    ///
+    /// # Errors
+    /// As [`CsvHistory::create`], except that the file may exist; something else than a file may not
+    /// ([`Error::NotAFile`](crate::Error::NotAFile)).
+    pub fn create_or_replace(
+        path: impl AsRef<Path>,
+        metadata: &Metadata,
+        contact: &ViscoelasticContact,
+        additional: &[&str],
+    ) -> Result<CsvHistory> {
+        check_regular(path.as_ref())?;
+        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), |path| File::create(path))
+    }
+
+    fn begin(
+        path: &Path,
+        (metadata, contact, additional): (&Metadata, &ViscoelasticContact, &[&str]),
+        open: impl FnOnce(&Path) -> io::Result<File>,
+    ) -> Result<CsvHistory> {
+        let path = path.to_owned();
         for (k, name) in additional.iter().enumerate() {
             let invalid = name.is_empty() || name.contains(|c: char| c == '#' || c == '"' || c.is_control());
             if invalid || COLUMNS.iter().any(|(standard, _)| standard == name) || additional[..k].contains(name) {
                 let rule = "unique, not empty, and without '#', quotes and control characters";
-                return Err(failed(&path, format!("invalid column name {name:?}: names must be {rule}")));
+                let reason = format!("invalid column name {name:?}: names must be {rule}");
+                return Err(failed(&path, io::Error::new(io::ErrorKind::InvalidInput, reason)));
             }
         }
         let names: Vec<String> =
             COLUMNS.iter().map(|(name, _)| name).chain(additional).map(|name| quoted(name)).collect();
         let head = format!("# {}\n{}\n", metadata.json(contact), names.join(","));
-        let mut file = Appending::new(File::create_new(&path).map_err(|error| failed(&path, error))?);
+        let mut file = Appending::new(open(&path).map_err(|error| failed(&path, error))?);
         if let Err(error) = file.append(head.as_bytes()) {
             let _ = fs::remove_file(&path); // the error to report is that of the write
             return Err(failed(&path, error));

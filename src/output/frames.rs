@@ -1,10 +1,11 @@
 //! The numbered files of a series.
 
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::error::Result;
-use crate::file::failed;
+use crate::file::{check_regular, failed};
 use crate::output::{Field, Metadata};
 
 /// A folder of frames `frame_000000`, `frame_000001`, ... and what each of them contains.
@@ -21,25 +22,33 @@ pub(super) struct Frames {
 }
 
 impl Frames {
-    /// Creates the folder if it does not exist, and refuses one that contains frames.
+    /// Creates the folder if it does not exist. Frames of another run in it are removed if they are to be `replaced`, else the
+    /// folder is refused.
     pub(super) fn create(
         folder: &Path,
         extension: &'static str,
-        metadata: Metadata,
-        fields: &[Field],
+        (metadata, fields): (Metadata, &[Field]),
+        replaced: bool,
     ) -> Result<Frames> {
         if let Some(k) = (1..fields.len()).find(|&k| fields[..k].contains(&fields[k])) {
-            return Err(failed(folder, format!("the field {} is requested twice", fields[k].name())));
+            let reason = format!("the field {} is requested twice", fields[k].name());
+            return Err(failed(folder, io::Error::new(io::ErrorKind::InvalidInput, reason)));
         }
-        let unusable = |error: std::io::Error| failed(folder, error);
+        let unusable = |error: io::Error| failed(folder, error);
         fs::create_dir_all(folder).map_err(unusable)?;
         for entry in fs::read_dir(folder).map_err(unusable)? {
-            let name = entry.map_err(unusable)?.file_name();
+            let entry = entry.map_err(unusable)?;
+            let name = entry.file_name();
             let name = name.to_string_lossy();
-            if name.starts_with("frame_") && name.ends_with(&format!(".{extension}")) {
-                let reason = format!("the folder contains {name} of another run; remove it or choose another folder");
-                return Err(failed(folder, reason));
+            if !(name.starts_with("frame_") && name.ends_with(&format!(".{extension}"))) {
+                continue;
             }
+            if !replaced {
+                let reason = format!("the folder contains {name} of another run");
+                return Err(failed(folder, io::Error::new(io::ErrorKind::AlreadyExists, reason)));
+            }
+            check_regular(&entry.path())?;
+            fs::remove_file(entry.path()).map_err(|error| failed(&entry.path(), error))?;
         }
         let (folder, fields) = (folder.to_owned(), fields.to_vec());
         Ok(Frames { folder, extension, written: 0, metadata, fields, buffer: Vec::new() })

@@ -11,9 +11,10 @@
 //! You choose which [`Field`]s are written. A frame is complete on disk when its `write` returns: if a run is killed,
 //! all earlier frames are readable.
 //!
-//! Files of an earlier run are not overwritten: a series refuses a folder with frames, a history an existing file. A
-//! single file (`write_npy`, pictures, checkpoints) replaces an existing one once it is complete; if the path is a
-//! link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
+//! Files of an earlier run are replaced by these rules. What grows with a run, a series or a history, is not replaced by
+//! `create`, which refuses a folder with frames or an existing file ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists));
+//! `create_or_replace` removes them first. What is written at once (`write_npy`, pictures, animations, checkpoints) replaces
+//! an existing file, once the new one is complete; if the path is a link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
 //! [`Error::NotAFile`](crate::Error::NotAFile). While a file is being written, the process ID and `.part` are appended
 //! to its name; a process that is killed leaves it under that name.
 //!

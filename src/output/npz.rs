@@ -51,12 +51,25 @@ pub struct NpzSeries {
 }
 
 impl NpzSeries {
-    /// A series in `folder`, which is created if it does not exist.
+    /// A new series in `folder`, which is created if it does not exist.
     ///
     /// # Errors
-    /// If the folder cannot be used or contains frames already, or a field is requested twice.
+    /// If the folder cannot be used or contains frames already ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)), or a
+    /// field is requested twice.
     pub fn create(folder: impl AsRef<Path>, metadata: Metadata, fields: &[Field]) -> Result<NpzSeries> {
-        Ok(NpzSeries { frames: Frames::create(folder.as_ref(), "npz", metadata, fields)? })
+        NpzSeries::begin(folder.as_ref(), (metadata, fields), false)
+    }
+
+    /// [`NpzSeries::create`] in the place of an earlier series, whose frames are removed first.
+    ///
+    /// # Errors
+    /// If the folder or its frames cannot be used, or a field is requested twice.
+    pub fn create_or_replace(folder: impl AsRef<Path>, metadata: Metadata, fields: &[Field]) -> Result<NpzSeries> {
+        NpzSeries::begin(folder.as_ref(), (metadata, fields), true)
+    }
+
+    fn begin(folder: &Path, contents: (Metadata, &[Field]), replaced: bool) -> Result<NpzSeries> {
+        Ok(NpzSeries { frames: Frames::create(folder, "npz", contents, replaced)? })
     }
 
     /// Writes the current state of the contact as the next frame and returns its path.

@@ -1,10 +1,11 @@
 //! Frames as VTK images.
 
+use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::error::Result;
-use crate::file::replace;
+use crate::file::{check_regular, failed, replace};
 use crate::output::frames::Frames;
 use crate::output::{Field, Metadata};
 use crate::{Grid, ViscoelasticContact};
@@ -51,12 +52,30 @@ pub struct VtkSeries {
 }
 
 impl VtkSeries {
-    /// A series in `folder`, which is created if it does not exist.
+    /// A new series in `folder`, which is created if it does not exist.
     ///
     /// # Errors
-    /// If the folder cannot be used or contains frames already, or a field is requested twice.
+    /// If the folder cannot be used or contains frames already ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)), or a
+    /// field is requested twice.
     pub fn create(folder: impl AsRef<Path>, metadata: Metadata, fields: &[Field]) -> Result<VtkSeries> {
-        let frames = Frames::create(folder.as_ref(), "vti", metadata, fields)?;
+        VtkSeries::begin(folder.as_ref(), (metadata, fields), false)
+    }
+
+    /// [`VtkSeries::create`] in the place of an earlier series, whose frames are removed first.
+    ///
+    /// # Errors
+    /// If the folder or its frames cannot be used, or a field is requested twice.
+    pub fn create_or_replace(folder: impl AsRef<Path>, metadata: Metadata, fields: &[Field]) -> Result<VtkSeries> {
+        VtkSeries::begin(folder.as_ref(), (metadata, fields), true)
+    }
+
+    fn begin(folder: &Path, contents: (Metadata, &[Field]), replaced: bool) -> Result<VtkSeries> {
+        let frames = Frames::create(folder, "vti", contents, replaced)?;
+        let collection = folder.join(COLLECTION);
+        if replaced && collection.exists() {
+            check_regular(&collection)?;
+            fs::remove_file(&collection).map_err(|error| failed(&collection, error))?;
+        }
         Ok(VtkSeries { frames, entries: String::new() })
     }
 

@@ -89,7 +89,8 @@ impl Run {
     }
 
     fn add(&mut self, contact: &ViscoelasticContact, report: &StepReport) {
-        let error = contact.mesh_error();
+        let (rim, singular) =
+            contact.mesh_error().map_or((0.0, 0.0), |error| (error.max_pressure - error.singular, error.singular));
         self.convolutions += report.convolution_equivalents();
         self.steps.push((report.dt, contact.load()));
         self.states.push(State {
@@ -97,9 +98,9 @@ impl Run {
             approach: report.approach,
             force: report.force,
             radius: (contact.contact_area() / std::f64::consts::PI).sqrt(),
-            pressure: contact.greatest_pressure(),
-            rim: error.greatest_pressure - error.singular,
-            singular: error.singular,
+            pressure: contact.max_pressure(),
+            rim,
+            singular,
             resolved: !report.warnings.contains(Warning::FewCells),
         });
         let reach = contact.reach_of_contact();

@@ -143,7 +143,7 @@ impl Plan {
         let across = across * grid.cells()[0] as f64 / sides[0];
         let error = MeshError {
             approach: found.main.at(across).max(found.singular.at(across)),
-            greatest_pressure: found.pressure.at(across),
+            max_pressure: found.pressure.at(across),
             area: 2.0 * found.radius.at(across),
             singular: found.singular.at(across),
         };
@@ -246,7 +246,7 @@ impl std::fmt::Display for Plan {
             self.convolutions,
             self.bytes as f64 * 1e-6,
             self.error.approach,
-            self.error.greatest_pressure,
+            self.error.max_pressure,
             self.error.area
         )?;
         if !self.pressure_converges {

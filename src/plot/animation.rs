@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::fs::File;
+use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::ViscoelasticContact;
@@ -9,6 +10,7 @@ use crate::error::{Error, Result, count_within, within};
 use crate::file::{Appending, Part, failed};
 use crate::output::Field;
 use crate::plot::palette::Palette;
+use crate::plot::picture::check_extension;
 use crate::plot::quantity::color_scale;
 use crate::plot::{Map, Picture};
 
@@ -59,9 +61,11 @@ impl Animation {
     /// finished.
     ///
     /// # Errors
-    /// If the range is not increasing, `seconds` is not in \[0.02, 600\], or the file cannot be written.
+    /// If the extension is not `.gif`, the range is not increasing, `seconds` is not in \[0.02, 600\], or the file cannot
+    /// be written.
     pub fn create(path: impl AsRef<Path>, field: Field, range: [f64; 2], seconds: f64) -> Result<Animation> {
         let path = path.as_ref().to_owned();
+        check_extension(&path, &["gif"])?;
         color_scale(range)?;
         // players show shorter frames for a tenth of a second
         let allowed = (0.02..=600.0).contains(&seconds);
@@ -103,8 +107,8 @@ impl Animation {
             // a picture has at most 16384 pixels per side
             let [width, height] = size.map(|side| side as u16);
             let mut encoder = gif::Encoder::new(Vec::new(), width, height, &self.palette.bytes())
-                .map_err(|error| failed(path, error))?;
-            encoder.set_repeat(gif::Repeat::Infinite).map_err(|error| failed(path, error))?;
+                .map_err(|error| failed(path, io::Error::other(error)))?;
+            encoder.set_repeat(gif::Repeat::Infinite).map_err(|error| failed(path, io::Error::other(error)))?;
             (self.encoder, self.size) = (Some(encoder), size);
         }
         for (axis, field) in ["width of a frame", "height of a frame"].into_iter().enumerate() {
@@ -125,7 +129,7 @@ impl Animation {
         if let Some(encoder) = &mut self.encoder {
             let encoded = encoder.write_frame(&frame);
             let piece = std::mem::take(encoder.get_mut());
-            encoded.map_err(|error| failed(path, error))?;
+            encoded.map_err(|error| failed(path, io::Error::other(error)))?;
             self.file.append(&piece).map_err(|error| failed(path, error))?;
         }
         self.last = pixels;
@@ -147,7 +151,7 @@ impl Animation {
             self.part.remove(); // without frames the file is useless
             return Err(Error::WrongLength { field: "frames of an animation", len: 0, expected: 1, exact: false });
         };
-        let end = encoder.into_inner().map_err(|error| failed(&self.path, error))?;
+        let end = encoder.into_inner().map_err(|error| failed(&self.path, io::Error::other(error)))?;
         self.file.append(&end).map_err(|error| failed(&self.path, error))?;
         self.part.place(self.file.into_inner())
     }

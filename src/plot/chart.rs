@@ -2,19 +2,25 @@
 
 use std::path::Path;
 
-use plotters::coord::ranged1d::ValueFormatter;
-use plotters::prelude::*;
-use plotters::style::Color as _;
-
 use crate::error::{Error, Result};
-use crate::plot::picture::{DrawingError, FONT};
-use crate::plot::quantity::{drawable, drawable_as_power, numbers, powers};
+use crate::plot::axis::{Axis, Room};
+use crate::plot::canvas::Canvas;
+use crate::plot::frame::{BELOW, Frame, label_baseline, width_beside};
+use crate::plot::legend::{self, Entry, points_along};
+use crate::plot::quantity::{drawable, drawable_as_power};
 use crate::plot::{Color, Picture, Quantity};
 
 /// Width and height of a chart in pixels.
 const SIZE: [u32; 2] = [1200, 800];
+/// Width of the space to the right of the axes, the least to their left, and height of that above them in pixels.
+const RIGHT: f64 = 40.0;
+const LEAST_LEFT: f64 = 115.0;
+const TOP: f64 = 56.0;
+/// Width of lines and radius of dots in pixels.
+const LINE_WIDTH: f64 = 3.0;
+const DOT_RADIUS: f64 = 5.5;
 
-/// Which axes of a chart are logarithmic.
+/// Which axes of a chart are logarithmic. Their numbers are powers of ten, in units without a prefix.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[expect(clippy::exhaustive_enums, reason = "there are two axes")]
 pub enum Scale {
@@ -48,7 +54,8 @@ pub enum Style {
     LineAndDots,
 }
 
-/// Position of the legend in a chart.
+/// Preferred position of the legend in a chart. It stands elsewhere if it hides less of the curves there; the vertical axis
+/// becomes longer where no position is free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[expect(missing_docs, reason = "the names are self-explanatory")]
 #[expect(clippy::exhaustive_enums, reason = "there are nine positions")]
@@ -99,17 +106,9 @@ pub struct Chart {
     pub y: Quantity,
     /// Which axes are logarithmic (default: none).
     pub scale: Scale,
-    /// Position of the legend.
+    /// Preferred position of the legend.
     pub legend: Legend,
     curves: Vec<Curve>,
-}
-
-/// An axis as drawn: its label, the factor from SI to its unit, and its ends and the format of numbers in that unit.
-struct ScaledAxis {
-    label: String,
-    factor: f64,
-    ends: [f64; 2],
-    format: Box<dyn Fn(&f64) -> String>,
 }
 
 impl Chart {
@@ -125,10 +124,10 @@ impl Chart {
         self.curves.push(Curve { label: label.into(), points, color, style });
     }
 
-    /// Draws the chart and writes it to a PNG file, replacing an existing one.
+    /// Draws the chart and writes it to a file as [`Picture::save`].
     ///
     /// # Errors
-    /// As [`Chart::draw`], or if the file cannot be written.
+    /// As [`Chart::draw`] and [`Picture::save`].
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         self.draw()?.save(path)
     }
@@ -139,23 +138,54 @@ impl Chart {
     /// If there is no point to draw, or a coordinate exceeds 1e100 in magnitude (or, on a logarithmic axis, is below
     /// 1e-100).
     pub fn draw(&self) -> Result<Picture> {
-        let axes = [self.scaled(0)?, self.scaled(1)?];
-        Picture::new(SIZE, |root| {
-            let mut builder = ChartBuilder::on(root);
-            builder
-                .caption(&self.title, (FONT, 30))
-                .margin(20)
-                .margin_right(40)
-                .x_label_area_size(65)
-                .y_label_area_size(95);
-            let [across, up] = axes.each_ref().map(|axis| axis.ends[0]..axis.ends[1]);
-            match self.scale {
-                Scale::Linear => self.fill(builder.build_cartesian_2d(across, up)?, &axes),
-                Scale::LogX => self.fill(builder.build_cartesian_2d(across.log_scale(), up)?, &axes),
-                Scale::LogY => self.fill(builder.build_cartesian_2d(across, up.log_scale())?, &axes),
-                Scale::LogLog => self.fill(builder.build_cartesian_2d(across.log_scale(), up.log_scale())?, &axes),
+        let labelled = self.curves.iter().filter(|curve| !curve.label.is_empty());
+        let entries: Vec<_> =
+            labelled.map(|curve| Entry { label: &curve.label, color: curve.color, style: curve.style }).collect();
+        // the vertical axis grows until a legend hides nothing, at most to twice its length
+        let mut frame = self.frame(0.0)?;
+        for above in (0..=10).map(|tenths| 0.1 * f64::from(tenths)) {
+            let larger = self.frame(above)?;
+            if legend::covered(&entries, self.legend, &larger, &self.points(&larger)) == 0 {
+                frame = larger;
+                break;
             }
-        })
+        }
+        let mut canvas = Canvas::new(SIZE)?;
+        frame.draw_grid(&mut canvas);
+        frame.draw(&mut canvas, &self.title, label_baseline(0.0)); // below the curves: those at zero stay visible
+        for curve in &self.curves {
+            let pieces = self.placed(curve, &frame);
+            curve.style.draw(&mut canvas, &pieces, &pieces.concat(), curve.color);
+        }
+        legend::draw(&mut canvas, &entries, self.legend, &frame, &self.points(&frame));
+        Picture::new(SIZE, canvas)
+    }
+
+    /// The axes around all points, the vertical one longer by the share `above` of the height of the points.
+    fn frame(&self, above: f64) -> Result<Frame> {
+        let [width, height] = SIZE.map(f64::from);
+        let [right, bottom] = [width - RIGHT, height - BELOW];
+        let horizontal = |left: f64| self.axis(0, Room { length: right - left, horizontal: true }, 0.0);
+        horizontal(LEAST_LEFT)?; // names a wrong x before a wrong y
+        let y = self.axis(1, Room { length: bottom - TOP, horizontal: false }, above)?;
+        // the horizontal axis is as long as the numbers of the vertical one leave
+        let left = width_beside(&y).max(LEAST_LEFT);
+        Ok(Frame { left, top: TOP, right, bottom, axes: [horizontal(left)?, y] })
+    }
+
+    /// The pieces of a curve in pixels.
+    fn placed(&self, curve: &Curve, frame: &Frame) -> Vec<Vec<[f64; 2]>> {
+        self.pieces(curve).map(|piece| piece.iter().map(|&(x, y)| frame.at(x, y)).collect()).collect()
+    }
+
+    /// Points in pixels that a legend should not cover: those of the curves and between them along lines.
+    fn points(&self, frame: &Frame) -> Vec<[f64; 2]> {
+        let of = |curve: &Curve| -> Vec<[f64; 2]> {
+            let pieces = self.placed(curve, frame);
+            let between = pieces.iter().filter(|_| curve.style != Style::Dots).flat_map(|piece| points_along(piece));
+            between.chain(pieces.iter().flatten().copied()).collect()
+        };
+        self.curves.iter().flat_map(of).collect()
     }
 
     /// The uninterrupted runs of points that can be drawn.
@@ -166,8 +196,8 @@ impl Chart {
         curve.points.split(move |point| !both(point)).filter(|piece| !piece.is_empty())
     }
 
-    /// The axis that contains all points, with a margin.
-    fn scaled(&self, axis: usize) -> Result<ScaledAxis> {
+    /// The axis that contains all points, with a margin, and longer by the share `above` at its upper end.
+    fn axis(&self, axis: usize, room: Room, above: f64) -> Result<Axis> {
         let (field, quantity) = [("x of a point in a chart", &self.x), ("y of a point in a chart", &self.y)][axis];
         let logarithmic = self.scale.is_logarithmic()[axis];
         let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -180,95 +210,32 @@ impl Chart {
             let field = "points to draw in the chart";
             return Err(Error::WrongLength { field, len: 0, expected: 1, exact: false });
         }
-        let (label, factor) = quantity.shown(low.abs().max(high.abs()));
-        let [low, high] = [low * factor, high * factor];
-        let ends = if logarithmic && high < 10.0 * low {
-            // whole decades and a little more: otherwise no tick would have a number
-            [0.99 * 10_f64.powf((low / 1.1).log10().floor()), 1.01 * 10_f64.powf((high * 1.1).log10().ceil())]
-        } else if logarithmic {
-            [low / 1.5, high * 1.5]
-        } else {
-            // values that are all equal get a range around them
-            let span = (high - low).max(1e-9 * high.abs().max(low.abs()));
-            let margin = 0.04 * if span > 0.0 { span } else { 1.0 };
-            [if low == 0.0 { 0.0 } else { low - margin }, high + margin]
-        };
-        let format: Box<dyn Fn(&f64) -> String> = if logarithmic { Box::new(powers) } else { Box::new(numbers(ends)) };
-        Ok(ScaledAxis { label, factor, ends, format })
-    }
-
-    fn fill<'a, X, Y>(
-        &self,
-        mut chart: ChartContext<'a, BitMapBackend<'a>, Cartesian2d<X, Y>>,
-        [x, y]: &[ScaledAxis; 2],
-    ) -> Result<(), DrawingError>
-    where
-        X: Ranged<ValueType = f64> + ValueFormatter<f64>,
-        Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
-    {
-        chart
-            .configure_mesh()
-            .x_desc(&x.label)
-            .y_desc(&y.label)
-            .axis_desc_style((FONT, 26))
-            .label_style((FONT, 22))
-            .x_label_formatter(&*x.format)
-            .y_label_formatter(&*y.format)
-            .light_line_style(RGBColor(240, 240, 240))
-            .bold_line_style(RGBColor(215, 215, 215))
-            .draw()?;
-        for curve in &self.curves {
-            let color = curve.color.rgb();
-            let at = |point: &(f64, f64)| (point.0 * x.factor, point.1 * y.factor);
-            let mut label = Some(&curve.label).filter(|label| !label.is_empty());
-            for piece in self.pieces(curve) {
-                if curve.style != Style::Dots {
-                    // segment by segment: plotters draws spikes where a thick line reverses direction
-                    let segments = piece
-                        .windows(2)
-                        .map(|ends| PathElement::new(ends.iter().map(at).collect::<Vec<_>>(), color.stroke_width(3)));
-                    let drawn = chart.draw_series(segments)?;
-                    if let Some(label) = label.take() {
-                        drawn
-                            .label(label)
-                            .legend(move |(x, y)| PathElement::new(vec![(x, y), (x + 28, y)], color.stroke_width(3)));
-                    }
-                }
-                if curve.style != Style::Line {
-                    let dots = piece.iter().map(|point| Circle::new(at(point), 5, color.filled()));
-                    let drawn = chart.draw_series(dots)?;
-                    if let Some(label) = label.take() {
-                        drawn.label(label).legend(move |(x, y)| Circle::new((x + 14, y), 5, color.filled()));
-                    }
-                }
-            }
+        if logarithmic {
+            let [low, high] = if high < 10.0 * low {
+                // whole decades and a little more: otherwise no tick would have a number
+                [0.99 * 10_f64.powf((low / 1.1).log10().floor()), 1.01 * 10_f64.powf((high * 1.1).log10().ceil())]
+            } else {
+                [low / 1.5, high * 1.5]
+            };
+            return Ok(Axis::logarithmic(quantity, [low, high * (high / low).powf(above)], room));
         }
-        if self.curves.iter().all(|curve| curve.label.is_empty()) {
-            return Ok(());
-        }
-        chart
-            .configure_series_labels()
-            .position(self.legend.position())
-            .label_font((FONT, 22))
-            .background_style(WHITE.mix(0.85))
-            .border_style(RGBColor(180, 180, 180))
-            .draw()?;
-        Ok(())
+        let greatest = low.abs().max(high.abs());
+        // values that are all equal get a range around them
+        let span = (high - low).max(1e-9 * greatest);
+        let margin = 0.04 * if span > 0.0 { span } else { 1.0 };
+        let (low, high) = (if low == 0.0 { 0.0 } else { low - margin }, high + margin);
+        Ok(Axis::linear(quantity, greatest, [low, high + above * (high - low)], room))
     }
 }
 
-impl Legend {
-    fn position(self) -> SeriesLabelPosition {
-        match self {
-            Legend::UpperLeft => SeriesLabelPosition::UpperLeft,
-            Legend::UpperMiddle => SeriesLabelPosition::UpperMiddle,
-            Legend::UpperRight => SeriesLabelPosition::UpperRight,
-            Legend::MiddleLeft => SeriesLabelPosition::MiddleLeft,
-            Legend::MiddleMiddle => SeriesLabelPosition::MiddleMiddle,
-            Legend::MiddleRight => SeriesLabelPosition::MiddleRight,
-            Legend::LowerLeft => SeriesLabelPosition::LowerLeft,
-            Legend::LowerMiddle => SeriesLabelPosition::LowerMiddle,
-            Legend::LowerRight => SeriesLabelPosition::LowerRight,
+impl Style {
+    /// Draws a curve through `pieces` with dots at `dots`.
+    pub(super) fn draw(self, canvas: &mut Canvas, pieces: &[Vec<[f64; 2]>], dots: &[[f64; 2]], color: Color) {
+        if self != Style::Dots {
+            canvas.lines(pieces, LINE_WIDTH, color);
+        }
+        if self != Style::Line {
+            canvas.dots(dots, DOT_RADIUS, color);
         }
     }
 }

@@ -28,15 +28,11 @@ impl Color {
     pub const BLACK: Color = Color(0, 0, 0);
 
     /// The colour at the fraction `value` of a scale from 0 to 1; values outside have the colour of the nearer end. The
-    /// scale is viridis (van der Walt & Smith, 2015) reversed: from light to dark, perceptually uniform and legible
-    /// without colour vision.
+    /// scale is viridis (van der Walt & Smith, 2015): from dark to light, perceptually uniform and legible without
+    /// colour vision.
     pub(super) fn on_scale(value: f64) -> Color {
-        let RGBColor(red, green, blue) = ViridisRGB::get_color(1.0 - value.clamp(0.0, 1.0));
+        let RGBColor(red, green, blue) = ViridisRGB::get_color(value.clamp(0.0, 1.0));
         Color(red, green, blue)
-    }
-
-    pub(super) fn rgb(self) -> RGBColor {
-        RGBColor(self.0, self.1, self.2)
     }
 }
 
@@ -45,15 +41,15 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_scale_darkens_evenly_from_end_to_end() {
+    fn the_scale_brightens_evenly_from_end_to_end() {
         let brightness = |fraction: f64| {
             let Color(r, g, b) = Color::on_scale(fraction);
             0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
         };
-        assert_eq!(Color::on_scale(0.0), Color(254, 232, 37));
-        assert_eq!(Color::on_scale(1.0), Color(68, 1, 84));
+        assert_eq!(Color::on_scale(0.0), Color(68, 1, 84));
+        assert_eq!(Color::on_scale(1.0), Color(254, 232, 37));
         for k in 0..64 {
-            assert!(brightness(f64::from(k) / 64.0) > brightness(f64::from(k + 1) / 64.0));
+            assert!(brightness(f64::from(k) / 64.0) < brightness(f64::from(k + 1) / 64.0));
         }
         assert_eq!([Color::on_scale(-1.0), Color::on_scale(7.0)], [Color::on_scale(0.0), Color::on_scale(1.0)]);
     }

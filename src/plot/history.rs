@@ -16,19 +16,14 @@ pub enum Observed {
     ContactArea,
     /// [`ViscoelasticContact::mean_pressure`] \[Pa\].
     MeanPressure,
-    /// [`ViscoelasticContact::greatest_pressure`] \[Pa\].
-    GreatestPressure,
+    /// [`ViscoelasticContact::max_pressure`] \[Pa\].
+    MaxPressure,
 }
 
 impl Observed {
     /// All of them.
-    pub const ALL: [Observed; 5] = [
-        Observed::Force,
-        Observed::Approach,
-        Observed::ContactArea,
-        Observed::MeanPressure,
-        Observed::GreatestPressure,
-    ];
+    pub const ALL: [Observed; 5] =
+        [Observed::Force, Observed::Approach, Observed::ContactArea, Observed::MeanPressure, Observed::MaxPressure];
 
     /// Name and SI unit.
     pub fn quantity(self) -> Quantity {
@@ -43,7 +38,7 @@ impl Observed {
             Observed::Approach => ("approach", "m", ViscoelasticContact::approach),
             Observed::ContactArea => ("contact area", "m²", ViscoelasticContact::contact_area),
             Observed::MeanPressure => ("mean pressure", "Pa", ViscoelasticContact::mean_pressure),
-            Observed::GreatestPressure => ("greatest pressure", "Pa", ViscoelasticContact::greatest_pressure),
+            Observed::MaxPressure => ("greatest pressure", "Pa", ViscoelasticContact::max_pressure),
         }
     }
 }

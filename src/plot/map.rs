@@ -2,26 +2,27 @@
 
 use std::path::Path;
 
-use plotters::element::BitMapElement;
-use plotters::prelude::*;
-use plotters::style::Color as _;
-
 use crate::Grid;
 use crate::error::{Result, exact_length, least_length};
-use crate::plot::picture::{Area, DrawingError, FONT};
-use crate::plot::quantity::{color_scale, drawable, numbers};
+use crate::plot::axis::{Axis, Room};
+use crate::plot::canvas::Canvas;
+use crate::plot::color_bar::{self, BAR_WIDTH};
+use crate::plot::frame::{BELOW, Frame, label_baseline};
+use crate::plot::picture::check_side;
+use crate::plot::quantity::{color_scale, drawable};
 use crate::plot::{Color, Picture, Quantity};
 
-/// Width of the tick labels beside a map in pixels.
-const LABEL_WIDTH: u32 = 110;
-/// Width of a colour bar with its labels in pixels.
-const BAR_WIDTH: u32 = 170;
-/// Height of the title above a map and the tick labels below in pixels.
-const TITLE_AND_LABEL_HEIGHT: u32 = 130;
+/// Width of the space to the left and to the right of a map and height of that above it in pixels.
+const LEFT: u32 = 115;
+const RIGHT: u32 = 20;
+const TOP: f64 = 54.0;
 /// Least side of a map in pixels: very long maps are not drawn to scale.
 const MIN_SIDE: u32 = 40;
 
-/// A field on a grid as colours, light for small values and dark for large ones.
+/// Least height of a colour bar in pixels.
+const MIN_BAR: u32 = 200;
+
+/// A field on a grid as colours, dark for small values and light for large ones.
 ///
 /// [`Map::pressure`], [`Map::gap`] and [`Map::displacement`] are the maps of a contact.
 ///
@@ -46,7 +47,7 @@ pub struct Map {
     /// The axes (default: x1 and x2 in metres, shown with a suitable prefix).
     pub axes: [Quantity; 2],
     /// Ends of the colour scale, in the unit of the values (default: the least and the greatest finite value). Values
-    /// outside have the colour of the nearer end.
+    /// outside have the colour of the nearer end, and the colour bar has a triangle at that end.
     pub range: [f64; 2],
     /// The colour of cells without a value (default: white).
     pub blank: Color,
@@ -103,10 +104,10 @@ impl Map {
         Ok(self)
     }
 
-    /// Draws the map and writes it to a PNG file, replacing an existing one.
+    /// Draws the map and writes it to a file as [`Picture::save`].
     ///
     /// # Errors
-    /// As [`Map::draw`], or if the file cannot be written.
+    /// As [`Map::draw`] and [`Picture::save`].
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
         self.draw()?.save(path)
     }
@@ -119,10 +120,10 @@ impl Map {
         Map::draw_row(std::slice::from_ref(self))
     }
 
-    /// Draws maps side by side as [`Map::draw_row`] and writes them to a PNG file, replacing an existing one.
+    /// Draws maps side by side as [`Map::draw_row`] and writes them to a file as [`Picture::save`].
     ///
     /// # Errors
-    /// As [`Map::draw_row`], or if the file cannot be written.
+    /// As [`Map::draw_row`] and [`Picture::save`].
     pub fn save_row(maps: &[Map], path: impl AsRef<Path>) -> Result<()> {
         Map::draw_row(maps)?.save(path)
     }
@@ -148,84 +149,66 @@ impl Map {
             .collect();
         let has_bar = |k: usize| !shared || k + 1 == maps.len();
         let widths =
-            sizes.iter().enumerate().map(|(k, size)| size[0] + LABEL_WIDTH + if has_bar(k) { BAR_WIDTH } else { 0 });
+            sizes.iter().enumerate().map(|(k, size)| LEFT + size[0] + RIGHT + if has_bar(k) { BAR_WIDTH } else { 0 });
         let width = widths.fold(0_u32, u32::saturating_add);
-        let height = sizes.iter().map(|size| size[1]).max().unwrap_or(MIN_SIDE).max(if alone { 300 } else { 200 });
-        Picture::new([width, height + TITLE_AND_LABEL_HEIGHT], |root| {
-            let mut rest = root.clone();
-            for (k, map) in maps.iter().enumerate() {
-                let (area, right) = rest.split_horizontally(sizes[k][0] + LABEL_WIDTH);
-                let (area, _) = area.split_vertically(sizes[k][1] + TITLE_AND_LABEL_HEIGHT);
-                map.draw_on(&area, alone)?;
-                rest = right;
-                if has_bar(k) {
-                    let (area, right) = rest.split_horizontally(BAR_WIDTH);
-                    map.draw_bar(&area)?;
-                    rest = right;
-                }
+        let tallest = sizes.iter().map(|size| size[1]).max().unwrap_or(MIN_SIDE);
+        let height = tallest.max(MIN_BAR);
+        let size = [width, height + (TOP + BELOW) as u32];
+        check_side(width as usize)?;
+        let mut canvas = Canvas::new(size)?;
+        let mut left = 0.0;
+        for (k, map) in maps.iter().enumerate() {
+            map.draw_on(&mut canvas, left, sizes[k].map(f64::from));
+            left += f64::from(LEFT + sizes[k][0] + RIGHT);
+            if has_bar(k) {
+                let of = if shared { maps } else { &maps[k..=k] };
+                let beyond = |is: fn(f64, [f64; 2]) -> bool| {
+                    let mut values = of.iter().flat_map(|map| &map.values);
+                    values.any(|&value| value.is_finite() && is(value, map.range))
+                };
+                let [below, above] = [beyond(|value, [low, _]| value < low), beyond(|value, [_, high]| value > high)];
+                let bar_height = if shared { tallest } else { sizes[k][1] }.max(MIN_BAR);
+                color_bar::draw(
+                    &mut canvas,
+                    [left, TOP, TOP + f64::from(bar_height)],
+                    &map.quantity,
+                    map.range,
+                    [below, above],
+                );
+                left += f64::from(BAR_WIDTH);
             }
-            Ok(())
-        })
+        }
+        Picture::new(size, canvas)
     }
 
-    fn draw_on(&self, area: &Area, alone: bool) -> Result<(), DrawingError> {
-        let shown = [0, 1].map(|axis| {
-            let half = 0.5 * self.lengths[axis];
-            let (label, factor) = self.axes[axis].shown(half);
-            (label, half * factor)
-        });
-        let [h1, h2] = [shown[0].1, shown[1].1];
-        let mut chart = ChartBuilder::on(area)
-            .caption(&self.title, (FONT, if alone { 28 } else { 24 }))
-            .margin(15)
-            .x_label_area_size(60)
-            .y_label_area_size(80)
-            .build_cartesian_2d(-h1..h1, -h2..h2)?;
-        // more labels would overlap on a small map
-        let labels = if alone { 10 } else { 5 };
-        chart
-            .configure_mesh()
-            .disable_mesh()
-            .x_labels(labels)
-            .y_labels(labels)
-            .x_desc(&shown[0].0)
-            .y_desc(&shown[1].0)
-            .x_label_formatter(&numbers([-h1, h1]))
-            .y_label_formatter(&numbers([-h2, h2]))
-            .label_style((FONT, 22))
-            .axis_desc_style((FONT, 26))
-            .draw()?;
-        let (across, down) = chart.plotting_area().get_pixel_range();
-        let size = [across.len() as u32, down.len() as u32];
-        if let Some(pixels) = BitMapElement::<_>::with_owned_buffer((-h1, h2), (size[0], size[1]), self.pixels(size)) {
-            chart.draw_series([pixels])?;
-        }
-        for line in self.edges([h1, h2]) {
-            chart.draw_series([PathElement::new(line.to_vec(), BLACK.stroke_width(2))])?;
-        }
-        chart.draw_series([Rectangle::new([(-h1, -h2), (h1, h2)], BLACK.stroke_width(1))])?;
-        Ok(())
-    }
-
-    /// The colours of `size` pixels, top row first.
-    fn pixels(&self, size: [u32; 2]) -> Vec<u8> {
-        let [least, most] = self.range;
-        let [n1, n2] = self.cells;
-        // the cell at the centre of a pixel
-        let cell = |pixel: u32, pixels: u32, cells: usize| {
-            (((f64::from(pixel) + 0.5) / f64::from(pixels) * cells as f64) as usize).min(cells - 1)
+    /// Draws the map with its axes to the right of `start`.
+    fn draw_on(&self, canvas: &mut Canvas, start: f64, [width, height]: [f64; 2]) {
+        let half = self.lengths.map(|length| 0.5 * length);
+        let axis = |k: usize, length: f64| {
+            Axis::linear(&self.axes[k], half[k], [-half[k], half[k]], Room { length, horizontal: k == 0 })
         };
-        let mut rgb = Vec::with_capacity(3 * size[0] as usize * size[1] as usize);
-        for row in (0..size[1]).rev() {
-            let j = cell(row, size[1], n2);
-            for column in 0..size[0] {
-                let value = self.values[cell(column, size[0], n1) * n2 + j];
-                let known = value.is_finite();
-                let color = if known { Color::on_scale((value - least) / (most - least)) } else { self.blank };
-                rgb.extend([color.0, color.1, color.2]);
-            }
+        let left = start + f64::from(LEFT);
+        let axes = [axis(0, width), axis(1, height)];
+        let frame = Frame { left, top: TOP, right: left + width, bottom: TOP + height, axes };
+        canvas.cells([left, TOP, left + width, TOP + height], self.cells[0], self.colors());
+        let outline: Vec<_> = self.edges(half).iter().map(|ends| ends.map(|(x, y)| frame.at(x, y)).to_vec()).collect();
+        if !outline.is_empty() {
+            // black alone would vanish on the dark end of the scale
+            canvas.lines(&outline, 5.0, Color::WHITE);
+            canvas.lines(&outline, 2.0, Color::BLACK);
         }
-        rgb
+        frame.draw(canvas, &self.title, label_baseline(start));
+    }
+
+    /// The colours of the cells, top row first.
+    fn colors(&self) -> Vec<Color> {
+        let ([least, most], [n1, n2]) = (self.range, self.cells);
+        let color = |value: f64| {
+            let known = value.is_finite();
+            if known { Color::on_scale((value - least) / (most - least)) } else { self.blank }
+        };
+        let rows = (0..n2).rev().flat_map(|j| (0..n1).map(move |i| i * n2 + j));
+        rows.map(|cell| color(self.values[cell])).collect()
     }
 
     /// The outline on axes from −`half` to `half`: the sides between cells inside and outside, collinear ones joined.
@@ -249,34 +232,6 @@ impl Map {
             }
         }
         edges
-    }
-
-    fn draw_bar(&self, area: &Area) -> Result<(), DrawingError> {
-        let (label, factor) = self.quantity.shown(self.range[0].abs().max(self.range[1].abs()));
-        let [least, most] = self.range.map(|end| end * factor);
-        let step = 0.01 * (most - least);
-        let mut bar = ChartBuilder::on(area)
-            .margin(15)
-            .margin_top(50)
-            .margin_right(20)
-            .x_label_area_size(60)
-            .y_label_area_size(85)
-            .build_cartesian_2d(0.0..1.0, least..most)?;
-        bar.configure_mesh()
-            .disable_mesh()
-            .x_labels(0)
-            .y_labels(6)
-            .y_desc(&label)
-            .axis_desc_style((FONT, 24))
-            .label_style((FONT, 22))
-            .y_label_formatter(&numbers([least, most]))
-            .draw()?;
-        bar.draw_series((0..100).map(|k| {
-            let low = least + f64::from(k) * step;
-            let color = Color::on_scale(0.01 * f64::from(k)).rgb();
-            Rectangle::new([(0.0, low), (1.0, low + step)], color.filled())
-        }))?;
-        Ok(())
     }
 }
 

@@ -36,20 +36,29 @@
 //! # Ok::<(), Error>(())
 //! ```
 //!
-//! Values are given in SI; axes and colour bars choose the prefix that keeps numbers short ([`Quantity`]). The colours
-//! can be distinguished without colour vision. The font is compiled in: no system font is needed.
+//! Files are PNG or SVG, by their extension. Values are given in SI; axes and colour bars choose the prefix that keeps
+//! numbers short ([`Quantity`]). The colours can be distinguished without colour vision. The font is compiled in: no
+//! system font is needed.
 
 mod animation;
+mod axis;
+mod canvas;
 mod chart;
 mod color;
+mod color_bar;
 mod contact;
+mod font;
+mod frame;
 mod history;
+mod legend;
 mod map;
 mod palette;
 mod picture;
 mod quantity;
+mod shape;
 
 pub use animation::Animation;
+pub use axis::scientific;
 pub use chart::{Chart, Legend, Scale, Style};
 pub use color::{COLORS, Color};
 pub use history::{History, Observed};

@@ -1,45 +1,35 @@
-//! Pictures in memory, and as PNG files.
+//! Pictures in memory, and as PNG and SVG files.
 
 use std::fmt;
-use std::io;
+use std::io::Write as _;
 use std::path::Path;
-use std::sync::OnceLock;
-
-use plotters::coord::Shift;
-use plotters::prelude::{BitMapBackend, DrawingArea, IntoDrawingArea};
-use plotters::style::{FontStyle, WHITE, register_font};
 
 use crate::error::{Error, Result, count_within, least_length};
-use crate::file::{failed, replace};
+use crate::file::replace;
+use crate::plot::canvas::{Canvas, png_file};
+use crate::plot::shape::{Shape, svg};
 
-/// Name under which the font of all texts is registered.
-pub(super) const FONT: &str = "viscocontact";
 /// Greatest width or height of a picture in pixels.
 const MAX_SIDE: usize = 16_384;
 
-/// The drawing area of a picture.
-pub(super) type Area<'a> = DrawingArea<BitMapBackend<'a>, Shift>;
-
-/// A picture in memory, three bytes per pixel: red, green and blue, row by row from the top.
+/// A picture in memory: three bytes per pixel, red, green and blue, row by row from the top; and the same shapes to be
+/// written as SVG.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Picture {
     size: [u32; 2],
     rgb: Vec<u8>,
+    /// The shapes of pictures side by side, and where they begin.
+    drawn: Vec<(u32, Vec<Shape>)>,
 }
 
 impl Picture {
-    /// A white picture of `width` × `height` pixels, drawn on by `draw`.
-    pub(super) fn new(size: [u32; 2], draw: impl FnOnce(&Area) -> Result<(), DrawingError>) -> Result<Picture> {
-        register_font_once()?;
-        size.iter().try_for_each(|&side| check_side(side as usize))?;
-        let mut rgb = vec![255; 3 * size[0] as usize * size[1] as usize];
-        let area = BitMapBackend::with_buffer(&mut rgb, (size[0], size[1])).into_drawing_area();
-        let drawn = area.fill(&WHITE).map_err(DrawingError::from).and_then(|()| draw(&area));
-        drawn
-            .and_then(|()| area.present().map_err(DrawingError::from))
-            .map_err(|DrawingError(what)| drawing_failed(what))?;
-        drop(area);
-        Ok(Picture { size, rgb })
+    /// What was drawn on a canvas of this size.
+    ///
+    /// # Errors
+    /// As [`Canvas::finish`].
+    pub(super) fn new(size: [u32; 2], canvas: Canvas) -> Result<Picture> {
+        let (rgb, shapes) = canvas.finish()?;
+        Ok(Picture { size, rgb, drawn: vec![(0, shapes)] })
     }
 
     /// Pictures side by side from left to right; white below those that are lower than others.
@@ -52,15 +42,17 @@ impl Picture {
         check_side(width)?;
         let height = pictures.iter().map(|picture| picture.size[1]).max().unwrap_or(1);
         let mut rgb = vec![255; 3 * width * height as usize];
+        let mut drawn = Vec::new();
         let mut left = 0;
         for picture in pictures {
+            drawn.extend(picture.drawn.iter().map(|(at, shapes)| (left as u32 / 3 + at, shapes.clone())));
             let row = 3 * picture.size[0] as usize;
             for (to, from) in rgb.chunks_exact_mut(3 * width).zip(picture.rgb.chunks_exact(row)) {
                 to[left..left + row].copy_from_slice(from);
             }
             left += row;
         }
-        Ok(Picture { size: [width as u32, height], rgb })
+        Ok(Picture { size: [width as u32, height], rgb, drawn })
     }
 
     /// Width and height in pixels.
@@ -73,21 +65,29 @@ impl Picture {
         &self.rgb
     }
 
-    /// Writes the picture to a PNG file, whatever the extension. An existing file is replaced when the new one is
-    /// complete.
+    /// Writes the picture to a file in the format of its extension, `.png` or `.svg`. SVG files have the same size and
+    /// sharp lines at any magnification; their texts are texts, in a similar font of the reader's system. Cells of maps
+    /// are rectangles: a map of 512² cells can take 20 MB. An existing file is replaced when the new one is complete.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// [`Error::Extension`] if the extension is another, or if the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
-        replace(path.as_ref(), |out| {
-            let mut encoder = png::Encoder::new(out, self.size[0], self.size[1]);
-            encoder.set_color(png::ColorType::Rgb);
-            encoder.set_compression(png::Compression::High);
-            let mut writer = encoder.write_header().map_err(io::Error::other)?;
-            writer.write_image_data(&self.rgb).map_err(io::Error::other)?;
-            writer.finish().map_err(io::Error::other)
-        })
+        let path = path.as_ref();
+        match check_extension(path, &["png", "svg"])? {
+            0 => replace(path, |out| png_file(out, self.size, &self.rgb)),
+            _ => {
+                let document = svg(self.size, &self.drawn)?;
+                replace(path, |out| out.write_all(document.as_bytes()))
+            }
+        }
     }
+}
+
+/// The index of the extension of a file among those allowed, in upper or lower case.
+pub(super) fn check_extension(path: &Path, allowed: &'static [&'static str]) -> Result<usize> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    let unknown = || Error::Extension { path: path.display().to_string(), allowed };
+    allowed.iter().position(|allowed| *allowed == extension).ok_or_else(unknown)
 }
 
 impl fmt::Debug for Picture {
@@ -97,39 +97,27 @@ impl fmt::Debug for Picture {
 }
 
 /// Accepts a width or height in pixels.
-fn check_side(value: usize) -> Result<()> {
+pub(super) fn check_side(value: usize) -> Result<()> {
     count_within("pixels along a side of a picture", value, (1..=MAX_SIDE).contains(&value), "in [1, 16384]")
-}
-
-/// The message of a drawing error.
-#[derive(Debug)]
-pub(super) struct DrawingError(String);
-
-impl<E: std::error::Error> From<E> for DrawingError {
-    fn from(error: E) -> DrawingError {
-        DrawingError(error.to_string())
-    }
-}
-
-fn drawing_failed(what: impl fmt::Display) -> Error {
-    failed(Path::new("a picture"), what)
-}
-
-/// Registers the compiled-in font once: no system font is needed.
-fn register_font_once() -> Result<()> {
-    static REGISTERED: OnceLock<bool> = OnceLock::new();
-    let registered =
-        REGISTERED.get_or_init(|| register_font(FONT, FontStyle::Normal, epaint_default_fonts::UBUNTU_LIGHT).is_ok());
-    if *registered { Ok(()) } else { Err(drawing_failed("the font cannot be read")) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::plot::Color;
+
+    fn plain(size: [u32; 2], value: u8) -> Picture {
+        let mut canvas = Canvas::new(size).unwrap();
+        canvas.rectangle([0.0, 0.0, f64::from(size[0]), f64::from(size[1])], Color(value, value, value), 100);
+        Picture::new(size, canvas).unwrap()
+    }
+
+    fn file(name: &str) -> std::path::PathBuf {
+        std::env::temp_dir().join(format!("viscocontact-picture-{}-{name}", std::process::id()))
+    }
 
     #[test]
     fn pictures_are_placed_side_by_side() {
-        let plain = |size: [u32; 2], value: u8| Picture { size, rgb: vec![value; 3 * (size[0] * size[1]) as usize] };
         let both = Picture::beside(&[plain([2, 1], 7), plain([1, 2], 9)]).unwrap();
         assert_eq!(both.size(), [3, 2]);
         let red: Vec<u8> = both.rgb().iter().step_by(3).copied().collect();
@@ -141,17 +129,51 @@ mod tests {
 
     #[test]
     fn files_hold_the_pixels() {
-        let picture = Picture::new([31, 17], |area| Ok(area.fill(&plotters::style::RED)?)).unwrap();
-        let path = std::env::temp_dir().join(format!("viscocontact-picture-{}.png", std::process::id()));
+        let picture = Picture::beside(&[plain([31, 17], 200), plain([3, 17], 20)]).unwrap();
+        let path = file("a.PNG");
         picture.save(&path).unwrap();
-        let file = std::io::BufReader::new(std::fs::File::open(&path).unwrap());
-        let mut reader = png::Decoder::new(file).read_info().unwrap();
+        let mut decoder = png::Decoder::new(std::io::BufReader::new(std::fs::File::open(&path).unwrap()));
+        decoder.set_transformations(png::Transformations::EXPAND);
+        let mut reader = decoder.read_info().unwrap();
         let mut read = vec![0; reader.output_buffer_size().unwrap()];
         reader.next_frame(&mut read).unwrap();
         assert_eq!(read, picture.rgb());
-        assert_eq!(read[..3], [255, 0, 0]);
+        assert_eq!(read[..3], [200, 200, 200]);
         std::fs::remove_file(&path).unwrap();
-        assert!(matches!(picture.save("/no/such/folder/a.png"), Err(Error::Output { .. })));
-        assert!(Picture::new([0, 5], |_| Ok(())).is_err());
+        assert!(matches!(picture.save("/no/such/folder/a.png"), Err(Error::Output(_))));
+    }
+
+    #[test]
+    fn the_extension_determines_the_format() {
+        for name in ["a.jpg", "png", "a", "a.svg.gz"] {
+            let refused = plain([2, 2], 0).save(file(name)).unwrap_err();
+            assert!(matches!(refused, Error::Extension { allowed: ["png", "svg"], .. }), "{name}: {refused}");
+            assert!(refused.to_string().ends_with(&format!("{name}: the extension must be .png or .svg")), "{refused}");
+            assert!(!file(name).exists());
+        }
+    }
+
+    #[cfg(feature = "x3p")] // which reads XML
+    #[test]
+    fn svg_files_are_well_formed_and_hold_the_texts() {
+        use crate::plot::{COLORS, Chart, Legend, Map, Quantity, Style};
+        let mut chart = Chart::new("A < B & \u{1} > \"τ\"", Quantity::of("time", "s"), "q", Legend::UpperLeft);
+        chart.add("measured <τ>", COLORS[0], Style::LineAndDots, vec![(0.0, 0.0), (f64::NAN, 1.0), (2.0e-3, 5.0e-6)]);
+        let grid = crate::Grid::new([2, 3], [1.0, 1.5]).unwrap();
+        let map = Map::new(&grid, vec![0.0, 1.0, 2.0, 3.0, f64::NAN, 5.0], "height").unwrap();
+        let path = file("both.svg");
+        Picture::beside(&[chart.draw().unwrap(), map.draw().unwrap()]).unwrap().save(&path).unwrap();
+        let text = std::fs::read_to_string(&path).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        let document = roxmltree::Document::parse(&text).unwrap();
+        assert_eq!(document.root_element().attribute("width"), Some("1977"));
+        let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).map(str::trim).collect();
+        for label in ["A < B & \u{fffd} > \"τ\"", "time [ms]", "q [10⁻⁶]", "measured <τ>", "1.5", "x1 [mm]", "height"]
+        {
+            assert!(texts.contains(&label), "{label} is not in {texts:?}");
+        }
+        let count = |name| document.descendants().filter(|node| node.has_tag_name(name)).count();
+        // two points and the one in the legend; background, legend, six cells and 256 of the colour bar
+        assert_eq!([count("circle"), count("rect")], [3, 264]);
     }
 }

@@ -1,13 +1,14 @@
 //! Quantities of axes, and their numbers in units with a suitable prefix.
 
 use crate::error::{Result, within};
+use crate::plot::axis::shortened;
 
 /// The quantity of an axis or a colour bar.
 ///
 /// A quantity with a unit is given in SI and shown with the prefix for which its greatest value lies between 1 and
 /// 1000: `approach [µm]`, `contact area [mm²]`. Lengths, times and angles get no prefix above 1 (`km`, `ks`). Units
 /// that have a prefix already, or take none (`kg`, `%`, `1/Pa`, `°C`), are not changed. A plain text is a quantity
-/// without a unit.
+/// without a unit. What still has many digits gets a shared power of ten: `J [10⁻⁶ 1/Pa]`.
 ///
 /// ```
 /// use viscocontact::plot::Quantity;
@@ -114,41 +115,12 @@ pub(super) fn drawable_as_power(field: &'static str, value: f64) -> Result<f64> 
     )
 }
 
-/// Formats the numbers along an axis from `low` to `high` with as many digits as distinguish them.
-pub(super) fn numbers([low, high]: [f64; 2]) -> impl Fn(&f64) -> String {
-    let (span, greatest) = (high - low, low.abs().max(high.abs()));
-    // down to a hundredth of the leading digit of the span
-    let decimals = (2.0 - span.log10().floor()).clamp(0.0, 15.0) as usize;
-    let powers = greatest >= 1e6 || (greatest < 1e-3 && greatest > 0.0);
-    move |v: &f64| {
-        if powers {
-            // infinite for a span of 0
-            let digits = (greatest / span).log10().clamp(0.0, 14.0).ceil() as usize + 1;
-            let text = format!("{v:.*e}", digits);
-            let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-            return if *v == 0.0 { "0".into() } else { format!("{}e{exponent}", shortened(mantissa)) };
-        }
-        shortened(&format!("{v:.decimals$}"))
-    }
-}
-
-/// Formats the numbers along a logarithmic axis.
-pub(super) fn powers(v: &f64) -> String {
-    if (0.01..1e4).contains(v) { shortened(&format!("{v:.6}")) } else { format!("{v:.0e}") }
-}
-
 /// Formats a value in SI with its unit to four digits, and all digits before the point: "412.4 µs".
 pub(super) fn measure(value: f64, unit: &str) -> String {
     let (prefix, factor) = prefix(unit, value.abs()).unwrap_or(("", 1.0));
     let number = value * factor;
     let decimals = if number == 0.0 { 0.0 } else { (3.0 - number.abs().log10().floor()).clamp(0.0, 12.0) };
     format!("{} {prefix}{unit}", shortened(&format!("{number:.*}", decimals as usize)))
-}
-
-/// A number without trailing zeros, and without the sign of a negative zero.
-fn shortened(text: &str) -> String {
-    let short = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text };
-    if short == "-0" { "0".into() } else { short.into() }
 }
 
 #[cfg(test)]
@@ -178,19 +150,5 @@ mod tests {
             assert_eq!(text, label, "{greatest} {unit}");
             assert!((by / factor - 1.0).abs() < 1e-12, "{greatest} {unit}");
         }
-    }
-
-    #[test]
-    fn numbers_have_the_digits_that_distinguish_them() {
-        assert_eq!(numbers([0.0, 10.0])(&2.0), "2");
-        assert_eq!(numbers([0.0, 10.0])(&-1e-17), "0");
-        assert_eq!(numbers([0.0, 0.1])(&0.025), "0.025");
-        assert_eq!(numbers([1.0, 1.0001])(&1.00005), "1.00005");
-        assert_eq!(numbers([0.0, 2.0e7])(&5.0e6), "5e6");
-        assert_eq!(numbers([0.0, 2.0e-7])(&5.0e-8), "5e-8");
-        assert_eq!(numbers([0.0, 2.0e-7])(&0.0), "0");
-        assert_eq!(numbers([1.0e9, 1.0e9])(&1.0e9), "1e9");
-        assert_eq!(powers(&1000.0), "1000");
-        assert_eq!(powers(&1e-5), "1e-5");
     }
 }

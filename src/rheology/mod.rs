@@ -81,6 +81,8 @@ pub use maxwell::Maxwell;
 pub use power_law::PowerLaw;
 pub use series::CreepSeries;
 pub use slow_creep::SlowCreep;
+#[cfg(feature = "checkpoint")]
+pub(crate) use spectrum::SavedRelaxation;
 pub use spectrum::{CreepSpectrum, RelaxationSpectrum};
 #[cfg(feature = "csv")]
 pub use table::Units;
@@ -204,5 +206,6 @@ macro_rules! forward_rheology {
 }
 use forward_rheology;
 
+forward_rheology!(<T> self: &T => **self);
 forward_rheology!(<T> self: Box<T> => **self);
 forward_rheology!(<T> self: std::sync::Arc<T> => **self);

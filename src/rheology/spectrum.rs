@@ -35,11 +35,20 @@ pub struct CreepSpectrum {
 /// with equilibrium modulus G_∞, relaxation times τ_k and, for bodies without elastic response, the
 /// viscosity η of an immediate dashpot. Every coefficient is ≥ 0.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct RelaxationSpectrum {
     equilibrium: f64,
     viscosity: f64,
     /// Moduli and relaxation times, times ascending and distinct.
+    terms: Vec<(f64, f64)>,
+}
+
+/// What a checkpoint keeps of a relaxation modulus. Files are compared with the scene before they are used.
+#[cfg(feature = "checkpoint")]
+#[derive(serde::Serialize, serde::Deserialize)]
+#[serde(remote = "RelaxationSpectrum")]
+pub(crate) struct SavedRelaxation {
+    equilibrium: f64,
+    viscosity: f64,
     terms: Vec<(f64, f64)>,
 }
 

@@ -1,11 +1,11 @@
 //! What is allocated, counted: by steps nothing, by a contact what its builder announces.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod memory;
 mod steps;
 
 use std::alloc::System;
+
+use viscocontact_tests as common;
 
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use stats_alloc::Region;
+use viscocontact::Result;
 use viscocontact::contact::Memory;
 use viscocontact::prelude::*;
 
@@ -55,8 +56,8 @@ fn scene(random: &mut ChaCha8Rng) -> Scene {
         _ => [one_of(random, &sizes), one_of(random, &sizes)],
     };
     let frame = one_of(random, &[Frame::Bodies, Frame::Bodies, Frame::Bodies, Frame::Indenter]);
-    let rules =
-        [TimeRule::Exponential, TimeRule::Exponential, TimeRule::Exponential, TimeRule::Backward, TimeRule::Rectangle];
+    use TimeRule::{Backward, Exponential, Rectangle, RectangleUncached};
+    let rules = [Exponential, Exponential, Exponential, Backward, Rectangle, RectangleUncached];
     let time_rule = if frame == Frame::Indenter { TimeRule::Exponential } else { one_of(random, &rules) };
     let solver = one_of(random, &[Solver::ActiveSet, Solver::ActiveSet, Solver::PolonskyKeer]);
     let (symmetry, window) = (one_of(random, &[true, false]), one_of(random, &[true, false]));
@@ -67,7 +68,13 @@ fn scene(random: &mut ChaCha8Rng) -> Scene {
         lopsided: one_of(random, &[true, false, false]),
         terms: one_of(random, &[0, 1, 2, 5, 12]),
         fitted: one_of(random, &[true, false, false]),
-        settings: Settings { solver, time_rule, frame, symmetry, window, edge: Edge::Allow, ..Settings::default() },
+        settings: Settings::default()
+            .with_solver(solver)
+            .with_time_rule(time_rule)
+            .with_frame(frame)
+            .with_symmetry(symmetry)
+            .with_window(window)
+            .with_edge(Edge::Allow),
     }
 }
 

@@ -51,7 +51,7 @@ pub fn tilting_steps_allocate_nothing() {
         let builder = || {
             ViscoelasticContact::builder(Grid::new([24, 30], [side, side]).unwrap())
                 .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
-                .settings(Settings { solver, window: false, edge: Edge::Allow, ..Settings::default() })
+                .settings(Settings::default().with_solver(solver).with_window(false).with_edge(Edge::Allow))
         };
         let punch = || builder().geometry(&FlatPunch::circular(1.4e-3).unwrap()).build().unwrap();
         let bowl = || builder().geometry(&FnGeometry::new(rough)).build().unwrap();
@@ -73,7 +73,7 @@ pub fn steps_allocate_nothing() {
     let scene = StepLoadedSphere::zener();
     for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
         for (cells, symmetry) in [(32, true), (32, false), (45, true)] {
-            let whole = Settings { solver, symmetry, window: false, ..Settings::default() };
+            let whole = Settings::default().with_solver(solver).with_symmetry(symmetry).with_window(false);
             let mut contact = scene.contact(cells, whole).unwrap();
             let region = Region::new(ALLOCATOR);
             contact.step(0.0, Load::force(1.0)).unwrap();
@@ -85,7 +85,8 @@ pub fn steps_allocate_nothing() {
 
             // a window takes memory while it grows, and then no more
             let wide = Grid::square(3 * cells, 3.0 * scene.grid(cells).unwrap().lengths()[0]).unwrap();
-            let mut contact = scene.contact_on(wide, Settings { solver, symmetry, ..Settings::default() }).unwrap();
+            let mut contact =
+                scene.contact_on(wide, Settings::default().with_solver(solver).with_symmetry(symmetry)).unwrap();
             contact.step(0.0, Load::force(1.0)).unwrap();
             let region = Region::new(ALLOCATOR);
             for step in 0..80 {
@@ -114,7 +115,7 @@ pub fn steps_allocate_nothing() {
             .geometry(&Ellipsoid::new(10.0e-3, 10.0e-3).unwrap())
             .material(body())
             .kernel(kernel)
-            .settings(Settings { frame: Frame::Indenter, symmetry: false, ..Settings::default() })
+            .settings(Settings::default().with_frame(Frame::Indenter).with_symmetry(false))
             .build()
             .unwrap();
         let region = Region::new(ALLOCATOR);
@@ -135,7 +136,7 @@ pub fn steps_allocate_nothing() {
         let mut contact = ViscoelasticContact::builder(plane.clone())
             .geometry(&sphere())
             .material(body())
-            .settings(Settings { window: false, ..Settings::default() })
+            .settings(Settings::default().with_window(false))
             .build()
             .unwrap();
         contact.step_along(&travel, 0.0, Load::force(0.5)).unwrap();
@@ -152,7 +153,7 @@ pub fn steps_allocate_nothing() {
         let mut contact = ViscoelasticContact::builder(plane.clone())
             .geometry(&sphere())
             .material(body())
-            .settings(Settings { window: false, frame, ..Settings::default() })
+            .settings(Settings::default().with_window(false).with_frame(frame))
             .build()
             .unwrap();
         contact.step(0.0, Load::force(0.5)).unwrap();
@@ -176,21 +177,21 @@ pub fn steps_allocate_nothing() {
         .kernel(std::sync::Arc::new(
             InfluenceKernel::line(&Grid::new([16384, 1], [8.0e-3, 1.0]).unwrap(), 1.0).unwrap(),
         ))
-        .settings(Settings { symmetry: false, ..Settings::default() })
+        .settings(Settings::default().with_symmetry(false))
         .build()
         .unwrap();
     let change = region.change();
     let line = (change.bytes_allocated - change.bytes_deallocated) as f64 / 16384.0;
     drop(contact);
-    println!("{line:.1} bytes a cell of a line");
-    assert!(line < 400.0, "{line} bytes a cell");
+    println!("{line:.1} bytes per cell of a line");
+    assert!(line < 400.0, "{line} bytes per cell");
 
-    // memory of a built contact: a constant a cell, and one field of 8 bytes for each relaxation time
+    // memory of a built contact: a constant per cell, and one field of 8 bytes for each relaxation time
     let bytes = |terms: &[(f64, f64)], symmetry: bool| {
         let body = Material::incompressible(GeneralizedMaxwell::new(1.0e6, terms).unwrap());
         let scene = StepLoadedSphere { material: body, ..scene.clone() };
         let region = Region::new(ALLOCATOR);
-        let contact = scene.contact(128, Settings { symmetry, window: false, ..Settings::default() }).unwrap();
+        let contact = scene.contact(128, Settings::default().with_symmetry(symmetry).with_window(false)).unwrap();
         let change = region.change();
         drop(contact);
         (change.bytes_allocated as isize + change.bytes_reallocated - change.bytes_deallocated as isize) as f64
@@ -198,15 +199,15 @@ pub fn steps_allocate_nothing() {
     };
     let times = [(1.0e6, 1.0), (1.0e6, 2.0), (1.0e6, 3.0)];
     let (one, three) = (bytes(&times[..1], false), bytes(&times, false));
-    println!("{one:.1} bytes a cell with one relaxation time, {three:.1} with three");
+    println!("{one:.1} bytes per cell with one relaxation time, {three:.1} with three");
     let folded = bytes(&times[..1], true);
-    println!("{folded:.1} bytes a cell where a quarter is computed");
-    assert!(folded < 80.0, "{folded} bytes a cell");
-    assert!(one < 200.0, "{one} bytes a cell");
-    assert!((three - one - 16.0).abs() < 0.1, "{} bytes a cell for two more relaxation times", three - one);
+    println!("{folded:.1} bytes per cell where a quarter is computed");
+    assert!(folded < 80.0, "{folded} bytes per cell");
+    assert!(one < 200.0, "{one} bytes per cell");
+    assert!((three - one - 16.0).abs() < 0.1, "{} bytes per cell for two more relaxation times", three - one);
 
     // the exponential rule keeps one field for each relaxation time, the direct sums one for each step
-    let mut contact = scene.contact(32, Settings { time_rule: TimeRule::Backward, ..Settings::default() }).unwrap();
+    let mut contact = scene.contact(32, Settings::default().with_time_rule(TimeRule::Backward)).unwrap();
     let region = Region::new(ALLOCATOR);
     for _ in 0..64 {
         contact.step(0.02, Load::force(1.0)).unwrap();

@@ -24,7 +24,7 @@ impl Scene {
 
     /// A grid that holds the contact of a sphere under 1 N.
     pub fn contact(&self, cells: usize, tolerance: f64) -> ViscoelasticContact {
-        self.contact_with(cells, Settings { tolerance, ..Settings::default() })
+        self.contact_with(cells, Settings::default().with_tolerance(tolerance))
     }
 
     pub fn contact_with(&self, cells: usize, settings: Settings) -> ViscoelasticContact {

@@ -1,13 +1,16 @@
-//! Scenes and helpers that several groups of tests share.
-#![allow(dead_code, reason = "each group takes what it needs")]
+//! Scenes and references that tests and benches share; those under `examples/support/scenes` examples as well.
 
 pub mod bodies;
 pub mod draws;
 pub mod environment;
 pub mod histories;
+#[path = "../../examples/support/scenes/indenters.rs"]
 pub mod indenters;
+#[path = "../../examples/support/scenes/noise.rs"]
 pub mod noise;
+#[path = "../../examples/support/scenes/oscillation.rs"]
 pub mod oscillation;
+#[path = "../../examples/support/scenes/paper_figures.rs"]
 pub mod paper_figures;
 pub mod protocol;
 pub mod random_bodies;
@@ -15,11 +18,13 @@ pub mod random_histories;
 pub mod random_scenes;
 #[cfg(feature = "laws")]
 pub mod related;
+#[path = "../../examples/support/scenes/rolling.rs"]
 pub mod rolling;
 pub mod rough;
 pub mod runs;
 pub mod spectra;
 pub mod spheres;
+#[path = "../../examples/support/scenes/step_loaded_sphere.rs"]
 pub mod step_loaded_sphere;
 pub mod truth;
 pub mod watched_runs;

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
 use super::draws::Draws;
@@ -119,7 +120,7 @@ impl RandomScene {
             .geometry(&*self.geometry)
             .material(material)
             .kernel(self.kernel.clone())
-            .settings(Settings { tolerance, time_rule, edge: Edge::Allow, ..Settings::default() })
+            .settings(Settings::default().with_tolerance(tolerance).with_time_rule(time_rule).with_edge(Edge::Allow))
             .build()
             .unwrap()
     }

@@ -8,7 +8,7 @@ use viscocontact::prelude::*;
 pub const TIGHT: f64 = 1e-10;
 
 pub fn tight() -> Settings {
-    Settings { tolerance: TIGHT, ..Settings::default() }
+    Settings::default().with_tolerance(TIGHT)
 }
 
 pub fn pressures(contact: &ViscoelasticContact) -> Vec<f64> {

@@ -21,14 +21,14 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
     let grid = || Grid::square(48, 4.0e-3).unwrap();
     let wide = || Grid::square(96, 8.0e-3).unwrap();
     let with = |settings: Settings| move || sphere_on(Grid::square(48, 4.0e-3).unwrap(), three_times(), settings);
-    let whole = Settings { window: false, symmetry: false, ..Settings::default() };
+    let whole = Settings::default().with_window(false).with_symmetry(false);
     let line = || {
         let grid = Grid::new([200, 1], [10.0e-3, 1.0]).unwrap();
         ViscoelasticContact::builder(grid.clone())
             .geometry(&Cylinder::new(10.0e-3).unwrap())
             .material(three_times())
             .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
-            .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
+            .settings(Settings::default().with_frame(Frame::Indenter))
             .build()
             .unwrap()
     };
@@ -65,12 +65,12 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
     let in_turn = |contact: &mut ViscoelasticContact, k: u32| {
         contact.step_each(0.02, &[Load::force(0.2), Load::force(0.1 + 0.01 * f64::from(k % 4))]).unwrap()
     };
-    let direct = Settings { time_rule: TimeRule::Backward, ..whole };
+    let direct = whole.with_time_rule(TimeRule::Backward);
     vec![
         ("window", Box::new(move || sphere_on(wide(), three_times(), Settings::default())), Box::new(wandering)),
-        ("folded", Box::new(with(Settings { window: false, ..Settings::default() })), Box::new(wandering)),
+        ("folded", Box::new(with(Settings::default().with_window(false))), Box::new(wandering)),
         ("whole", Box::new(with(whole)), Box::new(wandering)),
-        ("Polonsky-Keer", Box::new(with(Settings { solver: Solver::PolonskyKeer, ..whole })), Box::new(wandering)),
+        ("Polonsky-Keer", Box::new(with(whole.with_solver(Solver::PolonskyKeer))), Box::new(wandering)),
         (
             "direct sum",
             Box::new(with(direct)),

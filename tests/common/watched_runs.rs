@@ -116,6 +116,6 @@ pub fn watch(
         }
     }
     seen.rejected = run.rejected_steps();
-    seen.pressure_budget = run.error_budget().pressure;
+    seen.pressure_budget = run.error_budget().pressure.unwrap_or(0.0);
     Ok(seen)
 }

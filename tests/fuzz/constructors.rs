@@ -80,19 +80,19 @@ fn rough(source: &mut Source) -> Verdict {
     let Ok(grid) = Grid::new(cells, cells.map(|n| length * n as f64 / 12.0)) else { return Ok(Outcome::Refused) };
     let shortest = length / 12.0 * source.between(1.9, 5.0);
     let roll_off = shortest * source.scale(1.0, 4.0);
-    let spec = RoughSpec {
-        hurst: source.between(0.01, 1.0),
-        longest: roll_off * source.scale(1.0, 4.0),
-        roll_off,
-        shortest,
-        anisotropy: Anisotropy { ratio: source.scale(1.0, 4.0), direction: source.between(-7.0, 7.0) },
-        roughness: if source.chance(0.5) {
-            Roughness::RmsHeight(length * source.scale(1e-6, 1e-2))
-        } else {
-            Roughness::RmsSlope(source.scale(1e-3, 1.0))
-        },
-        seed: source.u64(),
+    let hurst = source.between(0.01, 1.0);
+    let longest = roll_off * source.scale(1.0, 4.0);
+    let anisotropy = Anisotropy::new(source.scale(1.0, 4.0), source.between(-7.0, 7.0));
+    let roughness = if source.chance(0.5) {
+        Roughness::RmsHeight(length * source.scale(1e-6, 1e-2))
+    } else {
+        Roughness::RmsSlope(source.scale(1e-3, 1.0))
     };
+    let spec = RoughSpec::new(longest, shortest, roughness)
+        .with_hurst(hurst)
+        .with_roll_off(roll_off)
+        .with_anisotropy(anisotropy)
+        .with_seed(source.u64());
     let made = match source.below(2) {
         0 => Rough::new(&grid, spec),
         _ => Rough::windowed(&grid, spec, grid.lengths().map(|length| length * source.count(1, 3) as f64)),
@@ -113,6 +113,7 @@ fn history(source: &mut Source) -> Verdict {
                 let tilts = tilt.map(|tilt| match tilt {
                     Tilt::Fixed(tilt) => tilt,
                     Tilt::Free { at } => at,
+                    _ => unreachable!("{tilt:?}"),
                 });
                 if !own && time.is_finite() {
                     known("a load", [size, tilts[0], tilts[1]])
@@ -160,11 +161,11 @@ fn analytic(source: &mut Source) -> Verdict {
     let [r, s] = [source.scale(1e-9, 1.0), source.scale(1e-9, 1.0)];
     match source.below(5) {
         0 => judged(Hertz::new(radius, modulus, force), |hertz| {
-            known("Hertz", [hertz.contact_radius(), hertz.greatest_pressure(), hertz.approach(), hertz.pressure(0.0)])
+            known("Hertz", [hertz.contact_radius(), hertz.max_pressure(), hertz.approach(), hertz.pressure(0.0)])
         }),
         1 => judged(HertzEllipse::new([radius, source.scale(1e-3, 1.0)], modulus, force), |ellipse| {
             let [a, b] = ellipse.semi_axes();
-            known("ellipse", [a, b, ellipse.greatest_pressure(), ellipse.approach(), ellipse.pressure(0.0, 0.0)])
+            known("ellipse", [a, b, ellipse.max_pressure(), ellipse.approach(), ellipse.pressure(0.0, 0.0)])
         }),
         2 => judged(RigidPunch::new(radius, modulus, force, radius * source.between(-0.4, 0.4)), |punch| {
             known("punch", [punch.approach(), punch.tilt(), punch.pressure(0.0, 0.0)])

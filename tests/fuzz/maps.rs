@@ -236,7 +236,7 @@ fn operations(source: &mut Source) -> Verdict {
         if let Ok(resampled) = map.resampled(&grid) {
             look(resampled.map)?;
             let error = resampled.error;
-            known("error of resampling", [error.rms, error.greatest, error.of_rms_height])?;
+            known("error of resampling", [error.rms, error.max, error.of_rms_height])?;
         }
         // a missing point that is not masked is NaN in the gap by contract: a contact refuses it by name
         let mut gap = vec![0.0; grid.len()];

@@ -1,5 +1,6 @@
 //! Random bodies, shapes, loads, histories and kernels.
 
+use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 use viscocontact::rheology::TimeTemperature;
 

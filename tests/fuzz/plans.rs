@@ -22,7 +22,7 @@ fn plan(source: &mut Source) -> Verdict {
     });
     judged(made, |plan| {
         let (error, [reach1, reach2]) = (plan.mesh_error(), plan.reach());
-        let numbers = [reach1, reach2, plan.convolutions(), error.approach, error.greatest_pressure, error.area];
+        let numbers = [reach1, reach2, plan.convolutions(), error.approach, error.max_pressure, error.area];
         finite("plan", numbers.into_iter().chain([error.singular]))?;
         let text = plan.to_string();
         if text.contains("NaN") || text.contains("inf") || plan.grid().len() == 0 || plan.bytes() == 0 {

@@ -30,20 +30,19 @@ struct Scale {
 
 fn settings(source: &mut Source) -> Settings {
     let frame = if source.chance(0.2) { Frame::Indenter } else { Frame::Bodies };
-    let rules =
-        [TimeRule::Exponential, TimeRule::Exponential, TimeRule::Exponential, TimeRule::Rectangle, TimeRule::Backward];
-    Settings {
-        tolerance: source.scale(1e-10, 1e-2),
-        max_iterations: source.choose(&[1, 3, 30, 200, 200, 200, 0]),
-        solver: source.choose(&[Solver::ActiveSet, Solver::ActiveSet, Solver::PolonskyKeer]),
-        time_rule: if frame == Frame::Indenter { TimeRule::Exponential } else { source.choose(&rules) },
-        edge: source.choose(&[Edge::Allow, Edge::Allow, Edge::Refuse]),
-        series_tolerance: source.scale(1e-4, 1e-1),
-        history_limit: source.choose(&[2 << 30, 2 << 30, 2 << 30, 4000]),
-        symmetry: source.chance(0.7),
-        window: source.chance(0.7),
-        frame,
-    }
+    use TimeRule::{Backward, Exponential, Rectangle, RectangleUncached};
+    let rules = [Exponential, Exponential, Exponential, Rectangle, RectangleUncached, Backward];
+    Settings::default()
+        .with_tolerance(source.scale(1e-10, 1e-2))
+        .with_max_iterations(source.choose(&[1, 3, 30, 200, 200, 200, 0]))
+        .with_solver(source.choose(&[Solver::ActiveSet, Solver::ActiveSet, Solver::PolonskyKeer]))
+        .with_time_rule(if frame == Frame::Indenter { TimeRule::Exponential } else { source.choose(&rules) })
+        .with_edge(source.choose(&[Edge::Allow, Edge::Allow, Edge::Refuse]))
+        .with_series_tolerance(source.scale(1e-4, 1e-1))
+        .with_history_limit(source.choose(&[2 << 30, 2 << 30, 2 << 30, 4000]))
+        .with_symmetry(source.chance(0.7))
+        .with_window(source.chance(0.7))
+        .with_frame(frame)
 }
 
 fn build(source: &mut Source, fitted: bool, settings: Settings) -> viscocontact::Result<Scale> {
@@ -81,7 +80,10 @@ pub fn state(contact: &ViscoelasticContact) -> Vec<u64> {
 /// Everything that a contact shows.
 pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Source) -> Result<(), String> {
     let StepReport { time, dt, residual, time_error, approach, tilt, force, .. } = *report;
-    finite("report", [time, dt, residual, time_error, approach, tilt[0], tilt[1], force])?;
+    finite("report", [time, dt, residual, time_error.unwrap_or(0.0), approach, tilt[0], tilt[1], force])?;
+    if report.area != contact.contact_cells() as f64 * contact.grid().cell_area() {
+        return Err("area of contact differs between report and contact".to_owned());
+    }
     if report.contact_cells != contact.contact_cells() {
         return Err("cells in contact differ between report and contact".to_owned());
     }
@@ -100,9 +102,10 @@ pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Sou
         finite("body", [body.approach, body.force].into_iter().chain(body.tilt))?;
         finite("moment of a body", body.moment)?;
     }
-    let space = contact.mesh_error();
-    known("error of the mesh", [space.approach, space.greatest_pressure, space.area, space.singular])?;
-    known("pressures", [contact.mean_pressure(), contact.greatest_pressure()])?;
+    if let Some(space) = contact.mesh_error() {
+        known("error of the mesh", [space.approach, space.max_pressure, space.area, space.singular])?;
+    }
+    known("pressures", [contact.mean_pressure(), contact.max_pressure()])?;
     if let Ok(patches) = contact.patches() {
         let all = patches.all().iter();
         let of = |patch: &viscocontact::observe::Patch| [patch.area, patch.force, patch.centroid[0], patch.centroid[1]];
@@ -211,7 +214,8 @@ fn follow(source: &mut Source) -> Verdict {
             }
         }
         let budget = run.error_budget();
-        known("error budget", [budget.time, budget.mesh.approach, budget.solver])?;
+        let mesh = budget.max_mesh.map(|mesh| mesh.approach);
+        known("error budget", budget.time.into_iter().chain(budget.pressure).chain(mesh).chain([budget.solver]))?;
     }
     if reports.windows(2).any(|pair| pair[1].time < pair[0].time) {
         return Err("time runs backwards".to_owned());
@@ -221,19 +225,19 @@ fn follow(source: &mut Source) -> Verdict {
 
 fn moving(source: &mut Source) -> Verdict {
     let frame = source.choose(&[Frame::Bodies, Frame::Indenter, Frame::Indenter]);
-    let settings = Settings { frame, time_rule: TimeRule::Exponential, ..settings(source) };
+    let settings = settings(source).with_frame(frame).with_time_rule(TimeRule::Exponential);
     let Ok(Scale { mut contact, length, softness }) = build(source, false, settings) else {
         return Ok(Outcome::Refused);
     };
     let mut accepted = false;
     let rolling = frame == Frame::Indenter && source.chance(0.3);
     if rolling {
-        let motion = SteadyMotion {
-            axis: source.below(2),
-            velocity: length * source.scale(1e-2, 1e2),
-            load: models::load(source, length, softness),
-            tolerance: source.scale(1e-4, 0.5),
-        };
+        let motion = SteadyMotion::new(
+            source.below(2),
+            length * source.scale(1e-2, 1e2),
+            models::load(source, length, softness),
+        )
+        .with_tolerance(source.scale(1e-4, 0.5));
         let Ok(mut toward) = contact.toward_steady(motion) else { return Ok(Outcome::Refused) };
         for _ in 0..20 {
             match toward.next_step() {

@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
+use viscocontact::Result;
 use viscocontact::analytic::{AxisymmetricContact, Profile};
+use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
 /// Whether this machine grants so many bytes in one piece.
@@ -69,7 +71,7 @@ fn grids() -> Vec<Grid> {
     grids
 }
 
-/// The bytes that an error says were asked for; no fewer than one field of 8 bytes a cell takes, divided by `share`.
+/// The bytes that an error says were asked for; no fewer than one field of 8 bytes per cell takes, divided by `share`.
 fn refused<T>(result: Result<T>, grid: &Grid, share: u128, what: &str) {
     match result.map(|_| ()) {
         Err(Error::OutOfMemory { bytes, .. }) => {
@@ -125,15 +127,7 @@ fn kernels_are_refused_before_they_are_filled() {
 #[test]
 fn surfaces_are_refused_before_they_are_filled() {
     let map = HeightMap::new([3, 2], [1.0, 1.0], vec![1.0, 2.0, 3.0, 4.0, 5.0, 6.0]).unwrap();
-    let spec = RoughSpec {
-        hurst: 0.8,
-        longest: 1.0,
-        roll_off: 1.0,
-        shortest: 0.1,
-        anisotropy: Anisotropy::default(),
-        roughness: Roughness::RmsHeight(1.0e-6),
-        seed: 1,
-    };
+    let spec = RoughSpec::new(1.0, 0.1, Roughness::RmsHeight(1.0e-6)).with_seed(1);
     for grid in grids() {
         refused(map.resampled(&grid), &grid, 1, "a map");
         refused(map.clone().periodic().resampled(&grid), &grid, 1, "a periodic map");
@@ -162,7 +156,7 @@ fn contacts_are_refused_before_they_are_filled() {
     for grid in grids() {
         for shape in shapes {
             for (solver, window) in [(Solver::ActiveSet, true), (Solver::PolonskyKeer, false)] {
-                let settings = Settings { solver, window, ..Settings::default() };
+                let settings = Settings::default().with_solver(solver).with_window(window);
                 let builder = ViscoelasticContact::builder(grid.clone())
                     .settings(settings)
                     .geometry(shape)
@@ -190,7 +184,9 @@ fn four_thousand_million_cells_are_refused_with_their_bytes() {
     }
     let sphere = Sphere::new(0.1).unwrap();
     let builder = ViscoelasticContact::builder(grid).geometry(&sphere).material(body());
-    let total = builder.memory().unwrap().total();
+    // threads need memory of their own
+    let two = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+    let total = two.install(|| builder.memory().unwrap().total());
     assert!((700_000_000_000..900_000_000_000).contains(&total), "{total}");
     let error = builder.build().unwrap_err();
     assert!(matches!(error, Error::OutOfMemory { bytes: 68_717_379_600, .. }), "{error}");

@@ -1,11 +1,12 @@
-//! The documents beside the code: links lead somewhere, pictures are shown, commands name what there is.
+//! The documents beside the code: links lead somewhere, pictures are shown, commands name what there is, formulas are
+//! text.
 
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
 /// The Markdown files of the repository, with their text.
@@ -14,8 +15,8 @@ fn documents() -> Vec<(PathBuf, String)> {
         let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
         files.filter(|path| path.extension().is_some_and(|extension| extension == "md")).collect::<Vec<_>>()
     };
-    let files = [markdown(root().to_path_buf()), markdown(root().join("docs"))].concat();
-    assert!(files.len() >= 8, "{files:?}");
+    let files = [".", "docs", "docs/guide"].map(|folder| markdown(root().join(folder))).concat();
+    assert!(files.len() >= 12, "{files:?}");
     files.into_iter().map(|path| (path.clone(), fs::read_to_string(path).unwrap())).collect()
 }
 
@@ -46,19 +47,47 @@ fn links_lead_somewhere() {
     assert!(unused.is_empty(), "no document shows {unused:?}");
 }
 
-/// `--example`, `--test` and `--bench` name what there is, and what is a file in backquotes is there.
+/// What `--example`, `--test`, `--bench` and `--bin` name, and where it is found.
+const OPTIONS: [(&str, &str); 4] =
+    [("--example ", "examples"), ("--test ", "tests"), ("--bench ", "benches"), ("--bin ", "examples/coupling")];
+
+/// The name at the start of what follows an option.
+fn name_in(rest: &str) -> &str {
+    rest.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').next().unwrap_or("")
+}
+
+/// The source file of an example, test, bench or program.
+fn source_of(folder: &str, name: &str) -> Option<PathBuf> {
+    let files = [format!("{name}.rs"), format!("{name}/main.rs")].map(|file| root().join(folder).join(file));
+    files.into_iter().find(|file| file.exists())
+}
+
+/// Options name what there is, manifests and files in backquotes are there, and who draws asks for the feature.
 #[test]
 fn commands_and_files_exist() {
     let mut missing = Vec::new();
-    for (path, text) in documents() {
-        for (option, folder) in [("--example ", "examples"), ("--test ", "tests"), ("--bench ", "benches")] {
-            for rest in between(&text, option, '\n') {
-                let name: String = rest.chars().take_while(|c| c.is_ascii_alphanumeric() || *c == '_').collect();
-                let [file, with_parts] =
-                    [format!("{name}.rs"), format!("{name}/main.rs")].map(|f| root().join(folder).join(f));
-                if !name.is_empty() && !file.exists() && !with_parts.exists() {
+    let examples =
+        sources(&root().join("examples")).into_iter().map(|path| (path.clone(), fs::read_to_string(path).unwrap()));
+    for (path, text) in documents().into_iter().chain(examples) {
+        for (option, folder) in OPTIONS {
+            for name in between(&text, option, '\n').map(name_in).filter(|name| !name.is_empty()) {
+                if source_of(folder, name).is_none() {
                     missing.push(format!("{}: {option}{name}", path.display()));
                 }
+            }
+        }
+        for command in between(&text, "cargo run ", '\n') {
+            let Some((options, rest)) = command.split_once("--example ") else { continue };
+            let source = source_of("examples", name_in(rest)).map(|path| fs::read_to_string(path).unwrap());
+            let draws = source.is_some_and(|source| source.contains("viscocontact::plot"));
+            if draws && !options.contains("--features plot") {
+                missing.push(format!("{}: --features plot in {command}", path.display()));
+            }
+        }
+        for manifest in between(&text, "--manifest-path ", '\n') {
+            let manifest = manifest.split([' ', '`']).next().unwrap_or(manifest);
+            if !root().join(manifest).exists() {
+                missing.push(format!("{}: {manifest}", path.display()));
             }
         }
         for word in text.split('`').skip(1).step_by(2) {
@@ -72,17 +101,73 @@ fn commands_and_files_exist() {
     assert!(missing.is_empty(), "{missing:#?}");
 }
 
-/// Every example has its place in the gallery and the README.
+/// Every example has its place in the gallery and the README, those that are packages of their own included.
 #[test]
 fn examples_are_shown() {
-    let examples = fs::read_dir(root().join("examples")).unwrap().map(|entry| entry.unwrap().path());
-    let names = examples.filter(|path| path.extension().is_some_and(|e| e == "rs") || path.join("main.rs").exists());
+    let folders = ["examples", "examples/coupling"].map(|folder| fs::read_dir(root().join(folder)).unwrap());
+    let examples = folders.into_iter().flatten().map(|entry| entry.unwrap().path());
+    let is_example = |path: &PathBuf| {
+        let parts = ["main.rs", "src/main.rs"].iter().any(|main| path.join(main).exists());
+        parts || path.extension().is_some_and(|e| e == "rs")
+    };
+    let names = examples.filter(is_example);
     let names: Vec<String> = names.map(|path| path.file_stem().unwrap().to_string_lossy().into_owned()).collect();
-    assert!(names.len() >= 14, "{names:?}");
+    assert!(names.len() >= 20, "{names:?}");
     for document in ["README.md", "docs/gallery.md"] {
         let text = fs::read_to_string(root().join(document)).unwrap();
         for name in &names {
             assert!(text.contains(name.as_str()), "{document} does not name {name}");
         }
     }
+}
+
+/// The first program of the README is the example `quickstart`, and no program shows lines that only tests should see.
+#[test]
+fn programs_of_the_readme_can_be_pasted() {
+    let readme = fs::read_to_string(root().join("README.md")).unwrap();
+    let quickstart = fs::read_to_string(root().join("examples/quickstart.rs")).unwrap();
+    let program = quickstart.lines().filter(|line| !line.starts_with("//!")).collect::<Vec<_>>().join("\n");
+    assert!(readme.contains(program.trim()), "the README does not show examples/quickstart.rs");
+    for (path, text) in documents() {
+        let programs = text.split("```rust\n").skip(1).filter_map(|rest| rest.split("```").next());
+        for line in programs.flat_map(str::lines) {
+            assert!(line != "#" && !line.starts_with("# "), "{}: {line}", path.display());
+        }
+    }
+}
+
+/// The Rust files under a folder, without what was built there.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let entries = entries.filter(|path| !path.ends_with("target"));
+    let files = entries.flat_map(|path| if path.is_dir() { sources(&path) } else { vec![path] });
+    files.filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
+}
+
+/// TeX needs a script, and Markdown removes backslashes: formulas are plain text, which every viewer shows right.
+#[test]
+fn formulas_need_no_script() {
+    let comments = |path: PathBuf| {
+        let text = fs::read_to_string(&path).unwrap();
+        let lines = text.lines().map(str::trim_start);
+        let docs: Vec<&str> = lines.filter_map(|l| l.strip_prefix("///").or(l.strip_prefix("//!"))).collect();
+        (path, docs.join("\n"))
+    };
+    let mut tex = Vec::new();
+    for (path, text) in documents().into_iter().chain(sources(&root().join("src")).into_iter().map(comments)) {
+        let mut code = false;
+        for line in text.lines() {
+            code ^= line.trim_start().starts_with("```");
+            let prose: String = line.split('`').step_by(2).collect();
+            // `\[` and `\|` are brackets and bars
+            let command =
+                |at: usize| prose[at + 1..].starts_with(|c: char| c.is_ascii_alphabetic() || ",;:! ".contains(c));
+            let commands = || prose.match_indices('\\').any(|(at, _)| command(at));
+            if !code && (prose.contains('$') || prose.contains("<script") || commands()) {
+                tex.push(format!("{}: {line}", path.display()));
+            }
+        }
+    }
+    assert!(tex.is_empty(), "{tex:#?}");
+    assert!(!fs::read_to_string(root().join("Cargo.toml")).unwrap().contains("html-in-header"));
 }

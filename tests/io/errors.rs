@@ -53,10 +53,10 @@ fn build_says_what_is_missing_or_wrong() {
 
     let good = || ViscoelasticContact::builder(grid()).geometry(&sphere()).material(maxwell());
     for tolerance in [0.0, -1.0, f64::NAN, 1.0, 1e-14] {
-        let error = build(good().settings(Settings { tolerance, ..Settings::default() }));
+        let error = build(good().settings(Settings::default().with_tolerance(tolerance)));
         assert!(matches!(error, Error::OutOfRange { field: "Settings::tolerance", .. }), "{error}");
     }
-    let error = build(good().settings(Settings { max_iterations: 0, ..Settings::default() }));
+    let error = build(good().settings(Settings::default().with_max_iterations(0)));
     assert!(matches!(error, Error::CountOutOfRange { field: "Settings::max_iterations", .. }), "{error}");
 
     let nan = FnGeometry::new(|_, _| f64::NAN);
@@ -71,7 +71,7 @@ fn build_says_what_is_missing_or_wrong() {
 #[test]
 fn build_says_what_a_material_cannot_do() {
     let build = |material: Material, time_rule| {
-        let settings = Settings { time_rule, ..Settings::default() };
+        let settings = Settings::default().with_time_rule(time_rule);
         ViscoelasticContact::builder(grid()).geometry(&sphere()).material(material).settings(settings).build().map(drop)
     };
     let voigt = || Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6).unwrap());
@@ -101,14 +101,14 @@ fn build_says_what_a_material_cannot_do() {
         assert!(matches!(timed(times.clone()), Err(Error::OutOfRange { .. })), "{times:?}");
     }
     for series_tolerance in [0.0, 1e-9, 0.2, f64::NAN] {
-        let settings = Settings { series_tolerance, ..Settings::default() };
+        let settings = Settings::default().with_series_tolerance(series_tolerance);
         let builder = ViscoelasticContact::builder(grid()).geometry(&sphere()).material(closure()).times(1e-3..=1e3);
         let error = builder.settings(settings).build().map(drop).unwrap_err();
         assert!(matches!(error, Error::OutOfRange { field: "Settings::series_tolerance", .. }), "{error}");
     }
     let negative = Material::incompressible(FnRheology::new(|t| t - 1.0));
     for rule in [TimeRule::Exponential, TimeRule::Backward] {
-        let settings = Settings { time_rule: rule, ..Settings::default() };
+        let settings = Settings::default().with_time_rule(rule);
         let builder = builder_on(grid(), negative.clone()).times(1e-3..=1e3).settings(settings);
         assert!(
             matches!(builder.build().map(drop), Err(Error::Material(MaterialError::InvalidCompliance { .. }))),
@@ -135,7 +135,7 @@ fn steps_refuse_bad_arguments() {
 fn a_jump_needs_an_elastic_response() {
     let voigt = || Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6).unwrap());
     for time_rule in [TimeRule::Exponential, TimeRule::Backward] {
-        let mut contact = contact_with(voigt(), Settings { time_rule, ..Settings::default() });
+        let mut contact = contact_with(voigt(), Settings::default().with_time_rule(time_rule));
         let error = assert_untouched(&mut contact, 0.0, Load::force(0.1));
         assert!(matches!(error, Error::NoElasticResponse { .. }), "{error}");
         assert!(error.to_string().contains("ramp the load"));
@@ -153,7 +153,7 @@ fn contact_at_the_edge_is_an_error_unless_allowed() {
     let error = assert_untouched(&mut contact, 0.1, Load::force(50.0));
     let Error::ContactAtEdge { cells, time } = error else { panic!("{error}") };
     assert!(cells > 0 && time == 0.1);
-    let mut allowed = contact_with(maxwell(), Settings { edge: Edge::Allow, ..Settings::default() });
+    let mut allowed = contact_with(maxwell(), Settings::default().with_edge(Edge::Allow));
     allowed.step(0.0, Load::force(50.0)).unwrap();
     assert_eq!(allowed.contact_cells(), 576);
 }
@@ -161,7 +161,7 @@ fn contact_at_the_edge_is_an_error_unless_allowed() {
 #[test]
 fn running_out_of_iterations_is_an_error_with_numbers() {
     for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
-        let settings = Settings { tolerance: 1e-12, max_iterations: 2, solver, ..Settings::default() };
+        let settings = Settings::default().with_tolerance(1e-12).with_max_iterations(2).with_solver(solver);
         let mut contact = contact_with(maxwell(), settings);
         let error = assert_untouched(&mut contact, 0.0, Load::force(0.5));
         let Error::NotConverged { iterations, residual, tolerance, .. } = error else { panic!("{error}") };
@@ -175,7 +175,7 @@ fn an_impossible_closure_is_caught_when_it_is_used() {
     // new contract: a series is fitted at the build, and a direct sum asks the closure itself
     let error = builder_on(grid(), falling.clone()).times(1e-2..=1e2).build().unwrap_err();
     assert!(matches!(error, Error::Material(MaterialError::InvalidCompliance { .. })), "{error}");
-    let mut contact = contact_with(falling, Settings { time_rule: TimeRule::Backward, ..Settings::default() });
+    let mut contact = contact_with(falling, Settings::default().with_time_rule(TimeRule::Backward));
     contact.step(0.0, Load::force(0.1)).unwrap();
     let error = assert_untouched(&mut contact, 1.0, Load::force(0.1));
     assert!(matches!(error, Error::Material(MaterialError::InvalidCompliance { .. })), "{error}");
@@ -243,7 +243,7 @@ fn everything_travels_between_threads() {
 #[test]
 fn a_failure_in_the_solver_leaves_no_trace() {
     for edge in [Edge::Refuse, Edge::Allow] {
-        let mut contact = contact_with(maxwell(), Settings { edge, ..Settings::default() });
+        let mut contact = contact_with(maxwell(), Settings::default().with_edge(edge));
         contact.step(0.0, Load::force(0.5)).unwrap();
         contact.step(0.1, Load::force(0.4)).unwrap();
         let mut twin = contact.clone();

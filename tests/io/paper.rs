@@ -9,7 +9,7 @@ use viscocontact::geometry::Geometry;
 use viscocontact::rheology::Rheology;
 
 fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
 fn page() -> String {
@@ -53,6 +53,7 @@ fn test_at(arguments: &str) -> Option<(Vec<PathBuf>, &str)> {
     let words: Vec<&str> = arguments.split(' ').collect();
     let (folder, path) = match words[..] {
         ["--lib", path] => ("src".to_owned(), path),
+        ["--test", "suite", path] => ("tests".to_owned(), path),
         ["--test", binary, path] => (format!("tests/{binary}"), path),
         _ => return None,
     };
@@ -112,6 +113,28 @@ fn sources_tests_and_pictures_of_the_page_exist() {
     assert!(missing.is_empty(), "{missing:#?}");
 }
 
+/// What the text between the tables has in backquotes: files, links to items, and commands, whose names
+/// `commands_and_files_exist` checks.
+#[test]
+fn files_named_in_the_text_exist() {
+    let (mut missing, mut code) = (Vec::new(), false);
+    let page = page();
+    for line in page.lines().filter(|line| !line.starts_with('|')) {
+        code ^= line.starts_with("```");
+        let names = if code { Vec::new() } else { quoted(line) };
+        for name in names.iter().filter(|name| !name.contains("::") && !name.starts_with("cargo ") && !name.is_empty())
+        {
+            let pictures = root().join("docs/pictures");
+            let found = [root().join(name), pictures.join(name)].iter().any(|path| path.exists());
+            // the package comes without pictures
+            if !found && (pictures.exists() || !name.ends_with("pictures") && !name.ends_with(".png")) {
+                missing.push(format!("{name} in: {line}"));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "{missing:#?}");
+}
+
 /// Names of items that the compiler resolves: what can be imported, and functions of types.
 macro_rules! items {
     (import $($($import:ident)::+),+; functions $($($function:ident)::+),+) => {{
@@ -138,7 +161,7 @@ fn items_of_the_page_exist() {
             ViscoelasticContact::force, ViscoelasticContact::gap_into, ViscoelasticContact::moment,
             ViscoelasticContact::pressure, ViscoelasticContact::step, ViscoelasticContact::step_each,
             ViscoelasticContact::tilt, analytic::GrowingSphere::pressure, analytic::GrowingSphere::step,
-            analytic::Hertz::contact_radius, analytic::Hertz::greatest_pressure, contact::Builder::another_body,
+            analytic::Hertz::contact_radius, analytic::Hertz::max_pressure, contact::Builder::another_body,
             contact::Settings::paper, load::Load::eccentric_force, load::Load::force,
             rheology::Material::contact_compliance
     );

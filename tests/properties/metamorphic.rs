@@ -94,9 +94,9 @@ proptest! {
     fn settings_choose_the_work_not_the_answer(scene in scenarios()) {
         let one = end(&scene, tight());
         let others = [
-            Settings { solver: Solver::PolonskyKeer, max_iterations: 5000, ..tight() },
-            Settings { window: false, ..tight() },
-            Settings { symmetry: false, ..tight() },
+            tight().with_solver(Solver::PolonskyKeer).with_max_iterations(5000),
+            tight().with_window(false),
+            tight().with_symmetry(false),
         ];
         for settings in others {
             let other = scene.run(settings).unwrap();
@@ -141,7 +141,7 @@ proptest! {
     fn force_grows_with_approach(scene in scenarios(), dt in prop_oneof![Just(0.0), 0.01..1.0_f64], depths in [-0.5..2.0_f64, 0.01..0.5_f64]) {
         let before = scene.run(tight()).unwrap();
         let scale = before.approach().abs().max(1e-9 * scene.grid.lengths()[0]);
-        let settings = Settings { edge: Edge::Allow, ..tight() };
+        let settings = tight().with_edge(Edge::Allow);
         let deep = |depth: f64| {
             let mut contact = scene.builder().settings(settings).build().unwrap();
             for &(dt, load) in &scene.steps {
@@ -199,7 +199,7 @@ mod superposition {
             let flat = 20.0 * 1e-6 * l1 / (l1.min(l2) * 0.25 * scene.creep.glassy()) * l1 * l2;
             let run = |weights: [f64; 2], share: f64| {
                 let builder = scene.builder().kernel(Arc::clone(&kernel)).geometry(&FnGeometry::new(wave(weights)));
-                let settings = Settings { edge: Edge::Allow, ..tight() };
+                let settings = tight().with_edge(Edge::Allow);
                 let mut contact = builder.settings(settings).build().unwrap();
                 for &(dt, part) in &loads {
                     contact.step(dt * scene.duration().max(1e-3), Load::force(share * part * flat)).unwrap();
@@ -229,7 +229,7 @@ mod threads {
             let fine = Scenario { grid, steps, ..scene };
             let run = |threads: usize| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-                let whole = Settings { symmetry: false, window: false, ..Settings::default() };
+                let whole = Settings::default().with_symmetry(false).with_window(false);
                 pool.install(|| {
                     let contact = fine.run(whole).unwrap();
                     [contact.pressure(), contact.displacement()].concat().iter().map(|x| x.to_bits()).collect::<Vec<_>>()

@@ -18,12 +18,12 @@ struct Record {
 
 /// Each step knows only its own ends.
 fn linear() -> Settings {
-    Settings { time_rule: TimeRule::ExponentialLinear, ..tight() }
+    tight().with_time_rule(TimeRule::ExponentialLinear)
 }
 
 /// Takes `steps`, and says what they did.
 fn record(scene: &Scenario, steps: &[(f64, Load)]) -> Record {
-    let settings = Settings { edge: Edge::Allow, ..tight() };
+    let settings = tight().with_edge(Edge::Allow);
     let mut contact = scene.builder().settings(settings).build().unwrap();
     let mut record = Record { force: vec![0.0], approach: vec![contact.approach()], work: Vec::new() };
     for &(dt, load) in steps {
@@ -125,7 +125,7 @@ proptest! {
                 steps.extend((1..=cuts).map(|k| (dt / cuts as f64, Load::force(force + part * k as f64 / cuts as f64))));
                 force += part;
             }
-            Scenario { shape: punch.clone() as _, steps, ..scene.clone() }.run(Settings { tolerance: 1e-12, ..linear() }).unwrap()
+            Scenario { shape: punch.clone() as _, steps, ..scene.clone() }.run(linear().with_tolerance(1e-12)).unwrap()
         };
         let [one, two, four] = [1, 2, 4].map(run);
         let (coarse, fine) = (difference(two.displacement(), one.displacement()), difference(four.displacement(), two.displacement()));
@@ -150,7 +150,7 @@ mod frames {
             let mut velocity = [0.0; 2];
             velocity[axis] = f64::from(cells) * grid.spacing()[axis] / dt;
             let travel = Travel::new(shape.clone(), Straight::new([0.0; 2], velocity).unwrap());
-            let settings = |frame| Settings { frame, edge: Edge::Allow, ..tight() };
+            let settings = |frame| tight().with_frame(frame).with_edge(Edge::Allow);
             let builder = scene.builder().geometry(&shape).kernel(kernel);
             let mut still = builder.clone().settings(settings(Frame::Bodies)).build().unwrap();
             let mut moving = builder.settings(settings(Frame::Indenter)).build().unwrap();

@@ -6,6 +6,7 @@ use crate::common::step_loaded_sphere::StepLoadedSphere;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
 /// A random elastic scene: shape, mask, roughness and mesh.
@@ -149,8 +150,11 @@ impl Scene {
 
     /// A contact of this scene, or `None` where the mask leaves no cell.
     fn contact(&self, solver: Solver) -> Option<ViscoelasticContact> {
-        let settings =
-            Settings { tolerance: TOLERANCE, solver, edge: Edge::Allow, max_iterations: 5000, ..Settings::default() };
+        let settings = Settings::default()
+            .with_tolerance(TOLERANCE)
+            .with_solver(solver)
+            .with_edge(Edge::Allow)
+            .with_max_iterations(5000);
         let body = Material::incompressible(Zener::new(0.25, 0.25, 0.25).unwrap());
         let built = ViscoelasticContact::builder(self.grid()).geometry(self).material(body).settings(settings).build();
         match built {
@@ -186,7 +190,7 @@ fn assert_contact_conditions(contact: &ViscoelasticContact, load: Load, toleranc
     assert!(deepest >= -10.0 * tolerance * scale - rounding, "penetration {deepest:e}, displacement {scale:e}");
     match load {
         Load::Force { normal, .. } => {
-            assert!((contact.force() - normal).abs() <= 1e-12 * normal, "force {} of {normal}", contact.force());
+            assert_abs_diff_eq!(contact.force(), normal, epsilon = 1e-12 * normal);
         }
         Load::Approach { approach, tilt } => {
             let point = tilt.map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
@@ -209,6 +213,7 @@ fn assert_contact_conditions(contact: &ViscoelasticContact, load: Load, toleranc
                 // a body that has turned away may keep pressures of 1e-38 where others are of order one
                 assert!(moment.abs() <= 1e-12 * lever * contact.force() + 1e-30, "moment {moment:e} along {axis}");
             }
+            tilt => unreachable!("{tilt:?}"),
         }
     }
 }
@@ -252,7 +257,7 @@ proptest! {
 fn a_viscoelastic_run_keeps_the_conditions() {
     let scene = StepLoadedSphere::zener();
     for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
-        let settings = Settings { tolerance: 1e-7, solver, ..Settings::default() };
+        let settings = Settings::default().with_tolerance(1e-7).with_solver(solver);
         let mut contact = scene.contact(64, settings).unwrap();
         for (dt, force) in [(0.0, 1.0), (0.1, 1.0), (0.3, 0.4), (0.3, 0.05), (0.1, 0.8), (0.0, 0.3), (5.0, 1.0)] {
             contact.step(dt, Load::force(force)).unwrap();
@@ -266,7 +271,7 @@ fn a_viscoelastic_run_keeps_the_conditions() {
 fn bodies_separate_recover_and_touch_again() {
     let scene = StepLoadedSphere::zener();
     let run = |solver| {
-        let mut contact = scene.contact(64, Settings { tolerance: 1e-9, solver, ..Settings::default() }).unwrap();
+        let mut contact = scene.contact(64, Settings::default().with_tolerance(1e-9).with_solver(solver)).unwrap();
         contact.step(0.0, Load::force(1.0)).unwrap();
         contact.step(0.5, Load::force(1.0)).unwrap();
         let pressed = contact.approach();
@@ -291,7 +296,7 @@ fn bodies_separate_recover_and_touch_again() {
 #[test]
 fn work_is_what_the_documents_say() {
     let scene = StepLoadedSphere::maxwell();
-    let work = |cells, tolerance| scene.run(cells, 100, Settings { tolerance, ..Settings::default() }).unwrap().1;
+    let work = |cells, tolerance| scene.run(cells, 100, Settings::default().with_tolerance(tolerance)).unwrap().1;
     let measured = [work(64, 1e-6), work(128, 1e-6), work(256, 1e-6), work(256, 1e-4)];
     println!("{measured:?}");
     for (work, most) in measured.into_iter().zip([3.1, 3.2, 4.0, 1.6]) {
@@ -307,7 +312,7 @@ fn mirrored_and_shifted_scenes_have_such_answers() {
         let mut contact = ViscoelasticContact::builder(grid.clone())
             .geometry(shape)
             .material(elastic())
-            .settings(Settings { tolerance: 1e-10, ..Settings::default() })
+            .settings(Settings::default().with_tolerance(1e-10))
             .build()
             .unwrap();
         contact.step(0.0, Load::force(0.3)).unwrap();
@@ -340,7 +345,7 @@ fn a_thousand_spots_keep_the_conditions() {
         let mut contact = ViscoelasticContact::builder(grid.clone())
             .geometry(&bumps)
             .material(Material::incompressible(Elastic::new(0.25).unwrap()))
-            .settings(Settings { tolerance: 1e-7, edge: Edge::Allow, ..Settings::default() })
+            .settings(Settings::default().with_tolerance(1e-7).with_edge(Edge::Allow))
             .build()
             .unwrap();
         let report = contact.step(0.0, load).unwrap();
@@ -362,7 +367,7 @@ fn warm_steps_hardly_grow_with_the_mesh() {
         reports.skip(4).map(|report| report.iterations).sum::<usize>() as f64 / 20.0
     };
     let (coarse, fine) = (iterations(128), iterations(1024));
-    println!("{coarse} → {fine} iterations a step");
+    println!("{coarse} → {fine} iterations per step");
     assert!(fine <= 2.0 * coarse, "{coarse} → {fine}");
 }
 
@@ -373,7 +378,10 @@ fn pressures_are_never_negative_when_iterations_run_out() {
     let (mut solved, mut given_up) = (0, 0);
     for max_iterations in 1..6 {
         for tolerance in [1e-4, 1e-3, 1e-2, 0.1] {
-            let settings = Settings { max_iterations, tolerance, edge: Edge::Allow, ..Settings::default() };
+            let settings = Settings::default()
+                .with_max_iterations(max_iterations)
+                .with_tolerance(tolerance)
+                .with_edge(Edge::Allow);
             let mut contact = ViscoelasticContact::builder(Grid::square(16, 2.0e-3).unwrap())
                 .geometry(&wavy)
                 .material(maxwell())
@@ -403,14 +411,12 @@ fn steps_backwards_let_nothing_in_that_pulls() {
     let material = Material::constant_poisson(body, 0.25)
         .unwrap()
         .against(Material::constant_poisson(Elastic::new(2.7e10).unwrap(), 0.25).unwrap());
-    let settings = Settings {
-        tolerance: 7e-10,
-        max_iterations: 200,
-        solver: Solver::PolonskyKeer,
-        time_rule: TimeRule::Rectangle,
-        edge: Edge::Allow,
-        ..Settings::default()
-    };
+    let settings = Settings::default()
+        .with_tolerance(7e-10)
+        .with_max_iterations(200)
+        .with_solver(Solver::PolonskyKeer)
+        .with_time_rule(TimeRule::Rectangle)
+        .with_edge(Edge::Allow);
     let (mut state, mut accepted) = (1_u64, 0);
     for _ in 0..300 {
         let mut random = || {
@@ -463,7 +469,7 @@ fn pivots_are_solved_by_both_solvers() {
             let mut contact = ViscoelasticContact::builder(grid.clone())
                 .geometry(&shapes[scene % 4])
                 .material(elastic())
-                .settings(Settings { solver, tolerance: 1e-8, edge: Edge::Allow, ..Settings::default() })
+                .settings(Settings::default().with_solver(solver).with_tolerance(1e-8).with_edge(Edge::Allow))
                 .build()
                 .unwrap();
             // from nothing, after a force, or after another pivot

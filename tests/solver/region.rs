@@ -11,8 +11,11 @@ use viscocontact::prelude::*;
 fn pair(cells: [usize; 2], side: f64, geometry: &dyn Geometry, material: &Material) -> [ViscoelasticContact; 2] {
     [true, false].map(|sparing| {
         let [n1, n2] = cells;
-        let settings =
-            Settings { tolerance: 1e-11, symmetry: sparing, window: sparing, edge: Edge::Allow, ..Settings::default() };
+        let settings = Settings::default()
+            .with_tolerance(1e-11)
+            .with_symmetry(sparing)
+            .with_window(sparing)
+            .with_edge(Edge::Allow);
         ViscoelasticContact::builder(Grid::new(cells, [side, side * n2 as f64 / n1 as f64]).unwrap())
             .geometry(geometry)
             .material(material.clone())
@@ -128,13 +131,13 @@ fn direct_sums_and_fitted_series_are_the_same_whole_or_folded() {
         let mut contacts = [true, false].map(|symmetry| {
             builder_on(Grid::square(32, 3.0e-3).unwrap(), body())
                 .times(1e-3..=1e5)
-                .settings(Settings {
-                    tolerance: 1e-11,
-                    symmetry,
-                    window: false,
-                    time_rule: rule,
-                    ..Settings::default()
-                })
+                .settings(
+                    Settings::default()
+                        .with_tolerance(1e-11)
+                        .with_symmetry(symmetry)
+                        .with_window(false)
+                        .with_time_rule(rule),
+                )
                 .build()
                 .unwrap()
         });
@@ -153,7 +156,7 @@ fn direct_sums_and_fitted_series_are_the_same_whole_or_folded() {
 /// Threads share transforms and passes; what they return does not depend on their number.
 #[test]
 fn any_number_of_threads_gives_the_same_bits() {
-    let whole = Settings { symmetry: false, window: false, ..Settings::default() };
+    let whole = Settings::default().with_symmetry(false).with_window(false);
     let upright = || StepLoadedSphere::zener().run(192, 5, whole).unwrap().0.pressure().to_vec();
     // rows that end anywhere in a band, and so many cells that threads share the coarser levels of the extension as well
     let tilting = || {

@@ -14,7 +14,7 @@ fn meshes(least: usize) -> impl Iterator<Item = usize> {
 
 /// Equivalents of a warm step: the mean of `steps` steps under a constant load.
 fn warm(geometry: &dyn Geometry, length: f64, n: usize, material: Material, dt: f64, steps: usize, load: Load) -> f64 {
-    let settings = Settings { window: false, symmetry: false, edge: Edge::Allow, ..Settings::default() };
+    let settings = Settings::default().with_window(false).with_symmetry(false).with_edge(Edge::Allow);
     let builder = ViscoelasticContact::builder(Grid::square(n, length).unwrap()).geometry(geometry).material(material);
     let mut contact = builder.settings(settings).build().unwrap();
     contact.step(0.0, load).unwrap();
@@ -29,14 +29,27 @@ fn a_creeping_sphere() {
     let zener = Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap());
     for n in meshes(32) {
         let work = warm(&sphere, 4.0e-3, n, maxwell.clone(), 0.02, 100, Load::force(0.3));
-        println!("Maxwell, 100 steps, {n}²: {work:.2} equivalents a step");
+        println!("Maxwell, 100 steps, {n}²: {work:.2} equivalents per step");
         assert!(work <= 4.2, "{work}");
     }
     for n in meshes(64) {
         let work = warm(&sphere, 4.0e-3, n, zener.clone(), 0.1, 20, Load::force(0.3));
-        println!("Zener, 20 steps, {n}²: {work:.2} equivalents a step");
+        println!("Zener, 20 steps, {n}²: {work:.2} equivalents per step");
         assert!(work <= 5.0, "{work}");
     }
+}
+
+/// The gap before contact does not matter: a sphere far above the body is as much work as one that just touches it.
+#[test]
+fn a_sphere_from_far_above() {
+    let zener = Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap());
+    let work = |height: f64| {
+        let sphere = FnGeometry::new(move |x, y| height + (x * x + y * y) / 20.0e-3);
+        warm(&sphere, 4.0e-3, 256, zener.clone(), 0.1, 20, Load::force(0.3))
+    };
+    let (near, far) = (work(0.0), work(1.0e-3));
+    println!("Zener, 20 steps, 256²: {near:.2} equivalents a step, {far:.2} from far above");
+    assert!((far / near - 1.0).abs() <= 0.05, "{near} {far}");
 }
 
 #[test]
@@ -47,15 +60,10 @@ fn a_rough_surface() {
             let grid = Grid::square(n, 1.0).unwrap();
             let (anisotropy, roughness) = (Anisotropy::default(), Roughness::RmsSlope(0.1));
             let shortest_wave = shortest / n as f64;
-            let spec = RoughSpec {
-                hurst: 0.8,
-                longest: 0.5,
-                roll_off: 0.25,
-                shortest: shortest_wave,
-                anisotropy,
-                roughness,
-                seed: 1,
-            };
+            let spec = RoughSpec::new(0.5, shortest_wave, roughness)
+                .with_roll_off(0.25)
+                .with_anisotropy(anisotropy)
+                .with_seed(1);
             let mut contact = ViscoelasticContact::builder(grid.clone())
                 .geometry(&Rough::new(&grid, spec).unwrap())
                 .kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()))
@@ -100,7 +108,7 @@ fn many_contacts() {
         let maxwell = Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap());
         let many = warm(&bumps, 1.0, n, maxwell.clone(), 0.02, 20, Load::force(6.0e4));
         let one = warm(&Sphere::new(10.0).unwrap(), 1.0, n, maxwell, 0.02, 20, Load::force(4.0e3));
-        println!("{n}²: {many:.2} equivalents a step of 1024 contacts, {one:.2} of one");
+        println!("{n}²: {many:.2} equivalents per step of 1024 contacts, {one:.2} of one");
         assert!(many <= 4.0 * one, "{many} {one}");
     }
 }

@@ -6,6 +6,7 @@ use approx::assert_abs_diff_eq;
 use std::sync::Arc;
 
 use crate::common::rough::self_affine;
+use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 use viscocontact::rheology::MaterialError;
 
@@ -14,7 +15,7 @@ fn zener() -> Material {
 }
 
 fn builder(grid: &Grid, shape: &dyn Geometry, frame: Frame) -> viscocontact::contact::Builder {
-    let settings = Settings { frame, tolerance: 1e-9, ..Settings::default() };
+    let settings = Settings::default().with_frame(frame).with_tolerance(1e-9);
     ViscoelasticContact::builder(grid.clone()).geometry(shape).material(zener()).settings(settings)
 }
 
@@ -82,7 +83,7 @@ fn frames_agree_on_a_half_space() {
             let rows = |contact: &ViscoelasticContact, i: usize| contact.pressure()[i * 24..(i + 1) * 24].to_vec();
             let here = rows(&moving, i as usize);
             let there = usize::try_from(k).map_or(vec![0.0; 24], |k| rows(&fixed, k));
-            let greatest = fixed.greatest_pressure();
+            let greatest = fixed.max_pressure();
             assert!(here.iter().zip(&there).all(|(a, b)| (a - b).abs() < 1e-5 * greatest), "step {step}, row {i}");
         }
         assert!((fixed.approach() / moving.approach() - 1.0).abs() < 1e-7, "{step}");
@@ -132,7 +133,7 @@ fn elastic_bodies_dissipate_nothing() {
     let spec = self_affine(0.5e-3, 0.1e-3, 3);
     let slider = Rough::new(&grid, spec).unwrap();
     let travel = Travel::new(slider.clone(), Straight::new([0.0; 2], [1.0e-3, 0.0]).unwrap());
-    let track = Rough::new(&grid, RoughSpec { seed: 4, ..spec }).unwrap();
+    let track = Rough::new(&grid, spec.with_seed(4)).unwrap();
     let mut contact = ViscoelasticContact::builder(grid.clone())
         .geometry(&Sum::new(slider, track.clone()))
         .material(elastic())
@@ -179,7 +180,7 @@ fn it_matters_what_is_rough() {
     };
     let (sliding, rolling) = (end(&sliding), end(&rolling));
     let pairs = sliding.pressure().iter().zip(rolling.pressure());
-    let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / rolling.greatest_pressure();
+    let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / rolling.max_pressure();
     assert!(apart > 0.01, "{apart}");
 }
 
@@ -201,7 +202,7 @@ fn steps_that_fail_leave_the_indenter_where_it_was() {
     twin.step(0.01, load).unwrap();
     let pairs = contact.pressure().iter().zip(twin.pressure());
     let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(apart < 1e-6 * twin.greatest_pressure(), "{apart}");
+    assert!(apart < 1e-6 * twin.max_pressure(), "{apart}");
 
     assert!(matches!(contact.step_over([1, 0], 0.01, load), Err(Error::WrongFrame { .. })));
     let mut moving = builder(&grid, &sphere(), Frame::Indenter).build().unwrap();
@@ -216,15 +217,15 @@ fn steps_that_fail_leave_the_indenter_where_it_was() {
     twin.step_over([1, 0], 0.01, load).unwrap();
     let pairs = moving.pressure().iter().zip(twin.pressure());
     let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-    assert!(apart < 1e-6 * twin.greatest_pressure(), "{apart}");
+    assert!(apart < 1e-6 * twin.max_pressure(), "{apart}");
 
-    let direct = Settings { frame: Frame::Indenter, time_rule: TimeRule::Backward, ..Settings::default() };
+    let direct = Settings::default().with_frame(Frame::Indenter).with_time_rule(TimeRule::Backward);
     let built = builder(&grid, &sphere(), Frame::Indenter).settings(direct).build();
     assert!(matches!(built, Err(Error::WrongFrame { .. })));
     let closure = Material::incompressible(FnRheology::new(|t: f64| 1e-6 * (1.0 + t.powf(0.3))));
     let built = builder(&grid, &sphere(), Frame::Indenter).material(closure).build();
     assert!(matches!(built, Err(Error::Material(MaterialError::NoExponentialSeries { .. }))));
-    let motion = SteadyMotion { axis: 0, velocity: 0.0, load, tolerance: 1e-3 };
+    let motion = SteadyMotion::new(0, 0.0, load);
     assert!(matches!(moving.toward_steady(motion), Err(Error::OutOfRange { field: "velocity", .. })));
 }
 
@@ -243,7 +244,7 @@ fn sliding_steps_are_warm() {
     for _ in 0..60 {
         work += contact.step_along(&travel, 0.7 * grid.spacing()[0] / 0.1, Load::force(0.5)).unwrap().step.convolutions;
     }
-    println!("{} convolutions a step", f64::from(work as u32) / 60.0);
+    println!("{} convolutions per step", f64::from(work as u32) / 60.0);
     assert!(work < 60 * 9, "{work}");
 }
 
@@ -257,13 +258,13 @@ fn holds_leave_nothing_over() {
             let mut contact = sphere_on(
                 grid.clone(),
                 Material::incompressible(Zener::new(1.0e5 * stiff, 1.0e5, 1.0e3).unwrap()),
-                Settings { frame, ..Settings::default() },
+                Settings::default().with_frame(frame),
             );
             contact.step(1.0e6, Load::force(0.02)).unwrap();
             let before = contact.pressure().to_vec();
             contact.step(0.0, Load::force(0.02)).unwrap();
             let pairs = contact.pressure().iter().zip(&before);
-            let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / contact.greatest_pressure();
+            let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / contact.max_pressure();
             assert!(apart < 1e-4, "{frame:?} {stiff}: {apart}");
         }
     }
@@ -301,7 +302,7 @@ fn refused_steps_along_a_path_leave_every_bit() {
     let travel = Travel::new(Sphere::new(5.0e-3).unwrap(), Straight::new([0.0; 2], [0.01, 0.0]).unwrap());
     for window in [true, false] {
         let mut contact = builder(&grid, &Sphere::new(5.0e-3).unwrap(), Frame::Bodies)
-            .settings(Settings { window, ..Settings::default() })
+            .settings(Settings::default().with_window(window))
             .build()
             .unwrap();
         contact.step(0.0, Load::force(0.1)).unwrap();
@@ -320,7 +321,7 @@ fn refused_steps_along_a_path_leave_every_bit() {
 fn motions_without_contact_end_in_words() {
     let grid = Grid::new([64, 1], [4.0e-3, 1.0]).unwrap();
     let cylinder = Cylinder::new(5.0e-3).unwrap();
-    let motion = |load| SteadyMotion { axis: 0, velocity: 0.1, load, tolerance: 1e-3 };
+    let motion = |load| SteadyMotion::new(0, 0.1, load);
     for load in [Load::force(0.0), Load::approach(-1.0e-6)] {
         for pressed in [false, true] {
             let mut contact = builder(&grid, &cylinder, Frame::Indenter)

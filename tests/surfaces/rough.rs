@@ -42,7 +42,7 @@ fn area_is_proportional_to_small_loads() {
     let (load, mut kappas) = (0.03, Vec::new());
     for seed in 0..10 {
         let (grid, shape) = rough(1024, 8.0, seed);
-        let mut contact = pressed(&grid, &shape, elastic(), Settings { tolerance: 1e-4, ..Settings::default() });
+        let mut contact = pressed(&grid, &shape, elastic(), Settings::default().with_tolerance(1e-4));
         contact.step(0.0, Load::force(force(load))).unwrap();
         kappas.push(contact.contact_area() / (LENGTH * LENGTH) / load);
         let counted = share_of_cells(&contact) / load;
@@ -60,7 +60,7 @@ fn area_is_proportional_to_small_loads() {
 fn half_full_contact_takes_a_quarter_of_the_other_solvers_work() {
     let (grid, shape) = rough(256, 8.0, 1);
     let work = |solver| {
-        let mut contact = pressed(&grid, &shape, elastic(), Settings { solver, ..Settings::default() });
+        let mut contact = pressed(&grid, &shape, elastic(), Settings::default().with_solver(solver));
         let report = contact.step(0.0, Load::force(force(0.27))).unwrap();
         assert!((0.47..0.53).contains(&share_of_cells(&contact)), "{}", share_of_cells(&contact));
         println!(
@@ -94,7 +94,7 @@ fn area_never_falls_in_a_hold() {
     );
     for seed in 0..20 {
         let (grid, shape) = rough(96, 6.0, seed);
-        let mut contact = pressed(&grid, &shape, material.clone(), Settings { tolerance: 1e-7, ..Settings::default() });
+        let mut contact = pressed(&grid, &shape, material.clone(), Settings::default().with_tolerance(1e-7));
         contact.step(0.0, Load::force(force(0.06))).unwrap();
         for _ in 0..10 {
             contact.step(0.2, Load::force(force(0.06))).unwrap();

@@ -1,6 +1,6 @@
 //! Whether the error that a run was asked for is the one it makes: random scenes against fine steps on the same mesh.
 //!
-//! By hand: `HONEST_SCENES=3000 HONEST_SEED=7 cargo test --release --test time honest -- --nocapture`;
+//! By hand: `HONEST_SCENES=3000 HONEST_SEED=7 cargo test --release --test suite time::honest -- --nocapture`;
 //! `HONEST_LINES=1` prints every scene, `HONEST_FIRST=17` begins with that number, `HONEST_STEPS=300000` knows more of the
 //! truth, and `HONEST_TRUTHS=/tmp/truths` keeps it in that file for the next time.
 

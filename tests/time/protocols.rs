@@ -7,6 +7,8 @@ use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use viscocontact::Error;
+use viscocontact::Result;
+use viscocontact::geometry::Sum;
 use viscocontact::motion::{Straight, Travel};
 use viscocontact::prelude::*;
 
@@ -86,13 +88,13 @@ impl Scene {
 }
 
 fn scenes() -> impl Strategy<Value = Scene> {
-    let settings = (any::<[bool; 2]>(), 0..3_usize).prop_map(|([symmetry, window], rule)| Settings {
-        tolerance: 1e-9,
-        edge: Edge::Allow,
-        symmetry,
-        window,
-        time_rule: if rule == 0 { TimeRule::Backward } else { TimeRule::Exponential },
-        ..Settings::default()
+    let settings = (any::<[bool; 2]>(), 0..3_usize).prop_map(|([symmetry, window], rule)| {
+        Settings::default()
+            .with_tolerance(1e-9)
+            .with_edge(Edge::Allow)
+            .with_symmetry(symmetry)
+            .with_window(window)
+            .with_time_rule(if rule == 0 { TimeRule::Backward } else { TimeRule::Exponential })
     });
     let datum = prop_oneof![Just(0.0), -1.0e-3..1.0e-3_f64];
     let scale = [0.5..2.0_f64, 0.2..1.8_f64];
@@ -372,7 +374,7 @@ fn lifted_indenters_move_at_once() {
     let lifted = Load::approach(-DEPTH);
     let build = |frame| {
         let builder = ViscoelasticContact::builder(grid.clone()).geometry(&sphere).material(voigt());
-        builder.settings(Settings { frame, ..Settings::default() }).build().unwrap()
+        builder.settings(Settings::default().with_frame(frame)).build().unwrap()
     };
     let travel = Travel::new(sphere, Straight::new([-1.0e-3, 0.0], [0.0, 0.0]).unwrap());
     let mut along = build(Frame::Bodies);
@@ -403,7 +405,7 @@ fn creep_and_recovery_of_a_springpot_and_a_voigt_body() {
         [(1, TimeRule::Exponential), (1, TimeRule::Backward), (2, TimeRule::Exponential), (2, TimeRule::Backward)]
     {
         let builder = builder_on(Grid::square(20, LENGTH).unwrap(), material(body, [1.0; 2])).times(TIMES);
-        let mut contact = builder.settings(Settings { time_rule: rule, ..Settings::default() }).build().unwrap();
+        let mut contact = builder.settings(Settings::default().with_time_rule(rule)).build().unwrap();
         let [lifted, touching] = [-DEPTH, 0.0].map(Load::approach);
         let [none, full] = [0.0, FORCE].map(Load::force);
         let protocol = Protocol::default()

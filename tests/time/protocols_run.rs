@@ -1,6 +1,6 @@
 //! Whether runs come to their end, and in how many steps: ordinary protocols on ordinary bodies, and random scenes.
 //!
-//! By hand: `PROTOCOLS_SCENES=5000 PROTOCOLS_SEED=7 cargo test --release --test time runs -- --nocapture`.
+//! By hand: `PROTOCOLS_SCENES=5000 PROTOCOLS_SEED=7 cargo test --release --test suite time::runs -- --nocapture`.
 
 use std::collections::BTreeMap;
 
@@ -62,8 +62,7 @@ fn ordinary_protocols_run_to_their_end() {
             let mut line = format!("{protocol}, {body}:");
             for (name, stepping) in [("fixed", Stepping::fixed(0.02)), ("adaptive", Stepping::adaptive(1e-3))] {
                 let builder = builder_on(Grid::square(16, 4.0e-3).unwrap(), material.clone()).times_of(&*history, 1.0);
-                let mut contact =
-                    builder.settings(Settings { edge: Edge::Allow, ..Settings::default() }).build().unwrap();
+                let mut contact = builder.settings(Settings::default().with_edge(Edge::Allow)).build().unwrap();
                 match run(&mut contact, &*history, stepping) {
                     Ok(problems) => line += &format!("  {name} {problems}"),
                     Err(error) => {

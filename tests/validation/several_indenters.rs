@@ -62,7 +62,7 @@ fn punches_pressed_in_turn_superpose() {
             assert!((computed / exact - 1.0).abs() < 2e-4, "turn {turn}: {computed} {exact}");
         }
         let elastic = SCENE.elastic(1.0e-6, &forces).unwrap();
-        let greatest = elastic.greatest_pressure();
+        let greatest = elastic.max_pressure();
         for (computed, exact) in contact.pressure().iter().zip(elastic.pressure()) {
             assert!((computed - exact).abs() < 1e-5 * greatest, "turn {turn}: {computed} {exact}");
         }

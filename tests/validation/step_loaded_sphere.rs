@@ -7,7 +7,7 @@ use viscocontact::prelude::*;
 fn assert_figures(scene: &StepLoadedSphere) -> f64 {
     let (contact, work) = scene.run(256, 100, Settings::default()).unwrap();
     let error = errors(&contact, &scene.reference().unwrap());
-    println!("{}: {error:?}, {work:.2} convolution equivalents a step", scene.name);
+    println!("{}: {error:?}, {work:.2} convolution equivalents per step", scene.name);
     assert!(error.central_pressure.abs() < 1e-4, "{error:?}");
     assert!(error.l1 < 1.5e-3, "{error:?}");
     assert!(error.contact_radius.abs() < 5e-3, "{error:?}");
@@ -19,7 +19,7 @@ fn assert_figures(scene: &StepLoadedSphere) -> f64 {
 #[test]
 fn maxwell_on_256_cells_in_100_steps_is_table_1() {
     let work = assert_figures(&StepLoadedSphere::maxwell());
-    assert!(work < 6.0, "{work} convolution equivalents a step");
+    assert!(work < 6.0, "{work} convolution equivalents per step");
 }
 
 #[test]
@@ -56,6 +56,6 @@ fn the_papers_own_algorithm_agrees_at_more_work() {
     assert!((1e-3..1e-2).contains(&error.central_pressure.abs()), "{error:?}");
     assert!(error.approach.abs() < 1e-3, "{error:?}");
     let (_, ours) = scene.run(64, 100, Settings::default()).unwrap();
-    println!("Polonsky–Keer {work:.1}, active set {ours:.1} convolution equivalents a step");
+    println!("Polonsky–Keer {work:.1}, active set {ours:.1} convolution equivalents per step");
     assert!(work > 3.0 * ours);
 }

@@ -79,7 +79,8 @@ impl ViscoelasticContact {
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let path = path.as_ref();
         let mut attempt = || {
-            let bytes = std::fs::read(path).map_err(|error| CheckpointError::Unreadable { what: error.to_string() })?;
+            let bytes = std::fs::read(path)
+                .map_err(|error| CheckpointError::Unreadable { what: error.to_string(), kind: error.kind() })?;
             format::decode::<Saved<'_>>(&bytes)?.restore(self)
         };
         attempt().map_err(|source| of_file(path, source))
@@ -87,5 +88,5 @@ impl ViscoelasticContact {
 }
 
 fn of_file(path: &Path, source: CheckpointError) -> Error {
-    Error::Checkpoint { path: path.display().to_string(), source }
+    Error::Checkpoint { path: path.to_owned(), source }
 }

@@ -22,7 +22,7 @@ impl ViscoelasticContact {
     /// let mut contact = ViscoelasticContact::builder(grid.clone())
     ///     .geometry(&shape)
     ///     .material(Material::incompressible(Zener::new(1.0e6, 0.3e6, 0.01e6)?))
-    ///     .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
+    ///     .settings(Settings::default().with_frame(Frame::Indenter))
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
     /// for _ in 0..60 {

@@ -13,9 +13,9 @@ const CONTACT_LENGTHS_PER_STRIDE: usize = 2;
 /// Lengths of the grid after which a motion that is still not steady is given up.
 const MAX_GRID_LENGTHS: usize = 10;
 
-/// A steady motion of the indenter over the bodies, and how steady the contact shall be.
+/// A steady motion of the indenter over the bodies, and how steady the contact shall be, made by [`SteadyMotion::new`].
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[expect(clippy::exhaustive_structs, reason = "users write it field by field")]
+#[non_exhaustive]
 pub struct SteadyMotion {
     /// Axis of the motion, 0 for x1 and 1 for x2.
     pub axis: usize,
@@ -24,10 +24,21 @@ pub struct SteadyMotion {
     /// The load that it carries.
     pub load: Load,
     /// What the pressure may change by while the indenter travels by the length of the contact: Σ |Δp| over Σ p,
-    /// in (0, 1); the solver's own noise is about a hundred times
+    /// in (0, 1) (default: 1e-3); the solver's own noise is about a hundred times
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub tolerance: f64,
 }
+
+impl SteadyMotion {
+    /// A motion along `axis`, 0 for x1 and 1 for x2, with a `velocity` \[m/s\] of either sign, under a `load`.
+    pub const fn new(axis: usize, velocity: f64, load: Load) -> SteadyMotion {
+        SteadyMotion { axis, velocity, load, tolerance: 1e-3 }
+    }
+}
+
+setters! { SteadyMotion {
+    with_tolerance: tolerance, f64;
+} }
 
 /// A contact on its way to a steady state, made by [`ViscoelasticContact::toward_steady`].
 #[derive(Debug)]
@@ -66,9 +77,9 @@ impl ViscoelasticContact {
     ///     .geometry(&cylinder)
     ///     .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.005e6)?))
     ///     .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0)?))
-    ///     .settings(Settings { frame: Frame::Indenter, ..Settings::default() })
+    ///     .settings(Settings::default().with_frame(Frame::Indenter))
     ///     .build()?;
-    /// let motion = SteadyMotion { axis: 0, velocity: 0.1, load: Load::force(100.0), tolerance: 1.0e-4 };
+    /// let motion = SteadyMotion::new(0, 0.1, Load::force(100.0)).with_tolerance(1.0e-4);
     /// contact.toward_steady(motion)?.run()?;
     /// assert!(contact.lateral_force(&cylinder)[0] > 0.01 * contact.force());
     /// # Ok::<(), viscocontact::Error>(())

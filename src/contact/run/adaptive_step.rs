@@ -21,14 +21,14 @@ impl Follow<'_> {
     pub(super) fn adaptive_step(&mut self, control: &mut StepControl, corner: f64) -> Result<StepReport> {
         let ViscoelasticContact { scene, computation, .. } = &*self.contact;
         let now = self.contact.time();
-        control.begin(scene, &computation.state, self.history, self.until)?;
+        control.begin(scene, &computation.state, &*self.history, self.until)?;
         let tolerance = control.solver_tolerance(scene.settings.tolerance);
-        let corner = corner.min(control.first_touch(&computation.state, self.history, corner.min(self.until)));
+        let corner = corner.min(control.first_touch(&computation.state, &*self.history, corner.min(self.until)));
         let stop = corner.min(self.until).min(self.next_stop(now));
         let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
         loop {
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
-            let wanted = control.length(scene, &computation.state, self.history, self.until - now)?;
+            let wanted = control.length(scene, &computation.state, &*self.history, self.until - now)?;
             let (order, dashpot) = order_of(&computation.state, &scene.settings);
             let (time, dt) = towards(now, stop, wanted);
             // near the resolution of the time, a shortened step may round to the same end for ever
@@ -37,8 +37,8 @@ impl Follow<'_> {
             }
             tried = time;
             let loads = [self.history.before(time).validated_at(time)?];
-            let straying = control.watch(self.history, now, time)?;
-            let parted = computation.state.current.contact_cells == 0 && control.stays_away(self.history, now, time);
+            let straying = control.watch(&*self.history, now, time)?;
+            let parted = computation.state.current.contact_cells == 0 && control.stays_away(&*self.history, now, time);
             if straying > control.tolerance && !parted {
                 control.judge(dt, straying, order, dashpot);
                 continue;
@@ -74,7 +74,7 @@ impl Follow<'_> {
                 }
                 report.convolutions += wasted[0];
                 report.preconditioner_applications += wasted[1];
-                self.progress.include([error.relative, error.greatest, report.residual]);
+                self.progress.include([error.relative, error.greatest, report.residual], self.contact.mesh_error());
                 return Ok(report);
             }
             events::rejected(time, dt, error.relative, control.tolerance);

@@ -2,6 +2,7 @@
 
 use crate::contact::report::StepReport;
 use crate::contact::run::error_budget::ErrorBudget;
+use crate::contact::run::held::{Held, HeldHistory};
 #[cfg(feature = "checkpoint")]
 use crate::contact::run::progress::Autosave;
 use crate::contact::run::progress::Progress;
@@ -50,19 +51,18 @@ const SAME_TIME: f64 = 1e-6;
 /// let mut run = contact.follow(&load, Stepping::adaptive(1.0e-3), 1.0e5);
 /// let mut steps = 0;
 /// while let Some(report) = run.next_step()? {
-///     assert!(report.time_error <= 1.0e-3);
+///     assert!(report.time_error <= Some(1.0e-3));
 ///     steps += 1;
 /// }
 /// assert!(steps < 60);
-/// let budget = run.error_budget();
-/// println!("time {:.0e}, mesh {:.0e}, solver {:.0e}", budget.time, budget.mesh.approach, budget.solver);
+/// println!("{}", run.error_budget());
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug)]
 #[must_use = "a run takes no step until next_step is called"]
 pub struct Follow<'a> {
-    pub(in crate::contact) contact: &'a mut ViscoelasticContact,
-    pub(super) history: &'a dyn LoadHistory,
+    pub(in crate::contact) contact: Held<'a>,
+    pub(super) history: HeldHistory<'a>,
     stepping: Stepping,
     pub(super) until: f64,
     pub(in crate::contact) progress: Progress,
@@ -78,11 +78,42 @@ pub struct Follow<'a> {
 impl ViscoelasticContact {
     /// Follows a load history to the time `until` \[s\], step by step as `stepping` says.
     pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Follow<'a> {
-        let begun = Progress::begin(self.time(), stepping);
+        Follow::new(Held::Borrowed(self), HeldHistory::Borrowed(history), stepping, until)
+    }
+
+    /// [`ViscoelasticContact::follow`] in a run that owns the contact and its history, and so can be stored or sent to another
+    /// thread.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// struct Simulation {
+    ///     run: Follow<'static>,
+    /// }
+    ///
+    /// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .build()?;
+    /// let load = StepLoad::new(Load::force(0.5))?;
+    /// let mut simulation = Simulation { run: contact.into_follow(load, Stepping::fixed(0.5), 1.0) };
+    /// while simulation.run.next_step()?.is_some() {}
+    /// let contact = simulation.run.into_contact();
+    /// assert_eq!(contact.time(), 1.0);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    pub fn into_follow(self, history: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Follow<'static> {
+        Follow::new(Held::Owned(Box::new(self)), HeldHistory::Owned(Box::new(history)), stepping, until)
+    }
+}
+
+impl<'a> Follow<'a> {
+    fn new(mut contact: Held<'a>, history: HeldHistory<'a>, stepping: Stepping, until: f64) -> Follow<'a> {
+        let begun = Progress::begin(contact.time(), stepping);
         // a run that was saved goes on, if this is the one
-        let saved = self.progress.take().filter(|saved| until >= begun.now && saved.continues(&begun));
+        let saved = contact.progress.take().filter(|saved| until >= begun.now && saved.continues(&begun));
         Follow {
-            contact: self,
+            contact,
             history,
             stepping,
             until,
@@ -94,9 +125,7 @@ impl ViscoelasticContact {
             unreported: None,
         }
     }
-}
 
-impl<'a> Follow<'a> {
     /// Lets steps end exactly on these `times` \[s\] too, in any order; those before the contact's time have no effect.
     ///
     /// # Errors
@@ -190,13 +219,13 @@ impl<'a> Follow<'a> {
         let step = self.contact.request(time, dt, &loads, tolerance);
         let ViscoelasticContact { scene, computation, .. } = &*self.contact;
         if self.progress.scale.is_none() {
-            self.progress.scale = Some(RunScale::new(scene, &computation.state, self.history, self.until)?);
+            self.progress.scale = Some(RunScale::new(scene, &computation.state, &*self.history, self.until)?);
         }
         let age = time - computation.state.clock.undisturbed_until;
         let expected = self.progress.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, &load, age));
         let outlook = Outlook { expected, ..Outlook::default() };
         let (report, error) = self.contact.take_expecting(step, outlook)?;
-        self.progress.include([error.relative, error.greatest, report.residual]);
+        self.progress.include([error.relative, error.greatest, report.residual], self.contact.mesh_error());
         Ok(report)
     }
 
@@ -228,8 +257,7 @@ impl<'a> Follow<'a> {
 
     /// What is known of the error of the answer so far.
     pub fn error_budget(&self) -> ErrorBudget {
-        let [time, pressure, solver] = self.progress.worst;
-        ErrorBudget { time, pressure, mesh: self.contact.mesh_error(), solver }
+        self.progress.error_budget(self.contact.mesh_error())
     }
 
     /// Steps that were tried and found too long, with [`Stepping::adaptive`].
@@ -239,6 +267,14 @@ impl<'a> Follow<'a> {
 
     /// The contact as the last step left it.
     pub fn contact(&self) -> &ViscoelasticContact {
-        self.contact
+        &self.contact
+    }
+
+    /// The contact as the last step left it: a clone where the run borrows it.
+    pub fn into_contact(self) -> ViscoelasticContact {
+        match self.contact {
+            Held::Borrowed(contact) => contact.clone(),
+            Held::Owned(contact) => *contact,
+        }
     }
 }

@@ -4,6 +4,7 @@ mod adaptive_step;
 mod drift;
 pub(in crate::contact) mod error_budget;
 pub(in crate::contact) mod follow;
+mod held;
 pub(in crate::contact) mod progress;
 mod run_scale;
 mod step_control;

@@ -3,9 +3,11 @@
 #[cfg(feature = "checkpoint")]
 use std::time::{Duration, Instant};
 
+use crate::contact::run::error_budget::ErrorBudget;
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::step_control::StepControl;
 use crate::contact::run::stepping::Stepping;
+use crate::observe::MeshError;
 
 /// How far a run has come, and what it knows of the steps to come.
 #[derive(Debug, Clone)]
@@ -20,8 +22,10 @@ pub(crate) struct Progress {
     pub(super) control: Option<StepControl>,
     /// The sizes of a run by equal steps.
     pub(super) scale: Option<RunScale>,
-    /// Greatest estimated errors in time of a step, in all and in a cell, and greatest residual.
-    pub(super) worst: [f64; 3],
+    /// Greatest estimated errors in time of a step, in all and in a cell, and greatest residual; `None` before the first step.
+    worst: Option<[f64; 3]>,
+    /// Greatest estimated errors due to the mesh, of the states in contact.
+    mesh: Option<MeshError>,
 }
 
 impl Progress {
@@ -30,7 +34,7 @@ impl Progress {
             Stepping::Fixed { dt } => (None, dt),
             Stepping::Adaptive { tolerance } => (Some(StepControl::new(tolerance)), 0.0),
         };
-        Progress { start: now, now, steps: 0, dt, control, scale: None, worst: [0.0; 3] }
+        Progress { start: now, now, steps: 0, dt, control, scale: None, worst: None, mesh: None }
     }
 
     /// Whether it is that of a run that begins like this one.
@@ -55,9 +59,20 @@ impl Progress {
             }
     }
 
-    /// Takes account of the errors of a step.
-    pub(super) fn include(&mut self, errors: [f64; 3]) {
-        self.worst = [0, 1, 2].map(|which| self.worst[which].max(errors[which]));
+    /// Takes account of the errors of a step, and of the mesh at its end.
+    pub(super) fn include(&mut self, errors: [f64; 3], mesh: Option<MeshError>) {
+        self.worst =
+            self.worst.map_or(Some(errors), |worst| Some([0, 1, 2].map(|which| worst[which].max(errors[which]))));
+        self.mesh = match (self.mesh, mesh) {
+            (Some(worst), Some(mesh)) => Some(worst.max(mesh)),
+            (worst, mesh) => worst.or(mesh),
+        };
+    }
+
+    /// What is known of the errors so far, with those due to the `mesh` now.
+    pub(super) fn error_budget(&self, mesh: Option<MeshError>) -> ErrorBudget {
+        let [time, pressure] = [0, 1].map(|which| self.worst.map(|worst| worst[which]));
+        ErrorBudget { time, pressure, mesh, max_mesh: self.mesh, solver: self.worst.map_or(0.0, |worst| worst[2]) }
     }
 }
 

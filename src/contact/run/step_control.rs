@@ -169,6 +169,7 @@ impl StepControl {
             steps: self.steps as f64 + 1.0,
             resolution: SHORTEST * self.tolerance * span,
             beginning: SHORTEST * self.tolerance * span.min(shortest),
+            is_given: false,
         }
     }
 

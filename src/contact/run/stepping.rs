@@ -2,6 +2,7 @@
 
 /// How long the steps are.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Stepping {
     /// Equal steps, counted from the time at which following starts; cut where the load has a corner.

@@ -3,6 +3,7 @@
 use crate::contact::computation::Computation;
 use crate::contact::request::Step;
 use crate::contact::scene::Scene;
+use crate::contact::step::first_step::first_step_error;
 use crate::contact::window::growth::motion_tried;
 use crate::hereditary::{ErrorMeasure, TimeError};
 use crate::load::Load;
@@ -42,11 +43,14 @@ pub(in crate::contact) struct Outlook {
     pub(in crate::contact) resolution: f64,
     /// ... nor does anything that happens on a body without elastic response in so short a time, in which it hardly moves.
     pub(in crate::contact) beginning: f64,
+    /// Whether the length of the step is given: that of a first step after a jump or a corner is not chosen by its error then.
+    pub(in crate::contact) is_given: bool,
 }
 
 impl Default for Outlook {
     fn default() -> Outlook {
-        Outlook { expected: [0.0; 2], agreement: 1.0, steps: f64::INFINITY, resolution: 0.0, beginning: 0.0 }
+        let (agreement, steps) = (1.0, f64::INFINITY);
+        Outlook { expected: [0.0; 2], agreement, steps, resolution: 0.0, beginning: 0.0, is_given: true }
     }
 }
 
@@ -61,7 +65,7 @@ pub(in crate::contact) fn error_in_time(
     step: &Step<'_>,
     outlook: Outlook,
 ) -> TimeError {
-    let Outlook { expected, agreement, steps, resolution, beginning } = outlook;
+    let Outlook { expected, agreement, steps, resolution, beginning, is_given } = outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();
@@ -96,5 +100,9 @@ pub(in crate::contact) fn error_in_time(
     let advance = &advance;
     let measure =
         ErrorMeasure { pressure, potential, matters, least, advance, amplification, agreement, resolution, beginning };
-    state.history.time_error(measure)
+    let error = state.history.time_error(measure);
+    if !is_given || forces == 0 {
+        return error;
+    }
+    TimeError { relative: error.relative.max(first_step_error(scene, tried, step, least[0])), ..error }
 }

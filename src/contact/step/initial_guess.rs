@@ -21,6 +21,10 @@ const MAX_SHARE_LEFT: f64 = 0.5;
 /// Least distance, in cells, by which the edge of the contact must be expected to move for the next contact to be foreseen.
 const MIN_EDGE_SPEED: f64 = 0.5;
 
+/// Least share of the cells in contact, now and in the next step, that must stay in contact: the law of the edge says nothing of
+/// the cells far from it.
+const MIN_SHARE_STAYING: f64 = 0.5;
+
 /// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike. Bodies of given motion whose
 /// pressure falls a lot in this step of compliance `c` get the last one scaled: K p would keep the rounding of a greater
 /// one.
@@ -74,13 +78,13 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
 /// Finds the cells that are likely to be in contact at the end of a step that goes a times as far as the last one. At a moving
 /// edge the pressure goes to zero like the root of the distance, and the gap opens like its power 3/2 (Hertz): a pressure that
 /// fell to less than √(a/(1 + a)) of itself vanishes, a gap that fell to less than the third power of that closes. False where
-/// the last two gaps are not known, or the edge moves so slowly that single cells join: their gaps fall evenly until they touch,
-/// which is what the extrapolated pressure shows by itself.
+/// the last two gaps are not known, where most cells would join or leave, or where the edge moves so slowly that single cells join: their
+/// gaps fall evenly until they touch, which is what the extrapolated pressure shows by itself.
 fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
     let (now, before) = (&state.current, &state.previous);
     let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.remembers());
     let change = state.history.last_change();
-    if now.contact_cells == 0 || change.is_none() && !elastic {
+    if now.contact_cells == 0 || before.contact_cells == 0 || change.is_none() && !elastic {
         return false;
     }
     let ahead = state.extrapolation.reach(step.interval.dt);
@@ -90,6 +94,7 @@ fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Ste
     let share = (ahead / (1.0 + ahead)).sqrt();
     let share_open = share * share * share;
     let (initial, u) = (window.gap(&step.indenter), state.history.displacement());
+    let datum = step.indenter.gap().datum;
     let still = now.motions.iter().chain(&before.motions).all(|motion| motion.tilt == [0.0; 2]);
     let motion = |k: usize, of: &Equilibrium| {
         let body = of.motions[initial.owner(k)];
@@ -107,13 +112,24 @@ fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Ste
             Some(change) => change[k],
             None => c * (now.solution.potential[k] - before.solution.potential[k]),
         };
-        let gap = initial.above[k] + u[k] - motion;
+        let gap = datum + initial.above[k] + u[k] - motion;
         gap < share_open * (gap - receded + (motion - motion_before))
     };
     for_each_band([&mut trial.likely], |first, [likely]| {
         likely.iter_mut().zip(first..).for_each(|(likely, k)| *likely = is_likely(k));
     });
-    true
+    let count = |cells: Range<usize>| {
+        let mut counts = [0; 3];
+        for k in cells {
+            let (touching, likely) = (now.solution.pressure[k] > 0.0, trial.likely[k]);
+            let adds = [touching, likely, touching && likely];
+            counts.iter_mut().zip(adds).for_each(|(count, adds)| *count += usize::from(adds));
+        }
+        counts
+    };
+    let add = |a: [usize; 3], b: [usize; 3]| [0, 1, 2].map(|n| a[n] + b[n]);
+    let [touching, likely, staying] = merge_bands(trial.likely.len(), count, add);
+    staying as f64 >= MIN_SHARE_STAYING * touching.max(likely) as f64
 }
 
 /// Mean distance in cells by which the edge of the contact moved in the last step: cells that joined or left, over the length of

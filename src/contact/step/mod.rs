@@ -20,6 +20,7 @@ mod checks;
 mod collect_warnings;
 mod constraints;
 pub(in crate::contact) mod error_in_time;
+mod first_step;
 mod gap;
 mod initial_guess;
 mod jump;
@@ -125,9 +126,11 @@ impl ViscoelasticContact {
         if let Some(larger) = attempt.larger {
             self.computation = *larger;
         }
+        // lengths beyond 1e154 m have no squares, and so no estimate
+        let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
         self.computation.accept(step, attempt.sum, error.sizes);
         self.view.refresh(&self.computation.state);
-        let report = StepReport { time_error: error.relative, ..self.report() };
+        let report = StepReport { time_error: estimated.then_some(error.relative), ..self.report() };
         report.emit();
         report
     }
@@ -137,18 +140,19 @@ impl ViscoelasticContact {
         let counts = state.current.solution.counts;
         StepReport {
             time: state.clock.time,
+            force: self.force(),
+            approach: self.approach(),
+            area: state.current.contact_cells as f64 * self.scene.grid.cell_area(),
+            contact_cells: state.current.contact_cells,
+            tilt: self.tilt(),
             dt: state.clock.last_dt,
+            time_error: None,
+            warnings: collect_warnings(&self.scene, state),
             iterations: counts.iterations,
             fallback_iterations: counts.fallback_iterations,
             convolutions: counts.convolutions,
             preconditioner_applications: counts.preconditioner_applications,
             residual: state.current.solution.residual,
-            time_error: 0.0,
-            warnings: collect_warnings(&self.scene, state),
-            contact_cells: state.current.contact_cells,
-            approach: self.approach(),
-            tilt: self.tilt(),
-            force: self.force(),
         }
     }
 }

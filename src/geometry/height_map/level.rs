@@ -6,6 +6,7 @@ use crate::linalg;
 
 /// What is taken out of a map as its form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Form {
     /// The mean height.
     Mean,

@@ -10,6 +10,7 @@ const FLAT: f64 = 1e-14;
 
 /// A map interpolated onto another grid, and the error of that.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Resampled {
     /// The map on the new grid.
     pub map: HeightMap,
@@ -20,11 +21,12 @@ pub struct Resampled {
 /// Error of resampling: the new map, interpolated back to the points of the old one, minus the old map. It shows what
 /// the new grid does not resolve.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ResamplingError {
     /// Root mean square \[m\].
     pub rms: f64,
     /// Greatest magnitude \[m\].
-    pub greatest: f64,
+    pub max: f64,
     /// `rms` relative to the rms height of the old map about its mean, at the points compared; 0 for a flat map.
     pub of_rms_height: f64,
 }
@@ -87,7 +89,7 @@ impl HeightMap {
         let rms = rms_of(pairs().map(|(z, back)| (back / unit - z / unit).powi(2)).sum());
         let greatest = pairs().fold(0.0, |greatest: f64, (z, back)| greatest.max((back - z).abs()));
         let of_rms_height = if rms_height > FLAT * mean.abs() { rms / rms_height } else { 0.0 };
-        Ok(ResamplingError { rms, greatest, of_rms_height })
+        Ok(ResamplingError { rms, max: greatest, of_rms_height })
     }
 }
 
@@ -105,7 +107,7 @@ mod tests {
         let map = map_of([12, 10], waves).periodic();
         let again = map.resampled(&map.grid()).unwrap();
         assert_eq!(again.map, HeightMap { masked: true, ..map });
-        assert_eq!(again.error, ResamplingError { rms: 0.0, greatest: 0.0, of_rms_height: 0.0 });
+        assert_eq!(again.error, ResamplingError { rms: 0.0, max: 0.0, of_rms_height: 0.0 });
     }
 
     #[test]
@@ -119,7 +121,7 @@ mod tests {
                 (coarse.map.height_at(x1, x2).unwrap() - z).powi(2)
             });
             let by_hand = (by_hand.sum::<f64>() / 512.0).sqrt();
-            assert!((coarse.error.rms - by_hand).abs() < 1e-15 && coarse.error.greatest >= by_hand);
+            assert!((coarse.error.rms - by_hand).abs() < 1e-15 && coarse.error.max >= by_hand);
             coarse.error.of_rms_height
         });
         assert!(errors.is_sorted() && errors[1] < 0.01 && errors[3] > 0.03, "{errors:?}");

@@ -102,7 +102,7 @@ impl HeightMap {
 
 fn save(mut writer: impl Write, format: &'static str, file: &[u8]) -> Result<()> {
     let written = writer.write_all(file).and_then(|()| writer.flush());
-    written.map_err(|error| MapError::Unwritable { format, reason: error.to_string() }.into())
+    written.map_err(|error| MapError::Unwritable { format, reason: error.to_string(), kind: Some(error.kind()) }.into())
 }
 
 #[cfg(test)]

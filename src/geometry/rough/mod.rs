@@ -23,18 +23,10 @@ use crate::memory;
 /// resolve; on other grids it is interpolated like a [`HeightMap`].
 ///
 /// ```
-/// use viscocontact::prelude::*;
+/// use viscocontact::{geometry::Sum, prelude::*};
 ///
 /// let grid = Grid::square(64, 1e-3)?;
-/// let spec = RoughSpec {
-///     hurst: 0.8,
-///     longest: 1e-3,
-///     roll_off: 0.25e-3,
-///     shortest: 0.05e-3,
-///     anisotropy: Anisotropy::default(),
-///     roughness: Roughness::RmsHeight(1e-6),
-///     seed: 1,
-/// };
+/// let spec = RoughSpec::new(1e-3, 0.05e-3, Roughness::RmsHeight(1e-6)).with_roll_off(0.25e-3).with_seed(1);
 /// let rough = Rough::new(&grid, spec)?;
 /// let statistics = SurfaceStatistics::of(rough.height_map())?;
 /// assert!((statistics.rms_height - 1e-6).abs() < 1e-15);

@@ -8,32 +8,47 @@ use crate::error::{Result, finite, positive, within};
 ///
 /// With the wave numbers q_l, q_r and q_s, 2π/λ of `longest`, `roll_off` and `shortest`, the power spectral density is
 ///
-/// $$ C(q) \propto \begin{cases} 1 & q_l \le q < q_r \\\\ (q/q_r)^{-2(H+1)} & q_r \le q < q_s \\\\
-///    0 & \text{else} \end{cases} $$
+/// ```text
+/// C(q) ∝ 1                     for q_l ≤ q < q_r
+/// C(q) ∝ (q/q_r)^(−2(H + 1))   for q_r ≤ q < q_s
+/// C(q) = 0                     elsewhere
+/// ```
 ///
 /// (Persson et al. 2005, *J. Phys.: Condens. Matter* 17). On a grid with a single row of cells the
 /// surface is ridged; its profile has the exponent −(2H + 1) of a profile of such a surface.
+///
+/// ```
+/// use viscocontact::geometry::{RoughSpec, Roughness};
+///
+/// // waves of 2 mm to 40 µm, the longest of the same strength down to 0.5 mm
+/// let spec = RoughSpec::new(2.0e-3, 40.0e-6, Roughness::RmsHeight(1.0e-6)).with_roll_off(0.5e-3).with_seed(7);
+/// assert_eq!(spec.hurst, 0.8);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct RoughSpec {
-    /// Hurst exponent H, in (0, 1]; 0.8 for many fractured, blasted and worn surfaces.
+    /// Hurst exponent H, in (0, 1] (default: 0.8, that of many fractured, blasted and worn surfaces).
     pub hurst: f64,
     /// Longest wavelength \[m\].
     pub longest: f64,
-    /// Wavelength \[m\] above which the spectrum is constant; `longest` for a spectrum without plateau.
+    /// Wavelength \[m\] above which the spectrum is constant (default: `longest`, a spectrum without plateau).
     pub roll_off: f64,
     /// Shortest wavelength \[m\], at least two cells of the grid.
     pub shortest: f64,
-    /// Anisotropy of the spectrum; `Anisotropy::default()` is isotropic.
+    /// Anisotropy of the spectrum (default: isotropic).
     pub anisotropy: Anisotropy,
     /// Roughness.
     pub roughness: Roughness,
-    /// Seed of the random numbers: the same seed and lengths give the same surface on every mesh that resolves it.
+    /// Seed of the random numbers (default: 0): the same seed and lengths give the same surface on every mesh that resolves it.
     pub seed: u64,
 }
 
 /// Waves that are longer along one direction than across it, for instance after grinding. The spectrum is evaluated at
 /// q = √((γ q_along)² + q_across²), so that the wavelengths of the [`RoughSpec`] are those across.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub struct Anisotropy {
     /// Ratio γ ≥ 1 of a wavelength along the direction to the one across (default: 1).
     pub ratio: f64,
@@ -41,14 +56,23 @@ pub struct Anisotropy {
     pub direction: f64,
 }
 
+impl Anisotropy {
+    /// Waves longer by `ratio` along the `direction` \[rad\] from x1 towards x2 than across it.
+    pub const fn new(ratio: f64, direction: f64) -> Anisotropy {
+        Anisotropy { ratio, direction }
+    }
+}
+
 impl Default for Anisotropy {
     fn default() -> Anisotropy {
-        Anisotropy { ratio: 1.0, direction: 0.0 }
+        Anisotropy::new(1.0, 0.0)
     }
 }
 
 /// Roughness of a surface, which it has exactly as a mean over its period.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
 pub enum Roughness {
     /// Root mean square of the height \[m\].
     RmsHeight(f64),
@@ -56,7 +80,30 @@ pub enum Roughness {
     RmsSlope(f64),
 }
 
+setters! { RoughSpec {
+    with_hurst: hurst, f64;
+    with_roll_off: roll_off, f64;
+    with_shortest: shortest, f64;
+    with_anisotropy: anisotropy, Anisotropy;
+    with_roughness: roughness, Roughness;
+    with_seed: seed, u64;
+} }
+
+/// Waves of 1 mm to 10 µm, with a height of 1 µm in the root mean square.
+impl Default for RoughSpec {
+    fn default() -> RoughSpec {
+        RoughSpec::new(1.0e-3, 10.0e-6, Roughness::RmsHeight(1.0e-6))
+    }
+}
+
 impl RoughSpec {
+    /// Isotropic, of Hurst exponent 0.8 from the `longest` to the `shortest` wavelength \[m\], without plateau. Checked by
+    /// [`Rough::new`](crate::geometry::Rough::new).
+    pub const fn new(longest: f64, shortest: f64, roughness: Roughness) -> RoughSpec {
+        let anisotropy = Anisotropy::new(1.0, 0.0);
+        RoughSpec { hurst: 0.8, longest, roll_off: longest, shortest, anisotropy, roughness, seed: 0 }
+    }
+
     /// Checks the ranges and the order of the values.
     pub(super) fn validate(&self) -> Result<()> {
         within("Hurst exponent", self.hurst, self.hurst > 0.0 && self.hurst <= 1.0, "in (0, 1]")?;

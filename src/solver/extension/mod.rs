@@ -84,22 +84,15 @@ impl Extension {
     /// Fills all cells outside the set, where `field` is zero.
     pub(crate) fn extend(&mut self, field: &mut [f64], member: &[bool]) {
         self.push(Values::Field(field), |_| ());
-        let Extension { cells, periodic, levels, share, rows } = self;
-        let Some(coarsest) = levels.last_mut() else { return };
-        coarsest.value[0] *= *share;
-        for l in (1..levels.len()).rev() {
-            let (finer, coarser) = levels.split_at_mut(l);
-            let Level { cells, factor, value } = &mut finer[l - 1];
-            let (blocks, known) = (&coarser[0].value, Known::Factors(factor));
-            run(&Pull { blocks, known, fine: *cells, periodic: *periodic }, rows, value, *cells);
-        }
-        let (blocks, known) = (&levels[0].value, Known::Members(member));
-        run(&Pull { blocks, known, fine: *cells, periodic: *periodic }, rows, field, *cells);
+        let periodic = self.periodic;
+        self.descend(field, member, |blocks, known, fine, rows, values| {
+            run(&Pull { blocks, known, fine, periodic }, rows, values, fine);
+        });
     }
 
     /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere.
     pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool]) {
-        let Extension { cells, periodic, levels, share, rows } = self;
+        let Extension { cells, periodic, levels, rows, .. } = self;
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
             let (values, known, fine) = match finer.last() {
@@ -109,16 +102,9 @@ impl Extension {
             let restrict = Restrict { values, known, fine, periodic: *periodic };
             run(&restrict, rows, &mut level[0].value, level[0].cells);
         }
-        let Some(coarsest) = levels.last_mut() else { return };
-        coarsest.value[0] *= *share;
-        for l in (1..levels.len()).rev() {
-            let (finer, coarser) = levels.split_at_mut(l);
-            let Level { cells, factor, value } = &mut finer[l - 1];
-            let (blocks, known) = (&coarser[0].value, Known::Factors(factor));
-            run(&Spread { blocks, known, fine: *cells }, rows, value, *cells);
-        }
-        let (blocks, known) = (&levels[0].value, Known::Members(member));
-        run(&Spread { blocks, known, fine: *cells }, rows, field, *cells);
+        self.descend(field, member, |blocks, known, fine, rows, values| {
+            run(&Spread { blocks, known, fine }, rows, values, fine);
+        });
     }
 
     /// Finds S level by level, and calls `finish` with each of them.
@@ -133,6 +119,25 @@ impl Extension {
             run(&Push { values, fine }, rows, &mut level[0].value, level[0].cells);
             finish(&mut level[0]);
         }
+    }
+
+    /// From the coarsest level down to the cells: calls `pass` with the blocks of a level, what is known of the next finer one,
+    /// the size of that, row buffers and its values.
+    fn descend(
+        &mut self,
+        field: &mut [f64],
+        member: &[bool],
+        pass: impl Fn(&[f64], Known<'_>, [usize; 2], &mut [Rows], &mut [f64]),
+    ) {
+        let Extension { cells, levels, share, rows, .. } = self;
+        let Some(coarsest) = levels.last_mut() else { return };
+        coarsest.value[0] *= *share;
+        for l in (1..levels.len()).rev() {
+            let (finer, coarser) = levels.split_at_mut(l);
+            let Level { cells, factor, value } = &mut finer[l - 1];
+            pass(&coarser[0].value, Known::Factors(factor), *cells, rows, value);
+        }
+        pass(&levels[0].value, Known::Members(member), *cells, rows, field);
     }
 }
 

@@ -34,7 +34,7 @@ fn contact(body: impl Rheology + 'static, cells: usize) -> ViscoelasticContact {
         .geometry(&BOWL)
         .material(Material::incompressible(body))
         .times(1e-3..=1e2)
-        .settings(Settings { tolerance: 1e-8, ..Settings::default() })
+        .settings(Settings::default().with_tolerance(1e-8))
         .build()
         .unwrap()
 }

@@ -42,7 +42,7 @@ impl Body {
 fn build(grid: &Grid, bodies: &[Box<dyn Geometry>]) -> Option<ViscoelasticContact> {
     let builder = ViscoelasticContact::builder(grid.clone()).geometry(&bodies[0]).material(three_times());
     let builder = bodies[1..].iter().fold(builder, |builder, body| builder.another_body(body));
-    builder.settings(Settings { edge: Edge::Allow, ..Settings::default() }).build().ok()
+    builder.settings(Settings::default().with_edge(Edge::Allow)).build().ok()
 }
 
 fn gap(contact: &ViscoelasticContact) -> Vec<f64> {

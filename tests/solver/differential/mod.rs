@@ -23,7 +23,7 @@ const STEPS: usize = 8;
 #[test]
 fn eccentric_loads_may_jump() {
     let (count, first) = (wanted("ECCENTRIC_STEPS", 2000), wanted("ECCENTRIC_SEED", 1));
-    let settings = Settings { edge: Edge::Allow, ..Settings::default() };
+    let settings = Settings::default().with_edge(Edge::Allow);
     let (mut taken, mut refused, mut failed, mut warm, mut work, mut fallback) = (0, 0, 0, 0, 0.0, 0);
     let mut seed = first as u64 * 1_000_000;
     let mut costs = Vec::new();
@@ -65,13 +65,8 @@ fn eccentric_loads_may_jump() {
 #[test]
 fn a_load_may_jump_beyond_the_contact() {
     for x in [0.6e-3, 1.4e-3] {
-        let contact = || {
-            sphere_on(
-                Grid::square(64, 4.0e-3).unwrap(),
-                elastic(),
-                Settings { edge: Edge::Allow, ..Settings::default() },
-            )
-        };
+        let contact =
+            || sphere_on(Grid::square(64, 4.0e-3).unwrap(), elastic(), Settings::default().with_edge(Edge::Allow));
         let (mut warm, mut fresh) = (contact(), contact());
         warm.step(0.0, Load::force(0.01)).unwrap();
         let jump = Load::eccentric_force(0.01, [x, 0.0]);
@@ -88,9 +83,9 @@ fn more_iterations_help_where_the_error_advises_them() {
     let (mut short, mut solved) = (0, 0);
     for seed in 1..wanted("ADVICE_SCENES", 60) as u64 {
         let scene = Scene::eccentric(seed, STEPS);
-        let settings = Settings { edge: Edge::Allow, ..Settings::default() };
+        let settings = Settings::default().with_edge(Edge::Allow);
         let (mut hasty, mut patient) =
-            (scene.contact(Settings { max_iterations: 6, ..settings }).unwrap(), scene.contact(settings).unwrap());
+            (scene.contact(settings.with_max_iterations(6)).unwrap(), scene.contact(settings).unwrap());
         for (dt, loads) in &scene.steps {
             if let Err(Error::NotConverged { convergence, .. }) = hasty.step_each(*dt, loads) {
                 short += 1;
@@ -131,7 +126,7 @@ fn agrees_with_a_dense_reference(time_rule: TimeRule) {
     let (mut steps, mut refused, mut unsolved, mut worst) = (0, 0, 0, [0.0_f64; 3]);
     for seed in (first as u64 * 1_000_000..).take(count) {
         let scene = Scene::any(seed, 6);
-        let settings = Settings { edge: Edge::Allow, tolerance: 1e-10, time_rule, ..Settings::default() };
+        let settings = Settings::default().with_edge(Edge::Allow).with_tolerance(1e-10).with_time_rule(time_rule);
         let mut contact = match scene.contact(settings) {
             Err(Error::NothingToTouch { .. }) => continue, // no cell's centre lies under a body
             contact => contact.unwrap(),

@@ -113,6 +113,7 @@ impl Reference {
                 // in millimetres, so that all modes are of like size
                 Tilt::Free { at } => modes.push((field(&|x| (x[axis] - at) / 1.0e-3), 0.0)),
                 Tilt::Fixed(angle) => lowered[1 + axis] = angle,
+                _ => unreachable!("{tilt:?}"),
             }
         }
         let prescribed = field(&|x| lowered[0] + lowered[1] * x[0] + lowered[2] * x[1]);
@@ -176,6 +177,7 @@ fn physical(load: &Load, modes: &[f64], released: bool) -> [f64; 3] {
                 motion[1 + axis] = modes.next().unwrap() / 1.0e-3;
                 motion[0] -= motion[1 + axis] * at;
             }
+            _ => unreachable!("{tilt:?}"),
         }
     }
     motion

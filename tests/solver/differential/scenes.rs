@@ -1,5 +1,6 @@
 //! Random scenes: any body, any shape, loads that jump from place to place.
 
+use viscocontact::Result;
 use viscocontact::prelude::*;
 
 use crate::common::noise::uniform;

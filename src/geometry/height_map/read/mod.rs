@@ -58,8 +58,7 @@ impl HeightMap {
         let path = path.as_ref();
         let name = || path.display().to_string();
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        let open =
-            || File::open(path).map_err(|error| MapError::Unreadable { file: name(), reason: error.to_string() });
+        let open = || File::open(path).map_err(|error| unreadable(name(), error));
         match extension.as_str() {
             "gsf" => HeightMap::from_gsf(open()?),
             "sdf" => HeightMap::from_sdf(open()?),
@@ -91,8 +90,12 @@ impl HeightMap {
 fn bytes(mut reader: impl Read, format: &str) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let read = reader.read_to_end(&mut bytes);
-    read.map_err(|error| MapError::Unreadable { file: format!("{format} file"), reason: error.to_string() })?;
+    read.map_err(|error| unreadable(format!("{format} file"), error))?;
     Ok(bytes)
+}
+
+fn unreadable(file: String, error: std::io::Error) -> MapError {
+    MapError::Unreadable { file, reason: error.to_string(), kind: Some(error.kind()) }
 }
 
 /// The number of points, if a grid may have that many: checked before anything is allocated for them.

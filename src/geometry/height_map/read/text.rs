@@ -59,7 +59,9 @@ impl HeightMap {
 pub(super) fn text(reader: impl Read) -> Result<String> {
     let bytes = bytes(reader, FORMAT)?;
     if bytes.contains(&0) {
-        return Err(MapError::Unreadable { file: "text file".into(), reason: "it is not text".into() }.into());
+        return Err(
+            MapError::Unreadable { file: "text file".into(), reason: "it is not text".into(), kind: None }.into()
+        );
     }
     let text = String::from_utf8_lossy(&bytes);
     // byte order mark that some spreadsheets write

@@ -61,7 +61,7 @@ impl HeightMap {
 type Archive = ZipArchive<Cursor<Vec<u8>>>;
 
 fn unreadable(reason: &str) -> MapError {
-    MapError::Unreadable { file: format!("{FORMAT} file"), reason: reason.to_owned() }
+    MapError::Unreadable { file: format!("{FORMAT} file"), reason: reason.to_owned(), kind: None }
 }
 
 /// The contents of a file of the archive, of at most `most` bytes.

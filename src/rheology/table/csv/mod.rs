@@ -63,6 +63,7 @@ macro_rules! from_csv {
                 let unreadable = |error: std::io::Error| TableError::Unreadable {
                     file: path.display().to_string(),
                     reason: error.to_string(),
+                    kind: Some(error.kind()),
                 };
                 $table::from_csv_reader(File::open(path).map_err(unreadable)?, units)
             }
@@ -111,11 +112,12 @@ from_csv!(
 fn read(mut reader: impl Read, layout: Layout, units: Units) -> Result<Vec<Row>> {
     positive("Units::abscissa", units.abscissa)?;
     positive("Units::value", units.value)?;
-    let unreadable = |reason: String| TableError::Unreadable { file: format!("{} table", layout.table), reason };
+    let unreadable =
+        |reason: String, kind| TableError::Unreadable { file: format!("{} table", layout.table), reason, kind };
     let mut bytes = Vec::new();
-    reader.read_to_end(&mut bytes).map_err(|error| unreadable(error.to_string()))?;
+    reader.read_to_end(&mut bytes).map_err(|error| unreadable(error.to_string(), Some(error.kind())))?;
     if bytes.contains(&0) {
-        return Err(unreadable("it is not a text file".into()).into());
+        return Err(unreadable("it is not a text file".into(), None).into());
     }
     // comments may be in any encoding, numbers are ASCII
     let text = String::from_utf8_lossy(&bytes);

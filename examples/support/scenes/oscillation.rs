@@ -2,6 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
+use viscocontact::Result;
 use viscocontact::analytic::AxisymmetricContact;
 use viscocontact::prelude::*;
 use viscocontact::rheology::CreepSpectrum;

@@ -3,11 +3,10 @@
 mod absurd_sizes;
 #[cfg(feature = "checkpoint")]
 mod checkpoint;
-#[path = "../common/mod.rs"]
-mod common;
 mod diagnosis;
 mod documents;
 mod errors;
+mod interface;
 mod invalid_loads;
 #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
 mod output;

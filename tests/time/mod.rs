@@ -1,8 +1,7 @@
 //! Does the answer depend on the steps, on the rule, or on how a load history is followed?
 
 mod adaptive;
-#[path = "../common/mod.rs"]
-mod common;
+mod fixed_steps;
 mod follow;
 mod honest;
 mod protocols;

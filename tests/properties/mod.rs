@@ -1,7 +1,5 @@
 //! Does what must hold for every model, surface, load history and scene hold for each, and for random ones?
 
-#[path = "../common/mod.rs"]
-mod common;
 mod laws;
 #[cfg(feature = "laws")]
 mod metamorphic;

@@ -10,8 +10,9 @@
 //! (Hunter, *J. Mech. Phys. Solids* 8, 1960), T being the elastic duration; and for any T/τ the same equation of motion
 //! on a one-dimensional foundation (method of dimensionality reduction; Popov & Heß, 2015).
 //!
-//! `cargo run --release --example impact`
+//! `cargo run --release -p viscocontact-coupling --bin impact`
 
+#[path = "../support/mod.rs"]
 mod support;
 
 use std::cell::RefCell;
@@ -22,6 +23,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use indicatif::ProgressBar;
 use ode_solvers::{Rk4, System, Vector2};
+use viscocontact::Result;
 use viscocontact::analytic::{AxisymmetricContact, Profile};
 use viscocontact::output::Field;
 use viscocontact::plot::{Animation, COLORS, Chart, Legend, Quantity, Scale, Style};

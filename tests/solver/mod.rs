@@ -1,7 +1,5 @@
 //! Is the contact problem of a step solved, whatever the scene, the load, the solver and the region?
 
-#[path = "../common/mod.rs"]
-mod common;
 mod conditions;
 mod differential;
 mod extremes;

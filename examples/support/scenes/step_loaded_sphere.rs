@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 
+use viscocontact::Result;
 use viscocontact::analytic::GrowingSphere;
 use viscocontact::prelude::*;
 
@@ -67,7 +68,7 @@ impl StepLoadedSphere {
             .build()
     }
 
-    /// The jump and `steps` equal steps; returns the contact and the convolution equivalents a step.
+    /// The jump and `steps` equal steps; returns the contact and the convolution equivalents per step.
     pub fn run(&self, cells: usize, steps: usize, settings: Settings) -> Result<(ViscoelasticContact, f64)> {
         let mut contact = self.contact(cells, settings)?;
         contact.step(0.0, Load::force(self.force))?;

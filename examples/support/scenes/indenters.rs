@@ -2,6 +2,7 @@
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
+use viscocontact::Result;
 use viscocontact::prelude::*;
 
 /// Punches left, right and above, the sphere in the middle.
@@ -41,7 +42,7 @@ impl Indenters {
     /// The first `bodies` of them.
     pub fn on(&self, material: &Material, bodies: usize) -> Result<ViscoelasticContact> {
         let builder = ViscoelasticContact::builder(self.grid()?).material(material.clone());
-        let settings = Settings { tolerance: 1e-8, ..Settings::default() };
+        let settings = Settings::default().with_tolerance(1e-8);
         let mut builder = builder.settings(settings).geometry(&self.shape(0)?);
         for body in 1..bodies {
             builder = builder.another_body(&self.shape(body)?);

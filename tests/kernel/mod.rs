@@ -2,4 +2,5 @@
 
 mod coefficients;
 mod half_space;
+mod love;
 mod other_bodies;

@@ -2,6 +2,7 @@
 //! Needs `step_loaded_sphere` beside it.
 #![allow(dead_code, reason = "the test draws nothing")]
 
+use viscocontact::Result;
 use viscocontact::analytic::RigidPunch;
 use viscocontact::prelude::*;
 
@@ -45,7 +46,7 @@ pub fn pressed_punch(cells: usize, eccentricity: f64) -> Result<ViscoelasticCont
     let mut contact = ViscoelasticContact::builder(Grid::square(cells, 2.1 * RADIUS)?)
         .geometry(&FlatPunch::circular(RADIUS)?)
         .material(Material::incompressible(Elastic::new(MODULUS)?))
-        .settings(Settings { tolerance: 1e-7, ..Settings::default() })
+        .settings(Settings::default().with_tolerance(1e-7))
         .build()?;
     contact.step(0.0, Load::eccentric_force(FORCE, [eccentricity * RADIUS, 0.0]))?;
     Ok(contact)
@@ -100,7 +101,7 @@ pub fn figures_4_and_5(
 
 /// Pressures of the step-loaded sphere at its end, the residual far below the errors in time.
 fn pressure_at_end(cells: usize, steps: usize, time_rule: TimeRule) -> Result<Vec<f64>> {
-    let settings = Settings { tolerance: 1e-9, time_rule, ..Settings::default() };
+    let settings = Settings::default().with_tolerance(1e-9).with_time_rule(time_rule);
     let (contact, _) = StepLoadedSphere::maxwell().run(cells, steps, settings)?;
     Ok(contact.pressure().to_vec())
 }

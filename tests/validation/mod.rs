@@ -1,8 +1,6 @@
 //! Does it agree with closed forms, with other formulations, and with what it promises itself?
 
 mod analytic;
-#[path = "../common/mod.rs"]
-mod common;
 mod equations;
 mod hertz;
 mod oscillation;

@@ -1,8 +1,6 @@
 //! Is a body what was asked for: its spectra, its tables, its fitted series, its share in a contact?
 
 mod bodies;
-#[path = "../common/mod.rs"]
-mod common;
 mod measured;
 mod sparse_tables;
 mod spectra;

@@ -1,0 +1,19 @@
+//! The first program of the README: a sphere pressed onto a creeping body by a force that is held.
+//!
+//! `cargo run --release --example quickstart`
+
+use viscocontact::prelude::*;
+
+fn main() -> viscocontact::Result<()> {
+    let grid = Grid::square(256, 4.0e-3)?; // 256 × 256 cells on 4 mm × 4 mm
+    let mut contact = ViscoelasticContact::builder(grid)
+        .geometry(&Sphere::new(10.0e-3)?) // anything that implements `Geometry`
+        .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?)) // G = 1 MPa, η = 1 MPa·s
+        .build()?;
+    contact.step(0.0, Load::force(1.0))?; // Δ = 0: a jump of the load
+    for _ in 0..100 {
+        let report = contact.step(0.02, Load::force(1.0))?; // hold it
+        println!("{:.2} s  {:.3} mm²", report.time, contact.contact_area() * 1e6);
+    }
+    Ok(())
+}

@@ -1,0 +1,99 @@
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+#[cfg(feature = "checkpoint")]
+use super::CheckpointError;
+use super::{Error, MapError, TableError};
+
+/// A file or folder of results that cannot be written, and why.
+///
+/// The cause is the [`source`](std::error::Error::source) of the error, an [`io::Error`]: the message names the path alone.
+///
+/// ```
+/// use std::io::ErrorKind;
+/// use viscocontact::prelude::*;
+/// # #[cfg(feature = "csv")]
+/// use viscocontact::output::{CsvHistory, Metadata};
+///
+/// let contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(Elastic::new(1.0e6)?))
+///     .build()?;
+/// # #[cfg(feature = "csv")]
+/// match CsvHistory::create("no/such/folder/history.csv", &Metadata::new("Ball on rubber"), &contact, &[]) {
+///     Err(Error::Output(error)) if error.kind() == ErrorKind::NotFound => println!("create {:?} first", error.path().parent()),
+///     other => panic!("{other:?}"),
+/// }
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct OutputError {
+    path: PathBuf,
+    cause: Arc<io::Error>,
+}
+
+impl OutputError {
+    #[cfg(any(feature = "checkpoint", feature = "csv", feature = "npy", feature = "plot", feature = "vtk"))]
+    pub(crate) fn new(path: &Path, cause: io::Error) -> OutputError {
+        OutputError { path: path.to_owned(), cause: Arc::new(cause) }
+    }
+
+    /// The file or folder.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The kind of the cause: [`AlreadyExists`](io::ErrorKind::AlreadyExists) where there are files of an earlier run,
+    /// [`InvalidInput`](io::ErrorKind::InvalidInput) where what was asked for cannot be written, else that of the system.
+    pub fn kind(&self) -> io::ErrorKind {
+        self.cause.kind()
+    }
+
+    /// The cause.
+    pub fn io_error(&self) -> &io::Error {
+        &self.cause
+    }
+}
+
+impl fmt::Display for OutputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} cannot be written", self.path.display())
+    }
+}
+
+impl std::error::Error for OutputError {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        Some(&*self.cause)
+    }
+}
+
+/// Of the same path, kind and message.
+impl PartialEq for OutputError {
+    fn eq(&self, other: &OutputError) -> bool {
+        self.path == other.path && self.kind() == other.kind() && self.cause.to_string() == other.cause.to_string()
+    }
+}
+
+impl Error {
+    /// The kind of the system's error behind this one: of a file that could not be read or written. `None` of all others.
+    ///
+    /// ```
+    /// use std::io::ErrorKind;
+    /// use viscocontact::geometry::HeightMap;
+    ///
+    /// let error = HeightMap::read("no/such/map.sdf").unwrap_err();
+    /// assert_eq!(error.io_kind(), Some(ErrorKind::NotFound));
+    /// ```
+    pub fn io_kind(&self) -> Option<io::ErrorKind> {
+        match self {
+            Error::Output(error) => Some(error.kind()),
+            Error::Map(MapError::Unreadable { kind, .. } | MapError::Unwritable { kind, .. }) => *kind,
+            Error::Table(TableError::Unreadable { kind, .. }) => *kind,
+            #[cfg(feature = "checkpoint")]
+            Error::Checkpoint { source: CheckpointError::Unreadable { kind, .. }, .. } => Some(*kind),
+            _ => None,
+        }
+    }
+}

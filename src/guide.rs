@@ -1,0 +1,22 @@
+//! Guides: pages with programs to start from, all of which are run as tests.
+//!
+//! | page | |
+//! |---|---|
+//! | [`tour`] | from a grid to a picture |
+//! | [`accuracy`] | mesh, steps, tolerance: what to choose, and how to know |
+//! | [`own_models`] | your own rheology, shape and load |
+//! | [`coupling`] | a contact inside another integrator, with steps that are taken back |
+//!
+//! The same pages are in the folder `docs/guide` of the source.
+
+macro_rules! pages {
+    ($($page:ident)*) => {$(
+        pub mod $page {
+            #![doc = include_str!(concat!("../docs/guide/", stringify!($page), ".md"))]
+
+            use crate::prelude::*;
+            use crate::*;
+        }
+    )*};
+}
+pages! { tour accuracy own_models coupling }

@@ -1,0 +1,148 @@
+//! The legend of a chart, and where it hides least.
+
+use crate::plot::axis::TICK_SIZE;
+use crate::plot::canvas::Canvas;
+use crate::plot::chart::Style;
+use crate::plot::frame::{Frame, text_width};
+use crate::plot::shape::Anchor;
+use crate::plot::{Color, Legend};
+
+/// Height of an entry, length of its line, and the space around entries in pixels.
+const ENTRY: f64 = 34.0;
+const LINE: f64 = 40.0;
+const SPACE: f64 = 12.0;
+/// Distance from the axes in pixels.
+const INSET: f64 = 14.0;
+/// Curves are regarded as points at most this far apart, in pixels.
+const SPACING: f64 = 5.0;
+
+/// All positions, corners first.
+const ALL: [Legend; 9] = [
+    Legend::UpperRight,
+    Legend::UpperLeft,
+    Legend::LowerRight,
+    Legend::LowerLeft,
+    Legend::UpperMiddle,
+    Legend::LowerMiddle,
+    Legend::MiddleRight,
+    Legend::MiddleLeft,
+    Legend::MiddleMiddle,
+];
+
+impl Legend {
+    /// The rectangle of a legend of this size: left, top, right and bottom.
+    fn rectangle(self, [width, height]: [f64; 2], frame: &Frame) -> [f64; 4] {
+        use Legend::*;
+        let left = match self {
+            UpperLeft | MiddleLeft | LowerLeft => frame.left + INSET,
+            UpperMiddle | MiddleMiddle | LowerMiddle => 0.5 * (frame.left + frame.right - width),
+            UpperRight | MiddleRight | LowerRight => frame.right - INSET - width,
+        };
+        let top = match self {
+            UpperLeft | UpperMiddle | UpperRight => frame.top + INSET,
+            MiddleLeft | MiddleMiddle | MiddleRight => 0.5 * (frame.top + frame.bottom - height),
+            LowerLeft | LowerMiddle | LowerRight => frame.bottom - INSET - height,
+        };
+        [left.round(), top.round(), (left + width).round(), (top + height).round()]
+    }
+
+    /// The rectangle of a legend that covers the fewest of `points`, and how many; at this position if no other covers
+    /// fewer.
+    fn place(self, size: [f64; 2], frame: &Frame, points: &[[f64; 2]]) -> ([f64; 4], usize) {
+        let covered = |[left, top, right, bottom]: [f64; 4]| {
+            let near = |low: f64, high: f64, value: f64| (low - 6.0..=high + 6.0).contains(&value);
+            points.iter().filter(|[x, y]| near(left, right, *x) && near(top, bottom, *y)).count()
+        };
+        let positions = std::iter::once(self).chain(ALL).map(|position| position.rectangle(size, frame));
+        let counted = positions.map(|rectangle| (rectangle, covered(rectangle)));
+        counted.min_by_key(|(_, covered)| *covered).unwrap_or_default()
+    }
+}
+
+/// Points along a line, close enough that none passes under a legend unseen.
+pub(super) fn points_along(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> {
+    line.windows(2).flat_map(|ends| {
+        let [dx, dy] = [ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]];
+        let count = (dx.hypot(dy) / SPACING).ceil().max(1.0);
+        (0..=count as usize).map(move |k| {
+            let t = k as f64 / count;
+            [ends[0][0] + t * dx, ends[0][1] + t * dy]
+        })
+    })
+}
+
+/// A curve in the legend.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Entry<'a> {
+    pub(super) label: &'a str,
+    pub(super) color: Color,
+    pub(super) style: Style,
+}
+
+/// Width and height of a legend.
+fn size(entries: &[Entry]) -> [f64; 2] {
+    let widest = entries.iter().map(|entry| text_width(entry.label)).fold(0.0, f64::max);
+    [3.0 * SPACE + LINE + widest, SPACE + ENTRY * entries.len() as f64]
+}
+
+/// How many of `points` the legend would cover.
+pub(super) fn covered(entries: &[Entry], preferred: Legend, frame: &Frame, points: &[[f64; 2]]) -> usize {
+    if entries.is_empty() { 0 } else { preferred.place(size(entries), frame, points).1 }
+}
+
+/// Draws the entries where they cover the fewest of `points`.
+pub(super) fn draw(canvas: &mut Canvas, entries: &[Entry], preferred: Legend, frame: &Frame, points: &[[f64; 2]]) {
+    if entries.is_empty() {
+        return;
+    }
+    let (area @ [left, top, right, bottom], _) = preferred.place(size(entries), frame, points);
+    canvas.rectangle(area, Color::WHITE, 85);
+    let outline = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
+    canvas.lines(&[outline.map(|point| point.map(|value| value + 0.5)).to_vec()], 1.0, Color(190, 190, 190));
+    for (k, Entry { label, color, style }) in entries.iter().enumerate() {
+        let (x, y) = (left + SPACE, top + 0.5 * SPACE + ENTRY * (k as f64 + 0.5));
+        style.draw(canvas, &[vec![[x, y], [x + LINE, y]]], &[[x + 0.5 * LINE, y]], *color);
+        canvas.text(label, [x + LINE + SPACE, y + 0.35 * TICK_SIZE], TICK_SIZE, Anchor::Start, false);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plot::axis::{Axis, Room};
+
+    #[test]
+    fn the_legend_avoids_the_data() {
+        let axis = |horizontal| Axis::linear(&"q".into(), 1.0, [0.0, 1.0], Room { length: 600.0, horizontal });
+        let frame = Frame { left: 100.0, top: 50.0, right: 1100.0, bottom: 650.0, axes: [axis(true), axis(false)] };
+        let size = [300.0, 100.0];
+        let line = |from: [f64; 2], to: [f64; 2]| points_along(&[from, to]).collect::<Vec<_>>();
+        let rising = line([100.0, 650.0], [1100.0, 50.0]);
+        let at = |legend: Legend| legend.rectangle(size, &frame);
+        // where it is wanted, as long as it hides nothing there
+        assert_eq!(Legend::UpperLeft.place(size, &frame, &rising).0, at(Legend::UpperLeft));
+        assert_eq!(Legend::LowerRight.place(size, &frame, &rising).0, at(Legend::LowerRight));
+        assert_eq!(Legend::UpperRight.place(size, &frame, &rising).0, at(Legend::UpperLeft));
+        let both = [rising, line([100.0, 50.0], [1100.0, 650.0])].concat();
+        assert_eq!(Legend::UpperLeft.place(size, &frame, &both).0, at(Legend::UpperMiddle));
+        // two far ends of a line: what passes between them counts
+        let under_top = line([100.0, 100.0], [1100.0, 100.0]);
+        assert_eq!(Legend::UpperMiddle.place(size, &frame, &under_top).0, at(Legend::LowerRight));
+    }
+    #[test]
+    fn a_chart_grows_until_the_legend_hides_nothing() {
+        use crate::plot::{COLORS, Chart};
+        let blue = |label: &str| {
+            let mut chart = Chart::new("", "x", "y", Legend::UpperRight);
+            // zigzags through all positions
+            let points = (0..=60).map(|k| (f64::from(k), f64::from(k % 2))).collect();
+            chart.add(label, COLORS[0], Style::Line, points);
+            let picture = chart.draw().unwrap();
+            let width = picture.size()[0] as usize;
+            let pixels = picture.rgb().chunks_exact(3).enumerate().filter(|(_, pixel)| *pixel == [0, 114, 178]);
+            pixels.filter(|(k, _)| k % width < 800).map(|(k, _)| k / width).min().unwrap()
+        };
+        // the curve, left of the legend, ends lower
+        assert!(blue("") < 90 && (120..200).contains(&blue("zigzag")), "{} {}", blue(""), blue("zigzag"));
+    }
+}

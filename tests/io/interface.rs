@@ -1,0 +1,206 @@
+//! What callers rely on besides numbers: errors that can be told apart, outputs that replace earlier ones when told so, names
+//! that do not collide, values that can be stored.
+
+use std::error::Error as _;
+use std::io;
+
+use crate::common::bodies::maxwell;
+use crate::common::spheres::sphere_on;
+use viscocontact::Error;
+
+/// Names that the prelude leaves to others: an ambiguous one would not compile.
+mod names {
+    pub struct Path;
+    pub struct Sum;
+    pub struct Form;
+    pub type Result = Path;
+}
+
+mod with_prelude {
+    use super::names::*;
+    use viscocontact::prelude::*;
+
+    #[test]
+    fn the_prelude_leaves_common_names_alone() {
+        let (_, _, path): (Sum, Form, Result) = (Sum, Form, Path);
+        assert_eq!(size_of_val(&path), 0);
+        let _ = Load::force(1.0);
+    }
+}
+
+use viscocontact::prelude::*;
+
+fn contact() -> ViscoelasticContact {
+    sphere_on(Grid::square(16, 4.0e-3).unwrap(), maxwell(), Settings::default())
+}
+
+/// The messages of an error and of its sources.
+fn messages(error: &Error) -> Vec<String> {
+    let mut messages = vec![error.to_string()];
+    let mut source = error.source();
+    while let Some(error) = source {
+        messages.push(error.to_string());
+        source = error.source();
+    }
+    messages
+}
+
+/// No error says what one of its sources says again, and those of files name the file.
+#[test]
+fn no_message_is_said_twice() {
+    let missing = "no/such/folder/file";
+    let errors = [
+        (false, Maxwell::new(-1.0, 1.0).unwrap_err()),
+        (false, Ramp::new(Load::force(0.0), Load::approach(0.0), 1.0).unwrap_err()),
+        (true, HeightMap::read(format!("{missing}.sdf")).unwrap_err()),
+        #[cfg(feature = "csv")]
+        (true, TabulatedCreep::from_csv(missing, viscocontact::rheology::Units::SI).unwrap_err()),
+        #[cfg(feature = "checkpoint")]
+        (true, contact().resume(missing).unwrap_err()),
+        #[cfg(feature = "checkpoint")]
+        (true, contact().save(missing).unwrap_err()),
+        #[cfg(feature = "npy")]
+        (true, viscocontact::output::write_npy(missing, contact().grid(), &[0.0; 256]).unwrap_err()),
+    ];
+    for (of_file, error) in errors {
+        let messages = messages(&error);
+        for (k, message) in messages.iter().enumerate() {
+            assert!(messages[..k].iter().all(|outer| !outer.contains(message)), "{messages:?}");
+        }
+        assert_eq!(error.io_kind(), of_file.then_some(io::ErrorKind::NotFound), "{messages:?}");
+        assert!(!of_file || messages[0].contains(missing), "{messages:?}");
+    }
+}
+
+#[test]
+fn a_report_prints_round_times() {
+    let mut contact = contact();
+    contact.step(0.0, Load::force(0.5)).unwrap();
+    let mut report = contact.step(0.05, Load::force(0.5)).unwrap();
+    for _ in 0..2 {
+        report = contact.step(0.05, Load::force(0.5)).unwrap();
+    }
+    assert!(report.time != 0.15, "the sum of three steps is not rounded: {:?}", report.time);
+    assert!(report.to_string().starts_with("t = 0.15 s: force 0.5 N, approach "), "{report}");
+    assert_eq!(report.area, contact.contact_cells() as f64 * contact.grid().cell_area());
+}
+
+/// Under a grid that follows the indenter nothing is estimated, and the report says so.
+#[test]
+fn steps_over_the_bodies_have_no_estimate() {
+    let settings = Settings::default().with_frame(Frame::Indenter);
+    let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), maxwell(), settings);
+    let report = contact.step(0.0, Load::force(0.1)).unwrap();
+    assert_eq!(report.time_error, Some(0.0));
+    let report = contact.step_over([1, 0], 0.1, Load::force(0.1)).unwrap();
+    assert_eq!(report.time_error, None);
+    assert!(report.to_string().contains("error in time not estimated"), "{report}");
+}
+
+/// A run that owns its contact takes the same steps as one that borrows it, and can be sent to another thread.
+#[test]
+fn a_run_can_own_its_contact() {
+    let load = || Ramp::new(Load::force(0.0), Load::force(0.5), 1.0).unwrap();
+    for stepping in [Stepping::fixed(0.25), Stepping::adaptive(1e-2)] {
+        let mut borrowed = contact();
+        let history = load();
+        let mut run = borrowed.follow(&history, stepping, 1.0);
+        while run.next_step().unwrap().is_some() {}
+        let owned = std::thread::spawn(move || {
+            let mut run: Follow<'static> = contact().into_follow(load(), stepping, 1.0);
+            while run.next_step().unwrap().is_some() {}
+            run.into_contact()
+        });
+        assert_eq!(owned.join().unwrap().pressure(), borrowed.pressure());
+    }
+}
+
+/// References stand for what they refer to, overridden methods included.
+#[expect(clippy::needless_borrows_for_generic_args, reason = "it is about references")]
+#[test]
+fn references_implement_the_traits() {
+    fn compliance(body: impl Rheology) -> (f64, bool) {
+        (body.creep_compliance(1.0), body.creep_spectrum().is_some())
+    }
+    fn gap(shape: impl Geometry) -> f64 {
+        shape.initial_gap(1.0e-3, 0.0)
+    }
+    fn corner(history: impl LoadHistory) -> Option<f64> {
+        history.next_breakpoint(0.0)
+    }
+    let (body, shape) = (Maxwell::new(1.0e6, 1.0e6).unwrap(), Sphere::new(10.0e-3).unwrap());
+    assert_eq!(compliance(&body), (body.creep_compliance(1.0), true));
+    assert_eq!(gap(&shape), shape.initial_gap(1.0e-3, 0.0));
+    assert_eq!(corner(&Ramp::new(Load::force(0.0), Load::force(0.5), 1.0).unwrap()), Some(1.0));
+}
+
+#[test]
+fn complex_numbers_come_from_the_crate() {
+    let body = Maxwell::new(1.0e6, 1.0e6).unwrap();
+    let spectrum = body.creep_spectrum().unwrap();
+    let modulus: viscocontact::num_complex::Complex64 = 1.0 / spectrum.complex_compliance(1.0);
+    assert!(modulus.re > 0.0 && modulus.im > 0.0);
+}
+
+#[cfg(all(feature = "csv", feature = "npy", feature = "vtk"))]
+mod outputs {
+    use std::fs;
+    use std::io::ErrorKind::AlreadyExists;
+
+    use viscocontact::output::{CsvHistory, Field, Metadata, NpzSeries, VtkSeries};
+
+    use super::*;
+
+    /// Every output that grows refuses an earlier one, leaves it as it is, and replaces it when told so.
+    #[test]
+    fn earlier_outputs_are_replaced_when_told_so() {
+        let folder = std::env::temp_dir().join(format!("viscocontact-replaced-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        let mut contact = contact();
+        let report = contact.step(0.0, Load::force(0.5)).unwrap();
+        let metadata = || Metadata::new("Ball on rubber");
+        let count = |name: &str| fs::read_dir(folder.join(name)).unwrap().count();
+
+        let (archives, images, table) = (folder.join("npz"), folder.join("vtk"), folder.join("history.csv"));
+        let mut first = NpzSeries::create(&archives, metadata(), &[Field::Pressure]).unwrap();
+        let mut second = VtkSeries::create(&images, metadata(), &[Field::Pressure]).unwrap();
+        let mut third = CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap();
+        for _ in 0..3 {
+            first.write(&contact).unwrap();
+            second.write(&contact).unwrap();
+            third.write(&contact, &report, &[]).unwrap();
+        }
+        fs::write(archives.join("notes.txt"), "kept").unwrap();
+        let before = fs::read(&table).unwrap();
+        for error in [
+            NpzSeries::create(&archives, metadata(), &[Field::Pressure]).unwrap_err(),
+            VtkSeries::create(&images, metadata(), &[Field::Pressure]).unwrap_err(),
+            CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap_err(),
+        ] {
+            assert_eq!(error.io_kind(), Some(AlreadyExists), "{error:?}");
+        }
+        assert_eq!(fs::read(&table).unwrap(), before);
+        assert_eq!([count("npz"), count("vtk")], [4, 4]);
+
+        // what is asked for wrongly removes nothing
+        assert!(NpzSeries::create_or_replace(&archives, metadata(), &[Field::Gap; 2]).is_err());
+        assert!(CsvHistory::create_or_replace(&table, &metadata(), &contact, &["a", "a"]).is_err());
+        assert_eq!(fs::read(&table).unwrap(), before);
+        assert_eq!(count("npz"), 4);
+
+        let mut first = NpzSeries::create_or_replace(&archives, metadata(), &[Field::Pressure]).unwrap();
+        let mut second = VtkSeries::create_or_replace(&images, metadata(), &[Field::Pressure]).unwrap();
+        CsvHistory::create_or_replace(&table, &metadata(), &contact, &[]).unwrap();
+        assert_eq!([count("npz"), count("vtk")], [1, 0]);
+        first.write(&contact).unwrap();
+        second.write(&contact).unwrap();
+        assert_eq!([count("npz"), count("vtk")], [2, 2]);
+        assert_eq!(fs::read_to_string(&table).unwrap().lines().count(), 2);
+        assert_eq!(fs::read_to_string(archives.join("notes.txt")).unwrap(), "kept");
+
+        let error = CsvHistory::create_or_replace(&archives, &metadata(), &contact, &[]).unwrap_err();
+        assert!(matches!(error, Error::NotAFile { .. }), "{error}");
+        fs::remove_dir_all(&folder).unwrap();
+    }
+}

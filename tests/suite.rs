@@ -1,0 +1,12 @@
+//! The tests that see what is public: one module for each doubt that a user may have.
+
+use viscocontact_tests as common;
+
+mod io;
+mod kernel;
+mod materials;
+mod properties;
+mod solver;
+mod surfaces;
+mod time;
+mod validation;
