@@ -31,12 +31,12 @@ impl GaussLegendre {
     }
 
     /// Σ w_k f(x_k): the integral of `f` over [−1, 1].
-    pub(crate) fn sum(&self, f: impl Fn(f64) -> f64) -> f64 {
+    pub(crate) fn sum(&self, mut f: impl FnMut(f64) -> f64) -> f64 {
         self.points.iter().map(|&(x, w)| w * f(x)).sum()
     }
 
     /// The integral of `f` over [from, to].
-    pub(crate) fn integrate(&self, from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
+    pub(crate) fn integrate(&self, from: f64, to: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         half * self.sum(|s| f(middle + half * s))
     }

@@ -14,13 +14,24 @@ use crate::error::{Result, exact_length};
 use crate::kernel::InfluenceKernel;
 use crate::load::Load;
 use crate::memory;
-use crate::rheology::Material;
+use crate::rheology::{Material, TemperatureHistory};
 use crate::solver::RigidMotion;
 
 impl ViscoelasticContact {
     /// Time \[s\], 0 at first.
     pub fn time(&self) -> f64 {
         self.computation.state.clock.time
+    }
+
+    /// The reduced time \[s\], as it passes for the material: ∫ dt/a_T(T(t)) with a history of the temperature
+    /// ([`Builder::temperature`](crate::contact::Builder::temperature)), else the time.
+    pub fn reduced_time(&self) -> f64 {
+        self.computation.state.clock.reduced_time
+    }
+
+    /// The history of the temperature, if it was given one.
+    pub fn temperature(&self) -> Option<&TemperatureHistory> {
+        self.scene.temperature.as_ref()
     }
 
     /// The grid of every field.

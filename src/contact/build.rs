@@ -38,7 +38,7 @@ impl Builder {
         let gaps = std::mem::take(&mut self.gaps).into_iter().collect::<Result<_>>()?;
         let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
         let (material, kernel, history) = self.parts()?;
-        let Builder { grid, settings, .. } = self;
+        let Builder { grid, settings, temperature, .. } = self;
         let folded = if settings.symmetry { indenter.even_axes(&grid) } else { [false; 2] };
         let region = if windowed(&settings, &history, &kernel) {
             // without load, each body is above the cell that it would touch first
@@ -55,6 +55,7 @@ impl Builder {
             kernel,
             material,
             settings,
+            temperature,
             bodies,
         };
         let history = history.undisturbed_on(region.cells(), !region.covers());
@@ -129,7 +130,7 @@ impl Builder {
         if let Some(times) = &self.times
             && self.settings.time_rule.needs_series()
         {
-            material = times.fit(&material, self.settings.series_tolerance)?;
+            material = times.fit(&material, self.temperature.as_ref(), self.settings.series_tolerance)?;
         }
         let history = history_by(&self.settings, &material, kernel.periodic_axes())?;
         Ok((material, kernel, history))

@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::geometry::{Geometry, evaluate};
 use crate::kernel::InfluenceKernel;
 use crate::load::LoadHistory;
-use crate::rheology::Material;
+use crate::rheology::{Material, TemperatureHistory};
 
 /// The parts of a [`ViscoelasticContact`]; see [`ViscoelasticContact::builder`].
 #[derive(Debug, Clone)]
@@ -23,6 +23,7 @@ pub struct Builder {
     pub(super) material: Option<Material>,
     pub(super) counter_body: Option<Material>,
     pub(super) times: Option<Times>,
+    pub(super) temperature: Option<TemperatureHistory>,
     pub(super) kernel: Option<Arc<InfluenceKernel>>,
     pub(super) settings: Settings,
 }
@@ -42,6 +43,7 @@ impl Builder {
             material: None,
             counter_body: None,
             times: None,
+            temperature: None,
             kernel: None,
             settings: Settings::default(),
         }
@@ -123,6 +125,16 @@ impl Builder {
     /// ```
     pub fn times_of(self, history: &dyn LoadHistory, until: f64) -> Builder {
         Builder { times: Some(Times::of_run(history, until)), ..self }
+    }
+
+    /// A temperature that changes: all material then creeps in reduced time, ξ = ∫ dt/a_T(T(t)), with its times at the reference
+    /// temperature of the law. Those of [`Builder::times`] and [`Error::BeyondMaterial`](crate::Error::BeyondMaterial) are
+    /// reduced times; those of [`Builder::times_of`] are taken from the run. A scene without one costs nothing more.
+    ///
+    /// A step fails where the temperature is outside the range of the law.
+    pub fn temperature(mut self, history: TemperatureHistory) -> Builder {
+        self.temperature = Some(history);
+        self
     }
 
     /// An influence kernel to share with other contacts on the same grid; without one,

@@ -82,7 +82,7 @@ impl ViscoelasticContact {
         match flat_punch(kernel, |k| current.solution.pressure[k] > 0.0) {
             Ok(sum) => Ok(sum * self.grid().cell_area() * region.images() as f64),
             Err((iterations, residual)) => {
-                let (time, dt, tolerance) = (clock.time, clock.last_dt, FLAT_PUNCH_TOLERANCE);
+                let (time, dt, tolerance) = (clock.time, clock.last_length, FLAT_PUNCH_TOLERANCE);
                 let convergence =
                     Convergence::new(Vec::new(), tolerance, self.settings().solver == Solver::ActiveSet, false).into();
                 Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })

@@ -6,9 +6,11 @@ use crate::Grid;
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::built::Built;
 use crate::contact::settings::Settings;
+use crate::contact::state::Clock;
+use crate::error::Result;
 use crate::hereditary::HistoryInputs;
 use crate::kernel::InfluenceKernel;
-use crate::rheology::Material;
+use crate::rheology::{Material, TemperatureHistory};
 
 /// Grid, kernel, material and settings of a contact. A contact and its clones share one.
 #[derive(Debug)]
@@ -17,6 +19,7 @@ pub(crate) struct Scene {
     pub(super) kernel: Arc<InfluenceKernel>,
     pub(super) material: Material,
     pub(super) settings: Settings,
+    pub(super) temperature: Option<TemperatureHistory>,
     /// Number of rigid bodies.
     pub(super) bodies: usize,
     /// Fingerprint of the gap as built.
@@ -29,5 +32,35 @@ impl Scene {
     pub(super) fn history_inputs(&self) -> HistoryInputs<'_> {
         let least_side = self.grid.spacing().into_iter().fold(f64::INFINITY, f64::min);
         HistoryInputs { material: &self.material, history_limit: self.settings.history_limit, least_side }
+    }
+
+    /// The reduced time at a `time` not before that of the clock.
+    pub(super) fn reduced_time(&self, clock: &Clock, time: f64) -> Result<f64> {
+        match &self.temperature {
+            None => Ok(time),
+            Some(history) => Ok(clock.reduced_time + history.reduced_time(clock.time, time)?),
+        }
+    }
+
+    /// The reduced time that passes in a step of such a `length` that ends at `time`.
+    pub(super) fn reduced_length(&self, clock: &Clock, time: f64, length: f64) -> Result<f64> {
+        match &self.temperature {
+            Some(history) if length > 0.0 => history.reduced_time(clock.time, time),
+            _ => Ok(length),
+        }
+    }
+
+    /// About the time that passes after that of the clock while the reduced time grows by `reduced`, at most `most`.
+    pub(super) fn length_of(&self, clock: &Clock, reduced: f64, most: f64) -> Result<f64> {
+        match &self.temperature {
+            None => Ok(reduced.min(most)),
+            Some(history) => history.length_of(clock.time, reduced, most),
+        }
+    }
+
+    /// The first corner of the temperature after a time.
+    pub(super) fn next_temperature_corner(&self, after: f64) -> f64 {
+        let corner = self.temperature.as_ref().and_then(|history| history.next_corner(after));
+        corner.unwrap_or(f64::INFINITY)
     }
 }

@@ -45,18 +45,28 @@ pub(crate) struct State {
 pub(crate) struct Clock {
     pub(super) time: f64,
     /// Length of the last step.
+    pub(super) last_length: f64,
+    /// Time as it passes for the material; without a history of the temperature, the time.
+    pub(super) reduced_time: f64,
+    /// Length of the last step in reduced time.
     pub(super) last_dt: f64,
-    /// The bodies were undisturbed until then.
+    /// The reduced time until which the bodies were undisturbed.
     pub(super) undisturbed_until: f64,
 }
 
 impl Clock {
     /// After a step; `touched` tells whether anything has ever been displaced.
     pub(super) fn accept(&mut self, step: Interval, touched: bool) {
-        (self.time, self.last_dt) = (step.time, step.dt);
+        (self.time, self.last_length) = (step.time, step.length);
+        (self.reduced_time, self.last_dt) = (step.reduced, step.dt);
         if !touched {
-            self.undisturbed_until = step.time;
+            self.undisturbed_until = step.reduced;
         }
+    }
+
+    /// How long the bodies have been disturbed, in reduced time.
+    pub(super) fn age(&self) -> f64 {
+        self.reduced_time - self.undisturbed_until
     }
 }
 
@@ -138,7 +148,7 @@ impl State {
 
     /// Whether no pressure has ever acted.
     pub(super) fn is_undisturbed(&self) -> bool {
-        self.clock.undisturbed_until == self.clock.time && self.current.contact_cells == 0
+        self.clock.age() == 0.0 && self.current.contact_cells == 0
     }
 
     /// Copies another without reallocating where the regions are the same and no direct sum grows.

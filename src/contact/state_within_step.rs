@@ -56,11 +56,17 @@ impl ViscoelasticContact {
     pub fn within_step(&self, time: f64) -> Result<StateWithinStep<'_>> {
         let State { clock, history, earlier, .. } = &self.computation.state;
         let kept = history.displacement_before().is_some();
-        let start = if kept { clock.time - clock.last_dt } else { clock.time };
+        let start = if kept { clock.time - clock.last_length } else { clock.time };
         // by rounding the start may come out a little off
-        let inside = time >= start - 1e-12 * clock.last_dt && time <= clock.time;
+        let inside = time >= start - 1e-12 * clock.last_length && time <= clock.time;
         within("time within the last step", time, inside, "between its start and its end")?;
-        let share = if time == clock.time || !kept { 1.0 } else { ((time - start) / clock.last_dt).clamp(0.0, 1.0) };
+        let share = if time == clock.time || !kept {
+            1.0
+        } else if let Some(history) = &self.scene.temperature {
+            (history.reduced_time(start, time.max(start))? / clock.last_dt).clamp(0.0, 1.0)
+        } else {
+            ((time - start) / clock.last_dt).clamp(0.0, 1.0)
+        };
         let polynomial = StepPolynomial::new(share, clock.last_dt, earlier.map(|earlier| earlier.dt));
         Ok(StateWithinStep { contact: self, polynomial, time })
     }

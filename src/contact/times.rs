@@ -2,14 +2,16 @@
 
 use std::ops::RangeInclusive;
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::load::LoadHistory;
-use crate::rheology::Material;
+use crate::rheology::{Material, TemperatureHistory};
 
 /// The shortest time that a run is taken to look at is this part of the shortest time between corners of its load, ...
 const SHORTEST_PART: f64 = 1e-6;
 /// ... of the first so many.
 const MAX_CORNERS: usize = 1000;
+/// The slowest creep of a run is looked for at so many temperatures.
+const TEMPERATURES: i32 = 64;
 
 /// The times over which the series of a material is fitted.
 #[derive(Debug, Clone)]
@@ -40,9 +42,22 @@ impl Times {
     }
 
     /// The material with a series over these times, where it has no exact one.
-    pub(super) fn fit(&self, material: &Material, tolerance: f64) -> Result<Material> {
-        let (first, mut last) = (*self.range.start(), *self.range.end());
+    pub(super) fn fit(
+        &self,
+        material: &Material,
+        temperature: Option<&TemperatureHistory>,
+        tolerance: f64,
+    ) -> Result<Material> {
+        let (mut first, mut last) = (*self.range.start(), *self.range.end());
         if self.of_run {
+            if let Some(history) = temperature {
+                let slowest = (0..=TEMPERATURES).try_fold(f64::INFINITY, |least: f64, k| {
+                    let factor =
+                        history.law().shift_factor(history.at(last * f64::from(k) / f64::from(TEMPERATURES)))?;
+                    Ok::<_, Error>(least.min(1.0 / factor))
+                })?;
+                (first, last) = (first * slowest, history.reduced_time(0.0, last)?);
+            }
             last = last.min(material.known_until()).max(first);
         }
         material.fitted(first..=last, tolerance)

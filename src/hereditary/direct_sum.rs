@@ -1,7 +1,7 @@
 //! The hereditary integral as a sum over every past increment.
 
 use crate::error::{Error, MaterialError, Result};
-use crate::hereditary::history::HistoryInputs;
+use crate::hereditary::history::{HistoryInputs, Interval};
 use crate::kernel::{LocalKernel, Workspace};
 
 /// The end of a step to which its increment is assigned, and what it is an increment of.
@@ -60,7 +60,7 @@ impl DirectSum {
     /// Writes u_old over `u_old`; returns c and the number of convolutions taken.
     pub(super) fn predict(
         &mut self,
-        (time, dt): (f64, f64),
+        Interval { time, reduced, dt, .. }: Interval,
         HistoryInputs { material, history_limit: limit, .. }: HistoryInputs<'_>,
         (kernel, work): (&LocalKernel, &mut Workspace),
         u_old: &mut [f64],
@@ -81,7 +81,7 @@ impl DirectSum {
         let (mut oldest, mut younger) = (age, newest);
         for (when, _) in self.increments.iter().rev() {
             // ages never fall, but their differences of times may, by rounding
-            let older = (time - when).max(oldest);
+            let older = (reduced - when).max(oldest);
             younger = material.checked_compliance(older, (oldest, younger))?;
             oldest = older;
             self.weights.push(younger - newest);
@@ -114,7 +114,7 @@ impl DirectSum {
         DirectSum { increments, ..DirectSum::new(self.weighting) }
     }
 
-    /// Takes the step of length `dt` that ends at `time` into the past, given p and v at its start and at its end.
+    /// Takes the step of length `dt` that ends at the reduced `time` into the past, given p and v at its start and at its end.
     pub(super) fn commit(&mut self, (time, dt): (f64, f64), [pressure, potential]: [[&[f64]; 2]; 2]) {
         let when = if self.weighting == Weighting::Start { time - dt } else { time };
         let [before, after] = if self.is_uncached() { pressure } else { potential };

@@ -38,6 +38,10 @@ pub(crate) struct Interval {
     /// Its end \[s\].
     pub(crate) time: f64,
     /// Its length \[s\], 0 for a jump.
+    pub(crate) length: f64,
+    /// The reduced time at its end, and its length in reduced time: what passes for the material \[s\]. Without a history of
+    /// the temperature they are those above.
+    pub(crate) reduced: f64,
     pub(crate) dt: f64,
     /// By how many cells the bodies move under the grid.
     pub(crate) stride: [isize; 2],
@@ -285,7 +289,7 @@ impl History {
             }
             Rule::DirectSum(own) => {
                 let RememberedField { now, trial, .. } = displacement;
-                let (c, convolutions) = own.predict((step.time, step.dt), inputs, (kernel, work), trial)?;
+                let (c, convolutions) = own.predict(step, inputs, (kernel, work), trial)?;
                 if c == 0.0 {
                     trial.copy_from_slice(now); // the sum is the same but for rounding
                 }
@@ -338,7 +342,7 @@ impl History {
             }
             Rule::DirectSum(own) => {
                 if touched {
-                    own.commit((step.time, step.dt), pressed);
+                    own.commit((step.reduced, step.dt), pressed);
                 }
                 displacement.commit();
             }

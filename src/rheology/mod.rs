@@ -17,7 +17,7 @@
 //! | [`SlowCreep`] | J_g + c ln(1 + (t/λ)ⁿ) |
 //! | [`FnRheology`] | any closure |
 //! | [`TabulatedCreep`], [`TabulatedRelaxation`], [`TabulatedDynamic`] | fitted to measurements |
-//! | [`AtTemperature`] | that of another model, at another temperature |
+//! | [`AtTemperature`] | that of another model, at another temperature; [`TemperatureHistory`]: one that changes |
 //!
 //! A [`Rheology`] describes shear; a [`Material`] adds what the volume does and yields the contact
 //! compliance C(t) of the surface. Published materials are in [`library`], the laws that every
@@ -61,6 +61,7 @@ mod series;
 mod slow_creep;
 mod spectrum;
 mod table;
+mod temperature_history;
 mod time_temperature;
 mod zener;
 
@@ -87,6 +88,7 @@ pub use spectrum::{CreepSpectrum, RelaxationSpectrum};
 #[cfg(feature = "csv")]
 pub use table::Units;
 pub use table::{Isotherm, MasterCurve, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
+pub use temperature_history::TemperatureHistory;
 pub(crate) use time_temperature::GAS_CONSTANT;
 pub use time_temperature::{AtTemperature, TimeTemperature};
 pub use zener::Zener;

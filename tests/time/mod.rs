@@ -6,5 +6,6 @@ mod follow;
 mod honest;
 mod protocols;
 mod protocols_run;
+mod temperature;
 mod time_rules;
 mod uncached;

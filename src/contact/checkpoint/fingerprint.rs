@@ -8,7 +8,7 @@ use crate::contact::settings::Settings;
 use crate::error::CheckpointError;
 
 /// What is compared in words.
-const CHOICES: [&str; 7] = [
+const CHOICES: [&str; 8] = [
     "number of rigid bodies",
     "kernel",
     "Settings::time_rule",
@@ -16,6 +16,7 @@ const CHOICES: [&str; 7] = [
     "Settings::symmetry",
     "Settings::window",
     "Settings::series_tolerance",
+    "temperature",
 ];
 
 /// A scene, as far as it must not change. Solver, tolerance and limits may.
@@ -23,7 +24,7 @@ const CHOICES: [&str; 7] = [
 pub(super) struct Fingerprint {
     cells: [usize; 2],
     spacing: [f64; 2],
-    choices: [String; 7],
+    choices: [String; 8],
     /// Sums over the influence of the kernel.
     influence: Vec<f64>,
     creep: Creep,
@@ -45,6 +46,7 @@ impl Fingerprint {
                 symmetry.to_string(),
                 window.to_string(),
                 format!("{series_tolerance:e}"),
+                format!("{:?}", scene.temperature),
             ],
             influence: scene.kernel.mark(),
             creep: scene.built.creep(&scene.material).clone(),

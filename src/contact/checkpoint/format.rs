@@ -9,7 +9,7 @@ use crate::error::CheckpointError;
 
 const MAGIC: [u8; 8] = *b"VISCOCHK";
 /// Raised whenever what is saved changes.
-pub(super) const VERSION: u32 = 5;
+pub(super) const VERSION: u32 = 6;
 /// Magic number, version, length, checksum of all but itself.
 const HEADER: usize = 24;
 const CHECKSUM: std::ops::Range<usize> = 20..HEADER;

@@ -9,7 +9,7 @@ use super::fingerprint::Fingerprint;
 use crate::contact::computation::Computation;
 use crate::contact::run::progress::Progress;
 use crate::contact::scene::Scene;
-use crate::contact::state::{Equilibrium, State};
+use crate::contact::state::{Clock, Equilibrium, State};
 use crate::contact::time_rule::windowed;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::CheckpointError;
@@ -36,6 +36,7 @@ impl<'a> Saved<'a> {
         let scene = Arc::clone(&contact.scene);
         self.scene.require(&Fingerprint::of(&scene))?;
         check(&self.state, &contact.computation.state, &scene)?;
+        check_temperature(&self.state.clock, &scene)?;
         if self.progress.as_ref().is_some_and(|progress| !progress.fits()) {
             return Err(CheckpointError::Malformed { what: "a run that no contact can continue".into() });
         }
@@ -44,6 +45,20 @@ impl<'a> Saved<'a> {
         contact.progress = self.progress.map(|progress| Box::new(progress.into_owned()));
         Ok(())
     }
+}
+
+/// Both clocks of a checkpoint must agree to this part: closures of a temperature have no other mark.
+const CLOCKS_AGREE: f64 = 1e-9;
+
+/// Rejects a reduced time that the temperature of the scene does not lead to.
+fn check_temperature(clock: &Clock, scene: &Scene) -> Result<(), CheckpointError> {
+    let Some(history) = &scene.temperature else { return Ok(()) };
+    let [saved, built] = [clock.reduced_time, history.reduced_time(0.0, clock.time).unwrap_or(f64::NAN)];
+    if (saved - built).abs() <= CLOCKS_AGREE * built {
+        return Ok(());
+    }
+    let [saved, built] = [saved, built].map(|time| format!("reduced time {time:e} s"));
+    Err(CheckpointError::OtherScene { what: "temperature", saved, built })
 }
 
 /// Rejects fields that do not fit: a file may have a right checksum and be written by another program all the same.
@@ -75,7 +90,7 @@ fn check(state: &State, built: &State, scene: &Scene) -> Result<(), CheckpointEr
         return malformed("fields that do not fit its region, or another time rule");
     }
     let finite = |fields: &[&[f64]]| fields.iter().all(|field| field.iter().all(|value| value.is_finite()));
-    let times = [clock.time, clock.undisturbed_until, clock.last_dt];
+    let times = [clock.time, clock.last_length, clock.reduced_time, clock.undisturbed_until, clock.last_dt];
     let sound = |Equilibrium { solution, motions, .. }: &Equilibrium| {
         finite(&[&solution.pressure, &solution.potential])
             && motions.iter().all(|motion| finite(&[&[motion.approach], &motion.tilt]))

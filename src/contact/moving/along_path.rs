@@ -58,7 +58,7 @@ impl ViscoelasticContact {
         let before = (self.force(), self.moment(), self.computation.state.current.motions[0]);
         let left = Arc::clone(&self.computation.state.indenter);
         let loads = [load];
-        let step = Step { indenter, ..self.request(self.time() + dt, dt, &loads, self.settings().tolerance) };
+        let step = Step { indenter, ..self.request(self.time() + dt, dt, &loads, self.settings().tolerance)? };
         let step = self.take(step)?;
         self.spare.indenter = Some(left);
         let position = travel.position(step.time)?;

@@ -48,7 +48,7 @@ impl ViscoelasticContact {
             return Err(Error::WrongFrame { what: "a step over the bodies" });
         }
         non_negative("time step", dt)?;
-        let mut step = self.request(self.time() + dt, dt, loads, self.settings().tolerance);
+        let mut step = self.request(self.time() + dt, dt, loads, self.settings().tolerance)?;
         step.interval.stride = cells;
         self.take(step)
     }

@@ -28,7 +28,7 @@ impl Follow<'_> {
         let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
         loop {
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
-            let wanted = control.length(scene, &computation.state, &*self.history, self.until - now)?;
+            let [wanted, reduced] = control.length(scene, &computation.state, &*self.history, self.until - now)?;
             let (order, dashpot) = order_of(&computation.state, &scene.settings);
             let (time, dt) = towards(now, stop, wanted);
             // near the resolution of the time, a shortened step may round to the same end for ever
@@ -37,18 +37,19 @@ impl Follow<'_> {
             }
             tried = time;
             let loads = [self.history.before(time).validated_at(time)?];
-            let straying = control.watch(&*self.history, now, time)?;
+            let mut step = self.contact.request(time, dt, &loads, tolerance)?;
+            let clock = &computation.state.clock;
+            let straying = control.watch(&*self.history, [now, time], |time| scene.reduced_time(clock, time))?;
             let parted = computation.state.current.contact_cells == 0 && control.stays_away(&*self.history, now, time);
             if straying > control.tolerance && !parted {
-                control.judge(dt, straying, order, dashpot);
+                control.judge(step.interval.dt, straying, order, dashpot);
                 continue;
             }
-            let mut step = self.contact.request(time, dt, &loads, tolerance);
             step.interval.interpolant = scene.settings.adaptive_interpolant();
             let attempt = match self.contact.attempt(&step) {
                 Err(Error::NotConverged { .. }) if failures < MAX_SOLVER_RETRIES => {
                     failures += 1;
-                    control.shorten(dt);
+                    control.shorten(step.interval.dt);
                     add_work(&mut wasted, &self.contact.computation);
                     continue;
                 }
@@ -56,8 +57,9 @@ impl Follow<'_> {
             };
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
             let computed = attempt.computation(computation);
-            let age = time - computed.state.clock.undisturbed_until;
-            let outlook = control.outlook(scene, &loads[0], [age, corner.min(self.until)]);
+            let age = step.interval.reduced - computed.state.clock.undisturbed_until;
+            let end = scene.reduced_time(&computation.state.clock, corner.min(self.until))?;
+            let outlook = control.outlook(scene, &loads[0], [age, end]);
             let mut error = error_in_time(scene, computed, &step, outlook);
             // how bodies moved that stayed apart makes no difference
             if !(parted && computed.trial.solution.pressure.iter().all(|&p| p == 0.0)) {
@@ -65,9 +67,9 @@ impl Follow<'_> {
             }
             let by_kinks = error.by_kinks && error.relative > control.tolerance;
             let order = if by_kinks { ORDER_OF_KINKS } else { order };
-            if control.judge(dt, error.relative, order, dashpot) {
-                control.include(dt, error.defect);
-                control.accept(time, loads[0], [wanted, dt], time == corner, order);
+            if control.judge(step.interval.dt, error.relative, order, dashpot) {
+                control.include(step.interval.dt, error.defect);
+                control.accept(step.interval.reduced, loads[0], [reduced, step.interval.dt], time == corner, order);
                 let mut report = self.contact.accept(attempt, step, error);
                 if time == corner {
                     self.contact.computation.state.forget_slopes();

@@ -197,6 +197,7 @@ impl<'a> Follow<'a> {
         if corner <= now || corner.is_nan() {
             return Err(LoadError::InvalidBreakpoint { after: now, breakpoint: corner }.into());
         }
+        let corner = corner.min(self.contact.scene.next_temperature_corner(now));
         if let Some(mut control) = self.progress.control.take() {
             let report = self.adaptive_step(&mut control, corner);
             self.progress.control = Some(control);
@@ -216,12 +217,12 @@ impl<'a> Follow<'a> {
     fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
         let tolerance = self.solver_tolerance();
         let loads = [load];
-        let step = self.contact.request(time, dt, &loads, tolerance);
+        let step = self.contact.request(time, dt, &loads, tolerance)?;
         let ViscoelasticContact { scene, computation, .. } = &*self.contact;
         if self.progress.scale.is_none() {
             self.progress.scale = Some(RunScale::new(scene, &computation.state, &*self.history, self.until)?);
         }
-        let age = time - computation.state.clock.undisturbed_until;
+        let age = step.interval.reduced - computation.state.clock.undisturbed_until;
         let expected = self.progress.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, &load, age));
         let outlook = Outlook { expected, ..Outlook::default() };
         let (report, error) = self.contact.take_expecting(step, outlook)?;

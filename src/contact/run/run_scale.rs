@@ -3,7 +3,7 @@
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::window::placement::resting_depth;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::load::{Load, LoadHistory};
 
 /// Loads and displacements below this part of the greatest of the run are measured relative to that part.
@@ -39,7 +39,11 @@ impl RunScale {
         let touch = state.indenter.first_touch()[0].approach;
         let now = state.clock.time;
         let span = until - now;
-        let compliance = scene.material.contact_compliance(span.min(scene.material.known_until()));
+        let compliance_at = |time: f64| {
+            let age = scene.reduced_length(&state.clock, time, time - now)?;
+            Ok::<_, Error>(scene.material.contact_compliance(age.min(scene.material.known_until())))
+        };
+        let compliance = compliance_at(until)?;
         let mut scale = RunScale { touch, force: 0.0, depth: 0.0, stress: 0.0, depth_over_compliance: 0.0 };
         let equal = (0..=EQUAL_PARTS).map(|k| now + span * f64::from(k) / f64::from(EQUAL_PARTS));
         let decades = (1..=TIMES_PER_DECADE * DECADES)
@@ -53,9 +57,8 @@ impl RunScale {
             for load in [LoadHistory::before, LoadHistory::at] {
                 let load = load(history, time).validated_at(time)?;
                 scale.include(&load);
-                let age = (time - now).min(scene.material.known_until());
                 if let (Load::Approach { .. }, true) = (load, time > now) {
-                    scale.stress = scale.stress.max(scale.magnitude(&load) / scene.material.contact_compliance(age));
+                    scale.stress = scale.stress.max(scale.magnitude(&load) / compliance_at(time)?);
                 }
             }
         }

@@ -15,13 +15,13 @@ use crate::load::{Load, LoadHistory, Tilt};
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct StepControl {
     pub(super) tolerance: f64,
-    /// Length of the next step; `None` where earlier steps do not suggest one.
+    /// Length of the next step, as all lengths and times here in reduced time; `None` where earlier steps do not suggest one.
     next: Option<f64>,
     /// Error over tolerance of the last step accepted.
     last: f64,
     /// Times and loads of the last nodes since the last jump or corner, the newest first.
     nodes: Vec<(f64, Load)>,
-    /// Length of the last step before a corner, and what the load would change by in a second had it gone on straight.
+    /// Length of the last step before a corner, and what the load would change by in a (reduced) second had it gone on straight.
     corner: Option<(f64, f64)>,
     scale: Option<RunScale>,
     drift: Option<Drift>,
@@ -131,10 +131,10 @@ impl StepControl {
 
     /// Prepares for a step from `state`: the sizes of the run are known, and the load there is a node.
     pub(super) fn begin(&mut self, scene: &Scene, state: &State, history: &dyn LoadHistory, until: f64) -> Result<()> {
-        let now = state.clock.time;
+        let (now, reduced) = (state.clock.time, state.clock.reduced_time);
         if self.nodes.is_empty() {
-            self.nodes.push((now, history.at(now).validated_at(now)?));
-            self.since = now;
+            self.nodes.push((reduced, history.at(now).validated_at(now)?));
+            self.since = reduced;
         }
         if self.scale.is_none() {
             self.scale = Some(RunScale::new(scene, state, history, until)?);
@@ -173,10 +173,20 @@ impl StepControl {
         }
     }
 
-    /// The length to try next, at most `left`.
-    pub(super) fn length(&self, scene: &Scene, state: &State, history: &dyn LoadHistory, left: f64) -> Result<f64> {
-        let wanted = self.next.map_or_else(|| self.first(scene, state, history, left), Ok)?;
-        Ok(wanted.min(left))
+    /// The length to try next, at most `left`, and the same in reduced time.
+    pub(super) fn length(
+        &self,
+        scene: &Scene,
+        state: &State,
+        history: &dyn LoadHistory,
+        left: f64,
+    ) -> Result<[f64; 2]> {
+        let clock = &state.clock;
+        if let Some(next) = self.next {
+            return Ok([scene.length_of(clock, next, left)?, next]);
+        }
+        let first = self.first(scene, state, history, left)?.min(left);
+        Ok([first, scene.reduced_length(clock, clock.time + first, first)?])
     }
 
     /// The length of the first step after a jump or a corner: the longest over which the creep is linear to within the
@@ -192,22 +202,26 @@ impl StepControl {
         let magnitude = |load: &Load| self.scale.as_ref().map_or(0.0, |scale| scale.magnitude(load));
         let held = magnitude(&state.loads[0]);
         let (longest, slope) = match self.corner {
-            Some((before, slope)) if !jumped => (left.min(before), slope),
+            Some((before, slope)) if !jumped => (scene.length_of(&state.clock, before, left)?, slope),
             _ => (left, 0.0),
         };
         for k in 0..=LENGTHS_PER_DECADE * DECADES {
             let dt = longest * 10f64.powf(-f64::from(k) / f64::from(LENGTHS_PER_DECADE));
-            let creep = compliance(dt);
+            let reduced = scene.reduced_length(&state.clock, now + dt, dt)?;
+            let creep = compliance(reduced);
             let deviation = if jumped {
-                (compliance(0.5 * dt) - 0.5 * (glassy + creep)) / creep
+                (compliance(0.5 * reduced) - 0.5 * (glassy + creep)) / creep
             } else {
                 let load = history.before(now + dt).validated_at(now + dt)?;
-                let change = (magnitude(&load) - held - slope * dt).abs();
+                let change = (magnitude(&load) - held - slope * reduced).abs();
                 let scale =
                     self.scale.as_ref().map_or(0.0, |scale| scale.of_load(&state.loads[0], &load)).max(held + change);
                 0.125 * (creep - glassy) / creep * change / scale.max(f64::MIN_POSITIVE)
             };
-            if deviation.abs() <= self.tolerance && self.watch(history, now, now + dt)? <= self.tolerance {
+            if deviation.abs() <= self.tolerance
+                && self.watch(history, [now, now + dt], |time| scene.reduced_time(&state.clock, time))?
+                    <= self.tolerance
+            {
                 return Ok(dt);
             }
         }
@@ -230,9 +244,14 @@ impl StepControl {
 
     /// How far the load strays between now and `time` from the polynomial through its last nodes and that at `time`, relative
     /// to itself or to a fraction of the greatest of the run. Rejects invalid loads of the history.
-    pub(super) fn watch(&self, history: &dyn LoadHistory, now: f64, time: f64) -> Result<f64> {
+    pub(super) fn watch(
+        &self,
+        history: &dyn LoadHistory,
+        [now, time]: [f64; 2],
+        reduced: impl Fn(f64) -> Result<f64>,
+    ) -> Result<f64> {
         let end = history.before(time).validated_at(time)?;
-        let mut nodes = [(time, end); NODES + 1];
+        let mut nodes = [(reduced(time)?, end); NODES + 1];
         let known = self.nodes.len().min(NODES);
         nodes[1..=known].copy_from_slice(&self.nodes[..known]);
         let nodes = &nodes[..=known];
@@ -243,7 +262,7 @@ impl StepControl {
             let between = now + share * (time - now);
             let load = history.at(between).validated_at(between)?;
             let like = load.is_like(&start) && load.is_like(&end);
-            most = most.max(if like { load.deviation(between, nodes, scale) } else { f64::INFINITY });
+            most = most.max(if like { load.deviation(reduced(between)?, nodes, scale) } else { f64::INFINITY });
         }
         Ok(most)
     }

@@ -13,10 +13,11 @@ use crate::rheology::is_known;
 use crate::solver::{Counts, Outcome, Solution};
 use crate::sum::sum;
 
-/// Rejects a step to `time` whose loading time is longer than the material is known for, if the bodies are `touched`: what
+/// Rejects a step whose loading time is longer than the material is known for, if the bodies are `touched`: what
 /// was never touched has nothing to remember.
-pub(super) fn material_is_known(scene: &Scene, state: &State, time: f64, touched: bool) -> Result<()> {
-    let (age, known_until) = (time - state.clock.undisturbed_until, scene.material.known_until());
+pub(super) fn material_is_known(scene: &Scene, state: &State, step: &Step<'_>, touched: bool) -> Result<()> {
+    let Interval { time, reduced, .. } = step.interval;
+    let (age, known_until) = (reduced - state.clock.undisturbed_until, scene.material.known_until());
     if !touched || is_known(age, known_until) { Ok(()) } else { Err(Error::BeyondMaterial { time, age, known_until }) }
 }
 
@@ -42,7 +43,7 @@ pub(super) fn below_full_contact(window: &Window, trial: &Trial, step: &Step<'_>
 /// Rejects what the solver did not solve.
 pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, step: &Step<'_>) -> Result<()> {
     let Solution { residual, counts: Counts { iterations, .. }, ref trace, .. } = *solution;
-    let (time, dt, tolerance) = (step.interval.time, step.interval.dt, step.tolerance);
+    let (time, dt, tolerance) = (step.interval.time, step.interval.length, step.tolerance);
     match outcome {
         Outcome::Converged => Ok(()),
         Outcome::NotANumber => Err(Error::Overflow { time, what: "the residual of the contact problem" }),

@@ -33,7 +33,7 @@ pub(super) fn collect_warnings(scene: &Scene, state: &State) -> Warnings {
         }
         few |= !line && contact_cells < MIN_CELLS && !(periodic == [true; 2] && all_in_touch);
     }
-    let (age, [from, until]) = (state.clock.time - state.clock.undisturbed_until, material.measured());
+    let (age, [from, until]) = (state.clock.age(), material.measured());
     let remembers = !state.is_undisturbed();
     let uncertain = material.fit_reports().any(|report| report.warning().is_some());
     // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once

@@ -88,7 +88,7 @@ pub(in crate::contact) fn error_in_time(
         let relative = SHARE_OF_DIRECT_SUM * creep * over(change, size.max(least[0] * sum));
         return TimeError { relative, greatest: relative, sizes: [over(size, sum), 0.0], ..TimeError::default() };
     }
-    let age = state.clock.time - state.clock.undisturbed_until;
+    let age = state.clock.age();
     let (old, young) = (compliance(age + interval.dt), compliance(interval.dt));
     // so many steps cannot add up to more than as many times the error of one
     let amplification = if young > 0.0 { (old / young).clamp(1.0, steps.max(1.0)) } else { 1.0 };

@@ -31,6 +31,7 @@ use crate::contact::computation::Computation;
 use crate::contact::report::StepReport;
 use crate::contact::request::Step;
 use crate::contact::scene::Scene;
+use crate::contact::state::State;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::contact::window::growth::outgrown;
 use crate::contact::window::placement::region_for;
@@ -80,15 +81,25 @@ impl ViscoelasticContact {
     /// As [`ViscoelasticContact::step`], or if there is not one load per body.
     pub fn step_each(&mut self, dt: f64, loads: &[Load]) -> Result<StepReport> {
         non_negative("time step", dt)?;
-        let step = self.request(self.time() + dt, dt, loads, self.settings().tolerance);
+        let step = self.request(self.time() + dt, dt, loads, self.settings().tolerance)?;
         self.take(step)
     }
 
-    /// A step in which nothing moves along the surface.
-    pub(in crate::contact) fn request<'a>(&self, time: f64, dt: f64, loads: &'a [Load], tolerance: f64) -> Step<'a> {
-        let indenter = Arc::clone(&self.computation.state.indenter);
-        let interval = Interval { time, dt, stride: [0; 2], interpolant: self.settings().interpolant() };
-        Step { interval, loads, indenter, tolerance }
+    /// A step of such a `length` to a `time`, in which nothing moves along the surface.
+    pub(in crate::contact) fn request<'a>(
+        &self,
+        time: f64,
+        length: f64,
+        loads: &'a [Load],
+        tolerance: f64,
+    ) -> Result<Step<'a>> {
+        let State { indenter, clock, .. } = &self.computation.state;
+        non_negative("time", time)?;
+        let dt = self.scene.reduced_length(clock, time, length)?;
+        let reduced = if self.scene.temperature.is_some() { clock.reduced_time + dt } else { time };
+        let interval =
+            Interval { time, length, reduced, dt, stride: [0; 2], interpolant: self.settings().interpolant() };
+        Ok(Step { interval, loads, indenter: Arc::clone(indenter), tolerance })
     }
 
     /// Computes a step and accepts it.
@@ -109,11 +120,10 @@ impl ViscoelasticContact {
 
     /// Computes a step. The state stays as it is.
     pub(in crate::contact) fn attempt(&mut self, step: &Step<'_>) -> Result<Attempt> {
-        non_negative("time", step.interval.time)?;
         let mut larger = None;
         let tried = compute(&self.scene, &mut self.computation, &mut larger, step);
         if let Err(error) = &tried {
-            events::failed(step.interval.time, step.interval.dt, error);
+            events::failed(step.interval.time, step.interval.length, error);
             if let Some(larger) = &larger {
                 self.computation.trial.solution.counts = larger.trial.solution.counts; // the work was done
             }
@@ -145,7 +155,7 @@ impl ViscoelasticContact {
             area: state.current.contact_cells as f64 * self.scene.grid.cell_area(),
             contact_cells: state.current.contact_cells,
             tilt: self.tilt(),
-            dt: state.clock.last_dt,
+            dt: state.clock.last_length,
             time_error: None,
             warnings: collect_warnings(&self.scene, state),
             iterations: counts.iterations,
@@ -195,10 +205,9 @@ impl Computation {
     /// Computes a step on the region at hand: into the trial, and the part of the history that a step may write.
     fn solve(&mut self, scene: &Scene, step: &Step<'_>) -> Result<()> {
         let Computation { state, window, trial } = self;
-        let time = step.interval.time;
         window.follow(&state.region, &step.indenter);
         find_free_motions(scene, &state.region, step.loads, &mut trial.free);
-        material_is_known(scene, state, time, !state.is_undisturbed())?;
+        material_is_known(scene, state, step, !state.is_undisturbed())?;
 
         // u = u_old + c K p
         let (kernel, work) = window.kernel_and_work();
@@ -225,7 +234,7 @@ impl Computation {
         converged(outcome, scene, &trial.solution, step)?;
         trial.solution.counts.convolutions += convolutions;
         let pressure = &trial.solution.pressure;
-        material_is_known(scene, state, time, state.is_undisturbed() && pressure.iter().any(|&p| p > 0.0))?;
+        material_is_known(scene, state, step, state.is_undisturbed() && pressure.iter().any(|&p| p > 0.0))?;
 
         // what the bodies will remember
         let (integrated, before) = (state.history.integrates_displacement(), &state.current.solution.pressure);

@@ -1,0 +1,239 @@
+use std::fmt;
+use std::sync::Arc;
+
+use crate::error::{Error, Result, finite, least_length, within};
+use crate::quadrature::GaussLegendre;
+use crate::rheology::TimeTemperature;
+
+/// A temperature that changes in time, the same everywhere in the bodies.
+///
+/// Where all relaxation times share the shift factor a_T, a body at T(t) creeps as at the reference temperature, in the
+/// reduced time ξ(t) = ∫ dt′/a_T(T(t′)) (Morland & Lee, *The stress analysis of linear viscoelastic materials with temperature
+/// variation*, 1960). A contact built with one ([`Builder::temperature`](crate::contact::Builder::temperature)) integrates its
+/// material over ξ; loads, motions, reports and power stay in t.
+///
+/// Not modelled: thermal expansion, heating by dissipation, temperatures that differ from place to place, moduli that change
+/// with temperature by more than their times (vertical shifts), and bodies of which only one follows the law.
+///
+/// ```
+/// use viscocontact::prelude::*;
+/// use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
+///
+/// let law = TimeTemperature::wlf(17.44, 51.6, 373.15)?;
+/// let warming = TemperatureHistory::table(law, &[(0.0, 373.15), (60.0, 393.15)])?;
+/// assert_eq!(warming.at(30.0), 383.15);
+/// // a minute of warming by 20 K makes up for almost an hour at the reference temperature
+/// assert!((3000.0..4000.0).contains(&warming.reduced_time(0.0, 60.0)?));
+///
+/// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(Zener::new(1.0e8, 1.0e6, 1.0e9)?))
+///     .temperature(warming)
+///     .build()?;
+/// contact.step(0.0, Load::force(0.5))?;
+/// contact.step(1.0, Load::force(0.5))?;
+/// assert!(contact.reduced_time() > contact.time());
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Clone)]
+pub struct TemperatureHistory {
+    law: TimeTemperature,
+    course: Course,
+    rule: GaussLegendre,
+}
+
+#[derive(Clone)]
+enum Course {
+    /// Times and temperatures, linear in between; never empty.
+    Table(Vec<(f64, f64)>),
+    Function {
+        temperature: Arc<dyn Fn(f64) -> f64 + Send + Sync>,
+        corners: Vec<f64>,
+    },
+}
+
+/// Points of the quadrature over a piece; two halves must agree with it.
+const POINTS: usize = 12;
+const AGREEMENT: f64 = 1e-13;
+/// A piece is halved so many times at most: then it is as short as the resolution of a time.
+const MAX_HALVINGS: u32 = 50;
+/// Lengths in t are found from lengths in ξ to this part, in so many trials: only their order matters.
+const LENGTH_TOLERANCE: f64 = 1e-3;
+const MAX_TRIALS: usize = 100;
+
+impl TemperatureHistory {
+    /// A temperature \[K\] that never changes.
+    ///
+    /// # Errors
+    /// As [`TimeTemperature::shift_factor`].
+    pub fn constant(law: TimeTemperature, temperature: f64) -> Result<TemperatureHistory> {
+        TemperatureHistory::table(law, &[(0.0, temperature)])
+    }
+
+    /// The temperature through a `table` of times \[s\] and temperatures \[K\]: linear in between, constant before the first and
+    /// after the last. Two entries at the same time are a jump. A ramp is a table of two.
+    ///
+    /// # Errors
+    /// If there is no entry, a time is not finite or earlier than the one before, or for a temperature as
+    /// [`TimeTemperature::shift_factor`].
+    pub fn table(law: TimeTemperature, table: &[(f64, f64)]) -> Result<TemperatureHistory> {
+        least_length("temperature table", table.len(), 1)?;
+        for (index, &(time, temperature)) in table.iter().enumerate() {
+            finite("time in the temperature table", time)?;
+            law.shift_factor(temperature)?;
+            if let Some(&(previous, _)) = index.checked_sub(1).and_then(|before| table.get(before))
+                && time < previous
+            {
+                let (field, rule) = ("temperature table times", "not decrease");
+                return Err(Error::OutOfOrder { field, index, value: time, previous, rule });
+            }
+        }
+        Ok(TemperatureHistory::new(law, Course::Table(table.to_vec())))
+    }
+
+    /// The temperature \[K\] by a closure of the time \[s\], smooth but for `corners` \[s\], in any order: adaptive steps end there.
+    /// What it returns is checked when it is used.
+    ///
+    /// # Errors
+    /// If a corner is not finite.
+    pub fn function(
+        law: TimeTemperature,
+        temperature: impl Fn(f64) -> f64 + Send + Sync + 'static,
+        corners: &[f64],
+    ) -> Result<TemperatureHistory> {
+        for &corner in corners {
+            finite("corner of the temperature", corner)?;
+        }
+        let mut corners = corners.to_vec();
+        corners.sort_by(f64::total_cmp);
+        Ok(TemperatureHistory::new(law, Course::Function { temperature: Arc::new(temperature), corners }))
+    }
+
+    fn new(law: TimeTemperature, course: Course) -> TemperatureHistory {
+        TemperatureHistory { law, course, rule: GaussLegendre::new(POINTS) }
+    }
+
+    /// How times depend on temperature.
+    pub fn law(&self) -> &TimeTemperature {
+        &self.law
+    }
+
+    /// The temperature at `time` \[K\]; where it jumps, the one after.
+    pub fn at(&self, time: f64) -> f64 {
+        match &self.course {
+            Course::Table(table) => {
+                let next = table.partition_point(|entry| entry.0 <= time);
+                let before = next.checked_sub(1).map_or(table[0], |k| table[k]);
+                match table.get(next) {
+                    Some(&(end, to)) if end > before.0 && time > before.0 => {
+                        let share = (time - before.0) / (end - before.0);
+                        before.1 + share * (to - before.1)
+                    }
+                    _ => before.1,
+                }
+            }
+            Course::Function { temperature, .. } => temperature(time),
+        }
+    }
+
+    /// The reduced time \[s\] that passes between two times: ∫ dt/a_T(T(t)), to thirteen digits.
+    ///
+    /// # Errors
+    /// If a time is not finite, `to` is before `from`, or for a temperature in between as [`TimeTemperature::shift_factor`].
+    pub fn reduced_time(&self, from: f64, to: f64) -> Result<f64> {
+        finite("start of the reduced time", from)?;
+        finite("end of the reduced time", to)?;
+        within("end of the reduced time", to, to >= from, "at or after its start")?;
+        let (mut start, mut sum) = (from, 0.0);
+        while start < to {
+            let end = self.next_corner(start).map_or(to, |corner| corner.min(to));
+            sum += self.piece(start, end)?;
+            start = end;
+        }
+        finite("reduced time", sum)
+    }
+
+    /// The first corner or jump of the temperature after a time.
+    pub(crate) fn next_corner(&self, after: f64) -> Option<f64> {
+        match &self.course {
+            Course::Table(table) => table.get(table.partition_point(|entry| entry.0 <= after)).map(|entry| entry.0),
+            Course::Function { corners, .. } => corners.get(corners.partition_point(|&time| time <= after)).copied(),
+        }
+    }
+
+    /// About the time that passes after `from` while the reduced time grows by `reduced`, at most `most`.
+    pub(crate) fn length_of(&self, from: f64, reduced: f64, most: f64) -> Result<f64> {
+        let rate = |time: f64| Ok::<_, Error>(1.0 / self.law.shift_factor(self.at(time))?);
+        let (mut low, mut high) = (0.0, most);
+        let mut length = (reduced / rate(from)?).min(most);
+        for _ in 0..MAX_TRIALS {
+            // what lies beyond the range of the law is too far
+            let [grown, rate] = match (self.reduced_time(from, from + length), rate(from + length)) {
+                (Ok(grown), Ok(rate)) => [grown, rate],
+                _ => [f64::INFINITY, 0.0],
+            };
+            let missing = reduced - grown;
+            if missing.abs() <= LENGTH_TOLERANCE * reduced || missing > 0.0 && length >= most {
+                return Ok(length);
+            }
+            if missing > 0.0 {
+                low = length
+            } else {
+                high = length
+            }
+            let next = length + missing / rate;
+            length = if next > low && next < high { next } else { 0.5 * (low + high) };
+        }
+        Ok(length)
+    }
+
+    /// ξ over a piece without corners inside.
+    fn piece(&self, from: f64, to: f64) -> Result<f64> {
+        if let Course::Table(table) = &self.course {
+            let next = table.partition_point(|entry| entry.0 <= from);
+            let ends = [next.saturating_sub(1), next.min(table.len() - 1)].map(|k| table[k].1);
+            if ends[0] == ends[1] {
+                return Ok((to - from) / self.law.shift_factor(ends[0])?);
+            }
+        }
+        let whole = self.quadrature(from, to)?;
+        self.halved(from, to, whole, whole, MAX_HALVINGS)
+    }
+
+    /// `whole`, the quadrature over a piece, made exact to a small part of `all`.
+    fn halved(&self, from: f64, to: f64, whole: f64, all: f64, left: u32) -> Result<f64> {
+        let middle = 0.5 * (from + to);
+        if left == 0 || middle <= from || middle >= to {
+            return Ok(whole);
+        }
+        let (first, second) = (self.quadrature(from, middle)?, self.quadrature(middle, to)?);
+        let all = all.max(first + second);
+        if (first + second - whole).abs() <= AGREEMENT * all {
+            return Ok(first + second);
+        }
+        Ok(self.halved(from, middle, first, all, left - 1)? + self.halved(middle, to, second, all, left - 1)?)
+    }
+
+    fn quadrature(&self, from: f64, to: f64) -> Result<f64> {
+        let mut invalid = None;
+        let sum = self.rule.integrate(from, to, |time| match self.law.shift_factor(self.at(time)) {
+            Ok(factor) => 1.0 / factor,
+            Err(error) => {
+                invalid.get_or_insert(error);
+                0.0
+            }
+        });
+        invalid.map_or(Ok(sum), Err)
+    }
+}
+
+impl fmt::Debug for TemperatureHistory {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut debug = f.debug_struct("TemperatureHistory");
+        debug.field("law", &self.law);
+        match &self.course {
+            Course::Table(table) => debug.field("table", table).finish(),
+            Course::Function { corners, .. } => debug.field("corners", corners).finish_non_exhaustive(),
+        }
+    }
+}

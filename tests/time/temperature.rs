@@ -1,0 +1,281 @@
+//! Does a temperature that changes do what the reduced time says?
+
+use viscocontact::prelude::*;
+use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
+
+use crate::common::draws::Draws;
+use crate::common::random_bodies::random_body;
+use crate::common::spheres::builder_on;
+
+const REFERENCE: f64 = 300.0;
+
+fn wlf() -> TimeTemperature {
+    TimeTemperature::wlf(10.0, 60.0, REFERENCE).unwrap()
+}
+
+fn grid(cells: usize) -> Grid {
+    Grid::square(cells, 4.0e-3).unwrap()
+}
+
+fn zener() -> Zener {
+    Zener::new(1.0e6, 0.25e6, 0.25e6).unwrap()
+}
+
+fn settings() -> Settings {
+    Settings::default().with_tolerance(1e-12)
+}
+
+fn close(value: f64, expected: f64, within: f64, what: &str) {
+    assert!((value / expected - 1.0).abs() <= within, "{what}: {value:e}, expected {expected:e}");
+}
+
+#[test]
+fn reduced_times_are_exact() {
+    // 1/T linear in t: the exponent of Arrhenius' law is too
+    let (energy, gas) = (60.0e3, 8.314_462_618_153_24);
+    let arrhenius = TimeTemperature::arrhenius(energy, REFERENCE).unwrap();
+    let inverse = |t: f64| 1.0 / 280.0 - 2.0e-6 * t;
+    let history = TemperatureHistory::function(arrhenius, move |t| 1.0 / inverse(t), &[]).unwrap();
+    let integral = |t: f64| {
+        let exponent = -energy / gas * (inverse(t) - 1.0 / REFERENCE);
+        exponent.exp() / (energy / gas * 2.0e-6)
+    };
+    for (from, to) in [(0.0, 1.0e-9), (0.0, 1.0), (3.0, 300.0), (0.0, 1000.0)] {
+        let expected = if to < 1e-6 {
+            to * (-energy / gas * (inverse(0.5 * to) - 1.0 / REFERENCE)).exp()
+        } else {
+            integral(to) - integral(from)
+        };
+        close(history.reduced_time(from, to).unwrap(), expected, 1e-12, &format!("{from} to {to}"));
+    }
+    // constant, a jump, constant
+    let table = [(1.0, 290.0), (2.0, 290.0), (2.0, 330.0), (3.0, 330.0)];
+    let jump = TemperatureHistory::table(wlf(), &table).unwrap();
+    let factors = [290.0, 330.0].map(|t| wlf().shift_factor(t).unwrap());
+    close(jump.reduced_time(0.0, 5.0).unwrap(), 2.0 / factors[0] + 3.0 / factors[1], 1e-14, "a jump");
+    assert_eq!([jump.at(1.5), jump.at(2.0), jump.at(9.0)], [290.0, 330.0, 330.0]);
+    // a ramp through 13 decades of the shift factor, against the trapezium rule with an end correction of zero order
+    let ramp = TemperatureHistory::table(wlf(), &[(0.0, 262.0), (10.0, 340.0)]).unwrap();
+    let rate = |t: f64| 1.0 / wlf().shift_factor(262.0 + 7.8 * t).unwrap();
+    let parts = 200_000;
+    let h = 10.0 / f64::from(parts);
+    let simpson: f64 = (0..parts)
+        .map(|k| {
+            let t = h * f64::from(k);
+            h / 6.0 * (rate(t) + 4.0 * rate(t + 0.5 * h) + rate(t + h))
+        })
+        .sum();
+    close(ramp.reduced_time(0.0, 10.0).unwrap(), simpson, 1e-11, "a ramp");
+    let parts: f64 = (0..100).map(|k| ramp.reduced_time(0.1 * f64::from(k), 0.1 * f64::from(k + 1)).unwrap()).sum();
+    close(parts, simpson, 1e-11, "a ramp in parts");
+}
+
+#[test]
+fn a_constant_temperature_is_that_of_the_material() {
+    for temperature in [285.0, 300.0, 330.0] {
+        let warm = Material::incompressible(wlf().at(zener(), temperature).unwrap());
+        let history = TemperatureHistory::constant(wlf(), temperature).unwrap();
+        let tau = wlf().shift_factor(temperature).unwrap();
+        for time_rule in [TimeRule::Exponential, TimeRule::Backward] {
+            let settings = settings().with_time_rule(time_rule);
+            let cold = builder_on(grid(32), Material::incompressible(zener())).temperature(history.clone());
+            let mut own = cold.settings(settings.clone()).build().unwrap();
+            let mut other = builder_on(grid(32), warm.clone()).settings(settings).build().unwrap();
+            for (dt, force) in [(0.0, 0.5), (0.1, 0.4), (0.4, 0.3), (0.3, 0.7), (5.0, 0.7)] {
+                let [a, b] = [&mut own, &mut other].map(|contact| contact.step(dt * tau, Load::force(force)).unwrap());
+                close(a.approach, b.approach, 1e-12, "approach");
+                assert_eq!((a.time, a.dt, a.contact_cells), (b.time, b.dt, b.contact_cells));
+            }
+            close(own.reduced_time(), own.time() / tau, 1e-14, "reduced time");
+        }
+        let cold = builder_on(grid(32), Material::incompressible(zener())).temperature(history).settings(settings());
+        let mut contacts = [cold, builder_on(grid(32), warm).settings(settings())].map(|scene| scene.build().unwrap());
+        let ends = contacts.each_mut().map(|contact| {
+            let load = FnHistory::new(|t| Load::force(0.5 + 0.3 * (2.0 * t / tau).sin()));
+            let mut run = contact.follow(&load, Stepping::adaptive(1e-4), 4.0 * tau);
+            let mut steps = 0;
+            while run.next_step().unwrap().is_some() {
+                steps += 1;
+            }
+            (contact.approach(), steps)
+        });
+        close(ends[0].0, ends[1].0, 1e-10, "adaptive steps");
+        assert_eq!(ends[0].1, ends[1].1);
+    }
+}
+
+/// A scene in t equals the one without temperature whose steps are those of the reduced time, exactly.
+#[test]
+fn steps_are_those_of_the_reduced_time_on_random_scenes() {
+    let mut draws = Draws::new(11);
+    for scene in 0..60 {
+        let body = random_body(&mut draws);
+        // times of the body pass in a run of 1 s, however the temperature goes
+        let (mut time, mut table) = (0.0, Vec::new());
+        for _ in 0..1 + draws.below(5) {
+            table.push((time, draws.between(285.0, 330.0)));
+            time += if draws.chance(0.2) { 0.0 } else { draws.between(0.05, 0.5) };
+        }
+        let law = if draws.chance(0.5) { wlf() } else { TimeTemperature::arrhenius(80.0e3, REFERENCE).unwrap() };
+        let history = TemperatureHistory::table(law, &table).unwrap();
+        let scale = body.until / history.reduced_time(0.0, 1.0).unwrap();
+        let stretched: Vec<(f64, f64)> = table.iter().map(|&(time, kelvin)| (scale * time, kelvin)).collect();
+        let history = TemperatureHistory::table(law, &stretched).unwrap();
+        let build = || builder_on(grid(16), body.material.clone()).times(1e-9 * body.until..=2.0 * body.until);
+        let mut own = build().temperature(history.clone()).settings(settings()).build().unwrap();
+        let mut plain = build().settings(settings()).build().unwrap();
+        if body.is_elastic_at_once() {
+            own.step(0.0, Load::force(0.1)).unwrap();
+            plain.step(0.0, Load::force(0.1)).unwrap();
+        }
+        let mut cuts: Vec<f64> = (0..8).map(|_| draws.between(0.0, scale)).collect();
+        cuts.sort_by(f64::total_cmp);
+        for end in cuts {
+            let force = draws.between(0.0, 0.3);
+            let (from, length) = (own.time(), end - own.time());
+            let reduced = history.reduced_time(from, from + length).unwrap();
+            let [a, b] = [(&mut own, length), (&mut plain, reduced)].map(|(contact, dt)| {
+                contact.step(dt, Load::force(force)).unwrap_or_else(|error| panic!("scene {scene}: {error}"))
+            });
+            let what = format!("scene {scene}, {}", body.name);
+            close(a.approach, b.approach, 1e-9, &what);
+            assert_eq!(a.contact_cells, b.contact_cells, "{what}");
+            close(own.reduced_time(), plain.time(), 1e-12, &what);
+            assert!((a.dt - length).abs() <= 1e-15 * end);
+        }
+    }
+}
+
+/// ω ∝ C(ξ(t))^(2/3) under a constant force.
+#[test]
+fn a_held_ball_follows_the_reduced_time() {
+    let arrhenius = TimeTemperature::arrhenius(100.0e3, REFERENCE).unwrap();
+    let history = TemperatureHistory::table(arrhenius, &[(0.0, 295.0), (2.0, 330.0)]).unwrap();
+    let mut contact = builder_on(grid(128), Material::incompressible(zener())).temperature(history).build().unwrap();
+    let load = StepLoad::new(Load::force(0.1)).unwrap();
+    let mut run = contact.follow(&load, Stepping::adaptive(1e-5), 2.0);
+    let rate = |t: f64| 1.0 / arrhenius.shift_factor(295.0 + 17.5 * t).unwrap();
+    let (mut first, mut steps) = (None, 0);
+    while let Some(report) = run.next_step().unwrap() {
+        let parts = 2000;
+        let h = report.time / f64::from(parts);
+        let reduced: f64 = (0..parts).map(|k| h * rate(h * (f64::from(k) + 0.5))).sum();
+        let compliance = |t: f64| run.contact().material().contact_compliance(t);
+        let law = (compliance(reduced) / compliance(0.0)).powf(2.0 / 3.0);
+        let start = *first.get_or_insert(report.approach);
+        close(report.approach / start, law, 1e-4, &format!("at {} s", report.time));
+        steps += 1;
+    }
+    assert!((10..100).contains(&steps), "{steps} steps");
+}
+
+#[test]
+fn adaptive_steps_end_on_corners_and_keep_their_error() {
+    let table = [(0.0, 290.0), (1.0, 290.0), (1.0, 325.0), (2.0, 325.0), (3.0, 295.0)];
+    let history = TemperatureHistory::table(wlf(), &table).unwrap();
+    let load = FnHistory::new(|t: f64| Load::force(0.3 + 0.25 * (3.0 * t).sin()));
+    let run = |tolerance: f64| {
+        let scene = builder_on(grid(32), Material::incompressible(zener())).temperature(history.clone());
+        let mut contact = scene.settings(Settings::default().with_tolerance(1e-10)).build().unwrap();
+        let stops = [0.7, 1.0, 1.3, 2.0, 2.6, 3.0, 4.0];
+        let mut run = contact.follow(&load, Stepping::adaptive(tolerance), 4.0).stop_at(&stops).unwrap();
+        let (mut answers, mut ends) = (Vec::new(), Vec::new());
+        while let Some(report) = run.next_step().unwrap() {
+            ends.push(report.time);
+            if report.dt > 0.0 && stops.contains(&report.time) {
+                answers.push(report.approach);
+            }
+        }
+        assert!([1.0, 2.0, 3.0].iter().all(|corner| ends.contains(corner)), "{ends:?}");
+        (answers, ends.len())
+    };
+    let (truth, _) = run(1e-8);
+    for tolerance in [1e-3, 1e-4, 1e-5] {
+        let (answers, steps) = run(tolerance);
+        assert_eq!(answers.len(), truth.len());
+        let error = answers.iter().zip(&truth).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+        println!("{tolerance:e}: error {error:.1e} in {steps} steps");
+        assert!(error < 2.0 * tolerance, "{tolerance:e}: error {error:.1e} in {steps} steps");
+    }
+}
+
+#[test]
+fn temperatures_beyond_the_law_are_refused() {
+    let field = |error: Error| match error {
+        Error::OutOfRange { field, .. } => field,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(field(TemperatureHistory::table(wlf(), &[(0.0, 300.0), (1.0, 240.0)]).unwrap_err()), "temperature");
+    assert_eq!(field(TemperatureHistory::constant(wlf(), f64::NAN).unwrap_err()), "temperature");
+    assert!(TemperatureHistory::table(wlf(), &[]).is_err());
+    assert!(TemperatureHistory::table(wlf(), &[(1.0, 300.0), (0.0, 300.0)]).is_err());
+    assert!(TemperatureHistory::function(wlf(), |_| 300.0, &[f64::NAN]).is_err());
+    // a closure that cools below T_ref − C2 after 2 s
+    let cooling = TemperatureHistory::function(wlf(), |t| 300.0 - 30.0 * t, &[]).unwrap();
+    let mut contact = builder_on(grid(16), Material::incompressible(zener())).temperature(cooling).build().unwrap();
+    contact.step(0.0, Load::force(0.1)).unwrap();
+    contact.step(1.0, Load::force(0.1)).unwrap();
+    let before = (contact.time(), contact.reduced_time(), contact.approach(), contact.pressure().to_vec());
+    for length in [1.5, 10.0, f64::INFINITY, f64::NAN, -1.0] {
+        field(contact.step(length, Load::force(0.2)).unwrap_err());
+        assert_eq!(before, (contact.time(), contact.reduced_time(), contact.approach(), contact.pressure().to_vec()));
+    }
+    contact.step(0.5, Load::force(0.2)).unwrap();
+}
+
+/// Lengths in t from lengths in ξ, with a step that would end beyond the law.
+#[test]
+fn a_run_reaches_the_end_of_the_law() {
+    let cooling = TemperatureHistory::function(wlf(), |t| 300.0 - 20.0 * t, &[]).unwrap();
+    let mut contact = builder_on(grid(16), Material::incompressible(zener())).temperature(cooling).build().unwrap();
+    let load = StepLoad::new(Load::force(0.1)).unwrap();
+    let mut run = contact.follow(&load, Stepping::adaptive(1e-3), 2.0);
+    while run.next_step().unwrap().is_some() {}
+    assert_eq!(contact.time(), 2.0);
+    // the whole of a run is looked at when it begins
+    assert!(contact.follow(&load, Stepping::adaptive(1e-3), 4.0).next_step().is_err());
+}
+
+#[test]
+fn states_within_a_step_are_linear_in_reduced_time() {
+    let history = TemperatureHistory::table(wlf(), &[(0.0, 290.0), (1.0, 310.0)]).unwrap();
+    let scene = builder_on(grid(32), Material::incompressible(zener())).temperature(history.clone());
+    let mut contact = scene.settings(settings()).build().unwrap();
+    contact.step(0.0, Load::force(0.1)).unwrap();
+    let start = contact.approach();
+    contact.step(1.0, Load::force(0.1)).unwrap();
+    for time in [0.0, 0.3, 0.9, 1.0] {
+        let share = history.reduced_time(0.0, time).unwrap() / history.reduced_time(0.0, 1.0).unwrap();
+        let expected = start + share * (contact.approach() - start);
+        close(contact.within_step(time).unwrap().approach(), expected, 1e-12, &format!("at {time} s"));
+    }
+}
+
+#[cfg(feature = "checkpoint")]
+#[test]
+fn checkpoints_keep_both_clocks() {
+    let history = |warm: f64| TemperatureHistory::function(wlf(), move |t| 290.0 + warm * t, &[0.5]).unwrap();
+    let build = |history: TemperatureHistory| {
+        builder_on(grid(16), Material::incompressible(zener())).temperature(history).build().unwrap()
+    };
+    let path = std::env::temp_dir().join(format!("viscocontact-temperature-{}", std::process::id()));
+    let load = FnHistory::new(|t: f64| Load::force(0.1 + 0.05 * t));
+    let mut whole = build(history(20.0));
+    let mut run = whole.follow(&load, Stepping::adaptive(1e-4), 1.0);
+    for _ in 0..5 {
+        run.next_step().unwrap();
+    }
+    run.save(&path).unwrap();
+    while run.next_step().unwrap().is_some() {}
+    let mut resumed = build(history(20.0));
+    resumed.resume(&path).unwrap();
+    let mut run = resumed.follow(&load, Stepping::adaptive(1e-4), 1.0);
+    while run.next_step().unwrap().is_some() {}
+    assert_eq!(whole.approach().to_bits(), resumed.approach().to_bits());
+    assert_eq!(whole.reduced_time().to_bits(), resumed.reduced_time().to_bits());
+    let other = build(history(21.0)).resume(&path).unwrap_err().to_string();
+    assert!(other.contains("temperature") && other.contains("reduced time"), "{other}");
+    let none = builder_on(grid(16), Material::incompressible(zener())).build().unwrap().resume(&path);
+    assert!(none.unwrap_err().to_string().contains("temperature"));
+    std::fs::remove_file(path).unwrap();
+}
