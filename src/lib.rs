@@ -191,7 +191,7 @@ mod sum;
 pub use contact::ViscoelasticContact;
 pub use error::{Convergence, Error, KernelError, OutputError, Result, Trend};
 pub use grid::Grid;
-pub use kernel::{InfluenceKernel, Workspace};
+pub use kernel::{InfluenceKernel, Layer, Workspace};
 /// The crate of the complex numbers of moduli and compliances.
 pub use num_complex;
 
@@ -222,7 +222,7 @@ pub mod prelude {
         KelvinVoigt, Kww, LogCreep, Material, Maxwell, PowerLaw, Rheology, SlowCreep, TabulatedCreep, TabulatedDynamic,
         TabulatedRelaxation, Zener,
     };
-    pub use crate::{Error, Grid, InfluenceKernel};
+    pub use crate::{Error, Grid, InfluenceKernel, Layer};
 }
 
 #[doc = include_str!("../README.md")]
