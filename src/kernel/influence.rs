@@ -116,7 +116,11 @@ impl Influence {
             Influence::Strip { periodic, strip } => westergaard(1.0 / strip.uniform(lengths[1 - periodic])),
             // the mean displacement is fixed at zero: the mean gets the stiffness of the longest wave
             Influence::Periodic => westergaard(0.5 * longest()),
-            Influence::Layer { layer, .. } => layered(*layer, layer.compliance(2.1 / (lengths[0] * lengths[1]).sqrt())),
+            Influence::Layer { layer, .. } => {
+                // 0.95 L is the compliance of the wave 2.1/L; no stiffer than the longest wave, where long ones are the stiffest
+                let mean = layer.compliance(2.1 / (lengths[0] * lengths[1]).sqrt());
+                layered(*layer, mean.max(layer.compliance(longest())))
+            }
             Influence::LayerLine { layer, .. } => {
                 let (count, at) = (cells[0] * if folded[0] { 2 } else { 1 }, |i| self.coefficient(grid, [i, 0]));
                 let far = (1..count).map(|i| 2.0 * (1.0 - i as f64 / count as f64) * at(i)).sum::<f64>();

@@ -188,10 +188,28 @@ fn layers_refuse_what_they_are_not() {
     let thin = Layer::bonded_to_rigid(1e-5, 0.3).unwrap();
     let Err(Error::OutOfRange { field, .. }) = InfluenceKernel::layer(&grid, thin) else { panic!("not refused") };
     assert_eq!(field, "longer side of a cell over the thickness of the layer");
-    // an incompressible layer under cells that squeeze nothing out
-    let squeezed = Layer::bonded_to_rigid(0.02, 0.5).unwrap();
-    let coarse = InfluenceKernel::layer(&grid, squeezed);
-    assert!(matches!(coarse, Err(Error::Kernel(KernelError::NotPositiveDefinite { .. }))), "{coarse:?}");
+    // an incompressible layer under cells that do not squeeze it out; one that slides flows from crest to trough
+    for (nu, refused) in [(0.5, true), (0.498, true), (0.49, false)] {
+        let coarse = InfluenceKernel::layer(&grid, Layer::bonded_to_rigid(0.06, nu).unwrap());
+        assert_eq!(coarse.is_err(), refused, "{nu}");
+        assert!(InfluenceKernel::layer(&grid, Layer::frictionless_on_rigid(0.06, nu).unwrap()).is_ok());
+        assert!(InfluenceKernel::layer(&grid, Layer::bonded_to_rigid(0.063, nu).unwrap()).is_ok());
+    }
+}
+
+/// K on cells of layers thick and thin passes the check of user-defined coefficients.
+#[test]
+fn operators_of_layers_are_positive_definite() {
+    let grid = Grid::new([12, 9], [1.2, 0.9]).unwrap();
+    for thickness in [0.002, 0.02, 0.05, 0.1, 0.5, 5.0] {
+        for layer in layers(thickness, 0.5).into_iter().chain(layers(thickness, 0.48)).chain(layers(thickness, -0.5)) {
+            let Ok(kernel) = InfluenceKernel::layer(&grid, layer) else { continue };
+            let own = coefficients(&kernel);
+            let checked =
+                InfluenceKernel::from_coefficients(&grid, |i, j| own[i.unsigned_abs() * 9 + j.unsigned_abs()]);
+            assert!(checked.is_ok(), "{layer}: {checked:?}");
+        }
+    }
 }
 
 #[test]

@@ -17,6 +17,8 @@ use crate::error::{Error, KernelError, Result, length, within};
 
 /// Shear modulus of a layer over that of its base.
 const SHEAR_RATIOS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
+/// Compliance in the mean, over the thickness, below which a layer yields mostly by being squeezed out.
+const SQUEEZED: f64 = 0.02;
 /// Mismatch of two Poisson's ratios that is not rounding.
 const SAME_POISSON: f64 = 1e-9;
 
@@ -155,6 +157,11 @@ impl Layer {
     /// Whether the surface is at rest far from a load.
     pub(super) fn is_on_rigid(&self) -> bool {
         !matches!(self.base, Base::HalfSpace { .. })
+    }
+
+    /// Whether the layer yields to long waves only by being squeezed out.
+    pub(super) fn is_squeezed(&self) -> bool {
+        self.base == Base::Bonded && self.mean() < SQUEEZED * self.thickness
     }
 
     fn response(&self) -> Response {
