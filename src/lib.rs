@@ -18,7 +18,8 @@
 //! u(t) = ∫₀₋ᵗ C(t − s) d[K p(s)],    (K p)(x) = ∬ p(x′) / (π |x − x′|) dx′
 //! ```
 //!
-//! Periodic bodies, line contacts in plane strain, and user-defined bodies have another K ([`InfluenceKernel`]).
+//! Periodic bodies, line contacts in plane strain, layers ([`Layer`]) and user-defined bodies have another K
+//! ([`InfluenceKernel`]).
 //!
 //! Pressure and contact area are unknown, and both change even when the force does not. The discretisation follows S.
 //! Spinu, *The surface contact of viscoelastic materials, Part I*; time rule and solver go beyond it. Where each of its
@@ -68,7 +69,8 @@
 //!   ([`rheology::Material`]); the compliances of two bodies add up.
 //! * **Kernel**: [`InfluenceKernel::convolve`] returns K p in Pa·m; no factor of the transform remains.
 //! * **Datum**: on a half-space the approach is measured from the surface far away; on bodies periodic along both axes
-//!   from the mean of the surface; in line contacts from the surface at a distance given with the kernel.
+//!   from the mean of the surface; in line contacts from the surface at a distance given with the kernel; on a layer on a
+//!   rigid base from its undeformed surface, in all of these.
 //! * **Heights** of maps and rough surfaces are positive outward; the gap is the greatest height minus each height.
 //! * **Motion**: displacements are those of the creeping bodies. A positive velocity moves the indenter over them along
 //!   x1 or x2; the lateral force is the force that moves it.
@@ -129,8 +131,9 @@
 //! # Limitations
 //!
 //! Friction, adhesion, plasticity and finite deformation are outside the model: it covers frictionless normal contact
-//! at small strains and slopes. Layered bodies need their own influence coefficients or spectrum from the user
-//! ([`InfluenceKernel::from_coefficients`], [`InfluenceKernel::from_spectrum`]); they are not computed here.
+//! at small strains and slopes. A [`Layer`] lies on a rigid base, or on one that creeps as it does; bodies of several layers
+//! need their own influence coefficients or spectrum from the user ([`InfluenceKernel::from_coefficients`],
+//! [`InfluenceKernel::from_spectrum`]).
 //!
 //! # Related programs
 //!
@@ -191,7 +194,7 @@ mod sum;
 pub use contact::ViscoelasticContact;
 pub use error::{Convergence, Error, KernelError, OutputError, Result, Trend};
 pub use grid::Grid;
-pub use kernel::{InfluenceKernel, Workspace};
+pub use kernel::{InfluenceKernel, Layer, Workspace};
 /// The crate of the complex numbers of moduli and compliances.
 pub use num_complex;
 
@@ -222,7 +225,7 @@ pub mod prelude {
         KelvinVoigt, Kww, LogCreep, Material, Maxwell, PowerLaw, Rheology, SlowCreep, TabulatedCreep, TabulatedDynamic,
         TabulatedRelaxation, Zener,
     };
-    pub use crate::{Error, Grid, InfluenceKernel};
+    pub use crate::{Error, Grid, InfluenceKernel, Layer};
 }
 
 #[doc = include_str!("../README.md")]

@@ -27,6 +27,9 @@ impl Builder {
     /// out of range, the kernel was made for another grid or cannot be made for its cells
     /// ([`InfluenceKernel::half_space`]), or the rectangle rule was chosen for a rheology without elastic response.
     ///
+    /// If the kernel is that of a layer, and the material has another Poisson's ratio, or one that is not constant, or a
+    /// counter body deforms ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)).
+    ///
     /// If a rheology without an exact series is given no [`Builder::times`] ([`MaterialError::NoExponentialSeries`](crate::rheology::MaterialError::NoExponentialSeries)), no series is
     /// within the tolerance, or the times span more than 50 decades.
     ///
@@ -127,6 +130,9 @@ impl Builder {
             Some(kernel) => Arc::clone(kernel),
             None => Arc::new(InfluenceKernel::half_space(&self.grid)?),
         };
+        if let Some(layer) = kernel.layer_of() {
+            layer.check_material(&material.poisson_ratios())?;
+        }
         if let Some(times) = &self.times
             && self.settings.time_rule.needs_series()
         {

@@ -36,6 +36,25 @@ pub enum KernelError {
         allowed: &'static str,
     },
 
+    /// The material of a contact on a [`Layer`](crate::Layer) is not that of the layer. Kernel and material must have the same Poisson's
+    /// ratio at all times; a layer on a creeping body, or against one, is not modelled.
+    #[error("the layer was made for a Poisson's ratio of {layer} at all times, and {what}")]
+    LayerMaterial {
+        /// Poisson's ratio of the layer.
+        layer: f64,
+        /// What the material is instead.
+        what: String,
+    },
+
+    /// The datum of a line contact on a [`Layer`](crate::Layer): a rigid base has none, a half-space needs one.
+    #[error("the datum of a line contact on a layer is {datum:?}: it must be {allowed}")]
+    LayerDatum {
+        /// The datum given \[m\].
+        datum: Option<f64>,
+        /// What it must be.
+        allowed: &'static str,
+    },
+
     /// The operator of these influence coefficients is not positive definite: no contact on such a body is stable.
     /// Check the sign of the coefficients, and that near cells influence each other more than distant ones.
     #[error(

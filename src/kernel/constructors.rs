@@ -25,7 +25,7 @@ const GREATEST: f64 = 1e100;
 const FARTHEST_DATUM: f64 = 1e120;
 
 impl InfluenceKernel {
-    fn new(grid: &Grid, influence: Influence) -> InfluenceKernel {
+    pub(super) fn new(grid: &Grid, influence: Influence) -> InfluenceKernel {
         InfluenceKernel { grid: grid.clone(), influence, operators: Default::default(), on_itself: Default::default() }
     }
 
@@ -219,7 +219,7 @@ impl InfluenceKernel {
 }
 
 /// Rejects cells whose influence coefficients `f64` cannot represent.
-fn representable(grid: &Grid) -> Result<()> {
+pub(super) fn representable(grid: &Grid) -> Result<()> {
     let [d1, d2] = grid.spacing();
     for (field, side) in [("cell side along x1", d1), ("cell side along x2", d2)] {
         within(field, side, RANGE.contains(&side), "in [1e-100, 1e100] m for the kernel of a half-space")?;
@@ -228,7 +228,7 @@ fn representable(grid: &Grid) -> Result<()> {
     within(field, d1 / d2, RANGE.contains(&(d1 / d2)), "in [1e-100, 1e100] for the kernel of a half-space").map(drop)
 }
 
-fn strip(grid: &Grid, axis: usize, datum: f64) -> Result<Strip> {
+pub(super) fn strip(grid: &Grid, axis: usize, datum: f64) -> Result<Strip> {
     representable(grid)?;
     let reaches = datum >= grid.lengths()[axis];
     within("datum of a line load", datum, reaches, "finite, and no less than the length of the grid across the lines")?;

@@ -5,6 +5,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::even_spectrum::{EvenLine, EvenSpectrum};
+use super::layer::{Layer, Remainder};
 use super::layout::{Ends, Layout, waves_at};
 use super::love::Love;
 use super::strip::{Strip, wave_number};
@@ -25,6 +26,12 @@ pub(super) enum Influence {
     Periodic,
     /// A half-space, periodic along one axis; of a single cell along it: a line contact.
     Strip { periodic: usize, strip: Strip },
+    /// A layer, loaded on cells: what it adds to the half-space.
+    Layer { layer: Layer, love: Love, remainder: Arc<Remainder> },
+    /// A layer, periodic along both axes.
+    LayerPeriodic(Layer),
+    /// A layer in plane strain.
+    LayerLine { layer: Layer, strip: Strip, remainder: Arc<Remainder> },
     /// User-defined coefficients, for the distances of the grid.
     Coefficients { values: Arc<[f64]>, columns: usize },
     /// User-defined compliance of each wave, for the independent wave numbers of the period.
@@ -34,11 +41,12 @@ pub(super) enum Influence {
 impl Influence {
     pub(super) fn ends(&self) -> [Ends; 2] {
         match self {
-            Influence::Periodic | Influence::Waves { .. } => [Ends::Periodic; 2],
+            Influence::Periodic | Influence::LayerPeriodic(_) | Influence::Waves { .. } => [Ends::Periodic; 2],
+            Influence::LayerLine { .. } => [Ends::Free, Ends::Periodic],
             Influence::Strip { periodic, .. } => {
                 [0, 1].map(|axis| if axis == *periodic { Ends::Periodic } else { Ends::Free })
             }
-            Influence::HalfSpace(_) | Influence::Coefficients { .. } => [Ends::Free; 2],
+            Influence::HalfSpace(_) | Influence::Layer { .. } | Influence::Coefficients { .. } => [Ends::Free; 2],
         }
     }
 
@@ -51,6 +59,7 @@ impl Influence {
         match self {
             Influence::HalfSpace(love) => spectrum(&|i, j| love.coefficient(i, j)),
             Influence::Coefficients { values, columns } => spectrum(&|i, j| values[i * columns + j]),
+            Influence::Layer { .. } | Influence::LayerLine { .. } => spectrum(&|i, j| self.coefficient(grid, [i, j])),
             Influence::Waves { values, columns } => {
                 let (values, columns) = (Arc::clone(values), *columns);
                 Box::new(move |k1, k2| values[k1 * columns + k2])
@@ -58,6 +67,11 @@ impl Influence {
             Influence::Periodic => {
                 let q = magnitude(grid, layout);
                 Box::new(move |k1, k2| if (k1, k2) == (0, 0) { 0.0 } else { 2.0 / q(k1, k2) })
+            }
+            Influence::LayerPeriodic(layer) => {
+                let (q, layer) = (magnitude(grid, layout), *layer);
+                let mean = if layer.is_on_rigid() { layer.compliance(0.0) } else { 0.0 };
+                Box::new(move |k1, k2| if (k1, k2) == (0, 0) { mean } else { layer.compliance(q(k1, k2)) })
             }
             Influence::Strip { periodic, strip } => {
                 // for each wave along the periodic axis, a convolution along the other
@@ -81,14 +95,18 @@ impl Influence {
     /// waves.
     ///
     /// The compliance of a half-space for the wave q is 2/|q| (Westergaard 1939), whatever its boundaries. Its
-    /// approximate inverse is |q|/2, except for the mean, whose stiffness is that against a uniform pressure. Other
-    /// bodies are inverted wave by wave, on the grid taken as periodic (G. Strang, Stud. Appl. Math. 74, 1986).
+    /// approximate inverse is |q|/2, except for the mean, whose stiffness is that against a uniform pressure; layers have
+    /// that of their own waves. Other bodies are inverted wave by wave, on the grid taken as periodic (G. Strang, Stud. Appl. Math. 74, 1986).
     pub(super) fn inverse(&self, grid: &Grid, cells: [usize; 2], folded: [bool; 2]) -> (Layout, Symbol) {
         let layout = Layout { cells, ends: self.ends(), folded }.wrapped();
         let lengths = [0, 1].map(|axis| grid.spacing()[axis] * (cells[axis] * if folded[axis] { 2 } else { 1 }) as f64);
         let westergaard = |mean: f64| -> Symbol {
             let q = magnitude(grid, layout);
             Box::new(move |k1, k2| if (k1, k2) == (0, 0) { mean } else { 0.5 * q(k1, k2) })
+        };
+        let layered = |layer: Layer, mean: f64| -> Symbol {
+            let q = magnitude(grid, layout);
+            Box::new(move |k1, k2| 1.0 / if (k1, k2) == (0, 0) { mean } else { layer.compliance(q(k1, k2)) })
         };
         let longest =
             || (0..2).map(|axis| wave_number(1, layout.period(axis), grid.spacing()[axis])).fold(f64::MAX, f64::min);
@@ -98,7 +116,17 @@ impl Influence {
             Influence::Strip { periodic, strip } => westergaard(1.0 / strip.uniform(lengths[1 - periodic])),
             // the mean displacement is fixed at zero: the mean gets the stiffness of the longest wave
             Influence::Periodic => westergaard(0.5 * longest()),
-            Influence::Coefficients { .. } | Influence::Waves { .. } => {
+            Influence::Layer { layer, .. } => {
+                // 0.95 L is the compliance of the wave 2.1/L; no stiffer than the longest wave, where long ones are the stiffest
+                let mean = layer.compliance(2.1 / (lengths[0] * lengths[1]).sqrt());
+                layered(*layer, mean.max(layer.compliance(longest())))
+            }
+            Influence::LayerLine { layer, .. } => {
+                let (count, at) = (cells[0] * if folded[0] { 2 } else { 1 }, |i| self.coefficient(grid, [i, 0]));
+                let far = (1..count).map(|i| 2.0 * (1.0 - i as f64 / count as f64) * at(i)).sum::<f64>();
+                layered(*layer, at(0) + far)
+            }
+            Influence::LayerPeriodic(_) | Influence::Coefficients { .. } | Influence::Waves { .. } => {
                 let symbol = self.symbol(grid, layout);
                 let waves =
                     (0..=layout.period(0) / 2).flat_map(|k1| (0..=layout.period(1) / 2).map(move |k2| (k1, k2)));
@@ -122,6 +150,12 @@ impl Influence {
                 let lengths = (0..2).filter(|&axis| grid.cells()[axis] > 1).map(|axis| grid.lengths()[axis]);
                 Some(lengths.fold(0.0, f64::max) / PI)
             }
+            Influence::LayerPeriodic(layer) if !(layer.compliance(0.0) > 0.0 && layer.is_on_rigid()) => {
+                let whole = Layout { cells: grid.cells(), ends: self.ends(), folded: [false; 2] };
+                let symbol = self.symbol(grid, whole);
+                let waves = (0..=grid.cells()[0] / 2).flat_map(|k1| (0..=grid.cells()[1] / 2).map(move |k2| (k1, k2)));
+                Some(waves.map(|(k1, k2)| symbol(k1, k2)).fold(0.0, f64::max))
+            }
             Influence::Waves { values, .. } if values[0] == 0.0 => Some(values.iter().copied().fold(0.0, f64::max)),
             _ => None,
         }
@@ -132,13 +166,22 @@ impl Influence {
         match self {
             Influence::HalfSpace(love) => love.coefficient(at[0], at[1]),
             Influence::Coefficients { values, columns } => values[at[0] * columns + at[1]],
+            Influence::Layer { love, remainder, .. } => {
+                let spacing = grid.spacing();
+                let distance = [0, 1].map(|axis| at[axis] as f64 * spacing[axis]);
+                love.coefficient(at[0], at[1]) + remainder.on_cell(distance, spacing)
+            }
+            Influence::LayerLine { strip, remainder, .. } => {
+                let side = grid.spacing()[0];
+                strip.coefficient(at[0], 0.0) + remainder.on_line(at[0] as f64 * side, side)
+            }
             Influence::Strip { periodic, strip } => {
                 let (cells, side) = (grid.cells()[*periodic], grid.spacing()[*periodic]);
                 let across = |k: usize| strip.coefficient(at[1 - periodic], wave_number(k, cells, side));
                 let waves = (0..=cells / 2).map(|k| waves_at(at[*periodic], k, cells) * across(k));
                 waves.sum::<f64>() / cells as f64
             }
-            Influence::Periodic | Influence::Waves { .. } => {
+            Influence::Periodic | Influence::LayerPeriodic(_) | Influence::Waves { .. } => {
                 let layout = Layout { cells: grid.cells(), ends: self.ends(), folded: [false; 2] };
                 layout.coefficient(at, self.symbol(grid, layout))
             }
@@ -162,6 +205,12 @@ impl fmt::Display for Influence {
             }
             Influence::Strip { periodic, strip } => {
                 write!(f, "half-space, periodic along x{}, datum {:e} m", periodic + 1, strip.datum)
+            }
+            Influence::Layer { layer, .. } => write!(f, "{layer}"),
+            Influence::LayerPeriodic(layer) => write!(f, "{layer}, periodic along x1 and x2"),
+            Influence::LayerLine { layer, .. } if layer.is_on_rigid() => write!(f, "{layer}, in plane strain"),
+            Influence::LayerLine { layer, strip, .. } => {
+                write!(f, "{layer}, in plane strain, datum {:e} m", strip.datum)
             }
             Influence::Coefficients { .. } => write!(f, "user-defined coefficients"),
             Influence::Waves { .. } => write!(f, "user-defined waves, periodic along x1 and x2"),

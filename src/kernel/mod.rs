@@ -10,6 +10,7 @@
 //! | periodic along both axes | 2/\|q\| for each wave q, nothing for the mean |
 //! | periodic along one axis | (2/π) ∫ K0(κ \|x − s\|) p(s) ds for each wave κ along it, of the mean as for a line |
 //! | line contact | −(2/π) ∫ ln(\|x − s\|/d) p(s) ds |
+//! | layer of thickness h | (2/\|q\|) L(\|q\|h) for each wave q: the half-space, and what is smooth on the scale h |
 //! | user-defined | coefficients between cells, or the compliance of each wave |
 //!
 //! All material behaviour is in C. Normalisation: `convolve` returns K p in Pa·m, with no remaining
@@ -19,6 +20,8 @@ mod constructors;
 mod even_spectrum;
 mod influence;
 mod lanes;
+mod layer;
+mod layered;
 mod layout;
 mod lines;
 mod love;
@@ -27,6 +30,7 @@ mod strip;
 mod transform;
 
 pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, join, lanes, merge_bands, middle};
+pub use layer::Layer;
 pub(crate) use layout::images;
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
@@ -248,6 +252,16 @@ impl InfluenceKernel {
     /// Axes along which the bodies are periodic, the grid being one period.
     pub fn periodic_axes(&self) -> [bool; 2] {
         self.influence.ends().map(|end| end == Ends::Periodic)
+    }
+
+    /// The layer, if the body is one: its Poisson's ratio must be that of the material.
+    pub(crate) fn layer_of(&self) -> Option<&Layer> {
+        match &self.influence {
+            Influence::Layer { layer, .. } | Influence::LayerPeriodic(layer) | Influence::LayerLine { layer, .. } => {
+                Some(layer)
+            }
+            _ => None,
+        }
     }
 
     /// Whether the body is a half-space, whose displacement is positive everywhere around a load.

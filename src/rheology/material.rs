@@ -161,6 +161,16 @@ impl Material {
         self.bodies.iter().filter_map(|body| body.rheology.fit_report())
     }
 
+    /// Poisson's ratio of each body, where it is constant.
+    pub(crate) fn poisson_ratios(&self) -> Vec<Option<f64>> {
+        let ratio = |body: &Body| match body.volume {
+            Volume::Proportional(factor) => Some(1.0 - 2.0 * factor),
+            Volume::Elastic(_) => None,
+        };
+        // incompressible is C = J/4 = (1 − ½) J/2
+        self.bodies.iter().map(ratio).collect()
+    }
+
     /// Accepts rheologies whose times are not NaN.
     pub(crate) fn validate(&self) -> Result<()> {
         for rheology in self.bodies.iter().map(|body| &body.rheology) {

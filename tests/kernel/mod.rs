@@ -2,5 +2,6 @@
 
 mod coefficients;
 mod half_space;
+mod layers;
 mod love;
 mod other_bodies;

@@ -3,6 +3,7 @@
 mod analytic;
 mod equations;
 mod hertz;
+mod layers;
 mod oscillation;
 mod paper_figures;
 mod plan;

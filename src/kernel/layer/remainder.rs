@@ -1,0 +1,130 @@
+//! What a layer adds to the influence coefficients of a half-space.
+//!
+//! Of the compliance (2/q) L(qh), the half-space has (2/q), in Love's closed form or that of a line. The rest is smooth on the scale h: a
+//! point load adds, at the distance r,
+//!
+//! g(r) = (1/π) ∫ (L(qh) − 1) J0(qr) dq = G(r/h)/(πh),   G(ρ) = ∫ (L(t) − 1) J0(ρt) dt,
+//!
+//! analytic but for ρ = ±2i, ±4i, …, the images of the load. A line load adds
+//!
+//! w(x) = (2/π) [(1 − L(0)) ½ ln(1 + ξ²/4) + ∫ S(t) cos(ξt) dt],   S(t) = (L(t) − L(0) − (1 − L(0)) (1 − e^(−2t)))/t,
+//!
+//! ξ = x/h, to −(2/π) ln(|x|/2h): from ∫ (1 − e^(−2t))/t cos(ξt) dt = ½ ln(1 + 4/ξ²). Where L(0) = 0, on a rigid base,
+//! both together vanish far away, as e^(−1.19ξ) or sooner. Elsewhere −(2/π) L(0) ln ξ remains, and the user's datum
+//! says where the surface stays.
+
+use std::f64::consts::{FRAC_2_PI, PI};
+
+use super::oscillation::{Oscillation, Weight};
+use super::table::Table;
+use super::wave::Response;
+use crate::quadrature::GaussLegendre;
+
+/// Error of the integral over a cell, relative to the integrand: digits of the rule with n points on a piece whose
+/// distance from the images is d side lengths are about 2n log₁₀ 4d.
+const DIGITS: f64 = 15.0;
+/// Points on a piece; one that needs more is halved.
+const MOST_POINTS: usize = 10;
+
+/// The remainder of a layer, by distance.
+#[derive(Debug, Clone)]
+pub(in crate::kernel) struct Remainder {
+    thickness: f64,
+    table: Table,
+    /// 1 − L(0) for lines, which have a logarithm beside the table.
+    log: Option<f64>,
+    /// w at the datum, where it counts as zero.
+    datum: f64,
+    /// Rules of 1, 2, … points.
+    rules: Vec<GaussLegendre>,
+}
+
+impl Remainder {
+    /// That of a load on a cell, for distances up to `last` \[m\].
+    pub(super) fn of_cells(response: Response, thickness: f64, last: f64) -> Remainder {
+        let hankel = Oscillation::new(Weight::Bessel, response.least_scale(), |t| response.less_one(t));
+        Remainder::new(thickness, Table::new(last / thickness, |x| hankel.integral(x)), None)
+    }
+
+    /// That of a load on a line; `datum` \[m\] is where the displacement on a base that is a half-space is zero.
+    pub(super) fn of_lines(response: Response, thickness: f64, last: f64, datum: Option<f64>) -> Remainder {
+        let longest = response.longest();
+        let fourier = Oscillation::new(Weight::Cosine, response.least_scale(), |t: f64| {
+            ((response.at(t) - longest) + (1.0 - longest) * (-2.0 * t).exp_m1()) / t
+        });
+        let log = Some(1.0 - longest);
+        let mut remainder = Remainder::new(thickness, Table::new(last / thickness, |x| fourier.integral(x)), log);
+        if let Some(datum) = datum {
+            let x = datum / thickness;
+            remainder.datum = FRAC_2_PI * (fourier.integral(x) + logarithm(1.0 - longest, x));
+        }
+        remainder
+    }
+
+    fn new(thickness: f64, table: Table, log: Option<f64>) -> Remainder {
+        let rules = (1..=MOST_POINTS).map(GaussLegendre::new).collect();
+        Remainder { thickness, table, log, datum: 0.0, rules }
+    }
+
+    /// The displacement \[m\] under a unit pressure on the rectangle of these sides \[m\] around a point `at` \[m\].
+    pub(in crate::kernel) fn on_cell(&self, at: [f64; 2], sides: [f64; 2]) -> f64 {
+        // in units of the thickness
+        let [at, sides] = [at, sides].map(|pair| pair.map(|length| length / self.thickness));
+        self.over(at, sides) * self.thickness / PI
+    }
+
+    /// The same on a strip, in plane strain.
+    pub(in crate::kernel) fn on_line(&self, at: f64, side: f64) -> f64 {
+        let [at, side] = [at, side].map(|length| length / self.thickness);
+        FRAC_2_PI * self.along(at, side) * self.thickness - self.datum * side * self.thickness
+    }
+
+    /// ∬ G over a rectangle.
+    fn over(&self, at: [f64; 2], sides: [f64; 2]) -> f64 {
+        let nearest = [0, 1].map(|axis| (at[axis].abs() - 0.5 * sides[axis]).max(0.0));
+        let distance = nearest[0].hypot(nearest[1]).hypot(2.0);
+        let points = sides.map(|side| points(side, distance));
+        let long = if sides[0] >= sides[1] { 0 } else { 1 };
+        if points[long] > MOST_POINTS {
+            let mut halves = [at; 2];
+            let mut half = sides;
+            half[long] *= 0.5;
+            halves[0][long] -= 0.5 * half[long];
+            halves[1][long] += 0.5 * half[long];
+            return halves.into_iter().map(|at| self.over(at, half)).sum();
+        }
+        let rules = points.map(|points| &self.rules[points - 1]);
+        let row = |x: f64| {
+            let inner = |y: f64| self.table.at(x.hypot(at[1] + 0.5 * sides[1] * y));
+            rules[1].sum(inner)
+        };
+        0.25 * sides[0] * sides[1] * rules[0].sum(|x| row(at[0] + 0.5 * sides[0] * x))
+    }
+
+    /// ∫ over an interval, of what a line adds.
+    fn along(&self, at: f64, side: f64) -> f64 {
+        let distance = (at.abs() - 0.5 * side).max(0.0).hypot(2.0);
+        let points = points(side, distance);
+        if points > MOST_POINTS {
+            return self.along(at - 0.25 * side, 0.5 * side) + self.along(at + 0.25 * side, 0.5 * side);
+        }
+        let log = self.log.unwrap_or(0.0);
+        let rule = &self.rules[points - 1];
+        0.5 * side
+            * rule.sum(|s| {
+                let x = (at + 0.5 * side * s).abs();
+                self.table.at(x) + logarithm(log, x)
+            })
+    }
+}
+
+/// (1 − L(0)) ½ ln(1 + ξ²/4).
+fn logarithm(factor: f64, x: f64) -> f64 {
+    0.5 * factor * (0.25 * x * x).ln_1p()
+}
+
+/// Points on a piece of length `side`, the images being at a `distance`.
+fn points(side: f64, distance: f64) -> usize {
+    let digits = 2.0 * (4.0 * distance / side).log10();
+    if digits <= 0.0 { usize::MAX } else { (DIGITS / digits).ceil().max(1.0) as usize }
+}
