@@ -79,7 +79,7 @@ fn a_constant_temperature_is_that_of_the_material() {
         for time_rule in [TimeRule::Exponential, TimeRule::Backward] {
             let settings = settings().with_time_rule(time_rule);
             let cold = builder_on(grid(32), Material::incompressible(zener())).temperature(history.clone());
-            let mut own = cold.settings(settings.clone()).build().unwrap();
+            let mut own = cold.settings(settings).build().unwrap();
             let mut other = builder_on(grid(32), warm.clone()).settings(settings).build().unwrap();
             for (dt, force) in [(0.0, 0.5), (0.1, 0.4), (0.4, 0.3), (0.3, 0.7), (5.0, 0.7)] {
                 let [a, b] = [&mut own, &mut other].map(|contact| contact.step(dt * tau, Load::force(force)).unwrap());
@@ -123,7 +123,7 @@ fn steps_are_those_of_the_reduced_time_on_random_scenes() {
         let history = TemperatureHistory::table(law, &stretched).unwrap();
         let build = || builder_on(grid(16), body.material.clone()).times(1e-9 * body.until..=2.0 * body.until);
         let settings = settings().with_edge(Edge::Allow);
-        let mut own = build().temperature(history.clone()).settings(settings.clone()).build().unwrap();
+        let mut own = build().temperature(history.clone()).settings(settings).build().unwrap();
         let mut plain = build().settings(settings).build().unwrap();
         if body.is_elastic_at_once() {
             own.step(0.0, Load::force(0.1)).unwrap();
