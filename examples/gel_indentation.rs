@@ -30,7 +30,7 @@ struct Args {
     #[arg(long, default_value_t = 128)]
     cells: usize,
     /// Steps in time.
-    #[arg(long, default_value_t = 80)]
+    #[arg(long, default_value_t = 240)]
     steps: u32,
     /// Folder for the table and pictures.
     #[arg(long, default_value = "out/gel_indentation")]
@@ -58,7 +58,9 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 
     let mut depths = Chart::new("A gel on glass under a ball", "time [s]", "indentation [µm]", Legend::UpperLeft);
     let mut errors = Chart::new("Compliance read from the indentation", "√(Rδ)/h", "error", Legend::LowerLeft);
-    depths.scale = Scale::LogX;
+    let mut compliances =
+        Chart::new("Compliance read by Hertz's formula", "time [s]", "C(t) [1/kPa]", Legend::UpperLeft);
+    (depths.scale, compliances.scale) = (Scale::LogX, Scale::LogX);
     let mut table = csv::Writer::from_path(args.output.join("indentation.csv"))?;
     table.write_record([
         "thickness_m",
@@ -78,7 +80,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             .material(material.clone())
             .kernel(kernel.into())
             .build()?;
-        let mut curve = Vec::new();
+        let (mut curve, mut apparent) = (Vec::new(), Vec::new());
         for step in 0..=args.steps {
             let (first, decades) = (1.0e-3_f64, (until / 1.0e-3).log10());
             let time =
@@ -95,6 +97,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
             table.serialize((thickness, time, report.approach, radius, found[0], found[1], found[2]))?;
             if step > 0 {
                 curve.push((time, 1e6 * report.approach));
+                apparent.push((time, 1e3 * hertz));
             }
             (0..3).for_each(|k| read[k].push((chi, found[k])));
             if step == args.steps {
@@ -109,7 +112,9 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
                 );
             }
         }
-        depths.add(format!("{:.0} µm", 1e6 * thickness), COLORS[n % COLORS.len()], Style::Line, curve);
+        let (name, color) = (format!("{:.0} µm", 1e6 * thickness), COLORS[n % COLORS.len()]);
+        depths.add(name.clone(), color, Style::Line, curve);
+        compliances.add(name, color, Style::Line, apparent);
     }
     table.flush()?;
     // the half-space's answer, Lee & Radok
@@ -117,13 +122,18 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         let a = (0.75 * args.radius * args.load * material.contact_compliance(t)).cbrt();
         1e6 * a * a / args.radius
     };
-    let times = (0..60).map(|k| 1.0e-3 * 10_f64.powf((until / 1.0e-3).log10() * f64::from(k) / 59.0));
-    depths.add("half-space", COLORS[3], Style::Dots, times.map(|t| (t, half_space(t))).collect());
+    let times: Vec<f64> =
+        (0..60).map(|k| 1.0e-3 * 10_f64.powf((until / 1.0e-3).log10() * f64::from(k) / 59.0)).collect();
+    let color = COLORS[args.thickness.len() % COLORS.len()];
+    depths.add("half-space", color, Style::Dots, times.iter().map(|&t| (t, half_space(t))).collect());
+    let true_values = times.iter().map(|&t| (t, 1e3 * material.contact_compliance(t))).collect();
+    compliances.add("that of the gels", color, Style::Dots, true_values);
     for (k, points) in read.iter_mut().enumerate() {
         points.sort_by(|one, other| one.0.total_cmp(&other.0));
         errors.add(SERIES[k].0, COLORS[k], Style::Line, points.clone());
     }
     depths.save(args.output.join("indentation.png"))?;
+    compliances.save(args.output.join("compliance.png"))?;
     errors.save(args.output.join("error.png"))?;
     println!("table and pictures are in {}", args.output.display());
     Ok(())
