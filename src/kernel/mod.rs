@@ -26,8 +26,9 @@ mod positive;
 mod strip;
 mod transform;
 
+pub(crate) use influence::HalfSpace;
 pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, join, lanes, merge_bands, middle};
-pub(crate) use layout::images;
+pub(crate) use layout::{fast_length, images};
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
 use std::fmt;
@@ -248,6 +249,11 @@ impl InfluenceKernel {
     /// Axes along which the bodies are periodic, the grid being one period.
     pub fn periodic_axes(&self) -> [bool; 2] {
         self.influence.ends().map(|end| end == Ends::Periodic)
+    }
+
+    /// How the load continues beyond the grid, if the body is a half-space whose inside is known.
+    pub(crate) fn half_space_below(&self) -> Option<HalfSpace> {
+        self.influence.half_space(&self.grid)
     }
 
     /// Whether the body is a half-space, whose displacement is positive everywhere around a load.

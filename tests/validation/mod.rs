@@ -12,3 +12,4 @@ mod rolling;
 mod several_indenters;
 mod step_loaded_sphere;
 mod stiffness;
+mod stress;
