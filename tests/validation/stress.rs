@@ -4,10 +4,11 @@
 use std::sync::Arc;
 
 use super::rolling::{FINE, roll, scene};
+use viscocontact::KernelError;
 use viscocontact::analytic::Hertz;
-use viscocontact::error::{KernelError, MaterialError};
 use viscocontact::observe::{Axis, Stress, StressHistory, SubsurfaceStress};
 use viscocontact::prelude::*;
+use viscocontact::rheology::MaterialError;
 
 const RADIUS: f64 = 10.0e-3;
 const G: f64 = 1.0e6;
@@ -40,8 +41,8 @@ fn a_ball_yields_where_hertz_says() {
         let error = found.value / (value * peak) - 1.0;
         let [x1, x2, x3] = found.position.map(|x| x / a);
         println!("ν = {nu}: von Mises {error:.1e}, depth {:.1e} a, aside {x1:.1e} {x2:.1e}", x3 - depth);
-        assert!(error.abs() < 3e-4, "{nu}: {error:e}");
-        assert!((x3 - depth).abs() < 1e-3 && x1.abs() < 1e-3 && x2.abs() < 1e-3, "{nu}: {:?}", found.position);
+        assert!(error.abs() < 3e-5, "{nu}: {error:e}");
+        assert!((x3 - depth).abs() < 1e-4 && x1.abs() < 1e-6 && x2.abs() < 1e-6, "{nu}: {:?}", found.position);
         assert!(!found.at_end_of_depths && found.stress.von_mises() == found.value);
         // on the axis two principal stresses are equal: Tresca is von Mises, and of the same place
         let tresca = contact.stress().unwrap().max_tresca(&depths(12, 1.2 * a)).unwrap();
@@ -58,8 +59,8 @@ fn the_greatest_stress_converges() {
         (found.value / (0.620_041 * hertz.pressure(0.0)) - 1.0).abs()
     };
     let errors = [32, 128].map(error);
-    println!("von Mises at 32², 128²: {errors:.1e?}");
-    assert!(errors[0] < 5e-3 && errors[1] < 6e-4, "{errors:?}");
+    println!("von Mises at 32², 128²: {errors:?}");
+    assert!(errors[0] < 6e-4 && errors[1] < 6e-5, "{errors:?}");
 }
 
 /// On the axis of a ball (K. L. Johnson, Contact Mechanics, 1985, (3.45)): σ33 = −p0/(1 + ζ²) and
@@ -224,7 +225,7 @@ fn the_counter_body() {
         |nu| SubsurfaceStress::new(contact.kernel(), contact.pressure(), nu).unwrap().on_plane(0.2e-3).unwrap();
     let close = |one: Vec<Stress>, other: Vec<Stress>| {
         let peak = contact.max_pressure();
-        one.iter().zip(&other).all(|(a, b)| (a.s11 - b.s11).abs() < 1e-14 * peak && a.s33 == b.s33)
+        one.iter().zip(&other).all(|(a, b)| (a.s11 - b.s11).abs().max((a.s33 - b.s33).abs()) < 1e-13 * peak)
     };
     assert!(close(contact.stress().unwrap().on_plane(0.2e-3).unwrap(), expected(0.5)));
     let below = contact.stress_in_counter_body().unwrap().on_plane(0.2e-3).unwrap();
