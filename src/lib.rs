@@ -60,6 +60,7 @@
 //! * **Units**: SI throughout: m, Pa, N, s. The same scene in other units gives the same answer.
 //! * **Signs**: pressure is positive in compression, displacement positive into the bodies, the gap positive when open;
 //!   the approach grows as the bodies are pressed together.
+//! * **Stress** below the surface ([`observe::Stress`]): tension positive, x3 the depth.
 //! * **Coordinates**: x1 and x2 in the common plane, origin in the middle of the [`Grid`].
 //! * **Fields**: one value per cell, constant over the cell, row-major with x2 fastest: the cell `[i, j]` is entry
 //!   `i * cells()[1] + j`.

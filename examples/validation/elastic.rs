@@ -68,6 +68,23 @@ pub fn hertz() -> Outcome {
     Ok(Checked::new("sphere, 256² cells", "Hertz 1882", &rows))
 }
 
+/// Where a ball on a body of ν = ½ would yield first (von Mises).
+pub fn stress_below_a_ball() -> Outcome {
+    let exact = Hertz::new(10.0e-3, E_STAR, 1.0)?;
+    let a = exact.contact_radius();
+    let contact = pressed(Grid::square(256, 2.6 * a)?, &Sphere::new(10.0e-3)?, Load::force(1.0))?;
+    let stress = contact.stress()?;
+    let depths: Vec<f64> = (1..=12).map(|k| 0.1 * f64::from(k) * a).collect();
+    let peak = stress.max_von_mises(&depths)?;
+    let normal = stress.at(&[[0.0, 0.0, 2.0 * a]])?[0].s33;
+    let rows = [
+        ("greatest von Mises stress", peak.value, 0.532_697 * exact.max_pressure(), 1e-3),
+        ("its depth", peak.position[2], 0.547_87 * a, 2e-3),
+        ("σ33 on the axis at z = 2 a", normal, -0.2 * exact.max_pressure(), 1e-3),
+    ];
+    Ok(Checked::new("stress below a sphere, 256² cells", "Hertz; Johnson 1985, 3.45", &rows))
+}
+
 pub fn hertz_ellipse() -> Outcome {
     let exact = HertzEllipse::new([20.0e-3, 5.0e-3], E_STAR, 1.0)?;
     let [a1, a2] = exact.semi_axes();

@@ -56,13 +56,14 @@ fn zener() -> Outcome {
     Ok(checked)
 }
 
-const SCENES: [fn() -> Outcome; 24] = [
+const SCENES: [fn() -> Outcome; 25] = [
     elastic::convolution,
     elastic::hertz,
     elastic::hertz_ellipse,
     elastic::punch,
     elastic::wavy,
     elastic::line,
+    elastic::stress_below_a_ball,
     maxwell,
     zener,
     creep::order,

@@ -131,7 +131,7 @@ impl Builder {
             None => Arc::new(InfluenceKernel::half_space(&self.grid)?),
         };
         if let Some(layer) = kernel.layer_of() {
-            layer.check_material(&material.poisson_ratios())?;
+            layer.check_material(&material.poisson_ratios().collect::<Vec<_>>())?;
         }
         if let Some(times) = &self.times
             && self.settings.time_rule.needs_series()

@@ -66,4 +66,15 @@ pub enum KernelError {
         /// Estimate of the greatest \[m\].
         most: f64,
     },
+
+    /// The stress below the surface is known of half-spaces, of those periodic along both axes, and of line contacts only:
+    /// not of bodies that are given by the influence on their surface, nor of those periodic along one axis with more than
+    /// one cell along it.
+    #[error(
+        "the stress below the surface is not known of this body ({body}): it must be a half-space, one periodic along both axes, or a line contact"
+    )]
+    NoStress {
+        /// The kernel, as its `Display` prints it.
+        body: String,
+    },
 }

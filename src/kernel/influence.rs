@@ -38,7 +38,30 @@ pub(super) enum Influence {
     Waves { values: Arc<[f64]>, columns: usize },
 }
 
+/// How the load of a half-space continues beyond the grid.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum HalfSpace {
+    /// Not at all.
+    LoadedOnGrid,
+    /// The grid is a period along both axes.
+    Periodic,
+    /// Uniform along one axis, and only on the grid along the axis `across`: plane strain.
+    Line { across: usize },
+}
+
 impl Influence {
+    /// How the load continues, if the body is a half-space whose inside is known.
+    pub(super) fn half_space(&self, grid: &Grid) -> Option<HalfSpace> {
+        match self {
+            Influence::HalfSpace(_) => Some(HalfSpace::LoadedOnGrid),
+            Influence::Periodic => Some(HalfSpace::Periodic),
+            Influence::Strip { periodic, .. } if grid.cells()[*periodic] == 1 => {
+                Some(HalfSpace::Line { across: 1 - periodic })
+            }
+            _ => None,
+        }
+    }
+
     pub(super) fn ends(&self) -> [Ends; 2] {
         match self {
             Influence::Periodic | Influence::LayerPeriodic(_) | Influence::Waves { .. } => [Ends::Periodic; 2],

@@ -77,7 +77,7 @@ pub(super) fn waves_at(at: usize, k: usize, period: usize) -> f64 {
 ///
 /// Measured with rustfft on one processor with AVX: n log₂ n takes 0.12 to 0.14 ns per unit for powers of two, 0.15 to
 /// 0.2 for multiples of 16, and up to 0.3 for others: 63 takes 1.7 times as long as 64, 500 2.3 times as long as 512.
-fn fast_length(least: usize) -> usize {
+pub(crate) fn fast_length(least: usize) -> usize {
     let power = least.next_power_of_two();
     let step = if least > 32 { 16 } else { 4 };
     let other = step * least_smooth(least.div_ceil(step));

@@ -29,9 +29,10 @@ mod positive;
 mod strip;
 mod transform;
 
+pub(crate) use influence::HalfSpace;
 pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, join, lanes, merge_bands, middle};
 pub use layer::Layer;
-pub(crate) use layout::images;
+pub(crate) use layout::{fast_length, images};
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
 use std::fmt;
@@ -262,6 +263,11 @@ impl InfluenceKernel {
             }
             _ => None,
         }
+    }
+
+    /// How the load continues beyond the grid, if the body is a half-space whose inside is known.
+    pub(crate) fn half_space_below(&self) -> Option<HalfSpace> {
+        self.influence.half_space(&self.grid)
     }
 
     /// Whether the body is a half-space, whose displacement is positive everywhere around a load.

@@ -7,10 +7,11 @@
 //! | What are the values along a line? | [`profile`](crate::ViscoelasticContact::profile) |
 //! | How many patches touch, and how large are they? | [`patches`](crate::ViscoelasticContact::patches) |
 //! | Is the contact shifted to one side? | [`asymmetry`](crate::ViscoelasticContact::asymmetry) |
+//! | How high is the stress below the surface, and where? | [`stress`](crate::ViscoelasticContact::stress) |
 //!
 //! Each is a pure function of grid, pressure and gap; the methods apply it to the fields of a contact and change
 //! nothing. Each visits the cells once; those that need displacement or gap cost as much as
-//! [`displacement`](crate::ViscoelasticContact::displacement).
+//! [`displacement`](crate::ViscoelasticContact::displacement). The stress costs what [`SubsurfaceStress`] says.
 
 pub(crate) mod area;
 mod asymmetry;
@@ -18,12 +19,14 @@ mod distribution;
 pub(crate) mod mesh_error;
 mod patches;
 mod profile;
+mod stress;
 
 pub use asymmetry::Asymmetry;
 pub use distribution::Distribution;
 pub use mesh_error::MeshError;
 pub use patches::{Patch, Patches};
 pub use profile::{Axis, LineProfile};
+pub use stress::{Stress, StressHistory, StressPeak, StressSection, StressVolume, SubsurfaceStress};
 
 /// A sphere pressed on an elastic half-space, for the tests of most observations.
 #[cfg(test)]

@@ -13,6 +13,24 @@ pub enum Axis {
     X2,
 }
 
+impl Axis {
+    /// The indices of this axis and of the other one.
+    pub(crate) fn and_other(self) -> (usize, usize) {
+        match self {
+            Axis::X1 => (0, 1),
+            Axis::X2 => (1, 0),
+        }
+    }
+}
+
+/// The index of the line of cells that contains the coordinate `at` along `across`.
+pub(crate) fn line_through(grid: &Grid, across: usize, (field, at): (&'static str, f64)) -> Result<usize> {
+    let half = 0.5 * grid.lengths()[across];
+    within(field, at, at.abs() <= half, "inside the grid")?;
+    // the last line includes the edge of the grid
+    Ok((((at + half) / grid.spacing()[across]) as usize).min(grid.cells()[across] - 1))
+}
+
 /// Pressure, displacement and gap along a line of cells, see
 /// [`ViscoelasticContact::profile`](crate::ViscoelasticContact::profile).
 #[derive(Debug, Clone, PartialEq)]
@@ -38,15 +56,9 @@ impl LineProfile {
         at: f64,
         [pressure, displacement, gap]: [&[f64]; 3],
     ) -> Result<LineProfile> {
-        let (along, across) = match along {
-            Axis::X1 => (0, 1),
-            Axis::X2 => (1, 0),
-        };
+        let (along, across) = along.and_other();
         let cells = grid.cells();
-        let half = 0.5 * grid.lengths()[across];
-        within("coordinate of the profile", at, at.abs() <= half, "inside the grid")?;
-        // the last line includes the edge of the grid
-        let line = (((at + half) / grid.spacing()[across]) as usize).min(cells[across] - 1);
+        let line = line_through(grid, across, ("coordinate of the profile", at))?;
         let cell = |k: usize| if along == 0 { k * cells[1] + line } else { line * cells[1] + k };
         let values_of = |field: &[f64]| (0..cells[along]).map(|k| field[cell(k)]).collect();
         Ok(LineProfile {

@@ -5,6 +5,8 @@
 //! | `NpzSeries`: a folder of NPZ archives, one per frame | `npy` | NumPy, Julia, MATLAB |
 //! | `write_npy`: one field as an NPY file | `npy` | NumPy, Julia, MATLAB |
 //! | `VtkSeries`: a folder of VTK images and a `series.pvd` | `vtk` | ParaView, VisIt, PyVista |
+//! | `write_stress_npz`: the stress in a volume | `npy` | NumPy, Julia, MATLAB |
+//! | `write_stress_vtk`: the stress in a volume | `vtk` | ParaView, VisIt, PyVista |
 //! | `CsvHistory`: one row per step | `csv` | pandas, spreadsheets, gnuplot |
 //!
 //! Values are written in double precision, bitwise, in SI units. Each file contains [`Metadata`] that describe the run.
@@ -13,7 +15,7 @@
 //!
 //! Files of an earlier run are replaced by these rules. What grows with a run, a series or a history, is not replaced by
 //! `create`, which refuses a folder with frames or an existing file ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists));
-//! `create_or_replace` removes them first. What is written at once (`write_npy`, pictures, animations, checkpoints) replaces
+//! `create_or_replace` removes them first. What is written at once (`write_npy`, stresses, pictures, animations, checkpoints) replaces
 //! an existing file, once the new one is complete; if the path is a link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
 //! [`Error::NotAFile`](crate::Error::NotAFile). While a file is being written, the process ID and `.part` are appended
 //! to its name; a process that is killed leaves it under that name.
@@ -34,6 +36,8 @@ mod metadata;
 mod npy;
 #[cfg(feature = "npy")]
 mod npz;
+#[cfg(any(feature = "npy", feature = "vtk"))]
+mod stress;
 #[cfg(feature = "vtk")]
 mod vtk;
 
@@ -45,5 +49,9 @@ pub use metadata::Metadata;
 pub use npy::write_npy;
 #[cfg(feature = "npy")]
 pub use npz::NpzSeries;
+#[cfg(feature = "npy")]
+pub use stress::write_stress_npz;
+#[cfg(feature = "vtk")]
+pub use stress::write_stress_vtk;
 #[cfg(feature = "vtk")]
 pub use vtk::VtkSeries;

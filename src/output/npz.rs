@@ -80,7 +80,7 @@ impl NpzSeries {
         let path = self.frames.folder.join(self.frames.next_name());
         let Frames { metadata, fields, buffer, .. } = &mut self.frames;
         replace(&path, |out| {
-            let mut archive = Archive(ZipWriter::new(Deferred::new(out)));
+            let mut archive = Archive::new(out);
             archive.add("time", &[], &[contact.time()])?;
             for (axis, name) in ["x1", "x2"].into_iter().enumerate() {
                 let cells = contact.grid().cells()[axis];
@@ -95,9 +95,7 @@ impl NpzSeries {
             archive.add("force", &[], &[contact.force()])?;
             archive.add("tilt", &[2], &contact.tilt())?;
             archive.add("contact_area", &[], &[contact.contact_area()])?;
-            archive.start("metadata", false)?;
-            npy::text(&mut archive.0, &metadata.json(contact))?;
-            archive.0.finish()?.finish()
+            archive.finish(&metadata.json(contact))
         })?;
         self.frames.written += 1;
         Ok(path)
@@ -110,18 +108,29 @@ impl NpzSeries {
 }
 
 /// An NPZ archive being written.
-struct Archive<W: io::Write + io::Seek>(ZipWriter<Deferred<W>>);
+pub(super) struct Archive<W: io::Write + io::Seek>(ZipWriter<Deferred<W>>);
 
 impl<W: io::Write + io::Seek> Archive<W> {
+    pub(super) fn new(out: W) -> Archive<W> {
+        Archive(ZipWriter::new(Deferred::new(out)))
+    }
+
     fn start(&mut self, name: &str, large: bool) -> io::Result<()> {
         let options = SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored).large_file(large);
         Ok(self.0.start_file(npyz::npz::file_name_from_array_name(name), options)?)
     }
 
-    fn add(&mut self, name: &str, shape: &[usize], values: &[f64]) -> io::Result<()> {
+    pub(super) fn add(&mut self, name: &str, shape: &[usize], values: &[f64]) -> io::Result<()> {
         // plain entries have sizes of 32 bits, including the header of the array
         let large = values.len() >= (u32::MAX as usize - 4096) / 8;
         self.start(name, large)?;
         npy::array(&mut self.0, shape, values)
+    }
+
+    /// Adds the metadata and completes the archive.
+    pub(super) fn finish(mut self, metadata: &str) -> io::Result<()> {
+        self.start("metadata", false)?;
+        npy::text(&mut self.0, metadata)?;
+        self.0.finish()?.finish()
     }
 }

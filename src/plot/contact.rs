@@ -82,6 +82,6 @@ impl Chart {
 }
 
 /// The time of a contact, as a title.
-fn time_title(contact: &ViscoelasticContact) -> String {
+pub(super) fn time_title(contact: &ViscoelasticContact) -> String {
     format!("t = {}", measure(contact.time(), "s"))
 }

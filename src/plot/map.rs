@@ -19,6 +19,9 @@ const TOP: f64 = 54.0;
 /// Least side of a map in pixels: very long maps are not drawn to scale.
 const MIN_SIDE: u32 = 40;
 
+/// Width of lines over the frame in pixels.
+const MARK_WIDTH: f64 = 9.0;
+
 /// Least height of a colour bar in pixels.
 const MIN_BAR: u32 = 200;
 
@@ -53,6 +56,10 @@ pub struct Map {
     pub blank: Color,
     cells: [usize; 2],
     lengths: [f64; 2],
+    /// The point in the middle.
+    pub(super) middle: [f64; 2],
+    /// Lines from point to point, drawn over the frame.
+    pub(super) lines: Vec<[(f64, f64); 2]>,
     values: Vec<f64>,
     /// Whether each cell lies inside the outline; empty without an outline.
     inside_outline: Vec<bool>,
@@ -84,6 +91,8 @@ impl Map {
             blank: Color::WHITE,
             cells: grid.cells(),
             lengths: grid.lengths(),
+            middle: [0.0; 2],
+            lines: Vec::new(),
             values,
             inside_outline: Vec::new(),
         })
@@ -185,7 +194,8 @@ impl Map {
     fn draw_on(&self, canvas: &mut Canvas, start: f64, [width, height]: [f64; 2]) {
         let half = self.lengths.map(|length| 0.5 * length);
         let axis = |k: usize, length: f64| {
-            Axis::linear(&self.axes[k], half[k], [-half[k], half[k]], Room { length, horizontal: k == 0 })
+            let [low, high] = [-half[k], half[k]].map(|end| self.middle[k] + end);
+            Axis::linear(&self.axes[k], low.abs().max(high.abs()), [low, high], Room { length, horizontal: k == 0 })
         };
         let left = start + f64::from(LEFT);
         let axes = [axis(0, width), axis(1, height)];
@@ -198,6 +208,10 @@ impl Map {
             canvas.lines(&outline, 2.0, Color::BLACK);
         }
         frame.draw(canvas, &self.title, label_baseline(start));
+        let lines: Vec<_> = self.lines.iter().map(|ends| ends.map(|(x, y)| frame.at(x, y)).to_vec()).collect();
+        if !lines.is_empty() {
+            canvas.lines(&lines, MARK_WIDTH, Color::BLACK);
+        }
     }
 
     /// The colours of the cells, top row first.
@@ -217,8 +231,8 @@ impl Map {
             return Vec::new();
         }
         let [n1, n2] = self.cells;
-        let x = |i: usize| half[0] * (2.0 * i as f64 / n1 as f64 - 1.0);
-        let y = |j: usize| half[1] * (2.0 * j as f64 / n2 as f64 - 1.0);
+        let x = |i: usize| self.middle[0] + half[0] * (2.0 * i as f64 / n1 as f64 - 1.0);
+        let y = |j: usize| self.middle[1] + half[1] * (2.0 * j as f64 / n2 as f64 - 1.0);
         let inside = |i: usize, j: usize| self.inside_outline[i * n2 + j];
         let mut edges = Vec::new();
         for i in 1..n1 {

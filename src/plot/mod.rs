@@ -4,6 +4,7 @@
 //! |---|---|
 //! | pressure, gap or displacement as a map | [`Map::pressure`], [`Map::gap`], [`Map::displacement`] |
 //! | any field as a map | [`Map::new`] |
+//! | the stress below the surface, on a section | [`Map::section`] |
 //! | an outline of the contact on any map | [`Map::outline_contact`] |
 //! | maps, charts, or both side by side | [`Map::save_row`], [`Picture::beside`] |
 //! | a profile along a line | [`Chart::profile`] |
@@ -55,6 +56,7 @@ mod map;
 mod palette;
 mod picture;
 mod quantity;
+mod section;
 mod shape;
 
 pub use animation::Animation;

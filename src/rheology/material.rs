@@ -38,8 +38,17 @@ struct Body {
 enum Volume {
     /// C(t)/J(t), the same at all times.
     Proportional(f64),
-    /// The exact series of C(t) for an elastic bulk.
-    Elastic(CreepSpectrum),
+    /// An elastic bulk: the exact series of C(t), and 1 − 2ν.
+    Elastic(CreepSpectrum, Compressibility),
+}
+
+/// 1 − 2ν as a function of time after a step of load, `last` + Σ share e^(−t/time).
+#[derive(Debug, Clone)]
+pub(crate) struct Compressibility {
+    /// Its limit at long times; at all times if there are no terms.
+    pub(crate) last: f64,
+    /// Shares and retardation times \[s\].
+    pub(crate) terms: Vec<(f64, f64)>,
 }
 
 impl Material {
@@ -82,7 +91,7 @@ impl Material {
         let equilibrium = shear.equilibrium() + 3.0 * bulk_modulus;
         let stiffened = RelaxationSpectrum::new(equilibrium, shear.viscosity(), shear.terms())?.creep();
         let contact = creep.scaled(0.25)?.plus(&stiffened.scaled(0.75)?)?;
-        Ok(Material::with_volume(rheology, Volume::Elastic(contact)))
+        Ok(Material::with_volume(rheology, Volume::Elastic(contact, Compressibility::new(bulk_modulus, &stiffened))))
     }
 
     fn with_volume(rheology: impl Rheology + 'static, volume: Volume) -> Material {
@@ -110,6 +119,32 @@ impl Material {
     /// [paper](crate::paper).
     pub fn contact_compliance(&self, t: f64) -> f64 {
         self.bodies.iter().map(|body| body.contact_compliance(t)).sum()
+    }
+
+    /// Poisson's ratio of each body: one, or the two of [`Material::against`]; `None` of a body that creeps
+    /// with an elastic bulk, whose ratio rises.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{Elastic, Material, Maxwell};
+    ///
+    /// let pad = Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?);
+    /// let polymer = Material::elastic_bulk(Maxwell::new(1.0e9, 1.0e9)?, 3.0e9)?;
+    /// assert_eq!(pad.against(polymer).poisson_ratios().collect::<Vec<_>>(), [Some(0.5), None]);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    pub fn poisson_ratios(&self) -> impl Iterator<Item = Option<f64>> {
+        self.bodies.iter().map(|body| match &body.volume {
+            Volume::Proportional(factor) => Some(1.0 - 2.0 * factor),
+            Volume::Elastic(_, Compressibility { last, terms }) => terms.is_empty().then_some(0.5 * (1.0 - last)),
+        })
+    }
+
+    /// 1 − 2ν of a body, if there is that body.
+    pub(crate) fn compressibility(&self, body: usize) -> Option<Compressibility> {
+        self.bodies.get(body).map(|body| match &body.volume {
+            Volume::Proportional(factor) => Compressibility { last: 4.0 * factor - 1.0, terms: Vec::new() },
+            Volume::Elastic(_, compressibility) => compressibility.clone(),
+        })
     }
 
     /// The longest time \[s\] at which all rheologies are known, +∞ for formulas.
@@ -161,16 +196,6 @@ impl Material {
         self.bodies.iter().filter_map(|body| body.rheology.fit_report())
     }
 
-    /// Poisson's ratio of each body, where it is constant.
-    pub(crate) fn poisson_ratios(&self) -> Vec<Option<f64>> {
-        let ratio = |body: &Body| match body.volume {
-            Volume::Proportional(factor) => Some(1.0 - 2.0 * factor),
-            Volume::Elastic(_) => None,
-        };
-        // incompressible is C = J/4 = (1 − ½) J/2
-        self.bodies.iter().map(ratio).collect()
-    }
-
     /// Accepts rheologies whose times are not NaN.
     pub(crate) fn validate(&self) -> Result<()> {
         for rheology in self.bodies.iter().map(|body| &body.rheology) {
@@ -212,12 +237,23 @@ fn no_series(what: &'static str, rheology: &dyn std::fmt::Debug) -> Error {
     MaterialError::NoExponentialSeries { what, rheology: format!("{rheology:?}") }.into()
 }
 
+impl Compressibility {
+    /// That of a bulk modulus B, 3G/(3B + G) = 3 − 9B/(3B + G), `stiffened` being the creep to the relaxation modulus 3B + G.
+    fn new(bulk_modulus: f64, stiffened: &CreepSpectrum) -> Compressibility {
+        let factor = 9.0 * bulk_modulus;
+        let terms: Vec<_> = stiffened.terms().iter().map(|&(share, time)| (factor * share, time)).collect();
+        let all = stiffened.glassy() + stiffened.terms().iter().map(|(share, _)| share).sum::<f64>();
+        // of a body that flows, or is much stiffer in bulk, the difference is rounding of either sign
+        Compressibility { last: (3.0 - factor * all).max(0.0), terms }
+    }
+}
+
 impl Body {
     fn contact_compliance(&self, t: f64) -> f64 {
         match &self.volume {
             Volume::Proportional(factor) => factor * self.rheology.creep_compliance(t),
-            Volume::Elastic(contact) if is_known(t, self.rheology.known_until()) => contact.compliance(t),
-            Volume::Elastic(_) => f64::NAN,
+            Volume::Elastic(contact, _) if is_known(t, self.rheology.known_until()) => contact.compliance(t),
+            Volume::Elastic(..) => f64::NAN,
         }
     }
 
@@ -226,7 +262,7 @@ impl Body {
             Volume::Proportional(factor) => {
                 self.rheology.creep_spectrum().map(|spectrum| spectrum.scaled(*factor)).transpose()
             }
-            Volume::Elastic(contact) => Ok(Some(contact.clone())),
+            Volume::Elastic(contact, _) => Ok(Some(contact.clone())),
         }
     }
 }

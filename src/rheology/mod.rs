@@ -77,6 +77,7 @@ pub use generalized_maxwell::GeneralizedMaxwell;
 pub use kelvin_voigt::KelvinVoigt;
 pub use kww::Kww;
 pub use log_creep::LogCreep;
+pub(crate) use material::Compressibility;
 pub use material::Material;
 pub use maxwell::Maxwell;
 pub use power_law::PowerLaw;

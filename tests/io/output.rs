@@ -105,6 +105,51 @@ mod npy {
     }
 
     #[test]
+    fn an_archive_of_the_stress() {
+        use viscocontact::observe::Stress;
+        use viscocontact::output::write_stress_npz;
+
+        let folder = Folder::new("npz-stress");
+        let mut contact = punch();
+        run(&mut contact, |_, _| ());
+        let side = contact.grid().spacing().into_iter().fold(0.0, f64::max);
+        let depths = [0.5 * side, side, 3.0 * side];
+        let volume = contact.stress().unwrap().in_volume(&depths).unwrap();
+        let path = folder.0.join("stress.npz");
+        write_stress_npz(&path, &contact, &volume, &scene()).unwrap();
+        let mut archive = Archive(zip::ZipArchive::new(fs::File::open(&path).unwrap()).unwrap());
+        assert_eq!(archive.0.len(), 14);
+        assert_eq!(archive.numbers("x3"), (vec![3], depths.to_vec()));
+        assert_eq!(archive.numbers("pressure"), (vec![24, 17], contact.pressure().to_vec()));
+        let components: [(&str, fn(&Stress) -> f64); 8] = [
+            ("s11", |s| s.s11),
+            ("s22", |s| s.s22),
+            ("s33", |s| s.s33),
+            ("s12", |s| s.s12),
+            ("s13", |s| s.s13),
+            ("s23", |s| s.s23),
+            ("von_mises", Stress::von_mises),
+            ("tresca", Stress::tresca),
+        ];
+        for (name, of) in components {
+            let (shape, found) = archive.numbers(name);
+            assert_eq!(shape, [24, 17, 3]);
+            for k in 0..3 {
+                for (cell, stress) in volume.plane(k).unwrap().iter().enumerate() {
+                    assert_eq!(found[3 * cell + k].to_bits(), of(stress).to_bits(), "{name} {cell} {k}");
+                }
+            }
+        }
+        let smaller = ViscoelasticContact::builder(Grid::square(8, 1.0e-3).unwrap())
+            .geometry(&Sphere::new(1.0e-2).unwrap())
+            .material(contact.material().clone())
+            .build()
+            .unwrap();
+        let error = write_stress_npz(&path, &smaller, &volume, &scene()).unwrap_err();
+        assert!(matches!(error, Error::WrongLength { field: "stress in a volume", .. }), "{error}");
+    }
+
+    #[test]
     fn archives_hold_what_was_computed() {
         let folder = Folder::new("npz");
         let mut series = NpzSeries::create(&folder.0, scene(), &Field::ALL).unwrap();
@@ -225,6 +270,37 @@ mod vtk {
         fn triple(&self, name: &str) -> Vec<f64> {
             self.attribute("ImageData WholeExtent", name).split(' ').map(|text| text.parse().unwrap()).collect()
         }
+    }
+
+    #[test]
+    fn an_image_of_the_stress() {
+        use viscocontact::output::write_stress_vtk;
+
+        let folder = Folder::new("vtk-stress");
+        let mut contact = punch();
+        run(&mut contact, |_, _| ());
+        let side = contact.grid().spacing().into_iter().fold(0.0, f64::max);
+        let depths = [0.5 * side, side, 3.0 * side];
+        let volume = contact.stress().unwrap().in_volume(&depths).unwrap();
+        let path = folder.0.join("stress.vtr");
+        write_stress_vtk(&path, &contact, &volume, &scene()).unwrap();
+        let image = Image::open(&path);
+        assert_eq!(image.attribute("RectilinearGrid WholeExtent", "WholeExtent"), "0 23 0 16 0 2");
+        assert_eq!(image.numbers("TimeValue"), [contact.time()]);
+        assert_eq!(image.numbers("z"), depths);
+        assert_eq!(image.numbers("y"), (0..17).map(|j| contact.grid().center(0, j)[1]).collect::<Vec<_>>());
+        assert_eq!(image.numbers("x").len(), 24);
+        let [tensors, mises, tresca] =
+            ["stress [Pa]", "von Mises stress [Pa]", "Tresca stress [Pa]"].map(|name| image.numbers(name));
+        for k in 0..3 {
+            for (cell, stress) in volume.plane(k).unwrap().iter().enumerate() {
+                let point = (k * 17 + cell % 17) * 24 + cell / 17;
+                let [s11, s22, s33, s12, s13, s23] = stress.components();
+                assert_eq!(tensors[6 * point..6 * point + 6], [s11, s22, s33, s12, s23, s13]);
+                assert_eq!([mises[point], tresca[point]], [stress.von_mises(), stress.tresca()]);
+            }
+        }
+        assert!(String::from_utf8_lossy(&fs::read(&path).unwrap()).ends_with("</AppendedData>\n</VTKFile>\n"));
     }
 
     #[test]

@@ -13,3 +13,4 @@ mod rolling;
 mod several_indenters;
 mod step_loaded_sphere;
 mod stiffness;
+mod stress;

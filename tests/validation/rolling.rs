@@ -10,21 +10,21 @@ const G: f64 = 1.0e6;
 const G_K: f64 = 0.5e6;
 const TAU: f64 = 1.0;
 /// Cells on half the width of the glassy contact.
-const FINE: f64 = 32.0;
+pub(super) const FINE: f64 = 32.0;
 
 /// J = 1/G + (1 − e^(−t/τ))/G_K, C = J/4; `speed` is v τ over half the width of the glassy contact.
-fn scene(speed: f64) -> RollingCylinder {
+pub(super) fn scene(speed: f64) -> RollingCylinder {
     let mut scene =
         RollingCylinder { radius: 0.02, per_length: 500.0, glassy: 0.25 / G, delayed: 0.25 / G_K, reach: 1.0 };
     scene.reach = speed * scene.hertz(scene.glassy).0;
     scene
 }
 
-struct Rolled {
-    contact: ViscoelasticContact,
+pub(super) struct Rolled {
+    pub(super) contact: ViscoelasticContact,
     shape: Shifted,
     /// Axis of the cylinder.
-    at: f64,
+    pub(super) at: f64,
 }
 
 impl Rolled {
@@ -42,7 +42,7 @@ impl Rolled {
 }
 
 /// On a grid that reaches `behind` the contact, to a change of `tolerance`.
-fn roll(scene: &RollingCylinder, direction: f64, behind: f64) -> Rolled {
+pub(super) fn roll(scene: &RollingCylinder, direction: f64, behind: f64) -> Rolled {
     let side = scene.hertz(scene.glassy).0 / FINE;
     let relaxed = scene.hertz(scene.glassy + scene.delayed).0;
     let cells = ((behind + 3.0 * relaxed) / side) as usize;

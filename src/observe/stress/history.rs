@@ -1,0 +1,173 @@
+//! The stress in bodies whose Poisson's ratio changes as they creep.
+
+use crate::contact::Frame;
+use crate::error::{Error, MaterialError, Result, within};
+use crate::observe::SubsurfaceStress;
+use crate::rheology::Compressibility;
+use crate::{Grid, ViscoelasticContact, memory};
+
+/// What the stress below the surface remembers of a run, in a body with an elastic bulk.
+///
+/// Boussinesq's stress is linear in 1 − 2ν, so that by the correspondence principle the stress is A p + B r with
+/// r(t) = ∫ (1 − 2ν)(t − s) dp(s) in place of (1 − 2ν) p. For an elastic bulk of modulus B the operator of 1 − 2ν is
+/// 3G/(3B + G) = 3 − 9B/(3B + G): with K(t) the creep compliance to the relaxation modulus 3B + G(t),
+///
+/// ```text
+/// (1 − 2ν)(t) = 3 − 9B K(t) = r_∞ + Σ r_k e^(−t/λ_k)
+/// ```
+///
+/// exactly, and r takes one field per retardation time of K. Within a step the pressure is taken as linear, for which r is
+/// exact: second order in the step. A contact does not compute r, since its displacements do not need it; who asks for it
+/// pays one field per retardation time and one pass over them per step.
+///
+/// ```
+/// use viscocontact::{observe::StressHistory, prelude::*};
+///
+/// let polymer = Material::elastic_bulk(Zener::new(1.0e9, 2.0e8, 5.0e7)?, 3.0e9)?;
+/// let mut contact = ViscoelasticContact::builder(Grid::square(32, 1.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(polymer)
+///     .build()?;
+/// let mut history = StressHistory::new(&contact)?; // before the first load
+/// for dt in [0.0, 0.1, 0.2, 0.4] {
+///     contact.step(dt, Load::force(20.0))?;
+///     history.record(&contact)?; // after every step
+/// }
+/// let stress = history.stress(&contact)?;
+/// let greatest = stress.max_von_mises(&[0.05e-3, 0.1e-3, 0.15e-3, 0.2e-3])?;
+/// assert!(greatest.value > 0.5 * contact.max_pressure());
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct StressHistory {
+    grid: Grid,
+    /// The reduced time of the step recorded last.
+    time: f64,
+    law: Compressibility,
+    /// ∫ e^(−(t − s)/λ_k) dp(s) for each retardation time.
+    branches: Vec<Vec<f64>>,
+    /// The pressure recorded last.
+    pressure: Vec<f64>,
+}
+
+impl StressHistory {
+    /// The history of the body of [`Builder::material`](crate::contact::Builder::material), which must be undisturbed: made
+    /// before the first load.
+    ///
+    /// # Errors
+    /// If the bodies are pressed already, the grid follows the indenter ([`Frame::Indenter`]), so that the bodies move under
+    /// it, or there is not enough memory.
+    pub fn new(contact: &ViscoelasticContact) -> Result<StressHistory> {
+        StressHistory::of_body(contact, 0)
+    }
+
+    /// [`StressHistory::new`] of the body of [`Builder::counter_body`](crate::contact::Builder::counter_body).
+    ///
+    /// # Errors
+    /// As [`StressHistory::new`], and if there is no such body.
+    pub fn of_counter_body(contact: &ViscoelasticContact) -> Result<StressHistory> {
+        StressHistory::of_body(contact, 1)
+    }
+
+    fn of_body(contact: &ViscoelasticContact, body: usize) -> Result<StressHistory> {
+        if contact.settings().frame == Frame::Indenter {
+            return Err(Error::WrongFrame { what: "a history of the stress" });
+        }
+        let law = contact.material().compressibility(body).ok_or(Error::Missing { part: "counter_body" })?;
+        let peak = contact.max_pressure();
+        within("pressure where the history of the stress begins", peak, peak == 0.0, "0: begin before the first load")?;
+        let cells = contact.grid().len();
+        let field = || memory::field("the history of the stress", cells, 0.0);
+        let branches = law.terms.iter().map(|_| field()).collect::<Result<_>>()?;
+        Ok(StressHistory {
+            grid: contact.grid().clone(),
+            time: contact.reduced_time(),
+            law,
+            branches,
+            pressure: field()?,
+        })
+    }
+
+    /// Takes in the step that the contact has made since the last call. Between two calls the pressure counts as linear in
+    /// time, and as a jump if no time has passed.
+    ///
+    /// # Errors
+    /// If the contact has another grid, or its time is earlier than in the last call.
+    pub fn record(&mut self, contact: &ViscoelasticContact) -> Result<()> {
+        self.check_grid(contact)?;
+        let time = within(
+            "time of the contact",
+            contact.reduced_time(),
+            contact.reduced_time() >= self.time,
+            "no earlier than recorded",
+        )?;
+        let dt = time - self.time;
+        for (branch, &(_, retardation)) in self.branches.iter_mut().zip(&self.law.terms) {
+            let z = dt / retardation;
+            let (kept, weight) = ((-z).exp(), if z > 0.0 { -(-z).exp_m1() / z } else { 1.0 });
+            for (value, (new, old)) in branch.iter_mut().zip(contact.pressure().iter().zip(&self.pressure)) {
+                *value = kept * *value + weight * (new - old);
+            }
+        }
+        self.pressure.copy_from_slice(contact.pressure());
+        self.time = time;
+        Ok(())
+    }
+
+    /// The stress at the end of the step recorded last.
+    ///
+    /// # Errors
+    /// As [`SubsurfaceStress::with_changing_poisson`], and if the contact has gone on since.
+    pub fn stress(&self, contact: &ViscoelasticContact) -> Result<SubsurfaceStress> {
+        self.check_grid(contact)?;
+        let time = contact.reduced_time();
+        within("time of the contact", time, time == self.time, "that of the step recorded last")?;
+        let kernel = contact.kernel();
+        if self.law.terms.is_empty() {
+            return SubsurfaceStress::new(kernel, &self.pressure, 0.5 * (1.0 - self.law.last));
+        }
+        SubsurfaceStress::with_changing_poisson(kernel, &self.pressure, &self.reduced_pressure())
+    }
+
+    /// r = ∫ (1 − 2ν)(t − s) dp(s) \[Pa\] at the end of the step recorded last, one value per cell.
+    pub fn reduced_pressure(&self) -> Vec<f64> {
+        let mut reduced: Vec<f64> = self.pressure.iter().map(|p| self.law.last * p).collect();
+        for (branch, &(share, _)) in self.branches.iter().zip(&self.law.terms) {
+            reduced.iter_mut().zip(branch).for_each(|(sum, value)| *sum += share * value);
+        }
+        reduced
+    }
+
+    fn check_grid(&self, contact: &ViscoelasticContact) -> Result<()> {
+        if *contact.grid() == self.grid { Ok(()) } else { Err(Error::OtherContact) }
+    }
+}
+
+impl ViscoelasticContact {
+    /// The stress below the surface of the creeping body, that of [`Builder::material`](crate::contact::Builder::material),
+    /// under the pressure now.
+    ///
+    /// # Errors
+    /// If Poisson's ratio changes as the body creeps
+    /// ([`MaterialError::ChangingPoisson`]): follow the run with a [`StressHistory`]. As [`SubsurfaceStress::new`].
+    pub fn stress(&self) -> Result<SubsurfaceStress> {
+        self.stress_of(0)
+    }
+
+    /// The stress below the surface of the other body, that of
+    /// [`Builder::counter_body`](crate::contact::Builder::counter_body), x3 being the depth below its surface.
+    ///
+    /// # Errors
+    /// If there is no such body, and as [`ViscoelasticContact::stress`].
+    pub fn stress_in_counter_body(&self) -> Result<SubsurfaceStress> {
+        self.stress_of(1)
+    }
+
+    fn stress_of(&self, body: usize) -> Result<SubsurfaceStress> {
+        let law = self.material().compressibility(body).ok_or(Error::Missing { part: "counter_body" })?;
+        if !law.terms.is_empty() {
+            return Err(MaterialError::ChangingPoisson { body }.into());
+        }
+        SubsurfaceStress::new(self.kernel(), self.pressure(), 0.5 * (1.0 - law.last))
+    }
+}

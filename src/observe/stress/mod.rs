@@ -1,0 +1,277 @@
+//! The stress below the surface of a half-space.
+
+mod convolution;
+mod greatest;
+mod history;
+mod plane;
+mod rectangle;
+mod section;
+mod tensor;
+mod waves;
+
+pub use greatest::StressPeak;
+pub use history::StressHistory;
+pub use section::{StressSection, StressVolume};
+pub use tensor::Stress;
+
+use num_complex::Complex64;
+
+use crate::error::{Error, KernelError, Result, exact_length, least_length, within};
+use crate::kernel::{HalfSpace, fast_length};
+use crate::observe::profile::{Axis, line_through};
+use crate::{Grid, InfluenceKernel, memory};
+use convolution::Transform;
+use rectangle::Weights;
+
+/// Greatest pressure \[Pa\]: the squares of stresses do not overflow.
+const GREATEST_PRESSURE: f64 = 1e150;
+/// Greatest depth \[m\].
+const GREATEST_DEPTH: f64 = 1e100;
+/// Greatest distance of a point from the origin, in depths of the point: higher powers of it do not overflow.
+const FARTHEST: f64 = 1e40;
+
+/// The stress below the surface of a half-space under a pressure: on planes, on sections, at points, and where it is
+/// greatest. See [`ViscoelasticContact::stress`](crate::ViscoelasticContact::stress).
+///
+/// x3 is the depth below the surface, x1 and x2 are those of the grid; tension is positive, σ33 at the surface is minus the
+/// pressure.
+///
+/// **Which pressure.** Equations of equilibrium and compatibility contain no modulus but Poisson's ratio ν. While this is
+/// constant, the stress in a linear viscoelastic half-space is that in an elastic one under the tractions of the moment,
+/// known on the whole surface: the pressure now, and nothing beside the contact. Creep, and any history, act only by way of
+/// that pressure. Where ν changes as the body creeps ([`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk)),
+/// the stress is A p + B r, linear in 1 − 2ν: A p is that of ν = ½, and r = ∫ (1 − 2ν)(t − s) dp(s) remembers; see
+/// [`StressHistory`].
+///
+/// **Which bodies.** A half-space loaded on the cells of the grid: closed forms of a rectangle, convolved on a padded grid.
+/// Line contacts: plane strain, σ22 (along the line) = ν (σ11 + σ33). Periodic bodies: closed forms of each wave; below the
+/// mean pressure p̄ σ33 = −p̄, and the lateral stress is −ν/(1 − ν) p̄, since every period keeps its lengths. The stress in the
+/// counter body is the same function of the pressure, with its own ν, and x3 the depth below its surface.
+///
+/// **How near the surface.** The pressure is constant over each cell: depths below half the longer side of a cell are
+/// refused, since there the stress varies within a cell. Where the pressure rises evenly from cell to cell, the ripple of
+/// σ33 is 6 % of the difference between neighbours at half a side, 0.4 % at one side, and falls by e^(−2π) with each
+/// further one: (1 + qz) e^(−qz)/π for the wave q = 2π/side.
+///
+/// Cost: a plane takes one closed form per cell, three forward and three inverse complex transforms of the padded grid; a
+/// point one closed form per loaded cell.
+///
+/// ```
+/// use viscocontact::prelude::*;
+///
+/// let mut contact = ViscoelasticContact::builder(Grid::square(64, 2.4e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(Elastic::new(1.0e6)?))
+///     .build()?;
+/// contact.step(0.0, Load::force(0.5))?;
+/// let stress = contact.stress()?;
+/// let depths: Vec<f64> = (1..=20).map(|k| f64::from(k) * 0.05e-3).collect();
+/// let greatest = stress.max_von_mises(&depths)?;
+/// // ν = ½: 0.5327 p0 at 0.548 a below the centre
+/// let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 0.5)?;
+/// assert!((greatest.value / hertz.pressure(0.0) - 0.5327).abs() < 2.0e-3);
+/// assert!((greatest.position[2] / hertz.contact_radius() - 0.548).abs() < 5.0e-3);
+/// # Ok::<(), Error>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct SubsurfaceStress {
+    grid: Grid,
+    body: HalfSpace,
+    sources: Vec<Source>,
+    transform: Transform,
+    least_depth: f64,
+}
+
+/// A field that acts like a pressure.
+#[derive(Debug, Clone)]
+struct Source {
+    field: Vec<f64>,
+    /// Its transform on the padded grid.
+    spectrum: Vec<Complex64>,
+    weights: Weights,
+}
+
+impl SubsurfaceStress {
+    /// The stress in the body of `kernel` with the constant Poisson's ratio `poisson_ratio`, under `pressure` \[Pa\], one value
+    /// per cell of the kernel's grid; negative values pull.
+    ///
+    /// # Errors
+    /// If the stress in the body is not known ([`KernelError::NoStress`]), there is not one pressure per cell, one is not
+    /// finite or beyond ±1e150 Pa, `poisson_ratio` is outside (−1, ½], or there is not enough memory for the transforms.
+    pub fn new(kernel: &InfluenceKernel, pressure: &[f64], poisson_ratio: f64) -> Result<SubsurfaceStress> {
+        let nu =
+            within("Poisson's ratio", poisson_ratio, poisson_ratio > -1.0 && poisson_ratio <= 0.5, "in (-1, 0.5]")?;
+        SubsurfaceStress::of(kernel, &[("pressure", pressure, [1.0, 1.0 - 2.0 * nu])])
+    }
+
+    /// The stress in a body whose Poisson's ratio changes as it creeps: `reduced` is r = ∫ (1 − 2ν)(t − s) dp(s) \[Pa\], as
+    /// [`StressHistory`] computes it for an elastic bulk.
+    ///
+    /// # Errors
+    /// As [`SubsurfaceStress::new`], and of periodic bodies, whose lateral stress below the mean pressure is not linear in
+    /// 1 − 2ν.
+    pub fn with_changing_poisson(
+        kernel: &InfluenceKernel,
+        pressure: &[f64],
+        reduced: &[f64],
+    ) -> Result<SubsurfaceStress> {
+        if kernel.half_space_below() == Some(HalfSpace::Periodic) {
+            let body = format!("{kernel}, whose Poisson's ratio changes");
+            return Err(KernelError::NoStress { body }.into());
+        }
+        SubsurfaceStress::of(kernel, &[("pressure", pressure, [1.0, 0.0]), ("reduced pressure", reduced, [0.0, 1.0])])
+    }
+
+    fn of(kernel: &InfluenceKernel, fields: &[(&'static str, &[f64], Weights)]) -> Result<SubsurfaceStress> {
+        let grid = kernel.grid().clone();
+        let body = kernel.half_space_below().ok_or_else(|| KernelError::NoStress { body: kernel.to_string() })?;
+        for (name, field, _) in fields {
+            exact_length(name, field.len(), grid.len())?;
+            for &value in *field {
+                within(name, value, value.abs() <= GREATEST_PRESSURE, "finite and at most 1e150 Pa in magnitude")?;
+            }
+        }
+        let periods = [0, 1].map(|axis| match (body, grid.cells()[axis]) {
+            (HalfSpace::Periodic, cells) => cells,
+            (_, 1) => 1,
+            (_, cells) => fast_length(2 * cells - 1),
+        });
+        let padded = periods[0] as u128 * periods[1] as u128;
+        // spectra, three buffers, and the closed forms of each source
+        let per_source = 16 * padded + 56 * grid.len() as u128;
+        memory::check("the stress below the surface", fields.len() as u128 * per_source + 3 * 16 * padded)?;
+        let transform = Transform::new(periods);
+        let mut work = vec![Complex64::default(); transform.len()];
+        let source = |&(_, field, weights): &(_, &[f64], Weights)| {
+            let mut spectrum = vec![Complex64::default(); transform.len()];
+            for (to, from) in spectrum.chunks_exact_mut(periods[1]).zip(field.chunks_exact(grid.cells()[1])) {
+                to.iter_mut().zip(from).for_each(|(to, &value)| *to = Complex64::from(value));
+            }
+            transform.forward(&mut spectrum, &mut work);
+            Source { field: field.to_vec(), spectrum, weights }
+        };
+        let sources = fields.iter().map(source).collect();
+        // a single cell along an axis resolves nothing there, unless it is the only one
+        let sides = grid.spacing();
+        let resolved = (0..2).filter(|&axis| grid.cells()[axis] > 1).map(|axis| sides[axis]);
+        let longest = resolved.fold(0.0, f64::max);
+        let least_depth = 0.5 * if longest > 0.0 { longest } else { sides[0].max(sides[1]) };
+        Ok(SubsurfaceStress { grid, body, sources, transform, least_depth })
+    }
+
+    /// The grid of the pressure.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// The least depth \[m\] at which the stress is given: half of the longer side of a cell. Along an axis with a single
+    /// cell, as in line contacts, its side does not count.
+    pub fn least_depth(&self) -> f64 {
+        self.least_depth
+    }
+
+    /// The stress below the centre of each cell at a depth \[m\], in the order of fields.
+    ///
+    /// # Errors
+    /// If the depth is less than [`SubsurfaceStress::least_depth`], or more than 1e100 m.
+    pub fn on_plane(&self, depth: f64) -> Result<Vec<Stress>> {
+        self.check_depth(depth)?;
+        let mut plane = memory::field("the stress on a plane", self.grid.len(), Stress::default())?;
+        self.buffers().fill_plane(self, depth, &mut plane);
+        Ok(plane)
+    }
+
+    /// The stress on a vertical section: below the line of cells in the direction of `along` that contains the other
+    /// coordinate `at` \[m\], at each of the `depths` \[m\].
+    ///
+    /// # Errors
+    /// If `at` lies outside the grid, there are no depths, they do not rise, or one is out of the range of
+    /// [`SubsurfaceStress::on_plane`].
+    pub fn on_section(&self, along: Axis, at: f64, depths: &[f64]) -> Result<StressSection> {
+        let (axis, across) = along.and_other();
+        let line = line_through(&self.grid, across, ("coordinate of the section", at))?;
+        self.check_depths(depths)?;
+        let ([_, n2], cells) = (self.grid.cells(), self.grid.cells()[axis]);
+        let cell = |k: usize| if axis == 0 { k * n2 + line } else { line * n2 + k };
+        let mut values = memory::field("the stress on a section", cells * depths.len(), Stress::default())?;
+        let mut plane = memory::field("the stress on a plane", self.grid.len(), Stress::default())?;
+        let mut buffers = self.buffers();
+        for (layer, &depth) in depths.iter().enumerate() {
+            buffers.fill_plane(self, depth, &mut plane);
+            (0..cells).for_each(|k| values[k * depths.len() + layer] = plane[cell(k)]);
+        }
+        Ok(StressSection {
+            along,
+            at: self.grid.coordinate(across, line),
+            positions: (0..cells).map(|k| self.grid.coordinate(axis, k)).collect(),
+            depths: depths.to_vec(),
+            values,
+        })
+    }
+
+    /// The stress in a volume: below the centre of each cell, at each of the `depths` \[m\].
+    ///
+    /// # Errors
+    /// As [`SubsurfaceStress::on_section`], and if there is not enough memory for six numbers per cell and depth.
+    pub fn in_volume(&self, depths: &[f64]) -> Result<StressVolume> {
+        self.check_depths(depths)?;
+        let count = self.grid.len().saturating_mul(depths.len());
+        let mut values = memory::field("the stress in a volume", count, Stress::default())?;
+        let mut buffers = self.buffers();
+        for (&depth, plane) in depths.iter().zip(values.chunks_exact_mut(self.grid.len())) {
+            buffers.fill_plane(self, depth, plane);
+        }
+        Ok(StressVolume { grid: self.grid.clone(), depths: depths.to_vec(), values })
+    }
+
+    /// The stress at points (x1, x2, x3) \[m\], anywhere below the surface and not only below the grid: by the sum over all
+    /// cells, without transforms. Along the axis of a line contact the coordinate does not matter.
+    ///
+    /// # Errors
+    /// If the depth x3 of a point is out of the range of [`SubsurfaceStress::on_plane`], or x1 or x2 is not finite, or beyond
+    /// ±1e40 depths.
+    pub fn at(&self, points: &[[f64; 3]]) -> Result<Vec<Stress>> {
+        points.iter().map(|&point| self.check_point(point).map(|()| self.at_point(point))).collect()
+    }
+
+    /// The stress at a point in the range that [`SubsurfaceStress::at`] accepts.
+    fn at_point(&self, point: [f64; 3]) -> Stress {
+        let below = |source: &Source| match self.body {
+            HalfSpace::LoadedOnGrid => rectangle::below_cells(&self.grid, &source.field, point, source.weights),
+            HalfSpace::Line { across } => {
+                rectangle::below_strips(&self.grid, across, &source.field, point, source.weights)
+            }
+            HalfSpace::Periodic => waves::below_field(&self.grid, &source.spectrum, point, source.weights),
+        };
+        self.sources.iter().map(below).fold(Stress::default(), |sum, stress| sum + stress)
+    }
+
+    fn check_point(&self, [x1, x2, x3]: [f64; 3]) -> Result<()> {
+        self.check_depth(x3)?;
+        for (field, x) in [("coordinate x1 of a point", x1), ("coordinate x2 of a point", x2)] {
+            within(field, x, x.abs() <= FARTHEST * x3, "finite and at most 1e40 times the depth of the point")?;
+        }
+        Ok(())
+    }
+
+    fn check_depth(&self, depth: f64) -> Result<()> {
+        let near = "at least half the longer side of a cell, nearer the stress varies within a cell";
+        within("depth", depth, depth >= self.least_depth, near)?;
+        within("depth", depth, depth <= GREATEST_DEPTH, "at most 1e100 m").map(drop)
+    }
+
+    fn check_depths(&self, depths: &[f64]) -> Result<()> {
+        least_length("depths", depths.len(), 1)?;
+        depths.iter().try_for_each(|&depth| self.check_depth(depth))?;
+        match depths.windows(2).position(|pair| pair[1] <= pair[0]) {
+            None => Ok(()),
+            Some(k) => {
+                let (previous, value) = (depths[k], depths[k + 1]);
+                Err(Error::OutOfOrder { field: "depths", index: k + 1, value, previous, rule: "rise" })
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,163 @@
+//! The stress on a plane, by convolution.
+
+use num_complex::Complex64;
+
+use super::convolution::Transform;
+use super::rectangle::{Weights, corner, edge, exchanged};
+use super::waves::{Wave, below_wave};
+use super::{Source, Stress, SubsurfaceStress};
+use crate::Grid;
+use crate::kernel::HalfSpace;
+
+/// Signs of the components 11, 22, 33, 12, 13, 23 where x1 or x2 changes its sign.
+const SIGNS: [[f64; 6]; 2] = [[1.0, 1.0, 1.0, -1.0, -1.0, 1.0], [1.0, 1.0, 1.0, -1.0, 1.0, -1.0]];
+
+/// Buffers for planes.
+pub(super) struct Buffers {
+    transform: Transform,
+    /// Two components of the sum over the sources, and of what one of them adds.
+    sum: Vec<Complex64>,
+    one: Vec<Complex64>,
+    work: Vec<Complex64>,
+    /// For each source, the stress below a cell under a unit load, at the distances of the grid.
+    coefficients: Vec<Vec<Stress>>,
+}
+
+impl SubsurfaceStress {
+    pub(super) fn buffers(&self) -> Buffers {
+        let empty = || vec![Complex64::default(); self.transform.len()];
+        let tables = self.sources.iter().map(|_| match self.body {
+            HalfSpace::Periodic => Vec::new(),
+            _ => vec![Stress::default(); self.grid.len()],
+        });
+        Buffers {
+            transform: self.transform.clone(),
+            sum: empty(),
+            one: empty(),
+            work: empty(),
+            coefficients: tables.collect(),
+        }
+    }
+}
+
+impl Buffers {
+    /// Writes the stress at a depth below each cell.
+    pub(super) fn fill_plane(&mut self, stress: &SubsurfaceStress, depth: f64, plane: &mut [Stress]) {
+        let SubsurfaceStress { grid, body, sources, .. } = stress;
+        for (source, table) in sources.iter().zip(&mut self.coefficients) {
+            match *body {
+                HalfSpace::LoadedOnGrid => tabulate_rectangle(grid, depth, source.weights, table),
+                HalfSpace::Line { across } => tabulate_strip(grid, across, depth, source.weights, table),
+                HalfSpace::Periodic => {}
+            }
+        }
+        let n2 = grid.cells()[1];
+        let norm = 1.0 / self.transform.len() as f64;
+        for pair in 0..3 {
+            self.sum.fill(Complex64::default());
+            for (source, table) in sources.iter().zip(&self.coefficients) {
+                if *body == HalfSpace::Periodic {
+                    add_waves(grid, depth, source, pair, &mut self.sum);
+                } else {
+                    spread(grid, self.transform.periods(), table, pair, &mut self.one);
+                    self.transform.forward(&mut self.one, &mut self.work);
+                    let terms = self.one.iter().zip(&source.spectrum);
+                    self.sum.iter_mut().zip(terms).for_each(|(sum, (a, b))| *sum += a * b);
+                }
+            }
+            self.transform.inverse(&mut self.sum, &mut self.work);
+            let rows = self.sum.chunks_exact(self.transform.periods()[1]);
+            for (row, stresses) in rows.zip(plane.chunks_exact_mut(n2)) {
+                for (value, stress) in row.iter().zip(stresses) {
+                    let Complex64 { re, im } = norm * value;
+                    match pair {
+                        0 => (stress.s11, stress.s22) = (re, im),
+                        1 => (stress.s33, stress.s12) = (re, im),
+                        _ => (stress.s13, stress.s23) = (re, im),
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The two components of a pair.
+fn two(components: [f64; 6], pair: usize) -> Complex64 {
+    Complex64::new(components[2 * pair], components[2 * pair + 1])
+}
+
+/// Writes a pair of components at all distances, positive and negative, to the period.
+fn spread(grid: &Grid, [p1, p2]: [usize; 2], table: &[Stress], pair: usize, out: &mut [Complex64]) {
+    let [n1, n2] = grid.cells();
+    out.fill(Complex64::default());
+    for i in 0..n1 {
+        for j in 0..n2 {
+            let values = table[i * n2 + j].components();
+            let mirrored = |axis: usize, values: [f64; 6]| {
+                let mut values = values;
+                values.iter_mut().zip(SIGNS[axis]).for_each(|(value, sign)| *value *= sign);
+                values
+            };
+            let [up, down] = [i, (p1 - i) % p1];
+            let [right, left] = [j, (p2 - j) % p2];
+            out[up * p2 + right] = two(values, pair);
+            if i > 0 {
+                out[down * p2 + right] = two(mirrored(0, values), pair);
+            }
+            if j > 0 {
+                out[up * p2 + left] = two(mirrored(1, values), pair);
+            }
+            if i > 0 && j > 0 {
+                out[down * p2 + left] = two(mirrored(0, mirrored(1, values)), pair);
+            }
+        }
+    }
+}
+
+/// The stress at the distances of the grid from a rectangle of the size of a cell.
+fn tabulate_rectangle(grid: &Grid, depth: f64, weights: Weights, table: &mut [Stress]) {
+    let ([_, n2], [d1, d2]) = (grid.cells(), grid.spacing().map(|side| side / depth));
+    let row = |i: usize, out: &mut Vec<Stress>| {
+        out.clear();
+        out.extend((0..=n2).map(|j| corner((i as f64 - 0.5) * d1, (j as f64 - 0.5) * d2, weights)));
+    };
+    let (mut lower, mut upper) = (Vec::new(), Vec::new());
+    row(0, &mut lower);
+    for (i, out) in table.chunks_exact_mut(n2).enumerate() {
+        row(i + 1, &mut upper);
+        for (j, out) in out.iter_mut().enumerate() {
+            *out = (upper[j + 1] + -1.0 * upper[j]) + -1.0 * (lower[j + 1] + -1.0 * lower[j]);
+        }
+        std::mem::swap(&mut lower, &mut upper);
+    }
+}
+
+/// The stress at the distances of the grid from a strip.
+fn tabulate_strip(grid: &Grid, across: usize, depth: f64, weights: Weights, table: &mut [Stress]) {
+    let side = grid.spacing()[across] / depth;
+    for (i, out) in table.iter_mut().enumerate() {
+        let stress = edge((i as f64 + 0.5) * side, weights) + -1.0 * edge((i as f64 - 0.5) * side, weights);
+        *out = if across == 0 { stress } else { exchanged(stress) };
+    }
+}
+
+/// Adds a pair of components below the waves of a source.
+fn add_waves(grid: &Grid, depth: f64, source: &Source, pair: usize, sum: &mut [Complex64]) {
+    let ([n1, n2], [d1, d2]) = (grid.cells(), grid.spacing());
+    let i = Complex64::i();
+    for k1 in 0..n1 {
+        let first = Wave::new(k1, n1, d1);
+        for k2 in 0..n2 {
+            let second = Wave::new(k2, n2, d2);
+            let s = below_wave([first.q, second.q], depth, source.weights);
+            // the slope of a wave that alternates vanishes at the centres
+            let slopes = [first, second].map(|wave| if wave.alternates { Complex64::default() } else { i });
+            let both = match pair {
+                0 => Complex64::new(s.s11, s.s22),
+                1 => s.s33 + i * (s.s12 * slopes[0] * slopes[1]),
+                _ => s.s13 * slopes[0] + i * (s.s23 * slopes[1]),
+            };
+            sum[k1 * n2 + k2] += both * source.spectrum[k1 * n2 + k2];
+        }
+    }
+}

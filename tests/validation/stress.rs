@@ -1,0 +1,332 @@
+//! The stress below the surface, of whole contacts: against Hertz, against the published places where bodies yield, and against
+//! the closed forms of a body whose Poisson's ratio changes.
+
+use std::sync::Arc;
+
+use super::rolling::{FINE, roll, scene};
+use viscocontact::KernelError;
+use viscocontact::analytic::Hertz;
+use viscocontact::observe::{Axis, Stress, StressHistory, SubsurfaceStress};
+use viscocontact::prelude::*;
+use viscocontact::rheology::MaterialError;
+
+const RADIUS: f64 = 10.0e-3;
+const G: f64 = 1.0e6;
+
+/// A ball on an elastic body, on a grid 2.6 contact radii wide.
+fn ball(cells: usize, nu: f64) -> (ViscoelasticContact, Hertz) {
+    let hertz = Hertz::new(RADIUS, 2.0 * G / (1.0 - nu), 0.5).unwrap();
+    let grid = Grid::square(cells, 2.6 * hertz.contact_radius()).unwrap();
+    let mut contact = ViscoelasticContact::builder(grid)
+        .geometry(&Sphere::new(RADIUS).unwrap())
+        .material(Material::constant_poisson(Elastic::new(G).unwrap(), nu).unwrap())
+        .build()
+        .unwrap();
+    contact.step(0.0, Load::force(0.5)).unwrap();
+    (contact, hertz)
+}
+
+/// `count` depths in equal steps, the last of them `last`.
+fn depths(count: usize, last: f64) -> Vec<f64> {
+    (1..=count).map(|k| last * k as f64 / count as f64).collect()
+}
+
+/// Where a ball yields: von Mises 0.620041 p0 at 0.48087 a for ν = 0.3, 0.532697 p0 at 0.54787 a for ν = ½.
+#[test]
+fn a_ball_yields_where_hertz_says() {
+    for (nu, value, depth) in [(0.3, 0.620_041, 0.480_87), (0.5, 0.532_697, 0.547_87)] {
+        let (contact, hertz) = ball(256, nu);
+        let (a, peak) = (hertz.contact_radius(), hertz.pressure(0.0));
+        let found = contact.stress().unwrap().max_von_mises(&depths(12, 1.2 * a)).unwrap();
+        let error = found.value / (value * peak) - 1.0;
+        let [x1, x2, x3] = found.position.map(|x| x / a);
+        println!("ν = {nu}: von Mises {error:.1e}, depth {:.1e} a, aside {x1:.1e} {x2:.1e}", x3 - depth);
+        assert!(error.abs() < 3e-5, "{nu}: {error:e}");
+        assert!((x3 - depth).abs() < 1e-4 && x1.abs() < 1e-6 && x2.abs() < 1e-6, "{nu}: {:?}", found.position);
+        assert!(!found.at_end_of_depths && found.stress.von_mises() == found.value);
+        // on the axis two principal stresses are equal: Tresca is von Mises, and of the same place
+        let tresca = contact.stress().unwrap().max_tresca(&depths(12, 1.2 * a)).unwrap();
+        assert!((tresca.value / found.value - 1.0).abs() < 1e-6, "{}", tresca.value);
+    }
+}
+
+/// The same on coarser grids: of second order in the cell, like the pressure.
+#[test]
+fn the_greatest_stress_converges() {
+    let error = |cells: usize| {
+        let (contact, hertz) = ball(cells, 0.3);
+        let found = contact.stress().unwrap().max_von_mises(&depths(12, 1.2 * hertz.contact_radius())).unwrap();
+        (found.value / (0.620_041 * hertz.pressure(0.0)) - 1.0).abs()
+    };
+    let errors = [32, 128].map(error);
+    println!("von Mises at 32², 128²: {errors:?}");
+    assert!(errors[0] < 6e-4 && errors[1] < 6e-5, "{errors:?}");
+}
+
+/// On the axis of a ball (K. L. Johnson, Contact Mechanics, 1985, (3.45)): σ33 = −p0/(1 + ζ²) and
+/// σ11 = σ22 = −(1 + ν) p0 (1 − ζ atan 1/ζ) + ½ p0/(1 + ζ²) at ζ = z/a.
+#[test]
+fn hertz_on_the_axis() {
+    for nu in [0.0, 0.3, 0.5] {
+        let (contact, hertz) = ball(256, nu);
+        let (a, peak) = (hertz.contact_radius(), hertz.pressure(0.0));
+        let stress = contact.stress().unwrap();
+        for zeta in [0.02, 0.1, 0.3, 0.5, 1.0, 2.0, 5.0, 30.0] {
+            let found = stress.at(&[[0.0, 0.0, zeta * a]]).unwrap()[0];
+            let normal = peak / (1.0 + zeta * zeta);
+            let lateral = 0.5 * normal - (1.0 + nu) * peak * (1.0 - zeta * (1.0 / zeta).atan());
+            for (found, exact) in [(found.s33, -normal), (found.s11, lateral), (found.s22, lateral)] {
+                assert!((found - exact).abs() < 1e-3 * peak, "{nu} {zeta}: {found:e} {exact:e}");
+                // far below, relative to what is left there: force is given exactly
+                assert!((found - exact).abs() < 2e-3 * normal, "{nu} {zeta}: {found:e} {exact:e}");
+            }
+            assert!([found.s12, found.s13, found.s23].iter().all(|shear| shear.abs() < 1e-6 * peak));
+        }
+    }
+}
+
+/// Where a cylinder yields: greatest shear stress 0.300283 p0 at 0.78615 a, whatever ν.
+#[test]
+fn a_cylinder_yields_where_hertz_says() {
+    let (per_length, nu) = (500.0, 0.3);
+    let modulus = 2.0 * G / (1.0 - nu);
+    let a = (4.0 * per_length * RADIUS / (std::f64::consts::PI * modulus)).sqrt();
+    let peak = 2.0 * per_length / (std::f64::consts::PI * a);
+    for axis in [0, 1] {
+        let along = |of_axis: f64, other: f64| if axis == 0 { [of_axis, other] } else { [other, of_axis] };
+        let cells = if axis == 0 { [256, 1] } else { [1, 256] };
+        let grid = Grid::new(cells, along(2.6 * a, 1.0)).unwrap();
+        let kernel = InfluenceKernel::periodic_along(&grid, 1 - axis, 1.0).unwrap();
+        let mut contact = ViscoelasticContact::builder(grid.clone())
+            .geometry(&FnGeometry::new(move |x1, x2| [x1, x2][axis].powi(2) / (2.0 * RADIUS)))
+            .material(Material::constant_poisson(Elastic::new(G).unwrap(), nu).unwrap())
+            .kernel(Arc::new(kernel))
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(per_length)).unwrap();
+        let stress = contact.stress().unwrap();
+        let found = stress.max_tresca(&depths(12, 1.5 * a)).unwrap();
+        let error = 0.5 * found.value / (0.300_283 * peak) - 1.0;
+        assert!(error.abs() < 1e-3, "{error:e}");
+        let [depth, aside] = [found.position[2] / a, found.position[axis] / a];
+        assert!((depth - 0.786_15).abs() < 2e-3 && aside.abs() < 1e-3, "{depth} {aside}");
+        // on the axis (Johnson (4.46)), and plane strain everywhere
+        for zeta in [0.1, 0.5, 2.0, 10.0] {
+            let root = f64::sqrt(1.0 + zeta * zeta);
+            let stress = stress.at(&[[0.0, 0.0, zeta * a]]).unwrap()[0];
+            let (across, along) = if axis == 0 { (stress.s11, stress.s22) } else { (stress.s22, stress.s11) };
+            assert!((across + peak * ((1.0 + 2.0 * zeta * zeta) / root - 2.0 * zeta)).abs() < 1e-3 * peak);
+            assert!((stress.s33 + peak / root).abs() < 1e-3 * peak);
+            assert!((along - nu * (across + stress.s33)).abs() < 1e-9 * peak);
+        }
+    }
+}
+
+/// A plane carries the force, but for what a point force puts beyond the grid: between that beyond the circles in and around
+/// the grid, F (1 + c²/z²)^(−3/2).
+#[test]
+fn a_plane_carries_the_force() {
+    let (contact, hertz) = ball(64, 0.3);
+    let grid = Grid::square(192, 24.0 * hertz.contact_radius()).unwrap();
+    let mut wide = ViscoelasticContact::builder(grid)
+        .geometry(&Sphere::new(RADIUS).unwrap())
+        .material(contact.material().clone())
+        .build()
+        .unwrap();
+    wide.step(0.0, Load::force(0.5)).unwrap();
+    let stress = wide.stress().unwrap();
+    for over_a in [0.5, 1.0, 2.0] {
+        let z = over_a * hertz.contact_radius();
+        let plane = stress.on_plane(z).unwrap();
+        let force = -plane.iter().map(|s| s.s33).sum::<f64>() * wide.grid().cell_area();
+        let beyond = |c: f64| (1.0 + (c / z).powi(2)).powf(-1.5);
+        let half = 12.0 * hertz.contact_radius();
+        let missing = 1.0 - force / wide.force();
+        assert!(missing < 1.02 * beyond(half) && missing > 0.98 * beyond(2f64.sqrt() * half), "{over_a}: {missing:e}");
+    }
+}
+
+/// A section is the planes it cuts, and a volume is its planes.
+#[test]
+fn sections_and_volumes_are_cut_from_planes() {
+    let mut contact = ViscoelasticContact::builder(Grid::new([24, 20], [3.0e-3, 2.0e-3]).unwrap())
+        .geometry(&Shifted::new(Sphere::new(RADIUS).unwrap(), [0.2e-3, -0.1e-3]).unwrap())
+        .material(Material::incompressible(Maxwell::new(G, G).unwrap()))
+        .build()
+        .unwrap();
+    for dt in [0.0, 0.5] {
+        contact.step(dt, Load::force(0.05)).unwrap();
+    }
+    let stress = contact.stress().unwrap();
+    let depths = [0.1e-3, 0.25e-3, 1.0e-3];
+    let volume = stress.in_volume(&depths).unwrap();
+    let [first, second] =
+        [(Axis::X1, 0.07e-3), (Axis::X2, -0.4e-3)].map(|(along, at)| stress.on_section(along, at, &depths).unwrap());
+    assert_eq!([first.at, second.at], [contact.grid().center(0, 10)[1], contact.grid().center(8, 0)[0]]);
+    for (k, depth) in depths.into_iter().enumerate() {
+        let plane = stress.on_plane(depth).unwrap();
+        assert_eq!(volume.plane(k), Some(&plane[..]));
+        assert!((0..24).all(|i| first.values[3 * i + k] == plane[20 * i + 10]));
+        assert!((0..20).all(|j| second.values[3 * j + k] == plane[20 * 8 + j]));
+        let point = [first.positions[5], first.at, depth];
+        let (found, exact) = (first.values[15 + k].von_mises(), stress.at(&[point]).unwrap()[0].von_mises());
+        assert!((found / exact - 1.0).abs() < 1e-11);
+    }
+    assert_eq!(volume.plane(3), None);
+    assert_eq!(first.map(Stress::von_mises).len(), 72);
+}
+
+/// A rolling cylinder presses ahead of its axis, and there the body is stressed most; backwards is the mirror image.
+#[test]
+fn below_a_rolling_cylinder_the_stress_skews_with_the_pressure() {
+    let scene = scene(1.0);
+    let (a, _) = scene.hertz(scene.glassy);
+    let [ahead, back] = [1.0, -1.0].map(|direction| {
+        let rolled = roll(&scene, direction, 5.0 * scene.reach);
+        let contact = &rolled.contact;
+        let depths: Vec<f64> = (1..30).map(|k| 0.05 * a * f64::from(k)).collect();
+        let peak = contact.stress().unwrap().max_tresca(&depths).unwrap();
+        let middle = contact.asymmetry([rolled.at, 0.0]).unwrap().unwrap().center_of_pressure[0];
+        let section = contact.stress().unwrap().on_section(Axis::X1, 0.0, &depths).unwrap();
+        // left and right of the point of the greatest stress, at its depth
+        let of = |x: f64| contact.stress().unwrap().at(&[[x, 0.0, peak.position[2]]]).unwrap()[0].tresca();
+        let at = peak.position[0];
+        let skew = [0.5, 1.0].map(|steps| of(at + direction * steps * a) - of(at - direction * steps * a));
+        let greatest = section.map(Stress::tresca).into_iter().fold(0.0, f64::max);
+        assert!((greatest / peak.value - 1.0).abs() < 2e-3 && greatest <= peak.value * (1.0 + 1e-12));
+        let place = [direction * (at - rolled.at), peak.position[2], direction * (middle - rolled.at)];
+        (place.map(|x| x / a), peak.value, skew.map(|skew| skew / peak.value))
+    });
+    println!("place, depth, centre of pressure over a: {:.3?}, skew {:.3?}", ahead.0, ahead.2);
+    assert!(ahead.0[0] > 0.05 && ahead.0[2] > 0.05, "{ahead:?}");
+    assert!(ahead.2[0].abs() > 0.02, "{ahead:?}");
+    assert!((ahead.1 / back.1 - 1.0).abs() < 1e-3);
+    assert!(ahead.0.iter().zip(back.0).all(|(one, other)| (one - other).abs() < 1.0 / FINE), "{ahead:?} {back:?}");
+}
+
+/// The second body has its own Poisson's ratio.
+#[test]
+fn the_counter_body() {
+    let mut contact = ViscoelasticContact::builder(Grid::square(24, 2.0e-3).unwrap())
+        .geometry(&Sphere::new(RADIUS).unwrap())
+        .material(Material::incompressible(Maxwell::new(G, G).unwrap()))
+        .build()
+        .unwrap();
+    assert_eq!(contact.stress_in_counter_body().unwrap_err(), Error::Missing { part: "counter_body" });
+    let other = Material::constant_poisson(Elastic::new(80.0e9).unwrap(), 0.3).unwrap();
+    contact = ViscoelasticContact::builder(contact.grid().clone())
+        .geometry(&Sphere::new(RADIUS).unwrap())
+        .material(Material::incompressible(Maxwell::new(G, G).unwrap()))
+        .counter_body(other)
+        .build()
+        .unwrap();
+    contact.step(0.0, Load::force(0.1)).unwrap();
+    let expected =
+        |nu| SubsurfaceStress::new(contact.kernel(), contact.pressure(), nu).unwrap().on_plane(0.2e-3).unwrap();
+    let close = |one: Vec<Stress>, other: Vec<Stress>| {
+        let peak = contact.max_pressure();
+        one.iter().zip(&other).all(|(a, b)| (a.s11 - b.s11).abs().max((a.s33 - b.s33).abs()) < 1e-13 * peak)
+    };
+    assert!(close(contact.stress().unwrap().on_plane(0.2e-3).unwrap(), expected(0.5)));
+    let below = contact.stress_in_counter_body().unwrap().on_plane(0.2e-3).unwrap();
+    assert!(close(below.clone(), expected(0.3)));
+    assert!(!close(below, expected(0.5)));
+}
+
+/// A flat punch on a polymer with shear modulus of Maxwell's body and an elastic bulk. The pressure keeps its shape, so that
+/// r = p R(t) with the closed form of a step R = 3G/(3B + G) e^(−t/λ), λ = τ (3B + G)/3B, and of a ramp by its integral.
+#[test]
+fn a_ratio_that_changes() {
+    let (bulk, tau) = (3.0 * G, 2.0);
+    let material = Material::elastic_bulk(Maxwell::new(G, G * tau).unwrap(), bulk).unwrap();
+    let (first, late) = (3.0 * G / (3.0 * bulk + G), tau * (3.0 * bulk + G) / (3.0 * bulk));
+    let new = || {
+        ViscoelasticContact::builder(Grid::square(24, 3.0e-3).unwrap())
+            .geometry(&FlatPunch::circular(1.0e-3).unwrap())
+            .material(material.clone())
+            .build()
+            .unwrap()
+    };
+    let check = |contact: &ViscoelasticContact, history: &StressHistory, share: f64| {
+        for (r, p) in history.reduced_pressure().iter().zip(contact.pressure()) {
+            assert!((r - share * p).abs() < 1e-6 * contact.max_pressure(), "{r:e} {share} {p:e}");
+        }
+        let nu = 0.5 * (1.0 - share);
+        let exact = SubsurfaceStress::new(contact.kernel(), contact.pressure(), nu).unwrap().on_plane(0.5e-3).unwrap();
+        for (found, exact) in history.stress(contact).unwrap().on_plane(0.5e-3).unwrap().iter().zip(exact) {
+            for (found, exact) in found.components().iter().zip(exact.components()) {
+                assert!((found - exact).abs() < 1e-6 * contact.max_pressure(), "{found:e} {exact:e}");
+            }
+        }
+    };
+    let mut contact = new();
+    let mut history = StressHistory::new(&contact).unwrap();
+    for dt in [0.0, 0.3, 0.7, 2.0, 5.0] {
+        contact.step(dt, Load::force(1.0)).unwrap();
+        history.record(&contact).unwrap();
+        check(&contact, &history, first * (-contact.time() / late).exp());
+    }
+    let mut contact = new();
+    let mut history = StressHistory::new(&contact).unwrap();
+    for dt in [0.5, 0.1, 1.9] {
+        contact.step(dt, Load::force(contact.time() + dt)).unwrap();
+        history.record(&contact).unwrap();
+        let t = contact.time();
+        check(&contact, &history, first * late / t * (1.0 - (-t / late).exp()));
+    }
+    // what the contact alone does not know
+    let error = contact.stress().unwrap_err();
+    assert!(matches!(error, Error::Material(MaterialError::ChangingPoisson { body: 0 })), "{error}");
+    let late = StressHistory::new(&contact).unwrap_err();
+    assert!(matches!(late, Error::OutOfRange { field: "pressure where the history of the stress begins", .. }));
+    let before = history.clone();
+    contact.step(0.1, Load::force(1.0)).unwrap();
+    assert!(matches!(history.stress(&contact), Err(Error::OutOfRange { field: "time of the contact", .. })));
+    history.record(&contact).unwrap();
+    assert!(matches!(history.record(&new()), Err(Error::OutOfRange { field: "time of the contact", .. })));
+    assert!(before.reduced_pressure() != history.reduced_pressure());
+    let other = ball(8, 0.3).0;
+    assert_eq!(history.record(&other).unwrap_err(), Error::OtherContact);
+    let moving = ViscoelasticContact::builder(Grid::square(8, 3.0e-3).unwrap())
+        .geometry(&FlatPunch::circular(1.0e-3).unwrap())
+        .material(material.clone())
+        .settings(Settings::default().with_frame(Frame::Indenter))
+        .build()
+        .unwrap();
+    assert!(matches!(StressHistory::new(&moving), Err(Error::WrongFrame { .. })));
+}
+
+/// With an elastic bulk that does not creep, and with a constant ratio, nothing is remembered.
+#[test]
+fn a_ratio_that_is_constant() {
+    let elastic = Material::elastic_bulk(Elastic::new(G).unwrap(), 3.0 * G).unwrap();
+    // (3B − 2G)/(6B + 2G)
+    let nu = elastic.poisson_ratios().next().unwrap().unwrap();
+    assert!((nu - 7.0 / 20.0).abs() < 1e-14, "{nu}");
+    let mut contact = ViscoelasticContact::builder(Grid::square(24, 2.0e-3).unwrap())
+        .geometry(&Sphere::new(RADIUS).unwrap())
+        .material(elastic)
+        .build()
+        .unwrap();
+    let mut history = StressHistory::new(&contact).unwrap();
+    contact.step(0.0, Load::force(0.1)).unwrap();
+    history.record(&contact).unwrap();
+    let planes = [contact.stress().unwrap(), history.stress(&contact).unwrap()].map(|s| s.on_plane(0.2e-3).unwrap());
+    assert_eq!(planes[0], planes[1]);
+}
+
+/// A body of which only the surface is known.
+#[test]
+fn a_layer_is_refused() {
+    let grid = Grid::square(8, 2.0e-3).unwrap();
+    let kernel = InfluenceKernel::from_spectrum(&grid, |q1, q2| if q1 + q2 > 0.0 { 1.0 / (q1 + q2) } else { 0.0 });
+    let contact = ViscoelasticContact::builder(grid)
+        .geometry(&Sphere::new(RADIUS).unwrap())
+        .material(Material::incompressible(Elastic::new(G).unwrap()))
+        .kernel(Arc::new(kernel.unwrap()))
+        .build()
+        .unwrap();
+    let error = contact.stress().unwrap_err();
+    assert!(matches!(&error, Error::Kernel(KernelError::NoStress { .. })), "{error}");
+    assert!(error.to_string().contains("user-defined waves"), "{error}");
+}
