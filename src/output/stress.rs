@@ -69,9 +69,13 @@ pub fn write_stress_npz(
     })
 }
 
+/// A quantity of the stress.
+#[cfg(feature = "npy")]
+type Quantity = fn(&Stress) -> f64;
+
 /// What an archive contains of the stress.
 #[cfg(feature = "npy")]
-const QUANTITIES: [(&str, fn(&Stress) -> f64); 8] = [
+const QUANTITIES: [(&str, Quantity); 8] = [
     ("s11", |s| s.s11),
     ("s22", |s| s.s22),
     ("s33", |s| s.s33),
