@@ -69,7 +69,7 @@ pub fn write_stress_npz(
     })
 }
 
-/// A number that the stress at a point comes to.
+/// A quantity of the stress.
 #[cfg(feature = "npy")]
 type Quantity = fn(&Stress) -> f64;
 

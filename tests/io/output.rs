@@ -121,7 +121,8 @@ mod npy {
         assert_eq!(archive.0.len(), 14);
         assert_eq!(archive.numbers("x3"), (vec![3], depths.to_vec()));
         assert_eq!(archive.numbers("pressure"), (vec![24, 17], contact.pressure().to_vec()));
-        let components: [(&str, fn(&Stress) -> f64); 8] = [
+        type Quantity = fn(&Stress) -> f64;
+        let components: [(&str, Quantity); 8] = [
             ("s11", |s| s.s11),
             ("s22", |s| s.s22),
             ("s33", |s| s.s33),
