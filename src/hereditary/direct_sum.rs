@@ -1,7 +1,8 @@
 //! The hereditary integral as a sum over every past increment.
 
 use crate::error::{Error, MaterialError, Result};
-use crate::hereditary::history::{HistoryInputs, Interval};
+use crate::hereditary::history::HistoryInputs;
+use crate::hereditary::interval::Interval;
 use crate::kernel::{LocalKernel, Workspace};
 
 /// The end of a step to which its increment is assigned, and what it is an increment of.

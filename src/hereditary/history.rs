@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::hereditary::direct_sum::{DirectSum, Weighting};
 use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
+use crate::hereditary::interval::Interval;
 use crate::hereditary::moving_frame::MovingFrame;
 use crate::hereditary::remembered_field::RememberedField;
 use crate::kernel::{LocalKernel, Workspace};
@@ -30,23 +31,6 @@ enum Rule {
     /// By that of what it is the convolution of.
     MovingFrame(ExponentialRule, Box<MovingFrame>),
     DirectSum(DirectSum),
-}
-
-/// A time step.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Interval {
-    /// Its end \[s\].
-    pub(crate) time: f64,
-    /// Its length \[s\], 0 for a jump.
-    pub(crate) length: f64,
-    /// The reduced time at its end, and its length in reduced time: what passes for the material \[s\]. Without a history of
-    /// the temperature they are those above.
-    pub(crate) reduced: f64,
-    pub(crate) dt: f64,
-    /// By how many cells the bodies move under the grid.
-    pub(crate) stride: [isize; 2],
-    /// How u changes within it.
-    pub(crate) interpolant: Interpolant,
 }
 
 /// Inputs of a time rule besides the past.

@@ -23,6 +23,7 @@
 mod direct_sum;
 mod exponential_rule;
 mod history;
+mod interval;
 mod moments;
 mod moving_frame;
 mod past;
@@ -34,7 +35,8 @@ mod time_error;
 
 pub(crate) use direct_sum::Weighting;
 pub(crate) use exponential_rule::{ExponentialRule, Interpolant, MAX_GROWTH};
-pub(crate) use history::{History, HistoryInputs, Interval, Transfer, no_elastic_response};
+pub(crate) use history::{History, HistoryInputs, Transfer, no_elastic_response};
+pub(crate) use interval::Interval;
 pub(crate) use remembered_field::RememberedField;
 pub(crate) use step_polynomial::StepPolynomial;
 pub(crate) use time_error::{ErrorMeasure, TimeError};
