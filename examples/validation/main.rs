@@ -7,6 +7,7 @@ mod claim;
 mod creep;
 mod elastic;
 mod history;
+mod layers;
 #[path = "../support/scenes/noise.rs"]
 mod noise;
 #[path = "../support/scenes/rolling.rs"]
@@ -56,7 +57,7 @@ fn zener() -> Outcome {
     Ok(checked)
 }
 
-const SCENES: [fn() -> Outcome; 25] = [
+const SCENES: [fn() -> Outcome; 27] = [
     elastic::convolution,
     elastic::hertz,
     elastic::hertz_ellipse,
@@ -82,6 +83,8 @@ const SCENES: [fn() -> Outcome; 25] = [
     sliding::slow,
     sliding::fast,
     sliding::wave,
+    layers::punch,
+    layers::ball,
 ];
 
 /// The table, in Markdown.

@@ -118,8 +118,9 @@ impl Influence {
     /// waves.
     ///
     /// The compliance of a half-space for the wave q is 2/|q| (Westergaard 1939), whatever its boundaries. Its
-    /// approximate inverse is |q|/2, except for the mean, whose stiffness is that against a uniform pressure; layers have
-    /// that of their own waves. Other bodies are inverted wave by wave, on the grid taken as periodic (G. Strang, Stud. Appl. Math. 74, 1986).
+    /// approximate inverse is |q|/2, except for the mean, whose stiffness is that against a uniform pressure; layers
+    /// have that of their own waves. Other bodies are inverted wave by wave, on the grid taken as periodic (G.
+    /// Strang, Stud. Appl. Math. 74, 1986).
     pub(super) fn inverse(&self, grid: &Grid, cells: [usize; 2], folded: [bool; 2]) -> (Layout, Symbol) {
         let layout = Layout { cells, ends: self.ends(), folded }.wrapped();
         let lengths = [0, 1].map(|axis| grid.spacing()[axis] * (cells[axis] * if folded[axis] { 2 } else { 1 }) as f64);
@@ -140,7 +141,8 @@ impl Influence {
             // the mean displacement is fixed at zero: the mean gets the stiffness of the longest wave
             Influence::Periodic => westergaard(0.5 * longest()),
             Influence::Layer { layer, .. } => {
-                // 0.95 L is the compliance of the wave 2.1/L; no stiffer than the longest wave, where long ones are the stiffest
+                // 0.95 L is the compliance of the wave 2.1/L; no stiffer than the longest wave, where long ones are
+                // the stiffest
                 let mean = layer.compliance(2.1 / (lengths[0] * lengths[1]).sqrt());
                 layered(*layer, mean.max(layer.compliance(longest())))
             }

@@ -17,19 +17,19 @@ const LONGEST_CELL: f64 = 1e3;
 const LONGEST_SQUEEZED: f64 = 2.0;
 
 impl InfluenceKernel {
-    /// A [`Layer`], loaded on the grid alone: Love's coefficients of the half-space and, cell by cell, the integral of what the layer
-    /// adds, smooth on the scale of its thickness; right to 1e-11 of the half-space's coefficient at the distance. The approach
-    /// is measured from the surface far away.
+    /// A [`Layer`], loaded on the grid alone: Love's coefficients of the half-space and, cell by cell, the integral
+    /// of what the layer adds, smooth on the scale of its thickness; right to 1e-11 of the half-space's coefficient
+    /// at the distance. The approach is measured from the surface far away.
     ///
-    /// Cost: a table of some hundred Hankel integrals when the kernel is made, milliseconds each hundred, and about 0.5 µs for a
-    /// coefficient at the first use: a tenth of a second for 256² cells. A contact on a layer costs what one on a half-space
-    /// does, except that it is not confined to a window.
+    /// Cost: a table of Hankel integrals when the kernel is made, 1 to 31 ms, and a quadrature per cell at the first
+    /// use: with 256² cells 50 to 130 ms, where a half-space takes 15 to 25. A contact on a layer then costs what one
+    /// on a half-space does, except that it is not confined to a window.
     ///
     /// # Errors
-    /// If a side of a cell, or their ratio, is not in \[1e-100, 1e100\] (m), or a cell is more than 1000 times as long as
-    /// the layer is thick; more than twice as long if the layer is almost incompressible (ν > 0.4975) and bonded to a
-    /// rigid base. A pressure uniform on such a cell does not squeeze the layer out: long waves are 1 % too soft with cells as
-    /// long as the layer is thick, 9 % with cells of twice that.
+    /// If a side of a cell, or their ratio, is not in \[1e-100, 1e100\] (m), or a cell is more than 1000 times as
+    /// long as the layer is thick; more than twice as long if the layer is almost incompressible (ν > 0.4975) and
+    /// bonded to a rigid base. A pressure uniform on such a cell does not squeeze the layer out: long waves are 1 %
+    /// too soft with cells as long as the layer is thick, 9 % with cells of twice that.
     pub fn layer(grid: &Grid, layer: Layer) -> Result<InfluenceKernel> {
         check_cells(grid, layer)?;
         let [d1, d2] = grid.spacing();
@@ -38,13 +38,13 @@ impl InfluenceKernel {
         Ok(InfluenceKernel::new(grid, Influence::Layer { layer, love: Love::new([d1, d2]), remainder }))
     }
 
-    /// A [`Layer`] that is periodic along both axes, the grid being one period: (2/q) L(qh) for each wave q of the pressure,
-    /// exactly ([`Layer::compliance`]).
+    /// A [`Layer`] that is periodic along both axes, the grid being one period: (2/q) L(qh) for each wave q of the
+    /// pressure, exactly ([`Layer::compliance`]).
     ///
-    /// On a rigid base the approach is measured from the undeformed surface, and the mean of the pressure compresses a layer that
-    /// can expand to no side, by its oedometric compliance. Where that is zero, for an incompressible layer, and on a half-space,
-    /// where it is undetermined, the mean displacement is zero, as in [`InfluenceKernel::periodic`]. On a grid of N × 1
-    /// cells this is the periodic contact in plane strain.
+    /// On a rigid base the approach is measured from the undeformed surface, and the mean of the pressure compresses
+    /// a layer that can expand to no side, by its oedometric compliance. Where that is zero, for an incompressible
+    /// layer, and on a half-space, where it is undetermined, the mean displacement is zero, as in
+    /// [`InfluenceKernel::periodic`]. On a grid of N × 1 cells this is the periodic contact in plane strain.
     ///
     /// ```
     /// use viscocontact::{Grid, InfluenceKernel, Layer};
@@ -81,14 +81,15 @@ impl InfluenceKernel {
         Ok(kernel)
     }
 
-    /// A [`Layer`] in line contact, in plane strain: a grid of N × 1 cells, and pressures that do not depend on x2, as
-    /// [`InfluenceKernel::line`]. On a rigid base the displacement under a line load is bounded, and the approach is measured
-    /// from the undeformed surface: `datum` is `None`. On a half-space it is not: `datum` is the distance \[m\] from a line load at which
-    /// the displacement is zero.
+    /// A [`Layer`] in line contact, in plane strain: a grid of N × 1 cells, and pressures that do not depend on x2,
+    /// as [`InfluenceKernel::line`]. On a rigid base the displacement under a line load is bounded, and the approach
+    /// is measured from the undeformed surface: `datum` is `None`. On a half-space it is not: `datum` is the distance
+    /// \[m\] from a line load at which the displacement is zero.
     ///
     /// # Errors
-    /// If the grid has more than one cell along x2. If a datum is given on a rigid base, or none on a half-space, or it
-    /// is not finite, or less than the length of the grid along x1, or more than 1e120 m. As [`InfluenceKernel::layer`].
+    /// If the grid has more than one cell along x2. If a datum is given on a rigid base, or none on a half-space, or
+    /// it is not finite, or less than the length of the grid along x1, or more than 1e120 m. As
+    /// [`InfluenceKernel::layer`].
     pub fn layer_line(grid: &Grid, layer: Layer, datum: Option<f64>) -> Result<InfluenceKernel> {
         if grid.cells()[1] != 1 {
             let field = "cells along x2 of a line contact";

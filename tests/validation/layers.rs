@@ -5,8 +5,8 @@
 //!
 //! φ(x) + ∫₀ᵃ φ(s) [H(x − s) + H(x + s)] ds = f(x),   H(y) = (1/π) ∫ (L(qh) − 1) cos(qy) dq,
 //!
-//! f = 2E*δ for a flat punch and 2E*(δ − x²/R) for a paraboloid, whose pressure ends smoothly where φ(a) = 0. The force is
-//! ∫₀ᵃ φ ds. L is the textbook's fraction here, nothing is shared with the crate.
+//! f = 2E*δ for a flat punch and 2E*(δ − x²/R) for a paraboloid, whose pressure ends smoothly where φ(a) = 0. The
+//! force is ∫₀ᵃ φ ds. L is the textbook's fraction here, nothing is shared with the crate.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -183,9 +183,9 @@ fn paraboloids_on_layers() {
     }
 }
 
-/// A ball on a layer much thinner than the contact is wide: on springs, δ = a²/2R and P = π R δ²/(C K) with the compliance K of long
-/// waves; on an incompressible one bonded to its base the layer is squeezed out, u = −(4/3) C h³ ∇²p, p ∝ (a² − r²)²,
-/// and P = π R² δ³/(2 C h³).
+/// A ball on a layer much thinner than the contact is wide: on springs, δ = a²/2R and P = π R δ²/(C K) with the
+/// compliance K of long waves; on an incompressible one bonded to its base the layer is squeezed out, u = −(4/3) C h³
+/// ∇²p, p ∝ (a² − r²)², and P = π R² δ³/(2 C h³).
 #[test]
 fn thin_layers_are_springs_or_squeezed() {
     let (radius, a) = (10.0e-3, 0.2e-3);

@@ -25,8 +25,8 @@ const SAME_POISSON: f64 = 1e-9;
 /// A layer of finite thickness on a base: a rubber sheet on steel, a gel on glass, a coating.
 ///
 /// Its thickness h and Poisson's ratio ν, and what holds it below. C(t) is that of the layer's material; the layer's
-/// [`InfluenceKernel`](crate::InfluenceKernel) K holds the rest: a wave of pressure q displaces the surface by C (2/q) L(qh), where L = 1
-/// is a half-space ([`Layer::compliance`]).
+/// [`InfluenceKernel`](crate::InfluenceKernel) K holds the rest: a wave of pressure q displaces the surface by C
+/// (2/q) L(qh), where L = 1 is a half-space ([`Layer::compliance`]).
 ///
 /// | base | long waves, L → | in the mean, K = |
 /// |---|---|---|
@@ -34,16 +34,17 @@ const SAME_POISSON: f64 = 1e-9;
 /// | [`Layer::frictionless_on_rigid`] | qh/2 | the same |
 /// | [`Layer::bonded_to_half_space`] | (G₁/G₂)(1 − ν₂)/(1 − ν₁) | unbounded |
 ///
-/// On a rigid base the surface far from a load is at rest, and the approach of the indenter is measured from there, in line contact too. The mean is that of a layer
-/// compressed everywhere and free to go nowhere: its oedometric compliance, zero for an incompressible one.
+/// On a rigid base the surface far from a load is at rest, and the approach of the indenter is measured from there,
+/// in line contact too. The mean is that of a layer compressed everywhere and free to go nowhere: its oedometric
+/// compliance, zero for an incompressible one.
 ///
 /// Layer and base creep by one function C(t): the base is rigid, or creeps as the layer does. A creeping layer on an
 /// elastic base is not of this form and not modelled. The layer's ν must be that of the material, and constant: the
-/// contact is refused ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)) with another one, with [`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk), and with a counter
-/// body that deforms.
+/// contact is refused ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)) with another one, with
+/// [`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk), and with a counter body that deforms.
 ///
-/// A layer must be modelled where the contact radius is more than a tenth of its thickness: at a/h = 0.1 a bonded incompressible layer is
-/// 12 % stiffer under a ball than a half-space at the same depth (docs/accuracy.md).
+/// A layer must be modelled where the contact radius is more than a tenth of its thickness: at a/h = 0.1 a bonded
+/// incompressible layer is 12 % stiffer under a ball than a half-space at the same depth (docs/accuracy.md).
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -85,8 +86,8 @@ impl Layer {
         Layer::new(thickness, nu, Base::Bonded)
     }
 
-    /// A layer on a rigid base along which it slides without friction, and from which it is not lifted. `thickness` \[m\],
-    /// Poisson's ratio `nu`, on which only the response in the mean depends.
+    /// A layer on a rigid base along which it slides without friction, and from which it is not lifted. `thickness`
+    /// \[m\], Poisson's ratio `nu`, on which only the response in the mean depends.
     ///
     /// # Errors
     /// As [`Layer::bonded_to_rigid`].
@@ -94,8 +95,8 @@ impl Layer {
         Layer::new(thickness, nu, Base::Frictionless)
     }
 
-    /// A layer bonded to a half-space of another stiffness: `thickness` \[m\], Poisson's ratio `nu`, the shear modulus of
-    /// the layer over that of the base, G₁/G₂ at all times, and Poisson's ratio of the base `base_nu`.
+    /// A layer bonded to a half-space of another stiffness: `thickness` \[m\], Poisson's ratio `nu`, the shear
+    /// modulus of the layer over that of the base, G₁/G₂ at all times, and Poisson's ratio of the base `base_nu`.
     ///
     /// # Errors
     /// As [`Layer::bonded_to_rigid`]; if `shear_ratio` is not in \[1e-6, 1e6\], or `base_nu` is outside (−1, ½].
@@ -121,8 +122,8 @@ impl Layer {
         self.poisson
     }
 
-    /// The displacement of the surface, over C, under a unit wave of pressure of wave number `q` \[1/m\] ≥ 0: (2/q) L(qh)
-    /// \[m\], right to rounding. At q = 0 the response in the mean, +∞ on a half-space; NaN for a negative q.
+    /// The displacement of the surface, over C, under a unit wave of pressure of wave number `q` \[1/m\] ≥ 0: (2/q)
+    /// L(qh) \[m\], right to rounding. At q = 0 the response in the mean, +∞ on a half-space; NaN for a negative q.
     ///
     /// ```
     /// use viscocontact::Layer;
@@ -182,8 +183,8 @@ impl Layer {
         Remainder::of_lines(self.response(), self.thickness, last, datum)
     }
 
-    /// Rejects a material whose Poisson's ratio is not that of the layer: `nu` for each body of a contact, none where it
-    /// is not constant.
+    /// Rejects a material whose Poisson's ratio is not that of the layer: `nu` for each body of a contact, none where
+    /// it is not constant.
     pub(crate) fn check_material(&self, bodies: &[Option<f64>]) -> Result<()> {
         let refused = |what| Err(Error::from(KernelError::LayerMaterial { layer: self.poisson, what }));
         match bodies {

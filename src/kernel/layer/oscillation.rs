@@ -1,9 +1,9 @@
-//! Integrals ∫ f(t) w(xt) dt over t > 0 of an oscillating weight w, J0 or cos, and a function f that vanishes as e^(−2t)
-//! does.
+//! Integrals ∫ f(t) w(xt) dt over t > 0 of an oscillating weight w, J0 or cos, and a function f that vanishes as
+//! e^(−2t) does.
 //!
-//! Pieces follow f where it varies faster, and the half-waves of w where those are shorter. Of many half-waves only the first
-//! are integrated: the integrals over them alternate in sign, and of such a series repeated means of the partial sums
-//! converge as fast as those of its terms' differences vanish (Euler's transformation).
+//! Pieces follow f where it varies faster, and the half-waves of w where those are shorter. Of many half-waves only
+//! the first are integrated: the integrals over them alternate in sign, and of such a series repeated means of the
+//! partial sums converge as fast as those of its terms' differences vanish (Euler's transformation).
 
 use std::f64::consts::PI;
 

@@ -1,9 +1,10 @@
 //! How a layer answers a wave of pressure.
 //!
 //! A pressure cos qx displaces the surface of the layer by C (2/q) L(t) cos qx, t = qh. In plane strain, with Airy's
-//! function φ = f(z) cos qx, f = (A + B z) e^(−qz) + (C + D z) e^(qz), the surface gives f(0) = 1/q², f′(0) = 0, and the
-//! base two conditions; L follows from 2G u_z = ((1 − ν) f‴ − (2 − ν) q² f′)/q² at the surface. With θ = e^(−2t), a = 4 (1 − ν₁), kᵢ = 3 − 4νᵢ and the
-//! ratio μ = G₁/G₂ of the shear moduli of layer and base, zero if the base is rigid,
+//! function φ = f(z) cos qx, f = (A + B z) e^(−qz) + (C + D z) e^(qz), the surface gives f(0) = 1/q², f′(0) = 0, and
+//! the base two conditions; L follows from 2G u_z = ((1 − ν) f‴ − (2 − ν) q² f′)/q² at the surface. With θ = e^(−2t),
+//! a = 4 (1 − ν₁), kᵢ = 3 − 4νᵢ and the ratio μ = G₁/G₂ of the shear moduli of layer and base, zero if the base is
+//! rigid,
 //!
 //! L = (1 + 4tκθ − λκθ²)/(1 − (λ + κ + 4κt²) θ + λκθ²),   κ = (μ − 1)/P, λ = (μ k₂ − k₁)/Q, P = μ + k₁, Q = 1 + μ k₂
 //!
