@@ -24,7 +24,7 @@ use crate::{Grid, ViscoelasticContact, memory};
 /// use viscocontact::{observe::StressHistory, prelude::*};
 ///
 /// let polymer = Material::elastic_bulk(Zener::new(1.0e9, 2.0e8, 5.0e7)?, 3.0e9)?;
-/// let mut contact = ViscoelasticContact::builder(Grid::square(32, 1.0e-3)?)
+/// let mut contact = ViscoelasticContact::builder(Grid::square(32, 2.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
 ///     .material(polymer)
 ///     .build()?;
@@ -34,7 +34,7 @@ use crate::{Grid, ViscoelasticContact, memory};
 ///     history.record(&contact)?; // after every step
 /// }
 /// let stress = history.stress(&contact)?;
-/// let greatest = stress.max_von_mises(&[0.05e-3, 0.1e-3, 0.15e-3, 0.2e-3])?;
+/// let greatest = stress.max_von_mises(&[0.1e-3, 0.2e-3, 0.3e-3, 0.4e-3])?;
 /// assert!(greatest.value > 0.5 * contact.max_pressure());
 /// # Ok::<(), Error>(())
 /// ```
