@@ -307,3 +307,87 @@ fn layers_take_no_more_convolutions_than_a_half_space() {
         }
     }
 }
+
+/// A wave pressed flat onto a creeping layer, the grid being its period: ω = A + C(t) K̄ p̄, and the pressure swings by
+/// A/(C(t) K̂(q)) about its mean.
+#[test]
+fn a_wave_in_full_contact_with_a_creeping_layer() {
+    let (length, amplitude, mean) = (1.0e-3, 1.0e-7, 2.0e3);
+    let grid = Grid::new([64, 4], [length, length / 16.0]).unwrap();
+    let q = 2.0 * PI / length;
+    for layer in [Layer::bonded_to_rigid(0.3e-3, 0.3).unwrap(), Layer::frictionless_on_rigid(0.3e-3, 0.3).unwrap()] {
+        let material = Material::constant_poisson(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap(), 0.3).unwrap();
+        let mut contact = ViscoelasticContact::builder(grid.clone())
+            .geometry(&Wavy::new(amplitude, length).unwrap())
+            .material(material.clone())
+            .kernel(Arc::new(InfluenceKernel::layer_periodic(&grid, layer).unwrap()))
+            .settings(Settings::default().with_tolerance(1e-10))
+            .build()
+            .unwrap();
+        let area = grid.lengths()[0] * grid.lengths()[1];
+        let load = StepLoad::new(Load::force(mean * area)).unwrap();
+        let mut run = contact.follow(&load, Stepping::adaptive(1e-6), 2.0);
+        while let Some(report) = run.next_step().unwrap() {
+            let c = material.contact_compliance(report.time);
+            let approach = amplitude + c * layer.compliance(0.0) * mean;
+            let what = format!("{layer} at {} s", report.time);
+            assert!((report.approach / approach - 1.0).abs() < 3e-6, "{what}: {:e}", report.approach);
+            // the cells next to the crest lie half a cell off it
+            let crest = mean + amplitude / (c * layer.compliance(q)) * (0.5 * q * grid.spacing()[0]).cos();
+            let pressure = run.contact().max_pressure();
+            // of the pressure a step asks for less
+            assert!((pressure / crest - 1.0).abs() < 1e-4, "{what}: {pressure:e}, expected {crest:e}");
+            assert_eq!(report.contact_cells, grid.len());
+        }
+    }
+}
+
+/// A cylinder on a layer much thinner than the contact: a bed of springs, F = 2a³/(3R C k) per length, δ = a²/2R.
+#[test]
+fn a_cylinder_on_a_thin_layer_rests_on_springs() {
+    let (radius, half_width) = (10.0e-3, 1.0e-3);
+    let grid = Grid::new([1024, 1], [4.0e-3, 1.0e-3]).unwrap();
+    let material = elastic(0.3);
+    let errors = [0.1e-3, 0.05e-3].map(|thickness| {
+        let layer = Layer::bonded_to_rigid(thickness, 0.3).unwrap();
+        let mut contact = ViscoelasticContact::builder(grid.clone())
+            .geometry(&Cylinder::new(radius).unwrap())
+            .material(material.clone())
+            .kernel(Arc::new(InfluenceKernel::layer_line(&grid, layer, None).unwrap()))
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::approach(half_width * half_width / (2.0 * radius))).unwrap();
+        let springs = material.contact_compliance(0.0) * layer.compliance(0.0);
+        let force = 2.0 * half_width.powi(3) / (3.0 * radius * springs);
+        contact.force() / grid.lengths()[1] / force - 1.0
+    });
+    println!("on thin layers, over springs: {errors:?}");
+    assert!(errors[1].abs() < 0.01 && errors[1].abs() < 0.6 * errors[0].abs(), "{errors:?}");
+}
+
+#[cfg(feature = "checkpoint")]
+#[test]
+fn a_checkpoint_knows_its_layer() {
+    let build = |thickness: f64| {
+        let grid = Grid::square(24, 4.0e-3).unwrap();
+        let layer = Layer::bonded_to_rigid(thickness, 0.5).unwrap();
+        ViscoelasticContact::builder(grid.clone())
+            .geometry(&Sphere::new(10.0e-3).unwrap())
+            .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap()))
+            .kernel(Arc::new(InfluenceKernel::layer(&grid, layer).unwrap()))
+            .build()
+            .unwrap()
+    };
+    let path = std::env::temp_dir().join(format!("viscocontact-layer-{}", std::process::id()));
+    let mut whole = build(1.0e-3);
+    whole.step(0.0, Load::force(0.2)).unwrap();
+    whole.save(&path).unwrap();
+    whole.step(0.3, Load::force(0.3)).unwrap();
+    let mut resumed = build(1.0e-3);
+    resumed.resume(&path).unwrap();
+    resumed.step(0.3, Load::force(0.3)).unwrap();
+    assert_eq!(whole.pressure(), resumed.pressure());
+    let Error::Checkpoint { source, .. } = build(1.1e-3).resume(&path).unwrap_err() else { panic!() };
+    assert!(source.to_string().contains("layer"), "{source}");
+    std::fs::remove_file(path).unwrap();
+}
