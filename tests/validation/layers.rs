@@ -335,8 +335,8 @@ fn a_wave_in_full_contact_with_a_creeping_layer() {
             // the cells next to the crest lie half a cell off it
             let crest = mean + amplitude / (c * layer.compliance(q)) * (0.5 * q * grid.spacing()[0]).cos();
             let pressure = run.contact().max_pressure();
-            // of the pressure a step asks for less
-            assert!((pressure / crest - 1.0).abs() < 1e-4, "{what}: {pressure:e}, expected {crest:e}");
+            let allowed = 3.0 * run.error_budget().pressure.unwrap() + 1e-8;
+            assert!((pressure / crest - 1.0).abs() < allowed, "{what}: {pressure:e}, expected {crest:e}");
             assert_eq!(report.contact_cells, grid.len());
         }
     }
