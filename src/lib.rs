@@ -158,6 +158,7 @@
 mod setters;
 
 pub mod analytic;
+mod ascending;
 pub mod contact;
 mod error;
 mod events;

@@ -42,10 +42,10 @@ impl Scene {
         }
     }
 
-    /// The reduced time that passes in a step of such a `length` that ends at `time`.
-    pub(super) fn reduced_length(&self, clock: &Clock, time: f64, length: f64) -> Result<f64> {
+    /// The reduced time that passes between two times, which are such a `length` apart.
+    pub(super) fn reduced_length(&self, [from, to]: [f64; 2], length: f64) -> Result<f64> {
         match &self.temperature {
-            Some(history) if length > 0.0 => history.reduced_time(clock.time, time),
+            Some(history) if length > 0.0 => history.reduced_time(from, to),
             _ => Ok(length),
         }
     }

@@ -62,10 +62,8 @@ impl ViscoelasticContact {
         within("time within the last step", time, inside, "between its start and its end")?;
         let share = if time == clock.time || !kept {
             1.0
-        } else if let Some(history) = &self.scene.temperature {
-            (history.reduced_time(start, time.max(start))? / clock.last_dt).clamp(0.0, 1.0)
         } else {
-            ((time - start) / clock.last_dt).clamp(0.0, 1.0)
+            (self.scene.reduced_length([start, time], time - start)? / clock.last_dt).clamp(0.0, 1.0)
         };
         let polynomial = StepPolynomial::new(share, clock.last_dt, earlier.map(|earlier| earlier.dt));
         Ok(StateWithinStep { contact: self, polynomial, time })

@@ -93,7 +93,7 @@ impl Influence {
             }
             Influence::LayerPeriodic(layer) => {
                 let (q, layer) = (magnitude(grid, layout), *layer);
-                let mean = if layer.is_on_rigid() { layer.compliance(0.0) } else { 0.0 };
+                let mean = layer.compliance_of_period();
                 Box::new(move |k1, k2| if (k1, k2) == (0, 0) { mean } else { layer.compliance(q(k1, k2)) })
             }
             Influence::Strip { periodic, strip } => {
@@ -175,7 +175,7 @@ impl Influence {
                 let lengths = (0..2).filter(|&axis| grid.cells()[axis] > 1).map(|axis| grid.lengths()[axis]);
                 Some(lengths.fold(0.0, f64::max) / PI)
             }
-            Influence::LayerPeriodic(layer) if !(layer.compliance(0.0) > 0.0 && layer.is_on_rigid()) => {
+            Influence::LayerPeriodic(layer) if layer.compliance_of_period() == 0.0 => {
                 let whole = Layout { cells: grid.cells(), ends: self.ends(), folded: [false; 2] };
                 let symbol = self.symbol(grid, whole);
                 let waves = (0..=grid.cells()[0] / 2).flat_map(|k1| (0..=grid.cells()[1] / 2).map(move |k2| (k1, k2)));

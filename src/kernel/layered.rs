@@ -65,8 +65,7 @@ impl InfluenceKernel {
     /// their ratio, is not in \[1e-100, 1e100\] (m), or the compliance of a wave vanishes in `f64`.
     pub fn layer_periodic(grid: &Grid, layer: Layer) -> Result<InfluenceKernel> {
         representable(grid)?;
-        let held = !layer.is_on_rigid() || layer.compliance(0.0) == 0.0;
-        if held && grid.len() == 1 {
+        if layer.compliance_of_period() == 0.0 && grid.len() == 1 {
             let allowed = "2 or more: the mean of this surface is not displaced";
             return Err(Error::CountOutOfRange { field: "cells of a periodic grid", value: 1, allowed });
         }

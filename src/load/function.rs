@@ -1,6 +1,7 @@
 use std::fmt;
 
-use crate::error::{Result, finite};
+use crate::ascending::Ascending;
+use crate::error::Result;
 use crate::load::{Load, LoadHistory};
 
 /// A load history given by a closure of time \[s\].
@@ -15,13 +16,13 @@ use crate::load::{Load, LoadHistory};
 /// ```
 pub struct FnHistory<F> {
     load: F,
-    breakpoints: Vec<f64>,
+    breakpoints: Ascending,
 }
 
 impl<F: Fn(f64) -> Load + Send + Sync> FnHistory<F> {
     /// Wraps the closure, taken to be smooth; each step checks its load.
     pub fn new(load: F) -> FnHistory<F> {
-        FnHistory { load, breakpoints: Vec::new() }
+        FnHistory { load, breakpoints: Ascending::default() }
     }
 
     /// The same history with corners at `times` \[s\], in any order: steps end exactly there. A closure has one value
@@ -31,18 +32,14 @@ impl<F: Fn(f64) -> Load + Send + Sync> FnHistory<F> {
     /// # Errors
     /// If a time is not finite.
     pub fn with_breakpoints(mut self, times: &[f64]) -> Result<FnHistory<F>> {
-        for &time in times {
-            self.breakpoints.push(finite("breakpoint", time)?);
-        }
-        self.breakpoints.sort_by(f64::total_cmp);
-        self.breakpoints.dedup();
+        self.breakpoints.add("breakpoint", times)?;
         Ok(self)
     }
 }
 
 impl<F> fmt::Debug for FnHistory<F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("FnHistory").field("breakpoints", &self.breakpoints).finish_non_exhaustive()
+        f.debug_struct("FnHistory").field("breakpoints", &self.breakpoints.as_slice()).finish_non_exhaustive()
     }
 }
 
@@ -52,6 +49,6 @@ impl<F: Fn(f64) -> Load + Send + Sync> LoadHistory for FnHistory<F> {
     }
 
     fn next_breakpoint(&self, after: f64) -> Option<f64> {
-        self.breakpoints.get(self.breakpoints.partition_point(|&time| time <= after)).copied()
+        self.breakpoints.after(after)
     }
 }

@@ -23,6 +23,8 @@
 //! A write that fails, for instance on a full disk, leaves earlier output intact and no partial output of its own. It
 //! can be repeated.
 
+#[cfg(feature = "vtk")]
+mod appended;
 #[cfg(feature = "csv")]
 mod csv;
 #[cfg(feature = "npy")]

@@ -9,6 +9,8 @@ use crate::error::{Error, Result};
 use crate::file::replace;
 use crate::observe::{Stress, StressVolume};
 use crate::output::Metadata;
+#[cfg(feature = "vtk")]
+use crate::output::appended::{CLOSING, OPENING, Offsets, write_numbers, write_text};
 #[cfg(feature = "npy")]
 use crate::output::npz::Archive;
 
@@ -107,45 +109,35 @@ pub fn write_stress_vtk(
     replace(path.as_ref(), |out| write_rectilinear(out, contact.time(), volume, &metadata))
 }
 
-/// An XML header, then all values in binary, each array preceded by its size in bytes.
+/// An XML header, then all values.
 #[cfg(feature = "vtk")]
 fn write_rectilinear(out: &mut impl Write, time: f64, volume: &StressVolume, metadata: &str) -> io::Result<()> {
     let ([n1, n2], count) = (volume.grid.cells(), volume.values.len());
     let extent = format!("0 {} 0 {} 0 {}", n1 - 1, n2 - 1, volume.depths.len() - 1);
-    let mut offset = 0;
-    let mut next_offset = |bytes: usize| {
-        let this = offset;
-        offset += 8 + bytes as u64;
-        format!("format=\"appended\" offset=\"{this}\"/>")
-    };
+    let mut offsets = Offsets::default();
     let mut text = String::from("<?xml version=\"1.0\"?>\n");
     text += "<VTKFile type=\"RectilinearGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n";
     text += &format!("  <RectilinearGrid WholeExtent=\"{extent}\">\n    <FieldData>\n");
-    text += &format!("      <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" {}\n", next_offset(8));
+    text += &format!("      <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" {}\n", offsets.next(8));
+    text += &offsets.metadata(metadata);
     text += &format!(
-        "      <Array type=\"String\" Name=\"metadata\" NumberOfTuples=\"1\" {}\n    </FieldData>\n",
-        next_offset(metadata.len() + 1)
+        "    </FieldData>\n    <Piece Extent=\"{extent}\">\n      <PointData Scalars=\"von Mises stress [Pa]\">\n"
     );
-    text += &format!("    <Piece Extent=\"{extent}\">\n      <PointData Scalars=\"von Mises stress [Pa]\">\n");
     for name in ["von Mises stress [Pa]", "Tresca stress [Pa]"] {
-        text += &format!("        <DataArray type=\"Float64\" Name=\"{name}\" {}\n", next_offset(8 * count));
+        text += &format!("        <DataArray type=\"Float64\" Name=\"{name}\" {}\n", offsets.next(8 * count));
     }
     let tensor = "Name=\"stress [Pa]\" NumberOfComponents=\"6\"";
-    text += &format!("        <DataArray type=\"Float64\" {tensor} {}\n", next_offset(48 * count));
+    text += &format!("        <DataArray type=\"Float64\" {tensor} {}\n", offsets.next(48 * count));
     text += "      </PointData>\n      <Coordinates>\n";
     for (name, points) in [("x", n1), ("y", n2), ("z", volume.depths.len())] {
-        text += &format!("        <DataArray type=\"Float64\" Name=\"{name}\" {}\n", next_offset(8 * points));
+        text += &format!("        <DataArray type=\"Float64\" Name=\"{name}\" {}\n", offsets.next(8 * points));
     }
-    text += "      </Coordinates>\n    </Piece>\n  </RectilinearGrid>\n  <AppendedData encoding=\"raw\">\n   _";
+    text += "      </Coordinates>\n    </Piece>\n  </RectilinearGrid>\n";
     out.write_all(text.as_bytes())?;
+    out.write_all(OPENING.as_bytes())?;
 
-    let size = |out: &mut dyn Write, bytes: usize| out.write_all(&(bytes as u64).to_le_bytes());
-    size(out, 8)?;
-    out.write_all(&time.to_le_bytes())?;
-    // strings end with a NUL byte, which JSON does not contain
-    size(out, metadata.len() + 1)?;
-    out.write_all(metadata.as_bytes())?;
-    out.write_all(&[0])?;
+    write_numbers(out, 1, [time].into_iter())?;
+    write_text(out, metadata)?;
     // in VTK x varies fastest
     let place = |k: usize, j: usize, i: usize| &volume.values[(k * n1 + i) * n2 + j];
     let points = || {
@@ -153,22 +145,17 @@ fn write_rectilinear(out: &mut impl Write, time: f64, volume: &StressVolume, met
         planes.flat_map(move |k| (0..n2).flat_map(move |j| (0..n1).map(move |i| place(k, j, i))))
     };
     for quantity in [Stress::von_mises, Stress::tresca] {
-        size(out, 8 * count)?;
-        points().try_for_each(|stress| out.write_all(&quantity(stress).to_le_bytes()))?;
+        write_numbers(out, count, points().map(quantity))?;
     }
-    size(out, 48 * count)?;
-    for Stress { s11, s22, s33, s12, s13, s23 } in points() {
-        // the order of VTK
-        [s11, s22, s33, s12, s23, s13].into_iter().try_for_each(|value| out.write_all(&value.to_le_bytes()))?;
-    }
+    // the order of VTK
+    let tensor = |&Stress { s11, s22, s33, s12, s13, s23 }: &Stress| [s11, s22, s33, s12, s23, s13];
+    write_numbers(out, 6 * count, points().flat_map(tensor))?;
     for axis in 0..2 {
         let cells = volume.grid.cells()[axis];
-        size(out, 8 * cells)?;
-        (0..cells).try_for_each(|k| out.write_all(&volume.grid.coordinate(axis, k).to_le_bytes()))?;
+        write_numbers(out, cells, (0..cells).map(|k| volume.grid.coordinate(axis, k)))?;
     }
-    size(out, 8 * volume.depths.len())?;
-    volume.depths.iter().try_for_each(|depth| out.write_all(&depth.to_le_bytes()))?;
-    out.write_all(b"\n  </AppendedData>\n</VTKFile>\n")
+    write_numbers(out, volume.depths.len(), volume.depths.iter().copied())?;
+    out.write_all(CLOSING)
 }
 
 fn check_grid(contact: &ViscoelasticContact, volume: &StressVolume) -> Result<()> {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::error::Result;
 use crate::file::{check_regular, failed, replace};
+use crate::output::appended::{CLOSING, OPENING, Offsets, write_numbers, write_text};
 use crate::output::frames::Frames;
 use crate::output::{Field, Metadata};
 use crate::{Grid, ViscoelasticContact};
@@ -109,7 +110,7 @@ impl VtkSeries {
     }
 }
 
-/// Writes an image: an XML header, then all values in binary, each array preceded by its size in bytes.
+/// Writes an image: an XML header, then all values.
 fn write_image(out: &mut impl Write, contact: &ViscoelasticContact, frames: &mut Frames) -> io::Result<()> {
     let Frames { metadata, fields, buffer, .. } = frames;
     let (grid, metadata) = (contact.grid(), metadata.json(contact));
@@ -122,23 +123,16 @@ fn write_image(out: &mut impl Write, contact: &ViscoelasticContact, frames: &mut
     ];
     write_header(out, grid, &numbers, &metadata, fields)?;
     for (_, values) in numbers {
-        out.write_all(&(8 * values.len() as u64).to_le_bytes())?;
-        values.iter().try_for_each(|value| out.write_all(&value.to_le_bytes()))?;
+        write_numbers(out, values.len(), values.iter().copied())?;
     }
-    // strings end with a NUL byte, which JSON does not contain
-    out.write_all(&(metadata.len() as u64 + 1).to_le_bytes())?;
-    out.write_all(metadata.as_bytes())?;
-    out.write_all(&[0])?;
+    write_text(out, &metadata)?;
     let [n1, n2] = grid.cells();
     for field in fields.iter() {
         let values = field.values(contact, buffer).map_err(io::Error::other)?;
-        out.write_all(&(8 * values.len() as u64).to_le_bytes())?;
         // in VTK x varies fastest
-        for j in 0..n2 {
-            (0..n1).try_for_each(|i| out.write_all(&values[i * n2 + j].to_le_bytes()))?;
-        }
+        write_numbers(out, values.len(), (0..n2).flat_map(|j| (0..n1).map(move |i| values[i * n2 + j])))?;
     }
-    out.write_all(b"\n  </AppendedData>\n</VTKFile>\n")
+    out.write_all(CLOSING)
 }
 
 /// Writes the XML before the values.
@@ -151,12 +145,7 @@ fn write_header(
 ) -> io::Result<()> {
     let ([n1, n2], [d1, d2], [c1, c2]) = (grid.cells(), grid.spacing(), grid.center(0, 0));
     let extent = format!("0 {n1} 0 {n2} 0 0");
-    let mut offset = 0;
-    let mut next_offset = |bytes: usize| {
-        let this = offset;
-        offset += 8 + bytes as u64;
-        format!("format=\"appended\" offset=\"{this}\"/>")
-    };
+    let mut offsets = Offsets::default();
     writeln!(out, "<?xml version=\"1.0\"?>")?;
     writeln!(
         out,
@@ -167,16 +156,15 @@ fn write_header(
     )?;
     for (name, values) in numbers {
         // one tuple with as many components as values
-        let (components, place) = (values.len(), next_offset(8 * values.len()));
+        let (components, place) = (values.len(), offsets.next(8 * values.len()));
         let shape = format!("NumberOfComponents=\"{components}\" NumberOfTuples=\"1\"");
         writeln!(out, "      <DataArray type=\"Float64\" Name=\"{name}\" {shape} {place}")?;
     }
-    let place = next_offset(metadata.len() + 1);
-    writeln!(out, "      <Array type=\"String\" Name=\"metadata\" NumberOfTuples=\"1\" {place}")?;
+    out.write_all(offsets.metadata(metadata).as_bytes())?;
     writeln!(out, "    </FieldData>\n    <Piece Extent=\"{extent}\">\n      <CellData>")?;
     for field in fields {
-        let (name, unit, place) = (field.name(), field.unit(), next_offset(8 * grid.len()));
+        let (name, unit, place) = (field.name(), field.unit(), offsets.next(8 * grid.len()));
         writeln!(out, "        <DataArray type=\"Float64\" Name=\"{name} [{unit}]\" {place}")?;
     }
-    write!(out, "      </CellData>\n    </Piece>\n  </ImageData>\n  <AppendedData encoding=\"raw\">\n   _")
+    write!(out, "      </CellData>\n    </Piece>\n  </ImageData>\n{OPENING}")
 }

@@ -1,6 +1,7 @@
 use std::fmt;
 use std::sync::Arc;
 
+use crate::ascending::Ascending;
 use crate::error::{Error, Result, finite, least_length, within};
 use crate::quadrature::GaussLegendre;
 use crate::rheology::TimeTemperature;
@@ -49,7 +50,7 @@ enum Course {
     Table(Vec<(f64, f64)>),
     Function {
         temperature: Arc<dyn Fn(f64) -> f64 + Send + Sync>,
-        corners: Vec<f64>,
+        corners: Ascending,
     },
 }
 
@@ -102,12 +103,9 @@ impl TemperatureHistory {
         temperature: impl Fn(f64) -> f64 + Send + Sync + 'static,
         corners: &[f64],
     ) -> Result<TemperatureHistory> {
-        for &corner in corners {
-            finite("corner of the temperature", corner)?;
-        }
-        let mut corners = corners.to_vec();
-        corners.sort_by(f64::total_cmp);
-        Ok(TemperatureHistory::new(law, Course::Function { temperature: Arc::new(temperature), corners }))
+        let mut sorted = Ascending::default();
+        sorted.add("corner of the temperature", corners)?;
+        Ok(TemperatureHistory::new(law, Course::Function { temperature: Arc::new(temperature), corners: sorted }))
     }
 
     fn new(law: TimeTemperature, course: Course) -> TemperatureHistory {
@@ -158,7 +156,7 @@ impl TemperatureHistory {
     pub(crate) fn next_corner(&self, after: f64) -> Option<f64> {
         match &self.course {
             Course::Table(table) => table.get(table.partition_point(|entry| entry.0 <= after)).map(|entry| entry.0),
-            Course::Function { corners, .. } => corners.get(corners.partition_point(|&time| time <= after)).copied(),
+            Course::Function { corners, .. } => corners.after(after),
         }
     }
 
@@ -234,7 +232,7 @@ impl fmt::Debug for TemperatureHistory {
         debug.field("law", &self.law);
         match &self.course {
             Course::Table(table) => debug.field("table", table).finish(),
-            Course::Function { corners, .. } => debug.field("corners", corners).finish_non_exhaustive(),
+            Course::Function { corners, .. } => debug.field("corners", &corners.as_slice()).finish_non_exhaustive(),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Drives a contact along a load history.
 
+use crate::ascending::Ascending;
 use crate::contact::report::StepReport;
 use crate::contact::run::error_budget::ErrorBudget;
 use crate::contact::run::held::{Held, HeldHistory};
@@ -67,7 +68,7 @@ pub struct Follow<'a> {
     pub(super) until: f64,
     pub(in crate::contact) progress: Progress,
     /// Times to end steps on, ascending.
-    stops: Vec<f64>,
+    stops: Ascending,
     #[cfg(feature = "checkpoint")]
     pub(in crate::contact) autosave: Option<Autosave>,
     /// The report of a step after which the file could not be written.
@@ -118,7 +119,7 @@ impl<'a> Follow<'a> {
             stepping,
             until,
             progress: saved.map_or(begun, |saved| *saved),
-            stops: Vec::new(),
+            stops: Ascending::default(),
             #[cfg(feature = "checkpoint")]
             autosave: None,
             #[cfg(feature = "checkpoint")]
@@ -131,10 +132,7 @@ impl<'a> Follow<'a> {
     /// # Errors
     /// If a time is not finite.
     pub fn stop_at(mut self, times: &[f64]) -> Result<Follow<'a>> {
-        for &time in times {
-            self.stops.push(finite("time to stop at", time)?);
-        }
-        self.stops.sort_by(f64::total_cmp);
+        self.stops.add("time to stop at", times)?;
         Ok(self)
     }
 
@@ -237,7 +235,7 @@ impl<'a> Follow<'a> {
 
     /// The first of the times to stop at after `now`.
     pub(super) fn next_stop(&self, now: f64) -> f64 {
-        self.stops.get(self.stops.partition_point(|&time| time <= now)).copied().unwrap_or(f64::INFINITY)
+        self.stops.after(now).unwrap_or(f64::INFINITY)
     }
 
     /// The end of the next equal step, unless a corner or the end of the run comes first.

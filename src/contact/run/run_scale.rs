@@ -40,7 +40,7 @@ impl RunScale {
         let now = state.clock.time;
         let span = until - now;
         let compliance_at = |time: f64| {
-            let age = scene.reduced_length(&state.clock, time, time - now)?;
+            let age = scene.reduced_length([now, time], time - now)?;
             Ok::<_, Error>(scene.material.contact_compliance(age.min(scene.material.known_until())))
         };
         let compliance = compliance_at(until)?;

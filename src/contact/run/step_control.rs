@@ -186,7 +186,7 @@ impl StepControl {
             return Ok([scene.length_of(clock, next, left)?, next]);
         }
         let first = self.first(scene, state, history, left)?.min(left);
-        Ok([first, scene.reduced_length(clock, clock.time + first, first)?])
+        Ok([first, scene.reduced_length([clock.time, clock.time + first], first)?])
     }
 
     /// The length of the first step after a jump or a corner: the longest over which the creep is linear to within the
@@ -207,7 +207,7 @@ impl StepControl {
         };
         for k in 0..=LENGTHS_PER_DECADE * DECADES {
             let dt = longest * 10f64.powf(-f64::from(k) / f64::from(LENGTHS_PER_DECADE));
-            let reduced = scene.reduced_length(&state.clock, now + dt, dt)?;
+            let reduced = scene.reduced_length([now, now + dt], dt)?;
             let creep = compliance(reduced);
             let deviation = if jumped {
                 (compliance(0.5 * reduced) - 0.5 * (glassy + creep)) / creep

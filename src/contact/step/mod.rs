@@ -95,7 +95,7 @@ impl ViscoelasticContact {
     ) -> Result<Step<'a>> {
         let State { indenter, clock, .. } = &self.computation.state;
         non_negative("time", time)?;
-        let dt = self.scene.reduced_length(clock, time, length)?;
+        let dt = self.scene.reduced_length([clock.time, time], length)?;
         let reduced = if self.scene.temperature.is_some() { clock.reduced_time + dt } else { time };
         let interval =
             Interval { time, length, reduced, dt, stride: [0; 2], interpolant: self.settings().interpolant() };

@@ -155,6 +155,12 @@ impl Layer {
         }
     }
 
+    /// What a uniform pressure moves the mean of a period by: nothing where the mean is the datum, for an incompressible layer,
+    /// and on a half-space.
+    pub(super) fn compliance_of_period(&self) -> f64 {
+        if self.is_on_rigid() { self.mean() } else { 0.0 }
+    }
+
     /// Whether the surface is at rest far from a load.
     pub(super) fn is_on_rigid(&self) -> bool {
         !matches!(self.base, Base::HalfSpace { .. })
