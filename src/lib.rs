@@ -190,6 +190,7 @@ pub mod plan;
 pub mod plot;
 mod quadrature;
 pub mod rheology;
+mod rounded;
 mod solver;
 mod sum;
 

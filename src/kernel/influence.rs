@@ -10,6 +10,7 @@ use super::layout::{Ends, Layout, waves_at};
 use super::love::Love;
 use super::strip::{Strip, wave_number};
 use crate::Grid;
+use crate::kernel::layout::is_fast;
 
 /// A real even function of wave numbers.
 pub(super) type Symbol = Box<dyn Fn(usize, usize) -> f64>;
@@ -115,14 +116,17 @@ impl Influence {
     }
 
     /// A layout without padding, and the factor by which an approximate inverse of the operator multiplies each of its
-    /// waves.
+    /// waves. Axes that end are mirrored at their ends: on a period, a field that differs from one end to the other would jump.
+    /// Where zeros follow because the transform would be slow without, it is a period: mirrored, the field would jump twice.
     ///
     /// The compliance of a half-space for the wave q is 2/|q| (Westergaard 1939), whatever its boundaries. Its
     /// approximate inverse is |q|/2, except for the mean, whose stiffness is that against a uniform pressure; layers
     /// have that of their own waves. Other bodies are inverted wave by wave, on the grid taken as periodic (G.
     /// Strang, Stud. Appl. Math. 74, 1986).
     pub(super) fn inverse(&self, grid: &Grid, cells: [usize; 2], folded: [bool; 2]) -> (Layout, Symbol) {
-        let layout = Layout { cells, ends: self.ends(), folded }.wrapped();
+        let ends = self.ends();
+        let mirrored = [0, 1].map(|axis| folded[axis] || ends[axis] == Ends::Free && is_fast(cells[axis]));
+        let layout = Layout { cells, ends, folded: mirrored }.wrapped();
         let lengths = [0, 1].map(|axis| grid.spacing()[axis] * (cells[axis] * if folded[axis] { 2 } else { 1 }) as f64);
         let westergaard = |mean: f64| -> Symbol {
             let q = magnitude(grid, layout);
