@@ -62,6 +62,15 @@ impl Influence {
         }
     }
 
+    pub(super) fn layer(&self) -> Option<&Layer> {
+        match self {
+            Influence::Layer { layer, .. } | Influence::LayerPeriodic(layer) | Influence::LayerLine { layer, .. } => {
+                Some(layer)
+            }
+            _ => None,
+        }
+    }
+
     pub(super) fn ends(&self) -> [Ends; 2] {
         match self {
             Influence::Periodic | Influence::LayerPeriodic(_) | Influence::Waves { .. } => [Ends::Periodic; 2],

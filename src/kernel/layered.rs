@@ -31,8 +31,9 @@ impl InfluenceKernel {
     /// bonded to a rigid base. A pressure uniform on such a cell does not squeeze the layer out: long waves are 1 %
     /// too soft with cells as long as the layer is thick, 9 % with cells of twice that.
     pub fn layer(grid: &Grid, layer: Layer) -> Result<InfluenceKernel> {
-        check_cells(grid, layer)?;
+        representable(grid)?;
         let [d1, d2] = grid.spacing();
+        check_side(d1.max(d2), layer)?;
         let last = grid.lengths()[0].hypot(grid.lengths()[1]);
         let remainder = Arc::new(layer.remainder_of_cells(last));
         Ok(InfluenceKernel::new(grid, Influence::Layer { layer, love: Love::new([d1, d2]), remainder }))
@@ -88,14 +89,16 @@ impl InfluenceKernel {
     /// # Errors
     /// If the grid has more than one cell along x2. If a datum is given on a rigid base, or none on a half-space, or
     /// it is not finite, or less than the length of the grid along x1, or more than 1e120 m. As
-    /// [`InfluenceKernel::layer`].
+    /// [`InfluenceKernel::layer`], of the sides along x1.
     pub fn layer_line(grid: &Grid, layer: Layer, datum: Option<f64>) -> Result<InfluenceKernel> {
         if grid.cells()[1] != 1 {
             let field = "cells along x2 of a line contact";
             return Err(Error::CountOutOfRange { field, value: grid.cells()[1], allowed: "1" });
         }
-        check_cells(grid, layer)?;
+        representable(grid)?;
+        // along the line nothing varies, however long the cells are there
         let side = grid.spacing()[0];
+        check_side(side, layer)?;
         let strip = match datum {
             None if layer.is_on_rigid() => Strip::new(side, 2.0 * layer.thickness()),
             Some(datum) if !layer.is_on_rigid() => strip(grid, 0, datum)?,
@@ -113,9 +116,9 @@ impl InfluenceKernel {
     }
 }
 
-fn check_cells(grid: &Grid, layer: Layer) -> Result<()> {
-    representable(grid)?;
-    let longest = grid.spacing()[0].max(grid.spacing()[1]) / layer.thickness();
+/// Rejects cells that are too long for the layer.
+fn check_side(side: f64, layer: Layer) -> Result<()> {
+    let longest = side / layer.thickness();
     let field = "longer side of a cell over the thickness of the layer";
     within(field, longest, longest <= LONGEST_CELL, "at most 1000: a thinner layer is a foundation of springs")?;
     let allowed =

@@ -188,6 +188,15 @@ fn layers_refuse_what_they_are_not() {
     let thin = Layer::bonded_to_rigid(1e-5, 0.3).unwrap();
     let Err(Error::OutOfRange { field, .. }) = InfluenceKernel::layer(&grid, thin) else { panic!("not refused") };
     assert_eq!(field, "longer side of a cell over the thickness of the layer");
+    // in line contact nothing varies along the line: a metre of it is no long cell
+    let of_a_metre = Grid::new([400, 1], [4.0e-3, 1.0]).unwrap();
+    for nu in [0.3, 0.5] {
+        let sheet = Layer::bonded_to_rigid(20e-6, nu).unwrap();
+        assert!(InfluenceKernel::layer_line(&of_a_metre, sheet, None).is_ok(), "{nu}");
+        let coarse = Grid::new([4, 1], [4.0e-2, 1.0e-6]).unwrap();
+        let long = if nu == 0.5 { sheet } else { Layer::bonded_to_rigid(5e-6, nu).unwrap() };
+        assert!(InfluenceKernel::layer_line(&coarse, long, None).is_err(), "{nu}");
+    }
     // an incompressible layer under cells that do not squeeze it out; one that slides flows from crest to trough
     for (nu, refused) in [(0.5, true), (0.498, true), (0.49, false)] {
         let coarse = InfluenceKernel::layer(&grid, Layer::bonded_to_rigid(0.06, nu).unwrap());

@@ -256,7 +256,7 @@ fn a_ball_sinks_into_a_creeping_layer() {
 
 /// The work of the solver on layers, thick and thin, compressible or not, against that on a half-space.
 #[test]
-fn layers_take_no_more_convolutions_than_a_half_space() {
+fn layers_take_at_most_half_as_many_convolutions_again_as_a_half_space() {
     let (radius, a) = (10.0e-3, 0.2e-3);
     let work = |kernel: fn(&Grid, f64) -> Result<InfluenceKernel, Error>, nu: f64, h: f64, wavy: bool| {
         let grid = Grid::square(128, 2.6 * a).unwrap();
@@ -294,15 +294,7 @@ fn layers_take_no_more_convolutions_than_a_half_space() {
             for ratio in [0.2, 1.0, 3.0, 10.0] {
                 let found = work(make, nu, a / ratio, wavy) / half_space;
                 println!("{name}, ν = {nu}, a/h = {ratio}, wavy {wavy}: {found:.2}");
-                // ten times as wide as the layer is thick, an incompressible one couples its cells as a plate does
-                let most = if ratio < 5.0 {
-                    1.5
-                } else if (name, nu) == ("bonded", 0.5) {
-                    3.6
-                } else {
-                    1.7
-                };
-                assert!(found < most, "{name}, ν = {nu}, a/h = {ratio}, wavy {wavy}: {found:.2}");
+                assert!(found < 1.5, "{name}, ν = {nu}, a/h = {ratio}, wavy {wavy}: {found:.2}");
             }
         }
     }

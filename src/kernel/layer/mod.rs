@@ -166,6 +166,11 @@ impl Layer {
         !matches!(self.base, Base::HalfSpace { .. })
     }
 
+    /// How much softer than the half-space of its own material it is for the longest waves: zero on a rigid base.
+    pub(crate) fn longest_over_half_space(&self) -> f64 {
+        self.response().longest()
+    }
+
     /// Whether the layer yields to long waves only by being squeezed out.
     pub(super) fn is_squeezed(&self) -> bool {
         self.base == Base::Bonded && self.mean() < SQUEEZED * self.thickness
