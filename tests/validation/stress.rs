@@ -318,6 +318,12 @@ fn a_ratio_that_changes() {
     contact.step(0.1, Load::force(1.0)).unwrap();
     assert!(matches!(history.stress(&contact), Err(Error::OutOfRange { field: "time of the contact", .. })));
     history.record(&contact).unwrap();
+    // a jump that was not recorded, in no time
+    let mut jumped = contact.clone();
+    jumped.step(0.0, Load::force(1.5)).unwrap();
+    let refused = history.stress(&jumped).unwrap_err();
+    assert!(matches!(refused, Error::OutOfRange { field: "peak pressure of the contact", .. }), "{refused}");
+    assert!(history.stress(&contact).is_ok());
     assert!(matches!(history.record(&new()), Err(Error::OutOfRange { field: "time of the contact", .. })));
     assert!(before.reduced_pressure() != history.reduced_pressure());
     let other = ball(8, 0.3).0;

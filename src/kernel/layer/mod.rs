@@ -194,13 +194,19 @@ impl Layer {
         Remainder::of_lines(self.response(), self.thickness, last, datum)
     }
 
+    /// The same for a wave along the line.
+    pub(super) fn remainder_of_wave(&self, last: f64, kappa: f64) -> Option<Remainder> {
+        Remainder::of_wave(self.response(), self.thickness, last, kappa)
+    }
+
     /// Rejects a material whose Poisson's ratio is not that of the layer: `nu` for each body of a contact, none where
     /// it is not constant.
     pub(crate) fn check_material(&self, bodies: &[Option<f64>]) -> Result<()> {
         let refused = |what| Err(Error::from(KernelError::LayerMaterial { layer: self.poisson, what }));
         match bodies {
             [Some(nu)] if (nu - self.poisson).abs() <= SAME_POISSON => Ok(()),
-            [Some(nu)] => refused(format!("the material has the constant ratio {nu}")),
+            // to the digits that were given
+            [Some(nu)] => refused(format!("the material has the constant ratio {}", (nu * 1e9).round() / 1e9)),
             [None] => refused("that of a material with an elastic bulk rises in time".into()),
             _ => refused("a counter body deforms, too, as a half-space and in a time of its own".into()),
         }

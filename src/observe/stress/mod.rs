@@ -48,7 +48,8 @@ const FARTHEST: f64 = 1e40;
 /// **Which bodies.** A half-space loaded on the cells of the grid: closed forms of a rectangle, convolved on a padded grid.
 /// Line contacts: plane strain, σ22 (along the line) = ν (σ11 + σ33). Periodic bodies: closed forms of each wave; below the
 /// mean pressure p̄ σ33 = −p̄, and the lateral stress is −ν/(1 − ν) p̄, since every period keeps its lengths. The stress in the
-/// counter body is the same function of the pressure, with its own ν, and x3 the depth below its surface.
+/// counter body is the same function of the pressure, with its own ν, and x3 the depth below its surface. Of layers, of bodies
+/// periodic along one axis with several cells along it, and of user-defined ones the stress is not known; they are refused.
 ///
 /// **How near the surface.** The pressure is constant over each cell: depths below half the longer side of a cell are
 /// refused, since there the stress varies within a cell. Where the pressure rises evenly from cell to cell, the ripple of
