@@ -105,7 +105,9 @@ impl InfluenceKernel {
     /// across it, those of the half-space and what the layer adds. Approach and `datum` are those of
     /// [`InfluenceKernel::layer_line`], which this is where the pressure is uniform along the axis.
     ///
-    /// Cost: a table of integrals for each wave longer than a third of the thickness, 1 to 31 ms each, when the kernel is made.
+    /// Cost: a table of integrals for each wave longer than a third of the thickness, when the kernel is made. With 256 cells
+    /// along the axis all of them take 5 ms if the layer is as thick as the period is long, 0.15 s with a tenth of that, and 1 s
+    /// with a hundredth.
     ///
     /// # Errors
     /// If `axis` is neither 0 nor 1. As [`InfluenceKernel::layer_line`], of lengths and sides along the other axis.

@@ -34,6 +34,11 @@ const SAME_POISSON: f64 = 1e-9;
 /// | [`Layer::frictionless_on_rigid`] | qh/2 | the same |
 /// | [`Layer::bonded_to_half_space`] | (G₁/G₂)(1 − ν₂)/(1 − ν₁) | unbounded |
 ///
+/// Kernels are made of it by [`InfluenceKernel::layer`](crate::InfluenceKernel::layer), loaded on the grid alone,
+/// [`layer_periodic`](crate::InfluenceKernel::layer_periodic) along both axes,
+/// [`layer_periodic_along`](crate::InfluenceKernel::layer_periodic_along) one of them, and
+/// [`layer_line`](crate::InfluenceKernel::layer_line) in plane strain.
+///
 /// On a rigid base the surface far from a load is at rest, and the approach of the indenter is measured from there,
 /// in line contact too. The mean is that of a layer compressed everywhere and free to go nowhere: its oedometric
 /// compliance, zero for an incompressible one.

@@ -141,8 +141,8 @@ fn lines_of(stress: &SubsurfaceStress, axis: usize, source: &Source) -> Result<V
     let (along, across) = if axis == 0 { (n1, n2) } else { (n2, n1) };
     let mut lines = memory::field("the stress on a section", across * period, Complex64::default())?;
     for (j, line) in lines.chunks_exact_mut(period).enumerate() {
-        for k in 0..along {
-            line[k] = Complex64::from(source.field[if axis == 0 { k * n2 + j } else { j * n2 + k }]);
+        for (k, value) in line[..along].iter_mut().enumerate() {
+            *value = Complex64::from(source.field[if axis == 0 { k * n2 + j } else { j * n2 + k }]);
         }
     }
     stress.transform.forward_lines(axis, &mut lines);
