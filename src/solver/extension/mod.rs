@@ -21,6 +21,8 @@ const TRUST: f64 = 1.5;
 /// Blocks hold the sums S = Σ w m over what they consist of, and the factor φ = κ/(4 + 4 (κ − 1) s), in which everything is
 /// linear: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
 ///
+/// An [`Ebb`] multiplies x of one level before the next finer one is made of it: near A everything remains, and far away little.
+///
 /// Axes that are not periodic are mirrored at their ends, which is what they are on the parts that symmetry leaves of a grid.
 ///
 /// Every row of a level is computed from finished rows of another one: threads share the rows, and the answer does not depend on
@@ -34,6 +36,24 @@ pub(crate) struct Extension {
     share: f64,
     /// Row buffers, one set per thread.
     rows: Vec<Rows>,
+    /// Where E ebbs, the level of the blocks from which it does, and what remains.
+    ebb: Option<(usize, f64)>,
+}
+
+/// How far a field is continued, and what of it remains beyond.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ebb {
+    /// In cells.
+    pub(crate) reach: f64,
+    /// Negative for a change of sign.
+    pub(crate) remains: f64,
+}
+
+/// Which of two extensions: that which ebbs, or that which reproduces constants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Range {
+    Ebbing,
+    Endless,
 }
 
 /// Blocks of cells.
@@ -47,7 +67,7 @@ struct Level {
 }
 
 impl Extension {
-    pub(crate) fn new(cells: [usize; 2], periodic: [bool; 2]) -> Extension {
+    pub(crate) fn new(cells: [usize; 2], periodic: [bool; 2], ebb: Option<Ebb>) -> Extension {
         let mut levels = Vec::new();
         let mut size = cells;
         while size != [1, 1] {
@@ -56,7 +76,10 @@ impl Extension {
             levels.push(Level { cells: size, factor: field.clone(), value: field });
         }
         let rows = vec![Rows::new(cells[1]); lanes(cells[0] * cells[1]).min(cells[0])];
-        Extension { cells, periodic, levels, share: 0.0, rows }
+        // blocks of 2^(level + 1) cells that are no longer than the reach
+        let level = |reach: f64| (reach.log2() as usize).max(1) - 1;
+        let ebb = ebb.map(|ebb| (level(ebb.reach), ebb.remains));
+        Extension { cells, periodic, levels, share: 0.0, rows, ebb }
     }
 
     /// Bytes that it takes.
@@ -81,17 +104,18 @@ impl Extension {
         self.share = if known > 0.0 { 1.0 / known } else { 0.0 };
     }
 
-    /// Fills all cells outside the set, where `field` is zero.
+    /// Fills all cells outside the set, where `field` is zero, ebbing.
     pub(crate) fn extend(&mut self, field: &mut [f64], member: &[bool]) {
         self.push(Values::Field(field), |_| ());
         let periodic = self.periodic;
-        self.descend(field, member, |blocks, known, fine, rows, values| {
+        self.descend(field, member, self.ebb, |blocks, known, fine, rows, values| {
             run(&Pull { blocks, known, fine, periodic }, rows, values, fine);
         });
     }
 
-    /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere.
-    pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool]) {
+    /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere. The endless one keeps the sum.
+    pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool], range: Range) {
+        let ebb = self.ebb.filter(|_| range == Range::Ebbing);
         let Extension { cells, periodic, levels, rows, .. } = self;
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
@@ -101,8 +125,9 @@ impl Extension {
             };
             let restrict = Restrict { values, known, fine, periodic: *periodic };
             run(&restrict, rows, &mut level[0].value, level[0].cells);
+            fade(ebb, l, &mut level[0].value);
         }
-        self.descend(field, member, |blocks, known, fine, rows, values| {
+        self.descend(field, member, None, |blocks, known, fine, rows, values| {
             run(&Spread { blocks, known, fine }, rows, values, fine);
         });
     }
@@ -127,6 +152,7 @@ impl Extension {
         &mut self,
         field: &mut [f64],
         member: &[bool],
+        ebb: Option<(usize, f64)>,
         pass: impl Fn(&[f64], Known<'_>, [usize; 2], &mut [Rows], &mut [f64]),
     ) {
         let Extension { cells, levels, share, rows, .. } = self;
@@ -134,10 +160,21 @@ impl Extension {
         coarsest.value[0] *= *share;
         for l in (1..levels.len()).rev() {
             let (finer, coarser) = levels.split_at_mut(l);
+            fade(ebb, l, &mut coarser[0].value);
             let Level { cells, factor, value } = &mut finer[l - 1];
             pass(&coarser[0].value, Known::Factors(factor), *cells, rows, value);
         }
+        fade(ebb, 0, &mut levels[0].value);
         pass(&levels[0].value, Known::Members(member), *cells, rows, field);
+    }
+}
+
+/// Leaves what remains of the values of the level from which an extension ebbs.
+fn fade(ebb: Option<(usize, f64)>, level: usize, values: &mut [f64]) {
+    if let Some((from, remains)) = ebb
+        && from == level
+    {
+        values.iter_mut().for_each(|value| *value *= remains);
     }
 }
 
