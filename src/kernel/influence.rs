@@ -136,7 +136,9 @@ impl Influence {
     /// Strang, Stud. Appl. Math. 74, 1986).
     pub(super) fn inverse(&self, grid: &Grid, cells: [usize; 2], folded: [bool; 2]) -> (Layout, Symbol) {
         let ends = self.ends();
-        let mirrored = [0, 1].map(|axis| folded[axis] || ends[axis] == Ends::Free && is_fast(cells[axis]));
+        // coefficients are known within the grid alone: too few for the period of its mirror image
+        let mirrors = !matches!(self, Influence::Coefficients { .. });
+        let mirrored = [0, 1].map(|axis| folded[axis] || mirrors && ends[axis] == Ends::Free && is_fast(cells[axis]));
         let layout = Layout { cells, ends, folded: mirrored }.wrapped();
         let lengths = [0, 1].map(|axis| grid.spacing()[axis] * (cells[axis] * if folded[axis] { 2 } else { 1 }) as f64);
         let westergaard = |mean: f64| -> Symbol {
