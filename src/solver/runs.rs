@@ -73,7 +73,7 @@ impl Runs {
     }
 
     /// The parts of runs that lie in a band.
-    fn within(&self, band: &Range<usize>) -> impl Iterator<Item = Range<usize>> + Clone {
+    fn within<'a>(&'a self, band: &Range<usize>) -> impl Iterator<Item = Range<usize>> + Clone + use<'a> {
         let (start, end) = (band.start, band.end);
         let first = self.runs.partition_point(|run| run[1] as usize <= start);
         let runs = self.runs[first..].iter().map(|run| run.map(|k| k as usize)).take_while(move |run| run[0] < end);
@@ -81,7 +81,11 @@ impl Runs {
     }
 
     /// The pieces in contact that lie in a band.
-    pub(crate) fn inside(&self, band: &Range<usize>, cut: Cut<'_>) -> impl Iterator<Item = Piece> + Clone {
+    pub(crate) fn inside<'a, 'c>(
+        &'a self,
+        band: &Range<usize>,
+        cut: Cut<'c>,
+    ) -> impl Iterator<Item = Piece> + Clone + use<'a, 'c> {
         self.within(band).flat_map(move |run| cut.pieces(run))
     }
 

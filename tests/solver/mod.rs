@@ -4,5 +4,6 @@ mod conditions;
 mod differential;
 mod extremes;
 mod loads;
+mod ranks;
 mod region;
 mod work;

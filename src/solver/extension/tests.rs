@@ -60,7 +60,7 @@ fn check(cells: [usize; 2], periodic: [bool; 2], share: f64, seed: &mut u64) {
     let count = cells[0] * cells[1];
     let mut member: Vec<bool> = (0..count).map(|_| noise(seed) + 0.5 < share).collect();
     member[count / 2] = true;
-    let mut extension = Extension::new(cells, periodic);
+    let mut extension = Extension::new(&Rows::all(cells, [false; 2]), periodic);
     extension.fit(&member);
     let only = |value: &mut dyn FnMut() -> f64| -> Vec<f64> {
         member.iter().map(|&m| if m { value() } else { 0.0 }).collect()
