@@ -44,7 +44,8 @@ impl Computation {
     /// Rejects a region for which there is no memory beside this one.
     pub(super) fn check_memory_for(&self, scene: &Scene, region: &Region) -> Result<()> {
         let Scene { kernel, settings, bodies, .. } = scene;
-        let footprint = Footprint { all: region.shown_len(), bodies: *bodies, settings, kernel, history: &self.state.history };
+        let footprint =
+            Footprint { all: region.shown_len(), bodies: *bodies, settings, kernel, history: &self.state.history };
         footprint.check(Computed::on(region), footprint.on(Computed::on(&self.state.region)).total())
     }
 

@@ -109,7 +109,8 @@ impl State {
     pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, history: History) -> State {
         let motions = indenter.first_touch();
         let bodies = motions.len();
-        let current = Equilibrium { solution: Solution::zero(region.len(), bodies), motions, contact_cells: 0, sum: 0.0 };
+        let current =
+            Equilibrium { solution: Solution::zero(region.len(), bodies), motions, contact_cells: 0, sum: 0.0 };
         State {
             clock: Clock::default(),
             loads: vec![Load::force(0.0); bodies],

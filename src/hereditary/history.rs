@@ -265,7 +265,10 @@ impl History {
                     kernel.apply(source, trial, work);
                     trial.iter_mut().zip(remainder).for_each(|(u_old, &e)| *u_old += e);
                     convolutions += 1;
-                    if kernel.mean_is_held() || !own.has_less() || !displacement.dips(own, inputs.least_side, kernel.rows()) {
+                    if kernel.mean_is_held()
+                        || !own.has_less()
+                        || !displacement.dips(own, inputs.least_side, kernel.rows())
+                    {
                         return Ok((own.compliance(), convolutions));
                     }
                     own.weigh_less();

@@ -18,11 +18,7 @@ pub(super) struct EvenSpectrum {
 
 impl EvenSpectrum {
     /// The columns k2 of the spectrum of the kernel with these coefficients at the distances of the layout, and zero beyond.
-    pub(super) fn of(
-        layout: Layout,
-        columns: Range<usize>,
-        coefficient: impl Fn(usize, usize) -> f64,
-    ) -> EvenSpectrum {
+    pub(super) fn of(layout: Layout, columns: Range<usize>, coefficient: impl Fn(usize, usize) -> f64) -> EvenSpectrum {
         // a kernel made periodic needs half a period at most, and none beyond the cells
         let known = [0, 1].map(|axis| {
             let cells = layout.cells[axis] * if layout.folded[axis] { 2 } else { 1 };

@@ -133,10 +133,14 @@ impl Rows {
             return halves(0..self.bands(), in_threads, &|band| part(self.band(band)), &merge);
         };
         let found = (0..self.bands()).flat_map(|band| part(self.band(band)));
-        shared.gather(found, |rank| K * self.bands_of(rank), |all| {
-            let all = all.as_chunks::<K>().0;
-            halves(0..all.len(), false, &|band: usize| all[band], &merge)
-        })
+        shared.gather(
+            found,
+            |rank| K * self.bands_of(rank),
+            |all| {
+                let all = all.as_chunks::<K>().0;
+                halves(0..all.len(), false, &|band: usize| all[band], &merge)
+            },
+        )
     }
 
     /// Σ part over the bands.
@@ -161,9 +165,7 @@ impl Rows {
         merge: impl Fn([f64; K], [f64; K]) -> [f64; K],
     ) -> [f64; K] {
         let Some(shared) = &self.shared else { return own };
-        shared.gather(own.into_iter(), |_| K, |all| {
-            all.as_chunks::<K>().0.iter().copied().reduce(merge).unwrap_or(own)
-        })
+        shared.gather(own.into_iter(), |_| K, |all| all.as_chunks::<K>().0.iter().copied().reduce(merge).unwrap_or(own))
     }
 
     /// The greatest of what the ranks have found.
@@ -208,27 +210,35 @@ impl Rows {
         let message = own.as_ref().err().map_or(String::new(), Error::to_string);
         // those of 53 bits are kept
         let mark = message.bytes().fold(0_u64, |mark, byte| (mark * 31 + u64::from(byte)) % (1 << 53));
-        let found = shared.gather([message.len() as f64, mark as f64].into_iter(), |_| 2, |all| {
-            let all = all.as_chunks::<2>().0;
-            let failed = all.iter().position(|&[length, _]| length > 0.0).map(|rank| (rank, all[rank][0] as usize));
-            failed.filter(|_| !all.iter().all(|other| *other == all[0]))
-        });
+        let found = shared.gather(
+            [message.len() as f64, mark as f64].into_iter(),
+            |_| 2,
+            |all| {
+                let all = all.as_chunks::<2>().0;
+                let failed = all.iter().position(|&[length, _]| length > 0.0).map(|rank| (rank, all[rank][0] as usize));
+                failed.filter(|_| !all.iter().all(|other| *other == all[0]))
+            },
+        );
         // nobody has failed, or all in the same way
         let Some((rank, length)) = found else { return own };
         let own = if shared.group.rank() == rank { message.as_bytes() } else { &[] };
         let bytes = own.iter().map(|&byte| f64::from(byte));
-        let message = shared.gather(bytes, |of| if of == rank { length } else { 0 }, |all| {
-            String::from_utf8_lossy(&all.iter().map(|&byte| byte as u8).collect::<Vec<_>>()).into_owned()
-        });
+        let message = shared.gather(
+            bytes,
+            |of| if of == rank { length } else { 0 },
+            |all| String::from_utf8_lossy(&all.iter().map(|&byte| byte as u8).collect::<Vec<_>>()).into_owned(),
+        );
         Err(RanksError::Failed { rank, message }.into())
     }
 
     /// Rejects numbers that are not the same, bit by bit, on all ranks.
     pub(crate) fn same<const K: usize>(&self, numbers: [f64; K]) -> Result<()> {
         let bits = numbers.map(f64::to_bits);
-        let differ = self.gather(numbers.into_iter(), |_| K, |all| {
-            all.as_chunks::<K>().0.iter().any(|others| others.map(f64::to_bits) != bits)
-        });
+        let differ = self.gather(
+            numbers.into_iter(),
+            |_| K,
+            |all| all.as_chunks::<K>().0.iter().any(|others| others.map(f64::to_bits) != bits),
+        );
         if differ == Some(true) { Err(RanksError::Apart.into()) } else { Ok(()) }
     }
 }

@@ -27,7 +27,9 @@ pub(crate) fn cold_start(
 ) -> bool {
     set.press_possible(problem, body);
     let pressed = |solution: &Solution| {
-        !problem.rows().any(set.cells(problem, body).any(|k| solution.pressure[k] <= 0.0 || solution.pressure[k].is_nan()))
+        !problem
+            .rows()
+            .any(set.cells(problem, body).any(|k| solution.pressure[k] <= 0.0 || solution.pressure[k].is_nan()))
     };
     fill_hertz(problem, body, set, solution);
     if pressed(solution) {

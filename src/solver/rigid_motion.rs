@@ -341,7 +341,8 @@ mod tests {
                 assert!((displacement - motion.at(grid.center(k / 4, k % 4))).abs() < 1e-14, "{k}: {displacement}");
             }
         }
-        let upright = Modes::new(&grid, &rows, Freedom { translation: true, tilt: [false; 2], point: [1.0; 2], total: 1.0 });
+        let upright =
+            Modes::new(&grid, &rows, Freedom { translation: true, tilt: [false; 2], point: [1.0; 2], total: 1.0 });
         let motion = RigidMotion { tilt: [0.0; 2], ..motion };
         assert_eq!(upright.physical(upright.coefficients(motion)), motion);
     }

@@ -5,5 +5,6 @@ mod differential;
 mod extremes;
 mod loads;
 mod ranks;
+mod ranks_together;
 mod region;
 mod work;

@@ -99,8 +99,18 @@ pub(in crate::contact) fn error_in_time(
     let potential = &trial.solution.potential;
     let advance = &advance;
     let rows = &state.region.rows();
-    let measure =
-        ErrorMeasure { rows, pressure, potential, matters, least, advance, amplification, agreement, resolution, beginning };
+    let measure = ErrorMeasure {
+        rows,
+        pressure,
+        potential,
+        matters,
+        least,
+        advance,
+        amplification,
+        agreement,
+        resolution,
+        beginning,
+    };
     let error = state.history.time_error(measure);
     if !is_given || forces == 0 {
         return error;

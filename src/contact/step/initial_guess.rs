@@ -84,11 +84,16 @@ fn foresee_contact(state: &State, window: &mut Window, trial: &mut Trial, step: 
     let (now, before) = (&state.current, &state.previous);
     let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.remembers());
     let change = state.history.last_change();
-    if now.contact_cells == 0 || before.contact_cells == 0 || change.is_none() && !elastic {
+    if now.contact_cells == 0 || before.contact_cells == 0 {
+        return false;
+    }
+    // a rank without cells has no changes of them
+    let unknown = change.is_none() && state.region.len() > 0;
+    let rows = state.region.rows();
+    if rows.any(unknown) && !elastic {
         return false;
     }
     let ahead = state.extrapolation.reach(step.interval.dt);
-    let rows = state.region.rows();
     if ahead * edge_speed(&rows, now, before, window.row_before(&now.solution.pressure)) < MIN_EDGE_SPEED {
         return false;
     }

@@ -72,9 +72,10 @@ fn residual(state: &State, initial: &Gap, trial: &Trial, step: &Step<'_>, body: 
         }
         [cells, square, displacement, pressures, balance[0], balance[1], balance[2], penetration]
     };
-    let found = state.region.rows().merge(part, |a, b| {
-        std::array::from_fn(|n| if n == 7 { a[n].max(b[n]) } else { a[n] + b[n] })
-    });
+    let found = state
+        .region
+        .rows()
+        .merge(part, |a, b| std::array::from_fn(|n| if n == 7 { a[n].max(b[n]) } else { a[n] + b[n] }));
     let [cells, square, displacement, pressures, _, _, _, penetration] = found;
     let balance = &found[4..7];
     if penetration == f64::INFINITY {

@@ -70,8 +70,13 @@ fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Regi
 /// A depth at which a body pressed by `normal` about comes to rest, above the datum: twice that of the level at which the
 /// gap has risen by a²/2R, see the cold start of the solver.
 fn depth(scene: &Scene, step: &Step<'_>, body: usize, normal: f64) -> f64 {
-    let [lowest, rest] =
-        level(scene, &Region::whole(&scene.grid, [false; 2]), &step.indenter, body, scene.material.contact_compliance(step.interval.dt) * normal);
+    let [lowest, rest] = level(
+        scene,
+        &Region::whole(&scene.grid, [false; 2]),
+        &step.indenter,
+        body,
+        scene.material.contact_compliance(step.interval.dt) * normal,
+    );
     lowest + 2.0 * rest
 }
 

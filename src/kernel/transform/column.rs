@@ -43,9 +43,11 @@ impl Column {
                 waves: zeros(line.independent()),
                 scratch: zeros(forward.get_scratch_len().max(inverse.get_scratch_len())),
             },
-            Column::Folded => {
-                ColumnWorkspace { waves: zeros(line.len()), scratch: zeros(line.scratch()), ..ColumnWorkspace::default() }
-            }
+            Column::Folded => ColumnWorkspace {
+                waves: zeros(line.len()),
+                scratch: zeros(line.scratch()),
+                ..ColumnWorkspace::default()
+            },
         }
     }
 }

@@ -60,11 +60,7 @@ impl SpectralOperator {
     }
 
     /// The same where ranks share out the rows; `symbol` is asked for own columns k2 alone.
-    pub(crate) fn shared(
-        layout: Layout,
-        shares: Shares,
-        symbol: impl Fn(usize, usize) -> f64,
-    ) -> SpectralOperator {
+    pub(crate) fn shared(layout: Layout, shares: Shares, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator {
         SpectralOperator::new(layout, Some(shares), symbol)
     }
 

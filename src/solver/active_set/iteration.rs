@@ -198,8 +198,8 @@ impl ActiveSet {
         let whole = bodies.all(|(body, (correction, balance))| {
             let next = |k: usize| p[k] + direction[k];
             let pieces = |band| self.set.pieces_in(problem, body, band);
-            let found = correction
-                .and_then(|_| problem.modes(body).balance(problem.rows(), pieces, next, |k| self.shape[k]));
+            let found =
+                correction.and_then(|_| problem.modes(body).balance(problem.rows(), pieces, next, |k| self.shape[k]));
             *balance = found.unwrap_or_default();
             found.is_some() == correction.is_some()
         });

@@ -156,7 +156,14 @@ impl Extension {
                 }
                 Some(finer) => (finer.blocks(), Known::Factors(&finer.factor), finer.cells),
             };
-            raise(&Restrict { values, known, fine, periodic: *periodic }, rows, buffers, (l == *local).then_some(l + 1), own, &mut level[0]);
+            raise(
+                &Restrict { values, known, fine, periodic: *periodic },
+                rows,
+                buffers,
+                (l == *local).then_some(l + 1),
+                own,
+                &mut level[0],
+            );
             if let (true, Some(neighbours)) = (l < *local, neighbours.as_mut()) {
                 let Level { cells: [_, columns], kept, factor, value, ghosts } = &mut level[0];
                 neighbours.fetch(ghosts, *columns, kept.len(), |row, out| {

@@ -23,7 +23,12 @@ pub(crate) struct Ghosts {
 
 impl Ghosts {
     /// Of a level of so many rows and columns, of which each rank has those that `of` tells.
-    pub(crate) fn beside(rows: &Rows, of: impl Fn(usize) -> Range<usize>, [n1, n2]: [usize; 2], periodic: bool) -> Ghosts {
+    pub(crate) fn beside(
+        rows: &Rows,
+        of: impl Fn(usize) -> Range<usize>,
+        [n1, n2]: [usize; 2],
+        periodic: bool,
+    ) -> Ghosts {
         let Some(group) = rows.group() else { return Ghosts::default() };
         let own = of(group.rank());
         if own.is_empty() {
