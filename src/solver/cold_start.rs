@@ -26,11 +26,8 @@ pub(crate) fn cold_start(
     sharpen: impl FnOnce(&ContactSet, &mut Solution),
 ) -> bool {
     set.press_possible(problem, body);
-    let pressed = |solution: &Solution| {
-        !problem
-            .rows()
-            .any(set.cells(problem, body).any(|k| solution.pressure[k] <= 0.0 || solution.pressure[k].is_nan()))
-    };
+    let pressed =
+        |solution: &Solution| !problem.rows().any(!set.cells(problem, body).all(|k| solution.pressure[k] > 0.0));
     fill_hertz(problem, body, set, solution);
     if pressed(solution) {
         sharpen(set, solution);
@@ -138,8 +135,8 @@ pub(crate) fn balance(problem: &Problem<'_>, body: usize, set: &ContactSet, solu
         return true;
     }
     let pressure = &mut solution.pressure;
-    let tensile = || set.cells(problem, body).any(|k| pressure[k] < 0.0 || pressure[k].is_nan());
-    if !modes.tilts() && !problem.rows().any(tensile()) {
+    let admissible = || !problem.rows().any(!set.cells(problem, body).all(|k| pressure[k] >= 0.0));
+    if !modes.tilts() && admissible() {
         let scale = problem.bodies[body].total / set.sum(problem, body, pressure);
         if !scale.is_finite() {
             return false;

@@ -125,13 +125,13 @@ fn foresee_contact(state: &State, window: &mut Window, trial: &mut Trial, step: 
         likely.iter_mut().zip(first..).for_each(|(likely, k)| *likely = is_likely(k));
     });
     let count = |cells: Range<usize>| {
-        let mut counts = [0.0; 3];
+        let mut counts = [0; 3];
         for k in cells {
             let (touching, likely) = (now.solution.pressure[k] > 0.0, trial.likely[k]);
             let adds = [touching, likely, touching && likely];
-            counts.iter_mut().zip(adds).for_each(|(count, adds)| *count += f64::from(u8::from(adds)));
+            counts.iter_mut().zip(adds).for_each(|(count, adds)| *count += usize::from(adds));
         }
-        counts
+        counts.map(|count: usize| count as f64)
     };
     let [touching, likely, staying] = rows.merge(count, |a, b| [0, 1, 2].map(|n| a[n] + b[n]));
     staying >= MIN_SHARE_STAYING * touching.max(likely)
@@ -152,9 +152,10 @@ fn edge_speed(rows: &Rows, now: &Equilibrium, before: &Equilibrium, beyond: Opti
             across += cells.filter(|&k| touches(k) != touches(k - 1)).count();
             row += columns;
         }
-        let above = |k: usize| if k < columns { beyond.is_some_and(|row| row[k] > 0.0) } else { touches(k - columns) };
-        let first = if beyond.is_some() { 0 } else { columns };
-        let down = (band.start.max(first)..band.end).filter(|&k| touches(k) != above(k)).count();
+        let mut down = (band.start.max(columns)..band.end).filter(|&k| touches(k) != touches(k - columns)).count();
+        if let (0, Some(beyond)) = (band.start, beyond) {
+            down += (0..columns.min(band.end)).filter(|&k| touches(k) != (beyond[k] > 0.0)).count();
+        }
         [band.filter(|&k| touches(k) != touched(k)).count(), across, down].map(|count| count as f64)
     };
     let [moved, across, down] = rows.merge(part, |a, b| [0, 1, 2].map(|n| a[n] + b[n]));

@@ -47,7 +47,7 @@ impl ActiveSet {
             }
             state.note(problem, penetration, self.guess_rounding, solution);
             let mut ended = stop.outcome(solution, || !self.changes.any() && state.negative == 0.0);
-            let tensile = || solution.pressure.iter().any(|&p| p < 0.0 || p.is_nan());
+            let tensile = || !solution.pressure.iter().all(|&p| p >= 0.0);
             if ended == Some(Outcome::Converged) && problem.rows().any(tensile()) {
                 // tiny tensile pressures, whose squares vanish, still violate p ≥ 0
                 if let Err(body) = self.remove_tensile_cells(problem, searched, solution, work) {
