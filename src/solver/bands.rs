@@ -104,17 +104,8 @@ impl Bands {
             found.fill(Found::NOTHING);
             job(band, outputs, found);
         });
-        let own = found[..rows.bands() * bodies].iter().flat_map(Found::numbers);
-        let count = |rank: usize| Found::NUMBERS * bodies * rows.bands_of(rank);
-        let all = rows.gather(own, count, |all| {
-            let mut all = all.as_chunks().0.iter().map(Found::of);
-            let mut sums = [Found::NOTHING; MOST_SHARED_BODIES];
-            sums[..bodies].fill_with(|| all.next().unwrap_or(Found::NOTHING));
-            all.enumerate().for_each(|(k, found)| sums[k % bodies].join(&found));
-            sums
-        });
-        if let Some(all) = all {
-            found[..bodies].copy_from_slice(&all[..bodies]);
+        if rows.are_shared() {
+            join_ranks(rows, bodies, found);
             return &found[..bodies];
         }
         let (all, others) = found.split_at_mut(bodies);
@@ -122,6 +113,23 @@ impl Bands {
             all.iter_mut().zip(band).for_each(|(all, found)| all.join(found));
         }
         all
+    }
+}
+
+/// Joins what was found in the bands of all ranks, in their order, to what comes first.
+#[cold]
+fn join_ranks(rows: &Rows, bodies: usize, found: &mut [Found]) {
+    let own = found[..rows.bands() * bodies].iter().flat_map(Found::numbers);
+    let count = |rank: usize| Found::NUMBERS * bodies * rows.bands_of(rank);
+    let all = rows.gather(own, count, |all| {
+        let mut all = all.as_chunks().0.iter().map(Found::of);
+        let mut sums = [Found::NOTHING; MOST_SHARED_BODIES];
+        sums[..bodies].fill_with(|| all.next().unwrap_or(Found::NOTHING));
+        all.enumerate().for_each(|(k, found)| sums[k % bodies].join(&found));
+        sums
+    });
+    if let Some(all) = all {
+        found[..bodies].copy_from_slice(&all[..bodies]);
     }
 }
 

@@ -188,19 +188,21 @@ impl Task for Restrict<'_> {
         let fine = &mut fine[..2 * m2 + 4];
         for (i, out) in (*first..).zip(blocks.chunks_exact_mut(m2)) {
             let parts = self.parts(i);
-            let rows = parts.map(|(row, _)| &self.values.row(row)[..n2]);
-            let kept = parts.map(|(row, _)| self.values.kept(row));
+            let shares = [parts[0].1, parts[1].1, parts[2].1, parts[3].1];
+            let [a, b, c, d] = [parts[0].0, parts[1].0, parts[2].0, parts[3].0];
+            let (rows, ghosts) = (self.values, self.values.ghosts);
+            let values = [rows.row(a), rows.row(b), rows.row(c), rows.row(d)];
             let sums = &mut fine[2..n2 + 2];
             match self.known {
                 Known::Members(member) => {
-                    let outside = self.values.ghosts.outside();
-                    let known = kept.map(|kept| &kept.map_or(outside, |cells| &member[cells])[..n2]);
-                    add_open(sums, parts.map(|(_, part)| part), rows, known, |inside, f| if inside { 0.0 } else { f });
+                    let known = |row: usize| rows.kept(row).map_or(ghosts.outside(), |cells| &member[cells]);
+                    let known = [known(a), known(b), known(c), known(d)];
+                    add_open(sums, shares, values, known, |inside, f| if inside { 0.0 } else { f });
                 }
                 Known::Factors(factors) => {
-                    let open = self.values.ghosts.open();
-                    let known = kept.map(|kept| &kept.map_or(open, |cells| &factors[cells])[..n2]);
-                    add_open(sums, parts.map(|(_, part)| part), rows, known, |factor, f| (1.0 - weight(factor)) * f);
+                    let known = |row: usize| rows.kept(row).map_or(ghosts.open(), |cells| &factors[cells]);
+                    let known = [known(a), known(b), known(c), known(d)];
+                    add_open(sums, shares, values, known, |factor, f| (1.0 - weight(factor)) * f);
                 }
             }
             fine[n2 + 2..2 * m2 + 2].fill(0.0);
