@@ -4,6 +4,7 @@ mod conditions;
 mod differential;
 mod extremes;
 mod loads;
+mod population;
 mod ranks;
 mod ranks_together;
 mod region;

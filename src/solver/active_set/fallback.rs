@@ -11,6 +11,7 @@
 //! line search. Cells at zero then leave A, and cells that penetrate join it with p = 0, which does not change E. E falls from
 //! step to step, so that no set returns.
 
+use super::iteration::Towards;
 use super::{ActiveSet, JOIN_OVER_RMS};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::{balance, cold_start};
@@ -74,7 +75,8 @@ impl ActiveSet {
             solution.counts.iterations += 1;
             solution.counts.fallback_iterations += 1;
             let cells = state.cells;
-            match self.step_downhill(problem, joins_without_gain > 1, solution, work) {
+            let towards = if joins_without_gain > 1 { Towards::Residual } else { Towards::Preconditioned };
+            match self.step_downhill(problem, towards, solution, work) {
                 0.0 if !joins && self.set.count() == cells => return Outcome::Stagnated,
                 gain => gained |= gain > 0.0,
             }
@@ -124,16 +126,16 @@ impl ActiveSet {
         self.search.energy = 0.0;
     }
 
-    /// One step, along the residual itself if `plain`; returns by how much E falls.
+    /// One step; returns by how much E falls.
     fn step_downhill(
         &mut self,
         problem: &Problem<'_>,
-        plain: bool,
+        towards: Towards,
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> f64 {
         let c = problem.compliance;
-        self.find_direction(problem, plain, solution, work);
+        self.find_direction(problem, towards, solution, work);
         problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
         solution.counts.convolutions += 1;
         let [slope, curvature] = self.slope_and_curvature(problem, solution);

@@ -23,6 +23,18 @@ const DEEPEST: f64 = 0.999;
 /// Iterations without a new lowest residual after which the fall-back takes over.
 const MAX_ITERATIONS_WITHOUT_GAIN: usize = 40;
 
+/// What z of a direction is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Towards {
+    /// P Eᵀ M E P r.
+    Preconditioned,
+    /// r itself.
+    Residual,
+    /// Nothing: the residual is below the tolerance, and the direction makes the changes of the pressure alone. A z without
+    /// a line search could make it greater again.
+    Corrections,
+}
+
 impl ActiveSet {
     /// Iterates from a guess until the solve ends, or stagnates.
     pub(super) fn iterate(
@@ -66,7 +78,9 @@ impl ActiveSet {
             }
             // the set that was foreseen is not judged before it carries pressure
             let foreseen = problem.likely.is_some() && solution.counts.iterations == 0;
-            if penetration > JOIN_OVER_RMS * state.rms() && !foreseen {
+            // small pressures that leave are all that is left to do
+            let solved = solution.residual <= stop.tolerance && self.changes.any();
+            if penetration > JOIN_OVER_RMS * state.rms() && !foreseen && !solved {
                 let least = if std::mem::take(&mut self.was_cut) {
                     DEEPEST * penetration
                 } else {
@@ -78,7 +92,8 @@ impl ActiveSet {
 
             solution.counts.iterations += 1;
             let corrects = self.changes.any();
-            self.find_direction(problem, false, solution, work);
+            let towards = if solved { Towards::Corrections } else { Towards::Preconditioned };
+            self.find_direction(problem, towards, solution, work);
             problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
             solution.counts.convolutions += 1;
             step = self.step_length(problem, solution);
@@ -138,18 +153,23 @@ impl ActiveSet {
         self.passes.residual(problem, &self.set.runs, motions, potential, &mut self.preconditioned)
     }
 
-    /// d ← z + β d without free motion on A, with z = r if `plain`; with pressures to bring to zero or into balance, d is
-    /// the whole change of p.
+    /// d ← z + β d without free motion on A; with pressures to bring to zero or into balance, d is the whole change of p.
     pub(super) fn find_direction(
         &mut self,
         problem: &Problem<'_>,
-        plain: bool,
+        towards: Towards,
         solution: &mut Solution,
         work: &mut Workspace,
     ) {
-        let (length, pending) = (CORRECTION_LENGTH / problem.compliance, self.changes.any());
-        self.find_residual(problem, solution);
-        if !plain {
+        // no longer than the last search: where M is too great an inverse, a longer one would not lower the residual
+        let length = CORRECTION_LENGTH.min(self.search.length) / problem.compliance;
+        let pending = self.changes.any();
+        if towards == Towards::Corrections {
+            self.preconditioned.fill(0.0);
+        } else {
+            self.find_residual(problem, solution);
+        }
+        if towards == Towards::Preconditioned {
             self.preconditioner.apply(&mut self.preconditioned, &self.set, work);
             solution.counts.preconditioner_applications += 1;
         }
@@ -222,6 +242,9 @@ impl ActiveSet {
             // a direction that vanishes, as on a single cell, gains nothing
             let length = slope / (problem.compliance * curvature);
             let downhill = slope > 0.0 && curvature > 0.0 && length.is_finite();
+            if downhill {
+                self.search.length = length * problem.compliance;
+            }
             return if downhill { length } else { 0.0 };
         }
         // nothing is conjugate to a correction, which has no line search

@@ -20,7 +20,7 @@ impl ActiveSet {
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Result<(), usize> {
-        (self.search.energy, self.was_cut) = (0.0, false);
+        (self.search.energy, self.search.length, self.was_cut) = (0.0, f64::INFINITY, false);
         for_each_band([&mut self.set.member], |first, [member]| {
             let fields = member.iter_mut().zip(solution.pressure[first..].iter().zip(&problem.gap[first..]));
             match problem.likely {

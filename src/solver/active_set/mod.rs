@@ -45,7 +45,7 @@ const JOIN_OVER_RMS: f64 = 0.2 * PENETRATION_SLACK;
 /// fraction of rms |r|.
 const LEAVE_OVER_RMS: f64 = 0.1;
 
-/// c a of a direction that corrects the pressure and has no line search.
+/// c a of a direction that corrects the pressure and has no line search, unless the last search was shorter.
 const CORRECTION_LENGTH: f64 = 0.9;
 
 /// Pressures that leave are moved to the cells around, unless they carry more than this part of the force: then the
@@ -80,6 +80,8 @@ struct Search {
     image: Vec<f64>,
     /// d·Kd.
     energy: f64,
+    /// c a of the last search of this solve.
+    length: f64,
     /// The fit of K d on A under each body that tilts.
     image_motions: Vec<ModeCoefficients>,
     /// What makes d free of motion on A.
@@ -138,6 +140,7 @@ impl ActiveSet {
                 direction: field.clone(),
                 image: field,
                 energy: 0.0,
+                length: f64::INFINITY,
                 image_motions: motions.clone(),
                 shifts: motions,
             },

@@ -1,0 +1,123 @@
+//! The work of warm steps over a population of scenes drawn at random, on meshes finer than a dense reference could follow: no
+//! step may stall. `POPULATION_SCENES` (40) and `POPULATION_SEED` (1) choose others.
+
+use std::sync::Arc;
+
+use crate::common::draws::Draws;
+use crate::common::environment::from_environment;
+use viscocontact::geometry::Sum;
+use viscocontact::prelude::*;
+
+const LENGTH: f64 = 1.0;
+
+/// A shape that a load presses over `part` of the square.
+fn shape(draws: &mut Draws, part: f64) -> (&'static str, Box<dyn Geometry>) {
+    let sphere = || Sphere::new(10.0).unwrap();
+    match draws.below(8) {
+        0 | 1 => ("sphere", Box::new(sphere())),
+        2 => ("ellipsoid", Box::new(Ellipsoid::new(10.0, draws.between(4.0, 10.0)).unwrap())),
+        3 => ("cone", Box::new(Cone::new(0.05).unwrap())),
+        4 => ("punch", Box::new(FlatPunch::circular(0.5 * part * LENGTH).unwrap())),
+        5 => {
+            let (count, height) = (2.0 + draws.below(12) as f64, draws.power_of_ten(-4.0, -2.5));
+            let wave = move |x: f64| 1.0 - (count * std::f64::consts::TAU * x / LENGTH).cos();
+            ("bumps", Box::new(FnGeometry::new(move |x, y| height * (wave(x) + wave(y) + 0.3 * x + 0.1 * y))))
+        }
+        6 => {
+            let wavy = Wavy::new(draws.power_of_ten(-4.5, -3.0), LENGTH / draws.between(3.0, 10.0)).unwrap();
+            ("wavy sphere", Box::new(Sum::new(sphere(), wavy)))
+        }
+        _ => {
+            let [a, b, c] = [0.3, 0.7, 1.9].map(|f| f * draws.between(5.0, 20.0));
+            let rough =
+                move |x: f64, y: f64| 2e-4 * ((a * x + b * y).sin() + (b * x - c * y).cos() + (c * x * y).sin());
+            ("rough sphere", Box::new(FnGeometry::new(move |x, y| (x * x + y * y) / 20.0 + rough(x, y))))
+        }
+    }
+}
+
+fn body(draws: &mut Draws) -> Material {
+    match draws.below(4) {
+        0 => Material::incompressible(Maxwell::new(1.0e6, 1.0e6).unwrap()),
+        1 => Material::incompressible(Zener::new(1.0e6, 1.0e6 / draws.between(0.5, 8.0), 1.0e6).unwrap()),
+        2 => Material::incompressible(KelvinVoigt::new(1.0e6, 1.0e6).unwrap()),
+        _ => {
+            let terms: Vec<(f64, f64)> = (0..5).map(|k| (1.0e-6, 10f64.powi(k - 3))).collect();
+            Material::incompressible(GeneralizedKelvin::new(1.0e-6, 0.0, &terms).unwrap())
+        }
+    }
+}
+
+struct Cost {
+    equivalents: f64,
+    fallback: bool,
+    name: String,
+}
+
+/// Warm steps of the scene of a seed, under a load that is held, grows, falls or moves.
+fn run(seed: u64, costs: &mut Vec<Cost>) {
+    let mut draws = Draws::new(seed);
+    let cells = 48 + 2 * draws.below(60);
+    let grid = Grid::square(cells, LENGTH).unwrap();
+    let part = draws.between(0.2, 0.85);
+    let (shape, geometry) = shape(&mut draws, part);
+    let periodic = matches!(shape, "bumps") && draws.chance(0.5);
+    let symmetry = draws.chance(0.3);
+    let settings = Settings::default().with_symmetry(symmetry).with_window(draws.chance(0.3)).with_edge(Edge::Allow);
+    let material = body(&mut draws);
+    let build = |material: Material| {
+        let mut builder = ViscoelasticContact::builder(grid.clone()).geometry(&geometry).material(material);
+        if periodic {
+            builder = builder.kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()));
+        }
+        builder.settings(settings).build().unwrap()
+    };
+    // the force with which an elastic body would touch over this part of the square, by bisection
+    let (mut low, mut high) = (1e-2_f64, 1e8_f64);
+    for _ in 0..12 {
+        let force = (low * high).sqrt();
+        let mut elastic = build(Material::incompressible(Elastic::new(1.0e6).unwrap()));
+        let wide = elastic.step(0.0, Load::force(force)).unwrap().area > part * part * 0.8 * LENGTH * LENGTH;
+        if wide { high = force } else { low = force }
+    }
+    let force = low;
+    let tilting = !periodic && draws.chance(0.3);
+    let (way, dt) = (draws.below(5), draws.power_of_ten(-3.0, -0.3));
+    let reach = if tilting { 0.1 * part * LENGTH } else { 0.0 };
+    let mut contact = build(material);
+    for step in 0..12 {
+        let t = f64::from(step) / 12.0;
+        let factor = [1.0, 0.3 + t, 1.2 - t, 1.0 + 0.3 * (7.0 * t).sin(), 1.0][way];
+        let point = if way == 4 { [reach * t, -0.5 * reach * t] } else { [reach, 0.0] };
+        let load = if tilting { Load::eccentric_force(factor * force, point) } else { Load::force(factor * force) };
+        let name = || {
+            format!(
+                "seed {seed} step {step}: {shape} {cells}², way {way}, dt {dt:.1e}, tilting {tilting}, periodic {periodic}, symmetry {symmetry}"
+            )
+        };
+        match contact.step(dt, load) {
+            Ok(report) if step > 0 => costs.push(Cost {
+                equivalents: report.convolution_equivalents(),
+                fallback: report.fallback_iterations > 0,
+                name: name(),
+            }),
+            Ok(_) => {}
+            Err(error) => panic!("{}: {error}", name()),
+        }
+    }
+}
+
+#[test]
+fn warm_steps_do_not_stall() {
+    let (scenes, first) = (from_environment("POPULATION_SCENES", 40), from_environment("POPULATION_SEED", 1));
+    let mut costs = Vec::new();
+    (0..scenes).for_each(|k| run(first * 1_000_000 + k, &mut costs));
+    costs.sort_by(|a, b| a.equivalents.total_cmp(&b.equivalents));
+    let at = |share: f64| costs[((costs.len() - 1) as f64 * share) as usize].equivalents;
+    let mean = costs.iter().map(|cost| cost.equivalents).sum::<f64>() / costs.len() as f64;
+    let fallback = costs.iter().filter(|cost| cost.fallback).count();
+    println!("{} warm steps: {mean:.2} equivalents, {fallback} with the fall-back", costs.len());
+    println!("percentiles 50, 90, 99, 99.9, 100: {:.1?}", [0.5, 0.9, 0.99, 0.999, 1.0].map(at));
+    costs.iter().rev().take(5).for_each(|cost| println!("{:.1}: {}", cost.equivalents, cost.name));
+    assert!(mean <= 10.0 && at(1.0) <= 60.0, "{mean} {}", at(1.0));
+}
