@@ -10,13 +10,16 @@ use crate::ALLOCATOR;
 
 const SIZE: usize = 3;
 
+/// A scene, and the load of each step.
+type Scene = (fn() -> Builder, fn(usize) -> Load);
+
 /// Waits for all ranks: the allocator counts the whole process.
 fn meet(ranks: &Arc<dyn Ranks>) {
     ranks.gather(&[0.0], &[1; SIZE], &mut [0.0; SIZE]).unwrap();
 }
 
 pub fn warm_steps_of_ranks_allocate_nothing() {
-    let scenes: [(fn() -> Builder, fn(usize) -> Load); 2] = [
+    let scenes: [Scene; 2] = [
         (|| builder(Settings::default(), &Sphere::new(10.0e-3).unwrap()), |step| Load::force(1.0 + 0.02 * step as f64)),
         (
             || builder(Settings::default().with_symmetry(false), &FlatPunch::circular(1.4e-3).unwrap()),
