@@ -107,7 +107,8 @@ impl Builder {
     /// takes. Where there is not even memory for the gap, it counts as asymmetric.
     ///
     /// A series of the material over [`Builder::times`] is fitted for it, in a tenth of a second. Threads are those of the
-    /// pool in which it is called.
+    /// pool in which it is called. Of a contact that [ranks](crate::ranks) share out it is that of one process with all of
+    /// the rows.
     ///
     /// ```
     /// use viscocontact::prelude::*;

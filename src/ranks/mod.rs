@@ -42,6 +42,9 @@
 //! | series of relaxation times | direct sums, [`Solver::PolonskyKeer`](crate::contact::Solver::PolonskyKeer) |
 //! | snapshots in memory | checkpoints, files, pictures, patches, profiles, stresses |
 //!
+//! Every rank evaluates the geometry on the whole grid, and keeps what belongs to its rows: to build a contact takes 8 bytes a
+//! cell of the whole grid for a moment. Clones and snapshots are of the same ranks.
+//!
 //! [`Settings::window`](crate::contact::Settings::window) is passed over: the whole grid is computed, as far as symmetry
 //! does not leave less.
 
