@@ -85,7 +85,8 @@ fn hash_of_scenes(ranks: Option<Arc<dyn Ranks>>) -> Result<u64, Error> {
         None => punch.build()?,
     };
     for step in 0..3 {
-        contact.step(0.2 * f64::from(step), Load::eccentric_force(1.0, [0.1e-3 + 0.03e-3 * f64::from(step), 0.05e-3]))?;
+        contact
+            .step(0.2 * f64::from(step), Load::eccentric_force(1.0, [0.1e-3 + 0.03e-3 * f64::from(step), 0.05e-3]))?;
         add(&mut hash, &contact.tilt());
     }
     add(&mut hash, &contact.gathered(contact.pressure(), 0)?.unwrap_or_default());

@@ -90,7 +90,9 @@ mod tests {
                 for call in 0..chunks.calls() {
                     chunks.copy_in(call, &parts, &mut buffer);
                     let (lengths, starts) = chunks.of(call);
-                    assert!(starts.iter().zip(&lengths).all(|(start, length)| (start + length) as usize <= buffer.len()));
+                    assert!(
+                        starts.iter().zip(&lengths).all(|(start, length)| (start + length) as usize <= buffer.len())
+                    );
                     chunks.copy_out(call, &buffer, &mut back);
                 }
                 assert_eq!(back, parts, "{counts:?} {most}");

@@ -11,7 +11,7 @@ use mpi::traits::*;
 use num_complex::Complex64;
 use viscocontact::ranks::{Ranks, RanksError};
 
-use crate::chunks::{MOST, Chunks};
+use crate::chunks::{Chunks, MOST};
 
 /// All processes that `mpirun` has started, as ranks.
 ///
@@ -35,7 +35,9 @@ pub enum MpiError {
 impl std::fmt::Display for MpiError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
-            MpiError::StartedBefore => f.write_str("MPI was started before in this process: share what Mpi::start returned"),
+            MpiError::StartedBefore => {
+                f.write_str("MPI was started before in this process: share what Mpi::start returned")
+            }
         }
     }
 }
