@@ -191,6 +191,7 @@ pub mod plot;
 mod quadrature;
 pub mod ranks;
 pub mod rheology;
+mod rounded;
 mod solver;
 mod sum;
 

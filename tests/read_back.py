@@ -92,6 +92,46 @@ def check_image(path, raw, shape, scene):
             check(f"{frame}: cell at ({x1[i]}, {x2[j]})", cell == j * shape[0] + i)
 
 
+def check_stress(path, raw, shape, scene):
+    frame = path.name
+    failures = []
+    reader = vtk.vtkXMLRectilinearGridReader()
+    reader.AddObserver("ErrorEvent", lambda *event: failures.append(event))
+    check(f"{frame}: CanReadFile", reader.CanReadFile(str(path)))
+    reader.SetFileName(str(path))
+    reader.Update()
+    check(f"{frame}: read without errors", not failures)
+    volume, depths = reader.GetOutput(), raw("depths")
+    size = (*shape, len(depths))
+    check(f"{frame}: dimensions", volume.GetDimensions() == size)
+    axes = [volume.GetXCoordinates(), volume.GetYCoordinates(), volume.GetZCoordinates()]
+    for axis, name in zip(axes, ["x1", "x2", "depths"]):
+        check(f"{frame}: {name}", same_bits(vtk_to_numpy(axis), raw(name)))
+    points, state = volume.GetPointData(), volume.GetFieldData()
+    check(f"{frame}: arrays", points.GetNumberOfArrays() == 3 and state.GetNumberOfArrays() == 2)
+    for name, other in [("von Mises stress [Pa]", "von_mises"), ("Tresca stress [Pa]", "tresca")]:
+        found = vtk_to_numpy(points.GetArray(name)).reshape(size[::-1])
+        # planes of fields, in which x2 is fastest
+        check(f"{frame}: {name}", same_bits(found.transpose(0, 2, 1), raw(other).reshape(size[2], *shape)))
+    tensor = vtk_to_numpy(points.GetArray("stress [Pa]"))
+    check(f"{frame}: components", tensor.shape == (size[0] * size[1] * size[2], 6))
+    expected = raw("stress").reshape(size[2], *shape, 6).transpose(0, 2, 1, 3).reshape(-1, 6)
+    # VTK: xx, yy, zz, xy, yz, xz
+    check(f"{frame}: stress", same_bits(tensor, expected[:, [0, 1, 2, 3, 5, 4]]))
+    # by VTK's own arithmetic, from the tensor at a point that VTK finds: the invariants
+    middle = [raw("x1")[shape[0] // 2], raw("x2")[shape[1] // 2], depths[1]]
+    row = volume.FindPoint(middle)
+    check(f"{frame}: place of the middle", tuple(volume.GetPoint(row)) == tuple(middle))
+    xx, yy, zz, xy, yz, xz = tensor[row]
+    matrix = numpy.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    principal = numpy.linalg.eigvalsh(matrix)
+    found = vtk_to_numpy(points.GetArray("Tresca stress [Pa]"))[row]
+    check(f"{frame}: Tresca of the tensor", abs(found - (principal[2] - principal[0])) <= 1e-12 * abs(principal).max())
+    check(f"{frame}: time", same_bits(vtk_to_numpy(state.GetArray("TimeValue")).ravel(), raw("time")))
+    told = json.loads(state.GetAbstractArray("metadata").GetValue(0))
+    check(f"{frame}: scene", all(told.get(key) == value for key, value in scene.items() if key != "notes"))
+
+
 def check_history(folder, frames, raws, scene):
     with open(folder / "history.csv", encoding="utf-8", newline="") as file:
         head = file.readline()
@@ -119,6 +159,7 @@ def main():
         check(f"series.pvd: time of {frame}", same_bits([float(entry.get("timestep"))], raw("time")))
         check_archive(folder, frame, raw, shape, scene)
         check_image(folder / entry.get("file"), raw, shape, scene)
+        check_stress(folder / f"{frame}.vtr", raw, shape, scene)
     check_history(folder, frames, raws, scene)
     check("leftovers", not list(folder.glob("*.part")))
 

@@ -175,7 +175,7 @@ impl AxisymmetricContact {
             return Err(Error::BeyondMaterial { time, age: time, known_until });
         }
         let step = (dt, Interpolant::CorrectedLinear);
-        let rows = Rows::all([self.profile.len(), 1], [false; 2]);
+        let rows = Rows::all([self.profile.len(), 1]);
         self.displacement.predict_non_negative(&mut self.rule, step, self.width, &rows);
         let c = self.rule.compliance();
         if c == 0.0 && dt == 0.0 {

@@ -43,7 +43,7 @@ impl Builder {
     pub fn build(mut self) -> Result<ViscoelasticContact> {
         let Some(group) = self.ranks.take() else { return Ok(self.prepare(None)?.finish()) };
         // what is agreed upon, before there are rows to share
-        let rows = Rows::of_rank([1, 1], [false; 2], Arc::clone(&group));
+        let rows = Rows::of_rank([1, 1], Arc::clone(&group));
         caught(&rows, || {
             let prepared = rows.agree(self.may_be_shared().and_then(|()| self.prepare(Some(group))))?;
             rows.same(prepared.marks())?;

@@ -125,7 +125,7 @@ impl Footprint<'_> {
         let history = self.history.bytes_per_cell() as u128 * n;
         let far = if covers { 0 } else { 16 * n + history };
         let [kernel, inverse] = self.kernel.bytes_on(cells, folded);
-        let sums = Bands::bytes(&Rows::all(cells, folded), self.bodies) as u128;
+        let sums = Bands::bytes(&Rows::all(cells), self.bodies) as u128;
         let solver = match self.settings.solver {
             // three fields, a mark, and runs of cells
             Solver::ActiveSet => (24 + 1 + 4) * n + sums + inverse + Extension::bytes(cells),

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::contact::warning::Warnings;
+use crate::rounded::{TIME, rounded};
 
 /// The outcome and the cost of one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,7 +77,7 @@ impl fmt::Display for StepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let StepReport { time, force, approach, contact_cells, residual, .. } = *self;
         // forces are met to rounding, times are sums of steps
-        let (time, force) = (rounded(time, 11), rounded(force, 5));
+        let (time, force) = (rounded(time, TIME), rounded(force, 5));
         write!(f, "t = {time} s: force {force} N, approach {approach:.4e} m, {contact_cells} cells in contact; ")?;
         write!(f, "{} convolutions, residual {residual:.1e}", self.convolution_equivalents())?;
         match self.time_error {
@@ -86,11 +87,6 @@ impl fmt::Display for StepReport {
         }
         self.warnings.iter().try_for_each(|warning| write!(f, "; {warning}"))
     }
-}
-
-/// The nearest number with so many decimals in scientific notation.
-fn rounded(value: f64, decimals: usize) -> f64 {
-    format!("{value:.decimals$e}").parse().unwrap_or(value)
 }
 
 /// The state of one rigid body, see [`ViscoelasticContact::body`](crate::ViscoelasticContact::body).

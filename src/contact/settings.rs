@@ -37,8 +37,8 @@ pub struct Settings {
     /// the number of cells along that axis is even (default: true). The answer is the same except for rounding.
     pub symmetry: bool,
     /// Whether only the rectangle in which the bodies can touch is computed, and the rest of the grid on demand (default:
-    /// true). The rectangle grows with the contact; a step in which it grows allocates memory. With direct sums the whole
-    /// grid is computed.
+    /// true). The rectangle grows with the contact; a step in which it grows allocates memory. With direct sums, and on bodies
+    /// other than the half-space loaded on the grid, such as layers, the whole grid is computed.
     pub window: bool,
     /// What the grid is fixed to (default: [`Frame::Bodies`]).
     pub frame: Frame,

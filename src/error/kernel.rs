@@ -46,8 +46,9 @@ pub enum KernelError {
         what: String,
     },
 
-    /// The datum of a line contact on a [`Layer`](crate::Layer): a rigid base has none, a half-space needs one.
-    #[error("the datum of a line contact on a layer is {datum:?}: it must be {allowed}")]
+    /// The datum of a line contact on a [`Layer`](crate::Layer), or of one periodic along one axis: a rigid base has none, a
+    /// half-space needs one.
+    #[error("the datum of a load along a line on a layer is {}: it must be {allowed}", metres(*datum))]
     LayerDatum {
         /// The datum given \[m\].
         datum: Option<f64>,
@@ -77,4 +78,8 @@ pub enum KernelError {
         /// The kernel, as its `Display` prints it.
         body: String,
     },
+}
+
+fn metres(datum: Option<f64>) -> String {
+    datum.map_or_else(|| "absent".to_owned(), |datum| format!("{datum:e} m"))
 }

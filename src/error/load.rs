@@ -1,3 +1,5 @@
+use crate::rounded::{TIME, rounded};
+
 /// What is wrong with a load or a load history.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -35,7 +37,7 @@ pub enum LoadError {
     },
 
     /// A load history returned a value that no load can have, at the end of a step or at a time within it.
-    #[error("the load history returned {field} = {value:?} at t = {time} s: it must be {allowed}")]
+    #[error("the load history returned {field} = {value:?} at t = {time} s: it must be {allowed}", time = rounded(*.time, TIME))]
     OutOfRange {
         /// The time asked for \[s\].
         time: f64,

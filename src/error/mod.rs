@@ -26,6 +26,8 @@ pub use output::OutputError;
 pub use ranks::RanksError;
 pub use table::{Place, TableError};
 
+use crate::rounded::{TIME, rounded};
+
 /// Everything that can go wrong, with the numbers needed to correct it.
 ///
 /// Every constructor validates its arguments, so an invalid model cannot be built; a
@@ -107,7 +109,7 @@ pub enum Error {
     Load(#[from] LoadError),
 
     /// A force acts outside the convex hull of the cells that the body may touch, so that no pressure balances it.
-    #[error("at t = {time} s the load acts at ({:e}, {:e}) m, outside the convex hull of the cells that body {body} may touch: it would tip over", .at[0], .at[1])]
+    #[error("at t = {time} s the load acts at ({:e}, {:e}) m, outside the convex hull of the cells that body {body} may touch: it would tip over", .at[0], .at[1], time = rounded(*.time, TIME))]
     LoadOutsideHull {
         /// End of the step \[s\].
         time: f64,
@@ -170,7 +172,7 @@ pub enum Error {
     Kernel(#[from] KernelError),
 
     /// A load tilts a body along an axis along which the bodies are periodic.
-    #[error("at t = {time} s the load tilts the body along x{}, along which the bodies are periodic: a tilted body is not", .axis + 1)]
+    #[error("at t = {time} s the load tilts the body along x{}, along which the bodies are periodic: a tilted body is not", .axis + 1, time = rounded(*.time, TIME))]
     TiltOfPeriodic {
         /// End of the step \[s\].
         time: f64,
@@ -189,8 +191,7 @@ pub enum Error {
     /// An approach exceeds that of full contact on a surface whose mean displacement is fixed
     /// ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)): no pressure closes the gap further.
     #[error(
-        "at t = {time} s the approach {approach:e} m is not below {greatest:e} m, that of full contact, which no pressure can exceed on a periodic body: prescribe the force"
-    )]
+        "at t = {time} s the approach {approach:e} m is not below {greatest:e} m, that of full contact, which no pressure can exceed on a periodic body: prescribe the force", time = rounded(*.time, TIME))]
     BeyondFullContact {
         /// End of the step \[s\].
         time: f64,
@@ -204,8 +205,7 @@ pub enum Error {
     /// length zero, unless the jump removes the load or the present state already satisfies it; nor is the paper's
     /// rectangle rule possible. Ramp the load over a short time, or give the body a glassy compliance.
     #[error(
-        "at t = {time} s: {what} needs an elastic response, but the material has none (its compliance at t = 0 is zero); ramp the load over a short time or add a glassy compliance"
-    )]
+        "at t = {time} s: {what} needs an elastic response, but the material has none (its compliance at t = 0 is zero); ramp the load over a short time or add a glassy compliance", time = rounded(*.time, TIME))]
     NoElasticResponse {
         /// Time of the contact \[s\].
         time: f64,
@@ -221,8 +221,7 @@ pub enum Error {
     /// series was fitted over. Give [`Builder::times`](crate::contact::Builder::times) a longer range, or extrapolate
     /// the table.
     #[error(
-        "at t = {time} s the loading time {age} s exceeds the range in which the material is known, {known_until} s: fit its series over longer times (Builder::times), or extrapolate its table"
-    )]
+        "at t = {time} s the loading time {age} s exceeds the range in which the material is known, {known_until} s: fit its series over longer times (Builder::times), or extrapolate its table", time = rounded(*.time, TIME), age = rounded(*.age, TIME))]
     BeyondMaterial {
         /// End of the step \[s\].
         time: f64,
@@ -235,8 +234,7 @@ pub enum Error {
     /// The history of a direct sum would exceed [`Settings::history_limit`](crate::contact::Settings). Raise the limit,
     /// or use [`TimeRule::Exponential`](crate::contact::TimeRule::Exponential), whose memory does not grow.
     #[error(
-        "at t = {time} s the direct sum over {steps} past steps would take {bytes} bytes, more than Settings::history_limit = {limit}: raise it, or use TimeRule::Exponential, whose memory does not grow"
-    )]
+        "at t = {time} s the direct sum over {steps} past steps would take {bytes} bytes, more than Settings::history_limit = {limit}: raise it, or use TimeRule::Exponential, whose memory does not grow", time = rounded(*.time, TIME))]
     HistoryFull {
         /// End of the step \[s\].
         time: f64,
@@ -296,8 +294,7 @@ pub enum Error {
     /// Enlarge the grid, or choose [`Edge::Allow`](crate::contact::Edge::Allow) if the body really ends at the edge of
     /// the grid.
     #[error(
-        "at t = {time} s the contact touches the edge of the grid on {cells} cells: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there"
-    )]
+        "at t = {time} s the contact touches the edge of the grid on {cells} cells: enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there", time = rounded(*.time, TIME))]
     ContactAtEdge {
         /// End of the step \[s\].
         time: f64,
@@ -307,7 +304,7 @@ pub enum Error {
 
     /// The contact of an [`AxisymmetricContact`](crate::analytic::AxisymmetricContact) reaches the end of its
     /// foundation: make it longer.
-    #[error("at t = {time} s the contact reaches the end of the foundation, {reach:e} m from the axis: make it longer")]
+    #[error("at t = {time} s the contact reaches the end of the foundation, {reach:e} m from the axis: make it longer", time = rounded(*.time, TIME))]
     BeyondReach {
         /// End of the step \[s\].
         time: f64,
@@ -318,8 +315,7 @@ pub enum Error {
     /// The solver did not converge within [`Settings::max_iterations`](crate::contact::Settings::max_iterations); the
     /// residual history suggests a remedy.
     #[error(
-        "at t = {time} s (step of {dt} s): residual {residual:e} after {iterations} iterations, above the tolerance {tolerance:e}; {convergence}"
-    )]
+        "at t = {time} s (step of {dt} s): residual {residual:e} after {iterations} iterations, above the tolerance {tolerance:e}; {convergence}", time = rounded(*.time, TIME), dt = rounded(*.dt, TIME))]
     NotConverged {
         /// End of the step \[s\].
         time: f64,
@@ -340,7 +336,7 @@ pub enum Error {
     OtherContact,
 
     /// The load of a steady motion brings no cell into contact.
-    #[error("at t = {time} s the load brings no cell into contact: a steady motion needs contact")]
+    #[error("at t = {time} s the load brings no cell into contact: a steady motion needs contact", time = rounded(*.time, TIME))]
     NoContact {
         /// Time of the contact \[s\].
         time: f64,
@@ -372,8 +368,7 @@ pub enum Error {
     /// The allowed error in time needs a step below the resolution of `f64` at this time: the load changes too fast, or
     /// the tolerance is too small.
     #[error(
-        "at t = {time} s a step of {dt:e} s would be needed to keep the error in time below {tolerance:e}: it is shorter than f64 resolves at this time"
-    )]
+        "at t = {time} s a step of {dt:e} s would be needed to keep the error in time below {tolerance:e}: it is shorter than f64 resolves at this time", time = rounded(*.time, TIME))]
     StepTooShort {
         /// Time of the contact \[s\].
         time: f64,
@@ -384,7 +379,7 @@ pub enum Error {
     },
 
     /// A quantity overflowed in a step: the scales of lengths, moduli, loads and times are too far apart for `f64`.
-    #[error("at t = {time} s: {what} is not finite; the scales of the scene are too far apart for f64")]
+    #[error("at t = {time} s: {what} is not finite; the scales of the scene are too far apart for f64", time = rounded(*.time, TIME))]
     Overflow {
         /// End of the step \[s\].
         time: f64,

@@ -11,6 +11,7 @@ use super::layout::{Ends, Layout, waves_at};
 use super::love::Love;
 use super::strip::{Strip, wave_number};
 use crate::Grid;
+use crate::kernel::layout::is_fast;
 
 /// A real even function of wave numbers.
 pub(super) type Symbol = Box<dyn Fn(usize, usize) -> f64>;
@@ -33,6 +34,8 @@ pub(super) enum Influence {
     LayerPeriodic(Layer),
     /// A layer in plane strain.
     LayerLine { layer: Layer, strip: Strip, remainder: Arc<Remainder> },
+    /// A layer, periodic along one axis: the strip of the half-space, and what the layer adds to each wave that reaches the base.
+    LayerStrip { layer: Layer, periodic: usize, strip: Strip, remainders: Arc<[Remainder]> },
     /// User-defined coefficients, for the distances of the grid.
     Coefficients { values: Arc<[f64]>, columns: usize },
     /// User-defined compliance of each wave, for the independent wave numbers of the period.
@@ -63,11 +66,21 @@ impl Influence {
         }
     }
 
+    pub(super) fn layer(&self) -> Option<&Layer> {
+        match self {
+            Influence::Layer { layer, .. }
+            | Influence::LayerPeriodic(layer)
+            | Influence::LayerLine { layer, .. }
+            | Influence::LayerStrip { layer, .. } => Some(layer),
+            _ => None,
+        }
+    }
+
     pub(super) fn ends(&self) -> [Ends; 2] {
         match self {
             Influence::Periodic | Influence::LayerPeriodic(_) | Influence::Waves { .. } => [Ends::Periodic; 2],
             Influence::LayerLine { .. } => [Ends::Free, Ends::Periodic],
-            Influence::Strip { periodic, .. } => {
+            Influence::Strip { periodic, .. } | Influence::LayerStrip { periodic, .. } => {
                 [0, 1].map(|axis| if axis == *periodic { Ends::Periodic } else { Ends::Free })
             }
             Influence::HalfSpace(_) | Influence::Layer { .. } | Influence::Coefficients { .. } => [Ends::Free; 2],
@@ -97,16 +110,15 @@ impl Influence {
                 let mean = layer.compliance_of_period();
                 Box::new(move |k1, k2| if (k1, k2) == (0, 0) { mean } else { layer.compliance(q(k1, k2)) })
             }
-            Influence::Strip { periodic, strip } => {
+            Influence::Strip { periodic, .. } | Influence::LayerStrip { periodic, .. } => {
                 // for each wave along the periodic axis, a convolution along the other
                 let (periodic, free) = (*periodic, 1 - periodic);
                 let (mut line, mut values) = (EvenLine::new(layout.period(free)), Vec::new());
                 let all = [0..layout.period(0) / 2 + 1, columns];
                 let (waves, wanted) = (all[periodic].clone(), all[free].clone());
                 for k in waves.clone() {
-                    let kappa = wave_number(k, layout.period(periodic), grid.spacing()[periodic]);
                     let known = layout.cells[free] * if layout.folded[free] { 2 } else { 1 };
-                    let line = line.transform((0..known).map(|i| strip.coefficient(i, kappa)));
+                    let line = line.transform((0..known).map(|i| self.across(grid, i, k)));
                     values.extend(line.skip(wanted.start).take(wanted.len()));
                 }
                 Box::new(move |k1, k2| {
@@ -118,14 +130,17 @@ impl Influence {
     }
 
     /// A layout without padding, and the factor by which an approximate inverse of the operator multiplies each of its
-    /// waves.
+    /// waves. Axes that end are mirrored at their ends: on a period, a field that differs from one end to the other would jump.
+    /// Where zeros follow because the transform would be slow without, it is a period: mirrored, the field would jump twice.
     ///
     /// The compliance of a half-space for the wave q is 2/|q| (Westergaard 1939), whatever its boundaries. Its
     /// approximate inverse is |q|/2, except for the mean, whose stiffness is that against a uniform pressure; layers
     /// have that of their own waves. Other bodies are inverted wave by wave, on the grid taken as periodic (G.
     /// Strang, Stud. Appl. Math. 74, 1986).
     pub(super) fn inverse(&self, grid: &Grid, cells: [usize; 2], folded: [bool; 2]) -> (Layout, Symbol) {
-        let layout = Layout { cells, ends: self.ends(), folded }.wrapped();
+        let ends = self.ends();
+        let mirrored = [0, 1].map(|axis| folded[axis] || ends[axis] == Ends::Free && is_fast(cells[axis]));
+        let layout = Layout { cells, ends, folded: mirrored }.wrapped();
         let lengths = [0, 1].map(|axis| grid.spacing()[axis] * (cells[axis] * if folded[axis] { 2 } else { 1 }) as f64);
         let westergaard = |mean: f64| -> Symbol {
             let q = magnitude(grid, layout);
@@ -154,6 +169,12 @@ impl Influence {
                 let far = (1..count).map(|i| 2.0 * (1.0 - i as f64 / count as f64) * at(i)).sum::<f64>();
                 layered(*layer, at(0) + far)
             }
+            Influence::LayerStrip { layer, periodic, .. } => {
+                let count = cells[1 - periodic] * if folded[1 - periodic] { 2 } else { 1 };
+                let at = |i| self.across(grid, i, 0);
+                let far = (1..count).map(|i| 2.0 * (1.0 - i as f64 / count as f64) * at(i)).sum::<f64>();
+                layered(*layer, at(0) + far)
+            }
             Influence::LayerPeriodic(_) | Influence::Coefficients { .. } | Influence::Waves { .. } => {
                 let symbol = self.symbol(grid, layout, layout.all_columns());
                 let waves =
@@ -168,6 +189,20 @@ impl Influence {
             }
         };
         (layout, symbol)
+    }
+
+    /// The coefficient \[m\] of a body that is periodic along one axis: of the `i`-th cell across it, for its `k`-th wave.
+    fn across(&self, grid: &Grid, i: usize, k: usize) -> f64 {
+        let wave = |periodic: usize| wave_number(k, grid.cells()[periodic], grid.spacing()[periodic]);
+        match self {
+            Influence::Strip { periodic, strip } => strip.coefficient(i, wave(*periodic)),
+            Influence::LayerStrip { periodic, strip, remainders, .. } => {
+                let side = grid.spacing()[1 - periodic];
+                let added = remainders.get(k).map_or(0.0, |remainder| remainder.on_line(i as f64 * side, side));
+                strip.coefficient(i, wave(*periodic)) + added
+            }
+            _ => 0.0,
+        }
     }
 
     /// The greatest compliance of a wave, if that of the mean is zero.
@@ -203,9 +238,9 @@ impl Influence {
                 let side = grid.spacing()[0];
                 strip.coefficient(at[0], 0.0) + remainder.on_line(at[0] as f64 * side, side)
             }
-            Influence::Strip { periodic, strip } => {
-                let (cells, side) = (grid.cells()[*periodic], grid.spacing()[*periodic]);
-                let across = |k: usize| strip.coefficient(at[1 - periodic], wave_number(k, cells, side));
+            Influence::Strip { periodic, .. } | Influence::LayerStrip { periodic, .. } => {
+                let cells = grid.cells()[*periodic];
+                let across = |k: usize| self.across(grid, at[1 - periodic], k);
                 let waves = (0..=cells / 2).map(|k| waves_at(at[*periodic], k, cells) * across(k));
                 waves.sum::<f64>() / cells as f64
             }
@@ -239,6 +274,12 @@ impl fmt::Display for Influence {
             Influence::LayerLine { layer, .. } if layer.is_on_rigid() => write!(f, "{layer}, in plane strain"),
             Influence::LayerLine { layer, strip, .. } => {
                 write!(f, "{layer}, in plane strain, datum {:e} m", strip.datum)
+            }
+            Influence::LayerStrip { layer, periodic, .. } if layer.is_on_rigid() => {
+                write!(f, "{layer}, periodic along x{}", periodic + 1)
+            }
+            Influence::LayerStrip { layer, periodic, strip, .. } => {
+                write!(f, "{layer}, periodic along x{}, datum {:e} m", periodic + 1, strip.datum)
             }
             Influence::Coefficients { .. } => write!(f, "user-defined coefficients"),
             Influence::Waves { .. } => write!(f, "user-defined waves, periodic along x1 and x2"),

@@ -37,7 +37,14 @@ impl Layout {
         match (self.ends[axis], self.folded[axis]) {
             (Ends::Free, true) => fast_length(2 * cells),
             (Ends::Free, false) => fast_length(2 * cells - 1),
-            (Ends::Wrapped, _) => fast_length(cells),
+            // without any zeros where a length is fast enough: a field that is not zero at the end jumps there
+            (Ends::Wrapped, _) => {
+                if is_fast(cells) {
+                    cells
+                } else {
+                    fast_length(cells)
+                }
+            }
             (Ends::Periodic, _) => cells,
         }
     }
@@ -77,6 +84,11 @@ impl Layout {
 pub(super) fn waves_at(at: usize, k: usize, period: usize) -> f64 {
     let count = if k == 0 || 2 * k == period { 1.0 } else { 2.0 };
     count * (TAU * ((k as f64 * at as f64) % period as f64) / period as f64).cos()
+}
+
+/// Whether a length is transformed hardly slower than a power of two: see [`fast_length`].
+pub(super) fn is_fast(cells: usize) -> bool {
+    cells.is_multiple_of(if cells > 32 { 16 } else { 4 }) && least_smooth(cells) == cells
 }
 
 /// The length ≥ `least` that is transformed fastest, of those whose only prime factors are 2, 3, 5 and 7.

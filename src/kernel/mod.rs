@@ -232,7 +232,7 @@ impl InfluenceKernel {
     /// The kernel on a part of the grid and its mirror images along folded axes. Along periodic axes the part is the
     /// whole.
     pub(crate) fn on(&self, part: &Grid, folded: [bool; 2]) -> LocalKernel {
-        self.on_rows(part, folded, &Rows::all(part.cells(), folded))
+        self.on_rows(part, folded, &Rows::all(part.cells()))
     }
 
     /// The same, where the part is the own ones of the `rows`.
@@ -278,12 +278,7 @@ impl InfluenceKernel {
 
     /// The layer, if the body is one: its Poisson's ratio must be that of the material.
     pub(crate) fn layer_of(&self) -> Option<&Layer> {
-        match &self.influence {
-            Influence::Layer { layer, .. } | Influence::LayerPeriodic(layer) | Influence::LayerLine { layer, .. } => {
-                Some(layer)
-            }
-            _ => None,
-        }
+        self.influence.layer()
     }
 
     /// How the load continues beyond the grid, if the body is a half-space whose inside is known.
@@ -327,6 +322,11 @@ impl LocalKernel {
     /// Whether the mean displacement is fixed: then the approach cannot exceed that of full contact.
     pub(crate) fn mean_is_held(&self) -> bool {
         self.softest.is_some()
+    }
+
+    /// The layer, if the body is one.
+    pub(crate) fn layer(&self) -> Option<&Layer> {
+        self.influence.layer()
     }
 
     /// An approximate inverse, on a layout without padding.

@@ -69,8 +69,8 @@ impl Metadata {
     }
 
     /// The whole description as JSON on a single line: `title`, `notes`, `crate` and `version`, `grid` (`cells`,
-    /// `spacing` and `lengths` \[m\]), `bodies`, `kernel`, `settings` and `material` (as Rust prints them), `units` of
-    /// all values written, and `conventions`.
+    /// `spacing` and `lengths` \[m\]), `bodies`, `kernel`, `settings`, `material` and, if it changes, `temperature` (as
+    /// Rust prints them), `units` of all values written, and `conventions`.
     pub fn json(&self, contact: &ViscoelasticContact) -> String {
         let notes = self.notes.iter().fold(Object::default(), |notes, (key, value)| notes.text(key, value));
         let grid = contact.grid();
@@ -80,7 +80,7 @@ impl Metadata {
             .numbers("lengths", grid.lengths());
         let fields = Field::ALL.map(|field| (field.name(), field.unit()));
         let units = fields.iter().chain(&UNITS).fold(Object::default(), |units, (name, unit)| units.text(name, unit));
-        Object::default()
+        let scene = Object::default()
             .text("title", &self.title)
             .value("notes", &notes.finish())
             .text("crate", env!("CARGO_PKG_NAME"))
@@ -89,10 +89,12 @@ impl Metadata {
             .value("bodies", &contact.bodies().to_string())
             .text("kernel", &contact.kernel().to_string())
             .text("settings", &format!("{:?}", contact.settings()))
-            .text("material", &format!("{:?}", contact.material()))
-            .value("units", &units.finish())
-            .text("conventions", CONVENTIONS)
-            .finish()
+            .text("material", &format!("{:?}", contact.material()));
+        let scene = match contact.temperature() {
+            Some(temperature) => scene.text("temperature", &format!("{temperature:?}")),
+            None => scene,
+        };
+        scene.value("units", &units.finish()).text("conventions", CONVENTIONS).finish()
     }
 }
 

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory};
 use crate::plan::Accuracy;
-use crate::rheology::Material;
+use crate::rheology::{Material, TemperatureHistory};
 
 /// Cells along a side of the runs that find the domain.
 const DOMAIN_CELLS: usize = 24;
@@ -31,6 +31,7 @@ pub(super) const LEAST_TOLERANCE: f64 = 1e-9;
 pub(super) struct Scene<'a> {
     pub(super) geometry: &'a dyn Geometry,
     pub(super) material: &'a Material,
+    pub(super) temperature: Option<&'a TemperatureHistory>,
     pub(super) history: &'a dyn LoadHistory,
     pub(super) until: f64,
     /// End of the run for which the material is fitted.
@@ -122,7 +123,11 @@ impl Run {
 impl Scene<'_> {
     pub(super) fn builder(&self, grid: Grid) -> Builder {
         let builder = ViscoelasticContact::builder(grid).geometry(self.geometry).material(self.material.clone());
-        builder.settings(self.accuracy.settings()).times_of(self.history, self.whole)
+        let builder = builder.settings(self.accuracy.settings()).times_of(self.history, self.whole);
+        match self.temperature {
+            Some(temperature) => builder.temperature(temperature.clone()),
+            None => builder,
+        }
     }
 
     /// Runs on domains until the contact fills one well; returns where the contact was.
@@ -235,7 +240,8 @@ impl Scene<'_> {
                 Load::Approach { approach: depth, .. } => approach = approach.max(depth),
             }
         }
-        let mut compliance = self.material.contact_compliance(self.until.min(self.material.known_until()));
+        let creeping = self.temperature.map_or(Ok(self.until), |history| history.reduced_time(0.0, self.until))?;
+        let mut compliance = self.material.contact_compliance(creeping.min(self.material.known_until()));
         if !compliance.is_finite() {
             compliance = self.material.contact_compliance(0.0);
         }

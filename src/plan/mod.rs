@@ -16,7 +16,7 @@ use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
 use crate::plan::coarse::{Extent, Scene};
 use crate::plan::convergence::{DOMAIN_TO_CONTACT, converge, grid_with};
-use crate::rheology::Material;
+use crate::rheology::{Material, TemperatureHistory};
 
 /// A scene planned for an accuracy: the extent of the contact, the cells and steps needed, and their cost.
 ///
@@ -42,7 +42,8 @@ use crate::rheology::Material;
 ///
 /// Planning takes longer than a run on few cells: as long as some runs on up to 128 cells across the contact.
 ///
-/// The plan returns a builder, which can be changed before the contact is built.
+/// The plan returns a builder, which can be changed before the contact is built; what is changed is not planned for. A
+/// temperature that changes belongs into the plan ([`Plan::with_temperature`]); layers and other kernels are not planned.
 ///
 /// ```
 /// use viscocontact::plan::{Accuracy, Plan};
@@ -99,7 +100,7 @@ impl Plan {
         until: f64,
         accuracy: Accuracy,
     ) -> Result<Plan> {
-        Plan::made(geometry, material, history, until, accuracy, false)
+        Plan::made(geometry, (material, None), history, until, accuracy, false)
     }
 
     /// As [`Plan::new`], with a mesh on which the contact radius, √(area/π), is as accurate too, at all times at which the
@@ -114,12 +115,47 @@ impl Plan {
         until: f64,
         accuracy: Accuracy,
     ) -> Result<Plan> {
-        Plan::made(geometry, material, history, until, accuracy, true)
+        Plan::made(geometry, (material, None), history, until, accuracy, true)
+    }
+
+    /// As [`Plan::new`], at a temperature that changes ([`Builder::temperature`]): `until` and the load are in time, the body
+    /// creeps in reduced time.
+    ///
+    /// ```
+    /// use viscocontact::plan::{Accuracy, Plan};
+    /// use viscocontact::prelude::*;
+    /// use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
+    ///
+    /// let (sphere, load) = (Sphere::new(10.0e-3)?, StepLoad::new(Load::force(1.0))?);
+    /// let body = Material::incompressible(Zener::new(1.0e7, 1.0e6, 1.0e7)?);
+    /// let law = TimeTemperature::wlf(17.44, 51.6, 263.15)?;
+    /// let warming = TemperatureHistory::table(law, &[(0.0, 263.15), (100.0, 273.15)])?;
+    /// let plan = Plan::with_temperature(&sphere, &body, &warming, &load, 100.0, Accuracy::Coarse)?;
+    /// let mut contact = plan.builder().build()?;
+    /// let mut run = contact.follow(&load, plan.stepping(), 100.0);
+    /// while run.next_step()?.is_some() {}
+    /// let exact = viscocontact::analytic::GrowingSphere::step(10.0e-3, &body, 1.0)?;
+    /// assert!((contact.approach() / exact.approach(contact.reduced_time()) - 1.0).abs() < 1e-2);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Plan::new`]; for a temperature of the run as
+    /// [`TimeTemperature::shift_factor`](crate::rheology::TimeTemperature::shift_factor).
+    pub fn with_temperature(
+        geometry: &dyn Geometry,
+        material: &Material,
+        temperature: &TemperatureHistory,
+        history: &dyn LoadHistory,
+        until: f64,
+        accuracy: Accuracy,
+    ) -> Result<Plan> {
+        Plan::made(geometry, (material, Some(temperature)), history, until, accuracy, false)
     }
 
     fn made(
         geometry: &dyn Geometry,
-        material: &Material,
+        (material, temperature): (&Material, Option<&TemperatureHistory>),
         history: &dyn LoadHistory,
         until: f64,
         accuracy: Accuracy,
@@ -128,7 +164,7 @@ impl Plan {
         positive("end of the run", until)?;
         Accuracy::target_of(accuracy.target())?;
         let tolerance = accuracy.step_tolerance();
-        let scene = Scene { geometry, material, history, until, whole: until, accuracy, tolerance };
+        let scene = Scene { geometry, material, temperature, history, until, whole: until, accuracy, tolerance };
         let extent = Extent::of(&scene)?;
         let found = extent.held(|extent| converge(&scene, extent, area))?;
         let extent = Extent { reach: found.reach, ..extent };

@@ -11,7 +11,7 @@ use crate::sum;
 
 /// The computed rows of a grid, cut into bands, and those of them that this process has: all, unless ranks share them out.
 ///
-/// Bands are whole tiles of the transforms, about [`BAND_CELLS`] cells, or one tile where that is more. A sum is taken in each
+/// Bands are whole tiles of the transforms, folded or not (the preconditioner mirrors axes that end), about [`BAND_CELLS`] cells, or one tile where that is more. A sum is taken in each
 /// band, and over the bands by halves: so it does not depend on the number of threads or ranks. A process by itself does this
 /// without a copy, a call or an allocation.
 #[derive(Debug, Clone)]
@@ -51,15 +51,15 @@ pub(super) struct Departure(pub(super) RanksError);
 
 impl Rows {
     /// All rows of a field of so many cells.
-    pub(crate) fn all(cells: [usize; 2], folded: [bool; 2]) -> Rows {
-        let tile = rows_in_a_tile(folded);
+    pub(crate) fn all(cells: [usize; 2]) -> Rows {
+        let tile = rows_in_a_tile([true; 2]);
         let band = tile * (BAND_CELLS / (tile * cells[1]).max(1)).max(1);
         Rows { cells, own: 0..cells[0], band, shared: None }
     }
 
     /// Those of a rank of the group.
-    pub(crate) fn of_rank(cells: [usize; 2], folded: [bool; 2], group: Arc<dyn Ranks>) -> Rows {
-        let mut rows = Rows::all(cells, folded);
+    pub(crate) fn of_rank(cells: [usize; 2], group: Arc<dyn Ranks>) -> Rows {
+        let mut rows = Rows::all(cells);
         let rank = group.rank();
         rows.shared = Some(Arc::new(Shared { group, buffers: Mutex::default() }));
         rows.own = rows.of(rank);

@@ -4,13 +4,19 @@ use std::sync::Arc;
 
 use crate::kernel::{LocalKernel, SpectralOperator, TransformWorkspace, Workspace};
 use crate::solver::contact_set::ContactSet;
-use crate::solver::extension::Extension;
+use crate::solver::extension::{Ebb, Extension, Range};
+
+/// What remains of the continued residual where the distance from the contact exceeds the thickness of a layer on a rigid
+/// base. There M acts as K⁻¹ of a bed of springs, which asks for no continuation, or of an incompressible layer, −∇⁻², whose
+/// pressure falls to zero at the edge: then the residual continues with the opposite sign. A fifth of that suits both.
+const BEYOND_LAYER: f64 = -0.2;
 
 /// Eᵀ M E ≈ (K on A)⁻¹, with M ≈ K⁻¹, a multiplication in wave space on a grid without padding ([`LocalKernel::inverse`]): for the
 /// half-space a quarter of the size of a convolution.
 ///
 /// M alone, cut off at the edge of the set A of cells in contact, would be wrong over a strip along the edge whose width is that
-/// of a cell, and the more so the finer the mesh. The [`Extension`] E continues the residual smoothly beyond the edge instead.
+/// of a cell, and the more so the finer the mesh. The [`Extension`] E continues the residual smoothly beyond the edge instead; on
+/// a layer no farther than the layer is thick ([`BEYOND_LAYER`]).
 #[derive(Debug, Clone)]
 pub(crate) struct Preconditioner {
     operator: Arc<SpectralOperator>,
@@ -27,7 +33,7 @@ impl Preconditioner {
         let (rows, [n1, n2]) = (kernel.rows(), kernel.rows().cells());
         let operator = kernel.inverse();
         let work = kernel.inverse_workspace(&operator);
-        let extension = Extension::new(rows, kernel.periodic_axes());
+        let extension = Extension::new(rows, kernel.periodic_axes(), ebb(kernel));
         let mut preconditioner =
             Preconditioner { operator: Arc::new(operator), work, diagonal: 0.0, extension, version: 0 };
         let mut impulse = vec![0.0; kernel.grid().len()];
@@ -45,13 +51,13 @@ impl Preconditioner {
         self.fit(set);
         self.extension.extend(field, &set.member);
         self.filter(field, lender);
-        self.extension.gather(field, &set.member);
+        self.extension.gather(field, &set.member, Range::Ebbing);
     }
 
     /// field ← Eᵀ field: what other cells hold is brought to the cells of A around, whose sum becomes that of all.
     pub(crate) fn gather(&mut self, field: &mut [f64], set: &ContactSet) {
         self.fit(set);
-        self.extension.gather(field, &set.member);
+        self.extension.gather(field, &set.member, Range::Endless);
     }
 
     fn fit(&mut self, set: &ContactSet) {
@@ -69,4 +75,20 @@ impl Preconditioner {
     pub(crate) fn diagonal(&self) -> f64 {
         self.diagonal
     }
+}
+
+/// How far a residual is continued. What lies on a half-space answers waves longer than it is thick as the half-space does.
+fn ebb(kernel: &LocalKernel) -> Option<Ebb> {
+    let layer = kernel.layer()?;
+    let remains = BEYOND_LAYER + (1.0 - BEYOND_LAYER) * layer.longest_over_half_space();
+    let (cells, spacing) = (kernel.rows().cells(), kernel.grid().spacing());
+    // blocks are as long as broad in cells
+    let side = if cells[1] == 1 {
+        spacing[0]
+    } else if cells[0] == 1 {
+        spacing[1]
+    } else {
+        (spacing[0] * spacing[1]).sqrt()
+    };
+    (remains < 1.0).then(|| Ebb { reach: layer.thickness() / side, remains })
 }

@@ -329,7 +329,7 @@ mod tests {
     #[test]
     fn coefficients_are_those_of_the_motion() {
         let grid = Grid::new([7, 4], [2.0, 3.0]).unwrap();
-        let rows = Rows::all(grid.cells(), [false; 2]);
+        let rows = Rows::all(grid.cells());
         let motion = RigidMotion { approach: 0.3, tilt: [-0.2, 0.7] };
         for point in [[0.0; 2], [0.4, -1.1]] {
             let modes = Modes::new(&grid, &rows, Freedom { translation: true, tilt: [true; 2], point, total: 1.0 });

@@ -103,11 +103,14 @@ pub fn steps_allocate_nothing() {
         Material::incompressible(GeneralizedMaxwell::new(1.0e6, &terms).unwrap())
     };
     let (line, plane) = (Grid::new([256, 1], [8.0e-3, 1.0]).unwrap(), Grid::square(48, 8.0e-3).unwrap());
+    let sheet = Layer::bonded_to_rigid(2.0e-3, 0.5).unwrap();
     let kernels = [
         (InfluenceKernel::line(&line, 1.0), 100.0),
         (InfluenceKernel::half_space(&plane), 0.5),
         (InfluenceKernel::periodic(&plane), 0.5),
         (InfluenceKernel::periodic_along(&plane, 0, 1.0), 0.5),
+        (InfluenceKernel::layer(&plane, sheet), 0.5),
+        (InfluenceKernel::layer_periodic_along(&plane, sheet, 0, None), 0.5),
     ];
     for (kernel, force) in kernels {
         let kernel = std::sync::Arc::new(kernel.unwrap());

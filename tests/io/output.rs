@@ -5,7 +5,6 @@
 )]
 
 use crate::common::bodies::maxwell;
-use crate::common::spheres::sphere_on;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -430,7 +429,8 @@ mod csv {
 #[test]
 #[ignore = "tests/read_back.sh runs it"]
 fn a_run_for_other_readers() {
-    use viscocontact::output::{CsvHistory, NpzSeries, VtkSeries, write_npy};
+    use viscocontact::observe::Stress;
+    use viscocontact::output::{CsvHistory, NpzSeries, VtkSeries, write_npy, write_stress_vtk};
 
     let folder = PathBuf::from(std::env::var_os("READ_BACK_FOLDER").expect("READ_BACK_FOLDER names a folder"));
     let mut contact = punch();
@@ -460,6 +460,14 @@ fn a_run_for_other_readers() {
         dump("x2", &(0..n2).map(|j| grid.center(0, j)[1]).collect::<Vec<_>>());
         write_npy(folder.join(format!("frame_{frame:06}.npy")), grid, &values(contact, Field::Gap)).unwrap();
         fs::write(folder.join("scene.json"), scene().json(contact)).unwrap();
+        let depths = [1.0, 1.5, 3.5].map(|sides| sides * contact.grid().spacing()[0].max(contact.grid().spacing()[1]));
+        let volume = contact.stress().unwrap().in_volume(&depths).unwrap();
+        write_stress_vtk(folder.join(format!("frame_{frame:06}.vtr")), contact, &volume, &scene()).unwrap();
+        dump("depths", &depths);
+        let components: Vec<f64> = volume.values.iter().flat_map(Stress::components).collect();
+        dump("stress", &components);
+        dump("von_mises", &volume.values.iter().map(Stress::von_mises).collect::<Vec<_>>());
+        dump("tresca", &volume.values.iter().map(Stress::tresca).collect::<Vec<_>>());
         frame += 1;
     });
     fs::write(
@@ -477,7 +485,8 @@ fn a_run_without_room() {
     use viscocontact::output::{CsvHistory, NpzSeries, VtkSeries, write_npy};
 
     let folder = PathBuf::from(std::env::var_os("FULL_FOLDER").expect("FULL_FOLDER names a folder"));
-    let mut contact = sphere_on(Grid::square(96, 4.0e-3).unwrap(), maxwell(), Settings::default());
+    let mut contact =
+        crate::common::spheres::sphere_on(Grid::square(96, 4.0e-3).unwrap(), maxwell(), Settings::default());
     let mut history = CsvHistory::create(folder.join("history.csv"), &scene(), &contact, &[]).unwrap();
     let report = contact.step(0.0, Load::force(0.1)).unwrap();
     let rows = (0..1000).take_while(|_| history.write(&contact, &report, &[]).is_ok()).count();

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_2_PI, PI, TAU};
 
 use approx::abs_diff_eq;
 use viscocontact::rheology::{Material, Maxwell, Zener};
-use viscocontact::{Error, Grid, InfluenceKernel, KernelError};
+use viscocontact::{Error, Grid, InfluenceKernel, KernelError, Layer};
 
 /// A unit pressure on one cell displaces every other by its coefficient: even, odd and single cells along an axis.
 fn assert_is_the_response_to_a_unit_pressure(kernel: &InfluenceKernel) {
@@ -35,9 +35,20 @@ fn kernels(grid: &Grid) -> Vec<InfluenceKernel> {
         InfluenceKernel::from_coefficients(grid, |i, j| 0.1 / (1.0 + (i * i + 2 * j * j) as f64)),
         InfluenceKernel::from_spectrum(grid, spectrum),
     ];
-    let line = (grid.cells()[1] == 1).then(|| InfluenceKernel::line(grid, 20.0).unwrap());
-    let kernels: Vec<_> = made.into_iter().map(Result::unwrap).chain(line).collect();
-    assert!(kernels.len() >= 6);
+    let sheet = Layer::bonded_to_rigid(0.7, 0.4).unwrap();
+    let coating = Layer::bonded_to_half_space(0.3, 0.4, 0.2, 0.3).unwrap();
+    let layers = [
+        InfluenceKernel::layer(grid, sheet),
+        InfluenceKernel::layer(grid, coating),
+        InfluenceKernel::layer_periodic(grid, sheet),
+        InfluenceKernel::layer_periodic_along(grid, sheet, 0, None),
+        InfluenceKernel::layer_periodic_along(grid, coating, 1, Some(20.0)),
+    ];
+    let lines =
+        || [InfluenceKernel::line(grid, 20.0).unwrap(), InfluenceKernel::layer_line(grid, sheet, None).unwrap()];
+    let lines = (grid.cells()[1] == 1).then(lines).into_iter().flatten();
+    let kernels: Vec<_> = made.into_iter().chain(layers).map(Result::unwrap).chain(lines).collect();
+    assert!(kernels.len() >= 11);
     kernels
 }
 

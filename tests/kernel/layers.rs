@@ -155,6 +155,98 @@ fn lines_on_half_spaces_are_at_rest_at_their_datum() {
     }
 }
 
+/// What a layer that is periodic along x2 adds to the half-space, for a wave along x2, from the sum over many images of what it
+/// adds to the coefficients of cells. That is smooth, so that uniform cells leave of the wave sin(κd/2)/(κd/2), and no other one
+/// as long as they are short against the thickness.
+#[test]
+fn layers_periodic_along_one_axis_are_sums_of_images() {
+    let (side, count, cells, periods) = (0.25, 6, 32, 80);
+    let length = side * count as f64;
+    // the end of the sum, so smooth that the waves do not see it
+    let end = |y: f64| {
+        let p = (2.0 * y / f64::from(periods) - 1.0).max(0.0);
+        1.0 - p.powi(5) * (126.0 - 420.0 * p + 540.0 * p * p - 315.0 * p.powi(3) + 70.0 * p.powi(4))
+    };
+    let grid = Grid::new([count, cells * periods as usize], [length, f64::from(periods)]).unwrap();
+    let half_space = InfluenceKernel::half_space(&grid).unwrap();
+    let strips = Grid::new([count, 8], [length, 1.0]).unwrap();
+    for thickness in [0.15, 0.6, 3.0] {
+        for layer in layers(thickness, 0.5).into_iter().chain(layers(thickness, 0.2)) {
+            let kernel = InfluenceKernel::layer(&grid, layer).unwrap();
+            let datum = layer.compliance(0.0).is_infinite().then_some(10.0);
+            let periodic = InfluenceKernel::layer_periodic_along(&strips, layer, 1, datum).unwrap();
+            let of_half_space = InfluenceKernel::periodic_along(&strips, 1, 10.0).unwrap();
+            for waves in [1.0, 2.0] {
+                let wave: Vec<f64> = (0..strips.len())
+                    .map(|k| if k < 8 { (TAU * waves * strips.center(0, k)[1]).cos() } else { 0.0 })
+                    .collect();
+                let [with, without] = [&periodic, &of_half_space].map(|kernel| convolve(kernel, &wave));
+                let half = 0.5 * TAU * waves / cells as f64;
+                for i in 0..count {
+                    let term = |j: usize| {
+                        let at = |kernel: &InfluenceKernel| kernel.coefficient(i as isize, j as isize).unwrap();
+                        let y = j as f64 / cells as f64;
+                        end(y) * (TAU * waves * y).cos() * (at(&kernel) - at(&half_space))
+                    };
+                    let exact = term(0) + 2.0 * (1..cells * periods as usize).map(term).sum::<f64>();
+                    let found = (with[8 * i] - without[8 * i]) / wave[0] * half.sin() / half;
+                    let scale = without[0] / wave[0];
+                    assert!((found - exact).abs() < 1e-9 * scale, "{layer}, {waves}, {i}: {found:e} {exact:e}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn layers_periodic_along_one_axis_are_lines_and_half_spaces() {
+    let grid = Grid::new([24, 10], [2.0, 1.0]).unwrap();
+    let turned = Grid::new([10, 24], [1.0, 2.0]).unwrap();
+    let line = Grid::new([24, 1], [2.0, 1.0]).unwrap();
+    for layer in layers(0.3, 0.4) {
+        let datum = layer.compliance(0.0).is_infinite().then_some(7.0);
+        let along = |grid: &Grid, axis| InfluenceKernel::layer_periodic_along(grid, layer, axis, datum).unwrap();
+        let (kernel, other) = (along(&grid, 1), along(&turned, 0));
+        assert_eq!((kernel.periodic_axes(), other.periodic_axes()), ([false, true], [true, false]));
+        // uniform along x2: a line
+        let uniform: Vec<f64> = (0..24).map(|i| ((i * i) as f64).sin() + 1.1).collect();
+        let on_line = convolve(&InfluenceKernel::layer_line(&line, layer, datum).unwrap(), &uniform);
+        let rows: Vec<f64> = uniform.iter().flat_map(|&p| [p; 10]).collect();
+        let found = convolve(&kernel, &rows);
+        let greatest = on_line.iter().fold(0.0_f64, |most, u| most.max(u.abs()));
+        assert!((0..240).all(|k| (found[k] - on_line[k / 10]).abs() < 1e-13 * greatest), "{layer}");
+        // axes exchanged, and coefficients those of the convolution
+        let pressure: Vec<f64> = (0..240).map(|k| ((k * k + 3 * k) as f64).sin()).collect();
+        let exchanged: Vec<f64> = (0..240).map(|k| pressure[k % 24 * 10 + k / 24]).collect();
+        let (one, two) = (convolve(&kernel, &pressure), convolve(&other, &exchanged));
+        assert!((0..240).all(|k| (one[k] - two[k % 10 * 24 + k / 10]).abs() < 1e-13 * greatest), "{layer}");
+        let mut impulse = vec![0.0; 240];
+        impulse[0] = 1.0;
+        let answer = convolve(&kernel, &impulse);
+        for (i, j) in [(0, 0), (3, 4), (23, 9)] {
+            let coefficient = kernel.coefficient(i as isize, j as isize).unwrap();
+            assert!((answer[10 * i + j] - coefficient).abs() < 1e-14, "{layer}, {i}, {j}");
+        }
+    }
+    // a layer of the material of its base, and a thick one
+    let half_space = InfluenceKernel::periodic_along(&grid, 1, 7.0).unwrap();
+    let same = Layer::bonded_to_half_space(0.3, 0.3, 1.0, 0.3).unwrap();
+    for layer in [same, Layer::bonded_to_half_space(1e15, 0.3, 4.0, 0.4).unwrap()] {
+        let kernel = InfluenceKernel::layer_periodic_along(&grid, layer, 1, Some(7.0)).unwrap();
+        assert!(difference(&kernel, &half_space) < 1e-12, "{layer}");
+    }
+    let rigid = Layer::bonded_to_rigid(0.3, 0.3).unwrap();
+    for refused in [
+        InfluenceKernel::layer_periodic_along(&grid, rigid, 1, Some(7.0)),
+        InfluenceKernel::layer_periodic_along(&grid, same, 1, None),
+        InfluenceKernel::layer_periodic_along(&grid, same, 1, Some(1.9)),
+        InfluenceKernel::layer_periodic_along(&grid, rigid, 2, None),
+        InfluenceKernel::layer_periodic_along(&grid, Layer::bonded_to_rigid(1e-5, 0.3).unwrap(), 1, None),
+    ] {
+        assert!(refused.is_err());
+    }
+}
+
 #[test]
 fn layers_refuse_what_they_are_not() {
     let field = |result: Result<Layer, Error>| match result.unwrap_err() {
@@ -188,6 +280,15 @@ fn layers_refuse_what_they_are_not() {
     let thin = Layer::bonded_to_rigid(1e-5, 0.3).unwrap();
     let Err(Error::OutOfRange { field, .. }) = InfluenceKernel::layer(&grid, thin) else { panic!("not refused") };
     assert_eq!(field, "longer side of a cell over the thickness of the layer");
+    // in line contact nothing varies along the line: a metre of it is no long cell
+    let of_a_metre = Grid::new([400, 1], [4.0e-3, 1.0]).unwrap();
+    for nu in [0.3, 0.5] {
+        let sheet = Layer::bonded_to_rigid(20e-6, nu).unwrap();
+        assert!(InfluenceKernel::layer_line(&of_a_metre, sheet, None).is_ok(), "{nu}");
+        let coarse = Grid::new([4, 1], [4.0e-2, 1.0e-6]).unwrap();
+        let long = if nu == 0.5 { sheet } else { Layer::bonded_to_rigid(5e-6, nu).unwrap() };
+        assert!(InfluenceKernel::layer_line(&coarse, long, None).is_err(), "{nu}");
+    }
     // an incompressible layer under cells that do not squeeze it out; one that slides flows from crest to trough
     for (nu, refused) in [(0.5, true), (0.498, true), (0.49, false)] {
         let coarse = InfluenceKernel::layer(&grid, Layer::bonded_to_rigid(0.06, nu).unwrap());

@@ -77,15 +77,15 @@ fn bytes_on_the_wire_are_those_of_the_formula() {
         (report, contact.rows().len(), exchanged)
     })
     .unwrap();
-    // transforms along x2 of 512 cells, padded, and of 256
+    // transforms along x2 of 512 cells, padded; and of 256, mirrored, two rows of which are as many numbers as one
     let panels = |waves: usize| (0..size).map(move |rank| part(waves.div_ceil(8), rank, size)).collect::<Vec<_>>();
     let mut convolutions = 0;
-    for (waves, times) in [(257, sent[0].0.convolutions), (129, sent[0].0.preconditioner_applications)] {
+    for (waves, high, times) in [(257, 8, sent[0].0.convolutions), (256, 16, sent[0].0.preconditioner_applications)] {
         assert!(times > 0);
         for (rank, (_, rows, exchanged)) in sent.iter().enumerate() {
             let (own, all) = (panels(waves)[rank], panels(waves).iter().sum::<usize>());
-            let out = 64 * (rows / 8) * (all - own);
-            let back = 64 * own * (cells / 8 - rows / 8);
+            let out = 64 * (rows / high) * (all - own);
+            let back = 64 * own * (cells / high - rows / high);
             for expected in [out, back] {
                 let calls = exchanged.iter().filter(|&&count| count == expected).count();
                 // where rows and columns are shared out alike, both ways are as long

@@ -317,3 +317,15 @@ fn checkpoints_keep_both_clocks() {
     assert!(none.contains("temperature"), "{none}");
     std::fs::remove_file(path).unwrap();
 }
+
+#[test]
+fn files_tell_the_temperature() {
+    use viscocontact::output::Metadata;
+
+    let table = [(0.0, 290.0), (2.0, 310.5)];
+    let scene = || builder_on(grid(8), Material::incompressible(zener()));
+    let warming = scene().temperature(TemperatureHistory::table(wlf(), &table).unwrap()).build().unwrap();
+    let json = Metadata::new("warming").json(&warming);
+    assert!(json.contains("\"temperature\": ") && json.contains("310.5") && json.contains("Wlf"), "{json}");
+    assert!(!Metadata::new("constant").json(&scene().build().unwrap()).contains("\"temperature\""));
+}

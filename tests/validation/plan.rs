@@ -7,6 +7,7 @@ use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::analytic::{AxisymmetricContact, GrowingSphere, Profile};
 use viscocontact::prelude::*;
+use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
 /// Greatest errors of approach and central pressure over a planned run, relative to the greatest values, and
 /// Σ cells × convolutions.
@@ -56,6 +57,39 @@ fn check(name: &str, accuracy: Accuracy, outcome: &Outcome) {
     );
     assert!(*approach <= accuracy.target(), "{name} {accuracy:?}: approach {approach:e}");
     assert!(*pressure <= accuracy.target(), "{name} {accuracy:?}: pressure {pressure:e}");
+}
+
+/// A body that warms by 30 K under a held force, which its creep follows through four decades of reduced time.
+#[test]
+fn warming_spheres_are_as_accurate_as_planned() {
+    let sphere = Sphere::new(RADIUS).unwrap();
+    let load = StepLoad::new(Load::force(1.0)).unwrap();
+    let body = Material::incompressible(four_terms());
+    let law = TimeTemperature::wlf(17.44, 51.6, 263.15).unwrap();
+    let warming = TemperatureHistory::table(law, &[(1.0, 263.15), (5.0, 293.15)]).unwrap();
+    let exact = GrowingSphere::step(RADIUS, &body, 1.0).unwrap();
+    for accuracy in PRESETS {
+        let plan = Plan::with_temperature(&sphere, &body, &warming, &load, 6.0, accuracy).unwrap();
+        let mut contact = plan.builder().build().unwrap();
+        let mut run = contact.follow(&load, plan.stepping(), 6.0);
+        let (mut errors, mut steps) = ([0.0_f64; 2], 0);
+        while let Some(report) = run.next_step().unwrap() {
+            let reduced = run.contact().reduced_time();
+            errors[0] = errors[0].max((report.approach - exact.approach(reduced)).abs());
+            errors[1] = errors[1].max((run.contact().max_pressure() - exact.pressure(0.0, reduced)).abs());
+            steps += 1;
+        }
+        let last = contact.reduced_time();
+        assert!(last > 1e3, "{last}");
+        let [approach, pressure] = [errors[0] / exact.approach(last), errors[1] / exact.pressure(0.0, 0.0)];
+        println!("{plan}: approach {approach:.1e}, pressure {pressure:.1e}");
+        assert!(approach <= accuracy.target() && pressure <= accuracy.target(), "{approach:e} {pressure:e}");
+        assert!(steps <= 2 * plan.steps() && plan.steps() <= 2 * steps, "{steps}, planned {}", plan.steps());
+    }
+    // below the end of the law
+    let cold = TemperatureHistory::function(law, |t| 263.15 - 20.0 * t, &[]).unwrap();
+    let refused = Plan::with_temperature(&sphere, &body, &cold, &load, 6.0, Accuracy::Coarse).unwrap_err();
+    assert!(matches!(refused, Error::OutOfRange { field: "temperature", .. }), "{refused}");
 }
 
 const PRESETS: [Accuracy; 3] = [Accuracy::Coarse, Accuracy::Standard, Accuracy::Fine];

@@ -68,3 +68,30 @@ fn punches_pressed_in_turn_superpose() {
         }
     }
 }
+
+/// What two indenters do to each other along the surface is equal and opposite: ∬ p ∇u over both vanishes, because the response of
+/// an elastic body is even.
+#[test]
+fn lateral_forces_of_two_indenters_are_opposite() {
+    let grid = Grid::new([96, 48], [4.0e-3, 2.0e-3]).unwrap();
+    let ball = |radius: f64, x: f64| {
+        let ball = Shifted::new(Sphere::new(radius).unwrap(), [x, 0.0]).unwrap();
+        move |x1: f64, x2: f64| if (x1 > 0.0) == (x > 0.0) { ball.initial_gap(x1, x2) } else { f64::INFINITY }
+    };
+    let lateral = |own: [f64; 3], other: [f64; 3]| {
+        let [own, other] = [own, other].map(|[radius, x, force]| (ball(radius, x), radius, x, force));
+        let mut contact = ViscoelasticContact::builder(grid.clone())
+            .geometry(&FnGeometry::new(own.0))
+            .another_body(&FnGeometry::new(other.0))
+            .material(Material::incompressible(Elastic::new(1.0e6).unwrap()))
+            .build()
+            .unwrap();
+        contact.step_each(0.0, &[own.3, other.3].map(Load::force)).unwrap();
+        contact.lateral_force(&Shifted::new(Sphere::new(own.1).unwrap(), [own.2, 0.0]).unwrap())
+    };
+    let (left, right) = ([5.0e-3, -0.6e-3, 0.1], [10.0e-3, 0.6e-3, 0.2]);
+    let (on_left, on_right) = (lateral(left, right), lateral(right, left));
+    println!("lateral forces {on_left:?} N and {on_right:?} N");
+    assert!(on_left[0].abs() > 1e-3 * 0.1 && (on_left[0] + on_right[0]).abs() < 1e-2 * on_left[0].abs());
+    assert!(on_left[1].abs() < 1e-9 && on_right[1].abs() < 1e-9);
+}

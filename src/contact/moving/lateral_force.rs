@@ -4,7 +4,8 @@ use crate::contact::viscoelastic::ViscoelasticContact;
 
 impl ViscoelasticContact {
     /// The force \[N\] along x1 and x2 that moves `shape` along the surface without friction: ∬ p ∇h, less the tilt times the
-    /// normal force. `shape` is that of the (first) indenter where it is now, or the part of it that moves.
+    /// normal force. `shape` is that of the (first) indenter where it is now, or the part of it that moves; of several rigid
+    /// bodies, the pressure under the others does not count.
     ///
     /// It vanishes on elastic bodies, and in any even contact. Multiplied by the velocity of the indenter, it is the power that
     /// the bodies dissipate or store: on a slope, p does the work p (∂u/∂t − dω/dt). Divided by the normal force, it is the
@@ -39,17 +40,18 @@ impl ViscoelasticContact {
             let rise = ahead - behind;
             if rise.is_finite() || ahead.is_nan() || behind.is_nan() { rise } else { 0.0 }
         };
+        let gap = self.computation.state.indenter.gap();
         let (mut sums, tilt) = ([0.0; 2], self.tilt());
         for (i, row) in self.pressure().chunks_exact(n2).enumerate() {
             let (mut own, x1) = ([0.0; 2], self.grid().coordinate(0, i));
-            for (j, &p) in row.iter().enumerate().filter(|(_, p)| **p > 0.0) {
+            for (j, &p) in row.iter().enumerate().filter(|(j, p)| **p > 0.0 && gap.owner(i * n2 + j) == 0) {
                 let x2 = self.grid().coordinate(1, j);
                 own[0] += p * (rise(shape.initial_gap(x1 + half1, x2), shape.initial_gap(x1 - half1, x2)));
                 own[1] += p * (rise(shape.initial_gap(x1, x2 + half2), shape.initial_gap(x1, x2 - half2)));
             }
             sums = [sums[0] + own[0], sums[1] + own[1]];
         }
-        let force = self.force();
+        let force = self.body(0).map_or(0.0, |body| body.force);
         [0, 1].map(|axis| sums[axis] * self.grid().spacing()[1 - axis] - tilt[axis] * force)
     }
 }

@@ -45,7 +45,7 @@ impl Region {
     pub(crate) fn shared(grid: &Grid, folded: [bool; 2], group: Arc<dyn Ranks>) -> Region {
         let Region { first: [start, first], grid: part, .. } = Region::whole(grid, folded);
         let [n1, n2] = part.cells();
-        let rows = Rows::of_rank([n1, n2], folded, group);
+        let rows = Rows::of_rank([n1, n2], group);
         let own = Region::new(grid, folded, [start + rows.own().start, first], [rows.own().len(), n2]);
         Region { shared: Some(rows), ..own }
     }
@@ -119,7 +119,7 @@ impl Region {
 
     /// Its rows, and what joins them with those of other ranks.
     pub(crate) fn rows(&self) -> Rows {
-        self.shared.clone().unwrap_or_else(|| Rows::all(self.cells(), self.folded))
+        self.shared.clone().unwrap_or_else(|| Rows::all(self.cells()))
     }
 
     pub(crate) fn is_shared(&self) -> bool {

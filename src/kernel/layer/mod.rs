@@ -34,6 +34,11 @@ const SAME_POISSON: f64 = 1e-9;
 /// | [`Layer::frictionless_on_rigid`] | qh/2 | the same |
 /// | [`Layer::bonded_to_half_space`] | (G₁/G₂)(1 − ν₂)/(1 − ν₁) | unbounded |
 ///
+/// Kernels are made of it by [`InfluenceKernel::layer`](crate::InfluenceKernel::layer), loaded on the grid alone,
+/// [`layer_periodic`](crate::InfluenceKernel::layer_periodic) along both axes,
+/// [`layer_periodic_along`](crate::InfluenceKernel::layer_periodic_along) one of them, and
+/// [`layer_line`](crate::InfluenceKernel::layer_line) in plane strain.
+///
 /// On a rigid base the surface far from a load is at rest, and the approach of the indenter is measured from there,
 /// in line contact too. The mean is that of a layer compressed everywhere and free to go nowhere: its oedometric
 /// compliance, zero for an incompressible one.
@@ -166,6 +171,11 @@ impl Layer {
         !matches!(self.base, Base::HalfSpace { .. })
     }
 
+    /// How much softer than the half-space of its own material it is for the longest waves: zero on a rigid base.
+    pub(crate) fn longest_over_half_space(&self) -> f64 {
+        self.response().longest()
+    }
+
     /// Whether the layer yields to long waves only by being squeezed out.
     pub(super) fn is_squeezed(&self) -> bool {
         self.base == Base::Bonded && self.mean() < SQUEEZED * self.thickness
@@ -189,13 +199,19 @@ impl Layer {
         Remainder::of_lines(self.response(), self.thickness, last, datum)
     }
 
+    /// The same for a wave along the line.
+    pub(super) fn remainder_of_wave(&self, last: f64, kappa: f64) -> Option<Remainder> {
+        Remainder::of_wave(self.response(), self.thickness, last, kappa)
+    }
+
     /// Rejects a material whose Poisson's ratio is not that of the layer: `nu` for each body of a contact, none where
     /// it is not constant.
     pub(crate) fn check_material(&self, bodies: &[Option<f64>]) -> Result<()> {
         let refused = |what| Err(Error::from(KernelError::LayerMaterial { layer: self.poisson, what }));
         match bodies {
             [Some(nu)] if (nu - self.poisson).abs() <= SAME_POISSON => Ok(()),
-            [Some(nu)] => refused(format!("the material has the constant ratio {nu}")),
+            // to the digits that were given
+            [Some(nu)] => refused(format!("the material has the constant ratio {}", (nu * 1e9).round() / 1e9)),
             [None] => refused("that of a material with an elastic bulk rises in time".into()),
             _ => refused("a counter body deforms, too, as a half-space and in a time of its own".into()),
         }

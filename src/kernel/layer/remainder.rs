@@ -11,7 +11,11 @@
 //!
 //! ξ = x/h, to −(2/π) ln(|x|/2h): from ∫ (1 − e^(−2t))/t cos(ξt) dt = ½ ln(1 + 4/ξ²). Where L(0) = 0, on a rigid base,
 //! both together vanish far away, as e^(−1.19ξ) or sooner. Elsewhere −(2/π) L(0) ln ξ remains, and the user's datum
-//! says where the surface stays.
+//! says where the surface stays. A wave of wave number κ along a line load adds
+//!
+//! w(x) = (2/π) ∫ (L(τ) − 1)/τ cos(ξt) dt,   τ = √(t² + κ²h²),
+//!
+//! to (2/π) K0(κ |x|): nothing where κh is so large that the wave does not reach the base.
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
@@ -25,6 +29,11 @@ use crate::quadrature::GaussLegendre;
 const DIGITS: f64 = 15.0;
 /// Points on a piece; one that needs more is halved.
 const MOST_POINTS: usize = 10;
+
+/// κh of a wave that leaves e^(−2κh) of itself at the base: rounding.
+const DEEPEST_WAVE: f64 = 20.0;
+/// κx of one that has decayed to rounding.
+const FARTHEST_WAVE: f64 = 40.0;
 
 /// The remainder of a layer, by distance.
 #[derive(Debug, Clone)]
@@ -59,6 +68,23 @@ impl Remainder {
             remainder.datum = FRAC_2_PI * (fourier.integral(x) + logarithm(1.0 - longest, x));
         }
         remainder
+    }
+
+    /// That of a load on a line that varies as a wave of wave number `kappa` \[1/m\] > 0 along it; `None` where the wave does
+    /// not reach the base.
+    pub(super) fn of_wave(response: Response, thickness: f64, last: f64, kappa: f64) -> Option<Remainder> {
+        let k = kappa * thickness;
+        if k > DEEPEST_WAVE {
+            return None;
+        }
+        let least = response.least_scale().min(k);
+        let fourier = Oscillation::new(Weight::Cosine, least, |t: f64| {
+            let tau = t.hypot(k);
+            response.less_one(tau) / tau
+        });
+        // far along the surface the wave is gone, with and without the layer
+        let added = |x: f64| if k * x > FARTHEST_WAVE { 0.0 } else { fourier.integral(x) };
+        Some(Remainder::new(thickness, Table::new(last / thickness, added), None))
     }
 
     fn new(thickness: f64, table: Table, log: Option<f64>) -> Remainder {

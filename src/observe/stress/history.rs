@@ -123,6 +123,15 @@ impl StressHistory {
         self.check_grid(contact)?;
         let time = contact.reduced_time();
         within("time of the contact", time, time == self.time, "that of the step recorded last")?;
+        if contact.pressure() != self.pressure {
+            // a jump, in which no time passes
+            let (field, value) = ("peak pressure of the contact", contact.max_pressure());
+            return Err(Error::OutOfRange {
+                field,
+                value,
+                allowed: "that of the step recorded last: record every step",
+            });
+        }
         let kernel = contact.kernel();
         if self.law.terms.is_empty() {
             return SubsurfaceStress::new(kernel, &self.pressure, 0.5 * (1.0 - self.law.last));

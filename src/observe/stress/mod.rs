@@ -3,6 +3,7 @@
 mod convolution;
 mod greatest;
 mod history;
+mod line;
 mod plane;
 mod rectangle;
 mod section;
@@ -21,6 +22,7 @@ use crate::kernel::{HalfSpace, fast_length};
 use crate::observe::profile::{Axis, line_through};
 use crate::{Grid, InfluenceKernel, memory};
 use convolution::Transform;
+use line::LineBelow;
 use rectangle::Weights;
 
 /// Greatest pressure \[Pa\]: the squares of stresses do not overflow.
@@ -46,15 +48,17 @@ const FARTHEST: f64 = 1e40;
 /// **Which bodies.** A half-space loaded on the cells of the grid: closed forms of a rectangle, convolved on a padded grid.
 /// Line contacts: plane strain, σ22 (along the line) = ν (σ11 + σ33). Periodic bodies: closed forms of each wave; below the
 /// mean pressure p̄ σ33 = −p̄, and the lateral stress is −ν/(1 − ν) p̄, since every period keeps its lengths. The stress in the
-/// counter body is the same function of the pressure, with its own ν, and x3 the depth below its surface.
+/// counter body is the same function of the pressure, with its own ν, and x3 the depth below its surface. Of layers, of bodies
+/// periodic along one axis with several cells along it, and of user-defined ones the stress is not known; they are refused.
 ///
 /// **How near the surface.** The pressure is constant over each cell: depths below half the longer side of a cell are
 /// refused, since there the stress varies within a cell. Where the pressure rises evenly from cell to cell, the ripple of
 /// σ33 is 6 % of the difference between neighbours at half a side, 0.4 % at one side, and falls by e^(−2π) with each
 /// further one: (1 + qz) e^(−qz)/π for the wave q = 2π/side.
 ///
-/// Cost: a plane takes one closed form per cell, three forward and three inverse complex transforms of the padded grid; a
-/// point one closed form per loaded cell.
+/// Cost: a plane takes one closed form per cell, three forward and three inverse complex transforms of the padded grid, on as
+/// many threads as the pool has (feature `rayon`, with the same answer); a section at most as many closed forms per depth, and
+/// an eighth of the transforms; a point one closed form per loaded cell.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -191,14 +195,22 @@ impl SubsurfaceStress {
         let (axis, across) = along.and_other();
         let line = line_through(&self.grid, across, ("coordinate of the section", at))?;
         self.check_depths(depths)?;
-        let ([_, n2], cells) = (self.grid.cells(), self.grid.cells()[axis]);
-        let cell = |k: usize| if axis == 0 { k * n2 + line } else { line * n2 + k };
+        let cells = self.grid.cells()[axis];
         let mut values = memory::field("the stress on a section", cells * depths.len(), Stress::default())?;
-        let mut plane = memory::field("the stress on a plane", self.grid.len(), Stress::default())?;
-        let mut buffers = self.buffers();
-        for (layer, &depth) in depths.iter().enumerate() {
-            buffers.fill_plane(self, depth, &mut plane);
-            (0..cells).for_each(|k| values[k * depths.len() + layer] = plane[cell(k)]);
+        if let HalfSpace::Line { .. } = self.body {
+            // a plane is a line
+            let mut plane = vec![Stress::default(); self.grid.len()];
+            let mut buffers = self.buffers();
+            for (layer, &depth) in depths.iter().enumerate() {
+                buffers.fill_plane(self, depth, &mut plane);
+                let cell = |k: usize| if self.grid.cells()[axis] > 1 { k } else { line };
+                (0..cells).for_each(|k| values[k * depths.len() + layer] = plane[cell(k)]);
+            }
+        } else {
+            let mut below = LineBelow::new(self, axis, line)?;
+            for (layer, &depth) in depths.iter().enumerate() {
+                below.at_depth(depth, |k, stress| values[k * depths.len() + layer] = stress);
+            }
         }
         Ok(StressSection {
             along,

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::convolution::Transform;
+use super::convolution::{Transform, share_lines};
 use super::rectangle::{Weights, corner, edge, exchanged};
 use super::waves::{Wave, below_wave};
 use super::{Source, Stress, SubsurfaceStress};
@@ -10,7 +10,7 @@ use crate::Grid;
 use crate::kernel::HalfSpace;
 
 /// Signs of the components 11, 22, 33, 12, 13, 23 where x1 or x2 changes its sign.
-const SIGNS: [[f64; 6]; 2] = [[1.0, 1.0, 1.0, -1.0, -1.0, 1.0], [1.0, 1.0, 1.0, -1.0, 1.0, -1.0]];
+pub(super) const SIGNS: [[f64; 6]; 2] = [[1.0, 1.0, 1.0, -1.0, -1.0, 1.0], [1.0, 1.0, 1.0, -1.0, 1.0, -1.0]];
 
 /// Buffers for planes.
 pub(super) struct Buffers {
@@ -51,8 +51,7 @@ impl Buffers {
                 HalfSpace::Periodic => {}
             }
         }
-        let n2 = grid.cells()[1];
-        let norm = 1.0 / self.transform.len() as f64;
+        let (n2, p2) = (grid.cells()[1], self.transform.periods()[1]);
         for pair in 0..3 {
             self.sum.fill(Complex64::default());
             for (source, table) in sources.iter().zip(&self.coefficients) {
@@ -61,57 +60,61 @@ impl Buffers {
                 } else {
                     spread(grid, self.transform.periods(), table, pair, &mut self.one);
                     self.transform.forward(&mut self.one, &mut self.work);
-                    let terms = self.one.iter().zip(&source.spectrum);
-                    self.sum.iter_mut().zip(terms).for_each(|(sum, (a, b))| *sum += a * b);
+                    share_lines(&mut self.sum, p2, &|first, sums| {
+                        let terms = self.one[first * p2..].iter().zip(&source.spectrum[first * p2..]);
+                        sums.iter_mut().zip(terms).for_each(|(sum, (a, b))| *sum += a * b);
+                    });
                 }
             }
             self.transform.inverse(&mut self.sum, &mut self.work);
-            let rows = self.sum.chunks_exact(self.transform.periods()[1]);
-            for (row, stresses) in rows.zip(plane.chunks_exact_mut(n2)) {
-                for (value, stress) in row.iter().zip(stresses) {
-                    let Complex64 { re, im } = norm * value;
-                    match pair {
-                        0 => (stress.s11, stress.s22) = (re, im),
-                        1 => (stress.s33, stress.s12) = (re, im),
-                        _ => (stress.s13, stress.s23) = (re, im),
-                    }
+            let norm = 1.0 / self.transform.len() as f64;
+            share_lines(plane, n2, &|first, stresses| {
+                let rows = self.sum[first * p2..].chunks_exact(p2);
+                for (row, stresses) in rows.zip(stresses.chunks_exact_mut(n2)) {
+                    row.iter().zip(stresses).for_each(|(value, stress)| set_pair(stress, pair, norm * value));
                 }
-            }
+            });
         }
     }
 }
 
+/// Sets the two components of a pair.
+pub(super) fn set_pair(stress: &mut Stress, pair: usize, Complex64 { re, im }: Complex64) {
+    match pair {
+        0 => (stress.s11, stress.s22) = (re, im),
+        1 => (stress.s33, stress.s12) = (re, im),
+        _ => (stress.s13, stress.s23) = (re, im),
+    }
+}
+
 /// The two components of a pair.
-fn two(components: [f64; 6], pair: usize) -> Complex64 {
+pub(super) fn two(components: [f64; 6], pair: usize) -> Complex64 {
     Complex64::new(components[2 * pair], components[2 * pair + 1])
 }
 
 /// Writes a pair of components at all distances, positive and negative, to the period.
 fn spread(grid: &Grid, [p1, p2]: [usize; 2], table: &[Stress], pair: usize, out: &mut [Complex64]) {
-    let [n1, n2] = grid.cells();
-    out.fill(Complex64::default());
-    for i in 0..n1 {
-        for j in 0..n2 {
-            let values = table[i * n2 + j].components();
-            let mirrored = |axis: usize, values: [f64; 6]| {
-                let mut values = values;
-                values.iter_mut().zip(SIGNS[axis]).for_each(|(value, sign)| *value *= sign);
-                values
-            };
-            let [up, down] = [i, (p1 - i) % p1];
-            let [right, left] = [j, (p2 - j) % p2];
-            out[up * p2 + right] = two(values, pair);
-            if i > 0 {
-                out[down * p2 + right] = two(mirrored(0, values), pair);
-            }
-            if j > 0 {
-                out[up * p2 + left] = two(mirrored(1, values), pair);
-            }
-            if i > 0 && j > 0 {
-                out[down * p2 + left] = two(mirrored(0, mirrored(1, values)), pair);
+    let cells = grid.cells();
+    // the distance of a row or column of the period, and whether it is negative
+    let distance = |axis: usize, k: usize, period: usize| match period - k {
+        _ if k < cells[axis] => Some((k, false)),
+        back if back < cells[axis] => Some((back, true)),
+        _ => None,
+    };
+    share_lines(out, p2, &|first, rows| {
+        for (row, out) in (first..).zip(rows.chunks_exact_mut(p2)) {
+            out.fill(Complex64::default());
+            let Some((i, up)) = distance(0, row, p1) else { continue };
+            for (column, out) in out.iter_mut().enumerate() {
+                let Some((j, left)) = distance(1, column, p2) else { continue };
+                let mut values = table[i * cells[1] + j].components();
+                for (axis, _) in [up, left].into_iter().enumerate().filter(|mirrored| mirrored.1) {
+                    values.iter_mut().zip(SIGNS[axis]).for_each(|(value, sign)| *value *= sign);
+                }
+                *out = two(values, pair);
             }
         }
-    }
+    });
 }
 
 /// The stress at the distances of the grid from a rectangle of the size of a cell.
@@ -121,15 +124,17 @@ fn tabulate_rectangle(grid: &Grid, depth: f64, weights: Weights, table: &mut [St
         out.clear();
         out.extend((0..=n2).map(|j| corner((i as f64 - 0.5) * d1, (j as f64 - 0.5) * d2, weights)));
     };
-    let (mut lower, mut upper) = (Vec::new(), Vec::new());
-    row(0, &mut lower);
-    for (i, out) in table.chunks_exact_mut(n2).enumerate() {
-        row(i + 1, &mut upper);
-        for (j, out) in out.iter_mut().enumerate() {
-            *out = (upper[j + 1] + -1.0 * upper[j]) + -1.0 * (lower[j + 1] + -1.0 * lower[j]);
+    share_lines(table, n2, &|first, rows| {
+        let (mut lower, mut upper) = (Vec::new(), Vec::new());
+        row(first, &mut lower);
+        for (i, out) in (first..).zip(rows.chunks_exact_mut(n2)) {
+            row(i + 1, &mut upper);
+            for (j, out) in out.iter_mut().enumerate() {
+                *out = (upper[j + 1] + -1.0 * upper[j]) + -1.0 * (lower[j + 1] + -1.0 * lower[j]);
+            }
+            std::mem::swap(&mut lower, &mut upper);
         }
-        std::mem::swap(&mut lower, &mut upper);
-    }
+    });
 }
 
 /// The stress at the distances of the grid from a strip.
@@ -144,20 +149,26 @@ fn tabulate_strip(grid: &Grid, across: usize, depth: f64, weights: Weights, tabl
 /// Adds a pair of components below the waves of a source.
 fn add_waves(grid: &Grid, depth: f64, source: &Source, pair: usize, sum: &mut [Complex64]) {
     let ([n1, n2], [d1, d2]) = (grid.cells(), grid.spacing());
-    let i = Complex64::i();
-    for k1 in 0..n1 {
-        let first = Wave::new(k1, n1, d1);
-        for k2 in 0..n2 {
-            let second = Wave::new(k2, n2, d2);
-            let s = below_wave([first.q, second.q], depth, source.weights);
-            // the slope of a wave that alternates vanishes at the centres
-            let slopes = [first, second].map(|wave| if wave.alternates { Complex64::default() } else { i });
-            let both = match pair {
-                0 => Complex64::new(s.s11, s.s22),
-                1 => s.s33 + i * (s.s12 * slopes[0] * slopes[1]),
-                _ => s.s13 * slopes[0] + i * (s.s23 * slopes[1]),
-            };
-            sum[k1 * n2 + k2] += both * source.spectrum[k1 * n2 + k2];
+    share_lines(sum, n2, &|begin, rows| {
+        for (k1, row) in (begin..).zip(rows.chunks_exact_mut(n2)) {
+            let first = Wave::new(k1, n1, d1);
+            for (k2, sum) in row.iter_mut().enumerate() {
+                let factors = pairs_below_wave([first, Wave::new(k2, n2, d2)], depth, source.weights);
+                *sum += factors[pair] * source.spectrum[k1 * n2 + k2];
+            }
         }
-    }
+    });
+}
+
+/// The factors of all pairs of components below a wave.
+pub(super) fn pairs_below_wave(waves: [Wave; 2], depth: f64, weights: Weights) -> [Complex64; 3] {
+    let i = Complex64::i();
+    let s = below_wave(waves.map(|wave| wave.q), depth, weights);
+    // the slope of a wave that alternates vanishes at the centres
+    let slopes = waves.map(|wave| if wave.alternates { Complex64::default() } else { i });
+    [
+        Complex64::new(s.s11, s.s22),
+        s.s33 + i * (s.s12 * slopes[0] * slopes[1]),
+        s.s13 * slopes[0] + i * (s.s23 * slopes[1]),
+    ]
 }

@@ -200,3 +200,53 @@ fn bodies_whose_inside_is_not_known_are_refused() {
     let changing = SubsurfaceStress::with_changing_poisson(&periodic, &[0.0; 16], &[0.0; 16]);
     assert!(refused(changing).contains("Poisson"));
 }
+
+/// A section computes its line alone: the same as that line of a plane, wherever it is.
+#[test]
+fn sections_are_lines_of_planes() {
+    let mut kernels = kernels();
+    kernels.push(InfluenceKernel::periodic(&Grid::new([1, 7], [0.8, 0.6]).unwrap()).unwrap());
+    kernels.push(InfluenceKernel::half_space(&Grid::new([9, 1], [0.8, 0.6]).unwrap()).unwrap());
+    for kernel in kernels {
+        let (grid, periodic) = (kernel.grid(), kernel.periodic_axes() == [true; 2]);
+        let [n1, n2] = grid.cells();
+        let (pressure, reduced) = (field(grid.len()), field(grid.len()).into_iter().rev().collect::<Vec<_>>());
+        let mut bodies = vec![SubsurfaceStress::new(&kernel, &pressure, 0.3).unwrap()];
+        if !periodic {
+            bodies.push(SubsurfaceStress::with_changing_poisson(&kernel, &pressure, &reduced).unwrap());
+        }
+        for stress in bodies {
+            let depths = [0.35, 0.5, 3.0];
+            for (along, axis, lines) in [(Axis::X1, 0, n2), (Axis::X2, 1, n1)] {
+                for line in 0..lines {
+                    let section = stress.on_section(along, grid.coordinate(1 - axis, line), &depths).unwrap();
+                    for (layer, depth) in depths.into_iter().enumerate() {
+                        let plane = stress.on_plane(depth).unwrap();
+                        for k in 0..grid.cells()[axis] {
+                            let cell = if axis == 0 { k * n2 + line } else { line * n2 + k };
+                            let found = &section.values[k * depths.len() + layer];
+                            close(found, &plane[cell], 2e-14, &format!("{kernel}, {along:?} {line}, {k} at {depth}"));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Threads share the lines of a plane, and change no bit of it.
+#[cfg(feature = "rayon")]
+#[test]
+fn planes_do_not_depend_on_the_number_of_threads() {
+    let grid = Grid::new([200, 170], [2.0, 1.7]).unwrap();
+    let periodic = InfluenceKernel::periodic(&Grid::new([200, 180], [2.0, 1.8]).unwrap()).unwrap();
+    for kernel in [InfluenceKernel::half_space(&grid).unwrap(), periodic] {
+        let of = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let plane = || SubsurfaceStress::new(&kernel, &field(kernel.grid().len()), 0.3)?.on_plane(0.1);
+            pool.install(plane).unwrap()
+        };
+        let one = of(1);
+        assert!([2, 3, 7].into_iter().all(|threads| of(threads) == one), "{kernel}");
+    }
+}

@@ -6,7 +6,7 @@ mod passes;
 #[cfg(test)]
 mod tests;
 
-use std::ops::Range;
+use std::ops;
 
 use crate::kernel::{Task, for_each_share, lanes};
 use crate::ranks::Rows;
@@ -25,6 +25,8 @@ const TRUST: f64 = 1.5;
 /// reproduces constants. Its transpose brings what all cells hold to A, and keeps the sum.
 /// Blocks hold the sums S = Σ w m over what they consist of, and the factor φ = κ/(4 + 4 (κ − 1) s), in which everything is
 /// linear: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
+///
+/// An [`Ebb`] multiplies x of one level before the next finer one is made of it: near A everything remains, and far away little.
 ///
 /// Axes that are not periodic are mirrored at their ends, which is what they are on the parts that symmetry leaves of a grid.
 ///
@@ -51,6 +53,24 @@ pub(crate) struct Extension {
     /// The rows beside the own ones of the cells.
     ghosts: Ghosts,
     neighbours: Option<Neighbours>,
+    /// Where E ebbs, the level of the blocks from which it does, and what remains.
+    ebb: Option<(usize, f64)>,
+}
+
+/// How far a field is continued, and what of it remains beyond.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ebb {
+    /// In cells.
+    pub(crate) reach: f64,
+    /// Negative for a change of sign.
+    pub(crate) remains: f64,
+}
+
+/// Which of two extensions: that which ebbs, or that which reproduces constants.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Range {
+    Ebbing,
+    Endless,
 }
 
 /// Blocks of cells.
@@ -59,7 +79,7 @@ struct Level {
     /// Of all ranks.
     cells: [usize; 2],
     /// The rows that are kept.
-    kept: Range<usize>,
+    kept: ops::Range<usize>,
     /// φ.
     factor: Vec<f64>,
     /// S, then x.
@@ -78,7 +98,7 @@ impl Level {
 }
 
 impl Extension {
-    pub(crate) fn new(rows: &Rows, periodic: [bool; 2]) -> Extension {
+    pub(crate) fn new(rows: &Rows, periodic: [bool; 2], ebb: Option<Ebb>) -> Extension {
         let cells = rows.cells();
         let local = if rows.are_shared() { MOST_LOCAL.min(sizes(cells).count().saturating_sub(1)) } else { 0 };
         let level = |(height, size): (usize, [usize; 2])| {
@@ -97,7 +117,10 @@ impl Extension {
             _ => 0,
         };
         let threads = lanes(rows.own().len() * cells[1]).min(rows.own().len()).max(1);
+        // blocks of 2^(level + 1) cells that are no longer than the reach
+        let from = |reach: f64| (reach.log2() as usize).max(1) - 1;
         Extension {
+            ebb: ebb.map(|ebb| (from(ebb.reach), ebb.remains)),
             periodic,
             levels,
             share: 0.0,
@@ -128,17 +151,18 @@ impl Extension {
         self.share = if known > 0.0 { 1.0 / known } else { 0.0 };
     }
 
-    /// Fills all cells outside the set, where `field` is zero.
+    /// Fills all cells outside the set, where `field` is zero, ebbing.
     pub(crate) fn extend(&mut self, field: &mut [f64], member: &[bool]) {
         self.push(Values::Field(field), |_| ());
         let periodic = self.periodic;
-        self.descend(field, member, true, |blocks, known, fine, first, buffers, values| {
+        self.descend(field, member, true, self.ebb, |blocks, known, fine, first, buffers, values| {
             run(&Pull { blocks, known, fine, first, periodic }, buffers, values, first, fine[1]);
         });
     }
 
-    /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere.
-    pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool]) {
+    /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere. The endless one keeps the sum.
+    pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool], range: Range) {
+        let ebb = self.ebb.filter(|_| range == Range::Ebbing);
         let Extension { rows, periodic, levels, buffers, local, own, ghosts, neighbours, .. } = self;
         let columns = rows.cells()[1];
         if let Some(neighbours) = neighbours {
@@ -164,6 +188,7 @@ impl Extension {
                 own,
                 &mut level[0],
             );
+            fade(ebb, l, &mut level[0].value);
             if let (true, Some(neighbours)) = (l < *local, neighbours.as_mut()) {
                 let Level { cells: [_, columns], kept, factor, value, ghosts } = &mut level[0];
                 neighbours.fetch(ghosts, *columns, kept.len(), |row, out| {
@@ -172,7 +197,7 @@ impl Extension {
                 });
             }
         }
-        self.descend(field, member, false, |blocks, known, fine, first, buffers, values| {
+        self.descend(field, member, false, None, |blocks, known, fine, first, buffers, values| {
             run(&Spread { blocks, known, fine, first }, buffers, values, first, fine[1]);
         });
     }
@@ -198,23 +223,39 @@ impl Extension {
         field: &mut [f64],
         member: &[bool],
         smooth: bool,
+        ebb: Option<(usize, f64)>,
         pass: impl Fn(Blocks<'_>, Known<'_>, [usize; 2], usize, &mut [RowBuffers], &mut [f64]),
     ) {
         let Extension { rows, levels, share, buffers, local, neighbours, .. } = self;
         let Some(coarsest) = levels.last_mut() else { return };
         coarsest.value[0] *= *share;
-        for l in (1..levels.len()).rev() {
-            let (finer, coarser) = levels.split_at_mut(l);
-            let Level { cells, kept, factor, value, ghosts } = &mut finer[l - 1];
-            pass(coarser[0].blocks(), Known::Factors(factor), *cells, kept.start, buffers, value);
-            if let (true, Some(neighbours)) = (smooth && l <= *local, neighbours.as_mut()) {
-                let columns = cells[1];
-                neighbours.fetch(ghosts, columns, kept.len(), |row, out| {
-                    out.copy_from_slice(&value[row * columns..][..columns]);
+        // what remains of a level, and the rows beside those that are kept
+        let mut finish = |level: &mut Level, l: usize| {
+            fade(ebb, l, &mut level.value);
+            if let (true, Some(neighbours)) = (smooth && l < *local, neighbours.as_mut()) {
+                let Level { cells: [_, columns], kept, value, ghosts, .. } = level;
+                neighbours.fetch(ghosts, *columns, kept.len(), |row, out| {
+                    out.copy_from_slice(&value[row * *columns..][..*columns]);
                 });
             }
+        };
+        for l in (1..levels.len()).rev() {
+            let (finer, coarser) = levels.split_at_mut(l);
+            finish(&mut coarser[0], l);
+            let Level { cells, kept, factor, value, .. } = &mut finer[l - 1];
+            pass(coarser[0].blocks(), Known::Factors(factor), *cells, kept.start, buffers, value);
         }
+        finish(&mut levels[0], 0);
         pass(levels[0].blocks(), Known::Members(member), rows.cells(), rows.own().start, buffers, field);
+    }
+}
+
+/// Leaves what remains of the values of the level from which an extension ebbs.
+fn fade(ebb: Option<(usize, f64)>, level: usize, values: &mut [f64]) {
+    if let Some((from, remains)) = ebb
+        && from == level
+    {
+        values.iter_mut().for_each(|value| *value *= remains);
     }
 }
 
@@ -225,7 +266,7 @@ fn sizes(cells: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
 }
 
 /// The rows of blocks of 2^`height` cells that rows of cells consist of.
-fn blocks_of(rows: Range<usize>, height: usize) -> Range<usize> {
+fn blocks_of(rows: ops::Range<usize>, height: usize) -> ops::Range<usize> {
     if rows.is_empty() { 0..0 } else { rows.start >> height..rows.end.div_ceil(1 << height) }
 }
 

@@ -8,11 +8,18 @@ fn noise(seed: &mut u64) -> f64 {
 }
 
 /// E as its definition says, cell by cell.
-fn dense(member: &[bool], values: &[f64], cells: [usize; 2], periodic: [bool; 2]) -> Vec<f64> {
-    pull(&member.iter().map(|&m| f64::from(u8::from(m))).collect::<Vec<_>>(), values, cells, periodic)
+fn dense(member: &[bool], values: &[f64], cells: [usize; 2], periodic: [bool; 2], ebb: [f64; 2]) -> Vec<f64> {
+    pull(&member.iter().map(|&m| f64::from(u8::from(m))).collect::<Vec<_>>(), values, cells, periodic, ebb)
 }
 
-fn pull(weight: &[f64], mean: &[f64], [n1, n2]: [usize; 2], periodic: [bool; 2]) -> Vec<f64> {
+/// `levels_to_go` levels above this one the extension ebbs.
+fn pull(
+    weight: &[f64],
+    mean: &[f64],
+    [n1, n2]: [usize; 2],
+    periodic: [bool; 2],
+    [levels_to_go, remains]: [f64; 2],
+) -> Vec<f64> {
     if [n1, n2] == [1, 1] {
         return mean.to_vec();
     }
@@ -25,7 +32,10 @@ fn pull(weight: &[f64], mean: &[f64], [n1, n2]: [usize; 2], periodic: [bool; 2])
     }
     let means: Vec<f64> = sums.iter().zip(&weights).map(|(s, w)| if *w > 0.0 { s / w } else { 0.0 }).collect();
     let trusts: Vec<f64> = weights.iter().map(|w| TRUST * 0.25 * w / (1.0 + (TRUST - 1.0) * 0.25 * w)).collect();
-    let coarse = pull(&trusts, &means, [m1, m2], periodic);
+    let mut coarse = pull(&trusts, &means, [m1, m2], periodic, [levels_to_go - 1.0, remains]);
+    if levels_to_go == 0.0 {
+        coarse.iter_mut().for_each(|x| *x *= remains);
+    }
     let along = |k: usize, m: usize, periodic: bool| {
         let side = if k.is_multiple_of(2) { -1 } else { 1 };
         let far = (k / 2) as isize + side;
@@ -60,7 +70,7 @@ fn check(cells: [usize; 2], periodic: [bool; 2], share: f64, seed: &mut u64) {
     let count = cells[0] * cells[1];
     let mut member: Vec<bool> = (0..count).map(|_| noise(seed) + 0.5 < share).collect();
     member[count / 2] = true;
-    let mut extension = Extension::new(&Rows::all(cells, [false; 2]), periodic);
+    let mut extension = Extension::new(&Rows::all(cells), periodic, None);
     extension.fit(&member);
     let only = |value: &mut dyn FnMut() -> f64| -> Vec<f64> {
         member.iter().map(|&m| if m { value() } else { 0.0 }).collect()
@@ -72,15 +82,41 @@ fn check(cells: [usize; 2], periodic: [bool; 2], share: f64, seed: &mut u64) {
     let values = only(&mut || noise(seed));
     let mut extended = values.clone();
     extension.extend(&mut extended, &member);
-    let expected = dense(&member, &values, cells, periodic);
+    let expected = dense(&member, &values, cells, periodic, [-1.0, 1.0]);
     for (k, (a, b)) in extended.iter().zip(&expected).enumerate() {
         assert!((a - b).abs() < 1e-14, "{cells:?} {periodic:?}: {a} instead of {b} at {k}");
     }
-    let field: Vec<f64> = (0..count).map(|_| noise(seed)).collect();
+    has_transpose(&mut extension, &member, &values, Range::Endless, seed);
+
+    // from blocks of two cells at least
+    for (reach, level) in [(0.3, 0.0), (2.0, 0.0), (4.0, 1.0), (5.9, 1.0), (1e9, 28.0)] {
+        let mut extension = Extension::new(&Rows::all(cells), periodic, Some(Ebb { reach, remains: -0.3 }));
+        extension.fit(&member);
+        let mut extended = values.clone();
+        extension.extend(&mut extended, &member);
+        let expected = dense(&member, &values, cells, periodic, [level, -0.3]);
+        for (k, (a, b)) in extended.iter().zip(&expected).enumerate() {
+            assert!((a - b).abs() < 1e-14, "{cells:?} {periodic:?}, {reach}: {a} instead of {b} at {k}");
+        }
+        has_transpose(&mut extension, &member, &values, Range::Ebbing, seed);
+    }
+}
+
+fn has_transpose(extension: &mut Extension, member: &[bool], values: &[f64], range: Range, seed: &mut u64) {
+    let mut extended = values.to_vec();
+    extension.extend(&mut extended, member);
+    let field: Vec<f64> = values.iter().map(|_| noise(seed)).collect();
     let mut gathered = field.clone();
-    extension.gather(&mut gathered, &member);
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    let [there, back] = [dot(&extended, &field), dot(&values, &gathered)];
-    assert!((there - back).abs() < 1e-13 * (1.0 + there.abs()), "{there} {back}");
+    extension.gather(&mut gathered, member, range);
+    let terms = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect::<Vec<_>>();
+    let [there, back] = [terms(&extended, &field), terms(values, &gathered)];
+    let rounding: f64 = there.iter().chain(&back).map(|term| 1e-15 * term.abs()).sum();
+    let [there, back] = [there, back].map(|terms| terms.iter().sum::<f64>());
+    assert!((there - back).abs() < 2.0 * rounding, "{there} {back}");
     assert!(member.iter().zip(&gathered).all(|(&m, &x)| m || x == 0.0));
+    // the endless one keeps the sum, whether or not the other one ebbs
+    let mut kept = field.clone();
+    extension.gather(&mut kept, member, Range::Endless);
+    let [before, after] = [field.iter().sum::<f64>(), kept.iter().sum()];
+    assert!((before - after).abs() < 1e-12 * (1.0 + field.len() as f64).sqrt(), "{before} {after}");
 }
