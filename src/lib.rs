@@ -189,6 +189,7 @@ pub mod plan;
 #[cfg(feature = "plot")]
 pub mod plot;
 mod quadrature;
+pub mod ranks;
 pub mod rheology;
 mod rounded;
 mod solver;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::error::{Error, Result, count_within, finite, length, non_negative, positive};
 use crate::hereditary::{ExponentialRule, Interpolant, RememberedField};
 use crate::memory;
+use crate::ranks::Rows;
 use crate::rheology::{Material, is_known};
 
 /// The profile g(x) on a one-dimensional foundation that is equivalent to an axisymmetric indenter f(r):
@@ -174,7 +175,8 @@ impl AxisymmetricContact {
             return Err(Error::BeyondMaterial { time, age: time, known_until });
         }
         let step = (dt, Interpolant::CorrectedLinear);
-        self.displacement.predict_non_negative(&mut self.rule, step, self.width);
+        let rows = Rows::all([self.profile.len(), 1]);
+        self.displacement.predict_non_negative(&mut self.rule, step, self.width, &rows);
         let c = self.rule.compliance();
         if c == 0.0 && dt == 0.0 {
             return Err(Error::NoElasticResponse { time, what: "a jump of the foundation (ramp the load instead)" });

@@ -1,6 +1,7 @@
 //! Read-only accessors.
 
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::Grid;
@@ -60,12 +61,13 @@ impl ViscoelasticContact {
         self.computation.state.loads[0]
     }
 
-    /// Contact pressure \[Pa\], one value per cell, ≥ 0.
+    /// Contact pressure \[Pa\], one value per cell, ≥ 0; of own [rows](ViscoelasticContact::rows) where ranks share them out.
     pub fn pressure(&self) -> &[f64] {
         self.view.pressure(&self.computation.state)
     }
 
-    /// Composite normal surface displacement, positive into the bodies \[m\], one value per cell.
+    /// Composite normal surface displacement, positive into the bodies \[m\], one value per cell; of own
+    /// [rows](ViscoelasticContact::rows) where ranks share them out.
     ///
     /// With [`Settings::window`] the first call after a step costs a convolution on the whole grid, and memory for its
     /// result.
@@ -81,7 +83,11 @@ impl ViscoelasticContact {
     /// computed.
     pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
         let (Scene { grid, kernel, .. }, state) = (&*self.scene, &self.computation.state);
-        exact_length("gap", out.len(), grid.len())?;
+        exact_length("gap", out.len(), state.region.shown_len())?;
+        if state.region.is_shared() {
+            state.region.show(&self.own_gap(), out);
+            return Ok(());
+        }
         if !self.view.has_displacement(state) {
             let whole = Region::whole(grid, state.region.folded());
             let [kernel, _] = kernel.bytes_on(whole.cells(), whole.folded());
@@ -95,6 +101,15 @@ impl ViscoelasticContact {
             *h = gap.above[k] + displacement[k] - lowered.at(grid.center(k / n2, k % n2));
         }
         Ok(())
+    }
+
+    /// The gap on the computed cells of own rows.
+    fn own_gap(&self) -> Vec<f64> {
+        let State { region, indenter, current, history, .. } = &self.computation.state;
+        let (gap, RigidMotion { approach, tilt }) = (indenter.gap(), current.motions[0]);
+        let lowered = RigidMotion { approach: approach - gap.datum, tilt };
+        let cells = gap.above.iter().zip(history.displacement()).enumerate();
+        cells.map(|(k, (above, u))| above + u - lowered.at(region.center(k))).collect()
     }
 
     /// Rigid-body approach ω of the (first) body, at the origin of the grid \[m\]. Without load, the approach
@@ -150,21 +165,29 @@ impl ViscoelasticContact {
     }
 
     /// Force, moments and number of cells in contact over the cells for which `counts` holds.
-    fn sums(&self, counts: impl Fn(usize) -> bool) -> (f64, [f64; 2], usize) {
-        let (n2, area) = (self.scene.grid.cells()[1], self.scene.grid.cell_area());
-        let (mut force, mut moment, mut cells) = (0.0, [0.0; 2], 0);
-        for (i, row) in self.pressure().chunks_exact(n2).enumerate() {
-            let (mut row_force, mut row_moment) = (0.0, 0.0);
-            for (j, &p) in row.iter().enumerate().filter(|(j, p)| **p > 0.0 && counts(i * n2 + j)) {
-                row_force += p;
-                row_moment += p * self.scene.grid.coordinate(1, j);
-                cells += 1;
+    fn sums(&self, counts: impl Fn(usize) -> bool + Sync) -> (f64, [f64; 2], usize) {
+        let State { region, current, .. } = &self.computation.state;
+        let (grid, pressure, [_, m2]) = (region.grid(), &current.solution.pressure, region.cells());
+        let n2 = self.scene.grid.cells()[1];
+        let part = |band: Range<usize>| {
+            let mut sums = [0.0; 4];
+            for i in band.start / m2..band.end / m2 {
+                let (mut force, mut moment) = (0.0, 0.0);
+                let [row, first] = region.cell(i * m2);
+                let counted = |j: &usize| pressure[i * m2 + j] > 0.0 && counts(row * n2 + first + j);
+                for j in (0..m2).filter(counted) {
+                    let p = pressure[i * m2 + j];
+                    (force, moment, sums[3]) = (force + p, moment + p * grid.coordinate(1, j), sums[3] + 1.0);
+                }
+                sums = [sums[0] + force, sums[1] + force * grid.coordinate(0, i), sums[2] + moment, sums[3]];
             }
-            force += row_force;
-            moment[0] += row_force * self.scene.grid.coordinate(0, i);
-            moment[1] += row_moment;
-        }
-        (force * area, moment.map(|sum| sum * area), cells)
+            sums
+        };
+        let [force, moment1, moment2, cells] = region.rows().merge(part, |a, b| std::array::from_fn(|n| a[n] + b[n]));
+        let area = grid.cell_area() * region.images() as f64;
+        // mirror images are in balance
+        let moment = |axis: usize, sum: f64| if region.folded()[axis] { 0.0 } else { sum * area };
+        (force * area, [moment(0, moment1), moment(1, moment2)], region.images() * cells as usize)
     }
 }
 

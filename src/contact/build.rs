@@ -9,14 +9,16 @@ use crate::contact::computation::Computation;
 use crate::contact::footprint::{Computed, Footprint, Memory, symmetry_of};
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
+use crate::contact::settings::{Frame, Settings, Solver};
 use crate::contact::state::State;
 use crate::contact::time_rule::{history_by, windowed};
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::contact::window::region::Region;
-use crate::error::{Error, KernelError, Result, count_within};
+use crate::error::{Error, KernelError, RanksError, Result, count_within};
 use crate::geometry::Gap;
 use crate::hereditary;
 use crate::kernel::InfluenceKernel;
+use crate::ranks::{Ranks, Rows, caught};
 use crate::rheology::Material;
 
 impl Builder {
@@ -35,7 +37,37 @@ impl Builder {
     ///
     /// If there is not enough memory ([`Error::OutOfMemory`], before any is taken; systems that overcommit memory, as Linux
     /// does, may grant more than is free), or more than 2³² − 1 cells would be computed.
+    ///
+    /// If [`Builder::ranks`] share out the rows: an error of one of them is an error on all, [`RanksError::Failed`]; so is what
+    /// cannot be shared out ([`RanksError::NotShared`]).
     pub fn build(mut self) -> Result<ViscoelasticContact> {
+        let Some(group) = self.ranks.take() else { return Ok(self.prepare(None)?.finish()) };
+        // what is agreed upon, before there are rows to share
+        let rows = Rows::of_rank([1, 1], Arc::clone(&group));
+        caught(&rows, || {
+            let prepared = rows.agree(self.may_be_shared().and_then(|()| self.prepare(Some(group))))?;
+            rows.same(prepared.marks())?;
+            Ok(prepared.finish())
+        })
+    }
+
+    /// Rejects what ranks cannot share out.
+    fn may_be_shared(&self) -> Result<()> {
+        let Settings { solver, time_rule, frame, .. } = self.settings;
+        let refused = [
+            (self.gaps.len() > 1, "a contact of several rigid bodies"),
+            (solver != Solver::ActiveSet, "Solver::PolonskyKeer"),
+            (!time_rule.needs_series(), "a direct sum"),
+            (frame != Frame::Bodies, "Frame::Indenter"),
+        ];
+        match refused.into_iter().find(|(refused, _)| *refused) {
+            Some((_, what)) => Err(RanksError::NotShared { what }.into()),
+            None => Ok(()),
+        }
+    }
+
+    /// Everything that may fail.
+    fn prepare(mut self, group: Option<Arc<dyn Ranks>>) -> Result<Prepared> {
         self.settings.validate()?;
         let bodies = self.bodies()?;
         let gaps = std::mem::take(&mut self.gaps).into_iter().collect::<Result<_>>()?;
@@ -43,13 +75,16 @@ impl Builder {
         let (material, kernel, history) = self.parts()?;
         let Builder { grid, settings, temperature, .. } = self;
         let folded = if settings.symmetry { indenter.even_axes(&grid) } else { [false; 2] };
-        let region = if windowed(&settings, &history, &kernel) {
+        let region = if let Some(group) = group {
+            Region::shared(&grid, folded, group)
+        } else if windowed(&settings, &history, &kernel) {
             // without load, each body is above the cell that it would touch first
             Region::first_touched(&grid, folded, indenter.gap(), bodies)
         } else {
             Region::whole(&grid, folded)
         };
-        let footprint = Footprint { all: grid.len(), bodies, settings: &settings, kernel: &kernel, history: &history };
+        let all = region.shown_len();
+        let footprint = Footprint { all, bodies, settings: &settings, kernel: &kernel, history: &history };
         footprint.check(Computed::on(&region), 0)?;
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
@@ -61,10 +96,9 @@ impl Builder {
             temperature,
             bodies,
         };
+        let indenter = if region.is_shared() { indenter.on_own_rows(&region, &scene.grid) } else { indenter };
         let history = history.undisturbed_on(region.cells(), !region.covers());
-        let state = State::at_rest(Arc::new(indenter), region, history);
-        let computation = Computation::new(&scene, state);
-        Ok(ViscoelasticContact::new(scene, computation))
+        Ok(Prepared { scene, indenter, region, history })
     }
 
     /// The memory that the contact will take; no field is allocated to find out. The cells that are computed follow from the
@@ -73,7 +107,8 @@ impl Builder {
     /// takes. Where there is not even memory for the gap, it counts as asymmetric.
     ///
     /// A series of the material over [`Builder::times`] is fitted for it, in a tenth of a second. Threads are those of the
-    /// pool in which it is called.
+    /// pool in which it is called. Of a contact that [ranks](crate::ranks) share out it is that of one process with all of
+    /// the rows.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -140,5 +175,29 @@ impl Builder {
         }
         let history = history_by(&self.settings, &material, kernel.periodic_axes())?;
         Ok((material, kernel, history))
+    }
+}
+
+/// The parts of a contact that is about to be made.
+struct Prepared {
+    scene: Scene,
+    indenter: Indenter,
+    region: Region,
+    history: hereditary::History,
+}
+
+impl Prepared {
+    /// Numbers that are the same on all ranks.
+    fn marks(&self) -> [f64; 6] {
+        let (Scene { grid, settings, .. }, [n1, n2]) = (&self.scene, self.region.rows().cells());
+        let [side1, side2] = grid.spacing();
+        [n1 as f64, n2 as f64, side1, side2, settings.tolerance, self.indenter.gap().datum]
+    }
+
+    fn finish(self) -> ViscoelasticContact {
+        let Prepared { scene, indenter, region, history } = self;
+        let state = State::at_rest(Arc::new(indenter), region, history);
+        let computation = Computation::new(&scene, state);
+        ViscoelasticContact::new(scene, computation)
     }
 }

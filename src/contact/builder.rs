@@ -11,6 +11,7 @@ use crate::error::Result;
 use crate::geometry::{Geometry, evaluate};
 use crate::kernel::InfluenceKernel;
 use crate::load::LoadHistory;
+use crate::ranks::Ranks;
 use crate::rheology::{Material, TemperatureHistory};
 
 /// The parts of a [`ViscoelasticContact`]; see [`ViscoelasticContact::builder`].
@@ -26,6 +27,7 @@ pub struct Builder {
     pub(super) temperature: Option<TemperatureHistory>,
     pub(super) kernel: Option<Arc<InfluenceKernel>>,
     pub(super) settings: Settings,
+    pub(super) ranks: Option<Arc<dyn Ranks>>,
 }
 
 impl ViscoelasticContact {
@@ -46,6 +48,7 @@ impl Builder {
             temperature: None,
             kernel: None,
             settings: Settings::default(),
+            ranks: None,
         }
     }
 
@@ -147,6 +150,13 @@ impl Builder {
     /// Settings other than the defaults.
     pub fn settings(mut self, settings: Settings) -> Builder {
         self.settings = settings;
+        self
+    }
+
+    /// The [ranks](crate::ranks) that share out the rows of the contact, each of which builds it from the same parts. Without
+    /// it, this process computes all of it.
+    pub fn ranks(mut self, ranks: Arc<dyn Ranks>) -> Builder {
+        self.ranks = Some(ranks);
         self
     }
 }

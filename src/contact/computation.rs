@@ -43,8 +43,9 @@ impl Computation {
 
     /// Rejects a region for which there is no memory beside this one.
     pub(super) fn check_memory_for(&self, scene: &Scene, region: &Region) -> Result<()> {
-        let Scene { grid, kernel, settings, bodies, .. } = scene;
-        let footprint = Footprint { all: grid.len(), bodies: *bodies, settings, kernel, history: &self.state.history };
+        let Scene { kernel, settings, bodies, .. } = scene;
+        let footprint =
+            Footprint { all: region.shown_len(), bodies: *bodies, settings, kernel, history: &self.state.history };
         footprint.check(Computed::on(region), footprint.on(Computed::on(&self.state.region)).total())
     }
 

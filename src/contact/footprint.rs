@@ -10,6 +10,7 @@ use crate::error::{Result, count_within};
 use crate::hereditary;
 use crate::kernel::InfluenceKernel;
 use crate::memory;
+use crate::ranks::Rows;
 use crate::solver::{Bands, Extension};
 
 /// Bytes that a contact takes, made by [`Builder::memory`](crate::contact::Builder::memory) before it is built.
@@ -106,7 +107,9 @@ pub(super) struct Computed {
 
 impl Computed {
     pub(super) fn on(region: &Region) -> Computed {
-        Computed { cells: region.cells(), folded: region.folded(), covers: region.covers() }
+        // a rank without rows has about as little as one row takes
+        let cells = region.cells().map(|count| count.max(1));
+        Computed { cells, folded: region.folded(), covers: region.covers() }
     }
 }
 
@@ -122,7 +125,7 @@ impl Footprint<'_> {
         let history = self.history.bytes_per_cell() as u128 * n;
         let far = if covers { 0 } else { 16 * n + history };
         let [kernel, inverse] = self.kernel.bytes_on(cells, folded);
-        let sums = Bands::bytes(count, self.bodies) as u128;
+        let sums = Bands::bytes(&Rows::all(cells), self.bodies) as u128;
         let solver = match self.settings.solver {
             // three fields, a mark, and runs of cells
             Solver::ActiveSet => (24 + 1 + 4) * n + sums + inverse + Extension::bytes(cells),

@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::Grid;
 use crate::contact::hull::Hull;
+use crate::contact::window::region::Region;
 use crate::error::Result;
 use crate::geometry::Gap;
 use crate::solver::RigidMotion;
@@ -20,15 +21,17 @@ pub(crate) struct Indenter {
     even: OnceLock<[bool; 2]>,
     /// Where loads may act on each body; found when one is first free to tilt.
     hulls: Vec<OnceLock<Hull>>,
+    /// Whether the gap is that of the rows of a rank, all else being known.
+    on_own_rows: bool,
 }
 
 impl Indenter {
     pub(crate) fn new(gap: Gap, bodies: usize) -> Indenter {
         let hulls = (0..bodies).map(|_| OnceLock::new()).collect();
-        Indenter { gap, bodies, id: next_id(), even: OnceLock::new(), hulls }
+        Indenter { gap, bodies, id: next_id(), even: OnceLock::new(), hulls, on_own_rows: false }
     }
 
-    /// On the whole grid.
+    /// On the whole grid, or, where ranks share it out, the computed cells of own rows.
     pub(crate) fn gap(&self) -> &Gap {
         &self.gap
     }
@@ -63,9 +66,24 @@ impl Indenter {
         self.hulls[body].get_or_init(|| Hull::new(grid, touchable))
     }
 
+    /// The indenter of a rank: its gap on a region of own rows, and what follows from the gap on the whole grid.
+    pub(crate) fn on_own_rows(self, region: &Region, grid: &Grid) -> Indenter {
+        self.even_axes(grid);
+        for body in 0..self.bodies {
+            self.hull(body, grid);
+        }
+        let Gap { datum, above, owner } = &self.gap;
+        let gap = Gap { datum: *datum, above: region.cut(above), owner: owner.as_ref().map(|owner| region.cut(owner)) };
+        Indenter { gap, on_own_rows: true, ..self }
+    }
+
     /// The motion at which each body just touches the undeformed surface, upright.
     pub(crate) fn first_touch(&self) -> Vec<RigidMotion> {
         let of_body = |body: usize| {
+            if self.on_own_rows {
+                // a single body touches where its gap is least
+                return RigidMotion { approach: self.gap.datum, tilt: [0.0; 2] };
+            }
             let own = self.gap.above.iter().enumerate().filter(|(k, _)| self.gap.owner(*k) == body);
             let approach = self.gap.datum + own.map(|(_, &h)| h).fold(f64::INFINITY, f64::min);
             RigidMotion { approach, tilt: [0.0; 2] }

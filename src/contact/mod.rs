@@ -30,6 +30,7 @@ mod extrapolation;
 mod footprint;
 mod hull;
 mod indenter;
+mod own_rows;
 mod report;
 mod request;
 mod scene;

@@ -8,6 +8,7 @@ use crate::memory;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
 use crate::observe::{Asymmetry, Axis, Distribution, LineProfile, Patches};
+use crate::ranks::caught;
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
 
 impl ViscoelasticContact {
@@ -19,15 +20,19 @@ impl ViscoelasticContact {
     /// cell. Measured on spheres: 2e-3 of the area at 64² cells and 5e-4 at 256², where counting cells
     /// ([`ViscoelasticContact::contact_cells`]) errs by 1.5e-2 and 4e-3. Where contact grows by creep, the cells that it has
     /// reached last are stiffer than those before them, and the root is approached within them only: then it errs by up to a
-    /// few per cent at 128² cells.
+    /// few per cent at 128² cells. Where [ranks](crate::ranks) share out the rows, cells are counted.
     pub fn contact_area(&self) -> f64 {
-        if self.contact_cells() == 0 { 0.0 } else { self.pressed().area() }
+        let State { region, .. } = &self.computation.state;
+        if self.contact_cells() == 0 {
+            return 0.0;
+        }
+        if region.is_shared() { self.contact_cells() as f64 * self.grid().cell_area() } else { self.pressed().area() }
     }
 
     /// Estimates what the mesh costs in accuracy, from the cells on the rim of the contact: from how many they are among
     /// all, δ, and from the share s of the force that they carry. s √δ is of second order in the cell width where the
     /// pressure falls to zero at the edge, and of first order where it is singular there. `None` without contact, and in
-    /// full contact of periodic bodies, which has no rim.
+    /// full contact of periodic bodies, which has no rim; `None`, too, where [ranks](crate::ranks) share out the rows.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -45,6 +50,9 @@ impl ViscoelasticContact {
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     pub fn mesh_error(&self) -> Option<MeshError> {
+        if self.computation.state.region.is_shared() {
+            return None;
+        }
         self.pressed().mesh_error(self.contact_cells())
     }
 
@@ -79,7 +87,7 @@ impl ViscoelasticContact {
         if kernel.mean_is_held() && current.contact_cells == self.grid().len() {
             return Ok(f64::INFINITY);
         }
-        match flat_punch(kernel, |k| current.solution.pressure[k] > 0.0) {
+        match caught(kernel.rows(), || Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0)))? {
             Ok(sum) => Ok(sum * self.grid().cell_area() * region.images() as f64),
             Err((iterations, residual)) => {
                 let (time, dt, tolerance) = (clock.time, clock.last_length, FLAT_PUNCH_TOLERANCE);
@@ -99,7 +107,8 @@ impl ViscoelasticContact {
 
     /// Greatest pressure of any cell \[Pa\]; 0 without contact.
     pub fn max_pressure(&self) -> f64 {
-        crate::sum::greatest(self.pressure())
+        let State { region, current, .. } = &self.computation.state;
+        region.rows().greatest(crate::sum::greatest(&current.solution.pressure))
     }
 
     /// The distribution of the pressure \[Pa\] over all cells of the grid, in `bins` between 0 and the greatest
@@ -108,6 +117,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If `bins` is 0 or more than a million.
     pub fn pressure_distribution(&self, bins: usize) -> Result<Distribution> {
+        self.not_shared("a distribution")?;
         Distribution::of_pressure(self.pressure(), bins)
     }
 
@@ -133,6 +143,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If `bins` is 0 or more than a million, or there is no memory for the gap.
     pub fn gap_distribution(&self, bins: usize) -> Result<Distribution> {
+        self.not_shared("a distribution")?;
         Distribution::of_gap(&self.gap()?, self.pressure(), bins)
     }
 
@@ -157,6 +168,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If `at` lies outside the grid, or there is no memory for the gap.
     pub fn profile(&self, along: Axis, at: f64) -> Result<LineProfile> {
+        self.not_shared("a profile")?;
         let gap = self.gap()?;
         LineProfile::new(self.grid(), along, at, [self.pressure(), self.displacement(), &gap])
     }
@@ -167,6 +179,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If the force of a patch overflows `f64`.
     pub fn patches(&self) -> Result<Patches> {
+        self.not_shared("the search for patches")?;
         Patches::new(self.grid(), self.pressure(), self.kernel().periodic_axes())
     }
 
@@ -191,6 +204,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If a coordinate is not finite.
     pub fn asymmetry(&self, about: [f64; 2]) -> Result<Option<Asymmetry>> {
+        self.not_shared("the asymmetry")?;
         let about = [finite("point along x1", about[0])?, finite("point along x2", about[1])?];
         Ok(Asymmetry::new(self.grid(), self.pressure(), self.kernel().periodic_axes(), about))
     }

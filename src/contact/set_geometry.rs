@@ -23,6 +23,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// As [`ViscoelasticContact::set_geometry`], or if there is not one geometry per body.
     pub fn set_geometries(&mut self, geometries: &[&dyn Geometry]) -> Result<()> {
+        self.not_shared("another geometry")?;
         if geometries.len() != self.scene.bodies {
             return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.scene.bodies });
         }

@@ -8,7 +8,6 @@ use crate::contact::window::region::Region;
 use crate::hereditary::{History, Interval, MAX_GROWTH};
 use crate::load::Load;
 use crate::solver::{RigidMotion, Solution};
-use crate::sum::sum;
 
 /// The state of a contact between two steps. A clone of it is a snapshot, its bytes are a checkpoint, and a step that is
 /// tried on a larger region changes a copy.
@@ -79,6 +78,9 @@ pub(crate) struct Equilibrium {
     pub(super) motions: Vec<RigidMotion>,
     /// Cells in contact on the whole grid.
     pub(super) contact_cells: usize,
+    /// Σ p over the cells that are computed, of all ranks.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    pub(super) sum: f64,
 }
 
 /// What is kept of the start of the step before the last.
@@ -107,7 +109,8 @@ impl State {
     pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, history: History) -> State {
         let motions = indenter.first_touch();
         let bodies = motions.len();
-        let current = Equilibrium { solution: Solution::zero(region.len(), bodies), motions, contact_cells: 0 };
+        let current =
+            Equilibrium { solution: Solution::zero(region.len(), bodies), motions, contact_cells: 0, sum: 0.0 };
         State {
             clock: Clock::default(),
             loads: vec![Load::force(0.0); bodies],
@@ -126,10 +129,17 @@ impl State {
     }
 
     /// Normal force on all bodies together \[N\].
-    pub(super) fn force_of(&self, Equilibrium { solution, .. }: &Equilibrium) -> f64 {
-        // row by row, so that rounding does not grow with the number of cells
-        let rows = solution.pressure.chunks_exact(self.region.cells()[1]);
-        rows.map(sum).sum::<f64>() * self.region.grid().cell_area() * self.region.images() as f64
+    pub(super) fn force_of(&self, equilibrium: &Equilibrium) -> f64 {
+        equilibrium.sum * self.region.grid().cell_area() * self.region.images() as f64
+    }
+
+    /// Finds the sums that are not saved.
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn sum_up(&mut self) {
+        let rows = self.region.rows();
+        for equilibrium in [&mut self.current, &mut self.previous] {
+            equilibrium.sum = rows.sum(&equilibrium.solution.pressure);
+        }
     }
 
     /// The last step says nothing about how the state goes on, as at a corner of the load.
@@ -188,6 +198,6 @@ impl Equilibrium {
     fn copy_from(&mut self, other: &Equilibrium) {
         self.solution.copy_from(&other.solution);
         self.motions.clone_from(&other.motions);
-        self.contact_cells = other.contact_cells;
+        (self.contact_cells, self.sum) = (other.contact_cells, other.sum);
     }
 }

@@ -1,4 +1,4 @@
-//! The fields of a contact on the whole grid, for the accessors.
+//! The fields of a contact on the whole grid, or own rows of it, for the accessors.
 
 use std::borrow::Cow;
 use std::sync::OnceLock;
@@ -7,7 +7,7 @@ use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::window::region::Region;
 
-/// Pressure and displacement on the whole grid, where not all of it is computed.
+/// Pressure and displacement on the whole grid, where not all of it is computed; on own rows, where ranks share them out.
 #[derive(Debug, Clone)]
 pub(crate) struct View {
     pressure: Vec<f64>,
@@ -32,21 +32,21 @@ impl View {
             // what lies outside a smaller region is of the larger one
             self.pressure.fill(0.0);
         }
-        if state.region.is_whole() {
+        if state.region.is_shown() {
             self.pressure = Vec::new();
         } else {
-            self.pressure.resize(state.region.whole_len(), 0.0);
-            state.region.spread(&state.current.solution.pressure, &mut self.pressure);
+            self.pressure.resize(state.region.shown_len(), 0.0);
+            state.region.show(&state.current.solution.pressure, &mut self.pressure);
         }
     }
 
     pub(super) fn pressure<'a>(&'a self, state: &'a State) -> &'a [f64] {
-        if state.region.is_whole() { &state.current.solution.pressure } else { &self.pressure }
+        if state.region.is_shown() { &state.current.solution.pressure } else { &self.pressure }
     }
 
     pub(super) fn displacement<'a>(&'a self, scene: &Scene, state: &'a State) -> &'a [f64] {
         let own = state.history.displacement();
-        if state.region.is_whole() {
+        if state.region.is_shown() {
             return own;
         }
         let whole = || on_the_whole_grid(scene, &state.region, own, state.history.far_source()).into_owned();
@@ -55,21 +55,21 @@ impl View {
 
     /// Whether the displacement has been computed, or needs not be.
     pub(super) fn has_displacement(&self, state: &State) -> bool {
-        state.region.is_whole() || self.displacement.get().is_some()
+        state.region.is_shown() || state.region.is_shared() || self.displacement.get().is_some()
     }
 }
 
-/// A field on the whole grid from one of a region. Elsewhere it is the convolution of a source, or zero if there is none.
+/// A field on the cells that are shown from one of a region. Elsewhere it is the convolution of a source, or zero if there is none.
 pub(super) fn on_the_whole_grid<'a>(
     scene: &Scene,
     region: &Region,
     own: &'a [f64],
     source: Option<&[f64]>,
 ) -> Cow<'a, [f64]> {
-    if region.is_whole() {
+    if region.is_shown() {
         return Cow::Borrowed(own);
     }
-    let mut whole = vec![0.0; scene.grid.len()];
+    let mut whole = vec![0.0; region.shown_len()];
     if let Some(source) = source {
         let all = Region::whole(&scene.grid, region.folded());
         let kernel = scene.kernel.on(all.grid(), all.folded());
@@ -77,6 +77,6 @@ pub(super) fn on_the_whole_grid<'a>(
         kernel.apply(&region.carry(source, &all, |_| 0.0), &mut far, &mut kernel.workspace());
         all.spread(&far, &mut whole);
     }
-    region.spread(own, &mut whole);
+    region.show(own, &mut whole);
     Cow::Owned(whole)
 }

@@ -9,6 +9,7 @@ mod load;
 mod map;
 mod material;
 mod output;
+mod ranks;
 mod table;
 
 #[cfg(feature = "checkpoint")]
@@ -22,6 +23,7 @@ pub use load::LoadError;
 pub use map::MapError;
 pub use material::MaterialError;
 pub use output::OutputError;
+pub use ranks::RanksError;
 pub use table::{Place, TableError};
 
 use crate::rounded::{TIME, rounded};
@@ -255,6 +257,10 @@ pub enum Error {
     /// A file of results cannot be written. The cause is the [`source`](std::error::Error::source) of the error.
     #[error(transparent)]
     Output(#[from] OutputError),
+
+    /// A contact that [ranks](crate::ranks) share out was asked for what it cannot do, or a rank has left or failed.
+    #[error(transparent)]
+    Ranks(#[from] RanksError),
 
     /// Something other than a regular file exists at the path. It is left unchanged: only regular files are replaced.
     #[error("{path} cannot be written: it is {kind}, not a regular file")]

@@ -246,7 +246,7 @@ impl History {
             Rule::Exponential(own) => {
                 // on periodic bodies u is measured from its mean
                 let least_side = if kernel.mean_is_held() { f64::INFINITY } else { inputs.least_side };
-                displacement.predict_non_negative(own, (step.dt, step.interpolant), least_side);
+                displacement.predict_non_negative(own, (step.dt, step.interpolant), least_side, kernel.rows());
                 far.iter_mut().for_each(|far| far.predict(own));
                 Ok((own.compliance(), 0))
             }
@@ -265,7 +265,10 @@ impl History {
                     kernel.apply(source, trial, work);
                     trial.iter_mut().zip(remainder).for_each(|(u_old, &e)| *u_old += e);
                     convolutions += 1;
-                    if kernel.mean_is_held() || !own.has_less() || !displacement.dips(own, inputs.least_side) {
+                    if kernel.mean_is_held()
+                        || !own.has_less()
+                        || !displacement.dips(own, inputs.least_side, kernel.rows())
+                    {
                         return Ok((own.compliance(), convolutions));
                     }
                     own.weigh_less();

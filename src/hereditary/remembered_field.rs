@@ -2,6 +2,7 @@
 
 use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
 use crate::hereditary::past::Past;
+use crate::ranks::Rows;
 use crate::sum::greatest;
 
 /// What lies below zero by less than this part of the greatest value is rounding.
@@ -56,10 +57,11 @@ impl RememberedField {
         rule: &mut ExponentialRule,
         (dt, interpolant): (f64, Interpolant),
         side: f64,
+        rows: &Rows,
     ) {
         rule.weigh(dt, interpolant);
         self.predict(rule);
-        while rule.has_less() && self.dips(rule, side) {
+        while rule.has_less() && self.dips(rule, side, rows) {
             rule.weigh_less();
             self.predict(rule);
         }
@@ -67,10 +69,10 @@ impl RememberedField {
 
     /// Whether the trial is negative somewhere, by more than the rounding of the greatest field so far, or of a convolution that
     /// leaves nothing.
-    pub(super) fn dips(&self, rule: &mut ExponentialRule, side: f64) -> bool {
-        rule.greatest = rule.greatest.max(greatest(&self.now));
+    pub(super) fn dips(&self, rule: &mut ExponentialRule, side: f64, rows: &Rows) -> bool {
+        rule.greatest = rule.greatest.max(rows.greatest(greatest(&self.now)));
         let least = (DIP * rule.greatest).min(NOISE * side);
-        self.trial.iter().any(|&value| value < least)
+        rows.any(self.trial.iter().any(|&value| value < least))
     }
 
     /// Adds c times a source to the trial.

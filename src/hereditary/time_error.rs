@@ -4,11 +4,13 @@ use std::ops::Range;
 
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::history::History;
-use crate::kernel::merge_bands;
+use crate::ranks::Rows;
 
 /// What the error in time of a step is measured by, besides the displacement.
 #[derive(Clone, Copy)]
 pub(crate) struct ErrorMeasure<'a> {
+    /// What joins the rows of the fields with those of other ranks.
+    pub(crate) rows: &'a Rows,
     /// Pressure at the end of the step tried, at its start, and at the start of the step before.
     pub(crate) pressure: [&'a [f64]; 3],
     /// v = K p at the end of the step tried.
@@ -79,7 +81,7 @@ impl History {
         if rule.has_dashpot() && dt <= measure.beginning {
             return TimeError::default();
         }
-        let weight = Weight::new(measure.pressure, rule.has_dashpot());
+        let weight = Weight::new(measure.rows, measure.pressure, rule.has_dashpot());
         let pressed = weight.is_of_a_contact();
         // a contact that opened in a step of which nothing can be told: it has to be seen to open
         if weight == Weight::PressureBefore
@@ -152,9 +154,9 @@ impl History {
                     sums.left = sums.left.max(size);
                 }
             }
-            sums
+            sums.numbers()
         };
-        merge_bands(new.len(), part, Sums::merge)
+        Sums::of(measure.rows.merge(part, |a, b| Sums::of(a).merge(Sums::of(b)).numbers()))
     }
 }
 
@@ -196,6 +198,18 @@ struct Defect {
 }
 
 impl Sums {
+    fn numbers(self) -> [f64; 11] {
+        let Sums { weight, sizes, signed, absolute, steepest, left, touching, kinks, squares, sharpest } = self;
+        let [size, other] = sizes;
+        [weight, size, other, signed, absolute, steepest, left, touching as f64, kinks, squares, sharpest]
+    }
+
+    fn of(numbers: [f64; 11]) -> Sums {
+        let [weight, size, other, signed, absolute, steepest, left, touching, kinks, squares, sharpest] = numbers;
+        let (sizes, touching) = ([size, other], touching as usize);
+        Sums { weight, sizes, signed, absolute, steepest, left, touching, kinks, squares, sharpest }
+    }
+
     fn merge(self, other: Sums) -> Sums {
         Sums {
             weight: self.weight + other.weight,
@@ -244,10 +258,10 @@ enum Weight {
 }
 
 impl Weight {
-    fn new(pressure: [&[f64]; 3], dashpot: bool) -> Weight {
+    fn new(rows: &Rows, pressure: [&[f64]; 3], dashpot: bool) -> Weight {
         let [tried, now, _] = pressure;
-        let [pressed, was_pressed] = [tried, now].map(|pressure| pressure.iter().any(|&p| p > 0.0));
-        let inside = || (0..tried.len()).any(|k| least(pressure.map(|p| p[k])) > 0.0);
+        let [pressed, was_pressed] = [tried, now].map(|pressure| rows.any(pressure.iter().any(|&p| p > 0.0)));
+        let inside = || rows.any((0..tried.len()).any(|k| least(pressure.map(|p| p[k])) > 0.0));
         match (pressed, was_pressed) {
             (true, true) if dashpot && inside() => Weight::LeastPressure,
             (true, _) => Weight::Pressure,

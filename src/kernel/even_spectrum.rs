@@ -1,5 +1,6 @@
 //! The spectrum of an even kernel that is given by its coefficients.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use num_complex::Complex64;
@@ -7,40 +8,42 @@ use realfft::{RealFftPlanner, RealToComplex};
 
 use super::layout::{Ends, Layout};
 
-/// A quarter of the real even spectrum on the period of a padded layout.
+/// A quarter of the real even spectrum on the period of a padded layout, or some columns of it.
 pub(super) struct EvenSpectrum {
     values: Vec<f64>,
-    columns: usize,
+    /// The first column, and the values of each.
+    first: usize,
+    length: usize,
 }
 
 impl EvenSpectrum {
-    /// The spectrum of the kernel with these coefficients at the distances of the layout, and zero beyond.
-    pub(super) fn of(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> EvenSpectrum {
+    /// The columns k2 of the spectrum of the kernel with these coefficients at the distances of the layout, and zero beyond.
+    pub(super) fn of(layout: Layout, columns: Range<usize>, coefficient: impl Fn(usize, usize) -> f64) -> EvenSpectrum {
         // a kernel made periodic needs half a period at most, and none beyond the cells
         let known = [0, 1].map(|axis| {
             let cells = layout.cells[axis] * if layout.folded[axis] { 2 } else { 1 };
             if layout.ends[axis] == Ends::Free { cells } else { cells.min(layout.period(axis) / 2 + 1) }
         });
         let [period1, period2] = [layout.period(0), layout.period(1)];
-        let (half1, half2) = (period1 / 2 + 1, period2 / 2 + 1);
+        let (first, count, length) = (columns.start, columns.len(), period1 / 2 + 1);
         let [mut across, mut down] = [EvenLine::new(period2), EvenLine::new(period1)];
-        let mut rows = vec![0.0; known[0] * half2];
-        for (i, row) in rows.chunks_exact_mut(half2).enumerate() {
+        let mut rows = vec![0.0; known[0] * count];
+        for (i, row) in rows.chunks_exact_mut(count.max(1)).enumerate() {
             let values = across.transform((0..known[1]).map(|j| coefficient(i, j)));
-            row.iter_mut().zip(values).for_each(|(out, value)| *out = value);
+            row.iter_mut().zip(values.skip(first)).for_each(|(out, value)| *out = value);
         }
         // stored column by column
-        let mut values = vec![0.0; half1 * half2];
-        for (k2, column) in values.chunks_exact_mut(half1).enumerate() {
-            let values = down.transform(rows[k2..].iter().step_by(half2).copied());
+        let mut values = vec![0.0; length * count];
+        for (k2, column) in values.chunks_exact_mut(length).enumerate() {
+            let values = down.transform(rows[k2..].iter().step_by(count).copied());
             column.iter_mut().zip(values).for_each(|(out, value)| *out = value);
         }
-        EvenSpectrum { values, columns: half1 }
+        EvenSpectrum { values, first, length }
     }
 
     /// The value at the wave numbers `k1`, `k2` of the period.
     pub(super) fn at(&self, k1: usize, k2: usize) -> f64 {
-        self.values[k2 * self.columns + k1]
+        self.values[(k2 - self.first) * self.length + k1]
     }
 }
 

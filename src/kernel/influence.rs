@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::even_spectrum::{EvenLine, EvenSpectrum};
@@ -86,10 +87,10 @@ impl Influence {
         }
     }
 
-    /// The factor by which the operator multiplies each wave of the layout.
-    pub(super) fn symbol(&self, grid: &Grid, layout: Layout) -> Symbol {
+    /// The factor by which the operator multiplies each wave of the layout, for k2 in `columns`.
+    pub(super) fn symbol(&self, grid: &Grid, layout: Layout, columns: Range<usize>) -> Symbol {
         let spectrum = |coefficient: &dyn Fn(usize, usize) -> f64| -> Symbol {
-            let spectrum = EvenSpectrum::of(layout, coefficient);
+            let spectrum = EvenSpectrum::of(layout, columns.clone(), coefficient);
             Box::new(move |k1, k2| spectrum.at(k1, k2))
         };
         match self {
@@ -113,14 +114,16 @@ impl Influence {
                 // for each wave along the periodic axis, a convolution along the other
                 let (periodic, free) = (*periodic, 1 - periodic);
                 let (mut line, mut values) = (EvenLine::new(layout.period(free)), Vec::new());
-                let columns = layout.period(free) / 2 + 1;
-                for k in 0..=layout.period(periodic) / 2 {
+                let all = [0..layout.period(0) / 2 + 1, columns];
+                let (waves, wanted) = (all[periodic].clone(), all[free].clone());
+                for k in waves.clone() {
                     let known = layout.cells[free] * if layout.folded[free] { 2 } else { 1 };
-                    values.extend(line.transform((0..known).map(|i| self.across(grid, i, k))));
+                    let line = line.transform((0..known).map(|i| self.across(grid, i, k)));
+                    values.extend(line.skip(wanted.start).take(wanted.len()));
                 }
                 Box::new(move |k1, k2| {
                     let k = [k1, k2];
-                    values[k[periodic] * columns + k[free]]
+                    values[(k[periodic] - waves.start) * wanted.len() + (k[free] - wanted.start)]
                 })
             }
         }
@@ -175,7 +178,7 @@ impl Influence {
                 layered(*layer, at(0) + far)
             }
             Influence::LayerPeriodic(_) | Influence::Coefficients { .. } | Influence::Waves { .. } => {
-                let symbol = self.symbol(grid, layout);
+                let symbol = self.symbol(grid, layout, layout.all_columns());
                 let waves =
                     (0..=layout.period(0) / 2).flat_map(|k1| (0..=layout.period(1) / 2).map(move |k2| (k1, k2)));
                 let most = waves.map(|(k1, k2)| symbol(k1, k2)).fold(0.0, f64::max);
@@ -214,7 +217,7 @@ impl Influence {
             }
             Influence::LayerPeriodic(layer) if layer.compliance_of_period() == 0.0 => {
                 let whole = Layout { cells: grid.cells(), ends: self.ends(), folded: [false; 2] };
-                let symbol = self.symbol(grid, whole);
+                let symbol = self.symbol(grid, whole, whole.all_columns());
                 let waves = (0..=grid.cells()[0] / 2).flat_map(|k1| (0..=grid.cells()[1] / 2).map(move |k2| (k1, k2)));
                 Some(waves.map(|(k1, k2)| symbol(k1, k2)).fold(0.0, f64::max))
             }
@@ -245,7 +248,7 @@ impl Influence {
             }
             Influence::Periodic | Influence::LayerPeriodic(_) | Influence::Waves { .. } => {
                 let layout = Layout { cells: grid.cells(), ends: self.ends(), folded: [false; 2] };
-                layout.coefficient(at, self.symbol(grid, layout))
+                layout.coefficient(at, self.symbol(grid, layout, layout.all_columns()))
             }
         }
     }

@@ -1,7 +1,5 @@
 //! Loops over fields: compiled for the vector units of the machine that runs them, and shared between threads.
 
-use std::ops::Range;
-
 use pulp::{Arch, Simd, WithSimd};
 
 /// Work of a thread on its share of a field. `run` must be `#[inline(always)]`: only then is it compiled for vectors
@@ -79,7 +77,7 @@ pub(crate) fn lanes(cells: usize) -> usize {
 #[cfg(feature = "rayon")]
 const MIN_SHARED_CELLS: usize = 1 << 15;
 
-/// Cells that a thread passes over at a time. Sums are taken band by band, whatever the number of threads.
+/// Cells that a thread passes over at a time. Sums are taken over bands of about so many cells, whatever the number of threads.
 pub(crate) const BAND_CELLS: usize = 1 << 13;
 
 /// Where fields of so many cells are halved between threads: at the start of a band.
@@ -111,29 +109,4 @@ fn halve<T: Send, const M: usize>(
         || halve([first, middle], before, shared, job),
         || halve([first + middle, cells - middle], after, shared, job),
     );
-}
-
-/// Applies `part` to each band of the cells, and merges the results in the order of the bands, whatever the number of threads.
-pub(crate) fn merge_bands<R: Send>(
-    cells: usize,
-    part: impl Fn(Range<usize>) -> R + Sync,
-    merge: impl Fn(R, R) -> R + Sync,
-) -> R {
-    merge_halves(0..cells, lanes(cells) > 1, &part, &merge)
-}
-
-fn merge_halves<R: Send>(
-    cells: Range<usize>,
-    shared: bool,
-    part: &(impl Fn(Range<usize>) -> R + Sync),
-    merge: &(impl Fn(R, R) -> R + Sync),
-) -> R {
-    if cells.len() <= BAND_CELLS {
-        return part(cells);
-    }
-    let middle = cells.start + middle(cells.len());
-    let [before, after] =
-        [cells.start..middle, middle..cells.end].map(|half| move || merge_halves(half, shared, part, merge));
-    let (before, after) = join(shared, before, after);
-    merge(before, after)
 }

@@ -30,10 +30,10 @@ mod strip;
 mod transform;
 
 pub(crate) use influence::HalfSpace;
-pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, join, lanes, merge_bands, middle};
+pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, join, lanes, middle};
 pub use layer::Layer;
 pub(crate) use layout::{fast_length, images};
-pub(crate) use transform::{SpectralOperator, TransformWorkspace};
+pub(crate) use transform::{SpectralOperator, TransformWorkspace, rows_in_a_tile};
 
 use std::fmt;
 use std::sync::{Arc, OnceLock};
@@ -41,8 +41,10 @@ use std::sync::{Arc, OnceLock};
 use crate::Grid;
 use crate::error::{Error, KernelError, Result, exact_length, finite};
 use crate::memory;
+use crate::ranks::Rows;
 use influence::Influence;
 use layout::{Ends, Layout};
+use transform::Shares;
 
 /// Memory that making an operator takes, relative to that of the operator: its spectrum, and the transform that yields
 /// it.
@@ -87,7 +89,9 @@ pub struct Workspace(pub(crate) TransformWorkspace);
 /// The influence operator on a part of a grid, and on its mirror images along folded axes.
 #[derive(Debug, Clone)]
 pub(crate) struct LocalKernel {
+    /// The own rows.
     grid: Grid,
+    rows: Rows,
     operator: Arc<SpectralOperator>,
     influence: Influence,
     folded: [bool; 2],
@@ -216,17 +220,34 @@ impl InfluenceKernel {
     }
 
     fn make(&self, layout: Layout) -> SpectralOperator {
-        SpectralOperator::from_symbol(layout, self.influence.symbol(&self.grid, layout))
+        SpectralOperator::from_symbol(layout, self.influence.symbol(&self.grid, layout, layout.all_columns()))
+    }
+
+    /// An operator whose rows are shared out: each rank makes its part of the spectrum.
+    fn make_shared(&self, layout: Layout, shares: Shares) -> SpectralOperator {
+        let symbol = self.influence.symbol(&self.grid, layout, shares.columns(&layout));
+        SpectralOperator::shared(layout, shares, symbol)
     }
 
     /// The kernel on a part of the grid and its mirror images along folded axes. Along periodic axes the part is the
     /// whole.
     pub(crate) fn on(&self, part: &Grid, folded: [bool; 2]) -> LocalKernel {
-        let layout = Layout { cells: part.cells(), ..self.layout(folded) };
-        let operator =
-            if layout == self.layout(folded) { Arc::clone(self.operator(folded)) } else { Arc::new(self.make(layout)) };
+        self.on_rows(part, folded, &Rows::all(part.cells()))
+    }
+
+    /// The same, where the part is the own ones of the `rows`.
+    pub(crate) fn on_rows(&self, part: &Grid, folded: [bool; 2], rows: &Rows) -> LocalKernel {
+        let layout = Layout { cells: rows.cells(), ..self.layout(folded) };
+        let operator = if let Some(shares) = Shares::new(&layout, rows) {
+            Arc::new(self.make_shared(layout, shares))
+        } else if layout == self.layout(folded) {
+            Arc::clone(self.operator(folded))
+        } else {
+            Arc::new(self.make(layout))
+        };
         LocalKernel {
             grid: part.clone(),
+            rows: rows.clone(),
             operator,
             influence: self.influence.clone(),
             folded,
@@ -283,8 +304,14 @@ fn index(folded: [bool; 2]) -> usize {
 }
 
 impl LocalKernel {
+    /// The own rows.
     pub(crate) fn grid(&self) -> &Grid {
         &self.grid
+    }
+
+    /// Which rows these are, and what joins them with those of other ranks.
+    pub(crate) fn rows(&self) -> &Rows {
+        &self.rows
     }
 
     /// The greatest compliance of a wave \[m\], if that of the mean is zero.
@@ -304,8 +331,11 @@ impl LocalKernel {
 
     /// An approximate inverse, on a layout without padding.
     pub(crate) fn inverse(&self) -> SpectralOperator {
-        let (layout, symbol) = self.influence.inverse(&self.grid, self.grid.cells(), self.folded);
-        SpectralOperator::from_symbol(layout, symbol)
+        let (layout, symbol) = self.influence.inverse(&self.grid, self.rows.cells(), self.folded);
+        match Shares::new(&layout, &self.rows) {
+            Some(shares) => SpectralOperator::shared(layout, shares, symbol),
+            None => SpectralOperator::from_symbol(layout, symbol),
+        }
     }
 
     /// Buffers for the [`inverse`](LocalKernel::inverse), beside those of [`LocalKernel::workspace`].

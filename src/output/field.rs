@@ -47,6 +47,7 @@ impl Field {
     /// The values in the current state of the contact; `buffer` receives those that the contact does not store.
     #[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
     pub(crate) fn values<'a>(self, contact: &'a ViscoelasticContact, buffer: &'a mut Vec<f64>) -> Result<&'a [f64]> {
+        contact.not_shared("a file or a picture of fields")?;
         match self {
             Field::Pressure => Ok(contact.pressure()),
             Field::Displacement => Ok(contact.displacement()),

@@ -77,6 +77,7 @@ impl NpzSeries {
     /// # Errors
     /// If the file cannot be written. Then there is no frame, and the next call uses the same number.
     pub fn write(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
+        contact.not_shared("a file of fields")?;
         let path = self.frames.folder.join(self.frames.next_name());
         let Frames { metadata, fields, buffer, .. } = &mut self.frames;
         replace(&path, |out| {

@@ -85,6 +85,7 @@ impl VtkSeries {
     /// # Errors
     /// If a file cannot be written. Then the frame is not listed, and the next call uses the same number.
     pub fn write(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
+        contact.not_shared("a file of fields")?;
         let name = self.frames.next_name();
         let path = self.frames.folder.join(&name);
         replace(&path, |out| write_image(out, contact, &mut self.frames))?;

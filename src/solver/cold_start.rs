@@ -26,7 +26,8 @@ pub(crate) fn cold_start(
     sharpen: impl FnOnce(&ContactSet, &mut Solution),
 ) -> bool {
     set.press_possible(problem, body);
-    let pressed = |solution: &Solution| set.cells(problem, body).all(|k| solution.pressure[k] > 0.0);
+    let pressed =
+        |solution: &Solution| !problem.rows().any(!set.cells(problem, body).all(|k| solution.pressure[k] > 0.0));
     fill_hertz(problem, body, set, solution);
     if pressed(solution) {
         sharpen(set, solution);
@@ -54,7 +55,7 @@ fn balance_with_supports(problem: &Problem<'_>, body: usize, set: &ContactSet, s
     }
     let freedom = problem.bodies[body];
     if freedom.translation {
-        let resting = RestingPosition::new(&problem.modes(body), set.cells(problem, body), problem.gap);
+        let resting = RestingPosition::new(problem.rows(), &problem.modes(body), set.cells(problem, body), problem.gap);
         for (k, share) in resting.supports.into_iter().flatten() {
             solution.pressure[k] += share * freedom.total;
         }
@@ -69,12 +70,12 @@ fn balance_with_supports(problem: &Problem<'_>, body: usize, set: &ContactSet, s
 /// area A, from a³ = (3/4) R c W. At a given approach δ below the first touch it is half of that,
 /// a²/2R = δ/2, and the peak pressure is (2/π) δ/(c a).
 fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &mut Solution) {
-    let (freedom, modes) = (problem.bodies[body], problem.modes(body));
+    let (freedom, modes, rows) = (problem.bodies[body], problem.modes(body), problem.rows());
     let cells = || set.cells(problem, body);
     cells().for_each(|k| solution.pressure[k] = 0.0);
     // a body that tilts under a force starts from its resting position
     let motion = if modes.tilts() && modes.translates() {
-        RestingPosition::new(&modes, cells(), problem.gap).motion
+        RestingPosition::new(rows, &modes, cells(), problem.gap).motion
     } else {
         ModeCoefficients::default()
     };
@@ -83,10 +84,10 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &m
     }
     let gap = |k: usize| problem.gap[k] - modes.displacement(motion, k);
     let heights = || cells().map(gap);
-    let lowest = heights().fold(f64::INFINITY, f64::min);
-    let highest = heights().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = rows.least(heights().fold(f64::INFINITY, f64::min));
+    let highest = rows.greatest(heights().fold(f64::NEG_INFINITY, f64::max));
     let (area, images) = (problem.kernel.grid().cell_area(), problem.kernel.images());
-    let cells_below = |level: f64| heights().filter(|&h| h <= level).count() as f64;
+    let cells_below = |level: f64| rows.count(heights().filter(|&h| h <= level).count()) as f64;
 
     let (level, peak) = if freedom.translation {
         let rise = |level: f64| {
@@ -114,16 +115,14 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &m
     };
 
     let depth = level - lowest;
-    let mut sum = 0.0;
     for k in cells() {
         let above = if depth > 0.0 { ((level - gap(k)) / depth).max(0.0).sqrt() } else { 0.0 };
         // where the rise is below rounding, the lowest cells are pressed evenly
         let share = if depth > 0.0 { above } else { f64::from(u8::from(gap(k) <= lowest)) };
         solution.pressure[k] = peak * share;
-        sum += peak * share;
     }
     if freedom.translation {
-        let scale = freedom.total / sum;
+        let scale = freedom.total / set.sum_of(problem, body, |k| solution.pressure[k]);
         cells().for_each(|k| solution.pressure[k] *= scale);
     }
 }
@@ -136,7 +135,8 @@ pub(crate) fn balance(problem: &Problem<'_>, body: usize, set: &ContactSet, solu
         return true;
     }
     let pressure = &mut solution.pressure;
-    if !modes.tilts() && set.cells(problem, body).all(|k| pressure[k] >= 0.0) {
+    let admissible = || !problem.rows().any(!set.cells(problem, body).all(|k| pressure[k] >= 0.0));
+    if !modes.tilts() && admissible() {
         let scale = problem.bodies[body].total / set.sum(problem, body, pressure);
         if !scale.is_finite() {
             return false;
@@ -144,7 +144,8 @@ pub(crate) fn balance(problem: &Problem<'_>, body: usize, set: &ContactSet, solu
         set.cells(problem, body).for_each(|k| pressure[k] *= scale);
         return true;
     }
-    let Some(y) = modes.balance(set.pieces(problem, body), |k| pressure[k], |k| pressure[k]) else { return false };
+    let pieces = |band| set.pieces_in(problem, body, band);
+    let Some(y) = modes.balance(problem.rows(), pieces, |k| pressure[k], |k| pressure[k]) else { return false };
     for (k, factor) in set.displacements(problem, body, y) {
         pressure[k] = (pressure[k] + pressure[k] * factor).max(0.0);
     }

@@ -48,9 +48,10 @@ impl ContactSet {
         self.runs.find(&self.member);
         self.bodies.fill(BodyContact::default());
         self.greatest_gap = 0.0;
+        let tilting = matches!(problem.bodies, [only] if only.tilts());
         for piece in self.runs.inside(&(0..self.member.len()), problem.cut()) {
             let contact = &mut self.bodies[piece.body];
-            if problem.bodies[piece.body].tilts() {
+            if problem.bodies[piece.body].tilts() && !tilting {
                 contact.gram.add_cells(&problem.modes(piece.body).line(piece.cells.start), piece.cells.len());
             }
             let first = if contact.cells == 0 { piece.cells.start } else { contact.span.start };
@@ -58,6 +59,29 @@ impl ContactSet {
             contact.cells += piece.cells.len();
             self.greatest_gap = self.greatest_gap.max(greatest(&problem.gap[piece.cells]));
         }
+        let rows = problem.rows();
+        if rows.are_shared() {
+            let own = [self.bodies[0].cells as f64, self.greatest_gap];
+            let [cells, greatest_gap] = rows.join(own, |[n, a], [m, b]| [n + m, a.max(b)]);
+            (self.bodies[0].cells, self.greatest_gap) = (cells as usize, greatest_gap);
+        }
+        if tilting {
+            self.bodies[0].gram = self.gram(problem);
+        }
+    }
+
+    /// The products of the free modes over the cells in contact under a single body, band by band.
+    fn gram(&self, problem: &Problem<'_>) -> Gram {
+        let modes = problem.modes(0);
+        let within = |band: Range<usize>| {
+            let mut gram = Gram::default();
+            for piece in self.runs.inside(&band, problem.cut()) {
+                gram.add_cells(&modes.line(piece.cells.start), piece.cells.len());
+            }
+            std::array::from_fn::<f64, 9, _>(|n| gram.entries[n / 3][n % 3])
+        };
+        let found = problem.rows().merge(within, |a, b| std::array::from_fn(|n| a[n] + b[n]));
+        Gram { entries: [0, 3, 6].map(|n| [found[n], found[n + 1], found[n + 2]]) }
     }
 
     /// Number of cells in contact under any body.
@@ -72,8 +96,30 @@ impl ContactSet {
 
     /// The cells in contact under one body, in pieces along which its modes are affine.
     pub(crate) fn pieces(&self, problem: &Problem<'_>, body: usize) -> impl Iterator<Item = Range<usize>> + Clone {
-        let pieces = self.runs.inside(&self.bodies[body].span, problem.cut());
+        self.pieces_in(problem, body, 0..self.member.len())
+    }
+
+    /// Those of a band.
+    pub(crate) fn pieces_in(
+        &self,
+        problem: &Problem<'_>,
+        body: usize,
+        band: Range<usize>,
+    ) -> impl Iterator<Item = Range<usize>> + Clone {
+        let span = &self.bodies[body].span;
+        let start = band.start.max(span.start);
+        let pieces = self.runs.inside(&(start..band.end.min(span.end).max(start)), problem.cut());
         pieces.filter(move |piece| piece.body == body).map(|piece| piece.cells)
+    }
+
+    /// Σ f over the cells in contact under one body.
+    pub(crate) fn sum_of(&self, problem: &Problem<'_>, body: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
+        problem.rows().sum_of(|band| self.pieces_in(problem, body, band).flatten().map(&f).sum())
+    }
+
+    /// Σ f over all cells in contact.
+    pub(crate) fn sum_over_all(&self, problem: &Problem<'_>, f: impl Fn(usize) -> f64 + Sync) -> f64 {
+        problem.rows().sum_of(|band| self.runs.inside(&band, problem.cut()).flat_map(|piece| piece.cells).map(&f).sum())
     }
 
     /// The cells in contact under one body.
@@ -83,7 +129,7 @@ impl ContactSet {
 
     /// Σ values over the cells in contact under one body.
     pub(crate) fn sum(&self, problem: &Problem<'_>, body: usize, values: &[f64]) -> f64 {
-        self.pieces(problem, body).map(|piece| sum(&values[piece])).sum()
+        problem.rows().sum_of(|band| self.pieces_in(problem, body, band).map(|piece| sum(&values[piece])).sum())
     }
 
     /// The cells in contact under one body, and the value of a motion on each of them.
@@ -173,7 +219,8 @@ mod tests {
             assert!((0..3).all(|m| (fit.0[m] - motion.0[m]).abs() < 1e-12), "{body}: {fit:?}");
 
             let p = |k: usize| pressure[k];
-            let y = modes.balance(set.pieces(&problem, body), p, p).unwrap();
+            let pieces = |band| set.pieces_in(&problem, body, band);
+            let y = modes.balance(problem.rows(), pieces, p, p).unwrap();
             let mut carried = [0.0; 3];
             for (k, factor) in set.displacements(&problem, body, y) {
                 (0..3).for_each(|m| carried[m] += modes.at(k)[m] * (p(k) + p(k) * factor).max(0.0));

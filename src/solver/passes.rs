@@ -3,6 +3,7 @@
 //! Each pass works on pieces of [`Runs`], along which the motion of a body is affine, and does everything that needs the
 //! same fields at once. Sums are taken for each body: Σ B f of its modes B from Σ f and Σ j f of every piece.
 
+use crate::ranks::Rows;
 use crate::solver::bands::{Bands, Found};
 use crate::solver::problem::Problem;
 use crate::solver::rigid_motion::{Line, ModeCoefficients};
@@ -34,8 +35,8 @@ pub(crate) struct Passes {
 }
 
 impl Passes {
-    pub(crate) fn new(cells: usize, bodies: usize) -> Passes {
-        Passes { bands: Bands::new(cells, bodies) }
+    pub(crate) fn new(rows: &Rows, bodies: usize) -> Passes {
+        Passes { bands: Bands::new(rows, bodies) }
     }
 
     /// p += a d, v += a K d, with r = motion − (c v + gap) on the cells in contact. Finds Σ B r, Σ r², Σ (c v)² and
@@ -324,7 +325,7 @@ mod tests {
         let inside = |body: usize, f: &dyn Fn(usize) -> f64| {
             (0..n).filter(|&k| set.member[k] && problem.owner(k) == body).map(f).sum::<f64>()
         };
-        let (mut passes, runs) = (Passes::new(n, bodies.len()), &set.runs);
+        let (mut passes, runs) = (Passes::new(kernel.rows(), bodies.len()), &set.runs);
 
         let (mut p, mut v) = (field(1.3), field(1.7));
         let (p0, v0) = (p.clone(), v.clone());

@@ -1,6 +1,7 @@
 //! The reference solver of the source paper.
 
 use crate::kernel::Workspace;
+use crate::ranks::Rows;
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{Outcome, ResidualSums, Stop};
@@ -25,9 +26,10 @@ pub(crate) struct PolonskyKeer {
 }
 
 impl PolonskyKeer {
-    pub(crate) fn new(cells: usize, bodies: usize) -> PolonskyKeer {
+    pub(crate) fn new(rows: &Rows, bodies: usize) -> PolonskyKeer {
+        let cells = rows.len();
         let field = vec![0.0; cells];
-        let (set, passes) = (ContactSet::new(cells, bodies), Passes::new(cells, bodies));
+        let (set, passes) = (ContactSet::new(cells, bodies), Passes::new(rows, bodies));
         PolonskyKeer { set, passes, residual: field.clone(), direction: field.clone(), image: field }
     }
 
@@ -182,8 +184,8 @@ impl PolonskyKeer {
 /// move up and down, its load at the pivot. `set` contains all cells that it may touch.
 fn least_penetrating_tilt(problem: &Problem<'_>, body: usize, set: &ContactSet) -> ModeCoefficients {
     let free = Freedom { translation: true, total: 1.0, ..problem.bodies[body] };
-    let modes = Modes::new(problem.kernel.grid(), free);
-    let resting = RestingPosition::new(&modes, set.cells(problem, body), problem.gap);
+    let modes = Modes::new(problem.kernel.grid(), problem.rows(), free);
+    let resting = RestingPosition::new(problem.rows(), &modes, set.cells(problem, body), problem.gap);
     let ModeCoefficients([_, tilt1, tilt2]) = resting.motion;
     ModeCoefficients([0.0, tilt1, tilt2])
 }

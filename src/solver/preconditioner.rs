@@ -30,18 +30,19 @@ pub(crate) struct Preconditioner {
 impl Preconditioner {
     /// That of a kernel, whose buffers it borrows.
     pub(crate) fn new(kernel: &LocalKernel, lender: &mut Workspace) -> Preconditioner {
-        let cells = kernel.grid().cells();
+        let (rows, [n1, n2]) = (kernel.rows(), kernel.rows().cells());
         let operator = kernel.inverse();
         let work = kernel.inverse_workspace(&operator);
-        let extension = Extension::new(cells, kernel.periodic_axes(), ebb(kernel));
+        let extension = Extension::new(rows, kernel.periodic_axes(), ebb(kernel));
         let mut preconditioner =
             Preconditioner { operator: Arc::new(operator), work, diagonal: 0.0, extension, version: 0 };
         let mut impulse = vec![0.0; kernel.grid().len()];
         // in the middle, as far as possible from its mirror images
-        let middle = cells[0] / 2 * cells[1] + cells[1] / 2;
-        impulse[middle] = 1.0;
+        let own_row = (n1 / 2).checked_sub(rows.own().start).filter(|_| rows.own().contains(&(n1 / 2)));
+        let middle = own_row.map(|row| row * n2 + n2 / 2);
+        middle.into_iter().for_each(|k| impulse[k] = 1.0);
         preconditioner.filter(&mut impulse, lender);
-        preconditioner.diagonal = impulse[middle];
+        preconditioner.diagonal = rows.greatest(middle.map_or(f64::NEG_INFINITY, |k| impulse[k]));
         preconditioner
     }
 
@@ -80,7 +81,7 @@ impl Preconditioner {
 fn ebb(kernel: &LocalKernel) -> Option<Ebb> {
     let layer = kernel.layer()?;
     let remains = BEYOND_LAYER + (1.0 - BEYOND_LAYER) * layer.longest_over_half_space();
-    let (cells, spacing) = (kernel.grid().cells(), kernel.grid().spacing());
+    let (cells, spacing) = (kernel.rows().cells(), kernel.grid().spacing());
     // blocks are as long as broad in cells
     let side = if cells[1] == 1 {
         spacing[0]

@@ -1,6 +1,7 @@
 //! The contact problem of one step, and its solution.
 
 use crate::kernel::{LocalKernel, Workspace};
+use crate::ranks::Rows;
 use crate::solver::rigid_motion::{Freedom, Line, ModeCoefficients, Modes};
 use crate::solver::runs::Cut;
 use crate::solver::trace::Trace;
@@ -58,7 +59,7 @@ pub(crate) struct Counts {
 
 impl<'a> Problem<'a> {
     pub(crate) fn modes(&self, body: usize) -> Modes<'a> {
-        Modes::new(self.kernel.grid(), self.bodies[body])
+        Modes::new(self.kernel.grid(), self.kernel.rows(), self.bodies[body])
     }
 
     /// The free modes of a body along a row, from cell `k` on.
@@ -66,6 +67,11 @@ impl<'a> Problem<'a> {
     pub(crate) fn line(&self, body: usize, k: usize) -> Line {
         // without tilt, the common scene, there is nothing to compute
         if self.bodies[body].tilts() { self.modes(body).line(k) } else { Line::UPRIGHT }
+    }
+
+    /// The own rows, and what joins them with those of other ranks.
+    pub(crate) fn rows(&self) -> &'a Rows {
+        self.kernel.rows()
     }
 
     /// How the cells are cut into pieces along which the motion of a body is affine.
@@ -78,7 +84,7 @@ impl<'a> Problem<'a> {
     /// nearly uniform pressure displaces them hardly at all.
     pub(crate) fn rounding(&self, pressure: &[f64]) -> f64 {
         let displaced = match self.kernel.softest_wave_if_mean_is_held() {
-            Some(softest) => self.compliance * softest * greatest(pressure),
+            Some(softest) => self.compliance * softest * self.rows().greatest(greatest(pressure)),
             None => 0.0,
         };
         4.0 * f64::EPSILON * (self.prescribed + displaced)
@@ -145,7 +151,8 @@ impl Solution {
         for body in (0..problem.bodies.len()).filter(|&body| problem.released(body)) {
             let own = (0..problem.gap.len()).filter(|&k| problem.owner(k) == body);
             let heights = own.map(|k| problem.compliance * self.potential[k] + problem.gap[k]);
-            self.motions[body] = ModeCoefficients([heights.fold(f64::INFINITY, f64::min), 0.0, 0.0]);
+            let lowest = problem.rows().least(heights.fold(f64::INFINITY, f64::min));
+            self.motions[body] = ModeCoefficients([lowest, 0.0, 0.0]);
         }
     }
 

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use crate::Grid;
 use crate::linalg;
+use crate::ranks::Rows;
 
 /// The motions ω + α1 ξ1 + α2 ξ2 that a load leaves free to one body, ξ = x − e measured from the point e
 /// at which the load acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0 (Eq. 4 and
@@ -94,12 +95,14 @@ pub(crate) struct Line {
 /// Σ w B Bᵀ over some cells.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Gram {
-    entries: [[f64; 3]; 3],
+    pub(crate) entries: [[f64; 3]; 3],
 }
 
 impl<'a> Modes<'a> {
-    pub(crate) fn new(grid: &'a Grid, freedom: Freedom) -> Modes<'a> {
-        Modes { grid, freedom, scale: grid.lengths().map(|length| 0.5 * length) }
+    /// On the own ones of the `rows` of a grid.
+    pub(crate) fn new(grid: &'a Grid, rows: &Rows, freedom: Freedom) -> Modes<'a> {
+        let scale = [0, 1].map(|axis| 0.5 * (grid.spacing()[axis] * rows.cells()[axis] as f64));
+        Modes { grid, freedom, scale }
     }
 
     pub(crate) fn tilts(&self) -> bool {
@@ -173,21 +176,22 @@ impl<'a> Modes<'a> {
         ModeCoefficients([if self.freedom.translation { sums[0] / cells.max(1) as f64 } else { 0.0 }, 0.0, 0.0])
     }
 
-    /// Finds y such that the pressures max(0, base + weight · B y) on the `pieces` of rows carry the force and moments
+    /// Finds y such that the pressures max(0, base + weight · B y) on the `pieces` of each band carry the force and moments
     /// of the load: the minimum of the convex ½ Σ weight (base/weight + B y)₊² − b·y, by
     /// Newton's method with step halving. `None` if there is none, because the load does not act inside
     /// the convex hull of the cells.
-    pub(crate) fn balance(
+    pub(crate) fn balance<P: Iterator<Item = Range<usize>>>(
         &self,
-        pieces: impl Iterator<Item = Range<usize>> + Clone,
-        base: impl Fn(usize) -> f64,
-        weight: impl Fn(usize) -> f64,
+        rows: &Rows,
+        pieces: impl Fn(Range<usize>) -> P + Sync,
+        base: impl Fn(usize) -> f64 + Sync,
+        weight: impl Fn(usize) -> f64 + Sync,
     ) -> Option<ModeCoefficients> {
         let wanted = self.wanted();
-        let evaluate = |y: [f64; 3]| {
-            let (mut gram, mut sums, mut value) = (Gram::default(), wanted.map(|b| -b), -dot(wanted, y));
+        let within = |y: [f64; 3], band: Range<usize>| {
+            let (mut gram, mut sums, mut value) = (Gram::default(), [0.0; 3], 0.0);
             // piece by piece, so that rounding does not grow with the number of cells
-            for piece in pieces.clone() {
+            for piece in pieces(band) {
                 let middle = 0.5 * (piece.len() - 1) as f64;
                 let line = self.line(piece.start).from(middle);
                 let [start, slope] = line.of(ModeCoefficients(y));
@@ -207,10 +211,16 @@ impl<'a> Modes<'a> {
                 let part = line.sums(pressures);
                 (0..3).for_each(|m| sums[m] += part[m]);
             }
-            (gram, sums, value)
+            let [a, b, c] = gram.entries;
+            [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], sums[0], sums[1], sums[2], value]
+        };
+        let evaluate = |y: [f64; 3]| {
+            let found = rows.merge(|band| within(y, band), |a, b| std::array::from_fn(|n| a[n] + b[n]));
+            let gram = Gram { entries: [0, 3, 6].map(|n| [found[n], found[n + 1], found[n + 2]]) };
+            (gram, [0, 1, 2].map(|m| found[9 + m] - wanted[m]), found[12] - dot(wanted, y))
         };
         // in these units a moment is at most that of the whole force at the end of the grid
-        let size = pieces.clone().flatten().map(|k| base(k).abs()).sum::<f64>().max(wanted[0].abs());
+        let size = rows.sum_of(|band| pieces(band).flatten().map(|k| base(k).abs()).sum()).max(wanted[0].abs());
         if size == 0.0 {
             return Some(ModeCoefficients::default());
         }
@@ -319,9 +329,10 @@ mod tests {
     #[test]
     fn coefficients_are_those_of_the_motion() {
         let grid = Grid::new([7, 4], [2.0, 3.0]).unwrap();
+        let rows = Rows::all(grid.cells());
         let motion = RigidMotion { approach: 0.3, tilt: [-0.2, 0.7] };
         for point in [[0.0; 2], [0.4, -1.1]] {
-            let modes = Modes::new(&grid, Freedom { translation: true, tilt: [true; 2], point, total: 1.0 });
+            let modes = Modes::new(&grid, &rows, Freedom { translation: true, tilt: [true; 2], point, total: 1.0 });
             let coefficients = modes.coefficients(motion);
             let back = modes.physical(coefficients);
             assert!((back.approach - motion.approach).abs() < 1e-15);
@@ -330,7 +341,8 @@ mod tests {
                 assert!((displacement - motion.at(grid.center(k / 4, k % 4))).abs() < 1e-14, "{k}: {displacement}");
             }
         }
-        let upright = Modes::new(&grid, Freedom { translation: true, tilt: [false; 2], point: [1.0; 2], total: 1.0 });
+        let upright =
+            Modes::new(&grid, &rows, Freedom { translation: true, tilt: [false; 2], point: [1.0; 2], total: 1.0 });
         let motion = RigidMotion { tilt: [0.0; 2], ..motion };
         assert_eq!(upright.physical(upright.coefficients(motion)), motion);
     }

@@ -73,7 +73,8 @@ impl Runs {
     }
 
     /// The parts of runs that lie in a band.
-    fn within(&self, band: &Range<usize>) -> impl Iterator<Item = Range<usize>> + Clone {
+    #[inline]
+    fn within<'a>(&'a self, band: &Range<usize>) -> impl Iterator<Item = Range<usize>> + Clone + use<'a> {
         let (start, end) = (band.start, band.end);
         let first = self.runs.partition_point(|run| run[1] as usize <= start);
         let runs = self.runs[first..].iter().map(|run| run.map(|k| k as usize)).take_while(move |run| run[0] < end);
@@ -81,11 +82,17 @@ impl Runs {
     }
 
     /// The pieces in contact that lie in a band.
-    pub(crate) fn inside(&self, band: &Range<usize>, cut: Cut<'_>) -> impl Iterator<Item = Piece> + Clone {
+    #[inline]
+    pub(crate) fn inside<'a, 'c>(
+        &'a self,
+        band: &Range<usize>,
+        cut: Cut<'c>,
+    ) -> impl Iterator<Item = Piece> + Clone + use<'a, 'c> {
         self.within(band).flat_map(move |run| cut.pieces(run))
     }
 
     /// Calls `visit` with the pieces of a band, and whether they are in contact.
+    #[inline]
     pub(crate) fn walk(&self, band: &Range<usize>, cut: Cut<'_>, mut visit: impl FnMut(Piece, bool)) {
         let mut outside = band.start;
         for run in self.within(band) {
@@ -99,6 +106,7 @@ impl Runs {
 
 impl<'a> Cut<'a> {
     /// Cuts cells that follow each other.
+    #[inline]
     pub(crate) fn pieces(self, cells: Range<usize>) -> impl Iterator<Item = Piece> + Clone + use<'a> {
         let Cut { columns, owner } = self;
         let (mut start, mut row_end) = (cells.start, (cells.start / columns + 1).saturating_mul(columns));

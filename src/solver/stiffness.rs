@@ -2,7 +2,6 @@
 
 use crate::kernel::LocalKernel;
 use crate::solver::preconditioner::Preconditioner;
-use crate::sum::{sum, sum_of_pairs};
 
 /// Residual of the displacement, relative to it.
 pub(crate) const FLAT_PUNCH_TOLERANCE: f64 = 1e-7;
@@ -12,31 +11,31 @@ const MAX_ITERATIONS: usize = 500;
 /// displacement of a body of unit compliance, by preconditioned conjugate gradients. If they do not converge, their
 /// iterations and the residual reached.
 pub(crate) fn flat_punch(kernel: &LocalKernel, touches: impl Fn(usize) -> bool) -> Result<f64, (usize, f64)> {
-    let cells = kernel.grid().len();
+    let (cells, rows) = (kernel.grid().len(), kernel.rows());
     let mut work = kernel.workspace();
     let mut preconditioner = Preconditioner::new(kernel, &mut work);
     let inside: Vec<f64> = (0..cells).map(|k| f64::from(u8::from(touches(k)))).collect();
     let restrict = |field: &mut [f64]| field.iter_mut().zip(&inside).for_each(|(value, inside)| *value *= inside);
     let (mut q, mut residual, mut image) = (vec![0.0; cells], inside.clone(), vec![0.0; cells]);
     let (mut direction, mut last) = (vec![0.0; cells], 0.0);
-    let limit = FLAT_PUNCH_TOLERANCE * FLAT_PUNCH_TOLERANCE * sum(&inside);
+    let limit = FLAT_PUNCH_TOLERANCE * FLAT_PUNCH_TOLERANCE * rows.sum(&inside);
     let mut iterations = 0;
     loop {
-        let square = sum_of_pairs(&residual, &residual, |a, b| a * b);
+        let square = rows.sum_of_pairs(&residual, &residual, |a, b| a * b);
         if square <= limit {
-            return Ok(sum(&q));
+            return Ok(rows.sum(&q));
         }
         let failure = (iterations, (square / limit).sqrt() * FLAT_PUNCH_TOLERANCE);
         iterations += 1;
         image.copy_from_slice(&residual);
         preconditioner.filter(&mut image, &mut work);
         restrict(&mut image);
-        let energy = sum_of_pairs(&residual, &image, |a, b| a * b);
+        let energy = rows.sum_of_pairs(&residual, &image, |a, b| a * b);
         let beta = if last > 0.0 { energy / last } else { 0.0 };
         direction.iter_mut().zip(&image).for_each(|(d, z)| *d = z + beta * *d);
         kernel.apply(&direction, &mut image, &mut work);
         restrict(&mut image);
-        let curvature = sum_of_pairs(&direction, &image, |a, b| a * b);
+        let curvature = rows.sum_of_pairs(&direction, &image, |a, b| a * b);
         let length = energy / curvature;
         if !length.is_finite() || curvature <= 0.0 || iterations > MAX_ITERATIONS {
             return Err(failure);

@@ -1,6 +1,7 @@
 //! What is allocated, counted: by steps nothing, by a contact what its builder announces.
 
 mod memory;
+mod ranks;
 mod steps;
 
 use std::alloc::System;
@@ -18,6 +19,8 @@ fn main() {
     println!("steps allocate nothing: ok");
     steps::tilting_steps_allocate_nothing();
     println!("tilting steps allocate nothing: ok");
+    ranks::warm_steps_of_ranks_allocate_nothing();
+    println!("warm steps of ranks allocate nothing: ok");
     memory::builders_announce_what_is_counted();
     println!("builders announce what is counted: ok");
 }

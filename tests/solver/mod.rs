@@ -5,5 +5,7 @@ mod differential;
 mod extremes;
 mod loads;
 mod population;
+mod ranks;
+mod ranks_together;
 mod region;
 mod work;

@@ -58,6 +58,7 @@ impl ViscoelasticContact {
 
     /// [`ViscoelasticContact::save`] with how far a run along a history has come.
     pub(super) fn save_with(&self, path: &Path, progress: Option<&Progress>) -> Result<()> {
+        self.not_shared("a checkpoint")?;
         let bytes = format::encode(&Saved::of(self, progress)).map_err(|source| of_file(path, source))?;
         replace(path, |file| std::io::Write::write_all(file, &bytes))
     }
@@ -77,6 +78,7 @@ impl ViscoelasticContact {
     /// If the file cannot be read, is no checkpoint, is of a newer or older format, cut short, damaged, or of another scene
     /// ([`Error::Checkpoint`]); the contact is then as it was.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
+        self.not_shared("a checkpoint")?;
         let path = path.as_ref();
         let mut attempt = || {
             let bytes = std::fs::read(path)

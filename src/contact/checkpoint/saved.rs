@@ -40,7 +40,9 @@ impl<'a> Saved<'a> {
         if self.progress.as_ref().is_some_and(|progress| !progress.fits()) {
             return Err(CheckpointError::Malformed { what: "a run that no contact can continue".into() });
         }
-        contact.computation = Computation::new(&scene, self.state.into_owned());
+        let mut state = self.state.into_owned();
+        state.sum_up();
+        contact.computation = Computation::new(&scene, state);
         contact.view.refresh(&contact.computation.state);
         contact.progress = self.progress.map(|progress| Box::new(progress.into_owned()));
         Ok(())

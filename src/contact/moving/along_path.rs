@@ -43,6 +43,7 @@ impl ViscoelasticContact {
     /// As [`ViscoelasticContact::step`], or if the path or a gap is not finite, there are several rigid bodies, or the grid is
     /// fixed to the indenter. The contact, its indenter included, is then where it was.
     pub fn step_along(&mut self, travel: &Travel, dt: f64, load: Load) -> Result<TravelReport> {
+        self.not_shared("a step along a path")?;
         if self.settings().frame != Frame::Bodies {
             return Err(Error::WrongFrame { what: "a step along a path" });
         }

@@ -17,6 +17,8 @@ impl ViscoelasticContact {
     /// with waves of 8 cells 2e-5. Where the rise is not finite, beside the rim of a face, there is no slope: what a rim
     /// carries is in [`TravelReport::power`](crate::contact::TravelReport) alone. NaN where the shape's gap is.
     ///
+    /// NaN where [ranks](crate::ranks) share out the rows.
+    ///
     /// ```
     /// use viscocontact::prelude::*;
     ///
@@ -30,6 +32,9 @@ impl ViscoelasticContact {
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     pub fn lateral_force(&self, shape: &dyn crate::geometry::Geometry) -> [f64; 2] {
+        if self.computation.state.region.is_shared() {
+            return [f64::NAN; 2];
+        }
         let (n2, [half1, half2]) = (self.grid().cells()[1], self.grid().spacing().map(|side| 0.5 * side));
         let rise = |ahead: f64, behind: f64| {
             let rise = ahead - behind;

@@ -63,7 +63,7 @@ impl RunScale {
             }
         }
         if scale.force > 0.0 && compliance > 0.0 {
-            scale.depth_over_compliance = resting_depth(scene, &state.indenter, scale.force * compliance) / compliance;
+            scale.depth_over_compliance = resting_depth(scene, state, scale.force * compliance) / compliance;
         }
         Ok(scale)
     }

@@ -2,7 +2,7 @@
 
 use crate::contact::computation::Computation;
 use crate::contact::request::Step;
-use crate::solver::{Modes, RigidMotion};
+use crate::solver::RigidMotion;
 
 impl Computation {
     /// Makes the trial the state; `sum` is Σ p, and `sizes` are the means of displacement and v in
@@ -10,7 +10,8 @@ impl Computation {
     pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, sizes: [f64; 2]) {
         let Computation { state, trial, .. } = self;
         let (interval, datum) = (step.interval, step.indenter.gap().datum);
-        let contact_cells = trial.solution.pressure.iter().filter(|&&p| p > 0.0).count();
+        let pressed = trial.solution.pressure.iter().filter(|&&p| p > 0.0).count();
+        let contact_cells = state.region.rows().count(pressed);
         let touched = !state.is_undisturbed() || contact_cells > 0;
         let (before, after) = (&state.current.solution, &trial.solution);
         let pressed = [[&before.pressure[..], &after.pressure], [&before.potential, &after.potential]];
@@ -19,9 +20,9 @@ impl Computation {
         state.keep_earlier(interval);
         std::mem::swap(&mut state.previous, &mut state.current);
         std::mem::swap(&mut state.current.solution, &mut trial.solution);
-        state.current.contact_cells = state.region.images() * contact_cells;
+        (state.current.contact_cells, state.current.sum) = (state.region.images() * contact_cells, sum);
         for body in 0..step.loads.len() {
-            let modes = Modes::new(state.region.grid(), trial.free[body]);
+            let modes = state.region.modes(trial.free[body]);
             let free = modes.physical(state.current.solution.motions[body]);
             let RigidMotion { approach, tilt } = step.prescribed(body);
             state.current.motions[body] = RigidMotion { approach: datum + approach, tilt } + free;

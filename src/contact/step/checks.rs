@@ -11,7 +11,6 @@ use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
 use crate::rheology::is_known;
 use crate::solver::{Counts, Outcome, Solution};
-use crate::sum::sum;
 
 /// Rejects a step whose loading time is longer than the material is known for, if the bodies are `touched`: what
 /// was never touched has nothing to remember.
@@ -35,7 +34,8 @@ pub(super) fn below_full_contact(window: &Window, trial: &Trial, step: &Step<'_>
     else {
         return Ok(());
     };
-    let left = trial.gap.iter().sum::<f64>() / trial.gap.len() as f64;
+    let rows = window.kernel().rows();
+    let left = rows.sum(&trial.gap) / rows.len() as f64;
     let greatest = approach + left;
     if left > 0.0 { Ok(()) } else { Err(Error::BeyondFullContact { time: step.interval.time, approach, greatest }) }
 }
@@ -65,11 +65,11 @@ pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, st
 pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Step<'_>) -> Result<f64> {
     let time = step.interval.time;
     let overflow = |what: &'static str| Err(Error::Overflow { time, what });
-    let Solution { pressure, motions, .. } = &trial.solution;
+    let (Solution { pressure, motions, .. }, rows) = (&trial.solution, state.region.rows());
     if !motions.iter().flat_map(|motion| motion.0).all(f64::is_finite) {
         return overflow("the approach");
     }
-    let sum_of_pressure = sum(pressure);
+    let sum_of_pressure = rows.sum(pressure);
     let pressures = state.region.images() as f64 * sum_of_pressure;
     let force = scene.grid.cell_area() * pressures;
     if !force.is_finite() {
@@ -86,7 +86,7 @@ pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Ste
             return Err(Error::ContactAtEdge { time, cells });
         }
     }
-    if !sum(state.history.trial()).is_finite() {
+    if !rows.sum(state.history.trial()).is_finite() {
         return overflow("the displacement");
     }
     Ok(sum_of_pressure)

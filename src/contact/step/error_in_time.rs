@@ -75,7 +75,7 @@ pub(in crate::contact) fn error_in_time(
     let (pressure, before) = (&trial.solution.pressure, &state.current.solution);
     if !scene.settings.time_rule.needs_series() {
         let (mut change, mut size, mut sum) = (0.0, 0.0, 0.0);
-        // products of great pressures and displacements would overflow
+        // products of great pressures and displacements would overflow; no ranks share out direct sums
         let most = greatest(pressure);
         let fields =
             pressure.iter().zip(state.history.trial()).zip(trial.solution.potential.iter().zip(&before.potential));
@@ -98,8 +98,19 @@ pub(in crate::contact) fn error_in_time(
     let advance = |k: usize| tried.advance(step, k);
     let potential = &trial.solution.potential;
     let advance = &advance;
-    let measure =
-        ErrorMeasure { pressure, potential, matters, least, advance, amplification, agreement, resolution, beginning };
+    let rows = &state.region.rows();
+    let measure = ErrorMeasure {
+        rows,
+        pressure,
+        potential,
+        matters,
+        least,
+        advance,
+        amplification,
+        agreement,
+        resolution,
+        beginning,
+    };
     let error = state.history.time_error(measure);
     if !is_given || forces == 0 {
         return error;

@@ -1,5 +1,7 @@
 //! The error in time of a step that no step before it tells about.
 
+use std::ops::Range;
+
 use crate::contact::computation::Computation;
 use crate::contact::request::Step;
 use crate::contact::scene::Scene;
@@ -25,14 +27,19 @@ pub(super) fn first_step_error(scene: &Scene, tried: &Computation, step: &Step<'
     let (pressure, potential, displacement) =
         (&trial.solution.pressure, &trial.solution.potential, state.history.trial());
     // products of great pressures and displacements would overflow
-    let most = greatest(pressure);
-    let (mut sum, mut size, mut jump, mut change) = (0.0, 0.0, 0.0, 0.0);
-    for k in (0..pressure.len()).filter(|&k| pressure[k] > 0.0) {
-        let p = pressure[k] / most;
-        (sum, size) = (sum + p, size + p * displacement[k].abs());
-        change += p * (potential[k] - now[k]);
-        jump += if jumped { p * (now[k] - before[k]) } else { 0.0 };
-    }
+    let rows = state.region.rows();
+    let most = rows.greatest(greatest(pressure));
+    let part = |cells: Range<usize>| {
+        let (mut sum, mut size, mut jump, mut change) = (0.0, 0.0, 0.0, 0.0);
+        for k in cells.filter(|&k| pressure[k] > 0.0) {
+            let p = pressure[k] / most;
+            (sum, size) = (sum + p, size + p * displacement[k].abs());
+            change += p * (potential[k] - now[k]);
+            jump += if jumped { p * (now[k] - before[k]) } else { 0.0 };
+        }
+        [sum, size, jump, change]
+    };
+    let [sum, size, jump, change] = rows.merge(part, |a, b| std::array::from_fn(|n| a[n] + b[n]));
     let compliance = |t: f64| scene.material.contact_compliance(t);
     let time = |k: i32| dt * 2f64.powf(-0.5 * f64::from(k));
     let (mut mean, mut later) = (0.0, compliance(dt));

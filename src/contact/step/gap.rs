@@ -6,7 +6,7 @@ use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 use crate::hereditary::History;
 use crate::kernel::for_each_band;
-use crate::solver::{Freedom, Modes, RigidMotion};
+use crate::solver::{Freedom, RigidMotion};
 
 /// The rigid bodies over the region of a step.
 #[derive(Clone, Copy)]
@@ -58,7 +58,7 @@ impl RigidBodies<'_> {
     pub(super) fn displace(&self, c: f64, integrated: bool, trial: &Trial, u: &mut [f64]) {
         let Trial { solution, gap, free, .. } = trial;
         if let (true, &[Freedom { tilt: [false, false], .. }]) = (integrated, &free[..]) {
-            let motion = Modes::new(self.region.grid(), free[0]).displacement(solution.motions[0], 0);
+            let motion = self.region.modes(free[0]).displacement(solution.motions[0], 0);
             for_each_band([u], |first, [u]| {
                 let state = solution.pressure[first..].iter().zip(&solution.potential[first..]).zip(&gap[first..]);
                 for (u, ((&p, &v), &gap)) in u.iter_mut().zip(state) {
@@ -76,7 +76,7 @@ impl RigidBodies<'_> {
             return;
         }
         for (body, &freedom) in free.iter().enumerate() {
-            let (modes, motion) = (Modes::new(self.region.grid(), freedom), solution.motions[body]);
+            let (modes, motion) = (self.region.modes(freedom), solution.motions[body]);
             for k in (0..gap.len()).filter(|&k| self.initial.owner(k) == body && gap[k].is_finite()) {
                 // u_old + c v with the gap h less the same: gap = hi + u_old − prescribed
                 let h = gap[k] + c * solution.potential[k] - modes.displacement(motion, k);

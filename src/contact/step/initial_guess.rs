@@ -7,9 +7,9 @@ use crate::contact::request::Step;
 use crate::contact::state::{Equilibrium, State};
 use crate::contact::trial::Trial;
 use crate::contact::window::window::Window;
-use crate::kernel::{for_each_band, merge_bands};
-use crate::solver::{Counts, Freedom, Modes, RigidMotion};
-use crate::sum::{sum, sum_of_pairs};
+use crate::kernel::for_each_band;
+use crate::ranks::Rows;
+use crate::solver::{Counts, Freedom, RigidMotion};
 
 /// A guess is extrapolated only if it carries the force to within this factor: what is left after a cancellation is noise.
 const MAX_FORCE_RATIO: f64 = 1.5;
@@ -30,7 +30,7 @@ const MIN_SHARE_STAYING: f64 = 0.5;
 /// one.
 pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Trial, step: &Step<'_>, c: f64) {
     begin(state, trial, step);
-    let (now, before) = (&state.current.solution, &state.previous.solution);
+    let (now, before, rows) = (&state.current.solution, &state.previous.solution, state.region.rows());
     let held = trial.free.iter().all(|freedom| !freedom.translation);
     let given = held && trial.free.iter().all(|freedom| freedom.tilt == [false; 2]);
     if given && let Some(share) = share_left(state, trial, c) {
@@ -49,11 +49,11 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
         reach = best;
     }
     let positive = |p: f64| if p > 0.0 { p } else { 0.0 };
-    let guessed = sum_of_pairs(&now.pressure, &before.pressure, |p, before| positive(p + reach * (p - before)));
+    let guessed = rows.sum_of_pairs(&now.pressure, &before.pressure, |p, before| positive(p + reach * (p - before)));
     // a single force says what the guess must carry; else it should not stray far from the last state
     let wanted = match trial.free[..] {
         [only] if only.translation => only.total,
-        _ => sum(&now.pressure),
+        _ => state.current.sum,
     };
     let near = |sum: f64| (wanted / MAX_FORCE_RATIO..=wanted * MAX_FORCE_RATIO).contains(&sum);
     if !near(guessed) {
@@ -61,11 +61,11 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
     }
     trial.reach = reach;
     // full contact of bodies whose mean is held does not tell how hard a given approach presses
-    let full = state.region.covers() && state.current.contact_cells == state.region.images() * state.region.len();
+    let full = state.region.covers() && state.current.contact_cells == state.region.images() * rows.len();
     if held && full && window.kernel().mean_is_held() {
         return trial.solution.release();
     }
-    if reach == 0.0 && wanted > 0.0 && !near(sum(&now.pressure)) {
+    if reach == 0.0 && wanted > 0.0 && !near(state.current.sum) {
         // another load altogether: the last contact is no guide, the solver starts afresh
         return trial.solution.release();
     }
@@ -80,15 +80,21 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
 /// fell to less than √(a/(1 + a)) of itself vanishes, a gap that fell to less than the third power of that closes. False where
 /// the last two gaps are not known, where most cells would join or leave, or where the edge moves so slowly that single cells join: their
 /// gaps fall evenly until they touch, which is what the extrapolated pressure shows by itself.
-fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
+fn foresee_contact(state: &State, window: &mut Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
     let (now, before) = (&state.current, &state.previous);
     let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.remembers());
     let change = state.history.last_change();
-    if now.contact_cells == 0 || before.contact_cells == 0 || change.is_none() && !elastic {
+    if now.contact_cells == 0 || before.contact_cells == 0 {
+        return false;
+    }
+    // a rank without cells has no changes of them
+    let unknown = change.is_none() && state.region.len() > 0;
+    let rows = state.region.rows();
+    if rows.any(unknown) && !elastic {
         return false;
     }
     let ahead = state.extrapolation.reach(step.interval.dt);
-    if ahead * edge_speed(now, before, state.region.cells()[1]) < MIN_EDGE_SPEED {
+    if ahead * edge_speed(&rows, now, before, window.row_before(&now.solution.pressure)) < MIN_EDGE_SPEED {
         return false;
     }
     let share = (ahead / (1.0 + ahead)).sqrt();
@@ -125,16 +131,17 @@ fn foresee_contact(state: &State, window: &Window, trial: &mut Trial, step: &Ste
             let adds = [touching, likely, touching && likely];
             counts.iter_mut().zip(adds).for_each(|(count, adds)| *count += usize::from(adds));
         }
-        counts
+        counts.map(|count: usize| count as f64)
     };
-    let add = |a: [usize; 3], b: [usize; 3]| [0, 1, 2].map(|n| a[n] + b[n]);
-    let [touching, likely, staying] = merge_bands(trial.likely.len(), count, add);
-    staying as f64 >= MIN_SHARE_STAYING * touching.max(likely) as f64
+    let [touching, likely, staying] = rows.merge(count, |a, b| [0, 1, 2].map(|n| a[n] + b[n]));
+    staying >= MIN_SHARE_STAYING * touching.max(likely)
 }
 
 /// Mean distance in cells by which the edge of the contact moved in the last step: cells that joined or left, over the length of
-/// the edge, that is the number of its sides along one axis or the other.
-fn edge_speed(now: &Equilibrium, before: &Equilibrium, columns: usize) -> f64 {
+/// the edge, that is the number of its sides along one axis or the other. With the pressures `beyond` the first own row, if
+/// another rank has those.
+fn edge_speed(rows: &Rows, now: &Equilibrium, before: &Equilibrium, beyond: Option<&[f64]>) -> f64 {
+    let columns = rows.cells()[1];
     let touches = |k: usize| now.solution.pressure[k] > 0.0;
     let touched = |k: usize| before.solution.pressure[k] > 0.0;
     let part = |band: Range<usize>| {
@@ -145,26 +152,33 @@ fn edge_speed(now: &Equilibrium, before: &Equilibrium, columns: usize) -> f64 {
             across += cells.filter(|&k| touches(k) != touches(k - 1)).count();
             row += columns;
         }
-        let down = (band.start.max(columns)..band.end).filter(|&k| touches(k) != touches(k - columns)).count();
-        [band.filter(|&k| touches(k) != touched(k)).count(), across, down]
+        let mut down = (band.start.max(columns)..band.end).filter(|&k| touches(k) != touches(k - columns)).count();
+        if let (0, Some(beyond)) = (band.start, beyond) {
+            down += (0..columns.min(band.end)).filter(|&k| touches(k) != (beyond[k] > 0.0)).count();
+        }
+        [band.filter(|&k| touches(k) != touched(k)).count(), across, down].map(|count| count as f64)
     };
-    let add = |a: [usize; 3], b: [usize; 3]| [0, 1, 2].map(|n| a[n] + b[n]);
-    let [moved, across, down] = merge_bands(now.solution.pressure.len(), part, add);
-    moved as f64 / across.max(down).max(1) as f64
+    let [moved, across, down] = rows.merge(part, |a, b| [0, 1, 2].map(|n| a[n] + b[n]));
+    moved / across.max(down).max(1.0)
 }
 
 /// The share of the last pressure that best closes the gap of the step, if it is small. On a fixed contact a single
 /// relaxation time leaves exactly that, and so does a punch that is retracted from an elastic body.
 fn share_left(state: &State, trial: &Trial, c: f64) -> Option<f64> {
-    let (mut overlap, mut square) = (0.0, 0.0);
-    let now = &state.current.solution;
-    let pressed = || now.pressure.iter().zip(&now.potential).zip(&trial.gap).filter(|((p, _), _)| **p > 0.0);
+    let (now, rows) = (&state.current.solution, state.region.rows());
+    let pressed = |cells: Range<usize>| cells.filter(|&k| now.pressure[k] > 0.0);
     // a pressure that has relaxed by many decades has no square
-    let greatest = pressed().map(|((_, v), _)| (c * v).abs()).fold(f64::MIN_POSITIVE, f64::max);
-    for ((_, &v), &gap) in pressed() {
-        let (u, gap) = (c * v / greatest, gap / greatest);
-        (overlap, square) = (overlap - gap * u, square + u * u);
-    }
+    let displacements = pressed(0..trial.gap.len()).map(|k| (c * now.potential[k]).abs());
+    let greatest = rows.greatest(displacements.fold(f64::MIN_POSITIVE, f64::max));
+    let part = |cells: Range<usize>| {
+        let (mut overlap, mut square) = (0.0, 0.0);
+        for k in pressed(cells) {
+            let (u, gap) = (c * now.potential[k] / greatest, trial.gap[k] / greatest);
+            (overlap, square) = (overlap - gap * u, square + u * u);
+        }
+        [overlap, square]
+    };
+    let [overlap, square] = rows.merge(part, |a, b| [a[0] + b[0], a[1] + b[1]]);
     let share = overlap / square;
     (share < MAX_SHARE_LEFT).then_some(share.max(0.0))
 }
@@ -187,7 +201,7 @@ fn best_reach(state: &State, gap: &[f64], c: f64, wanted: f64) -> Option<f64> {
         sums
     };
     let add = |a: [f64; 7], b: [f64; 7]| std::array::from_fn(|n| a[n] + b[n]);
-    let [p, dp, gap_p, gap_dp, pv, pdv, dpdv] = merge_bands(gap.len(), part, add);
+    let [p, dp, gap_p, gap_dp, pv, pdv, dpdv] = state.region.rows().merge(part, add);
     let (sums, gaps, energies) = ([p, dp], [gap_p, gap_dp], [pv, pdv, dpdv]);
     // the direction is p₀ − p₁ less so much of p₀ that it carries no force
     let (scale, share) = (wanted / sums[0], sums[1] / sums[0]);
@@ -206,7 +220,7 @@ pub(super) fn begin(state: &State, trial: &mut Trial, step: &Step<'_>) {
     let datum = step.indenter.gap().datum;
     for (body, motion) in trial.solution.motions.iter_mut().enumerate() {
         let RigidMotion { approach, tilt } = state.current.motions[body];
-        let modes = Modes::new(state.region.grid(), trial.free[body]);
+        let modes = state.region.modes(trial.free[body]);
         *motion = modes.coefficients(RigidMotion { approach: approach - datum, tilt });
     }
 }

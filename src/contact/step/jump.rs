@@ -1,5 +1,7 @@
 //! Jumps of the load on bodies without elastic response.
 
+use std::ops::Range;
+
 use crate::contact::request::Step;
 use crate::contact::state::State;
 use crate::contact::step::initial_guess::{begin, extrapolate};
@@ -8,7 +10,7 @@ use crate::contact::window::window::Window;
 use crate::error::Result;
 use crate::geometry::Gap;
 use crate::hereditary::no_elastic_response;
-use crate::solver::{Modes, PENETRATION_SLACK};
+use crate::solver::PENETRATION_SLACK;
 
 /// Rounding of the gap of a cell, relative to the numbers that it is the sum of.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -43,32 +45,45 @@ pub(super) fn jump_without_response(
 /// and penetration relative to the displacement in contact, force and moments relative to the force.
 fn residual(state: &State, initial: &Gap, trial: &Trial, step: &Step<'_>, body: usize, pressed: bool) -> f64 {
     let freedom = trial.free[body];
-    let (modes, motion) = (Modes::new(state.region.grid(), freedom), trial.solution.motions[body]);
+    let (modes, motion) = (state.region.modes(freedom), trial.solution.motions[body]);
     let released = freedom.translation && freedom.total == 0.0;
     let prescribed = step.prescribed(body).approach.abs() + initial.datum.abs();
-    let (mut cells, mut square, mut displacement, mut penetration) = (0_usize, 0.0, 0.0, 0.0_f64);
-    let (mut pressures, mut balance) = (0.0, [0.0; 3]);
     let own = |&k: &usize| initial.owner(k) == body && initial.above[k].is_finite();
-    for k in (0..trial.gap.len()).filter(own) {
-        let p = if pressed { state.current.solution.pressure[k] } else { 0.0 };
-        let (u, moved) = (state.history.trial()[k], modes.displacement(motion, k));
-        let h = trial.gap[k] - moved;
-        if !h.is_finite() {
-            return f64::INFINITY;
+    let part = |band: Range<usize>| {
+        let (mut cells, mut square, mut displacement, mut penetration) = (0.0, 0.0, 0.0, 0.0_f64);
+        let (mut pressures, mut balance) = (0.0, [0.0; 3]);
+        for k in band.filter(own) {
+            let p = if pressed { state.current.solution.pressure[k] } else { 0.0 };
+            let (u, moved) = (state.history.trial()[k], modes.displacement(motion, k));
+            let h = trial.gap[k] - moved;
+            if !h.is_finite() {
+                penetration = f64::INFINITY;
+                continue;
+            }
+            let rounding = ROUNDING * (prescribed + initial.above[k] + u.abs() + trial.gap[k].abs() + moved.abs());
+            if p > 0.0 {
+                let (distance, mode) = ((h.abs() - rounding).max(0.0), modes.at(k));
+                (cells, square, displacement) = (cells + 1.0, square + distance * distance, displacement + u * u);
+                pressures += p;
+                (0..3).for_each(|m| balance[m] += p * mode[m]);
+            } else if !released {
+                penetration = penetration.max(-h - rounding);
+            }
         }
-        let rounding = ROUNDING * (prescribed + initial.above[k] + u.abs() + trial.gap[k].abs() + moved.abs());
-        if p > 0.0 {
-            let (distance, mode) = ((h.abs() - rounding).max(0.0), modes.at(k));
-            (cells, square, displacement) = (cells + 1, square + distance * distance, displacement + u * u);
-            pressures += p;
-            (0..3).for_each(|m| balance[m] += p * mode[m]);
-        } else if !released {
-            penetration = penetration.max(-h - rounding);
-        }
+        [cells, square, displacement, pressures, balance[0], balance[1], balance[2], penetration]
+    };
+    let found = state
+        .region
+        .rows()
+        .merge(part, |a, b| std::array::from_fn(|n| if n == 7 { a[n].max(b[n]) } else { a[n] + b[n] }));
+    let [cells, square, displacement, pressures, _, _, _, penetration] = found;
+    let balance = &found[4..7];
+    if penetration == f64::INFINITY {
+        return penetration;
     }
     let force = pressures.max(freedom.total);
     let imbalance = (0..3).map(|m| (balance[m] - modes.load()[m] * freedom.total).abs() / force);
-    let root_mean = |sum: f64| (sum / cells.max(1) as f64).sqrt();
+    let root_mean = |sum: f64| (sum / f64::max(cells, 1.0)).sqrt();
     let distance = root_mean(square).max(penetration / PENETRATION_SLACK) / root_mean(displacement);
     // nothing over nothing is nothing, but numbers that left their range satisfy no load
     let parts = imbalance.filter(|_| force > 0.0).chain([distance].into_iter().filter(|_| square + penetration > 0.0));

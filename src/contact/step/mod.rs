@@ -40,6 +40,7 @@ use crate::error::{Error, Result, non_negative};
 use crate::events;
 use crate::hereditary::{Interval, TimeError};
 use crate::load::Load;
+use crate::ranks::caught;
 use crate::solver::Stop;
 use checks::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use collect_warnings::collect_warnings;
@@ -80,9 +81,14 @@ impl ViscoelasticContact {
     /// # Errors
     /// As [`ViscoelasticContact::step`], or if there is not one load per body.
     pub fn step_each(&mut self, dt: f64, loads: &[Load]) -> Result<StepReport> {
-        non_negative("time step", dt)?;
-        let step = self.request(self.time() + dt, dt, loads, self.settings().tolerance)?;
-        self.take(step)
+        let rows = self.computation.state.region.rows();
+        caught(&rows, || {
+            let requested = non_negative("time step", dt)
+                .and_then(|dt| self.request(self.time() + dt, dt, loads, self.settings().tolerance));
+            let requested = requested.and_then(|step| validate_loads(&self.scene, &step).map(|()| step));
+            let step = rows.agree(requested)?;
+            self.take(step)
+        })
     }
 
     /// A step of such a `length` to a `time`, in which nothing moves along the surface.
@@ -120,8 +126,11 @@ impl ViscoelasticContact {
 
     /// Computes a step. The state stays as it is.
     pub(in crate::contact) fn attempt(&mut self, step: &Step<'_>) -> Result<Attempt> {
-        let mut larger = None;
-        let tried = compute(&self.scene, &mut self.computation, &mut larger, step);
+        let (mut larger, rows) = (None, self.computation.state.region.rows());
+        let tried = caught(&rows, || {
+            rows.same(marks(step))?;
+            compute(&self.scene, &mut self.computation, &mut larger, step)
+        });
         if let Err(error) = &tried {
             events::failed(step.interval.time, step.interval.length, error);
             if let Some(larger) = &larger {
@@ -174,6 +183,15 @@ impl Attempt {
     }
 }
 
+/// Numbers of a step that are the same on all ranks.
+fn marks(step: &Step<'_>) -> [f64; 4] {
+    let load = step.loads.first().map_or(0.0, |load| match load {
+        Load::Force { normal, .. } => *normal,
+        Load::Approach { approach, .. } => *approach,
+    });
+    [step.interval.time, step.interval.dt, step.tolerance, load]
+}
+
 /// Computes a step in `own`, or in a copy on the first `larger` region that holds all of the contact; returns Σ p.
 fn compute(
     scene: &Scene,
@@ -182,7 +200,7 @@ fn compute(
     step: &Step<'_>,
 ) -> Result<f64> {
     validate_loads(scene, step)?;
-    if let Some((region, placed)) = region_for(scene, &own.state, step) {
+    if let Some((region, placed)) = region_for(scene, &own.state, step)? {
         let carried = larger.insert(own.carried_to(scene, region, &step.indenter)?);
         carried.state.region_is_placed = placed;
     }

@@ -64,7 +64,8 @@ pub(in crate::contact) fn carried(
             motions: motions.clone(),
             ..old.solution
         };
-        Equilibrium { solution, motions: old.motions.clone(), contact_cells: old.contact_cells }
+        let sum = region.rows().sum(&solution.pressure);
+        Equilibrium { solution, motions: old.motions.clone(), contact_cells: old.contact_cells, sum }
     });
     let carried = State {
         loads: state.loads.clone(),

@@ -26,11 +26,25 @@ impl Region {
 
     /// The part of a gap that belongs to the region; `None` if that is all of it.
     pub(crate) fn cut_gap(&self, gap: &Gap) -> Option<Gap> {
-        (!self.is_whole()).then(|| Gap {
+        // of shared rows the gap is that of own ones
+        (!self.is_whole() && !self.is_shared()).then(|| Gap {
             datum: gap.datum,
             above: self.cut(&gap.above),
             owner: gap.owner.as_ref().map(|owner| self.cut(owner)),
         })
+    }
+
+    /// Writes a field of the region to the cells that are shown, and what is outside it and its mirror images stays as it is.
+    pub(crate) fn show(&self, own: &[f64], shown: &mut [f64]) {
+        if !self.is_shared() {
+            return self.spread(own, shown);
+        }
+        let ([_, n2], [_, m2]) = (self.whole.cells(), self.cells());
+        for (row, line) in own.chunks_exact(m2).zip(shown.chunks_exact_mut(n2)) {
+            let (mirrored, computed) = line.split_at_mut(n2 - m2);
+            computed.copy_from_slice(row);
+            mirrored.iter_mut().rev().zip(row).for_each(|(out, &value)| *out = value);
+        }
     }
 
     /// Writes a field of the region over its cells, and their mirror images, of the whole grid.
@@ -64,9 +78,12 @@ impl Region {
             let last = row.iter().rposition(|&value| value > 0.0)?;
             Some(Extent { low: [i, first], high: [i, last] })
         });
-        let Extent { mut low, mut high } = Extent::hull(rows)?;
+        let own = Extent::hull(rows).map(|Extent { low, high }| {
+            let [low, high] = [low, high].map(|cell| [0, 1].map(|axis| cell[axis] + self.first[axis]));
+            Extent { low, high }
+        });
+        let Extent { mut low, high } = self.hull_of_all_ranks(own)?;
         for axis in 0..2 {
-            (low[axis], high[axis]) = (low[axis] + self.first[axis], high[axis] + self.first[axis]);
             if self.folded[axis] {
                 low[axis] = low[axis].min(self.whole.cells()[axis] - 1 - high[axis]);
             }
@@ -74,9 +91,25 @@ impl Region {
         Some(Extent { low, high })
     }
 
+    /// The hull of what all ranks have found.
+    fn hull_of_all_ranks(&self, own: Option<Extent>) -> Option<Extent> {
+        if !self.is_shared() {
+            return own;
+        }
+        let numbers = own.map_or([f64::INFINITY; 4], |Extent { low, high }| {
+            [low[0] as f64, low[1] as f64, -(high[0] as f64), -(high[1] as f64)]
+        });
+        let least = self.rows().join(numbers, |a, b| std::array::from_fn(|n| a[n].min(b[n])));
+        let [a, b, c, d] = least.map(|value| value.abs() as usize);
+        least[0].is_finite().then_some(Extent { low: [a, b], high: [c, d] })
+    }
+
     /// Number of cells on the edge of the whole grid with a positive value in `own`; periodic axes have no edge.
     pub(crate) fn positive_on_edge(&self, own: &[f64], periodic: [bool; 2]) -> usize {
         let [m1, m2] = self.cells();
+        if m1 == 0 {
+            return self.images() * self.rows().count(0);
+        }
         let ends = |axis: usize, count: usize| {
             let last = self.first[axis] + count == self.whole.cells()[axis];
             let outermost = [self.first[axis] == 0, last].map(|at_end| at_end && !periodic[axis]);
@@ -87,6 +120,6 @@ impl Region {
         let across: usize = rows.into_iter().flatten().map(|i| positive(&own[i * m2..(i + 1) * m2])).sum();
         let inner = (0..m1).filter(|i| !rows.contains(&Some(*i)));
         let down = inner.map(|i| columns.into_iter().flatten().filter(|j| own[i * m2 + j] > 0.0).count());
-        self.images() * (across + down.sum::<usize>())
+        self.images() * self.rows().count(across + down.sum::<usize>())
     }
 }

@@ -11,7 +11,7 @@ use crate::contact::window::extent::Extent;
 use crate::contact::window::region::Region;
 use crate::contact::window::window::Window;
 use crate::geometry::Gap;
-use crate::solver::{Modes, RigidMotion};
+use crate::solver::RigidMotion;
 
 /// Cells that a region holds beyond those that contact may reach, so that it need not grow every step.
 const MARGIN: f64 = 0.1;
@@ -69,7 +69,7 @@ pub(in crate::contact) fn outgrown(
 
 /// The motion of a body at the end of the step being tried, from the datum of the gap.
 pub(in crate::contact) fn motion_tried(region: &Region, trial: &Trial, step: &Step<'_>, body: usize) -> RigidMotion {
-    let free = Modes::new(region.grid(), trial.free[body]).physical(trial.solution.motions[body]);
+    let free = region.modes(trial.free[body]).physical(trial.solution.motions[body]);
     step.prescribed(body) + free
 }
 

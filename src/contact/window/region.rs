@@ -1,9 +1,14 @@
 //! The part of the grid that is computed.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use crate::Grid;
 use crate::contact::window::extent::Extent;
 use crate::geometry::Gap;
 use crate::kernel::images;
+use crate::ranks::{Ranks, Rows};
+use crate::solver::{Freedom, Modes};
 
 /// A rectangle of cells; where the scene is symmetric, half or a quarter of it. Elsewhere fields are mirror images, or there
 /// is no contact.
@@ -19,11 +24,14 @@ pub(crate) struct Region {
     pub(super) first: [usize; 2],
     /// Axes along which every field is even about the middle: only the upper half is computed.
     pub(super) folded: [bool; 2],
+    /// The rows of all ranks where they are shared out, and its cells are those of own ones.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    shared: Option<Rows>,
 }
 
 impl Region {
     fn new(whole: &Grid, folded: [bool; 2], first: [usize; 2], cells: [usize; 2]) -> Region {
-        Region { whole: whole.clone(), grid: whole.part(first, cells), first, folded }
+        Region { whole: whole.clone(), grid: whole.part(first, cells), first, folded, shared: None }
     }
 
     /// All of `grid`, except for mirror images along folded axes, which have an even number of cells.
@@ -31,6 +39,15 @@ impl Region {
         let all = grid.cells();
         let first = [0, 1].map(|axis| if folded[axis] { all[axis] / 2 } else { 0 });
         Region::new(grid, folded, first, [0, 1].map(|axis| all[axis] - first[axis]))
+    }
+
+    /// All of `grid`, as [`Region::whole`], its rows shared out between ranks.
+    pub(crate) fn shared(grid: &Grid, folded: [bool; 2], group: Arc<dyn Ranks>) -> Region {
+        let Region { first: [start, first], grid: part, .. } = Region::whole(grid, folded);
+        let [n1, n2] = part.cells();
+        let rows = Rows::of_rank([n1, n2], group);
+        let own = Region::new(grid, folded, [start + rows.own().start, first], [rows.own().len(), n2]);
+        Region { shared: Some(rows), ..own }
     }
 
     /// A region of suitable size that holds these cells of the whole grid, and a fraction `margin` more along each axis.
@@ -100,6 +117,30 @@ impl Region {
         &self.grid
     }
 
+    /// Its rows, and what joins them with those of other ranks.
+    pub(crate) fn rows(&self) -> Rows {
+        self.shared.clone().unwrap_or_else(|| Rows::all(self.cells()))
+    }
+
+    pub(crate) fn is_shared(&self) -> bool {
+        self.shared.is_some()
+    }
+
+    /// The motions of a body on its cells, as far as they are free.
+    pub(crate) fn modes(&self, freedom: Freedom) -> Modes<'_> {
+        Modes::new(&self.grid, &self.rows(), freedom)
+    }
+
+    /// The rows of the whole grid that fields are shown on: all, or, where they are shared out, own ones.
+    pub(crate) fn shown_rows(&self) -> Range<usize> {
+        if self.is_shared() { self.first[0]..self.first[0] + self.cells()[0] } else { 0..self.whole.cells()[0] }
+    }
+
+    /// Number of cells that fields are shown on.
+    pub(crate) fn shown_len(&self) -> usize {
+        self.shown_rows().len() * self.whole.cells()[1]
+    }
+
     pub(crate) fn cells(&self) -> [usize; 2] {
         self.grid.cells()
     }
@@ -112,11 +153,6 @@ impl Region {
         self.grid.len()
     }
 
-    /// Number of cells of the whole grid.
-    pub(crate) fn whole_len(&self) -> usize {
-        self.whole.len()
-    }
-
     /// How many cells of the whole grid each of its cells stands for.
     pub(crate) fn images(&self) -> usize {
         images(self.folded)
@@ -127,9 +163,14 @@ impl Region {
         self.len() == self.whole.len()
     }
 
-    /// Whether it and its images are the whole grid.
+    /// Whether its cells are all that is shown.
+    pub(crate) fn is_shown(&self) -> bool {
+        self.len() == self.shown_len()
+    }
+
+    /// Whether it and its images are the whole grid, together with those of other ranks.
     pub(crate) fn covers(&self) -> bool {
-        self.images() * self.len() == self.whole.len()
+        self.is_shared() || self.images() * self.len() == self.whole.len()
     }
 
     /// The lowest value of a field on the whole grid outside it and its mirror images; +∞ if they are all of it.

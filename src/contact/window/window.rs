@@ -7,7 +7,7 @@ use crate::contact::trial::Trial;
 use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::{ActiveSet, Outcome, PolonskyKeer, Problem, Stop};
+use crate::solver::{ActiveSet, Ghosts, Neighbours, Outcome, PolonskyKeer, Problem, Stop};
 
 /// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt for
 /// another region and never saved.
@@ -22,6 +22,8 @@ pub(crate) struct Window {
     lowest_outside: f64,
     /// The indenter whose gap these are.
     indenter: u64,
+    /// What fetches rows of other ranks, if they share out the region.
+    beside: Option<(Neighbours, Ghosts)>,
 }
 
 #[derive(Debug, Clone)]
@@ -32,15 +34,21 @@ enum ContactSolver {
 
 impl Window {
     pub(crate) fn new(scene: &Scene, region: &Region, indenter: &Indenter) -> Window {
-        let kernel = scene.kernel.on(region.grid(), region.folded());
+        let kernel = scene.kernel.on_rows(region.grid(), region.folded(), &region.rows());
         let mut work = kernel.workspace();
         let solver = match scene.settings.solver {
             Solver::ActiveSet => ContactSolver::ActiveSet(Box::new(ActiveSet::new(&kernel, scene.bodies, &mut work))),
             Solver::PolonskyKeer => {
-                ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(region.len(), scene.bodies)))
+                ContactSolver::PolonskyKeer(Box::new(PolonskyKeer::new(&region.rows(), scene.bodies)))
             }
         };
+        let rows = region.rows();
+        let beside = rows.group().map(|group| {
+            let ghosts = Ghosts::beside(&rows, |rank| rows.of(rank), rows.cells(), false);
+            (Neighbours::new(group, rows.cells()[1]), ghosts)
+        });
         Window {
+            beside,
             work,
             kernel,
             solver,
@@ -78,6 +86,14 @@ impl Window {
     /// The kernel, and what its transforms work in.
     pub(crate) fn kernel_and_work(&mut self) -> (&LocalKernel, &mut Workspace) {
         (&self.kernel, &mut self.work)
+    }
+
+    /// The row of a field before the own ones, if another rank has it.
+    pub(crate) fn row_before(&mut self, field: &[f64]) -> Option<&[f64]> {
+        let (neighbours, ghosts) = self.beside.as_mut()?;
+        let [rows, columns] = self.kernel.grid().cells();
+        neighbours.fetch(ghosts, columns, rows, |row, out| out.copy_from_slice(&field[row * columns..][..columns]));
+        ghosts.before()
     }
 
     /// Whether the solver needs K p of a guess, rather than computing it itself.

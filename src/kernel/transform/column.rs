@@ -19,6 +19,8 @@ pub(super) enum Column {
 #[derive(Clone, Default)]
 pub(super) struct ColumnWorkspace {
     real: Vec<f64>,
+    /// The cells of all ranks, if they share them out.
+    pub(super) all: Vec<f64>,
     waves: Vec<Complex64>,
     scratch: Vec<Complex64>,
 }
@@ -37,12 +39,15 @@ impl Column {
         match self {
             Column::Real(forward, inverse) => ColumnWorkspace {
                 real: vec![0.0; line.len()],
+                all: Vec::new(),
                 waves: zeros(line.independent()),
                 scratch: zeros(forward.get_scratch_len().max(inverse.get_scratch_len())),
             },
-            Column::Folded => {
-                ColumnWorkspace { real: Vec::new(), waves: zeros(line.len()), scratch: zeros(line.scratch()) }
-            }
+            Column::Folded => ColumnWorkspace {
+                waves: zeros(line.len()),
+                scratch: zeros(line.scratch()),
+                ..ColumnWorkspace::default()
+            },
         }
     }
 }
@@ -50,7 +55,7 @@ impl Column {
 impl SpectralOperator {
     /// Transforms `input`, multiplies it by the spectrum and transforms it back; the result remains in the workspace.
     pub(super) fn convolve_column(&self, column: &Column, input: &[f64], work: &mut ColumnWorkspace) {
-        let ColumnWorkspace { real, waves, scratch } = work;
+        let ColumnWorkspace { real, waves, scratch, .. } = work;
         match column {
             Column::Real(forward, inverse) => {
                 let (values, padding) = real.split_at_mut(input.len());

@@ -12,6 +12,7 @@
 
 mod column;
 mod memory;
+mod shares;
 mod tasks;
 mod tiles;
 mod workspace;
@@ -22,6 +23,7 @@ use super::lanes::for_each_share;
 use super::layout::Layout;
 use super::lines::Line;
 use column::Column;
+pub(crate) use shares::Shares;
 use tasks::{Columns, ColumnsInPlace, RowsForward, RowsInverse, multiply_apart};
 use workspace::Lane;
 pub(crate) use workspace::TransformWorkspace;
@@ -29,6 +31,11 @@ pub(crate) use workspace::TransformWorkspace;
 /// Side of a tile: 8 complex numbers fill two cache lines.
 const TILE: usize = 8;
 const AREA: usize = TILE * TILE;
+
+/// Rows of the cells that a tile holds: two in each of its own where rows are folded.
+pub(crate) fn rows_in_a_tile(folded: [bool; 2]) -> usize {
+    if folded[1] { 2 * TILE } else { TILE }
+}
 
 /// A linear operator on fields, diagonal in wave-number space with a real even spectrum.
 #[derive(Clone)]
@@ -41,20 +48,32 @@ pub(crate) struct SpectralOperator {
     spectrum: Vec<f64>,
     /// The transform of a single column, which has no tiles.
     column: Option<Column>,
+    /// Who has which tiles of rows and panels of columns, if ranks share them out; `spectrum` is that of own columns.
+    shares: Option<Shares>,
 }
 
 impl SpectralOperator {
     /// Multiplication of the Fourier coefficients on [`Layout::period`] by `symbol(k1, k2)`, for wave numbers
     /// 0 … period/2 along each axis.
     pub(crate) fn from_symbol(layout: Layout, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator {
+        SpectralOperator::new(layout, None, symbol)
+    }
+
+    /// The same where ranks share out the rows; `symbol` is asked for own columns k2 alone.
+    pub(crate) fn shared(layout: Layout, shares: Shares, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator {
+        SpectralOperator::new(layout, Some(shares), symbol)
+    }
+
+    fn new(layout: Layout, shares: Option<Shares>, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator {
         let [columns, rows] = [0, 1].map(|axis| Line::new(layout.line(axis), layout.folded[axis]));
         let scale = 1.0 / (rows.norm() * columns.norm());
-        let mut spectrum = Vec::with_capacity(rows.independent() * columns.independent());
-        for k2 in 0..rows.independent() {
+        let own = shares.as_ref().map_or(0..rows.independent(), |shares| shares.columns(&layout));
+        let mut spectrum = Vec::with_capacity(own.len() * columns.independent());
+        for k2 in own {
             spectrum.extend((0..columns.independent()).map(|k1| scale * symbol(k1, k2)));
         }
         let column = layout.is_single_column().then(|| Column::new(&columns));
-        SpectralOperator { layout, rows, columns, spectrum, column }
+        SpectralOperator { layout, rows, columns, spectrum, column, shares }
     }
 
     /// Number of tiles side by side.
@@ -62,9 +81,9 @@ impl SpectralOperator {
         self.rows.independent().div_ceil(TILE)
     }
 
-    /// Number of complex values in all tiles.
+    /// Number of complex values in all tiles, or the most that a rank has of them at a time.
     fn tiles(&self) -> usize {
-        self.across() * self.down() * AREA
+        self.shares.as_ref().map_or(self.across() * self.down() * AREA, Shares::most)
     }
 
     /// Number of tiles below each other.
@@ -79,7 +98,7 @@ impl SpectralOperator {
     }
 
     fn rows_in_a_tile(&self) -> usize {
-        if self.rows.is_folded() { 2 * TILE } else { TILE }
+        rows_in_a_tile([false, self.rows.is_folded()])
     }
 
     /// Applies the operator to `input` and writes the result to `output`; both hold one value per cell.
@@ -113,6 +132,9 @@ impl SpectralOperator {
 
     /// Convolves `input`: the result remains in the workspace, its rows still transformed.
     fn convolve(&self, input: &[f64], work: &mut TransformWorkspace) {
+        if let Some(shares) = &self.shares {
+            return self.convolve_shared(shares, input, work);
+        }
         if let Some(column) = &self.column {
             return self.convolve_column(column, input, &mut work.column);
         }
@@ -122,7 +144,7 @@ impl SpectralOperator {
         let tiles = &mut work.tiles[..self.tiles()];
         for_each_share(&task, &mut work.lanes, tiles, share * self.across() * AREA);
         if let [lane] = &mut work.lanes[..] {
-            let task = ColumnsInPlace { operator: self };
+            let task = ColumnsInPlace { operator: self, across: self.across() };
             return for_each_share(&task, std::slice::from_mut(lane), tiles, usize::MAX);
         }
         let share = self.across().div_ceil(work.lanes.len());
@@ -133,7 +155,10 @@ impl SpectralOperator {
     /// Reads the result of [`SpectralOperator::convolve`] from the workspace.
     fn read(&self, output: &mut [f64], work: &mut TransformWorkspace) {
         if let Some(column) = &self.column {
-            return self.read_column(column, &work.column, output);
+            return match &self.shares {
+                Some(shares) => self.read_own_of_column(column, shares, &mut work.column, output),
+                None => self.read_column(column, &work.column, output),
+            };
         }
         let share = self.down().div_ceil(work.lanes.len());
         let in_place = work.lanes.len() == 1;
@@ -196,7 +221,7 @@ mod tests {
         /// Convolution with the even kernel whose coefficient at distance (i, j) is `coefficient(i, j)`; asked for
         /// distances below the number of cells (twice that along a folded axis), taken as zero beyond.
         pub(crate) fn from_coefficients(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> SpectralOperator {
-            let spectrum = EvenSpectrum::of(layout, coefficient);
+            let spectrum = EvenSpectrum::of(layout, layout.all_columns(), coefficient);
             SpectralOperator::from_symbol(layout, |k1, k2| spectrum.at(k1, k2))
         }
     }

@@ -64,6 +64,8 @@ impl Task for RowsForward<'_> {
 /// Convolves the columns of tiles that are stored row by row.
 pub(super) struct ColumnsInPlace<'a> {
     pub(super) operator: &'a SpectralOperator,
+    /// Number of tiles side by side.
+    pub(super) across: usize,
 }
 
 impl Task for ColumnsInPlace<'_> {
@@ -72,7 +74,7 @@ impl Task for ColumnsInPlace<'_> {
 
     #[inline(always)]
     fn run(&self, _: usize, lane: &mut Lane, tiles: &mut [Complex64]) {
-        let across = self.operator.across();
+        let across = self.across;
         for panel in 0..across {
             let at = |tile: usize| (tile * across + panel) * AREA;
             self.operator.gather(tiles, at, lane.block.get());

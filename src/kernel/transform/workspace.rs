@@ -18,7 +18,7 @@ pub(crate) struct TransformWorkspace {
     /// two.
     pub(super) tiles: Vec<Complex64>,
     /// The same after the columns, those of 8 columns below each other; empty for a single thread, which works in
-    /// place.
+    /// place, but for a rank what it sends or receives.
     pub(super) result: Vec<Complex64>,
     pub(super) lanes: Vec<Lane>,
     /// Replaces all of these where the operator has a single column.
@@ -59,13 +59,22 @@ impl Buffer {
 impl SpectralOperator {
     /// Buffers for [`SpectralOperator::apply`], for as many threads as pay off for this size.
     pub(crate) fn workspace(&self) -> TransformWorkspace {
-        self.workspace_for(lanes(self.layout.cells[0] * self.layout.cells[1]))
+        self.workspace_for(self.lanes())
+    }
+
+    /// As many threads as pay off for this size; one for each rank, if ranks share it.
+    fn lanes(&self) -> usize {
+        if self.shares.is_some() { 1 } else { lanes(self.layout.cells[0] * self.layout.cells[1]) }
     }
 
     /// Buffers for [`SpectralOperator::apply_beside`] an operator of the same cells, which lends its tiles if they suffice.
     pub(crate) fn workspace_beside(&self, lender: &SpectralOperator) -> TransformWorkspace {
-        let lanes = lanes(self.layout.cells[0] * self.layout.cells[1]);
-        self.buffers(lanes, if lender.layout.lends_to(&self.layout) { 0 } else { self.tiles() })
+        let lends = match (&self.shares, &lender.shares) {
+            (None, None) => lender.layout.lends_to(&self.layout),
+            // by chance of who has which, the smaller operator may have more of them on a rank
+            _ => self.column.is_none() && lender.column.is_none() && lender.tiles() >= self.tiles(),
+        };
+        self.buffers(self.lanes(), if lends { 0 } else { self.tiles() })
     }
 
     /// Buffers for `lanes` threads.
@@ -77,7 +86,10 @@ impl SpectralOperator {
     fn buffers(&self, lanes: usize, tiles: usize) -> TransformWorkspace {
         let layout = self.layout;
         if let Some(column) = &self.column {
-            let column = column.workspace(&self.columns);
+            let mut column = column.workspace(&self.columns);
+            if self.shares.is_some() {
+                column.all = vec![0.0; layout.cells[0]];
+            }
             return TransformWorkspace { layout, tiles: Vec::new(), result: Vec::new(), lanes: Vec::new(), column };
         }
         let zeros = |count| vec![Complex64::default(); count];
@@ -86,7 +98,7 @@ impl SpectralOperator {
             block: Buffer::zeros(TILE * self.stride()),
             scratch: Buffer::zeros(self.rows.scratch().max(self.columns.scratch())),
         };
-        let result = zeros(if lanes > 1 { tiles } else { 0 });
+        let result = zeros(if lanes > 1 || self.shares.is_some() { tiles } else { 0 });
         let column = ColumnWorkspace::default();
         TransformWorkspace { layout, tiles: zeros(tiles), result, lanes: vec![lane; lanes.max(1)], column }
     }

@@ -70,6 +70,7 @@ impl StressHistory {
     }
 
     fn of_body(contact: &ViscoelasticContact, body: usize) -> Result<StressHistory> {
+        contact.not_shared("a history of the stress")?;
         if contact.settings().frame == Frame::Indenter {
             return Err(Error::WrongFrame { what: "a history of the stress" });
         }
@@ -148,6 +149,7 @@ impl StressHistory {
     }
 
     fn check_grid(&self, contact: &ViscoelasticContact) -> Result<()> {
+        contact.not_shared("the stress below the surface")?;
         if *contact.grid() == self.grid { Ok(()) } else { Err(Error::OtherContact) }
     }
 }
@@ -173,6 +175,7 @@ impl ViscoelasticContact {
     }
 
     fn stress_of(&self, body: usize) -> Result<SubsurfaceStress> {
+        self.not_shared("the stress below the surface")?;
         let law = self.material().compressibility(body).ok_or(Error::Missing { part: "counter_body" })?;
         if !law.terms.is_empty() {
             return Err(MaterialError::ChangingPoisson { body }.into());

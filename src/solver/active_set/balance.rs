@@ -5,7 +5,6 @@ use crate::kernel::{Workspace, for_each_band};
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::outcome::ResidualSums;
 use crate::solver::problem::{Problem, Solution};
-use crate::sum::sum;
 
 /// Share of the force by which a converged pressure may be changed in order to balance it.
 const MAX_CLOSING_CHANGE: f64 = 1e-9;
@@ -40,7 +39,7 @@ impl ActiveSet {
     ) -> Result<(), usize> {
         let single = problem.bodies.len() == 1;
         let pressed: f64 = (0..problem.bodies.len()).map(|body| self.set.sum(problem, body, &solution.pressure)).sum();
-        let all = if self.changes.leaving { sum(&solution.pressure) } else { pressed };
+        let all = if self.changes.leaving { problem.rows().sum(&solution.pressure) } else { pressed };
         self.changes.moves = self.changes.leaving && (all - pressed).abs() < MAX_MOVED_SHARE * pressed;
         let carried = if self.changes.moves { all } else { pressed };
         if !single || problem.bodies[0].tilts() {
@@ -63,7 +62,8 @@ impl ActiveSet {
                 continue;
             }
             let p = |k: usize| solution.pressure[k].max(0.0);
-            if let Some(y) = modes.balance(self.set.pieces(problem, body), p, |k| self.shape[k]) {
+            let pieces = |band| self.set.pieces_in(problem, body, band);
+            if let Some(y) = modes.balance(problem.rows(), pieces, p, |k| self.shape[k]) {
                 // pressures that are moved change the moments, and the force of the bodies beside their own
                 self.changes.corrections[body] = (self.changes.moves || y != Default::default()).then_some(y);
                 continue;
@@ -89,7 +89,7 @@ impl ActiveSet {
             }
             self.set.keep_pressed(problem, body, &solution.pressure);
             solution.convolve(problem, work);
-            self.changes.leaving = self.some_leave(solution);
+            self.changes.leaving = self.some_leave(problem, solution);
             self.search.energy = 0.0;
         }
         Ok(())
@@ -110,11 +110,10 @@ impl ActiveSet {
             let before = &mut self.preconditioned;
             before.copy_from_slice(&solution.pressure);
             let closed = balance(problem, body, &self.set, solution);
-            let cells = || self.set.cells(problem, body);
-            let carried: f64 = cells().map(|k| before[k]).sum();
+            let carried = self.set.sum_of(problem, body, |k| before[k]);
             // what cannot be balanced would have to be removed entirely
-            let changed =
-                if closed { cells().map(|k| (solution.pressure[k] - before[k]).abs()).sum() } else { carried };
+            let change = |k: usize| (solution.pressure[k] - before[k]).abs();
+            let changed = if closed { self.set.sum_of(problem, body, change) } else { carried };
             if modes.translates() {
                 return closed && changed <= MAX_CLOSING_CHANGE * carried;
             }
@@ -127,7 +126,7 @@ impl ActiveSet {
 
     /// The displacement that a residual below the tolerance does not show.
     fn unseen(&self, problem: &Problem<'_>, tolerance: f64, solution: &Solution) -> f64 {
-        let square = self.set.runs.cells().map(|k| (problem.compliance * solution.potential[k]).powi(2)).sum::<f64>();
+        let square = self.set.sum_over_all(problem, |k| (problem.compliance * solution.potential[k]).powi(2));
         let sums = ResidualSums {
             displacement: square,
             cells: self.set.count(),

@@ -116,7 +116,7 @@ impl ActiveSet {
     fn add_deepest_cells(&mut self, problem: &Problem<'_>, alone: bool, state: ResidualSums, solution: &Solution) {
         let outside = |k: &usize| !self.set.member[*k] && problem.possible(*k);
         let cells = (0..self.set.member.len()).filter(outside);
-        let deepest = cells.map(|k| problem.depth(solution, k)).fold(0.0, f64::max);
+        let deepest = problem.rows().greatest(cells.map(|k| problem.depth(solution, k)).fold(0.0, f64::max));
         // where several cells have joined without any gain, only the deepest one
         let least = if alone { deepest } else { state.joining_depth(deepest) };
         for k in 0..self.set.member.len() {
@@ -149,7 +149,7 @@ impl ActiveSet {
             let (p, d) = (solution.pressure[k], self.search.direction[k]);
             if d < 0.0 { -p / d } else { f64::INFINITY }
         };
-        let first_zero = self.set.runs.cells().map(to_zero).fold(f64::INFINITY, f64::min);
+        let first_zero = problem.rows().least(self.set.runs.cells().map(to_zero).fold(f64::INFINITY, f64::min));
         if free.length <= first_zero {
             for k in self.set.runs.cells() {
                 solution.pressure[k] = (solution.pressure[k] + free.length * self.search.direction[k]).max(0.0);
@@ -161,12 +161,11 @@ impl ActiveSet {
         let straight = Gain::along(slope, c * curvature, first_zero);
         // s of the clipped step takes the place of z
         let clipped = if self.find_clipped_step(problem, free.length, solution) {
-            let part = |slope: f64, k: usize| slope + problem.depth(solution, k) * self.preconditioned[k];
-            let slope = self.set.runs.cells().fold(0.0, part);
+            let slope = self.set.sum_over_all(problem, |k| problem.depth(solution, k) * self.preconditioned[k]);
             self.shape.resize(solution.pressure.len(), 0.0);
             problem.kernel.apply(&self.preconditioned, &mut self.shape, work);
             solution.counts.convolutions += 1;
-            let curvature = self.set.runs.cells().fold(0.0, |sum, k| sum + self.preconditioned[k] * self.shape[k]);
+            let curvature = self.set.sum_over_all(problem, |k| self.preconditioned[k] * self.shape[k]);
             Gain::along(slope, c * curvature, 1.0)
         } else {
             Gain::default()
@@ -199,7 +198,8 @@ impl ActiveSet {
             let modes = problem.modes(body);
             let clipped = |k: usize| (solution.pressure[k] + a * self.search.direction[k]).max(0.0);
             let y = if modes.tilts() || modes.translates() {
-                let Some(y) = modes.balance(self.set.pieces(problem, body), clipped, clipped) else { return false };
+                let pieces = |band| self.set.pieces_in(problem, body, band);
+                let Some(y) = modes.balance(problem.rows(), pieces, clipped, clipped) else { return false };
                 y
             } else {
                 ModeCoefficients::default()

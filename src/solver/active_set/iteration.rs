@@ -59,7 +59,8 @@ impl ActiveSet {
             }
             state.note(problem, penetration, self.guess_rounding, solution);
             let mut ended = stop.outcome(solution, || !self.changes.any() && state.negative == 0.0);
-            if ended == Some(Outcome::Converged) && !solution.pressure.iter().all(|&p| p >= 0.0) {
+            let tensile = || !solution.pressure.iter().all(|&p| p >= 0.0);
+            if ended == Some(Outcome::Converged) && problem.rows().any(tensile()) {
                 // tiny tensile pressures, whose squares vanish, still violate p ≥ 0
                 if let Err(body) = self.remove_tensile_cells(problem, searched, solution, work) {
                     return Outcome::Unbalanced(body);
@@ -216,8 +217,9 @@ impl ActiveSet {
         let mut bodies = corrections.iter().zip(balances.iter_mut()).enumerate();
         let whole = bodies.all(|(body, (correction, balance))| {
             let next = |k: usize| p[k] + direction[k];
-            let cells = || self.set.pieces(problem, body);
-            let found = correction.and_then(|_| problem.modes(body).balance(cells(), next, |k| self.shape[k]));
+            let pieces = |band| self.set.pieces_in(problem, body, band);
+            let found =
+                correction.and_then(|_| problem.modes(body).balance(problem.rows(), pieces, next, |k| self.shape[k]));
             *balance = found.unwrap_or_default();
             found.is_some() == correction.is_some()
         });

@@ -42,7 +42,7 @@ impl ActiveSet {
             let bare = self.set.count_under(body) == 0 || problem.likely.is_some() && !pressed();
             if bare && !problem.released(body) {
                 // a guess without positive pressure may hold negative ones, which v includes
-                fresh |= solution.pressure.iter().any(|&p| p != 0.0);
+                fresh |= problem.rows().any(solution.pressure.iter().any(|&p| p != 0.0));
                 // K⁻¹ of a uniform displacement, but for its scale, is the pressure under a flat punch
                 let sharpen = |set: &ContactSet, solution: &mut Solution| {
                     let shape = &mut self.preconditioned;
@@ -51,7 +51,7 @@ impl ActiveSet {
                     cells().for_each(|k| shape[k] = solution.pressure[k]);
                     self.preconditioner.filter(shape, work);
                     solution.counts.preconditioner_applications += 1;
-                    let sum = |field: &[f64]| cells().map(|k| field[k].max(0.0)).sum::<f64>();
+                    let sum = |field: &[f64]| set.sum_of(problem, body, |k| field[k].max(0.0));
                     let scale = sum(&solution.pressure) / sum(shape);
                     cells().for_each(|k| solution.pressure[k] = scale * shape[k].max(0.0));
                 };
@@ -66,14 +66,14 @@ impl ActiveSet {
             solution.convolve(problem, work);
         }
         self.changes.clear();
-        self.changes.leaving = self.some_leave(solution);
+        self.changes.leaving = self.some_leave(problem, solution);
         self.balance(problem, Shape::Pressure, 0.0, solution, work)
     }
 
     /// Whether cells outside A carry pressure.
-    pub(super) fn some_leave(&self, solution: &Solution) -> bool {
+    pub(super) fn some_leave(&self, problem: &Problem<'_>, solution: &Solution) -> bool {
         let pressed = |cells: Range<usize>| solution.pressure[cells].iter().any(|&p| p != 0.0);
-        self.set.runs.outside(solution.pressure.len()).any(pressed)
+        problem.rows().any(self.set.runs.outside(solution.pressure.len()).any(pressed))
     }
 
     /// Takes cells into A that penetrate deeper than `least`, but for those that are about to leave: they would bring a
@@ -141,7 +141,7 @@ impl ActiveSet {
         let Search { direction, image, energy, .. } = &mut self.search;
         let beyond = |p: f64, d: f64| if p < 0.0 { if d < 0.0 { p / d } else { f64::INFINITY } } else { 0.0 };
         let pairs = solution.pressure.iter().zip(&*direction);
-        let back = pairs.fold(0.0_f64, |back, (&p, &d)| back.max(beyond(p, d)));
+        let back = problem.rows().greatest(pairs.fold(0.0_f64, |back, (&p, &d)| back.max(beyond(p, d))));
         if back > step * (1.0 + f64::EPSILON) {
             return false;
         }

@@ -131,7 +131,7 @@ impl ActiveSet {
         ActiveSet {
             preconditioner: Preconditioner::new(kernel, work),
             set: ContactSet::new(cells, bodies),
-            passes: Passes::new(cells, bodies),
+            passes: Passes::new(kernel.rows(), bodies),
             guess_rounding: 0.0,
             was_cut: false,
             changes: PendingChanges { leaving: false, moves: false, corrections: vec![None; bodies] },
@@ -159,7 +159,7 @@ impl ActiveSet {
         work: &mut Workspace,
     ) -> Outcome {
         let given = problem.bodies.iter().any(|freedom| !freedom.translation);
-        let most = if given { greatest(&solution.potential) } else { 0.0 };
+        let most = if given { problem.rows().greatest(greatest(&solution.potential)) } else { 0.0 };
         self.guess_rounding = 4.0 * f64::EPSILON * problem.compliance * most;
         let outcome = match self.iterate(problem, stop, solution, work) {
             Outcome::Stagnated => self.descend(problem, stop, solution, work),

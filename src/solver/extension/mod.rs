@@ -1,12 +1,17 @@
 //! The smooth extension of a field from the contact to all cells, and its transpose.
 
+mod neighbours;
 mod passes;
 
 #[cfg(test)]
 mod tests;
 
+use std::ops;
+
 use crate::kernel::{Task, for_each_share, lanes};
-use crate::solver::extension::passes::{Known, Pull, Push, Restrict, Rows, Spread, Values};
+use crate::ranks::Rows;
+pub(crate) use crate::solver::extension::neighbours::{Ghosts, Neighbours};
+use crate::solver::extension::passes::{Blocks, Known, Pull, Push, Restrict, RowBuffers, Spread, Values, weight};
 
 /// κ: how far the mean of a block of cells is trusted, of which only the share s is known, w = κ s/(1 + (κ − 1) s).
 const TRUST: f64 = 1.5;
@@ -27,15 +32,27 @@ const TRUST: f64 = 1.5;
 ///
 /// Every row of a level is computed from finished rows of another one: threads share the rows, and the answer does not depend on
 /// their number.
+///
+/// Where ranks share out the cells, their bands are whole rows of blocks of 8 × 8 cells. Blocks of 2 × 2 and 4 × 4 are those
+/// of own rows, to which a row of a neighbour is added where a pass needs it. Larger ones, a 64th as many numbers as
+/// there are cells, are gathered, and every rank computes all of them.
 #[derive(Debug, Clone)]
 pub(crate) struct Extension {
-    cells: [usize; 2],
+    /// The cells, and which of their rows are own ones.
+    rows: Rows,
     periodic: [bool; 2],
     levels: Vec<Level>,
     /// 1/Σ w over the coarsest block, 0 if nothing is known.
     share: f64,
-    /// Row buffers, one set per thread.
-    rows: Vec<Rows>,
+    /// One set per thread.
+    buffers: Vec<RowBuffers>,
+    /// Number of levels of which only own rows are kept.
+    local: usize,
+    /// Own blocks of the first level that is gathered.
+    own: Vec<f64>,
+    /// The rows beside the own ones of the cells.
+    ghosts: Ghosts,
+    neighbours: Option<Neighbours>,
     /// Where E ebbs, the level of the blocks from which it does, and what remains.
     ebb: Option<(usize, f64)>,
 }
@@ -59,38 +76,68 @@ pub(crate) enum Range {
 /// Blocks of cells.
 #[derive(Debug, Clone)]
 struct Level {
+    /// Of all ranks.
     cells: [usize; 2],
+    /// The rows that are kept.
+    kept: ops::Range<usize>,
     /// φ.
     factor: Vec<f64>,
     /// S, then x.
     value: Vec<f64>,
+    /// The rows beside those kept.
+    ghosts: Ghosts,
+}
+
+/// Most levels of which a rank keeps own rows alone: the next one has blocks as high as a tile.
+const MOST_LOCAL: usize = 2;
+
+impl Level {
+    fn blocks(&self) -> Blocks<'_> {
+        Blocks { values: &self.value, first: self.kept.start, columns: self.cells[1], ghosts: &self.ghosts }
+    }
 }
 
 impl Extension {
-    pub(crate) fn new(cells: [usize; 2], periodic: [bool; 2], ebb: Option<Ebb>) -> Extension {
-        let mut levels = Vec::new();
-        let mut size = cells;
-        while size != [1, 1] {
-            size = size.map(|n| n.div_ceil(2));
-            let field = vec![0.0; size[0] * size[1]];
-            levels.push(Level { cells: size, factor: field.clone(), value: field });
-        }
-        let rows = vec![Rows::new(cells[1]); lanes(cells[0] * cells[1]).min(cells[0])];
+    pub(crate) fn new(rows: &Rows, periodic: [bool; 2], ebb: Option<Ebb>) -> Extension {
+        let cells = rows.cells();
+        let local = if rows.are_shared() { MOST_LOCAL.min(sizes(cells).count().saturating_sub(1)) } else { 0 };
+        let level = |(height, size): (usize, [usize; 2])| {
+            let of = |rank: usize| blocks_of(rows.of(rank), height);
+            let (kept, ghosts) = if height <= local {
+                (blocks_of(rows.own(), height), Ghosts::beside(rows, of, size, periodic[0]))
+            } else {
+                (0..size[0], Ghosts::default())
+            };
+            let field = vec![0.0; kept.len() * size[1]];
+            Level { cells: size, kept, factor: field.clone(), value: field, ghosts }
+        };
+        let levels: Vec<Level> = (1..).zip(sizes(cells)).map(level).collect();
+        let own = match levels.get(local) {
+            Some(gathered) if rows.are_shared() => blocks_of(rows.own(), local + 1).len() * gathered.cells[1],
+            _ => 0,
+        };
+        let threads = lanes(rows.own().len() * cells[1]).min(rows.own().len()).max(1);
         // blocks of 2^(level + 1) cells that are no longer than the reach
-        let level = |reach: f64| (reach.log2() as usize).max(1) - 1;
-        let ebb = ebb.map(|ebb| (level(ebb.reach), ebb.remains));
-        Extension { cells, periodic, levels, share: 0.0, rows, ebb }
+        let from = |reach: f64| (reach.log2() as usize).max(1) - 1;
+        Extension {
+            ebb: ebb.map(|ebb| (from(ebb.reach), ebb.remains)),
+            periodic,
+            levels,
+            share: 0.0,
+            buffers: vec![RowBuffers::new(cells[1]); threads],
+            local,
+            own: vec![0.0; own],
+            ghosts: Ghosts::beside(rows, |rank| rows.of(rank), cells, periodic[0]),
+            neighbours: rows.group().map(|group| Neighbours::new(group, cells[1])),
+            rows: rows.clone(),
+        }
     }
 
     /// Bytes that it takes.
     pub(crate) fn bytes(cells: [usize; 2]) -> u128 {
-        let (mut size, mut blocks) = (cells, 0);
-        while size != [1, 1] {
-            size = size.map(|n| n.div_ceil(2));
-            blocks += size[0] as u128 * size[1] as u128;
-        }
+        let blocks: u128 = sizes(cells).map(|size| size[0] as u128 * size[1] as u128).sum();
         let threads = lanes(cells[0].saturating_mul(cells[1])).min(cells[0]);
-        16 * blocks + threads as u128 * Rows::bytes(cells[1])
+        16 * blocks + threads as u128 * RowBuffers::bytes(cells[1])
     }
 
     /// Makes E that of the set of members.
@@ -108,64 +155,98 @@ impl Extension {
     pub(crate) fn extend(&mut self, field: &mut [f64], member: &[bool]) {
         self.push(Values::Field(field), |_| ());
         let periodic = self.periodic;
-        self.descend(field, member, self.ebb, |blocks, known, fine, rows, values| {
-            run(&Pull { blocks, known, fine, periodic }, rows, values, fine);
+        self.descend(field, member, true, self.ebb, |blocks, known, fine, first, buffers, values| {
+            run(&Pull { blocks, known, fine, first, periodic }, buffers, values, first, fine[1]);
         });
     }
 
     /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere. The endless one keeps the sum.
     pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool], range: Range) {
         let ebb = self.ebb.filter(|_| range == Range::Ebbing);
-        let Extension { cells, periodic, levels, rows, .. } = self;
+        let Extension { rows, periodic, levels, buffers, local, own, ghosts, neighbours, .. } = self;
+        let columns = rows.cells()[1];
+        if let Some(neighbours) = neighbours {
+            neighbours.fetch(ghosts, columns, rows.own().len(), |row, out| {
+                let open = field[row * columns..].iter().zip(&member[row * columns..]);
+                out.iter_mut().zip(open).for_each(|(out, (&f, &inside))| *out = if inside { 0.0 } else { f });
+            });
+        }
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
             let (values, known, fine) = match finer.last() {
-                None => (&*field, Known::Members(member), *cells),
-                Some(Level { cells, factor, value }) => (&value[..], Known::Factors(factor), *cells),
+                None => {
+                    let values = Blocks { values: field, first: rows.own().start, columns, ghosts };
+                    (values, Known::Members(member), rows.cells())
+                }
+                Some(finer) => (finer.blocks(), Known::Factors(&finer.factor), finer.cells),
             };
-            let restrict = Restrict { values, known, fine, periodic: *periodic };
-            run(&restrict, rows, &mut level[0].value, level[0].cells);
+            raise(
+                &Restrict { values, known, fine, periodic: *periodic },
+                rows,
+                buffers,
+                (l == *local).then_some(l + 1),
+                own,
+                &mut level[0],
+            );
             fade(ebb, l, &mut level[0].value);
+            if let (true, Some(neighbours)) = (l < *local, neighbours.as_mut()) {
+                let Level { cells: [_, columns], kept, factor, value, ghosts } = &mut level[0];
+                neighbours.fetch(ghosts, *columns, kept.len(), |row, out| {
+                    let blocks = value[row * *columns..].iter().zip(&factor[row * *columns..]);
+                    out.iter_mut().zip(blocks).for_each(|(out, (&f, &factor))| *out = (1.0 - weight(factor)) * f);
+                });
+            }
         }
-        self.descend(field, member, None, |blocks, known, fine, rows, values| {
-            run(&Spread { blocks, known, fine }, rows, values, fine);
+        self.descend(field, member, false, None, |blocks, known, fine, first, buffers, values| {
+            run(&Spread { blocks, known, fine, first }, buffers, values, first, fine[1]);
         });
     }
 
     /// Finds S level by level, and calls `finish` with each of them.
     fn push(&mut self, values: Values<'_>, finish: impl Fn(&mut Level)) {
-        let Extension { cells, levels, rows, .. } = self;
+        let Extension { rows, levels, buffers, local, own, .. } = self;
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
-            let (values, fine) = match finer.last() {
-                None => (values, *cells),
-                Some(Level { cells, factor, value }) => (Values::Weighted(value, factor), *cells),
+            let (values, fine, first) = match finer.last() {
+                None => (values, rows.cells(), rows.own().start),
+                Some(Level { cells, kept, factor, value, .. }) => (Values::Weighted(value, factor), *cells, kept.start),
             };
-            run(&Push { values, fine }, rows, &mut level[0].value, level[0].cells);
+            raise(&Push { values, fine, first }, rows, buffers, (l == *local).then_some(l + 1), own, &mut level[0]);
             finish(&mut level[0]);
         }
     }
 
     /// From the coarsest level down to the cells: calls `pass` with the blocks of a level, what is known of the next finer one,
-    /// the size of that, row buffers and its values.
+    /// the size of that and the first row kept of it, row buffers and its values. A `smooth` pass needs blocks beside, too.
     fn descend(
         &mut self,
         field: &mut [f64],
         member: &[bool],
+        smooth: bool,
         ebb: Option<(usize, f64)>,
-        pass: impl Fn(&[f64], Known<'_>, [usize; 2], &mut [Rows], &mut [f64]),
+        pass: impl Fn(Blocks<'_>, Known<'_>, [usize; 2], usize, &mut [RowBuffers], &mut [f64]),
     ) {
-        let Extension { cells, levels, share, rows, .. } = self;
+        let Extension { rows, levels, share, buffers, local, neighbours, .. } = self;
         let Some(coarsest) = levels.last_mut() else { return };
         coarsest.value[0] *= *share;
+        // what remains of a level, and the rows beside those that are kept
+        let mut finish = |level: &mut Level, l: usize| {
+            fade(ebb, l, &mut level.value);
+            if let (true, Some(neighbours)) = (smooth && l < *local, neighbours.as_mut()) {
+                let Level { cells: [_, columns], kept, value, ghosts, .. } = level;
+                neighbours.fetch(ghosts, *columns, kept.len(), |row, out| {
+                    out.copy_from_slice(&value[row * *columns..][..*columns]);
+                });
+            }
+        };
         for l in (1..levels.len()).rev() {
             let (finer, coarser) = levels.split_at_mut(l);
-            fade(ebb, l, &mut coarser[0].value);
-            let Level { cells, factor, value } = &mut finer[l - 1];
-            pass(&coarser[0].value, Known::Factors(factor), *cells, rows, value);
+            finish(&mut coarser[0], l);
+            let Level { cells, kept, factor, value, .. } = &mut finer[l - 1];
+            pass(coarser[0].blocks(), Known::Factors(factor), *cells, kept.start, buffers, value);
         }
-        fade(ebb, 0, &mut levels[0].value);
-        pass(&levels[0].value, Known::Members(member), *cells, rows, field);
+        finish(&mut levels[0], 0);
+        pass(levels[0].blocks(), Known::Members(member), rows.cells(), rows.own().start, buffers, field);
     }
 }
 
@@ -178,12 +259,48 @@ fn fade(ebb: Option<(usize, f64)>, level: usize, values: &mut [f64]) {
     }
 }
 
-/// Runs a pass over the rows of a level, each thread with some of them.
-fn run<T: Task<Lane = Rows, Item = f64> + Sync>(task: &T, rows: &mut [Rows], values: &mut [f64], [n1, n2]: [usize; 2]) {
-    let threads = rows.len().min(lanes(n1 * n2));
-    let share = n1.div_ceil(threads);
-    for (k, rows) in rows.iter_mut().enumerate() {
-        rows.first = k * share;
+/// The sizes of all levels.
+fn sizes(cells: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
+    let coarser = |size: &[usize; 2]| (*size != [1, 1]).then(|| size.map(|n| n.div_ceil(2)));
+    std::iter::successors(coarser(&cells), coarser)
+}
+
+/// The rows of blocks of 2^`height` cells that rows of cells consist of.
+fn blocks_of(rows: ops::Range<usize>, height: usize) -> ops::Range<usize> {
+    if rows.is_empty() { 0..0 } else { rows.start >> height..rows.end.div_ceil(1 << height) }
+}
+
+/// Runs a pass from a level to the next one; where blocks of this height are to be `gathered`, on own rows.
+fn raise<T: Task<Lane = RowBuffers, Item = f64> + Sync>(
+    task: &T,
+    rows: &Rows,
+    buffers: &mut [RowBuffers],
+    gathered: Option<usize>,
+    own: &mut [f64],
+    level: &mut Level,
+) {
+    let columns = level.cells[1];
+    let Some(height) = gathered.filter(|_| rows.are_shared()) else {
+        return run(task, buffers, &mut level.value, level.kept.start, columns);
+    };
+    let of = |rank: usize| blocks_of(rows.of(rank), height);
+    let first = of(rows.group().map_or(0, |group| group.rank())).start;
+    run(task, buffers, own, first, columns);
+    rows.gather_rows(own, &mut level.value, |rank| columns * of(rank).len());
+}
+
+/// Runs a pass over rows of a level from the `first` on, each thread with some of them.
+fn run<T: Task<Lane = RowBuffers, Item = f64> + Sync>(
+    task: &T,
+    buffers: &mut [RowBuffers],
+    values: &mut [f64],
+    first: usize,
+    columns: usize,
+) {
+    let threads = buffers.len().min(lanes(values.len()));
+    let share = (values.len() / columns).div_ceil(threads).max(1);
+    for (k, rows) in buffers.iter_mut().enumerate() {
+        rows.first = first + k * share;
     }
-    for_each_share(task, &mut rows[..threads], values, share * n2);
+    for_each_share(task, &mut buffers[..threads], values, share * columns);
 }

@@ -1,27 +1,30 @@
 //! The passes of the extension between two levels, row by row.
 
+use std::ops::Range;
+
 use crate::kernel::Task;
 use crate::solver::extension::TRUST;
+use crate::solver::extension::neighbours::Ghosts;
 
 /// Row buffers of one thread: blocks with one neighbour at either end, cells of the finer level with two.
 #[derive(Debug, Clone)]
-pub(super) struct Rows {
+pub(super) struct RowBuffers {
     blocks: Vec<f64>,
     fine: Vec<f64>,
     /// The first row of the share of a thread.
     pub(super) first: usize,
 }
 
-impl Rows {
+impl RowBuffers {
     /// For rows of `columns` cells.
-    pub(super) fn new(columns: usize) -> Rows {
+    pub(super) fn new(columns: usize) -> RowBuffers {
         let blocks = columns.div_ceil(2);
-        Rows { blocks: vec![0.0; blocks + 2], fine: vec![0.0; 2 * blocks + 4], first: 0 }
+        RowBuffers { blocks: vec![0.0; blocks + 2], fine: vec![0.0; 2 * blocks + 4], first: 0 }
     }
 
     /// Bytes that they take.
     pub(super) fn bytes(columns: usize) -> u128 {
-        8 * (3 * columns.div_ceil(2) as u128 + 6) + size_of::<Rows>() as u128
+        8 * (3 * columns.div_ceil(2) as u128 + 6) + size_of::<RowBuffers>() as u128
     }
 }
 
@@ -44,22 +47,51 @@ pub(super) enum Known<'a> {
     Factors(&'a [f64]),
 }
 
+/// The rows that are kept of a level, and those beside them.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Blocks<'a> {
+    pub(super) values: &'a [f64],
+    /// The first row that is kept.
+    pub(super) first: usize,
+    pub(super) columns: usize,
+    pub(super) ghosts: &'a Ghosts,
+}
+
+impl<'a> Blocks<'a> {
+    #[inline(always)]
+    fn row(&self, row: usize) -> &'a [f64] {
+        self.kept(row).map_or_else(|| self.ghosts.row(row), |cells| &self.values[cells])
+    }
+
+    /// The cells of a row, if it is kept.
+    #[inline(always)]
+    fn kept(&self, row: usize) -> Option<Range<usize>> {
+        let start = row.checked_sub(self.first)? * self.columns;
+        (start < self.values.len()).then_some(start..start + self.columns)
+    }
+}
+
+/// φ of blocks of which nothing is known: w is 0, and the whole value counts.
+pub(super) const NOTHING_KNOWN: f64 = 0.25 * TRUST;
+
 /// S of blocks from the level below.
 pub(super) struct Push<'a> {
     pub(super) values: Values<'a>,
     pub(super) fine: [usize; 2],
+    /// The first row that is kept of the level below.
+    pub(super) first: usize,
 }
 
 impl Task for Push<'_> {
-    type Lane = Rows;
+    type Lane = RowBuffers;
     type Item = f64;
 
     #[inline(always)]
-    fn run(&self, _: usize, rows: &mut Rows, sums: &mut [f64]) {
+    fn run(&self, _: usize, rows: &mut RowBuffers, sums: &mut [f64]) {
         let [n1, n2] = self.fine;
         for (i, out) in (rows.first..).zip(sums.chunks_exact_mut(n2.div_ceil(2))) {
             out.fill(0.0);
-            for row in (2 * i..(2 * i + 2).min(n1)).map(|row| row * n2..(row + 1) * n2) {
+            for row in (2 * i..(2 * i + 2).min(n1)).map(|row| row - self.first).map(|row| row * n2..(row + 1) * n2) {
                 match self.values {
                     Values::Members(member) => {
                         let ones = &mut rows.fine[..n2];
@@ -76,29 +108,32 @@ impl Task for Push<'_> {
 
 /// x = w m + (1 − w) up(x), from the x of the level above.
 pub(super) struct Pull<'a> {
-    pub(super) blocks: &'a [f64],
+    pub(super) blocks: Blocks<'a>,
     pub(super) known: Known<'a>,
     pub(super) fine: [usize; 2],
+    /// The first row that is kept of the level below.
+    pub(super) first: usize,
     pub(super) periodic: [bool; 2],
 }
 
 impl Task for Pull<'_> {
-    type Lane = Rows;
+    type Lane = RowBuffers;
     type Item = f64;
 
     #[inline(always)]
-    fn run(&self, _: usize, rows: &mut Rows, values: &mut [f64]) {
+    fn run(&self, _: usize, rows: &mut RowBuffers, values: &mut [f64]) {
         let n2 = self.fine[1];
         for (i, values) in (rows.first..).zip(values.chunks_exact_mut(n2)) {
             let up = self.interpolate(i, rows);
+            let own = (i - self.first) * n2;
             match self.known {
                 Known::Members(member) => {
-                    for ((x, &inside), &up) in values.iter_mut().zip(&member[i * n2..]).zip(up) {
+                    for ((x, &inside), &up) in values.iter_mut().zip(&member[own..]).zip(up) {
                         *x = if inside { *x } else { up };
                     }
                 }
                 Known::Factors(factors) => {
-                    for ((x, &factor), &up) in values.iter_mut().zip(&factors[i * n2..]).zip(up) {
+                    for ((x, &factor), &up) in values.iter_mut().zip(&factors[own..]).zip(up) {
                         *x = factor * *x + (1.0 - weight(factor)) * up;
                     }
                 }
@@ -110,7 +145,7 @@ impl Task for Pull<'_> {
 impl Pull<'_> {
     /// Row `i` of the level from the blocks: 9/16 of its own, 3/16 of two neighbours and 1/16 of the third.
     #[inline(always)]
-    fn interpolate<'r>(&self, i: usize, rows: &'r mut Rows) -> &'r [f64] {
+    fn interpolate<'r>(&self, i: usize, rows: &'r mut RowBuffers) -> &'r [f64] {
         let [m1, m2] = self.fine.map(|n| n.div_ceil(2));
         let (near, last) = (i / 2, m1 - 1);
         let far = match (i.is_multiple_of(2), self.periodic[0]) {
@@ -120,7 +155,7 @@ impl Pull<'_> {
             (false, false) => (near + 1).min(last),
         };
         let across = &mut rows.blocks[..m2 + 2];
-        let [near, far] = [near, far].map(|i| &self.blocks[i * m2..][..m2]);
+        let [near, far] = [near, far].map(|i| &self.blocks.row(i)[..m2]);
         for ((a, &near), &far) in across[1..=m2].iter_mut().zip(near).zip(far) {
             *a = 0.75 * near + 0.25 * far;
         }
@@ -137,32 +172,37 @@ impl Pull<'_> {
 
 /// The transpose of the interpolation: what is open of the level below, brought to its blocks.
 pub(super) struct Restrict<'a> {
-    pub(super) values: &'a [f64],
+    pub(super) values: Blocks<'a>,
     pub(super) known: Known<'a>,
     pub(super) fine: [usize; 2],
     pub(super) periodic: [bool; 2],
 }
 
 impl Task for Restrict<'_> {
-    type Lane = Rows;
+    type Lane = RowBuffers;
     type Item = f64;
 
     #[inline(always)]
-    fn run(&self, _: usize, Rows { first, fine, .. }: &mut Rows, blocks: &mut [f64]) {
+    fn run(&self, _: usize, RowBuffers { first, fine, .. }: &mut RowBuffers, blocks: &mut [f64]) {
         let (n2, m2) = (self.fine[1], self.fine[1].div_ceil(2));
         let fine = &mut fine[..2 * m2 + 4];
         for (i, out) in (*first..).zip(blocks.chunks_exact_mut(m2)) {
             let parts = self.parts(i);
-            let rows = parts.map(|(row, _)| &self.values[row * n2..][..n2]);
-            let open = &mut fine[2..n2 + 2];
+            let shares = [parts[0].1, parts[1].1, parts[2].1, parts[3].1];
+            let [a, b, c, d] = [parts[0].0, parts[1].0, parts[2].0, parts[3].0];
+            let (rows, ghosts) = (self.values, self.values.ghosts);
+            let values = [rows.row(a), rows.row(b), rows.row(c), rows.row(d)];
+            let sums = &mut fine[2..n2 + 2];
             match self.known {
                 Known::Members(member) => {
-                    let known = parts.map(|(row, _)| &member[row * n2..][..n2]);
-                    add_open(open, parts.map(|(_, part)| part), rows, known, |inside, f| if inside { 0.0 } else { f });
+                    let known = |row: usize| rows.kept(row).map_or(ghosts.outside(), |cells| &member[cells]);
+                    let known = [known(a), known(b), known(c), known(d)];
+                    add_open(sums, shares, values, known, |inside, f| if inside { 0.0 } else { f });
                 }
                 Known::Factors(factors) => {
-                    let known = parts.map(|(row, _)| &factors[row * n2..][..n2]);
-                    add_open(open, parts.map(|(_, part)| part), rows, known, |factor, f| (1.0 - weight(factor)) * f);
+                    let known = |row: usize| rows.kept(row).map_or(ghosts.open(), |cells| &factors[cells]);
+                    let known = [known(a), known(b), known(c), known(d)];
+                    add_open(sums, shares, values, known, |factor, f| (1.0 - weight(factor)) * f);
                 }
             }
             fine[n2 + 2..2 * m2 + 2].fill(0.0);
@@ -193,33 +233,36 @@ impl Restrict<'_> {
 
 /// The transpose of the sums over blocks: what a block holds goes to what is known of its parts.
 pub(super) struct Spread<'a> {
-    pub(super) blocks: &'a [f64],
+    pub(super) blocks: Blocks<'a>,
     pub(super) known: Known<'a>,
     pub(super) fine: [usize; 2],
+    /// The first row that is kept of the level below.
+    pub(super) first: usize,
 }
 
 impl Task for Spread<'_> {
-    type Lane = Rows;
+    type Lane = RowBuffers;
     type Item = f64;
 
     #[inline(always)]
-    fn run(&self, _: usize, Rows { first, fine, .. }: &mut Rows, values: &mut [f64]) {
+    fn run(&self, _: usize, RowBuffers { first, fine, .. }: &mut RowBuffers, values: &mut [f64]) {
         let (n2, m2) = (self.fine[1], self.fine[1].div_ceil(2));
         let fine = &mut fine[..2 * m2];
         for (i, values) in (*first..).zip(values.chunks_exact_mut(n2)) {
             // both rows of a block get the same values
             if i == *first || i.is_multiple_of(2) {
                 let pairs = fine.as_chunks_mut::<2>().0;
-                pairs.iter_mut().zip(&self.blocks[i / 2 * m2..]).for_each(|(pair, &value)| *pair = [value; 2]);
+                pairs.iter_mut().zip(self.blocks.row(i / 2)).for_each(|(pair, &value)| *pair = [value; 2]);
             }
+            let own = (i - self.first) * n2;
             match self.known {
                 Known::Members(member) => {
-                    for ((f, &inside), &sum) in values.iter_mut().zip(&member[i * n2..]).zip(&*fine) {
+                    for ((f, &inside), &sum) in values.iter_mut().zip(&member[own..]).zip(&*fine) {
                         *f = if inside { *f + sum } else { 0.0 };
                     }
                 }
                 Known::Factors(factors) => {
-                    let known = factors[i * n2..].iter();
+                    let known = factors[own..].iter();
                     values.iter_mut().zip(known).zip(&*fine).for_each(|((f, &factor), &sum)| *f = factor * (*f + sum));
                 }
             }
@@ -229,7 +272,7 @@ impl Task for Spread<'_> {
 
 /// w of a block with this φ.
 #[inline(always)]
-fn weight(factor: f64) -> f64 {
+pub(super) fn weight(factor: f64) -> f64 {
     (TRUST - 4.0 * factor) / (TRUST - 1.0)
 }
 

@@ -70,7 +70,7 @@ fn check(cells: [usize; 2], periodic: [bool; 2], share: f64, seed: &mut u64) {
     let count = cells[0] * cells[1];
     let mut member: Vec<bool> = (0..count).map(|_| noise(seed) + 0.5 < share).collect();
     member[count / 2] = true;
-    let mut extension = Extension::new(cells, periodic, None);
+    let mut extension = Extension::new(&Rows::all(cells), periodic, None);
     extension.fit(&member);
     let only = |value: &mut dyn FnMut() -> f64| -> Vec<f64> {
         member.iter().map(|&m| if m { value() } else { 0.0 }).collect()
@@ -90,7 +90,7 @@ fn check(cells: [usize; 2], periodic: [bool; 2], share: f64, seed: &mut u64) {
 
     // from blocks of two cells at least
     for (reach, level) in [(0.3, 0.0), (2.0, 0.0), (4.0, 1.0), (5.9, 1.0), (1e9, 28.0)] {
-        let mut extension = Extension::new(cells, periodic, Some(Ebb { reach, remains: -0.3 }));
+        let mut extension = Extension::new(&Rows::all(cells), periodic, Some(Ebb { reach, remains: -0.3 }));
         extension.fit(&member);
         let mut extended = values.clone();
         extension.extend(&mut extended, &member);

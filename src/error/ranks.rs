@@ -1,0 +1,31 @@
+/// What is wrong where a contact is shared out over several [ranks](crate::ranks).
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum RanksError {
+    /// A rank has left: its program ended, failed or panicked. The contact cannot go on.
+    #[error("rank {rank} has left the others")]
+    Left {
+        /// The first that left.
+        rank: usize,
+    },
+
+    /// Something failed on one rank; all of them get this error.
+    #[error("on rank {rank}: {message}")]
+    Failed {
+        /// The first rank on which it failed.
+        rank: usize,
+        /// Its error.
+        message: String,
+    },
+
+    /// The ranks made different calls, or the same with different arguments.
+    #[error("the ranks are not at the same step: all of them must make the same calls with the same arguments")]
+    Apart,
+
+    /// A contact that is shared out cannot do this.
+    #[error("{what} is not possible on rows that ranks share out: compute the contact in one process")]
+    NotShared {
+        /// What was asked for.
+        what: &'static str,
+    },
+}

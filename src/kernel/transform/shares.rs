@@ -1,0 +1,142 @@
+//! The transforms where ranks share out the rows.
+//!
+//! A rank transforms its rows, and sends to every other the panels of columns that are the other's; these are convolved, and
+//! travel back. So two exchanges are a convolution, each of 16 bytes for each coefficient of a row that is not zero: rows
+//! that only pad the columns stay at home.
+
+use std::ops::Range;
+use std::sync::Arc;
+
+use num_complex::Complex64;
+
+use super::column::{Column, ColumnWorkspace};
+use super::tasks::{ColumnsInPlace, RowsForward};
+use super::{AREA, SpectralOperator, TILE, TransformWorkspace, rows_in_a_tile};
+use crate::kernel::lanes::for_each_share;
+use crate::kernel::layout::Layout;
+use crate::ranks::{Ranks, Rows, depart, part};
+
+/// Who has which tiles of rows, and which panels of columns.
+#[derive(Debug, Clone)]
+pub(crate) struct Shares {
+    rows: Rows,
+    group: Arc<dyn Ranks>,
+    /// The tiles of rows that each rank has.
+    down: Vec<Range<usize>>,
+    /// The panels of columns that each rank has.
+    across: Vec<Range<usize>>,
+    /// How many numbers are sent to each rank when the rows are transformed, and received from it.
+    sent: Vec<usize>,
+    received: Vec<usize>,
+}
+
+impl Shares {
+    /// Of an operator with this layout on rows that are shared out.
+    pub(crate) fn new(layout: &Layout, rows: &Rows) -> Option<Shares> {
+        let group = Arc::clone(rows.group()?);
+        let high = rows_in_a_tile(layout.folded);
+        let panels = layout.independent(1).div_ceil(TILE);
+        let ranks = 0..group.size();
+        let down: Vec<_> = ranks.clone().map(|rank| tiles(rows.of(rank), high)).collect();
+        let across: Vec<_> = ranks.map(|rank| part(panels, rank, group.size())).collect();
+        let (own_down, own_across) = (down[group.rank()].len(), across[group.rank()].len());
+        let sent = across.iter().map(|panels| own_down * panels.len() * AREA).collect();
+        let received = down.iter().map(|tiles| tiles.len() * own_across * AREA).collect();
+        Some(Shares { rows: rows.clone(), group, down, across, sent, received })
+    }
+
+    /// The own columns of the spectrum; all of a single column, which every rank transforms.
+    pub(crate) fn columns(&self, layout: &Layout) -> Range<usize> {
+        let all = layout.independent(1);
+        if layout.is_single_column() {
+            return 0..all;
+        }
+        let own = self.own_across();
+        (own.start * TILE).min(all)..(own.end * TILE).min(all)
+    }
+
+    /// Most complex values that this rank has at a time: of own rows, or of own columns.
+    pub(super) fn most(&self) -> usize {
+        self.sent.iter().sum::<usize>().max(self.received.iter().sum())
+    }
+
+    fn own_across(&self) -> Range<usize> {
+        self.across[self.group.rank()].clone()
+    }
+}
+
+/// The tiles that hold these rows, which are whole tiles.
+fn tiles(rows: Range<usize>, high: usize) -> Range<usize> {
+    rows.start.div_ceil(high)..rows.end.div_ceil(high)
+}
+
+impl SpectralOperator {
+    /// Convolves own rows: the result remains in the workspace, its rows still transformed.
+    pub(super) fn convolve_shared(&self, shares: &Shares, input: &[f64], work: &mut TransformWorkspace) {
+        if let Some(column) = &self.column {
+            let mut all = std::mem::take(&mut work.column.all);
+            shares.rows.gather_rows(input, &mut all, |rank| shares.rows.of(rank).len());
+            self.convolve_column(column, &all, &mut work.column);
+            work.column.all = all;
+            return;
+        }
+        let Shares { group, down, across, sent, received, .. } = shares;
+        let (own_down, own_across) = (down[group.rank()].len(), shares.own_across().len());
+        let (of_rows, of_columns) = (own_down * self.across() * AREA, own_across * self.down() * AREA);
+        let TransformWorkspace { tiles, result, lanes, .. } = work;
+
+        let task = RowsForward { operator: self, input, share: own_down };
+        if of_rows > 0 {
+            for_each_share(&task, lanes, &mut tiles[..of_rows], of_rows);
+        }
+        // rank by rank, tile by tile
+        let pieces = |panels: &Range<usize>| (panels.start * AREA, panels.len() * AREA);
+        let mut packed = &mut result[..of_rows];
+        for panels in across {
+            let (start, length) = pieces(panels);
+            for row in tiles[..of_rows].chunks_exact(self.across() * AREA) {
+                let (piece, rest) = packed.split_at_mut(length);
+                piece.copy_from_slice(&row[start..start + length]);
+                packed = rest;
+            }
+        }
+        exchange(group, (&result[..of_rows], sent), (&mut tiles[..of_columns], received));
+
+        // what came lies tile by tile, as it does where one process has all
+        let task = ColumnsInPlace { operator: self, across: own_across };
+        for_each_share(&task, lanes, &mut tiles[..of_columns], usize::MAX);
+
+        exchange(group, (&tiles[..of_columns], received), (&mut result[..of_rows], sent));
+        let mut packed = &result[..of_rows];
+        for panels in across {
+            let (start, length) = pieces(panels);
+            for row in tiles[..of_rows].chunks_exact_mut(self.across() * AREA) {
+                let (piece, rest) = packed.split_at(length);
+                row[start..start + length].copy_from_slice(piece);
+                packed = rest;
+            }
+        }
+    }
+
+    /// Copies own cells of a single column from the workspace.
+    pub(super) fn read_own_of_column(
+        &self,
+        column: &Column,
+        shares: &Shares,
+        work: &mut ColumnWorkspace,
+        output: &mut [f64],
+    ) {
+        let mut all = std::mem::take(&mut work.all);
+        self.read_column(column, work, &mut all);
+        output.copy_from_slice(&all[shares.rows.own()]);
+        work.all = all;
+    }
+}
+
+fn exchange(
+    group: &Arc<dyn Ranks>,
+    (send, send_counts): (&[Complex64], &[usize]),
+    (received, receive_counts): (&mut [Complex64], &[usize]),
+) {
+    group.exchange(send, send_counts, received, receive_counts).unwrap_or_else(|error| depart(error));
+}

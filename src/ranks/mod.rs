@@ -1,0 +1,94 @@
+//! One contact on several ranks: processes, or threads that play processes, each of which has some rows of the grid.
+//!
+//! A contact that outgrows a machine is shared out over several. The program is started once on each of them, makes the same
+//! calls there, and adds one line to its scene, [`Builder::ranks`](crate::contact::Builder::ranks):
+//!
+//! ```
+//! use viscocontact::prelude::*;
+//! use viscocontact::ranks::Threads;
+//!
+//! let forces = Threads::run(3, |ranks| {
+//!     let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3)?)
+//!         .geometry(&Sphere::new(10.0e-3)?)
+//!         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+//!         .ranks(ranks)
+//!         .build()?;
+//!     contact.step(0.0, Load::force(1.0))?;
+//!     contact.step(0.5, Load::force(1.0))?; // every rank gets the same report
+//!     Ok::<_, Error>(contact.force())
+//! })?;
+//! for force in forces {
+//!     assert!((force? - 1.0).abs() < 1e-12);
+//! }
+//! # Ok::<(), Error>(())
+//! ```
+//!
+//! The answer does not depend on the number of ranks, bit by bit: sums are taken over bands of whole rows, and the bands are
+//! added in the same order on every rank. A [`StepReport`](crate::contact::StepReport) is the same on all ranks; fields are
+//! those of [own rows](crate::ViscoelasticContact::rows), and [`gathered`](crate::ViscoelasticContact::gathered) brings
+//! them to one rank. Rows are given out in bands of about 8192 cells: more ranks than bands are possible, and have
+//! nothing to do.
+//!
+//! Every call that computes is a call of all ranks, in the same order and with the same arguments: steps, runs, and
+//! observations that add over cells ([`moment`](crate::ViscoelasticContact::moment),
+//! [`max_pressure`](crate::ViscoelasticContact::max_pressure)). What a rank knows by itself may be asked by one alone: time,
+//! force, approach, tilt, contact cells, own rows.
+//!
+//! | covered | refused, by [`RanksError::NotShared`] |
+//! |---|---|
+//! | half-spaces, bodies periodic along one axis or both, lines, layers | several rigid bodies |
+//! | symmetry: half or a quarter of the grid | loads that break a symmetry that was found (set [`Settings::symmetry`](crate::contact::Settings::symmetry) to false) |
+//! | force and approach, tilts, runs in steps given or chosen by their error | indenters that move or change, [`Frame::Indenter`](crate::contact::Frame::Indenter) |
+//! | series of relaxation times | direct sums, [`Solver::PolonskyKeer`](crate::contact::Solver::PolonskyKeer) |
+//! | snapshots in memory | checkpoints, files, pictures, patches, profiles, stresses |
+//!
+//! Every rank evaluates the geometry on the whole grid, and keeps what belongs to its rows: to build a contact takes 8 bytes a
+//! cell of the whole grid for a moment. Clones and snapshots are of the same ranks.
+//!
+//! [`Settings::window`](crate::contact::Settings::window) is passed over: the whole grid is computed, as far as symmetry
+//! does not leave less.
+
+mod rows;
+mod threads;
+
+pub(crate) use rows::{Rows, caught, depart, part};
+pub use threads::Threads;
+
+use std::fmt::Debug;
+
+use num_complex::Complex64;
+
+pub use crate::error::RanksError;
+
+/// An engine that runs several ranks at once. Two calls are asked of it, both of all ranks together.
+///
+/// [`Threads`] is one; another, over MPI, is the crate `viscocontact-mpi`.
+///
+/// A rank that leaves (its program ends, fails or panics) must not leave the others waiting: their calls return
+/// [`RanksError::Left`], or the engine ends them.
+pub trait Ranks: Debug + Send + Sync {
+    /// Which of the ranks this is, from 0.
+    fn rank(&self) -> usize;
+
+    /// How many there are.
+    fn size(&self) -> usize;
+
+    /// Writes the values of all ranks to `all`, one rank after the other: `counts[r]` of rank r.
+    ///
+    /// # Errors
+    /// If a rank has left.
+    fn gather(&self, own: &[f64], counts: &[usize], all: &mut [f64]) -> Result<(), RanksError>;
+
+    /// Sends to each rank r the next `send_counts[r]` numbers of `send`, and receives from it the next `receive_counts[r]` of
+    /// `received`; r may be the rank itself.
+    ///
+    /// # Errors
+    /// If a rank has left.
+    fn exchange(
+        &self,
+        send: &[Complex64],
+        send_counts: &[usize],
+        received: &mut [Complex64],
+        receive_counts: &[usize],
+    ) -> Result<(), RanksError>;
+}

@@ -1,0 +1,324 @@
+//! The rows that a rank has, and sums over the rows of all.
+
+use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::error::{Error, RanksError, Result};
+use crate::kernel::{BAND_CELLS, join, lanes, rows_in_a_tile};
+use crate::ranks::Ranks;
+use crate::sum;
+
+/// The computed rows of a grid, cut into bands, and those of them that this process has: all, unless ranks share them out.
+///
+/// Bands are whole tiles of the transforms, folded or not (the preconditioner mirrors axes that end), about [`BAND_CELLS`] cells, or one tile where that is more. A sum is taken in each
+/// band, and over the bands by halves: so it does not depend on the number of threads or ranks. A process by itself does this
+/// without a copy, a call or an allocation.
+#[derive(Debug, Clone)]
+pub(crate) struct Rows {
+    /// Rows of all ranks, and cells of a row.
+    cells: [usize; 2],
+    own: Range<usize>,
+    /// Rows of a band.
+    band: usize,
+    shared: Option<Arc<Shared>>,
+}
+
+/// Whether they are the same rows, of whatever group.
+impl PartialEq for Rows {
+    fn eq(&self, other: &Rows) -> bool {
+        (self.cells, &self.own, self.band) == (other.cells, &other.own, other.band)
+    }
+}
+
+/// What joins the ranks.
+#[derive(Debug)]
+struct Shared {
+    group: Arc<dyn Ranks>,
+    /// Kept, so that no sum allocates that is no longer than one before.
+    buffers: Mutex<Buffers>,
+}
+
+#[derive(Debug, Default)]
+struct Buffers {
+    own: Vec<f64>,
+    all: Vec<f64>,
+    counts: Vec<usize>,
+}
+
+/// With this a call ends that needs a rank that has left.
+pub(super) struct Departure(pub(super) RanksError);
+
+impl Rows {
+    /// All rows of a field of so many cells.
+    pub(crate) fn all(cells: [usize; 2]) -> Rows {
+        let tile = rows_in_a_tile([true; 2]);
+        let band = tile * (BAND_CELLS / (tile * cells[1]).max(1)).max(1);
+        Rows { cells, own: 0..cells[0], band, shared: None }
+    }
+
+    /// Those of a rank of the group.
+    pub(crate) fn of_rank(cells: [usize; 2], group: Arc<dyn Ranks>) -> Rows {
+        let mut rows = Rows::all(cells);
+        let rank = group.rank();
+        rows.shared = Some(Arc::new(Shared { group, buffers: Mutex::default() }));
+        rows.own = rows.of(rank);
+        rows
+    }
+
+    /// The group that shares them out.
+    pub(crate) fn group(&self) -> Option<&Arc<dyn Ranks>> {
+        self.shared.as_ref().map(|shared| &shared.group)
+    }
+
+    pub(crate) fn are_shared(&self) -> bool {
+        self.shared.is_some()
+    }
+
+    /// Number of ranks.
+    pub(crate) fn ranks(&self) -> usize {
+        self.group().map_or(1, |group| group.size())
+    }
+
+    /// Rows and columns of all ranks.
+    pub(crate) fn cells(&self) -> [usize; 2] {
+        self.cells
+    }
+
+    /// Number of cells of all ranks.
+    pub(crate) fn len(&self) -> usize {
+        self.cells[0] * self.cells[1]
+    }
+
+    /// The own ones.
+    pub(crate) fn own(&self) -> Range<usize> {
+        self.own.clone()
+    }
+
+    /// Those of a rank.
+    pub(crate) fn of(&self, rank: usize) -> Range<usize> {
+        let bands = part(self.cells[0].div_ceil(self.band), rank, self.ranks());
+        (bands.start * self.band).min(self.cells[0])..(bands.end * self.band).min(self.cells[0])
+    }
+
+    /// Number of own bands.
+    pub(crate) fn bands(&self) -> usize {
+        self.own.len().div_ceil(self.band)
+    }
+
+    /// Number of bands of a rank.
+    pub(crate) fn bands_of(&self, rank: usize) -> usize {
+        self.of(rank).len().div_ceil(self.band)
+    }
+
+    /// Number of cells of a band, the last of which may be shorter.
+    pub(crate) fn band_cells(&self) -> usize {
+        self.band * self.cells[1]
+    }
+
+    /// The cells of an own band, of a field of own rows.
+    fn band(&self, band: usize) -> Range<usize> {
+        let (length, cells) = (self.band_cells(), self.own.len() * self.cells[1]);
+        band * length..((band + 1) * length).min(cells)
+    }
+
+    /// Finds `part` in each band, and joins what is found in the bands of all ranks by halves.
+    pub(crate) fn merge<const K: usize>(
+        &self,
+        part: impl Fn(Range<usize>) -> [f64; K] + Sync,
+        merge: impl Fn([f64; K], [f64; K]) -> [f64; K] + Sync,
+    ) -> [f64; K] {
+        let in_threads = lanes(self.own.len() * self.cells[1]) > 1;
+        let Some(shared) = &self.shared else {
+            return halves(0..self.bands(), in_threads, &|band| part(self.band(band)), &merge);
+        };
+        let found = (0..self.bands()).flat_map(|band| part(self.band(band)));
+        shared.gather(
+            found,
+            |rank| K * self.bands_of(rank),
+            |all| {
+                let all = all.as_chunks::<K>().0;
+                halves(0..all.len(), false, &|band: usize| all[band], &merge)
+            },
+        )
+    }
+
+    /// Σ part over the bands.
+    pub(crate) fn sum_of(&self, part: impl Fn(Range<usize>) -> f64 + Sync) -> f64 {
+        self.merge(|band| [part(band)], |[a], [b]| [a + b])[0]
+    }
+
+    /// Σ values of a field of own rows.
+    pub(crate) fn sum(&self, values: &[f64]) -> f64 {
+        self.sum_of(|band| sum::sum(&values[band]))
+    }
+
+    /// Σ f(a, b) over the values of two fields of own rows.
+    pub(crate) fn sum_of_pairs(&self, a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
+        self.sum_of(|band| sum::sum_of_pairs(&a[band.clone()], &b[band], &f))
+    }
+
+    /// Joins what each rank has found by itself, in the order of the ranks: for what does not depend on how it is grouped.
+    pub(crate) fn join<const K: usize>(
+        &self,
+        own: [f64; K],
+        merge: impl Fn([f64; K], [f64; K]) -> [f64; K],
+    ) -> [f64; K] {
+        let Some(shared) = &self.shared else { return own };
+        shared.gather(own.into_iter(), |_| K, |all| all.as_chunks::<K>().0.iter().copied().reduce(merge).unwrap_or(own))
+    }
+
+    /// The greatest of what the ranks have found.
+    pub(crate) fn greatest(&self, own: f64) -> f64 {
+        self.join([own], |[a], [b]| [a.max(b)])[0]
+    }
+
+    /// The least of what the ranks have found.
+    pub(crate) fn least(&self, own: f64) -> f64 {
+        self.join([own], |[a], [b]| [a.min(b)])[0]
+    }
+
+    /// Whether any rank has found something.
+    pub(crate) fn any(&self, own: bool) -> bool {
+        if self.shared.is_none() { own } else { self.greatest(f64::from(u8::from(own))) > 0.0 }
+    }
+
+    /// The number of what all ranks have found.
+    pub(crate) fn count(&self, own: usize) -> usize {
+        if self.shared.is_none() { own } else { self.join([own as f64], |[a], [b]| [a + b])[0] as usize }
+    }
+
+    /// Gathers own numbers, `count(rank)` of each rank, and reads those of all.
+    pub(crate) fn gather<R>(
+        &self,
+        own: impl Iterator<Item = f64>,
+        count: impl Fn(usize) -> usize,
+        read: impl FnOnce(&[f64]) -> R,
+    ) -> Option<R> {
+        self.shared.as_ref().map(|shared| shared.gather(own, count, read))
+    }
+
+    /// Gathers fields of own rows, `columns` values to a row, to one of all rows.
+    pub(crate) fn gather_rows(&self, own: &[f64], all: &mut [f64], of: impl Fn(usize) -> usize) {
+        let Some(shared) = &self.shared else { return };
+        shared.gather_into(own, of, all);
+    }
+
+    /// Goes on only where every rank does: where one has failed, all get the same error.
+    pub(crate) fn agree<T>(&self, own: Result<T>) -> Result<T> {
+        let Some(shared) = &self.shared else { return own };
+        let message = own.as_ref().err().map_or(String::new(), Error::to_string);
+        // those of 53 bits are kept
+        let mark = message.bytes().fold(0_u64, |mark, byte| (mark * 31 + u64::from(byte)) % (1 << 53));
+        let found = shared.gather(
+            [message.len() as f64, mark as f64].into_iter(),
+            |_| 2,
+            |all| {
+                let all = all.as_chunks::<2>().0;
+                let failed = all.iter().position(|&[length, _]| length > 0.0).map(|rank| (rank, all[rank][0] as usize));
+                failed.filter(|_| !all.iter().all(|other| *other == all[0]))
+            },
+        );
+        // nobody has failed, or all in the same way
+        let Some((rank, length)) = found else { return own };
+        let own = if shared.group.rank() == rank { message.as_bytes() } else { &[] };
+        let bytes = own.iter().map(|&byte| f64::from(byte));
+        let message = shared.gather(
+            bytes,
+            |of| if of == rank { length } else { 0 },
+            |all| String::from_utf8_lossy(&all.iter().map(|&byte| byte as u8).collect::<Vec<_>>()).into_owned(),
+        );
+        Err(RanksError::Failed { rank, message }.into())
+    }
+
+    /// Rejects numbers that are not the same, bit by bit, on all ranks.
+    pub(crate) fn same<const K: usize>(&self, numbers: [f64; K]) -> Result<()> {
+        let bits = numbers.map(f64::to_bits);
+        let differ = self.gather(
+            numbers.into_iter(),
+            |_| K,
+            |all| all.as_chunks::<K>().0.iter().any(|others| others.map(f64::to_bits) != bits),
+        );
+        if differ == Some(true) { Err(RanksError::Apart.into()) } else { Ok(()) }
+    }
+}
+
+impl Shared {
+    fn gather<R>(
+        &self,
+        own: impl Iterator<Item = f64>,
+        count: impl Fn(usize) -> usize,
+        read: impl FnOnce(&[f64]) -> R,
+    ) -> R {
+        let mut buffers = self.take();
+        buffers.own.clear();
+        buffers.own.extend(own);
+        let Buffers { own, all, counts } = &mut buffers;
+        counts.clear();
+        counts.extend((0..self.group.size()).map(count));
+        all.resize(counts.iter().sum(), 0.0);
+        self.group.gather(own, counts, all).unwrap_or_else(|error| depart(error));
+        let found = read(all);
+        self.put_back(buffers);
+        found
+    }
+
+    fn gather_into(&self, own: &[f64], count: impl Fn(usize) -> usize, all: &mut [f64]) {
+        let mut buffers = self.take();
+        buffers.counts.clear();
+        buffers.counts.extend((0..self.group.size()).map(count));
+        self.group.gather(own, &buffers.counts, all).unwrap_or_else(|error| depart(error));
+        self.put_back(buffers);
+    }
+
+    fn take(&self) -> Buffers {
+        std::mem::take(&mut *self.buffers.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    fn put_back(&self, buffers: Buffers) {
+        *self.buffers.lock().unwrap_or_else(PoisonError::into_inner) = buffers;
+    }
+}
+
+/// Ends the call at hand, up to where it is [`caught`].
+pub(crate) fn depart(error: RanksError) -> ! {
+    resume_unwind(Box::new(Departure(error)))
+}
+
+/// Runs what may need a rank that has left, which is then an error.
+pub(crate) fn caught<T>(rows: &Rows, job: impl FnOnce() -> Result<T>) -> Result<T> {
+    if !rows.are_shared() {
+        return job();
+    }
+    // what a step writes before it is accepted is never read
+    match catch_unwind(AssertUnwindSafe(job)) {
+        Ok(done) => done,
+        Err(panic) => match panic.downcast::<Departure>() {
+            Ok(departure) => Err(departure.0.into()),
+            Err(panic) => resume_unwind(panic),
+        },
+    }
+}
+
+/// The part of `n` things that a rank has.
+pub(crate) fn part(n: usize, rank: usize, size: usize) -> Range<usize> {
+    let start = |rank: usize| (n as u128 * rank as u128 / size as u128) as usize;
+    start(rank)..start(rank + 1)
+}
+
+/// Joins what is found in some bands by halves.
+fn halves<T: Send>(
+    bands: Range<usize>,
+    in_threads: bool,
+    part: &(impl Fn(usize) -> T + Sync),
+    merge: &(impl Fn(T, T) -> T + Sync),
+) -> T {
+    if bands.len() <= 1 {
+        return part(bands.start);
+    }
+    let middle = bands.start + bands.len() / 2;
+    let [before, after] =
+        [bands.start..middle, middle..bands.end].map(|half| move || halves(half, in_threads, part, merge));
+    let (before, after) = join(in_threads, before, after);
+    merge(before, after)
+}

@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Contacts on 1 to 4 ranks over MPI against one process, bit by bit, and ranks that fail. Installs nothing: without
+# mpirun it says so, and succeeds. mpi/README.md names the packages.
+set -euo pipefail
+cd "$(dirname "$0")/../mpi"
+
+if ! command -v mpirun >/dev/null; then
+    echo "skipped: no mpirun"
+    exit 0
+fi
+cargo build --quiet --example check
+cargo test --quiet --lib
+check=${CARGO_TARGET_DIR:-target}/debug/examples/check
+# longest time that a failure of one rank may keep the others [s]
+limit=60
+
+run() {
+    local size=$1
+    shift
+    local as_root=()
+    [ "$(id -u)" != 0 ] || as_root=(--allow-run-as-root)
+    timeout "$limit" mpirun -n "$size" --oversubscribe "${as_root[@]}" "$check" "$@"
+}
+
+alone=$("$check" alone)
+for size in 1 2 3 4; do
+    together=$(run "$size" scenes)
+    [ "$together" = "$alone" ] || { echo "$size ranks: $together instead of $alone"; exit 1; }
+done
+echo "1, 2, 3 and 4 ranks give the bits of one process: $alone"
+together=$(run 3 scenes 5000)
+[ "$together" = "$alone" ] || { echo "in short messages: $together instead of $alone"; exit 1; }
+echo "so they do in messages of 5000 numbers"
+
+run 3 errs
+echo "an error of one rank is that of all"
+run 3 leaves
+echo "a rank that leaves is missed"
+status=0
+run 3 panics >/dev/null 2>&1 || status=$?
+[ "$status" != 0 ] && [ "$status" != 124 ] || { echo "a panic left others waiting, or passed unnoticed: $status"; exit 1; }
+echo "a panic ends all"
+
+log=$(mktemp)
+run 3 waits >"$log" 2>&1 &
+waiting=$!
+for _ in $(seq 100); do grep -q '^pid' "$log" && break; sleep 0.1; done
+kill -9 "$(sed -n 's/^pid //p' "$log")"
+status=0
+wait "$waiting" || status=$?
+rm -f "$log"
+[ "$status" != 0 ] && [ "$status" != 124 ] || { echo "a killed rank left others waiting: $status"; exit 1; }
+echo "a rank that is killed ends all"

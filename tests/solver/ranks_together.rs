@@ -1,0 +1,258 @@
+//! Ranks stay together: what travels between them, ranks without rows, and ranks that fail or leave.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::channel;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use viscocontact::num_complex::Complex64;
+use viscocontact::prelude::*;
+use viscocontact::ranks::{Ranks, RanksError, Threads};
+
+/// Numbers that a rank sends to others, call by call.
+#[derive(Debug)]
+struct Counting {
+    inner: Arc<dyn Ranks>,
+    /// Complex numbers of each exchange.
+    exchanged: Mutex<Vec<usize>>,
+}
+
+impl Ranks for Counting {
+    fn rank(&self) -> usize {
+        self.inner.rank()
+    }
+
+    fn size(&self) -> usize {
+        self.inner.size()
+    }
+
+    fn gather(&self, own: &[f64], counts: &[usize], all: &mut [f64]) -> Result<(), RanksError> {
+        self.inner.gather(own, counts, all)
+    }
+
+    fn exchange(
+        &self,
+        send: &[Complex64],
+        send_counts: &[usize],
+        received: &mut [Complex64],
+        receive_counts: &[usize],
+    ) -> Result<(), RanksError> {
+        let to_others = send_counts.iter().sum::<usize>() - send_counts[self.rank()];
+        self.exchanged.lock().unwrap().push(to_others);
+        self.inner.exchange(send, send_counts, received, receive_counts)
+    }
+}
+
+fn sphere(cells: usize, ranks: Arc<dyn Ranks>) -> Result<ViscoelasticContact, Error> {
+    ViscoelasticContact::builder(Grid::square(cells, 4.0e-3)?)
+        .geometry(&Sphere::new(10.0e-3)?)
+        .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6)?))
+        .settings(Settings::default().with_symmetry(false))
+        .ranks(ranks)
+        .build()
+}
+
+/// Fails, and does not hang, if ranks wait for each other for ever.
+fn within_a_minute<T: Send + 'static>(job: impl FnOnce() -> T + Send + 'static) -> T {
+    let (sender, receiver) = channel();
+    std::thread::spawn(move || sender.send(catch_unwind(AssertUnwindSafe(job))));
+    match receiver.recv_timeout(Duration::from_secs(60)).expect("ranks wait for each other") {
+        Ok(done) => done,
+        Err(panic) => std::panic::resume_unwind(panic),
+    }
+}
+
+/// Two exchanges a convolution: tiles of 8 × 8 complex numbers, of rows that are not zero and half of the waves, which are
+/// 32 (1 − 1/R) bytes a cell.
+#[test]
+fn bytes_on_the_wire_are_those_of_the_formula() {
+    let (cells, size) = (256, 4);
+    let sent = Threads::run(size, |ranks| {
+        let counting = Arc::new(Counting { inner: ranks, exchanged: Mutex::default() });
+        let mut contact = sphere(cells, Arc::clone(&counting) as Arc<dyn Ranks>).unwrap();
+        contact.step(0.0, Load::force(1.0)).unwrap();
+        counting.exchanged.lock().unwrap().clear();
+        let report = contact.step(0.2, Load::force(1.0)).unwrap();
+        let exchanged = counting.exchanged.lock().unwrap().clone();
+        (report, contact.rows().len(), exchanged)
+    })
+    .unwrap();
+    // transforms along x2 of 512 cells, padded; and of 256, mirrored, two rows of which are as many numbers as one
+    let panels = |waves: usize| (0..size).map(move |rank| part(waves.div_ceil(8), rank, size)).collect::<Vec<_>>();
+    let mut convolutions = 0;
+    for (waves, high, times) in [(257, 8, sent[0].0.convolutions), (256, 16, sent[0].0.preconditioner_applications)] {
+        assert!(times > 0);
+        for (rank, (_, rows, exchanged)) in sent.iter().enumerate() {
+            let (own, all) = (panels(waves)[rank], panels(waves).iter().sum::<usize>());
+            let out = 64 * (rows / high) * (all - own);
+            let back = 64 * own * (cells / high - rows / high);
+            for expected in [out, back] {
+                let calls = exchanged.iter().filter(|&&count| count == expected).count();
+                // where rows and columns are shared out alike, both ways are as long
+                assert_eq!(calls, if out == back { 2 * times } else { times }, "{rank} {waves}");
+            }
+            convolutions += if waves == 257 { 16 * (out + back) } else { 0 };
+        }
+    }
+    let a_cell = convolutions as f64 / (cells * cells) as f64;
+    let formula = 32.0 * (1.0 - 1.0 / size as f64);
+    assert!((a_cell / formula - 1.0).abs() < 8.0 / cells as f64 + 0.01, "{a_cell} {formula}");
+    // all else is rows of neighbours and of blocks: five for each preconditioner, and one for the edge
+    for (_, _, exchanged) in &sent {
+        let transforms = 2 * (sent[0].0.convolutions + sent[0].0.preconditioner_applications);
+        let mut rest = exchanged.clone();
+        rest.sort_unstable();
+        let rest: usize = rest[..rest.len() - transforms].iter().sum();
+        let rows = 5 * (sent[0].0.preconditioner_applications + sent[0].0.iterations) + 1;
+        assert!(rest <= rows * 2 * cells / 2, "{rest} numbers");
+    }
+}
+
+fn part(n: usize, rank: usize, size: usize) -> usize {
+    n * (rank + 1) / size - n * rank / size
+}
+
+/// A grid of one band: all ranks but one have nothing to do, and know as much.
+#[test]
+fn ranks_without_rows_get_the_same_reports() {
+    let seen = Threads::run(3, |ranks| {
+        let mut contact = sphere(32, ranks).unwrap();
+        let report = contact.step(0.0, Load::force(1.0)).unwrap();
+        let whole = contact.gathered(contact.pressure(), 2).unwrap();
+        (contact.rows().len(), contact.pressure().len(), report, contact.max_pressure(), whole.map(|p| p.len()))
+    })
+    .unwrap();
+    assert_eq!(seen.iter().map(|rank| rank.0).sum::<usize>(), 32);
+    assert_eq!(seen.iter().filter(|rank| rank.0 == 0).count(), 2);
+    for rank in &seen {
+        assert_eq!((rank.1, rank.2, rank.3), (32 * rank.0, seen[0].2, seen[0].3));
+    }
+    assert_eq!(seen.iter().map(|rank| rank.4).collect::<Vec<_>>(), [None, None, Some(32 * 32)]);
+}
+
+/// A step that one rank asks for wrongly fails on all, and leaves the contact as it was.
+#[test]
+fn an_error_of_one_rank_is_that_of_all() {
+    let errors = within_a_minute(|| {
+        Threads::run(3, |ranks| {
+            let rank = ranks.rank();
+            let mut contact = sphere(128, ranks).unwrap();
+            let first = contact.step(if rank == 1 { f64::NAN } else { 0.0 }, Load::force(1.0)).unwrap_err();
+            let other = contact.step(0.0, Load::force(1.0 + rank as f64)).unwrap_err();
+            let all = contact.step(-1.0, Load::force(1.0)).unwrap_err();
+            let report = contact.step(0.0, Load::force(1.0)).unwrap();
+            (first, other, all, report)
+        })
+        .unwrap()
+    });
+    for (first, other, all, report) in &errors {
+        let Error::Ranks(RanksError::Failed { rank: 1, message }) = first else { panic!("{first}") };
+        assert!(message.contains("time step"), "{message}");
+        assert_eq!(*other, Error::Ranks(RanksError::Apart));
+        // where all fail alike, the error keeps its type
+        assert!(matches!(all, Error::OutOfRange { field: "time step", .. }), "{all}");
+        assert_eq!((first, report), (&errors[0].0, &errors[0].3));
+    }
+}
+
+/// A gap that is not a number on one rank alone.
+#[test]
+fn a_contact_that_one_rank_cannot_build_is_built_by_none() {
+    let errors = within_a_minute(|| {
+        Threads::run(3, |ranks| {
+            let bad = ranks.rank() == 2;
+            let gap = FnGeometry::new(move |x1, x2| if bad { f64::NAN } else { x1 * x1 + x2 * x2 });
+            let builder = ViscoelasticContact::builder(Grid::square(32, 1.0e-3).unwrap()).geometry(&gap);
+            builder.material(Material::incompressible(Elastic::new(1.0e6).unwrap())).ranks(ranks).build().unwrap_err()
+        })
+        .unwrap()
+    });
+    for error in &errors {
+        assert!(matches!(error, Error::Ranks(RanksError::Failed { rank: 2, .. })), "{error}");
+        assert_eq!(error, &errors[0]);
+    }
+}
+
+/// Who returns early, or panics, leaves no one waiting.
+#[test]
+fn no_rank_waits_for_one_that_has_left() {
+    let left = within_a_minute(|| {
+        Threads::run(3, |ranks| {
+            let rank = ranks.rank();
+            let mut contact = sphere(128, ranks).unwrap();
+            if rank == 0 {
+                return None;
+            }
+            Some(contact.step(0.0, Load::force(1.0)).unwrap_err())
+        })
+        .unwrap()
+    });
+    assert_eq!(left[0], None);
+    assert!(left[1..].iter().all(|error| *error == Some(Error::Ranks(RanksError::Left { rank: 0 }))), "{left:?}");
+
+    let (panic, others) = within_a_minute(|| {
+        let others = Arc::new(Mutex::new(Vec::new()));
+        let seen = Arc::clone(&others);
+        let panic = catch_unwind(AssertUnwindSafe(|| {
+            Threads::run(3, |ranks| {
+                let rank = ranks.rank();
+                let mut contact = sphere(128, ranks).unwrap();
+                contact.step(0.0, Load::force(1.0)).unwrap();
+                assert!(rank != 1, "on purpose");
+                let error = contact.step(0.1, Load::force(1.0)).unwrap_err();
+                others.lock().unwrap().push((error, contact.time()));
+            })
+        }));
+        let seen = seen.lock().unwrap().clone();
+        (panic.unwrap_err(), seen)
+    });
+    assert_eq!(panic.downcast_ref::<&str>(), Some(&"on purpose"));
+    assert_eq!(others, vec![(Error::Ranks(RanksError::Left { rank: 1 }), 0.0); 2]);
+}
+
+#[test]
+fn what_is_not_shared_is_refused_by_name() {
+    let refused = |settings: fn() -> Settings| {
+        Threads::run(2, move |ranks| {
+            let builder = ViscoelasticContact::builder(Grid::square(32, 4.0e-3).unwrap())
+                .geometry(&Sphere::new(10.0e-3).unwrap())
+                .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()));
+            builder.settings(settings()).ranks(ranks).build().err()
+        })
+        .unwrap()
+    };
+    for settings in [
+        || Settings::default().with_solver(Solver::PolonskyKeer),
+        || Settings::default().with_time_rule(TimeRule::Rectangle),
+        || Settings::default().with_frame(Frame::Indenter),
+    ] {
+        for error in refused(settings) {
+            assert!(matches!(error, Some(Error::Ranks(RanksError::NotShared { .. }))), "{error:?}");
+        }
+    }
+    Threads::run(2, |ranks| {
+        let not_shared = |error: Error| assert!(matches!(error, Error::Ranks(RanksError::NotShared { .. })), "{error}");
+        let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3).unwrap())
+            .geometry(&Sphere::new(10.0e-3).unwrap())
+            .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
+            .ranks(ranks)
+            .build()
+            .unwrap();
+        contact.step(0.0, Load::force(1.0)).unwrap();
+        not_shared(contact.patches().unwrap_err());
+        not_shared(contact.stress().unwrap_err());
+        not_shared(contact.set_geometry(&Sphere::new(1.0).unwrap()).unwrap_err());
+        not_shared(contact.profile(viscocontact::observe::Axis::X1, 0.0).unwrap_err());
+        // the load would have to unfold the fields
+        not_shared(contact.step(0.1, Load::eccentric_force(1.0, [1.0e-4, 0.0])).unwrap_err());
+        contact.step(0.1, Load::force(1.0)).unwrap();
+    })
+    .unwrap();
+}
+
+#[test]
+fn the_number_of_threads_is_checked() {
+    for size in [0, 1025] {
+        assert!(matches!(Threads::run(size, |_| ()), Err(Error::CountOutOfRange { field: "ranks", .. })));
+    }
+}
