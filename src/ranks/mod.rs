@@ -65,7 +65,7 @@ pub use crate::error::RanksError;
 /// [`Threads`] is one; another, over MPI, is the crate `viscocontact-mpi`.
 ///
 /// A rank that leaves (its program ends, fails or panics) must not leave the others waiting: their calls return
-/// [`RanksError::Left`], or the engine ends them.
+/// [`RanksError::Left`], or the engine ends them. (In a program built with `panic = "abort"`, the process ends.)
 pub trait Ranks: Debug + Send + Sync {
     /// Which of the ranks this is, from 0.
     fn rank(&self) -> usize;

@@ -11,9 +11,9 @@ use crate::sum;
 
 /// The computed rows of a grid, cut into bands, and those of them that this process has: all, unless ranks share them out.
 ///
-/// Bands are whole tiles of the transforms, folded or not (the preconditioner mirrors axes that end), about [`BAND_CELLS`] cells, or one tile where that is more. A sum is taken in each
-/// band, and over the bands by halves: so it does not depend on the number of threads or ranks. A process by itself does this
-/// without a copy, a call or an allocation.
+/// Bands are whole tiles of the transforms, folded or not (the preconditioner mirrors axes that end), about [`BAND_CELLS`]
+/// cells, or one tile where that is more. A sum is taken in each band, and over the bands by halves: so it does not depend on
+/// the number of threads or ranks. A process by itself does this without a copy, a call or an allocation.
 #[derive(Debug, Clone)]
 pub(crate) struct Rows {
     /// Rows of all ranks, and cells of a row.
@@ -280,7 +280,8 @@ impl Shared {
     }
 }
 
-/// Ends the call at hand, up to where it is [`caught`].
+/// Ends the call at hand, up to where it is [`caught`]: sums have no error to return. In a program built with `panic = "abort"`
+/// it ends the process.
 pub(crate) fn depart(error: RanksError) -> ! {
     resume_unwind(Box::new(Departure(error)))
 }
