@@ -53,18 +53,22 @@ def check_archive(folder, frame, raw, shape, scene):
     check(f"{frame}.npy", same_bits(gap, raw("gap").reshape(shape)))
 
 
+def read(reader, path):
+    """What VTK finds in a file, which it must know as one of its own and read without errors."""
+    failures = []
+    reader.AddObserver("ErrorEvent", lambda *event: failures.append(event))
+    check(f"{path.name}: CanReadFile", reader.CanReadFile(str(path)))
+    reader.SetFileName(str(path))
+    reader.Update()
+    check(f"{path.name}: read without errors", not failures)
+    return reader.GetOutput()
+
+
 def check_image(path, raw, shape, scene):
     frame = path.name
-    failures = []
     reader = vtk.vtkXMLImageDataReader()
-    reader.AddObserver("ErrorEvent", lambda *event: failures.append(event))
-    check(f"{frame}: CanReadFile", reader.CanReadFile(str(path)))
-    reader.SetFileName(str(path))
-    reader.UpdateInformation()
+    image = read(reader, path)
     times = reader.GetOutputInformation(0).Get(vtk.vtkStreamingDemandDrivenPipeline.TIME_STEPS())
-    reader.Update()
-    check(f"{frame}: read without errors", not failures)
-    image = reader.GetOutput()
     check(f"{frame}: dimensions", image.GetDimensions() == (shape[0] + 1, shape[1] + 1, 1))
     check(f"{frame}: number of cells", image.GetNumberOfCells() == shape[0] * shape[1])
     cells, state = image.GetCellData(), image.GetFieldData()
@@ -94,14 +98,7 @@ def check_image(path, raw, shape, scene):
 
 def check_stress(path, raw, shape, scene):
     frame = path.name
-    failures = []
-    reader = vtk.vtkXMLRectilinearGridReader()
-    reader.AddObserver("ErrorEvent", lambda *event: failures.append(event))
-    check(f"{frame}: CanReadFile", reader.CanReadFile(str(path)))
-    reader.SetFileName(str(path))
-    reader.Update()
-    check(f"{frame}: read without errors", not failures)
-    volume, depths = reader.GetOutput(), raw("depths")
+    volume, depths = read(vtk.vtkXMLRectilinearGridReader(), path), raw("depths")
     size = (*shape, len(depths))
     check(f"{frame}: dimensions", volume.GetDimensions() == size)
     axes = [volume.GetXCoordinates(), volume.GetYCoordinates(), volume.GetZCoordinates()]
