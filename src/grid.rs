@@ -109,6 +109,12 @@ impl Grid {
         [self.coordinate(0, i), self.coordinate(1, j)]
     }
 
+    /// Coordinate of the first cell centre along `axis` \[cells\]: a whole number, and a half or nothing.
+    pub(crate) fn from_origin(&self, axis: usize) -> (i64, f64) {
+        let halves = self.start[axis].rem_euclid(2);
+        ((self.start[axis] - halves) / 2, 0.5 * halves as f64)
+    }
+
     /// Coordinate of the `index`-th cell centre along `axis`; exactly antisymmetric about zero.
     pub(crate) fn coordinate(&self, axis: usize, index: usize) -> f64 {
         (2 * index as i64 + self.start[axis]) as f64 * (0.5 * self.spacing[axis])

@@ -12,10 +12,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let ranks = Mpi::start()?;
     let cells = std::env::args().nth(1).map_or(Ok(512), |cells| cells.parse())?;
     let mut contact = ViscoelasticContact::builder(Grid::square(cells, 4.0e-3)?)
+        .ranks(ranks.clone())
         .geometry(&Sphere::new(10.0e-3)?)
         .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0)?))
         .settings(Settings::default().with_symmetry(false))
-        .ranks(ranks.clone())
         .build()?;
     for step in 0..4 {
         let start = Instant::now();

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::contact::builder::Builder;
+use crate::contact::builder::{Builder, OwnGap};
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::built::Built;
 use crate::contact::computation::Computation;
@@ -10,6 +10,7 @@ use crate::contact::footprint::{Computed, Footprint, Memory, symmetry_of};
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Frame, Settings, Solver};
+use crate::contact::shared_gap::SharedGap;
 use crate::contact::state::State;
 use crate::contact::time_rule::{history_by, windowed};
 use crate::contact::viscoelastic::ViscoelasticContact;
@@ -41,18 +42,33 @@ impl Builder {
     /// If [`Builder::ranks`] share out the rows: an error of one of them is an error on all, [`RanksError::Failed`]; so is what
     /// cannot be shared out ([`RanksError::NotShared`]).
     pub fn build(mut self) -> Result<ViscoelasticContact> {
-        let Some(group) = self.ranks.take() else { return Ok(self.prepare(None)?.finish()) };
-        // what is agreed upon, before there are rows to share
-        let rows = Rows::of_rank([1, 1], Arc::clone(&group));
+        let Some(group) = &self.ranks else { return Ok(self.prepare()?.finish()) };
+        let rows = self.agreed_rows(group)?;
+        let gaps = std::mem::take(&mut self.gaps);
         caught(&rows, || {
-            let prepared = rows.agree(self.may_be_shared().and_then(|()| self.prepare(Some(group))))?;
-            rows.same(prepared.marks())?;
+            let prepared = self.prepare_shared(&gaps, &rows)?;
+            drop(gaps);
             Ok(prepared.finish())
         })
     }
 
-    /// Rejects what ranks cannot share out.
+    /// The rows of the whole grid that ranks share out, after they have agreed that they can. A call of all ranks.
+    fn agreed_rows(&self, group: &Arc<dyn Ranks>) -> Result<Rows> {
+        // what is agreed upon before there are rows to share
+        let anything = Rows::of_rank([1, 1], Arc::clone(group));
+        caught(&anything, || {
+            anything.agree(self.may_be_shared())?;
+            let ([n1, n2], [side1, side2]) = (self.grid.cells(), self.grid.spacing());
+            let Settings { tolerance, symmetry, .. } = self.settings;
+            anything.same([n1 as f64, n2 as f64, side1, side2, tolerance, f64::from(u8::from(symmetry))])?;
+            Ok(Rows::of_rank([n1, n2], Arc::clone(group)))
+        })
+    }
+
+    /// Rejects what ranks cannot share out, and what has to be valid before it is.
     fn may_be_shared(&self) -> Result<()> {
+        self.settings.validate()?;
+        self.bodies()?;
         let Settings { solver, time_rule, frame, .. } = self.settings;
         let refused = [
             (self.gaps.len() > 1, "a contact of several rigid bodies"),
@@ -67,25 +83,23 @@ impl Builder {
     }
 
     /// Everything that may fail.
-    fn prepare(mut self, group: Option<Arc<dyn Ranks>>) -> Result<Prepared> {
+    fn prepare(mut self) -> Result<Prepared> {
         self.settings.validate()?;
         let bodies = self.bodies()?;
-        let gaps = std::mem::take(&mut self.gaps).into_iter().collect::<Result<_>>()?;
+        let gaps = std::mem::take(&mut self.gaps).into_iter().map(|(_, gap)| gap).collect::<Result<_>>()?;
         let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
         let (material, kernel, history) = self.parts()?;
         let Builder { grid, settings, temperature, .. } = self;
         let folded = if settings.symmetry { indenter.even_axes(&grid) } else { [false; 2] };
-        let region = if let Some(group) = group {
-            Region::shared(&grid, folded, group)
-        } else if windowed(&settings, &history, &kernel) {
+        let region = if windowed(&settings, &history, &kernel) {
             // without load, each body is above the cell that it would touch first
             Region::first_touched(&grid, folded, indenter.gap(), bodies)
         } else {
             Region::whole(&grid, folded)
         };
-        let all = region.shown_len();
-        let footprint = Footprint { all, bodies, settings: &settings, kernel: &kernel, history: &history };
-        footprint.check(Computed::on(&region), 0)?;
+        let all = grid.len();
+        Footprint { all, bodies, settings: &settings, kernel: &kernel, history: &history }
+            .check(&Computed::on(&region), 0)?;
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
             built: Built::new(indenter.gap(), grid.cells()),
@@ -96,8 +110,31 @@ impl Builder {
             temperature,
             bodies,
         };
-        let indenter = if region.is_shared() { indenter.on_own_rows(&region, &scene.grid) } else { indenter };
-        let history = history.undisturbed_on(region.cells(), !region.covers());
+        Ok(Prepared { scene, indenter, region, history })
+    }
+
+    /// Everything that may fail of a contact whose rows ranks share out. A call of all ranks.
+    fn prepare_shared(self, gaps: &[OwnGap], rows: &Rows) -> Result<Prepared> {
+        let (material, kernel, history) = rows.agree(self.parts())?;
+        let gap = SharedGap::new(rows.agree(own_gap(gaps, rows))?, &self.grid, rows)?;
+        let Builder { grid, settings, temperature, .. } = self;
+        let even = gap.even_axes();
+        let folded = even.map(|even| even && settings.symmetry);
+        let region = Region::shared(&grid, folded, &rows);
+        let all = region.shown_len();
+        let footprint = Footprint { all, bodies: 1, settings: &settings, kernel: &kernel, history: &history };
+        rows.agree(footprint.check(&Computed::on(&region), 0))?;
+        let scene = Scene {
+            #[cfg(feature = "checkpoint")]
+            built: gap.built(),
+            grid,
+            kernel,
+            material,
+            settings,
+            temperature,
+            bodies: 1,
+        };
+        let indenter = gap.on(&region, &scene.grid, even);
         Ok(Prepared { scene, indenter, region, history })
     }
 
@@ -107,8 +144,8 @@ impl Builder {
     /// takes. Where there is not even memory for the gap, it counts as asymmetric.
     ///
     /// A series of the material over [`Builder::times`] is fitted for it, in a tenth of a second. Threads are those of the
-    /// pool in which it is called. Of a contact that [ranks](crate::ranks) share out it is that of one process with all of
-    /// the rows.
+    /// pool in which it is called. Of a contact that [ranks](crate::ranks) share out it is that of own rows, and a call of all
+    /// of them.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -130,11 +167,23 @@ impl Builder {
     /// # Errors
     /// As [`Builder::build`], except for invalid gaps and for memory.
     pub fn memory(&self) -> Result<Memory> {
+        if let Some(group) = &self.ranks {
+            let rows = &self.agreed_rows(group)?;
+            return caught(rows, || {
+                let (_, kernel, history) = rows.agree(self.parts())?;
+                let gap = SharedGap::new(rows.agree(own_gap(&self.gaps, rows))?, &self.grid, rows)?;
+                let folded = gap.even_axes().map(|even| even && self.settings.symmetry);
+                let region = Region::shared(&self.grid, folded, rows);
+                let (all, settings) = (region.shown_len(), &self.settings);
+                let footprint = Footprint { all, bodies: 1, settings, kernel: &kernel, history: &history };
+                Ok(footprint.on(&Computed::on(&region)))
+            });
+        }
         self.settings.validate()?;
         let bodies = self.bodies()?;
         let (_, kernel, history) = self.parts()?;
         let (settings, cells) = (&self.settings, self.grid.cells());
-        let gaps: Option<Vec<_>> = self.gaps.iter().map(|gap| gap.as_ref().ok()).collect();
+        let gaps: Option<Vec<_>> = self.gaps.iter().map(|(_, gap)| gap.as_ref().ok()).collect();
         let folded = gaps.filter(|_| settings.symmetry).map_or([false; 2], |gaps| symmetry_of(&gaps, cells));
         let footprint = Footprint { all: self.grid.len(), bodies, settings, kernel: &kernel, history: &history };
         Ok(footprint.most(cells, folded, windowed(settings, &history, &kernel)))
@@ -178,6 +227,17 @@ impl Builder {
     }
 }
 
+/// The gap on own rows of the whole grid.
+fn own_gap<'a>(gaps: &'a [OwnGap], rows: &Rows) -> Result<&'a [f64]> {
+    let Some((has, gap)) = gaps.first() else { return Err(Error::Missing { part: "geometry" }) };
+    let (gap, own, [n1, n2]) = (gap.as_ref().map_err(Error::clone)?, rows.own(), rows.cells());
+    match has {
+        has if *has == (0..n1) => Ok(&gap[own.start * n2..own.end * n2]),
+        has if *has == own => Ok(gap),
+        _ => Err(RanksError::NotShared { what: "a geometry that was given for other ranks" }.into()),
+    }
+}
+
 /// The parts of a contact that is about to be made.
 struct Prepared {
     scene: Scene,
@@ -187,15 +247,9 @@ struct Prepared {
 }
 
 impl Prepared {
-    /// Numbers that are the same on all ranks.
-    fn marks(&self) -> [f64; 6] {
-        let (Scene { grid, settings, .. }, [n1, n2]) = (&self.scene, self.region.rows().cells());
-        let [side1, side2] = grid.spacing();
-        [n1 as f64, n2 as f64, side1, side2, settings.tolerance, self.indenter.gap().datum]
-    }
-
     fn finish(self) -> ViscoelasticContact {
         let Prepared { scene, indenter, region, history } = self;
+        let history = history.undisturbed_on(region.cells(), !region.covers());
         let state = State::at_rest(Arc::new(indenter), region, history);
         let computation = Computation::new(&scene, state);
         ViscoelasticContact::new(scene, computation)

@@ -1,6 +1,6 @@
 //! The parts that a contact is built from.
 
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 use crate::Grid;
@@ -11,7 +11,7 @@ use crate::error::Result;
 use crate::geometry::{Geometry, evaluate};
 use crate::kernel::InfluenceKernel;
 use crate::load::LoadHistory;
-use crate::ranks::Ranks;
+use crate::ranks::{Ranks, Rows};
 use crate::rheology::{Material, TemperatureHistory};
 
 /// The parts of a [`ViscoelasticContact`]; see [`ViscoelasticContact::builder`].
@@ -19,8 +19,8 @@ use crate::rheology::{Material, TemperatureHistory};
 #[must_use = "a builder does nothing until it is built"]
 pub struct Builder {
     pub(super) grid: Grid,
-    /// The gap of each rigid body, if there was memory for it.
-    pub(super) gaps: Vec<Result<Vec<f64>>>,
+    /// The gap of each rigid body.
+    pub(super) gaps: Vec<OwnGap>,
     pub(super) material: Option<Material>,
     pub(super) counter_body: Option<Material>,
     pub(super) times: Option<Times>,
@@ -29,6 +29,9 @@ pub struct Builder {
     pub(super) settings: Settings,
     pub(super) ranks: Option<Arc<dyn Ranks>>,
 }
+
+/// Rows of the grid, and a gap on them if there was memory for it.
+pub(super) type OwnGap = (Range<usize>, Result<Vec<f64>>);
 
 impl ViscoelasticContact {
     /// A builder for a contact on `grid`.
@@ -63,7 +66,10 @@ impl Builder {
     /// [`ViscoelasticContact::step_each`]. Gaps are measured from the same plane; a cell can be touched by one
     /// body only, the one whose gap is lowest there.
     pub fn another_body(mut self, geometry: &dyn Geometry) -> Builder {
-        self.gaps.push(evaluate(geometry, &self.grid));
+        let cells = self.grid.cells();
+        let rows = self.ranks.as_ref().map_or(0..cells[0], |ranks| Rows::of_rank(cells, Arc::clone(ranks)).own());
+        let gap = evaluate(geometry, &self.grid.part([rows.start, 0], [rows.len(), cells[1]]));
+        self.gaps.push((rows, gap));
         self
     }
 
@@ -155,6 +161,8 @@ impl Builder {
 
     /// The [ranks](crate::ranks) that share out the rows of the contact, each of which builds it from the same parts. Without
     /// it, this process computes all of it.
+    ///
+    /// Geometries that follow it are evaluated on own rows alone; those before it are on the whole grid, 8 bytes a cell.
     pub fn ranks(mut self, ranks: Arc<dyn Ranks>) -> Builder {
         self.ranks = Some(ranks);
         self

@@ -46,7 +46,7 @@ impl Computation {
         let Scene { kernel, settings, bodies, .. } = scene;
         let footprint =
             Footprint { all: region.shown_len(), bodies: *bodies, settings, kernel, history: &self.state.history };
-        footprint.check(Computed::on(region), footprint.on(Computed::on(&self.state.region)).total())
+        footprint.check(&Computed::on(region), footprint.on(&Computed::on(&self.state.region)).total())
     }
 
     /// Goes to another state, without reallocating where the regions are the same.

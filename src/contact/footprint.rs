@@ -97,34 +97,41 @@ pub(super) struct Footprint<'a> {
 }
 
 /// Cells that a contact is computed on.
-#[derive(Clone, Copy)]
 pub(super) struct Computed {
     pub(super) cells: [usize; 2],
     pub(super) folded: [bool; 2],
     /// Whether the cells and their mirror images are the whole grid.
     pub(super) covers: bool,
+    /// The rows of all ranks that share them out, of which the cells are own ones.
+    pub(super) shared: Option<Rows>,
 }
 
 impl Computed {
     pub(super) fn on(region: &Region) -> Computed {
         // a rank without rows has about as little as one row takes
         let cells = region.cells().map(|count| count.max(1));
-        Computed { cells, folded: region.folded(), covers: region.covers() }
+        let shared = region.is_shared().then(|| region.rows());
+        Computed { cells, folded: region.folded(), covers: region.covers(), shared }
     }
 }
 
 impl Footprint<'_> {
     /// Bytes of a contact that is computed on these cells.
-    pub(super) fn on(&self, Computed { cells, folded, covers }: Computed) -> Memory {
+    pub(super) fn on(&self, computed: &Computed) -> Memory {
+        let &Computed { cells, folded, covers, ref shared } = computed;
         let count = cells[0].saturating_mul(cells[1]);
         let (all, n, bodies) = (self.all as u128, count as u128, self.bodies as u128);
         let gap = if bodies > 1 { 10 } else { 8 };
-        // the whole of it, what is computed of it, and the pressure that is shown
-        let grid = if count == self.all { gap * all } else { (gap + 8) * all + gap * n };
+        // the whole of it, which ranks do not have, what is computed of it, and the pressure that is shown
+        let whole = if shared.is_some() { 0 } else { gap * all };
+        let grid = if count == self.all { gap * n } else { whole + 8 * all + gap * n };
         // of the far field of a window two fields, and one for each relaxation time
         let history = self.history.bytes_per_cell() as u128 * n;
         let far = if covers { 0 } else { 16 * n + history };
-        let [kernel, inverse] = self.kernel.bytes_on(cells, folded);
+        let [kernel, inverse] = match shared {
+            Some(rows) => self.kernel.own_bytes(rows, folded),
+            None => self.kernel.bytes_on(cells, folded),
+        };
         let sums = Bands::bytes(&Rows::all(cells), self.bodies) as u128;
         let solver = match self.settings.solver {
             // three fields, a mark, and runs of cells
@@ -146,7 +153,7 @@ impl Footprint<'_> {
     }
 
     /// Rejects more cells than solvers can number, and more memory than there is, `besides` included \[bytes\].
-    pub(super) fn check(&self, computed: Computed, besides: u64) -> Result<()> {
+    pub(super) fn check(&self, computed: &Computed, besides: u64) -> Result<()> {
         let memory = self.on(computed);
         let cells = memory.computed_cells;
         let allowed = "4294967295 at most: take fewer cells, or let symmetry and window of the Settings compute fewer";
@@ -157,13 +164,13 @@ impl Footprint<'_> {
     /// The most bytes that the contact can take while the axes `folded` stay so.
     pub(super) fn most(&self, cells: [usize; 2], folded: [bool; 2], windowed: bool) -> Memory {
         let cells = [0, 1].map(|axis| if folded[axis] { cells[axis] / 2 } else { cells[axis] });
-        let whole = self.on(Computed { cells, folded, covers: true });
+        let whole = self.on(&Computed { cells, folded, covers: true, shared: None });
         if !windowed {
             return whole;
         }
         // the largest window, beyond which it is all of the grid
         let part = (cells[0] as f64 * MAX_WINDOW_FRACTION).ceil() as usize;
-        let window = self.on(Computed { cells: [part, cells[1]], folded, covers: false });
+        let window = self.on(&Computed { cells: [part, cells[1]], folded, covers: false, shared: None });
         if window.total() > whole.total() { window } else { whole }
     }
 }
@@ -198,12 +205,12 @@ mod tests {
             let kernel = InfluenceKernel::half_space(&Grid::new(cells, [1.0, 1.0]).unwrap()).unwrap();
             let all = cells[0] * cells[1];
             let footprint = Footprint { all, bodies: 1, settings: &settings, kernel: &kernel, history: &history };
-            let whole = Computed { cells, folded: [false; 2], covers: true };
-            let refused = footprint.check(whole, 0).unwrap_err();
+            let whole = Computed { cells, folded: [false; 2], covers: true, shared: None };
+            let refused = footprint.check(&whole, 0).unwrap_err();
             assert!(matches!(refused, Error::CountOutOfRange { value, .. } if value == all), "{refused}");
             // a small part of them may be, whose memory is that of gap and pressure
-            let part = Computed { cells: [64, 1], folded: [false; 2], covers: false };
-            assert!((16 * all as u64..16 * all as u64 + 100_000).contains(&footprint.on(part).total()));
+            let part = Computed { cells: [64, 1], folded: [false; 2], covers: false, shared: None };
+            assert!((16 * all as u64..16 * all as u64 + 100_000).contains(&footprint.on(&part).total()));
         }
     }
 }

@@ -16,11 +16,19 @@ pub(crate) struct Hull {
 impl Hull {
     /// The hull of the cells for which `inside` holds, by Andrew's monotone chain over the ends of each row.
     pub(crate) fn new(grid: &Grid, inside: impl Fn(usize) -> bool) -> Hull {
-        let [n1, n2] = grid.cells();
+        let n2 = grid.cells()[1];
+        Hull::of_rows(grid, |i| {
+            let row = || (0..n2).filter(|j| inside(i * n2 + j));
+            row().next().zip(row().next_back()).map(|(first, last)| [first, last])
+        })
+    }
+
+    /// The hull of rows of cells with these ends.
+    pub(crate) fn of_rows(grid: &Grid, ends: impl Fn(usize) -> Option<[usize; 2]>) -> Hull {
+        let n1 = grid.cells()[0];
         let mut points = Vec::with_capacity(2 * n1);
         for i in 0..n1 {
-            let row = || (0..n2).filter(|j| inside(i * n2 + j));
-            if let (Some(first), Some(last)) = (row().next(), row().next_back()) {
+            if let Some([first, last]) = ends(i) {
                 points.push(grid.center(i, first));
                 if last != first {
                     points.push(grid.center(i, last));

@@ -5,7 +5,6 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::Grid;
 use crate::contact::hull::Hull;
-use crate::contact::window::region::Region;
 use crate::error::Result;
 use crate::geometry::Gap;
 use crate::solver::RigidMotion;
@@ -29,6 +28,12 @@ impl Indenter {
     pub(crate) fn new(gap: Gap, bodies: usize) -> Indenter {
         let hulls = (0..bodies).map(|_| OnceLock::new()).collect();
         Indenter { gap, bodies, id: next_id(), even: OnceLock::new(), hulls, on_own_rows: false }
+    }
+
+    /// The indenter of a rank: the gap of a single body on the computed cells of own rows, and what follows from all rows.
+    pub(crate) fn shared(gap: Gap, even: [bool; 2], hull: Hull) -> Indenter {
+        let hulls = vec![OnceLock::from(hull)];
+        Indenter { gap, bodies: 1, id: next_id(), even: OnceLock::from(even), hulls, on_own_rows: true }
     }
 
     /// On the whole grid, or, where ranks share it out, the computed cells of own rows.
@@ -64,17 +69,6 @@ impl Indenter {
     pub(crate) fn hull(&self, body: usize, grid: &Grid) -> &Hull {
         let touchable = |k: usize| self.gap.owner(k) == body && self.gap.above[k].is_finite();
         self.hulls[body].get_or_init(|| Hull::new(grid, touchable))
-    }
-
-    /// The indenter of a rank: its gap on a region of own rows, and what follows from the gap on the whole grid.
-    pub(crate) fn on_own_rows(self, region: &Region, grid: &Grid) -> Indenter {
-        self.even_axes(grid);
-        for body in 0..self.bodies {
-            self.hull(body, grid);
-        }
-        let Gap { datum, above, owner } = &self.gap;
-        let gap = Gap { datum: *datum, above: region.cut(above), owner: owner.as_ref().map(|owner| region.cut(owner)) };
-        Indenter { gap, on_own_rows: true, ..self }
     }
 
     /// The motion at which each body just touches the undeformed surface, upright.

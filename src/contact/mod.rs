@@ -36,6 +36,7 @@ mod request;
 mod scene;
 mod set_geometry;
 mod settings;
+mod shared_gap;
 mod state;
 mod time_rule;
 mod times;

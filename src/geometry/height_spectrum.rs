@@ -1,17 +1,22 @@
 //! Surfaces as Fourier series.
 
 use std::f64::consts::{PI, TAU};
+use std::ops::Range;
 
 use num_complex::Complex64;
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
+
+use crate::ranks::{Rows, depart, part};
 
 /// Fourier coefficients of a real field on `cells` points: amplitudes of exp(2πi (k1 i/n1 + k2 j/n2)), normalised so
 /// that the sum of all waves is the field. Only those with k2 ≥ 0 are stored; the others are their conjugates.
 #[derive(Debug, Clone)]
 pub(super) struct HeightSpectrum {
     cells: [usize; 2],
-    /// For each k2 from 0 to n2/2 all k1, the negative ones after the positive.
+    /// The k2 that are here: 0 to n2/2, or some of them where ranks share them out.
+    columns: Range<usize>,
+    /// For each k2 all k1, the negative ones after the positive.
     amplitudes: Vec<Complex64>,
 }
 
@@ -34,7 +39,13 @@ impl HeightSpectrum {
 
     /// All coefficients zero.
     pub(super) fn zero(cells: [usize; 2]) -> HeightSpectrum {
-        HeightSpectrum { cells, amplitudes: vec![Complex64::ZERO; (cells[1] / 2 + 1) * cells[0]] }
+        HeightSpectrum::zero_of(cells, 0..cells[1] / 2 + 1)
+    }
+
+    /// All coefficients of these k2 zero.
+    pub(super) fn zero_of(cells: [usize; 2], columns: Range<usize>) -> HeightSpectrum {
+        let amplitudes = vec![Complex64::ZERO; columns.len() * cells[0]];
+        HeightSpectrum { cells, columns, amplitudes }
     }
 
     /// The coefficients of a field without missing values, one value per point.
@@ -57,14 +68,44 @@ impl HeightSpectrum {
 
     /// The field, by the inverse transform.
     pub(super) fn heights(mut self) -> Vec<f64> {
-        let [n1, n2] = self.cells;
-        FftPlanner::new().plan_fft_inverse(n1).process(&mut self.amplitudes);
+        let [n1, _] = self.cells;
+        self.transform_columns();
+        self.rows(n1, |i, k2| self.amplitudes[k2 * n1 + i])
+    }
+
+    /// Own rows of the field, where ranks share out the k2. A call of all ranks.
+    pub(super) fn own_heights(mut self, rows: &Rows) -> Vec<f64> {
+        let Some(group) = rows.group().cloned() else { return self.heights() };
+        let ([n1, n2], own) = (self.cells, rows.own().len());
+        self.transform_columns();
+        let amplitudes = std::mem::take(&mut self.amplitudes);
+        let ranks = 0..rows.ranks();
+        let mut send = Vec::with_capacity(amplitudes.len());
+        for rank in ranks.clone() {
+            amplitudes.chunks_exact(n1).for_each(|column| send.extend_from_slice(&column[rows.of(rank)]));
+        }
+        drop(amplitudes);
+        let sent: Vec<usize> = ranks.clone().map(|rank| self.columns.len() * rows.of(rank).len()).collect();
+        let counts: Vec<usize> = ranks.map(|rank| own * part(n2 / 2 + 1, rank, rows.ranks()).len()).collect();
+        let mut received = vec![Complex64::ZERO; (n2 / 2 + 1) * own];
+        group.exchange(&send, &sent, &mut received, &counts).unwrap_or_else(|error| depart(error));
+        drop(send);
+        self.rows(own, |i, k2| received[k2 * own + i])
+    }
+
+    fn transform_columns(&mut self) {
+        FftPlanner::new().plan_fft_inverse(self.cells[0]).process(&mut self.amplitudes);
+    }
+
+    /// `count` rows of the field, of their coefficients.
+    fn rows(&self, count: usize, coefficient: impl Fn(usize, usize) -> Complex64) -> Vec<f64> {
+        let n2 = self.cells[1];
         let along2 = RealFftPlanner::new().plan_fft_inverse(n2);
         let mut input = along2.make_input_vec();
-        let mut field = vec![0.0; n1 * n2];
+        let mut field = vec![0.0; count * n2];
         for (i, row) in field.chunks_exact_mut(n2).enumerate() {
             for (k2, value) in input.iter_mut().enumerate() {
-                *value = self.amplitudes[k2 * n1 + i];
+                *value = coefficient(i, k2);
                 if k2 == 0 || 2 * k2 == n2 {
                     // Real except for rounding, which the transform would reject.
                     value.im = 0.0;
@@ -94,10 +135,11 @@ impl HeightSpectrum {
     /// Sets the amplitude of a wave, and that of its conjugate if it is stored.
     pub(super) fn set(&mut self, number: [i64; 2], amplitude: Complex64) {
         let n1 = self.cells[0] as i64;
-        let index = |k1: i64| (number[1] * n1 + k1.rem_euclid(n1)) as usize;
-        self.amplitudes[index(number[0])] = amplitude;
+        let index = |k1: i64| ((number[1] - self.columns.start as i64) * n1 + k1.rem_euclid(n1)) as usize;
+        let (index, image) = (index(number[0]), index(-number[0]));
+        self.amplitudes[index] = amplitude;
         if number[1] == 0 {
-            self.amplitudes[index(-number[0])] = amplitude.conj();
+            self.amplitudes[image] = amplitude.conj();
         }
     }
 

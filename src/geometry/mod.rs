@@ -10,6 +10,7 @@
 //! | [`Wavy`] | A (1 − cos 2πx1/λ), or the sum of two such waves |
 //! | [`HeightMap`] | a measured surface |
 //! | [`Rough`] | a random self-affine surface |
+//! | [`SharedRough`] | the same, shared out between ranks |
 //! | [`Sum`] | superposed shapes, such as roughness on a sphere |
 //! | [`Shifted`] | another shape, shifted in the plane |
 //! | [`Repeated`] | another shape, repeated periodically |
@@ -39,7 +40,7 @@ pub use flat_punch::FlatPunch;
 pub use function::FnGeometry;
 pub use height_map::{Form, HeightMap, LengthUnit, Resampled, ResamplingError};
 pub use repeated::Repeated;
-pub use rough::{Anisotropy, Rough, RoughSpec, Roughness};
+pub use rough::{Anisotropy, Rough, RoughSpec, Roughness, SharedRough};
 pub use shifted::Shifted;
 pub use sphere::Sphere;
 pub use statistics::SurfaceStatistics;
@@ -80,7 +81,8 @@ pub trait Geometry: Debug + Send + Sync {
     /// NaN and −∞ are errors wherever a geometry is used.
     fn initial_gap(&self, x1: f64, x2: f64) -> f64;
 
-    /// Writes the gap at every cell centre of `grid` into `gap` \[m\], which has one value per cell.
+    /// Writes the gap at every cell centre of `grid` into `gap` \[m\], which has one value per cell. Where
+    /// [ranks](crate::ranks) share out a contact, `grid` holds some rows of the whole: ask [`Grid::center`] where they are.
     ///
     /// Override it if a whole field is cheaper than its points one by one.
     ///
@@ -155,7 +157,10 @@ pub(crate) fn evaluate(geometry: &dyn Geometry, grid: &Grid) -> Result<Vec<f64>>
     // checked before filling a field that could not be used
     memory::check("gap and pressure of a contact", 16 * grid.len() as u128)?;
     let mut gap = memory::field("the gap of a contact", grid.len(), f64::INFINITY)?;
-    geometry.fill_gap(grid, &mut gap);
+    // a rank may have no rows
+    if !gap.is_empty() {
+        geometry.fill_gap(grid, &mut gap);
+    }
     Ok(gap)
 }
 

@@ -152,7 +152,7 @@ impl InfluenceKernel {
         }
         let kernel = InfluenceKernel::new(grid, Influence::Coefficients { values: values.into(), columns: n2 });
         let whole = kernel.operator([false; 2]);
-        let symbol = kernel.influence.symbol(grid, layout, layout.all_columns());
+        let symbol = kernel.influence.symbol(grid, layout, None);
         let mut waves = (0..=layout.period(0) / 2).flat_map(|k1| (0..=layout.period(1) / 2).map(move |k2| (k1, k2)));
         if !waves.all(|(k1, k2)| symbol(k1, k2) > 0.0) {
             memory::check("the check that a kernel is positive definite", layout.workspace_bytes() + 3 * coefficients)?;

@@ -1,12 +1,12 @@
 //! The spectrum of an even kernel that is given by its coefficients.
 
-use std::ops::Range;
 use std::sync::Arc;
 
 use num_complex::Complex64;
 use realfft::{RealFftPlanner, RealToComplex};
 
 use super::layout::{Ends, Layout};
+use super::transform::Shares;
 
 /// A quarter of the real even spectrum on the period of a padded layout, or some columns of it.
 pub(super) struct EvenSpectrum {
@@ -17,21 +17,33 @@ pub(super) struct EvenSpectrum {
 }
 
 impl EvenSpectrum {
-    /// The columns k2 of the spectrum of the kernel with these coefficients at the distances of the layout, and zero beyond.
-    pub(super) fn of(layout: Layout, columns: Range<usize>, coefficient: impl Fn(usize, usize) -> f64) -> EvenSpectrum {
+    /// The spectrum of the kernel with these coefficients at the distances of the layout, and zero beyond; own columns, where
+    /// ranks share it out.
+    pub(super) fn of(
+        layout: Layout,
+        shares: Option<&Shares>,
+        coefficient: impl Fn(usize, usize) -> f64,
+    ) -> EvenSpectrum {
         // a kernel made periodic needs half a period at most, and none beyond the cells
         let known = [0, 1].map(|axis| {
             let cells = layout.cells[axis] * if layout.folded[axis] { 2 } else { 1 };
             if layout.ends[axis] == Ends::Free { cells } else { cells.min(layout.period(axis) / 2 + 1) }
         });
         let [period1, period2] = [layout.period(0), layout.period(1)];
+        let columns = shares.map_or(layout.all_columns(), |shares| shares.columns(&layout));
         let (first, count, length) = (columns.start, columns.len(), period1 / 2 + 1);
         let [mut across, mut down] = [EvenLine::new(period2), EvenLine::new(period1)];
-        let mut rows = vec![0.0; known[0] * count];
-        for (i, row) in rows.chunks_exact_mut(count.max(1)).enumerate() {
+        let mut write = |i: usize, row: &mut [f64]| {
             let values = across.transform((0..known[1]).map(|j| coefficient(i, j)));
-            row.iter_mut().zip(values.skip(first)).for_each(|(out, value)| *out = value);
-        }
+            row.iter_mut().zip(values).for_each(|(out, value)| *out = value);
+        };
+        let rows = if let Some(shares) = shares {
+            shares.own_columns(&layout, known[0], write)
+        } else {
+            let mut rows = vec![0.0; known[0] * count];
+            rows.chunks_exact_mut(count).enumerate().for_each(|(i, row)| write(i, row));
+            rows
+        };
         // stored column by column
         let mut values = vec![0.0; length * count];
         for (k2, column) in values.chunks_exact_mut(length).enumerate() {

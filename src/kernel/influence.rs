@@ -2,7 +2,6 @@
 
 use std::f64::consts::PI;
 use std::fmt;
-use std::ops::Range;
 use std::sync::Arc;
 
 use super::even_spectrum::{EvenLine, EvenSpectrum};
@@ -10,6 +9,7 @@ use super::layer::{Layer, Remainder};
 use super::layout::{Ends, Layout, waves_at};
 use super::love::Love;
 use super::strip::{Strip, wave_number};
+use super::transform::Shares;
 use crate::Grid;
 use crate::kernel::layout::is_fast;
 
@@ -87,10 +87,10 @@ impl Influence {
         }
     }
 
-    /// The factor by which the operator multiplies each wave of the layout, for k2 in `columns`.
-    pub(super) fn symbol(&self, grid: &Grid, layout: Layout, columns: Range<usize>) -> Symbol {
+    /// The factor by which the operator multiplies each wave of the layout; of own columns k2, where ranks share it out.
+    pub(super) fn symbol(&self, grid: &Grid, layout: Layout, shares: Option<&Shares>) -> Symbol {
         let spectrum = |coefficient: &dyn Fn(usize, usize) -> f64| -> Symbol {
-            let spectrum = EvenSpectrum::of(layout, columns.clone(), coefficient);
+            let spectrum = EvenSpectrum::of(layout, shares, coefficient);
             Box::new(move |k1, k2| spectrum.at(k1, k2))
         };
         match self {
@@ -114,6 +114,7 @@ impl Influence {
                 // for each wave along the periodic axis, a convolution along the other
                 let (periodic, free) = (*periodic, 1 - periodic);
                 let (mut line, mut values) = (EvenLine::new(layout.period(free)), Vec::new());
+                let columns = shares.map_or(layout.all_columns(), |shares| shares.columns(&layout));
                 let all = [0..layout.period(0) / 2 + 1, columns];
                 let (waves, wanted) = (all[periodic].clone(), all[free].clone());
                 for k in waves.clone() {
@@ -178,7 +179,7 @@ impl Influence {
                 layered(*layer, at(0) + far)
             }
             Influence::LayerPeriodic(_) | Influence::Coefficients { .. } | Influence::Waves { .. } => {
-                let symbol = self.symbol(grid, layout, layout.all_columns());
+                let symbol = self.symbol(grid, layout, None);
                 let waves =
                     (0..=layout.period(0) / 2).flat_map(|k1| (0..=layout.period(1) / 2).map(move |k2| (k1, k2)));
                 let most = waves.map(|(k1, k2)| symbol(k1, k2)).fold(0.0, f64::max);
@@ -217,7 +218,7 @@ impl Influence {
             }
             Influence::LayerPeriodic(layer) if layer.compliance_of_period() == 0.0 => {
                 let whole = Layout { cells: grid.cells(), ends: self.ends(), folded: [false; 2] };
-                let symbol = self.symbol(grid, whole, whole.all_columns());
+                let symbol = self.symbol(grid, whole, None);
                 let waves = (0..=grid.cells()[0] / 2).flat_map(|k1| (0..=grid.cells()[1] / 2).map(move |k2| (k1, k2)));
                 Some(waves.map(|(k1, k2)| symbol(k1, k2)).fold(0.0, f64::max))
             }
@@ -248,7 +249,7 @@ impl Influence {
             }
             Influence::Periodic | Influence::LayerPeriodic(_) | Influence::Waves { .. } => {
                 let layout = Layout { cells: grid.cells(), ends: self.ends(), folded: [false; 2] };
-                layout.coefficient(at, self.symbol(grid, layout, layout.all_columns()))
+                layout.coefficient(at, self.symbol(grid, layout, None))
             }
         }
     }

@@ -207,6 +207,17 @@ impl InfluenceKernel {
         [operator + layout.workspace_bytes(), inverse.operator_bytes() + inverse.workspace_bytes_beside(&layout)]
     }
 
+    /// The same of the own ones of rows that ranks share out.
+    pub(crate) fn own_bytes(&self, rows: &Rows, folded: [bool; 2]) -> [u128; 2] {
+        let layout = Layout { cells: rows.cells(), ..self.layout(folded) };
+        let inverse = layout.wrapped();
+        let (Some(of_kernel), Some(of_inverse)) = (Shares::new(&layout, rows), Shares::new(&inverse, rows)) else {
+            return self.bytes_on(rows.cells(), folded);
+        };
+        let kernel = of_kernel.operator_bytes(&layout) + of_kernel.workspace_bytes(&layout);
+        [kernel, of_inverse.operator_bytes(&inverse) + of_inverse.workspace_bytes_beside(&inverse, &of_kernel)]
+    }
+
     /// The operator on the whole grid.
     fn operator(&self, folded: [bool; 2]) -> &Arc<SpectralOperator> {
         let layout = self.layout(folded);
@@ -220,12 +231,12 @@ impl InfluenceKernel {
     }
 
     fn make(&self, layout: Layout) -> SpectralOperator {
-        SpectralOperator::from_symbol(layout, self.influence.symbol(&self.grid, layout, layout.all_columns()))
+        SpectralOperator::from_symbol(layout, self.influence.symbol(&self.grid, layout, None))
     }
 
     /// An operator whose rows are shared out: each rank makes its part of the spectrum.
     fn make_shared(&self, layout: Layout, shares: Shares) -> SpectralOperator {
-        let symbol = self.influence.symbol(&self.grid, layout, shares.columns(&layout));
+        let symbol = self.influence.symbol(&self.grid, layout, Some(&shares));
         SpectralOperator::shared(layout, shares, symbol)
     }
 
@@ -266,7 +277,7 @@ impl InfluenceKernel {
     pub(crate) fn mark(&self) -> Vec<f64> {
         let mut mark = vec![self.self_influence()];
         if let Influence::Coefficients { values, columns } | Influence::Waves { values, columns } = &self.influence {
-            mark.extend(crate::sum::moments(values.iter().copied(), *columns));
+            mark.extend(crate::sum::moments(values.iter().copied(), 0, *columns));
         }
         mark
     }

@@ -9,9 +9,9 @@
 //!
 //! let forces = Threads::run(3, |ranks| {
 //!     let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3)?)
+//!         .ranks(ranks)
 //!         .geometry(&Sphere::new(10.0e-3)?)
 //!         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
-//!         .ranks(ranks)
 //!         .build()?;
 //!     contact.step(0.0, Load::force(1.0))?;
 //!     contact.step(0.5, Load::force(1.0))?; // every rank gets the same report
@@ -42,15 +42,19 @@
 //! | series of relaxation times | direct sums, [`Solver::PolonskyKeer`](crate::contact::Solver::PolonskyKeer) |
 //! | snapshots in memory | checkpoints, files, pictures, patches, profiles, stresses |
 //!
-//! Every rank evaluates the geometry on the whole grid, and keeps what belongs to its rows: to build a contact takes 8 bytes a
-//! cell of the whole grid for a moment. Clones and snapshots are of the same ranks.
+//! No rank needs memory for the whole grid: [`Builder::ranks`](crate::contact::Builder::ranks), given before the geometry, has
+//! each evaluate it on own rows, random surfaces are made by [`Rough::shared`](crate::geometry::Rough::shared), coefficients of
+//! the kernel are computed by rows and kept by columns. [`Builder::memory`](crate::contact::Builder::memory) tells the bytes
+//! of a rank. Clones and snapshots are of the same ranks.
 //!
 //! [`Settings::window`](crate::contact::Settings::window) is passed over: the whole grid is computed, as far as symmetry
 //! does not leave less.
 
+mod numbers;
 mod rows;
 mod threads;
 
+pub(crate) use numbers::exchange_numbers;
 pub(crate) use rows::{Rows, caught, depart, part};
 pub use threads::Threads;
 

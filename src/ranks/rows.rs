@@ -59,10 +59,14 @@ impl Rows {
 
     /// Those of a rank of the group.
     pub(crate) fn of_rank(cells: [usize; 2], group: Arc<dyn Ranks>) -> Rows {
-        let mut rows = Rows::all(cells);
-        let rank = group.rank();
-        rows.shared = Some(Arc::new(Shared { group, buffers: Mutex::default() }));
-        rows.own = rows.of(rank);
+        let shared = Some(Arc::new(Shared { group, buffers: Mutex::default() }));
+        Rows { shared, ..Rows::all(cells) }.of_cells(cells)
+    }
+
+    /// The rows of another field that the same ranks share out.
+    pub(crate) fn of_cells(&self, cells: [usize; 2]) -> Rows {
+        let mut rows = Rows { shared: self.shared.clone(), ..Rows::all(cells) };
+        rows.own = rows.of(self.group().map_or(0, |group| group.rank()));
         rows
     }
 

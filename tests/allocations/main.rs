@@ -21,6 +21,8 @@ fn main() {
     println!("tilting steps allocate nothing: ok");
     ranks::warm_steps_of_ranks_allocate_nothing();
     println!("warm steps of ranks allocate nothing: ok");
+    ranks::ranks_announce_what_is_counted();
+    println!("ranks announce what is counted: ok");
     memory::builders_announce_what_is_counted();
     println!("builders announce what is counted: ok");
 }

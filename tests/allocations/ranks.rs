@@ -49,6 +49,41 @@ pub fn warm_steps_of_ranks_allocate_nothing() {
     }
 }
 
+/// Of all ranks together, counted and announced; a quarter of the cells by symmetry, or all.
+pub fn ranks_announce_what_is_counted() {
+    for symmetry in [true, false] {
+        let grid = Grid::square(512, 4.0e-3).unwrap();
+        let shape = Sphere::new(10.0e-3).unwrap();
+        let found = Threads::run(SIZE, |ranks| {
+            let builder = |ranks: &Arc<dyn Ranks>| {
+                ViscoelasticContact::builder(grid.clone())
+                    .ranks(Arc::clone(ranks))
+                    .geometry(&shape)
+                    .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
+                    .settings(Settings::default().with_symmetry(symmetry))
+            };
+            // what threads keep for the next contact is taken once
+            drop(builder(&ranks).build().unwrap());
+            meet(&ranks);
+            let region = Region::new(ALLOCATOR);
+            meet(&ranks);
+            let told = builder(&ranks).memory().unwrap();
+            let contact = builder(&ranks).build().unwrap();
+            meet(&ranks);
+            let change = region.change();
+            meet(&ranks);
+            drop(contact);
+            (told, change.bytes_allocated as f64 - change.bytes_deallocated as f64)
+        });
+        let found = found.unwrap();
+        let told: u64 = found.iter().map(|(told, _)| told.total()).sum();
+        let counted = found[0].1 / told as f64;
+        assert!((0.95..1.05).contains(&counted), "{} counted, {told} told", found[0].1);
+        let cells: usize = found.iter().map(|(told, _)| told.computed_cells).sum();
+        assert_eq!(cells, if symmetry { 256 * 256 } else { 512 * 512 });
+    }
+}
+
 fn builder(settings: Settings, shape: &dyn Geometry) -> Builder {
     ViscoelasticContact::builder(Grid::square(256, 4.0e-3).unwrap())
         .geometry(shape)

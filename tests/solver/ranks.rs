@@ -3,6 +3,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 use viscocontact::ranks::{Ranks, Threads};
 
@@ -15,23 +16,43 @@ struct Course {
     displacement: Vec<u64>,
 }
 
-/// A scene on all rows, or on those of a rank.
-type Scene = fn(Builder) -> Result<(ViscoelasticContact, Vec<StepReport>), Error>;
+/// Who computes: one process, or a rank, which evaluates the geometry on own rows or on the whole grid.
+struct Start {
+    ranks: Option<Arc<dyn Ranks>>,
+    on_own_rows: bool,
+}
 
-fn with_ranks(builder: Builder, ranks: Option<Arc<dyn Ranks>>) -> Builder {
-    match ranks {
-        Some(ranks) => builder.ranks(ranks),
-        None => builder,
+impl Start {
+    fn builder(&self, grid: &Grid) -> Builder {
+        let builder = ViscoelasticContact::builder(grid.clone());
+        match &self.ranks {
+            Some(ranks) if self.on_own_rows => builder.ranks(Arc::clone(ranks)),
+            _ => builder,
+        }
+    }
+
+    fn rough(&self, grid: &Grid, spec: RoughSpec) -> Result<Box<dyn Geometry>, Error> {
+        Ok(match &self.ranks {
+            Some(ranks) => Box::new(Rough::shared(grid, spec, ranks)?),
+            None => Box::new(Rough::new(grid, spec)?),
+        })
+    }
+
+    fn end(&self, builder: Builder) -> Builder {
+        match &self.ranks {
+            Some(ranks) if !self.on_own_rows => builder.ranks(Arc::clone(ranks)),
+            _ => builder,
+        }
     }
 }
 
+/// Its parts, and steps.
+type Parts = fn(&Start) -> Result<Builder, Error>;
+type Scene = fn(Builder) -> Result<(ViscoelasticContact, Vec<StepReport>), Error>;
+
 /// What a rank sees; fields on rank 0 alone.
-fn course(
-    builder: fn() -> Result<Builder, Error>,
-    scene: Scene,
-    ranks: Option<Arc<dyn Ranks>>,
-) -> Result<Course, Error> {
-    let (contact, reports) = scene(with_ranks(builder()?, ranks))?;
+fn course(builder: Parts, scene: Scene, start: &Start) -> Result<Course, Error> {
+    let (contact, reports) = scene(start.end(builder(start)?))?;
     let bits = |field: Vec<f64>| field.into_iter().map(f64::to_bits).collect::<Vec<_>>();
     let whole = |field: &[f64]| Ok::<_, Error>(bits(contact.gathered(field, 0)?.unwrap_or_default()));
     let ([moment1, moment2], [tilt1, tilt2]) = (contact.moment(), contact.tilt());
@@ -45,11 +66,12 @@ fn course(
 }
 
 /// Compares the scene on 1 to 5 ranks with that of one process, and on more than there are bands of rows.
-fn same_on_all(builder: fn() -> Result<Builder, Error>, scene: Scene) {
-    let alone = course(builder, scene, None).unwrap();
+fn same_on_all(builder: Parts, scene: Scene) {
+    let alone = course(builder, scene, &Start { ranks: None, on_own_rows: false }).unwrap();
     assert!(alone.pressure.iter().any(|&p| p != 0) && !alone.reports.is_empty());
     for size in [1, 2, 3, 4, 5, 8] {
-        let courses = Threads::run(size, |ranks| course(builder, scene, Some(ranks))).unwrap();
+        let start = |ranks| Start { ranks: Some(ranks), on_own_rows: size != 3 };
+        let courses = Threads::run(size, |ranks| course(builder, scene, &start(ranks))).unwrap();
         for (rank, course) in courses.into_iter().enumerate() {
             let course = course.unwrap();
             assert_eq!(course.reports, alone.reports, "rank {rank} of {size}");
@@ -73,9 +95,9 @@ fn settings() -> Settings {
 
 #[test]
 fn sphere_folded() {
-    let builder = || {
+    let builder: Parts = |start| {
         let grid = Grid::square(384, 4.0e-3)?;
-        Ok(ViscoelasticContact::builder(grid).geometry(&Sphere::new(10.0e-3)?).material(zener()?).settings(settings()))
+        Ok(start.builder(&grid).geometry(&Sphere::new(10.0e-3)?).material(zener()?).settings(settings()))
     };
     same_on_all(builder, |builder| {
         let mut contact = builder.build()?;
@@ -89,10 +111,10 @@ fn sphere_folded() {
 
 #[test]
 fn sphere_whole() {
-    let builder = || {
+    let builder: Parts = |start| {
         let settings = settings().with_symmetry(false);
         let grid = Grid::new([203, 178], [4.0e-3, 3.6e-3])?;
-        Ok(ViscoelasticContact::builder(grid).geometry(&Sphere::new(10.0e-3)?).material(zener()?).settings(settings))
+        Ok(start.builder(&grid).geometry(&Sphere::new(10.0e-3)?).material(zener()?).settings(settings))
     };
     same_on_all(builder, |builder| {
         let mut contact = builder.build()?;
@@ -110,12 +132,29 @@ fn sphere_whole() {
     });
 }
 
+/// Symmetric about one axis alone: half of the rows are computed, by other ranks than those that have evaluated them, or half
+/// of each row, in other bands.
+#[test]
+fn spheres_off_the_middle() {
+    fn off(start: &Start, by: [f64; 2]) -> Result<Builder, Error> {
+        let (grid, sphere) = (Grid::new([320, 256], [4.0e-3, 3.2e-3])?, Shifted::new(Sphere::new(10.0e-3)?, by)?);
+        Ok(start.builder(&grid).geometry(&sphere).material(zener()?).settings(settings()))
+    }
+    let scene: Scene = |builder| {
+        let mut contact = builder.build()?;
+        let reports = vec![contact.step(0.0, Load::force(0.4))?, contact.step(0.3, Load::force(0.4))?];
+        Ok((contact, reports))
+    };
+    same_on_all(|start| off(start, [0.31e-3, 0.0]), scene);
+    same_on_all(|start| off(start, [0.0, 0.31e-3]), scene);
+}
+
 #[test]
 fn tilting_punch() {
-    let builder = || {
+    let builder: Parts = |start| {
         let grid = Grid::new([170, 160], [1.2e-3, 1.0e-3])?;
         let (punch, settings) = (FlatPunch::rectangular([0.8e-3, 0.6e-3])?, settings().with_symmetry(false));
-        Ok(ViscoelasticContact::builder(grid).geometry(&punch).material(zener()?).settings(settings))
+        Ok(start.builder(&grid).geometry(&punch).material(zener()?).settings(settings))
     };
     same_on_all(builder, |builder| {
         let mut contact = builder.build()?;
@@ -138,11 +177,11 @@ fn waves(x1: f64, x2: f64) -> f64 {
 
 #[test]
 fn rough_periodic() {
-    let builder = || {
+    let builder: Parts = |start| {
         let grid = Grid::new([176, 192], [1.0e-3, 1.0e-3])?;
         let kernel = Arc::new(InfluenceKernel::periodic(&grid)?);
         let surface = FnGeometry::new(waves);
-        Ok(ViscoelasticContact::builder(grid).geometry(&surface).material(zener()?).kernel(kernel).settings(settings()))
+        Ok(start.builder(&grid).geometry(&surface).material(zener()?).kernel(kernel).settings(settings()))
     };
     same_on_all(builder, |builder| {
         let mut contact = builder.build()?;
@@ -156,11 +195,29 @@ fn rough_periodic() {
 
 #[test]
 fn rough_periodic_surface_drawn_at_random() {
-    let builder = || {
+    let builder: Parts = |start| {
         let grid = Grid::square(192, 1.0e-3)?;
         let kernel = Arc::new(InfluenceKernel::periodic(&grid)?);
-        let rough = Rough::new(&grid, RoughSpec::new(0.5e-3, 0.03e-3, Roughness::RmsSlope(0.02)))?;
-        Ok(ViscoelasticContact::builder(grid).geometry(&rough).material(zener()?).kernel(kernel).settings(settings()))
+        let rough = start.rough(&grid, RoughSpec::new(0.5e-3, 0.03e-3, Roughness::RmsSlope(0.02)))?;
+        Ok(start.builder(&grid).geometry(&rough).material(zener()?).kernel(kernel).settings(settings()))
+    };
+    same_on_all(builder, |builder| {
+        let mut contact = builder.build()?;
+        let reports = vec![contact.step(0.0, Load::force(1.0e-2))?, contact.step(0.5, Load::force(1.0e-2))?];
+        Ok((contact, reports))
+    });
+}
+
+/// A measured surface, shifted by a part of a cell by its Fourier series, on a sphere.
+#[test]
+fn measured_surface_shifted() {
+    let builder: Parts = |start| {
+        let grid = Grid::square(192, 1.0e-3)?;
+        let cells = grid.cells();
+        let heights = (0..grid.len()).map(|k| grid.center(k / cells[1], k % cells[1])).map(|[x1, x2]| waves(x1, x2));
+        let map = HeightMap::new(cells, [1.0e-3; 2], heights.collect())?.periodic();
+        let shape = Sum::new(Sphere::new(5.0e-3)?, Shifted::new(map, [1.7e-6, 0.4e-6])?);
+        Ok(start.builder(&grid).geometry(&shape).material(zener()?).settings(settings()))
     };
     same_on_all(builder, |builder| {
         let mut contact = builder.build()?;
@@ -171,12 +228,12 @@ fn rough_periodic_surface_drawn_at_random() {
 
 #[test]
 fn line() {
-    let builder = || {
+    let builder: Parts = |start| {
         let grid = Grid::new([45_000, 1], [4.0e-3, 1.0])?;
         let kernel = Arc::new(InfluenceKernel::line(&grid, 1.0)?);
         let cylinder = Cylinder::new(10.0e-3)?;
         let settings = settings().with_symmetry(false);
-        Ok(ViscoelasticContact::builder(grid).geometry(&cylinder).material(zener()?).kernel(kernel).settings(settings))
+        Ok(start.builder(&grid).geometry(&cylinder).material(zener()?).kernel(kernel).settings(settings))
     };
     same_on_all(builder, |builder| {
         let mut contact = builder.build()?;
@@ -191,11 +248,11 @@ fn line() {
 /// Periodic along x1 alone, so that the rows of the pyramid go on at the other end.
 #[test]
 fn wave_across_a_strip() {
-    let builder = || {
+    let builder: Parts = |start| {
         let grid = Grid::new([192, 176], [1.0e-3, 1.0e-3])?;
         let kernel = Arc::new(InfluenceKernel::periodic_along(&grid, 0, 1.0e-2)?);
         let surface = FnGeometry::new(|x1, x2| 400.0 * x2 * x2 + waves(x1, x2));
-        Ok(ViscoelasticContact::builder(grid).geometry(&surface).material(zener()?).kernel(kernel).settings(settings()))
+        Ok(start.builder(&grid).geometry(&surface).material(zener()?).kernel(kernel).settings(settings()))
     };
     same_on_all(builder, |builder| {
         let mut contact = builder.build()?;
@@ -206,14 +263,14 @@ fn wave_across_a_strip() {
 
 #[test]
 fn layer() {
-    let builder = || {
+    let builder: Parts = |start| {
         let grid = Grid::square(192, 4.0e-3)?;
         let layer = Layer::bonded_to_rigid(1.0e-3, 0.4)?;
         let kernel = Arc::new(InfluenceKernel::layer(&grid, layer)?);
         let body = Material::constant_poisson(Zener::new(1.0e6, 1.0e6, 1.0e6)?, 0.4)?;
         let settings = settings().with_symmetry(false);
         let sphere = Sphere::new(10.0e-3)?;
-        Ok(ViscoelasticContact::builder(grid).geometry(&sphere).material(body).kernel(kernel).settings(settings))
+        Ok(start.builder(&grid).geometry(&sphere).material(body).kernel(kernel).settings(settings))
     };
     same_on_all(builder, |builder| {
         let mut contact = builder.build()?;
@@ -224,9 +281,9 @@ fn layer() {
 
 #[test]
 fn adaptive_loading_and_unloading() {
-    let builder = || {
+    let builder: Parts = |start| {
         let grid = Grid::square(384, 4.0e-3)?;
-        Ok(ViscoelasticContact::builder(grid).geometry(&Sphere::new(10.0e-3)?).material(zener()?).settings(settings()))
+        Ok(start.builder(&grid).geometry(&Sphere::new(10.0e-3)?).material(zener()?).settings(settings()))
     };
     same_on_all(builder, |builder| {
         let mut contact = builder.build()?;
@@ -247,10 +304,10 @@ fn adaptive_loading_and_unloading() {
 /// A body that flows, whose approach is held: the pressure falls by many decades, and its guess is the last one, scaled.
 #[test]
 fn maxwell_held() {
-    let builder = || {
+    let builder: Parts = |start| {
         let grid = Grid::square(384, 4.0e-3)?;
         let body = Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?);
-        Ok(ViscoelasticContact::builder(grid).geometry(&Sphere::new(10.0e-3)?).material(body).settings(settings()))
+        Ok(start.builder(&grid).geometry(&Sphere::new(10.0e-3)?).material(body).settings(settings()))
     };
     same_on_all(builder, |builder| {
         let mut contact = builder.build()?;
@@ -267,9 +324,9 @@ fn maxwell_held() {
 /// Snapshots go back on all ranks alike.
 #[test]
 fn snapshots_go_back() {
-    let builder = || {
+    let builder: Parts = |start| {
         let grid = Grid::square(384, 4.0e-3)?;
-        Ok(ViscoelasticContact::builder(grid).geometry(&Sphere::new(10.0e-3)?).material(zener()?).settings(settings()))
+        Ok(start.builder(&grid).geometry(&Sphere::new(10.0e-3)?).material(zener()?).settings(settings()))
     };
     same_on_all(builder, |builder| {
         let mut contact = builder.build()?;

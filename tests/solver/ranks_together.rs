@@ -155,21 +155,93 @@ fn an_error_of_one_rank_is_that_of_all() {
     }
 }
 
-/// A gap that is not a number on one rank alone.
+/// A gap that is not a number in rows of one rank: all get the error of one process.
+#[test]
+fn a_bad_gap_is_found_where_one_process_finds_it() {
+    let scenes: [fn(f64, f64) -> f64; 3] = [
+        |x1, x2| if x1 > 3.0e-4 && x2 > 1.0e-4 { f64::NAN } else { x1 * x1 + x2 * x2 },
+        |x1, _| if x1 > -1.0e-4 { f64::NEG_INFINITY } else { 0.0 },
+        |_, _| f64::INFINITY,
+    ];
+    let builder = |grid: &Grid| ViscoelasticContact::builder(grid.clone());
+    let body = || Material::incompressible(Elastic::new(1.0e6).unwrap());
+    for gap in scenes {
+        let grid = Grid::square(192, 1.0e-3).unwrap();
+        let alone = builder(&grid).geometry(&FnGeometry::new(gap)).material(body()).build().unwrap_err();
+        let errors = Threads::run(3, |ranks| {
+            builder(&grid).ranks(ranks).geometry(&FnGeometry::new(gap)).material(body()).build().unwrap_err()
+        });
+        for error in errors.unwrap() {
+            // NaN is not equal to itself
+            assert_eq!(format!("{error:?}"), format!("{alone:?}"));
+        }
+    }
+}
+
+/// A part that is missing on one rank alone.
 #[test]
 fn a_contact_that_one_rank_cannot_build_is_built_by_none() {
     let errors = within_a_minute(|| {
         Threads::run(3, |ranks| {
-            let bad = ranks.rank() == 2;
-            let gap = FnGeometry::new(move |x1, x2| if bad { f64::NAN } else { x1 * x1 + x2 * x2 });
-            let builder = ViscoelasticContact::builder(Grid::square(32, 1.0e-3).unwrap()).geometry(&gap);
-            builder.material(Material::incompressible(Elastic::new(1.0e6).unwrap())).ranks(ranks).build().unwrap_err()
+            let (sphere, bad) = (Sphere::new(1.0e-2).unwrap(), ranks.rank() == 2);
+            let builder = ViscoelasticContact::builder(Grid::square(32, 1.0e-3).unwrap()).ranks(ranks);
+            let body = Material::incompressible(Elastic::new(1.0e6).unwrap());
+            let builder = if bad { builder } else { builder.material(body) };
+            builder.geometry(&sphere).build().unwrap_err()
         })
         .unwrap()
     });
     for error in &errors {
         assert!(matches!(error, Error::Ranks(RanksError::Failed { rank: 2, .. })), "{error}");
         assert_eq!(error, &errors[0]);
+    }
+}
+
+/// One of very many ranks, played alone: all others bring what it brings.
+#[derive(Debug)]
+struct OneOf(usize);
+
+impl Ranks for OneOf {
+    fn rank(&self) -> usize {
+        0
+    }
+
+    fn size(&self) -> usize {
+        self.0
+    }
+
+    fn gather(&self, own: &[f64], counts: &[usize], all: &mut [f64]) -> Result<(), RanksError> {
+        let mut rest = all;
+        for &count in counts {
+            let (part, others) = rest.split_at_mut(count);
+            part.iter_mut().zip(own).for_each(|(part, &value)| *part = value);
+            rest = others;
+        }
+        Ok(())
+    }
+
+    fn exchange(&self, _: &[Complex64], _: &[usize], _: &mut [Complex64], _: &[usize]) -> Result<(), RanksError> {
+        Ok(())
+    }
+}
+
+/// More cells than one process can number, of which a rank takes its share of memory.
+#[test]
+fn a_grid_of_65536_by_65536_cells_is_accepted() {
+    let cells = 1 << 16;
+    let memory = |ranks: usize| {
+        let grid = Grid::square(cells, 1.0e-3).unwrap();
+        let body = Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap());
+        let settings = Settings::default().with_symmetry(false);
+        let builder = ViscoelasticContact::builder(grid).settings(settings).ranks(Arc::new(OneOf(ranks)));
+        builder.geometry(&FnGeometry::new(|x1, x2| x1 + x2)).material(body).memory().unwrap()
+    };
+    for ranks in [512, 1024] {
+        let own = memory(ranks);
+        assert_eq!(own.computed_cells, cells * cells / ranks);
+        // without what does not depend on the number of ranks: rows of the transforms, and tables
+        let a_cell = own.total() as f64 / own.computed_cells as f64;
+        assert!((160.0..200.0).contains(&a_cell), "{a_cell} bytes a cell on {ranks} ranks");
     }
 }
 

@@ -1,13 +1,12 @@
 //! The part of the grid that is computed.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use crate::Grid;
 use crate::contact::window::extent::Extent;
 use crate::geometry::Gap;
 use crate::kernel::images;
-use crate::ranks::{Ranks, Rows};
+use crate::ranks::Rows;
 use crate::solver::{Freedom, Modes};
 
 /// A rectangle of cells; where the scene is symmetric, half or a quarter of it. Elsewhere fields are mirror images, or there
@@ -41,11 +40,11 @@ impl Region {
         Region::new(grid, folded, first, [0, 1].map(|axis| all[axis] - first[axis]))
     }
 
-    /// All of `grid`, as [`Region::whole`], its rows shared out between ranks.
-    pub(crate) fn shared(grid: &Grid, folded: [bool; 2], group: Arc<dyn Ranks>) -> Region {
+    /// All of `grid`, as [`Region::whole`], its rows shared out between the ranks that share out those of the grid.
+    pub(crate) fn shared(grid: &Grid, folded: [bool; 2], rows: &Rows) -> Region {
         let Region { first: [start, first], grid: part, .. } = Region::whole(grid, folded);
         let [n1, n2] = part.cells();
-        let rows = Rows::of_rank([n1, n2], group);
+        let rows = rows.of_cells([n1, n2]);
         let own = Region::new(grid, folded, [start + rows.own().start, first], [rows.own().len(), n2]);
         Region { shared: Some(rows), ..own }
     }

@@ -154,17 +154,20 @@ impl HeightMap {
         if self.missing < self.heights.len() { Ok(()) } else { Err(Error::Map(MapError::NothingKnown)) }
     }
 
-    /// Position of the first cell of `grid` in the map shifted by `by`, as a fractional index.
-    fn offset(&self, grid: &Grid, by: [f64; 2], axis: usize) -> f64 {
-        self.index(axis, grid.coordinate(axis, 0) - by[axis])
+    /// Position of the first cell of `grid` in the map shifted by `by`: index of the nearest point, and the fraction of a cell
+    /// from there. It is counted from the origin, so that the fraction is the same to the last bit for all rows of a grid.
+    fn offset(&self, grid: &Grid, by: [f64; 2], axis: usize) -> (f64, f64) {
+        let (cells, half) = grid.from_origin(axis);
+        let position = self.index(axis, half * grid.spacing()[axis] - by[axis]);
+        let whole = position.round();
+        (whole + cells as f64, position - whole)
     }
 
     /// Writes the gap of the shifted map: the Fourier series shifts the heights by a fraction of a cell, and whole
     /// cells are copied.
     fn fill_by_fourier_shift(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
         let offset = [0, 1].map(|axis| self.offset(grid, by, axis));
-        let whole = offset.map(f64::round);
-        let fraction = [0, 1].map(|axis| offset[axis] - whole[axis]);
+        let (whole, fraction) = (offset.map(|(whole, _)| whole), offset.map(|(_, fraction)| fraction));
         let shifted = (fraction.iter().any(|f| f.abs() > ROUNDING)).then(|| {
             let mut spectrum = HeightSpectrum::of(self.cells, &self.heights);
             spectrum.shift(fraction);

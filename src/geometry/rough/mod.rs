@@ -1,10 +1,13 @@
 //! Random rough surfaces.
 
+mod shared;
 mod spec;
 
+pub use shared::SharedRough;
 pub use spec::{Anisotropy, RoughSpec, Roughness};
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use num_complex::Complex64;
 use rand_chacha::ChaCha8Rng;
@@ -48,14 +51,11 @@ impl Rough {
     /// If a value of the spec is out of range, the shortest wavelength is below two cells, or no wave of the spectrum
     /// fits the lengths. If there is no memory for waves and heights, 16 bytes per cell.
     pub fn new(grid: &Grid, spec: RoughSpec) -> Result<Rough> {
-        spec.validate()?;
         let (cells, spacing) = (grid.cells(), grid.spacing());
-        for axis in (0..2).filter(|&axis| cells[axis] > 1) {
-            let resolved = spec.shortest >= 2.0 * spacing[axis] * (1.0 - 1e-12);
-            within("shortest wavelength", spec.shortest, resolved, "at least two cells of the grid")?;
-        }
+        spec.validate_on(grid)?;
         memory::check("a rough surface", HeightSpectrum::bytes(cells) + 8 * grid.len() as u128)?;
-        let spectrum = spectrum(grid, &spec)?;
+        let Waves { mut spectrum, sums } = Waves::of(grid, &spec, 0..cells[1] / 2 + 1);
+        spectrum.scale(scale(&spec, &sums)?);
         let map = HeightMap::on(&Grid::of_spacing(cells, spacing), spectrum.heights());
         if let Some((entry, &value)) = map.heights().iter().enumerate().find(|(_, z)| !z.is_finite()) {
             return Err(Error::Map(super::MapError::NotFinite { entry, value }));
@@ -106,49 +106,67 @@ impl Geometry for Rough {
     }
 }
 
-/// The random waves, scaled to the specified roughness.
-fn spectrum(grid: &Grid, spec: &RoughSpec) -> Result<HeightSpectrum> {
-    let (cells, lengths) = (grid.cells(), grid.lengths());
-    let line = cells[0] == 1 || cells[1] == 1;
-    // Highest wave along each axis: within the spectrum and below the Nyquist wave of the grid.
-    let highest = [0, 1].map(|axis| {
-        let resolved = (cells[axis] as i64 - 1) / 2;
-        resolved.min((lengths[axis] / spec.shortest).ceil() as i64)
-    });
-    let origin = grid.center(0, 0);
-    let mut spectrum = HeightSpectrum::zero(cells);
-    let mut random = ChaCha8Rng::seed_from_u64(spec.seed);
-    let (mut height, mut slope) = (0.0, 0.0);
-    for k1 in -highest[0]..=highest[0] {
-        // The position in the random stream depends on the wave alone, so that it is the same on every mesh.
-        random.set_stream(if k1 < 0 { -2 * k1 - 1 } else { 2 * k1 } as u64);
-        random.set_word_pos(0);
-        for k2 in 0..=highest[1] {
-            let amplitude = gaussian(&mut random);
-            if k2 == 0 && k1 <= 0 {
-                continue; // conjugates of waves with k1 > 0, and the mean
-            }
-            let q = wave_numbers([k1, k2], lengths);
-            let density = spec.density(q, line);
-            if density > 0.0 {
-                // The phase is relative to the middle of the grid.
-                let amplitude = amplitude * density.sqrt() * Complex64::cis(q[0] * origin[0] + q[1] * origin[1]);
-                spectrum.set([k1, k2], amplitude);
-                height += 2.0 * amplitude.norm_sqr();
-                slope += 2.0 * amplitude.norm_sqr() * (q[0] * q[0] + q[1] * q[1]);
+/// Random waves, not yet of the specified roughness.
+struct Waves {
+    spectrum: HeightSpectrum,
+    /// Mean squares of height and slope of the waves of each k2.
+    sums: Vec<[f64; 2]>,
+}
+
+impl Waves {
+    /// The waves of some k2.
+    fn of(grid: &Grid, spec: &RoughSpec, columns: Range<usize>) -> Waves {
+        let (cells, lengths) = (grid.cells(), grid.lengths());
+        let line = cells[0] == 1 || cells[1] == 1;
+        // Highest wave along each axis: within the spectrum and below the Nyquist wave of the grid.
+        let highest = [0, 1].map(|axis| {
+            let resolved = (cells[axis] as i64 - 1) / 2;
+            resolved.min((lengths[axis] / spec.shortest).ceil() as i64)
+        });
+        let origin = grid.center(0, 0);
+        let mut random = ChaCha8Rng::seed_from_u64(spec.seed);
+        let mut sums = vec![[0.0; 2]; columns.len()];
+        let first = columns.start as i64;
+        let mut spectrum = HeightSpectrum::zero_of(cells, columns);
+        for k1 in -highest[0]..=highest[0] {
+            // The position in the random stream depends on the wave alone, so that it is the same on every mesh.
+            random.set_stream(if k1 < 0 { -2 * k1 - 1 } else { 2 * k1 } as u64);
+            random.set_word_pos(WORDS_OF_A_WAVE * first as u128);
+            for (k2, sums) in (first..=highest[1]).zip(&mut sums) {
+                let amplitude = gaussian(&mut random);
+                if k2 == 0 && k1 <= 0 {
+                    continue; // conjugates of waves with k1 > 0, and the mean
+                }
+                let q = wave_numbers([k1, k2], lengths);
+                let density = spec.density(q, line);
+                if density > 0.0 {
+                    // The phase is relative to the middle of the grid.
+                    let amplitude = amplitude * density.sqrt() * Complex64::cis(q[0] * origin[0] + q[1] * origin[1]);
+                    spectrum.set([k1, k2], amplitude);
+                    sums[0] += 2.0 * amplitude.norm_sqr();
+                    sums[1] += 2.0 * amplitude.norm_sqr() * (q[0] * q[0] + q[1] * q[1]);
+                }
             }
         }
+        Waves { spectrum, sums }
     }
+}
+
+/// The factor that gives waves with these mean squares the specified roughness.
+fn scale(spec: &RoughSpec, sums: &[[f64; 2]]) -> Result<f64> {
+    let [height, slope] = sums.iter().fold([0.0; 2], |[height, slope], sums| [height + sums[0], slope + sums[1]]);
     if height == 0.0 {
         let allowed = "short enough that a wave between shortest and longest fits the period";
         return Err(Error::OutOfRange { field: "shortest wavelength", value: spec.shortest, allowed });
     }
-    spectrum.scale(match spec.roughness {
+    Ok(match spec.roughness {
         Roughness::RmsHeight(wanted) => wanted / height.sqrt(),
         Roughness::RmsSlope(wanted) => wanted / slope.sqrt(),
-    });
-    Ok(spectrum)
+    })
 }
+
+/// Words of 32 bits that [`gaussian`] takes from the random stream.
+const WORDS_OF_A_WAVE: u128 = 4;
 
 /// A complex number with independent standard normal parts (Box and Muller 1958).
 fn gaussian(random: &mut ChaCha8Rng) -> Complex64 {

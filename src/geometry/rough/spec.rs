@@ -2,6 +2,7 @@
 
 use std::f64::consts::TAU;
 
+use crate::Grid;
 use crate::error::{Result, finite, positive, within};
 
 /// Specification of a self-affine random surface, [`Rough`](crate::geometry::Rough).
@@ -105,7 +106,18 @@ impl RoughSpec {
     }
 
     /// Checks the ranges and the order of the values.
-    pub(super) fn validate(&self) -> Result<()> {
+    /// Rejects values out of range, and waves that the grid does not resolve.
+    pub(super) fn validate_on(&self, grid: &Grid) -> Result<()> {
+        self.validate()?;
+        let (cells, spacing) = (grid.cells(), grid.spacing());
+        for axis in (0..2).filter(|&axis| cells[axis] > 1) {
+            let resolved = self.shortest >= 2.0 * spacing[axis] * (1.0 - 1e-12);
+            within("shortest wavelength", self.shortest, resolved, "at least two cells of the grid")?;
+        }
+        Ok(())
+    }
+
+    fn validate(&self) -> Result<()> {
         within("Hurst exponent", self.hurst, self.hurst > 0.0 && self.hurst <= 1.0, "in (0, 1]")?;
         positive("shortest wavelength", self.shortest)?;
         let in_order = self.roll_off >= self.shortest;

@@ -14,7 +14,7 @@ use super::tasks::{ColumnsInPlace, RowsForward};
 use super::{AREA, SpectralOperator, TILE, TransformWorkspace, rows_in_a_tile};
 use crate::kernel::lanes::for_each_share;
 use crate::kernel::layout::Layout;
-use crate::ranks::{Ranks, Rows, depart, part};
+use crate::ranks::{Ranks, Rows, depart, exchange_numbers, part};
 
 /// Who has which tiles of rows, and which panels of columns.
 #[derive(Debug, Clone)]
@@ -47,12 +47,35 @@ impl Shares {
 
     /// The own columns of the spectrum; all of a single column, which every rank transforms.
     pub(crate) fn columns(&self, layout: &Layout) -> Range<usize> {
+        self.columns_of(self.group.rank(), layout)
+    }
+
+    fn columns_of(&self, rank: usize, layout: &Layout) -> Range<usize> {
         let all = layout.independent(1);
         if layout.is_single_column() {
             return 0..all;
         }
-        let own = self.own_across();
-        (own.start * TILE).min(all)..(own.end * TILE).min(all)
+        let panels = &self.across[rank];
+        (panels.start * TILE).min(all)..(panels.end * TILE).min(all)
+    }
+
+    /// The own columns of a table with `count` rows, of which each rank writes its part.
+    pub(crate) fn own_columns(
+        &self,
+        layout: &Layout,
+        count: usize,
+        mut write: impl FnMut(usize, &mut [f64]),
+    ) -> Vec<f64> {
+        let (size, columns) = (self.group.size(), |rank: usize| self.columns_of(rank, layout));
+        let rows = |rank: usize| part(count, rank, size);
+        let mut row = vec![0.0; layout.independent(1)];
+        let mut written: Vec<Vec<f64>> = (0..size).map(|_| Vec::new()).collect();
+        for i in rows(self.group.rank()) {
+            write(i, &mut row);
+            written.iter_mut().enumerate().for_each(|(rank, piece)| piece.extend_from_slice(&row[columns(rank)]));
+        }
+        let own = columns(self.group.rank()).len();
+        exchange_numbers(&*self.group, written, |rank| rows(rank).len() * own)
     }
 
     /// Most complex values that this rank has at a time: of own rows, or of own columns.

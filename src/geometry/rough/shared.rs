@@ -1,0 +1,117 @@
+//! Random rough surfaces that ranks share out.
+
+use std::sync::Arc;
+
+use super::{Rough, RoughSpec, Waves, scale};
+use crate::Grid;
+use crate::error::{Error, MapError, Result};
+use crate::geometry::Geometry;
+use crate::memory;
+use crate::ranks::{Ranks, Rows, caught, part};
+
+/// Distances from a cell centre below this, in cells, are rounding errors.
+const ROUNDING: f64 = 1e-6;
+
+/// A [`Rough`] surface of which each of several [ranks](crate::ranks) has its rows, and none the whole; made by
+/// [`Rough::shared`].
+///
+/// As a [`Geometry`] it is known at the cell centres of own rows. Elsewhere it is NaN, which a contact refuses: shift or turn
+/// a [`Rough`] in place of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SharedRough {
+    spec: RoughSpec,
+    /// Own rows.
+    grid: Grid,
+    heights: Vec<f64>,
+    /// The greatest height on all ranks.
+    highest: f64,
+}
+
+impl Rough {
+    /// The surface of [`Rough::new`], the same to the last bit, of which each rank makes its rows: 40 bytes per cell of its own
+    /// for a moment, and 8 to stay. A call of all ranks.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    /// use viscocontact::ranks::Threads;
+    ///
+    /// let areas = Threads::run(2, |ranks| {
+    ///     let grid = Grid::square(256, 1.0e-3)?;
+    ///     let spec = RoughSpec::new(0.5e-3, 0.03e-3, Roughness::RmsSlope(0.02));
+    ///     let rough = Rough::shared(&grid, spec, &ranks)?;
+    ///     let kernel = std::sync::Arc::new(InfluenceKernel::periodic(&grid)?);
+    ///     let mut contact = ViscoelasticContact::builder(grid)
+    ///         .ranks(ranks)
+    ///         .geometry(&rough)
+    ///         .kernel(kernel)
+    ///         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///         .build()?;
+    ///     contact.step(0.0, Load::force(1.0e-2))?;
+    ///     Ok::<_, Error>(contact.contact_area())
+    /// })?;
+    /// assert_eq!(areas[0], areas[1]);
+    /// # Ok::<(), Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Rough::new`], the same on all ranks; and if a rank has left.
+    pub fn shared(grid: &Grid, spec: RoughSpec, ranks: &Arc<dyn Ranks>) -> Result<SharedRough> {
+        let [n1, n2] = grid.cells();
+        let rows = Rows::of_rank([n1, n2], Arc::clone(ranks));
+        caught(&rows, || {
+            let columns = part(n2 / 2 + 1, ranks.rank(), ranks.size());
+            let bytes = 40 * n2.max(2) as u128 * (n1 * columns.len() / (n2 / 2 + 1)).max(rows.own().len()) as u128;
+            rows.agree(spec.validate_on(grid).and_then(|()| memory::check("a rough surface", bytes)))?;
+            let Waves { mut spectrum, sums } = Waves::of(grid, &spec, columns);
+            let count = |rank| 2 * part(n2 / 2 + 1, rank, ranks.size()).len();
+            let factor = rows
+                .gather(sums.into_iter().flatten(), count, |all| scale(&spec, all.as_chunks::<2>().0))
+                .unwrap_or(Err(Error::Missing { part: "ranks" }))?;
+            spectrum.scale(factor);
+            let heights = spectrum.own_heights(&rows);
+            let highest = rows.greatest(heights.iter().copied().fold(f64::NEG_INFINITY, f64::max));
+            let invalid = heights.iter().position(|z| !z.is_finite());
+            let own = invalid.map_or([f64::INFINITY, 0.0], |k| [(rows.own().start * n2 + k) as f64, heights[k]]);
+            let [entry, value] = rows.join(own, |a, b| if b[0] < a[0] { b } else { a });
+            if entry.is_finite() {
+                return Err(Error::Map(MapError::NotFinite { entry: entry as usize, value }));
+            }
+            let grid = Grid::of_spacing([n1, n2], grid.spacing()).part([rows.own().start, 0], [rows.own().len(), n2]);
+            Ok(SharedRough { spec, grid, heights, highest })
+        })
+    }
+}
+
+impl SharedRough {
+    /// The specification of the surface.
+    pub fn spec(&self) -> &RoughSpec {
+        &self.spec
+    }
+
+    /// The heights of own rows \[m\], row-major with x2 fastest.
+    pub fn heights(&self) -> &[f64] {
+        &self.heights
+    }
+
+    /// The greatest height of all rows \[m\].
+    pub fn highest(&self) -> f64 {
+        self.highest
+    }
+
+    /// The own cell whose centre is at a coordinate.
+    fn cell(&self, axis: usize, x: f64) -> Option<usize> {
+        let index = (x - self.grid.coordinate(axis, 0)) / self.grid.spacing()[axis];
+        let cell = index.round();
+        let own = (index - cell).abs() <= ROUNDING && cell >= 0.0 && cell < self.grid.cells()[axis] as f64;
+        own.then_some(cell as usize)
+    }
+}
+
+impl Geometry for SharedRough {
+    fn initial_gap(&self, x1: f64, x2: f64) -> f64 {
+        match (self.cell(0, x1), self.cell(1, x2)) {
+            (Some(i), Some(j)) => self.highest - self.heights[i * self.grid.cells()[1] + j],
+            _ => f64::NAN,
+        }
+    }
+}
