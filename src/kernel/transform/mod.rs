@@ -221,7 +221,7 @@ mod tests {
         /// Convolution with the even kernel whose coefficient at distance (i, j) is `coefficient(i, j)`; asked for
         /// distances below the number of cells (twice that along a folded axis), taken as zero beyond.
         pub(crate) fn from_coefficients(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> SpectralOperator {
-            let spectrum = EvenSpectrum::of(layout, layout.all_columns(), coefficient);
+            let spectrum = EvenSpectrum::of(layout, None, coefficient);
             SpectralOperator::from_symbol(layout, |k1, k2| spectrum.at(k1, k2))
         }
     }
