@@ -277,7 +277,7 @@ impl InfluenceKernel {
     pub(crate) fn mark(&self) -> Vec<f64> {
         let mut mark = vec![self.self_influence()];
         if let Influence::Coefficients { values, columns } | Influence::Waves { values, columns } = &self.influence {
-            mark.extend(crate::sum::moments(values.iter().copied(), 0, *columns));
+            mark.extend(crate::sum::moments(values.iter().copied(), *columns));
         }
         mark
     }

@@ -5,7 +5,6 @@ use std::sync::OnceLock;
 use serde::{Deserialize, Serialize};
 
 use crate::geometry::Gap;
-use crate::ranks::Rows;
 use crate::rheology::Material;
 use crate::sum::moments;
 
@@ -45,22 +44,12 @@ pub(super) enum Creep {
 
 impl Built {
     pub(crate) fn new(gap: &Gap, cells: [usize; 2]) -> Built {
-        let shape = shape(gap.above.iter().copied(), 0, cells[1]);
-        Built::of(shape, gap.datum, Owners::of(gap))
-    }
-
-    /// Of a single body whose gap ranks share out; `above` is that of own rows.
-    pub(crate) fn shared(above: impl Iterator<Item = f64> + Clone, datum: f64, rows: &Rows) -> Built {
-        let columns = rows.cells()[1];
-        let own = shape(above.clone(), rows.own().start * columns, columns);
-        let shape = rows.join(own, |a, b| std::array::from_fn(|k| a[k] + b[k]));
-        let touchable = rows.count(above.filter(|h| h.is_finite()).count());
-        Built::of(shape, datum, Owners::of_one(touchable))
-    }
-
-    fn of(shape: [f64; 10], datum: f64, owners: Owners) -> Built {
-        let shape = shape.into_iter().chain([datum]).collect();
-        Built { shape, owners, creep: OnceLock::new() }
+        let known = gap.above.iter().map(|h| if h.is_finite() { *h } else { 0.0 });
+        let open = gap.above.iter().map(|h| f64::from(h.is_infinite()));
+        let mut shape = moments(known, cells[1]);
+        shape.extend(moments(open, cells[1]));
+        shape.push(gap.datum);
+        Built { shape, owners: Owners::of(gap), creep: OnceLock::new() }
     }
 
     pub(super) fn creep(&self, material: &Material) -> &Creep {
@@ -77,27 +66,7 @@ impl Built {
     }
 }
 
-/// Sums over a gap that begins at the cell `first`, and over where it has no end.
-fn shape(above: impl Iterator<Item = f64> + Clone, first: usize, columns: usize) -> [f64; 10] {
-    let known = above.clone().map(|h| if h.is_finite() { h } else { 0.0 });
-    let open = above.map(|h| f64::from(h.is_infinite()));
-    let [known, open] = [moments(known, first, columns), moments(open, first, columns)];
-    std::array::from_fn(|k| if k < 5 { known[k] } else { open[k - 5] })
-}
-
 impl Owners {
-    /// Those of a single body that has `count` cells.
-    fn of_one(count: usize) -> Owners {
-        let (mut hasher, zeros) = (crc32fast::Hasher::new(), [0; 1 << 13]);
-        let mut left = count * size_of::<u16>();
-        while left > 0 {
-            let bytes = left.min(zeros.len());
-            hasher.update(&zeros[..bytes]);
-            left -= bytes;
-        }
-        Owners { cells: vec![count as u64], checksum: hasher.finalize() }
-    }
-
     fn of(gap: &Gap) -> Owners {
         let (mut cells, mut hasher) = (Vec::new(), crc32fast::Hasher::new());
         // cells without anything to touch belong to no body
