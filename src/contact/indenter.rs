@@ -77,6 +77,14 @@ impl Indenter {
         Indenter { gap, on_own_rows: true, ..self }
     }
 
+    /// The indenter of a rank with a gap that rounds otherwise, on own rows of the region of another state.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn with_gap_on(&self, region: &Region, gap: Gap) -> Indenter {
+        let built = self.even.get().copied().unwrap_or_default();
+        let even = OnceLock::from([0, 1].map(|axis| built[axis] || region.folded()[axis]));
+        Indenter { gap, bodies: self.bodies, id: next_id(), even, hulls: self.hulls.clone(), on_own_rows: true }
+    }
+
     /// The motion at which each body just touches the undeformed surface, upright.
     pub(crate) fn first_touch(&self) -> Vec<RigidMotion> {
         let of_body = |body: usize| {
