@@ -47,6 +47,8 @@ impl Builder {
         caught(&rows, || {
             let prepared = rows.agree(self.may_be_shared().and_then(|()| self.prepare(Some(group))))?;
             rows.same(prepared.marks())?;
+            #[cfg(feature = "checkpoint")]
+            let prepared = prepared.with_mark_of_gap();
             Ok(prepared.finish())
         })
     }
@@ -88,7 +90,7 @@ impl Builder {
         footprint.check(Computed::on(&region), 0)?;
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
-            built: Built::new(indenter.gap(), grid.cells()),
+            built: if region.is_shared() { Built::default() } else { Built::new(indenter.gap(), grid.cells()) },
             grid,
             kernel,
             material,
@@ -192,6 +194,13 @@ impl Prepared {
         let (Scene { grid, settings, .. }, [n1, n2]) = (&self.scene, self.region.rows().cells());
         let [side1, side2] = grid.spacing();
         [n1 as f64, n2 as f64, side1, side2, settings.tolerance, self.indenter.gap().datum]
+    }
+
+    /// With the fingerprint of the gap, which all ranks find together.
+    #[cfg(feature = "checkpoint")]
+    fn with_mark_of_gap(mut self) -> Prepared {
+        self.scene.built = Built::of_own_rows(self.indenter.gap(), &self.region);
+        self
     }
 
     fn finish(self) -> ViscoelasticContact {

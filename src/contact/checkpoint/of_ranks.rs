@@ -74,7 +74,11 @@ pub(super) fn save(
         })
         .map(|()| checksum)
     };
-    let forget = || if state.region.len() > 0 { _ = fs::remove_file(&own) };
+    let forget = || {
+        if state.region.len() > 0 {
+            _ = fs::remove_file(&own)
+        }
+    };
     let checksum = rows.agree(written).inspect_err(|_| forget())?;
     let Range { start, end } = state.region.computed_rows();
     let files = rows.gather(

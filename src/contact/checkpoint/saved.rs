@@ -31,10 +31,7 @@ impl<'a> Saved<'a> {
     }
 
     /// The state, if a contact of this scene can go on from it, on the rows that it has.
-    pub(super) fn state_for(
-        self,
-        contact: &ViscoelasticContact,
-    ) -> Result<(State, Option<Progress>), CheckpointError> {
+    pub(super) fn state_for(self, contact: &ViscoelasticContact) -> Result<(State, Option<Progress>), CheckpointError> {
         self.scene.require(&Fingerprint::of(&contact.scene))?;
         check(&self.state, contact, None)?;
         check_run(&self.state.clock, self.progress.as_deref(), &contact.scene)?;

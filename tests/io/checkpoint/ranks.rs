@@ -132,7 +132,7 @@ fn adaptive_loading_and_unloading() {
     let drive: Drive = |contact, _, stop| {
         let table = [(0.0, 0.0), (1.0, 1.0), (2.0, 0.3)].map(|(time, force)| (time, Load::force(force)));
         let history = PiecewiseLinear::new(&table)?;
-        let mut run = contact.follow(&history, Stepping::adaptive(3.0e-2), 2.0);
+        let mut run = contact.follow(&history, Stepping::adaptive(3.0e-3), 2.0);
         let mut reports = Vec::new();
         while let Some(report) = run.next_step()? {
             reports.push(report);
@@ -348,7 +348,9 @@ fn failed_saves_leave_the_old_one() {
     fs::create_dir(&path).unwrap();
     let errors = on(Some(3), sphere, |contact| Ok(contact.save(&path).unwrap_err()));
     for error in errors {
-        assert!(matches!(error.unwrap(), Error::Ranks(RanksError::Failed { rank: 0, message }) if message.contains("folder")));
+        assert!(
+            matches!(error.unwrap(), Error::Ranks(RanksError::Failed { rank: 0, message }) if message.contains("folder"))
+        );
     }
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
     let errors = on(Some(3), sphere, |contact| Ok(contact.save(folder.join("none/run")).unwrap_err()));
