@@ -54,18 +54,26 @@ pub(crate) fn sum_of_pairs(a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) ->
 /// the absolute values with weights without symmetry, which distinguishes a field from its rotated or mirrored copies.
 #[cfg(feature = "checkpoint")]
 pub(crate) fn moments(field: impl Iterator<Item = f64>, columns: usize) -> Vec<f64> {
-    let mut sums = vec![0.0; 5];
-    for (k, value) in field.enumerate() {
-        let (size, i, j) = (value.abs(), (k / columns) as f64, (k % columns) as f64);
-        // 0.5 to 1.5, by the finalizer of splitmix64
-        let bits = (k as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        let bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        let weight = 0.5 + ((bits ^ (bits >> 27)) >> 11) as f64 / (1_u64 << 53) as f64;
-        for (sum, term) in sums.iter_mut().zip([size, size * i, size * j, size * size, size * weight]) {
-            *sum += term;
-        }
+    let mut sums = [0.0; MOMENTS];
+    field.enumerate().for_each(|(k, value)| add_to_moments(&mut sums, value, k, columns));
+    sums.to_vec()
+}
+
+/// How many sums tell a field from others.
+#[cfg(feature = "checkpoint")]
+pub(crate) const MOMENTS: usize = 5;
+
+/// Adds the value of cell `k` to the sums over a field.
+#[cfg(feature = "checkpoint")]
+pub(crate) fn add_to_moments(sums: &mut [f64; MOMENTS], value: f64, k: usize, columns: usize) {
+    let (size, i, j) = (value.abs(), (k / columns) as f64, (k % columns) as f64);
+    // 0.5 to 1.5, by the finalizer of splitmix64
+    let bits = (k as u64 + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
+    let bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let weight = 0.5 + ((bits ^ (bits >> 27)) >> 11) as f64 / (1_u64 << 53) as f64;
+    for (sum, term) in sums.iter_mut().zip([size, size * i, size * j, size * size, size * weight]) {
+        *sum += term;
     }
-    sums
 }
 
 #[cfg(test)]

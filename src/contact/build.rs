@@ -124,9 +124,10 @@ impl Builder {
         let all = region.shown_len();
         let footprint = Footprint { all, bodies: 1, settings: &settings, kernel: &kernel, history: &history };
         rows.agree(footprint.check(&Computed::on(&region), 0))?;
+        let indenter = gap.on(&region, &grid, even);
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
-            built: gap.built(),
+            built: Built::of_own_rows(indenter.gap(), &region),
             grid,
             kernel,
             material,
@@ -134,7 +135,6 @@ impl Builder {
             temperature,
             bodies: 1,
         };
-        let indenter = gap.on(&region, &scene.grid, even);
         Ok(Prepared { scene, indenter, region, history })
     }
 

@@ -5,6 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::Grid;
 use crate::contact::hull::Hull;
+#[cfg(feature = "checkpoint")]
+use crate::contact::window::region::Region;
 use crate::error::Result;
 use crate::geometry::Gap;
 use crate::solver::RigidMotion;
@@ -69,6 +71,14 @@ impl Indenter {
     pub(crate) fn hull(&self, body: usize, grid: &Grid) -> &Hull {
         let touchable = |k: usize| self.gap.owner(k) == body && self.gap.above[k].is_finite();
         self.hulls[body].get_or_init(|| Hull::new(grid, touchable))
+    }
+
+    /// The indenter of a rank with a gap that rounds otherwise, on own rows of the region of another state.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn with_gap_on(&self, region: &Region, gap: Gap) -> Indenter {
+        let built = self.even.get().copied().unwrap_or_default();
+        let even = OnceLock::from([0, 1].map(|axis| built[axis] || region.folded()[axis]));
+        Indenter { gap, bodies: self.bodies, id: next_id(), even, hulls: self.hulls.clone(), on_own_rows: true }
     }
 
     /// The motion at which each body just touches the undeformed surface, upright.

@@ -22,6 +22,7 @@ mod state_within_step;
 
 mod snapshot;
 
+mod brought;
 mod build;
 #[cfg(feature = "checkpoint")]
 mod checkpoint;
@@ -36,6 +37,7 @@ mod request;
 mod scene;
 mod set_geometry;
 mod settings;
+mod shared_area;
 mod shared_gap;
 mod state;
 mod time_rule;
@@ -48,6 +50,8 @@ mod window;
 
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
+#[cfg(any(feature = "npy", feature = "vtk"))]
+pub(crate) use brought::Brought;
 pub use builder::Builder;
 pub use footprint::Memory;
 pub use moving::along_path::TravelReport;

@@ -20,13 +20,13 @@ impl ViscoelasticContact {
     /// cell. Measured on spheres: 2e-3 of the area at 64² cells and 5e-4 at 256², where counting cells
     /// ([`ViscoelasticContact::contact_cells`]) errs by 1.5e-2 and 4e-3. Where contact grows by creep, the cells that it has
     /// reached last are stiffer than those before them, and the root is approached within them only: then it errs by up to a
-    /// few per cent at 128² cells. Where [ranks](crate::ranks) share out the rows, cells are counted.
+    /// few per cent at 128² cells. A call of all [ranks](crate::ranks) that share out the rows.
     pub fn contact_area(&self) -> f64 {
         let State { region, .. } = &self.computation.state;
         if self.contact_cells() == 0 {
             return 0.0;
         }
-        if region.is_shared() { self.contact_cells() as f64 * self.grid().cell_area() } else { self.pressed().area() }
+        if region.is_shared() { self.shared_area() } else { self.pressed().area() }
     }
 
     /// Estimates what the mesh costs in accuracy, from the cells on the rim of the contact: from how many they are among
@@ -220,7 +220,7 @@ impl ViscoelasticContact {
         let State { indenter, region, current, .. } = &self.computation.state;
         let (periodic, gap) = (self.scene.kernel.periodic_axes(), &indenter.gap().above);
         let extent = region.reach(&current.solution.pressure);
-        Pressed { grid: self.grid(), periodic, pressure: self.pressure(), gap, extent }
+        Pressed { grid: self.grid(), first: None, periodic, pressure: self.pressure(), gap, extent }
     }
 }
 

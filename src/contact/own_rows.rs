@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use num_complex::Complex64;
-
 use crate::contact::state::State;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{RanksError, Result, count_within, exact_length};
-use crate::ranks::{caught, depart};
+#[cfg(any(feature = "npy", feature = "vtk"))]
+use crate::ranks::Rows;
+use crate::ranks::caught;
 
 impl ViscoelasticContact {
     /// The rows (indices along x1) that [`pressure`](ViscoelasticContact::pressure) and all other fields hold: all of the
@@ -46,39 +46,42 @@ impl ViscoelasticContact {
         let rows = region.rows();
         count_within("rank", to, to < rows.ranks(), "less than the number of ranks")?;
         let checked = exact_length("field", field.len(), region.shown_len());
-        let Some(group) = rows.group() else { return checked.map(|()| Some(field.to_vec())) };
+        if !rows.are_shared() {
+            return checked.map(|()| Some(field.to_vec()));
+        }
         caught(&rows, || {
             rows.agree(checked)?;
-            let columns = self.grid().cells()[1];
-            // two numbers of a field are sent as a complex one
-            let length = |rank: usize| (rows.of(rank).len() * columns).div_ceil(2);
-            let pairs = field.chunks(2).map(|pair| Complex64::new(pair[0], pair.get(1).copied().unwrap_or(0.0)));
-            let send: Vec<Complex64> = pairs.collect();
-            let ranks = || 0..rows.ranks();
-            let sent: Vec<usize> = ranks().map(|rank| if rank == to { send.len() } else { 0 }).collect();
-            let own = group.rank() == to;
-            let counts: Vec<usize> = ranks().map(|rank| if own { length(rank) } else { 0 }).collect();
-            let mut received = vec![Complex64::default(); counts.iter().sum()];
-            group.exchange(&send, &sent, &mut received, &counts).unwrap_or_else(|error| depart(error));
-            if !own {
-                return Ok(None);
-            }
-            let (mut whole, mut start) = (vec![0.0; self.grid().len()], 0);
-            let (first, n1) = (self.grid().cells()[0] - rows.cells()[0], self.grid().cells()[0]);
-            for rank in ranks() {
-                let numbers = received[start..start + counts[rank]].iter().flat_map(|z| [z.re, z.im]);
-                start += counts[rank];
-                let part = rows.of(rank).len() * columns;
-                let place = (first + rows.of(rank).start) * columns;
-                whole[place..place + part].iter_mut().zip(numbers).for_each(|(out, value)| *out = value);
-            }
-            // of a symmetric contact the lower half is the image of the upper one
-            for row in 0..first {
-                let image = (n1 - 1 - row) * columns;
-                whole.copy_within(image..image + columns, row * columns);
-            }
-            Ok(Some(whole))
+            let [n1, n2] = self.grid().cells();
+            let brought = self.bring(field, to, 0..n1, 0..n2)?;
+            Ok(brought.map(|whole| (0..n1).flat_map(|row| whole.row(row)).copied().collect()))
         })
+    }
+
+    /// Goes on where every rank does.
+    #[cfg(any(feature = "csv", feature = "vtk"))]
+    pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
+        let rows = self.computation.state.region.rows();
+        caught(&rows, || rows.agree(own))
+    }
+
+    /// Does on rank 0 what is not for each of them, and goes on where that is done; the others get no result.
+    #[cfg(any(feature = "csv", feature = "vtk"))]
+    pub(crate) fn by_one_rank<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
+        let rows = self.computation.state.region.rows();
+        let first = rows.group().is_none_or(|group| group.rank() == 0);
+        self.agreed(if first { job().map(Some) } else { Ok(None) })
+    }
+
+    /// The rows of all ranks, and what joins them.
+    #[cfg(any(feature = "npy", feature = "vtk"))]
+    pub(crate) fn shared_rows(&self) -> Rows {
+        self.computation.state.region.rows()
+    }
+
+    /// Whether ranks share it out.
+    #[cfg(any(feature = "npy", feature = "vtk"))]
+    pub(crate) fn is_shared(&self) -> bool {
+        self.computation.state.region.is_shared()
     }
 
     /// Rejects what needs the whole of a contact where ranks share it out.

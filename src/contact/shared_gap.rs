@@ -4,8 +4,6 @@
 use std::hash::{DefaultHasher, Hasher};
 
 use crate::Grid;
-#[cfg(feature = "checkpoint")]
-use crate::contact::checkpoint::built::Built;
 use crate::contact::hull::Hull;
 use crate::contact::indenter::Indenter;
 use crate::contact::window::region::Region;
@@ -39,11 +37,6 @@ impl SharedGap<'_> {
         Ok(SharedGap { rows: rows.clone(), heights, datum })
     }
 
-    /// The gap of own rows above the lowest of all \[m\].
-    fn above(&self) -> impl Iterator<Item = f64> + Clone {
-        self.heights.iter().map(|h| h - self.datum)
-    }
-
     /// Axes of an even number of cells about whose middle the gap is even. Rows whose mirror image another rank has are compared
     /// by 64 bits of a hash. A call of all ranks.
     pub(super) fn even_axes(&self) -> [bool; 2] {
@@ -70,16 +63,10 @@ impl SharedGap<'_> {
         [even1, even2]
     }
 
-    /// Its fingerprint. A call of all ranks.
-    #[cfg(feature = "checkpoint")]
-    pub(super) fn built(&self) -> Built {
-        Built::shared(self.above(), self.datum, &self.rows)
-    }
-
     /// The indenter on a region of own rows, which may be others where the region is folded. A call of all ranks.
     pub(super) fn on(&self, region: &Region, grid: &Grid, even: [bool; 2]) -> Indenter {
         let ([n1, n2], [_, m2], to) = (grid.cells(), region.cells(), region.rows());
-        let mut above: Vec<f64> = self.above().collect();
+        let mut above: Vec<f64> = self.heights.iter().map(|h| h - self.datum).collect();
         if to.cells() != self.rows.cells() {
             above = self.rows.moved(&above, n1 - to.cells()[0], &to);
         }

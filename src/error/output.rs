@@ -3,8 +3,6 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-#[cfg(feature = "checkpoint")]
-use super::CheckpointError;
 use super::{Error, MapError, TableError};
 
 /// A file or folder of results that cannot be written, and why.
@@ -92,7 +90,7 @@ impl Error {
             Error::Map(MapError::Unreadable { kind, .. } | MapError::Unwritable { kind, .. }) => *kind,
             Error::Table(TableError::Unreadable { kind, .. }) => *kind,
             #[cfg(feature = "checkpoint")]
-            Error::Checkpoint { source: CheckpointError::Unreadable { kind, .. }, .. } => Some(*kind),
+            Error::Checkpoint { source, .. } => source.io_kind(),
             _ => None,
         }
     }

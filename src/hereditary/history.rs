@@ -1,11 +1,14 @@
 //! State of the hereditary integral, for every time rule.
 
 use crate::error::{Error, Result};
+#[cfg(feature = "checkpoint")]
+use crate::hereditary::common_cells::CommonCells;
 use crate::hereditary::direct_sum::{DirectSum, Weighting};
 use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
 use crate::hereditary::interval::Interval;
 use crate::hereditary::moving_frame::MovingFrame;
 use crate::hereditary::remembered_field::RememberedField;
+use crate::hereditary::transfer::Transfer;
 use crate::kernel::{LocalKernel, Workspace};
 use crate::rheology::{CreepSpectrum, Material};
 
@@ -41,21 +44,6 @@ pub(crate) struct HistoryInputs<'a> {
     pub(crate) history_limit: usize,
     /// The shorter side of a cell \[m\].
     pub(crate) least_side: f64,
-}
-
-/// Carries fields to other cells.
-pub(crate) trait Transfer {
-    /// The cells they are carried to.
-    fn cells(&self) -> [usize; 2];
-
-    /// Whether they cover the whole grid, mirror images included.
-    fn covers(&self) -> bool;
-
-    /// A field that is zero wherever it was not computed.
-    fn confined(&self, own: &[f64]) -> Vec<f64>;
-
-    /// A field that is the convolution of `source` wherever it was not computed; zero without a source.
-    fn induced(&mut self, own: &[f64], source: Option<&[f64]>) -> Vec<f64>;
 }
 
 impl Rule {
@@ -369,6 +357,20 @@ impl History {
             (Some(own), Some(other)) => own.copy_from(other),
             (own, other) => *own = other.clone(),
         }
+    }
+
+    /// The same on `cells` other cells, with every field zero; by the exponential rule, on no window of a grid.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn blank_on(&self, cells: usize) -> History {
+        let History { rule, displacement, before_is_kept, .. } = self;
+        let displacement = displacement.blank_on(cells);
+        History { rule: rule.clone(), displacement, far: None, before_is_kept: *before_is_kept }
+    }
+
+    /// Copies the cells in common with another of the same rule.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn copy_common(&mut self, other: &History, common: CommonCells) {
+        self.displacement.copy_common(&other.displacement, common);
     }
 
     /// Whether it follows the same rule as another, on these cells, a `window` of the grid or all of it: a file may hold

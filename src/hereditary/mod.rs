@@ -20,6 +20,8 @@
 //! [`RememberedField`] is a field at the start of a step and at its end, with its past. It serves the displacement, the far
 //! field of a window, and the moving frame alike.
 
+#[cfg(feature = "checkpoint")]
+mod common_cells;
 mod direct_sum;
 mod exponential_rule;
 mod history;
@@ -32,11 +34,15 @@ mod remembered_field;
 mod rule_tests;
 mod step_polynomial;
 mod time_error;
+mod transfer;
 
+#[cfg(feature = "checkpoint")]
+pub(crate) use common_cells::CommonCells;
 pub(crate) use direct_sum::Weighting;
 pub(crate) use exponential_rule::{ExponentialRule, Interpolant, MAX_GROWTH};
-pub(crate) use history::{History, HistoryInputs, Transfer, no_elastic_response};
+pub(crate) use history::{History, HistoryInputs, no_elastic_response};
 pub(crate) use interval::Interval;
 pub(crate) use remembered_field::RememberedField;
 pub(crate) use step_polynomial::StepPolynomial;
 pub(crate) use time_error::{ErrorMeasure, TimeError};
+pub(crate) use transfer::Transfer;

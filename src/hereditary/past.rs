@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+#[cfg(feature = "checkpoint")]
+use crate::hereditary::common_cells::CommonCells;
 use crate::hereditary::exponential_rule::{ExponentialRule, Weights};
 use crate::kernel::{BAND_CELLS, join, lanes, middle};
 
@@ -135,6 +137,35 @@ impl Past {
             && differences
                 .into_iter()
                 .all(|(k, own)| own.is_empty() && (k >= kept || self.waiting) || own.len() == cells)
+    }
+
+    /// The same on `cells` other cells, with every field zero.
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn blank_on(&self, cells: usize) -> Past {
+        let blank = |own: &Vec<f64>| if own.is_empty() { Vec::new() } else { vec![0.0; cells] };
+        let Past { branches, waiting, differences, .. } = self;
+        let fields = vec![0.0; cells * branches];
+        Past { branches: *branches, fields, differences: differences.each_ref().map(blank), waiting: *waiting }
+    }
+
+    /// Copies the cells in common with another, which has as many branches; `here` and `there` are all cells of each.
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn copy_common(&mut self, other: &Past, common: CommonCells, [here, there]: [usize; 2]) {
+        for i in 0..self.branches {
+            for k in 0..common.count {
+                let from = other.place(i, common.there + k, there);
+                let to = self.place(i, common.here + k, here);
+                self.fields[to] = other.fields[from];
+            }
+        }
+        self.differences.iter_mut().zip(&other.differences).for_each(|(own, other)| common.copy(other, own));
+    }
+
+    /// Where q_i of a cell is.
+    #[cfg(feature = "checkpoint")]
+    fn place(&self, i: usize, cell: usize, cells: usize) -> usize {
+        let start = cell / BLOCK * BLOCK;
+        start * self.branches + i * BLOCK.min(cells - start) + cell % BLOCK
     }
 
     /// The ranges of the field q_i.

@@ -1,5 +1,7 @@
 //! A field that follows the recursion of the displacement.
 
+#[cfg(feature = "checkpoint")]
+use crate::hereditary::common_cells::CommonCells;
 use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
 use crate::hereditary::past::Past;
 use crate::ranks::Rows;
@@ -108,6 +110,20 @@ impl RememberedField {
     ) -> RememberedField {
         let past = self.past.carried([cells, self.now.len()], companion.map(|field| &field.past), &mut carry);
         RememberedField { past, now: carry(&self.now, companion.map(|field| &field.now[..])), trial: vec![0.0; cells] }
+    }
+
+    /// The same on `cells` other cells, with every field zero.
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn blank_on(&self, cells: usize) -> RememberedField {
+        RememberedField { past: self.past.blank_on(cells), now: vec![0.0; cells], trial: vec![0.0; cells] }
+    }
+
+    /// Copies the cells in common with another.
+    #[cfg(feature = "checkpoint")]
+    pub(super) fn copy_common(&mut self, other: &RememberedField, common: CommonCells) {
+        self.past.copy_common(&other.past, common, [self.now.len(), other.now.len()]);
+        common.copy(&other.now, &mut self.now);
+        common.copy(&other.trial, &mut self.trial);
     }
 
     /// Whether its past has so many branches, and its fields have so many cells.

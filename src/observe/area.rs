@@ -1,5 +1,7 @@
 //! Contact area, to a fraction of a cell.
 
+use std::ops::RangeInclusive;
+
 use crate::Grid;
 use crate::contact::Extent;
 
@@ -15,9 +17,15 @@ const TOO_FAR: f64 = 1.3;
 /// Pressures that are mirror images of each other do not rise, whatever they are rounded to.
 const RISES: f64 = 1.0 + 1e-6;
 
-/// A pressure on a grid, and where there is something to touch.
+/// So many rows and columns beyond its corners the pressure decides on what is covered of a square.
+pub(crate) const REACH: usize = 3;
+
+/// A pressure on a grid, or some rows of it, and where there is something to touch.
 pub(crate) struct Pressed<'a> {
     pub(crate) grid: &'a Grid,
+    /// The row at which pressure and gap begin, where they are some rows: those beyond the grid are rows too, of the next
+    /// period or of nothing.
+    pub(crate) first: Option<isize>,
     /// Axes along which the bodies are periodic.
     pub(crate) periodic: [bool; 2],
     pub(crate) pressure: &'a [f64],
@@ -30,31 +38,41 @@ pub(crate) struct Pressed<'a> {
 impl Pressed<'_> {
     /// The contact area \[m²\].
     pub(crate) fn area(&self) -> f64 {
-        let Some(Extent { low, high }) = self.extent else { return 0.0 };
-        let (n, mut cells) = (self.grid.cells(), 0.0);
-        // squares of four cell centres: their lower corners are a row and a column back, beyond the grid or, at n, across the
-        // seam of a period
-        let squares = |axis: usize| match self.periodic[axis] {
-            true if low[axis] == 0 => 1..=n[axis],
-            _ => low[axis]..=high[axis] + 1,
-        };
-        for i in squares(0) {
-            for j in squares(1) {
-                if i > 0 && i < n[0] && j > 0 && j < n[1] {
-                    let k = i * n[1] + j;
-                    let corners = [k - n[1] - 1, k - n[1], k - 1, k];
-                    let inside = corners.into_iter().filter(|&k| self.pressure[k] > 0.0).count();
-                    if inside.is_multiple_of(4) {
-                        cells += (inside / 4) as f64;
-                        continue;
-                    }
-                }
-                let corners =
-                    [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|[i, j]| [i as isize - 1, j as isize - 1]);
-                cells += self.covered(corners);
-            }
+        self.squares(0).map(|row| self.covered_in_row(row)).sum::<f64>() * self.grid.cell_area()
+    }
+
+    /// Squares of four cell centres: their lower corners are a row and a column back, beyond the grid or, at n, across the seam
+    /// of a period.
+    fn squares(&self, axis: usize) -> RangeInclusive<usize> {
+        match self.extent {
+            None => 1..=0,
+            Some(Extent { low, .. }) if self.periodic[axis] && low[axis] == 0 => 1..=self.grid.cells()[axis],
+            Some(Extent { low, high }) => low[axis]..=high[axis] + 1,
         }
-        cells * self.grid.cell_area()
+    }
+
+    /// How many cells are covered in a row of squares.
+    pub(crate) fn covered_in_row(&self, i: usize) -> f64 {
+        let (n, mut cells) = (self.grid.cells(), 0.0);
+        if !self.squares(0).contains(&i) {
+            return cells;
+        }
+        let row = ((i as isize - self.first.unwrap_or(0)) as usize).wrapping_mul(n[1]);
+        for j in self.squares(1) {
+            if i > 0 && i < n[0] && j > 0 && j < n[1] {
+                let k = row + j;
+                let corners = [k - n[1] - 1, k - n[1], k - 1, k];
+                let inside = corners.into_iter().filter(|&k| self.pressure[k] > 0.0).count();
+                if inside.is_multiple_of(4) {
+                    cells += (inside / 4) as f64;
+                    continue;
+                }
+            }
+            let corners =
+                [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]].map(|[i, j]| [i as isize - 1, j as isize - 1]);
+            cells += self.covered(corners);
+        }
+        cells
     }
 
     /// The covered part of the square between four cell centres, in counter-clockwise order.
@@ -133,8 +151,11 @@ impl Pressed<'_> {
         let [n1, n2] = self.grid.cells();
         let wrap =
             |axis: usize, n: usize| if self.periodic[axis] { cell[axis].rem_euclid(n as isize) } else { cell[axis] };
-        let [i, j] = [wrap(0, n1), wrap(1, n2)];
-        let (i, j) = (usize::try_from(i).ok()?, usize::try_from(j).ok()?);
-        (i < n1 && j < n2).then_some(i * n2 + j)
+        let (rows, i) = match self.first {
+            None => (n1, wrap(0, n1)),
+            Some(first) => (self.pressure.len() / n2, cell[0] - first),
+        };
+        let (i, j) = (usize::try_from(i).ok()?, usize::try_from(wrap(1, n2)).ok()?);
+        (i < rows && j < n2).then_some(i * n2 + j)
     }
 }

@@ -32,8 +32,13 @@ pub(super) fn write_numbers(
     count: usize,
     mut values: impl Iterator<Item = f64>,
 ) -> io::Result<()> {
-    out.write_all(&(8 * count as u64).to_le_bytes())?;
+    write_length(out, count)?;
     values.try_for_each(|value| out.write_all(&value.to_le_bytes()))
+}
+
+/// Begins an array of `count` numbers.
+pub(super) fn write_length(out: &mut impl Write, count: usize) -> io::Result<()> {
+    out.write_all(&(8 * count as u64).to_le_bytes())
 }
 
 /// Writes a text. Strings end with a NUL byte, which JSON does not contain.

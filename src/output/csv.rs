@@ -48,6 +48,7 @@ fn number(value: f64) -> String {
 /// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`,
 /// `max pressure [Pa]`, cost and accuracy of the step as in [`StepReport`] (`time error` is
 /// empty where nothing was estimated), and additional columns of your choice.
+/// Where [ranks](crate::ranks) share out the contact, all of them make and write the history, and rank 0 has the file.
 /// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.
 ///
 /// ```
@@ -69,7 +70,8 @@ fn number(value: f64) -> String {
 #[derive(Debug)]
 pub struct CsvHistory {
     path: PathBuf,
-    file: Appending<File>,
+    /// None on ranks other than 0.
+    file: Option<Appending<File>>,
     additional: usize,
 }
 
@@ -85,7 +87,9 @@ impl CsvHistory {
         contact: &ViscoelasticContact,
         additional: &[&str],
     ) -> Result<CsvHistory> {
-        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), |path| File::create_new(path))
+        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), |path| {
+            File::create_new(path).map_err(|error| failed(path, error))
+        })
     }
 
     /// [`CsvHistory::create`] in the place of an earlier file, which is emptied first.
@@ -99,32 +103,30 @@ impl CsvHistory {
         contact: &ViscoelasticContact,
         additional: &[&str],
     ) -> Result<CsvHistory> {
-        check_regular(path.as_ref())?;
-        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), |path| File::create(path))
+        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), |path| {
+            check_regular(path)?;
+            File::create(path).map_err(|error| failed(path, error))
+        })
     }
 
     fn begin(
         path: &Path,
         (metadata, contact, additional): (&Metadata, &ViscoelasticContact, &[&str]),
-        open: impl FnOnce(&Path) -> io::Result<File>,
+        open: impl FnOnce(&Path) -> Result<File>,
     ) -> Result<CsvHistory> {
         let path = path.to_owned();
-        for (k, name) in additional.iter().enumerate() {
-            let invalid = name.is_empty() || name.contains(|c: char| c == '#' || c == '"' || c.is_control());
-            if invalid || COLUMNS.iter().any(|(standard, _)| standard == name) || additional[..k].contains(name) {
-                let rule = "unique, not empty, and without '#', quotes and control characters";
-                let reason = format!("invalid column name {name:?}: names must be {rule}");
-                return Err(failed(&path, io::Error::new(io::ErrorKind::InvalidInput, reason)));
-            }
-        }
+        contact.agreed(check_names(&path, additional))?;
         let names: Vec<String> =
             COLUMNS.iter().map(|(name, _)| name).chain(additional).map(|name| quoted(name)).collect();
         let head = format!("# {}\n{}\n", metadata.json(contact), names.join(","));
-        let mut file = Appending::new(open(&path).map_err(|error| failed(&path, error))?);
-        if let Err(error) = file.append(head.as_bytes()) {
-            let _ = fs::remove_file(&path); // the error to report is that of the write
-            return Err(failed(&path, error));
-        }
+        let file = contact.by_one_rank(|| {
+            let mut file = Appending::new(open(&path)?);
+            if let Err(error) = file.append(head.as_bytes()) {
+                let _ = fs::remove_file(&path); // the error to report is that of the write
+                return Err(failed(&path, error));
+            }
+            Ok(file)
+        })?;
         Ok(CsvHistory { path, file, additional: additional.len() })
     }
 
@@ -134,12 +136,27 @@ impl CsvHistory {
     /// If there is not one value for each additional column, or the file cannot be written. Then nothing of the row is
     /// in the file, and writing can be repeated once there is space again.
     pub fn write(&mut self, contact: &ViscoelasticContact, report: &StepReport, additional: &[f64]) -> Result<()> {
-        exact_length("additional columns", additional.len(), self.additional)?;
+        contact.agreed(exact_length("additional columns", additional.len(), self.additional))?;
         let standard = COLUMNS.iter().map(|(_, cell)| cell(contact, report));
         let cells: Vec<String> = standard.chain(additional.iter().copied().map(number)).collect();
         let row = cells.join(",") + "\n";
-        self.file.append(row.as_bytes()).map_err(|error| failed(&self.path, error))
+        let CsvHistory { path, file, .. } = self;
+        let append = |file: &mut Appending<File>| file.append(row.as_bytes()).map_err(|error| failed(path, error));
+        contact.by_one_rank(|| file.as_mut().map_or(Ok(()), append)).map(drop)
     }
+}
+
+/// Rejects names that readers would misinterpret.
+fn check_names(path: &Path, additional: &[&str]) -> Result<()> {
+    for (k, name) in additional.iter().enumerate() {
+        let invalid = name.is_empty() || name.contains(|c: char| c == '#' || c == '"' || c.is_control());
+        if invalid || COLUMNS.iter().any(|(standard, _)| standard == name) || additional[..k].contains(name) {
+            let rule = "unique, not empty, and without '#', quotes and control characters";
+            let reason = format!("invalid column name {name:?}: names must be {rule}");
+            return Err(failed(path, io::Error::new(io::ErrorKind::InvalidInput, reason)));
+        }
+    }
+    Ok(())
 }
 
 /// A column name, which contains no quotes, as a CSV field.

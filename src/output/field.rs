@@ -44,15 +44,15 @@ impl Field {
         }
     }
 
-    /// The values in the current state of the contact; `buffer` receives those that the contact does not store.
+    /// The values in the current state of the contact, of own rows where ranks share it out; `buffer` receives those that the
+    /// contact does not store.
     #[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
     pub(crate) fn values<'a>(self, contact: &'a ViscoelasticContact, buffer: &'a mut Vec<f64>) -> Result<&'a [f64]> {
-        contact.not_shared("a file or a picture of fields")?;
         match self {
             Field::Pressure => Ok(contact.pressure()),
             Field::Displacement => Ok(contact.displacement()),
             Field::Gap => {
-                buffer.resize(contact.grid().len(), 0.0);
+                buffer.resize(contact.pressure().len(), 0.0);
                 contact.gap_into(buffer)?;
                 Ok(buffer)
             }

@@ -48,7 +48,7 @@ impl Frames {
                 return Err(failed(folder, io::Error::new(io::ErrorKind::AlreadyExists, reason)));
             }
             check_regular(&entry.path())?;
-            fs::remove_file(entry.path()).map_err(|error| failed(&entry.path(), error))?;
+            remove(&entry.path())?;
         }
         let (folder, fields) = (folder.to_owned(), fields.to_vec());
         Ok(Frames { folder, extension, written: 0, metadata, fields, buffer: Vec::new() })
@@ -57,5 +57,13 @@ impl Frames {
     /// Name of the next frame.
     pub(super) fn next_name(&self) -> String {
         format!("frame_{:06}.{}", self.written, self.extension)
+    }
+}
+
+/// Removes a file of another run, unless another rank has.
+pub(super) fn remove(path: &Path) -> Result<()> {
+    match fs::remove_file(path) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(failed(path, error)),
+        _ => Ok(()),
     }
 }

@@ -3,7 +3,7 @@
 //! | output | feature | opened by |
 //! |---|---|---|
 //! | `NpzSeries`: a folder of NPZ archives, one per frame | `npy` | NumPy, Julia, MATLAB |
-//! | `write_npy`: one field as an NPY file | `npy` | NumPy, Julia, MATLAB |
+//! | `write_npy`, `write_field_npy`: one field as an NPY file | `npy` | NumPy, Julia, MATLAB |
 //! | `VtkSeries`: a folder of VTK images and a `series.pvd` | `vtk` | ParaView, VisIt, PyVista |
 //! | `write_stress_npz`: the stress in a volume | `npy` | NumPy, Julia, MATLAB |
 //! | `write_stress_vtk`: the stress in a volume | `vtk` | ParaView, VisIt, PyVista |
@@ -20,6 +20,11 @@
 //! [`Error::NotAFile`](crate::Error::NotAFile). While a file is being written, the process ID and `.part` are appended
 //! to its name; a process that is killed leaves it under that name.
 //!
+//! Where [ranks](crate::ranks) share out a contact, writing it is a call of all of them. Rank 0 writes, the same bytes that one
+//! process writes, and the rows of the others come to it some at a time: no rank holds a whole field, and no other rank needs
+//! the disk. An error is one of all ranks. A series is created by each of them: so the folder must be one that all see, or be
+//! new to each.
+//!
 //! A write that fails, for instance on a full disk, leaves earlier output intact and no partial output of its own. It
 //! can be repeated.
 
@@ -30,6 +35,8 @@ mod csv;
 #[cfg(feature = "npy")]
 mod deferred;
 mod field;
+#[cfg(any(feature = "npy", feature = "vtk"))]
+mod field_values;
 #[cfg(any(feature = "npy", feature = "vtk"))]
 mod frames;
 mod json;
@@ -48,7 +55,7 @@ pub use csv::CsvHistory;
 pub use field::Field;
 pub use metadata::Metadata;
 #[cfg(feature = "npy")]
-pub use npy::write_npy;
+pub use npy::{write_field_npy, write_npy};
 #[cfg(feature = "npy")]
 pub use npz::NpzSeries;
 #[cfg(feature = "npy")]

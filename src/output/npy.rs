@@ -5,9 +5,11 @@ use std::path::Path;
 
 use npyz::WriterBuilder;
 
-use crate::Grid;
 use crate::error::{Result, exact_length};
 use crate::file::replace;
+use crate::output::Field;
+use crate::output::field_values::{Order, write_fields};
+use crate::{Grid, ViscoelasticContact};
 
 /// Writes a field, one value per cell of `grid`, as an NPY file: a `float64` array of the shape of the grid, so that
 /// `numpy.load(path)[i, j]` is the value of the cell `[i, j]`. An existing file is replaced.
@@ -33,13 +35,53 @@ pub fn write_npy(path: impl AsRef<Path>, grid: &Grid, values: &[f64]) -> Result<
     replace(path.as_ref(), |out| array(out, &grid.cells(), values))
 }
 
+/// Writes a field of the contact as an NPY file, like [`write_npy`]: a call of all [ranks](crate::ranks) that share out the
+/// contact, of which rank 0 writes, and none holds the whole. An existing file is replaced.
+///
+/// Needs the feature `npy`.
+///
+/// ```
+/// use viscocontact::{output::{Field, write_field_npy}, prelude::*};
+///
+/// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .build()?;
+/// contact.step(0.0, Load::force(0.5))?;
+/// # let path = std::env::temp_dir().join(format!("viscocontact-doc-field-{}.npy", std::process::id()));
+/// write_field_npy(&path, &contact, Field::Pressure)?;
+/// # std::fs::remove_file(&path).unwrap();
+/// # Ok::<(), Error>(())
+/// ```
+///
+/// # Errors
+/// If the file cannot be written.
+pub fn write_field_npy(path: impl AsRef<Path>, contact: &ViscoelasticContact, field: Field) -> Result<()> {
+    let (fields, mut buffer) = ([field], Vec::new());
+    write_fields(path.as_ref(), (contact, &fields, Order::Rows), &mut buffer, |out, values| {
+        array_of_pieces(out, &contact.grid().cells(), |take| values.by_rows(take))
+    })
+}
+
 /// Writes numbers in row-major order.
 pub(super) fn array(out: impl Write, shape: &[usize], values: &[f64]) -> io::Result<()> {
+    array_of_pieces(out, shape, |take| take(values))
+}
+
+/// Takes the next numbers of an array.
+pub(super) type Take<'a> = &'a mut dyn FnMut(&[f64]) -> io::Result<()>;
+
+/// Writes numbers in row-major order, which `give` gives some at a time.
+pub(super) fn array_of_pieces(
+    out: impl Write,
+    shape: &[usize],
+    give: impl FnOnce(Take<'_>) -> io::Result<()>,
+) -> io::Result<()> {
     let shape: Vec<u64> = shape.iter().map(|&n| n as u64).collect();
     let mut out = BufWriter::with_capacity(1 << 16, out);
     let number = npyz::DType::Plain(type_string("<f8")?);
     let mut writer = npyz::WriteOptions::new().dtype(number).shape(&shape).writer(&mut out).begin_nd()?;
-    writer.extend(values.iter().copied())?;
+    give(&mut |values| writer.extend(values.iter().copied()))?;
     writer.finish()?;
     out.flush()
 }

@@ -8,8 +8,8 @@ use zip::write::SimpleFileOptions;
 
 use crate::ViscoelasticContact;
 use crate::error::Result;
-use crate::file::replace;
 use crate::output::deferred::Deferred;
+use crate::output::field_values::{Order, write_fields};
 use crate::output::frames::Frames;
 use crate::output::{Field, Metadata, npy};
 
@@ -77,25 +77,24 @@ impl NpzSeries {
     /// # Errors
     /// If the file cannot be written. Then there is no frame, and the next call uses the same number.
     pub fn write(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
-        contact.not_shared("a file of fields")?;
         let path = self.frames.folder.join(self.frames.next_name());
         let Frames { metadata, fields, buffer, .. } = &mut self.frames;
-        replace(&path, |out| {
+        let (grid, area) = (contact.grid(), contact.contact_area());
+        write_fields(&path, (contact, fields, Order::Rows), buffer, |out, values| {
             let mut archive = Archive::new(out);
             archive.add("time", &[], &[contact.time()])?;
             for (axis, name) in ["x1", "x2"].into_iter().enumerate() {
-                let cells = contact.grid().cells()[axis];
-                let centers: Vec<f64> = (0..cells).map(|k| contact.grid().coordinate(axis, k)).collect();
+                let cells = grid.cells()[axis];
+                let centers: Vec<f64> = (0..cells).map(|k| grid.coordinate(axis, k)).collect();
                 archive.add(name, &[cells], &centers)?;
             }
             for field in fields.iter() {
-                let values = field.values(contact, buffer).map_err(io::Error::other)?;
-                archive.add(field.name(), &contact.grid().cells(), values)?;
+                archive.add_pieces(field.name(), &grid.cells(), |take| values.by_rows(take))?;
             }
             archive.add("approach", &[], &[contact.approach()])?;
             archive.add("force", &[], &[contact.force()])?;
             archive.add("tilt", &[2], &contact.tilt())?;
-            archive.add("contact_area", &[], &[contact.contact_area()])?;
+            archive.add("contact_area", &[], &[area])?;
             archive.finish(&metadata.json(contact))
         })?;
         self.frames.written += 1;
@@ -122,10 +121,20 @@ impl<W: io::Write + io::Seek> Archive<W> {
     }
 
     pub(super) fn add(&mut self, name: &str, shape: &[usize], values: &[f64]) -> io::Result<()> {
+        self.add_pieces(name, shape, |take| take(values))
+    }
+
+    /// Adds an array whose values `give` gives some at a time.
+    fn add_pieces(
+        &mut self,
+        name: &str,
+        shape: &[usize],
+        give: impl FnOnce(npy::Take<'_>) -> io::Result<()>,
+    ) -> io::Result<()> {
         // plain entries have sizes of 32 bits, including the header of the array
-        let large = values.len() >= (u32::MAX as usize - 4096) / 8;
+        let large = shape.iter().product::<usize>() >= (u32::MAX as usize - 4096) / 8;
         self.start(name, large)?;
-        npy::array(&mut self.0, shape, values)
+        npy::array_of_pieces(&mut self.0, shape, give)
     }
 
     /// Adds the metadata and completes the archive.

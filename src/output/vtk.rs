@@ -1,13 +1,13 @@
 //! Frames as VTK images.
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::error::Result;
-use crate::file::{check_regular, failed, replace};
-use crate::output::appended::{CLOSING, OPENING, Offsets, write_numbers, write_text};
-use crate::output::frames::Frames;
+use crate::file::{check_regular, replace};
+use crate::output::appended::{CLOSING, OPENING, Offsets, write_length, write_numbers, write_text};
+use crate::output::field_values::{FieldValues, Order, write_fields};
+use crate::output::frames::{Frames, remove};
 use crate::output::{Field, Metadata};
 use crate::{Grid, ViscoelasticContact};
 
@@ -75,7 +75,7 @@ impl VtkSeries {
         let collection = folder.join(COLLECTION);
         if replaced && collection.exists() {
             check_regular(&collection)?;
-            fs::remove_file(&collection).map_err(|error| failed(&collection, error))?;
+            remove(&collection)?;
         }
         Ok(VtkSeries { frames, entries: String::new() })
     }
@@ -85,20 +85,25 @@ impl VtkSeries {
     /// # Errors
     /// If a file cannot be written. Then the frame is not listed, and the next call uses the same number.
     pub fn write(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
-        contact.not_shared("a file of fields")?;
         let name = self.frames.next_name();
         let path = self.frames.folder.join(&name);
-        replace(&path, |out| write_image(out, contact, &mut self.frames))?;
+        let Frames { metadata, fields, buffer, .. } = &mut self.frames;
+        let area = contact.contact_area();
+        write_fields(&path, (contact, fields, Order::Columns), buffer, |out, values| {
+            write_image(out, (contact, area), (metadata, fields), values)
+        })?;
 
         let time = contact.time();
         let entry = format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{name}\"/>\n");
         let entries = &self.entries;
-        replace(&self.frames.folder.join(COLLECTION), |out| {
-            write!(
-                out,
-                "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n\
-                 {entries}{entry}  </Collection>\n</VTKFile>\n"
-            )
+        contact.by_one_rank(|| {
+            replace(&self.frames.folder.join(COLLECTION), |out| {
+                write!(
+                    out,
+                    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n\
+                     {entries}{entry}  </Collection>\n</VTKFile>\n"
+                )
+            })
         })?;
         self.entries.push_str(&entry);
         self.frames.written += 1;
@@ -112,26 +117,29 @@ impl VtkSeries {
 }
 
 /// Writes an image: an XML header, then all values.
-fn write_image(out: &mut impl Write, contact: &ViscoelasticContact, frames: &mut Frames) -> io::Result<()> {
-    let Frames { metadata, fields, buffer, .. } = frames;
+fn write_image(
+    out: &mut impl Write,
+    (contact, area): (&ViscoelasticContact, f64),
+    (metadata, fields): (&Metadata, &[Field]),
+    values: &mut FieldValues<'_>,
+) -> io::Result<()> {
     let (grid, metadata) = (contact.grid(), metadata.json(contact));
     let numbers: [(&str, &[f64]); 5] = [
         ("TimeValue", &[contact.time()]),
         ("approach [m]", &[contact.approach()]),
         ("force [N]", &[contact.force()]),
         ("tilt [rad]", &contact.tilt()),
-        ("contact area [m2]", &[contact.contact_area()]),
+        ("contact area [m2]", &[area]),
     ];
     write_header(out, grid, &numbers, &metadata, fields)?;
     for (_, values) in numbers {
         write_numbers(out, values.len(), values.iter().copied())?;
     }
     write_text(out, &metadata)?;
-    let [n1, n2] = grid.cells();
-    for field in fields.iter() {
-        let values = field.values(contact, buffer).map_err(io::Error::other)?;
+    for _ in fields {
+        write_length(out, grid.len())?;
         // in VTK x varies fastest
-        write_numbers(out, values.len(), (0..n2).flat_map(|j| (0..n1).map(move |i| values[i * n2 + j])))?;
+        values.by_columns(|value| out.write_all(&value.to_le_bytes()))?;
     }
     out.write_all(CLOSING)
 }

@@ -43,6 +43,7 @@ impl Map {
 
     /// A field of a contact, titled with its time.
     pub(super) fn field(contact: &ViscoelasticContact, field: Field) -> Result<Map> {
+        contact.not_shared("a picture of fields")?;
         let mut buffer = Vec::new();
         let mut values = field.values(contact, &mut buffer)?.to_vec();
         if field == Field::Pressure {

@@ -1,5 +1,6 @@
 //! Runs that go on from a file as if nothing had happened; files that are refused; fifty runs that were killed.
 
+mod ranks;
 mod scenes;
 
 use crate::common::bodies::{power_law, three_times};

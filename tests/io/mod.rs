@@ -10,6 +10,8 @@ mod interface;
 mod invalid_loads;
 #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
 mod output;
+#[cfg(all(feature = "csv", feature = "npy", feature = "vtk"))]
+mod output_of_ranks;
 mod paper;
 #[cfg(feature = "plot")]
 mod plot;

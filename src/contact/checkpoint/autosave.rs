@@ -6,6 +6,7 @@ use std::time::Duration;
 use crate::contact::run::follow::Follow;
 use crate::contact::run::progress::Autosave;
 use crate::error::Result;
+use crate::ranks::caught;
 
 impl Follow<'_> {
     /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end: no more is lost with
@@ -52,8 +53,13 @@ impl Follow<'_> {
 
     /// Saves the run if that is due, or the run is `over`.
     pub(in crate::contact) fn autosave(&mut self, over: bool) -> Result<()> {
-        let due = self.autosave.as_ref().filter(|autosave| over || autosave.is_due());
-        let Some(path) = due.map(|autosave| autosave.path.clone()) else { return Ok(()) };
+        let Some(autosave) = &self.autosave else { return Ok(()) };
+        let (due, rows) = (over || autosave.is_due(), self.contact.computation.state.region.rows());
+        // clocks differ: where it is due on one rank, it is on all
+        if !caught(&rows, || Ok(rows.any(due)))? {
+            return Ok(());
+        }
+        let path = autosave.path.clone();
         self.save(path)?;
         self.autosave.iter_mut().for_each(Autosave::done);
         Ok(())

@@ -2,11 +2,13 @@
 
 use std::sync::OnceLock;
 
+use crc32fast::Hasher;
 use serde::{Deserialize, Serialize};
 
+use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 use crate::rheology::Material;
-use crate::sum::moments;
+use crate::sum::{MOMENTS, add_to_moments, moments};
 
 /// Numbers of two scenes are the same if they differ by no more than this part: mathematical libraries round differently.
 const RELATIVE_TOLERANCE: f64 = 1e-9;
@@ -16,7 +18,7 @@ const TIMES_PER_DECADE: i32 = 8;
 const DECADES: i32 = 12;
 
 /// Fingerprint of gap and material as built.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Built {
     /// Sums over the gap.
     pub(super) shape: Vec<f64>,
@@ -26,7 +28,7 @@ pub(crate) struct Built {
 }
 
 /// Which rigid body each cell belongs to.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Owners {
     /// Cells of each body.
     cells: Vec<u64>,
@@ -52,6 +54,24 @@ impl Built {
         Built { shape, owners: Owners::of(gap), creep: OnceLock::new() }
     }
 
+    /// The same of a single body whose gap on a region of own rows is shared out: a call of all ranks.
+    pub(crate) fn of_own_rows(gap: &Gap, region: &Region) -> Built {
+        let (mut known, mut open, mut touchable) = ([0.0; MOMENTS], [0.0; MOMENTS], 0);
+        let [_, n2] = region.whole_cells();
+        for (k, &h) in gap.above.iter().enumerate() {
+            for [i, j] in region.images_of(k) {
+                let [own, infinite] = if h.is_finite() { [h, 0.0] } else { [0.0, 1.0] };
+                add_to_moments(&mut known, own, i * n2 + j, n2);
+                add_to_moments(&mut open, infinite, i * n2 + j, n2);
+                touchable += usize::from(h.is_finite());
+            }
+        }
+        let rows = region.rows();
+        let [known, open] = [known, open].map(|own| rows.join(own, |a, b| std::array::from_fn(|n| a[n] + b[n])));
+        let shape = known.into_iter().chain(open).chain([gap.datum]).collect();
+        Built { shape, owners: Owners::of_one_body(rows.count(touchable)), creep: OnceLock::new() }
+    }
+
     pub(super) fn creep(&self, material: &Material) -> &Creep {
         self.creep.get_or_init(|| match material.contact_spectrum() {
             Ok(Some(series)) => {
@@ -68,7 +88,7 @@ impl Built {
 
 impl Owners {
     fn of(gap: &Gap) -> Owners {
-        let (mut cells, mut hasher) = (Vec::new(), crc32fast::Hasher::new());
+        let (mut cells, mut hasher) = (Vec::new(), Hasher::new());
         // cells without anything to touch belong to no body
         for k in (0..gap.above.len()).filter(|&k| gap.above[k].is_finite()) {
             let body = gap.owner(k);
@@ -77,6 +97,20 @@ impl Owners {
             hasher.update(&(body as u16).to_le_bytes());
         }
         Owners { cells, checksum: hasher.finalize() }
+    }
+
+    /// Those of a single body.
+    fn of_one_body(cells: usize) -> Owners {
+        // the checksum of as many zeros, from those of powers of two of them
+        let (mut hasher, mut zeros) = (Hasher::new(), Hasher::new());
+        zeros.update(&0_u16.to_le_bytes());
+        for bit in 0..usize::BITS - cells.leading_zeros() {
+            if cells >> bit & 1 == 1 {
+                hasher.combine(&zeros);
+            }
+            zeros.combine(&zeros.clone());
+        }
+        Owners { cells: vec![cells as u64; usize::from(cells > 0)], checksum: hasher.finalize() }
     }
 
     /// The cells of the first body that differs from `other`, in words.
@@ -123,6 +157,45 @@ impl Creep {
             Creep::Series(_) if entry == 1 => format!("one that flows by {number:e} 1/(Pa s)"),
             Creep::Series(_) if entry.is_multiple_of(2) => format!("{number:e} 1/Pa in term {}", entry / 2),
             Creep::Series(_) => format!("one with a time of {number:e} s in term {}", entry / 2),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Grid;
+    use crate::ranks::{Rows, Threads};
+
+    /// What ranks find of a gap, each on own rows, is what one process finds of the whole, folded or not.
+    #[test]
+    fn ranks_find_what_one_process_finds() {
+        let grid = Grid::new([64, 384], [1.0e-3, 6.0e-3]).unwrap();
+        for folded in [[false; 2], [true, false], [false, true], [true; 2]] {
+            let about = |x: f64, folded: bool| if folded { x * x } else { (x - 0.1e-3) * (x - 0.1e-3) + 1.0e-9 * x };
+            let above = (0..grid.len()).map(|k| {
+                let [x1, x2] = grid.center(k / 384, k % 384);
+                let h = about(x1, folded[0]) + about(x2, folded[1]);
+                if h > 4.0e-6 { f64::INFINITY } else { h }
+            });
+            let gap = Gap { datum: 1.0e-6, above: above.collect(), owner: None };
+            let expected = Built::new(&gap, grid.cells());
+            assert!(expected.shape[5] > 0.0);
+            for size in [1, 3, 5] {
+                let found = Threads::run(size, |ranks| {
+                    let region = Region::shared(&grid, folded, &Rows::of_rank(grid.cells(), ranks));
+                    let own = Gap { datum: 1.0e-6, above: region.cut(&gap.above), owner: None };
+                    Built::of_own_rows(&own, &region)
+                });
+                for found in found.unwrap() {
+                    assert_eq!(found.owners, expected.owners);
+                    assert_eq!(difference(&found.shape, &expected.shape), None, "{folded:?} {size}");
+                }
+            }
+        }
+        for cells in [0, 1, 2, 3, 1000, 4097] {
+            let gap = Gap { datum: 0.0, above: vec![0.0; cells], owner: None };
+            assert_eq!(Owners::of_one_body(cells), Owners::of(&gap));
         }
     }
 }

@@ -28,7 +28,8 @@ pub(super) struct Fingerprint {
     /// Sums over the influence of the kernel.
     influence: Vec<f64>,
     creep: Creep,
-    shape: Vec<f64>,
+    /// Sums over the gap.
+    pub(super) shape: Vec<f64>,
     owners: Owners,
 }
 

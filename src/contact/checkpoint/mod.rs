@@ -1,17 +1,25 @@
 //! Checkpoint and resume: the state of a contact in a file, and on from there.
 
+mod assembled;
 pub(in crate::contact) mod autosave;
 pub(in crate::contact) mod built;
+mod check;
 mod fingerprint;
 mod format;
+mod of_ranks;
 mod saved;
 
 use std::path::Path;
 
+use crate::contact::computation::Computation;
 use crate::contact::run::progress::Progress;
+use crate::contact::state::State;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
+use crate::ranks::caught;
+use format::{Kind, Whole};
+use of_ranks::Common;
 use saved::Saved;
 
 impl ViscoelasticContact {
@@ -58,9 +66,14 @@ impl ViscoelasticContact {
 
     /// [`ViscoelasticContact::save`] with how far a run along a history has come.
     pub(super) fn save_with(&self, path: &Path, progress: Option<&Progress>) -> Result<()> {
-        self.not_shared("a checkpoint")?;
-        let bytes = format::encode(&Saved::of(self, progress)).map_err(|source| of_file(path, source))?;
-        replace(path, |file| std::io::Write::write_all(file, &bytes))
+        let rows = self.computation.state.region.rows();
+        if let Some(group) = rows.group() {
+            return caught(&rows, || of_ranks::save(self, path, progress, (&rows, &**group)));
+        }
+        let old = of_ranks::mark_at(path);
+        replace(path, |out| format::write(out, Kind::Whole, &Saved::of(self, progress)).map(drop))?;
+        old.into_iter().for_each(|old| of_ranks::remove_until(path, old));
+        Ok(())
     }
 
     /// Puts a saved state in the place of this one. The contact must be built as the one was that was saved: same grid, bodies,
@@ -78,17 +91,29 @@ impl ViscoelasticContact {
     /// If the file cannot be read, is no checkpoint, is of a newer or older format, cut short, damaged, or of another scene
     /// ([`Error::Checkpoint`]); the contact is then as it was.
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
-        self.not_shared("a checkpoint")?;
-        let path = path.as_ref();
-        let mut attempt = || {
-            let bytes = std::fs::read(path)
-                .map_err(|error| CheckpointError::Unreadable { what: error.to_string(), kind: error.kind() })?;
-            format::decode::<Saved<'_>>(&bytes)?.restore(self)
-        };
-        attempt().map_err(|source| of_file(path, source))
+        let (path, rows) = (path.as_ref(), self.computation.state.region.rows());
+        caught(&rows, || {
+            let read = self.read(path).map_err(|source| Error::Checkpoint { path: path.to_owned(), source });
+            let (mut state, progress, checksum) = rows.agree(read)?;
+            // not one save on one rank and the next on another
+            rows.same([f64::from(checksum)])?;
+            state.sum_up();
+            self.computation = Computation::new(&self.scene, state);
+            self.view.refresh(&self.computation.state);
+            self.progress = progress.map(Box::new);
+            Ok(())
+        })
     }
-}
 
-fn of_file(path: &Path, source: CheckpointError) -> Error {
-    Error::Checkpoint { path: path.to_owned(), source }
+    /// The state in a file on the rows of this contact, how far a run had come, and the checksum of the file.
+    fn read(&self, path: &Path) -> Result<(State, Option<Progress>, u32), CheckpointError> {
+        let file = Whole::open(path)?;
+        let checksum = file.checksum;
+        let (state, progress) = match file.kind {
+            Kind::Whole => file.contents::<Saved<'_>>()?.state_for(self)?,
+            Kind::Ranks => file.contents::<Common<'_>>()?.state_for(self, path)?,
+            Kind::Rows => return Err(CheckpointError::RowsAlone),
+        };
+        Ok((state, progress, checksum))
+    }
 }

@@ -49,6 +49,13 @@ impl Region {
         Region { shared: Some(rows), ..own }
     }
 
+    /// Some rows of all of `grid`, as [`Region::whole`].
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn of_rows(grid: &Grid, folded: [bool; 2], rows: Range<usize>) -> Region {
+        let Region { first: [_, first], grid: part, .. } = Region::whole(grid, folded);
+        Region::new(grid, folded, [rows.start, first], [rows.len(), part.cells()[1]])
+    }
+
     /// A region of suitable size that holds these cells of the whole grid, and a fraction `margin` more along each axis.
     pub(crate) fn around(grid: &Grid, folded: [bool; 2], held: Extent, margin: f64) -> Region {
         let (mut first, mut cells) = ([0; 2], [0; 2]);
@@ -132,7 +139,12 @@ impl Region {
 
     /// The rows of the whole grid that fields are shown on: all, or, where they are shared out, own ones.
     pub(crate) fn shown_rows(&self) -> Range<usize> {
-        if self.is_shared() { self.first[0]..self.first[0] + self.cells()[0] } else { 0..self.whole.cells()[0] }
+        if self.is_shared() { self.computed_rows() } else { 0..self.whole.cells()[0] }
+    }
+
+    /// Its rows, as rows of the whole grid.
+    pub(crate) fn computed_rows(&self) -> Range<usize> {
+        self.first[0]..self.first[0] + self.cells()[0]
     }
 
     /// Number of cells that fields are shown on.
@@ -202,6 +214,21 @@ impl Region {
     pub(crate) fn cell(&self, k: usize) -> [usize; 2] {
         let n2 = self.cells()[1];
         [self.first[0] + k / n2, self.first[1] + k % n2]
+    }
+
+    /// The cells of the whole grid that its cell `k` stands for.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn images_of(&self, k: usize) -> impl Iterator<Item = [usize; 2]> {
+        let (all, [i, j], folded) = (self.whole.cells(), self.cell(k), self.folded);
+        let along = move |axis: usize, own: usize| [Some(own), folded[axis].then(|| all[axis] - 1 - own)];
+        let pairs = along(0, i).into_iter().flatten().map(move |i| (i, along(1, j)));
+        pairs.flat_map(|(i, columns)| columns.into_iter().flatten().map(move |j| [i, j]))
+    }
+
+    /// Rows and columns of the whole grid.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn whole_cells(&self) -> [usize; 2] {
+        self.whole.cells()
     }
 
     /// The coordinates of its cell `k`.

@@ -1,0 +1,136 @@
+//! The contact area of a contact that ranks share out.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+
+use num_complex::Complex64;
+
+use crate::contact::state::State;
+use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::observe::area::{Pressed, REACH};
+use crate::ranks::{Ranks, depart};
+
+/// Rows that are looked at together.
+const PIECE: usize = 64;
+/// In place of a pressure where there is nothing to touch.
+const NOTHING: f64 = -1.0;
+
+impl ViscoelasticContact {
+    /// The contact area \[m²\]: each rank finds the covered part of its rows of squares, and those of all are added in the
+    /// order of the rows.
+    pub(super) fn shared_area(&self) -> f64 {
+        let State { region, current, .. } = &self.computation.state;
+        let (rows, [n1, n2]) = (region.rows(), self.grid().cells());
+        let Some(group) = rows.group() else { return 0.0 };
+        let extent = region.reach(&current.solution.pressure);
+        let beside = self.rows_beside(&**group);
+        // of a folded axis the rows below are images of those above
+        let halves = |own: Range<usize>| {
+            let images = if region.folded()[0] { n1 - own.end..n1 - own.start } else { 0..0 };
+            [own, images]
+        };
+        // squares whose upper corners are in some rows; the last rows have those across the end, too
+        let squares = |rows: Range<usize>| {
+            let beyond = usize::from(rows.end == n1 && !rows.is_empty());
+            rows.start..rows.end + beyond
+        };
+        let (mut covered, mut pressure, mut gap) = (Vec::new(), Vec::new(), Vec::new());
+        for half in halves(region.computed_rows()) {
+            for start in half.clone().step_by(PIECE) {
+                let piece = start..(start + PIECE).min(half.end);
+                let first = start as isize - 1 - REACH as isize;
+                let near = first..piece.end as isize + 1 + REACH as isize;
+                pressure.clear();
+                pressure.resize(near.len() * n2, NOTHING);
+                for (row, out) in near.zip(pressure.chunks_exact_mut(n2)) {
+                    match self.computed_row(row) {
+                        Some(row) if region.computed_rows().contains(&row) => self.marked_row(row, out),
+                        Some(row) => beside.get(&row).into_iter().for_each(|row| out.copy_from_slice(row)),
+                        None => {}
+                    }
+                }
+                gap.clear();
+                gap.extend(pressure.iter().map(|&p| if p == NOTHING { f64::INFINITY } else { 0.0 }));
+                pressure.iter_mut().for_each(|p| *p = p.max(0.0));
+                let (periodic, first) = (self.scene.kernel.periodic_axes(), Some(first));
+                let pressed = Pressed { grid: self.grid(), first, periodic, pressure: &pressure, gap: &gap, extent };
+                covered.extend(squares(piece).map(|row| pressed.covered_in_row(row)));
+            }
+        }
+        let of = |rank: usize| halves(self.rows_of(rank)).map(squares);
+        let count = |rank: usize| of(rank).iter().map(ExactSizeIterator::len).sum();
+        let found = rows.gather(covered.into_iter(), count, |all| {
+            let (mut in_order, mut next) = (vec![0.0; n1 + 1], 0);
+            for place in (0..rows.ranks()).flat_map(of) {
+                let count = place.len();
+                in_order[place].copy_from_slice(&all[next..next + count]);
+                next += count;
+            }
+            in_order.into_iter().sum::<f64>()
+        });
+        found.unwrap_or(0.0) * self.grid().cell_area()
+    }
+
+    /// The computed rows of a rank, as rows of the whole grid.
+    fn rows_of(&self, rank: usize) -> Range<usize> {
+        let region = &self.computation.state.region;
+        let rows = region.rows();
+        let (first, of) = (region.computed_rows().start - rows.own().start, rows.of(rank));
+        first + of.start..first + of.end
+    }
+
+    /// The computed row that a row is, or is the image of; none beyond a grid that ends.
+    fn computed_row(&self, row: isize) -> Option<usize> {
+        let (n1, folded) = (self.grid().cells()[0], self.computation.state.region.folded()[0]);
+        let row = if self.scene.kernel.periodic_axes()[0] { row.rem_euclid(n1 as isize) } else { row };
+        let row = usize::try_from(row).ok().filter(|&row| row < n1)?;
+        Some(if folded && row < n1 / 2 { n1 - 1 - row } else { row })
+    }
+
+    /// The pressure of an own row, marked where there is nothing to touch.
+    fn marked_row(&self, row: usize, out: &mut [f64]) {
+        let State { region, indenter, .. } = &self.computation.state;
+        let (row, [_, m2], n2) = (row - region.computed_rows().start, region.cells(), out.len());
+        out.copy_from_slice(&self.pressure()[row * n2..(row + 1) * n2]);
+        for (j, h) in indenter.gap().above[row * m2..(row + 1) * m2].iter().enumerate() {
+            if h.is_infinite() {
+                // of a folded axis the first half are images
+                out[n2 - m2 + j] = NOTHING;
+                out[if region.folded()[1] { m2 - 1 - j } else { j }] = NOTHING;
+            }
+        }
+    }
+
+    /// Rows of other ranks that are so near to own ones that they matter.
+    fn rows_beside(&self, group: &dyn Ranks) -> BTreeMap<usize, Vec<f64>> {
+        let reach = 1 + REACH as isize;
+        let wanted = |rank: usize| {
+            let own = self.rows_of(rank);
+            let (start, end) = (own.start as isize, own.end as isize);
+            let near = (start - reach..start).chain(end..end + reach).filter(|_| !own.is_empty());
+            near.filter_map(|row| self.computed_row(row)).filter(|row| !own.contains(row)).collect::<BTreeSet<_>>()
+        };
+        let n2 = self.grid().cells()[1];
+        let (own, length) = (self.rows_of(group.rank()), n2.div_ceil(2));
+        let (mut send, mut row_sent, zero) = (Vec::new(), vec![0.0; n2], Complex64::default());
+        let send_counts: Vec<usize> = (0..group.size())
+            .map(|rank| {
+                let before = send.len();
+                for row in wanted(rank).into_iter().filter(|row| own.contains(row)) {
+                    self.marked_row(row, &mut row_sent);
+                    let pairs = row_sent.chunks(2);
+                    send.extend(pairs.map(|pair| Complex64::new(pair[0], pair.get(1).copied().unwrap_or(0.0))));
+                }
+                send.len() - before
+            })
+            .collect();
+        let rows = wanted(group.rank());
+        let counts: Vec<usize> =
+            (0..group.size()).map(|rank| length * rows.range(self.rows_of(rank)).count()).collect();
+        let mut received = vec![zero; counts.iter().sum()];
+        group.exchange(&send, &send_counts, &mut received, &counts).unwrap_or_else(|error| depart(error));
+        let numbers = received.chunks_exact(length.max(1));
+        let fields = numbers.map(|row| row.iter().flat_map(|z| [z.re, z.im]).take(n2).collect());
+        rows.into_iter().zip(fields).collect()
+    }
+}
