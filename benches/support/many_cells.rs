@@ -12,9 +12,11 @@ use viscocontact::ranks::{Ranks, RanksError};
 #[derive(Debug)]
 struct Counted {
     ranks: Arc<dyn Ranks>,
-    /// Bytes sent to others by exchanges, nanoseconds in them, and in gathers.
+    /// Bytes sent to others by exchanges, and nanoseconds in them; number of gathers, bytes that they bring, nanoseconds in them.
     bytes: AtomicU64,
     exchanging: AtomicU64,
+    gathers: AtomicU64,
+    gathered: AtomicU64,
     gathering: AtomicU64,
 }
 
@@ -24,8 +26,8 @@ pub struct Seen {
     cold: f64,
     warm: f64,
     report: StepReport,
-    /// Bytes sent in the warm step, and seconds in exchanges and sums.
-    messages: [f64; 3],
+    /// What was counted in the warm step.
+    messages: [f64; 5],
     told: viscocontact::contact::Memory,
 }
 
@@ -55,21 +57,23 @@ pub fn run(cells: usize, quarter: bool, ranks: Option<Arc<dyn Ranks>>) -> viscoc
     step(0.2)?;
     step(0.2)?;
     let (warm, report) = step(0.2)?;
-    let messages = counted.as_ref().map_or([0.0; 3], |ranks| ranks.read());
+    let messages = counted.as_ref().map_or([0.0; 5], |ranks| ranks.read());
     Ok(Seen { build, cold, warm, report, messages, told })
 }
 
 impl Seen {
     /// A row for `docs/scale.md`, from what the first of `ranks` saw; `processes` of them share the peak of memory.
     pub fn print(&self, cells: usize, ranks: usize, in_this_process: usize) {
-        let Seen { build, cold, warm, report, messages: [bytes, exchanging, gathering], told } = self;
+        let Seen { build, cold, warm, report, messages: [bytes, exchanging, gathers, gathered, gathering], told } =
+            self;
         let own = told.computed_cells as f64;
         println!(
             "{cells} cells, {ranks} ranks: build {build:.2} s, cold {cold:.2} s, warm {warm:.3} s ({} convolutions, {} \
-             preconditioner); in messages {:.3} s, sums {:.3} s; a cell: sent {:.1} B, memory told {:.1} B, peak {:.1} B",
+             preconditioner); in exchanges {:.3} s, in {gathers} sums of {:.0} kB {:.3} s; a cell: sent {:.1} B, memory told {:.1} B, peak {:.1} B",
             report.convolutions,
             report.preconditioner_applications,
             exchanging * 1e-9,
+            gathered * 1e-3 / gathers,
             gathering * 1e-9,
             bytes / own,
             told.total() as f64 / own,
@@ -88,18 +92,18 @@ fn peak_memory() -> Option<f64> {
 impl Counted {
     fn new(ranks: Arc<dyn Ranks>) -> Counted {
         let zero = || AtomicU64::new(0);
-        Counted { ranks, bytes: zero(), exchanging: zero(), gathering: zero() }
+        Counted { ranks, bytes: zero(), exchanging: zero(), gathers: zero(), gathered: zero(), gathering: zero() }
     }
 
-    fn counters(&self) -> [&AtomicU64; 3] {
-        [&self.bytes, &self.exchanging, &self.gathering]
+    fn counters(&self) -> [&AtomicU64; 5] {
+        [&self.bytes, &self.exchanging, &self.gathers, &self.gathered, &self.gathering]
     }
 
     fn reset(&self) {
         self.counters().iter().for_each(|counter| counter.store(0, Ordering::Relaxed));
     }
 
-    fn read(&self) -> [f64; 3] {
+    fn read(&self) -> [f64; 5] {
         self.counters().map(|counter| counter.load(Ordering::Relaxed) as f64)
     }
 }
@@ -116,6 +120,8 @@ impl Ranks for Counted {
     fn gather(&self, own: &[f64], counts: &[usize], all: &mut [f64]) -> Result<(), RanksError> {
         let start = Instant::now();
         let done = self.ranks.gather(own, counts, all);
+        self.gathers.fetch_add(1, Ordering::Relaxed);
+        self.gathered.fetch_add(size_of_val(all) as u64, Ordering::Relaxed);
         self.gathering.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
         done
     }
