@@ -22,15 +22,38 @@ run() {
     timeout "$limit" mpirun -n "$size" --oversubscribe "${as_root[@]}" "$check" "$@"
 }
 
-alone=$("$check" alone)
+alone=$("$check" alone scenes)
 for size in 1 2 3 4; do
     together=$(run "$size" scenes)
     [ "$together" = "$alone" ] || { echo "$size ranks: $together instead of $alone"; exit 1; }
 done
 echo "1, 2, 3 and 4 ranks give the bits of one process: $alone"
-together=$(run 3 scenes 5000)
+together=$(run 3 short 5000 scenes)
 [ "$together" = "$alone" ] || { echo "in short messages: $together instead of $alone"; exit 1; }
 echo "so they do in messages of 5000 numbers"
+
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+"$check" alone files "$folder/alone"
+for size in 1 4; do
+    run "$size" files "$folder/$size"
+    diff -r "$folder/alone" "$folder/$size" || { echo "$size ranks write other files"; exit 1; }
+done
+echo "4 ranks write the files of one process"
+
+whole=$("$check" alone hold)
+run 4 save "$folder/run"
+for size in 1 2 3 4; do
+    resumed=$(run "$size" resume "$folder/run")
+    [ "$resumed" = "$whole" ] || { echo "4 ranks resumed on $size: $resumed instead of $whole"; exit 1; }
+done
+resumed=$("$check" alone resume "$folder/run")
+[ "$resumed" = "$whole" ] || { echo "4 ranks resumed by one process: $resumed instead of $whole"; exit 1; }
+"$check" alone save "$folder/run"
+[ "$(find "$folder" -maxdepth 1 -type f | wc -l)" = 1 ] || { echo "files with rows are left"; exit 1; }
+resumed=$(run 2 resume "$folder/run")
+[ "$resumed" = "$whole" ] || { echo "one process resumed on 2 ranks: $resumed instead of $whole"; exit 1; }
+echo "a run goes on on another number of ranks: $whole"
 
 run 3 errs
 echo "an error of one rank is that of all"

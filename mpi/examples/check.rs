@@ -1,9 +1,13 @@
-//! What `tests/mpi.sh` runs: prints a hash of scenes, the same on any number of ranks; or fails on purpose.
+//! What `tests/mpi.sh` runs: prints a hash of scenes, the same on any number of ranks; writes files; goes on from a
+//! checkpoint; or fails on purpose.
 //!
-//! Arguments: `scenes`, or `alone` without ranks; `errs`, `leaves`, `panics`, `waits` for failures of rank 1.
+//! Arguments: `scenes`, `files FOLDER`, `save PATH`, `resume PATH`, and `alone` before any of these without ranks; `errs`,
+//! `leaves`, `panics`, `waits` for failures of rank 1. `short N` before all has messages of at most N numbers.
 
+use std::path::Path;
 use std::sync::Arc;
 
+use viscocontact::output::{Field, Metadata, NpzSeries, VtkSeries};
 use viscocontact::prelude::*;
 use viscocontact::ranks::{Ranks, RanksError};
 use viscocontact_mpi::Mpi;
@@ -11,21 +15,15 @@ use viscocontact_mpi::Mpi;
 type Failure = Box<dyn std::error::Error>;
 
 fn main() -> Result<(), Failure> {
-    let what = std::env::args().nth(1).unwrap_or_default();
-    if what == "alone" {
-        println!("{:016x}", hash_of_scenes(None)?);
-        return Ok(());
+    let mut words = std::env::args().skip(1).peekable();
+    let most = if words.next_if_eq("short").is_some() { words.next().unwrap_or_default().parse()? } else { usize::MAX };
+    if words.next_if_eq("alone").is_some() {
+        return succeed(&words.next().unwrap_or_default(), words.next().as_deref(), None);
     }
-    let most = std::env::args().nth(2).map_or(Ok(usize::MAX), |most| most.parse())?;
+    let what = words.next().unwrap_or_default();
     let ranks: Arc<dyn Ranks> = Mpi::start_with_messages(most)?;
     let rank = ranks.rank();
     match what.as_str() {
-        "scenes" => {
-            let hash = hash_of_scenes(Some(Arc::clone(&ranks)))?;
-            if rank == 0 {
-                println!("{hash:016x}");
-            }
-        }
         "errs" => {
             let mut contact = sphere(Some(Arc::clone(&ranks)))?;
             let dt = if rank == 1 { f64::NAN } else { 0.0 };
@@ -50,9 +48,60 @@ fn main() -> Result<(), Failure> {
             }
             contact.step(0.0, Load::force(1.0))?;
         }
-        other => return Err(format!("no such check: {other:?}").into()),
+        other => succeed(other, words.next().as_deref(), Some(ranks))?,
     }
     Ok(())
+}
+
+/// What gives the same on any number of ranks, and without.
+fn succeed(what: &str, place: Option<&str>, ranks: Option<Arc<dyn Ranks>>) -> Result<(), Failure> {
+    let first = ranks.as_ref().is_none_or(|ranks| ranks.rank() == 0);
+    let hash = match (what, place) {
+        ("scenes", None) => hash_of_scenes(ranks)?,
+        ("files", Some(folder)) => return Ok(write_files(Path::new(folder), ranks)?),
+        ("save", Some(path)) => return Ok(hold(ranks, None, Some(path)).map(drop)?),
+        ("resume", Some(path)) => hold(ranks, Some(path), None)?,
+        ("hold", None) => hold(ranks, None, None)?,
+        _ => return Err(format!("no such check: {what:?}").into()),
+    };
+    if first {
+        println!("{hash:016x}");
+    }
+    Ok(())
+}
+
+/// Two frames of a contact, with all fields.
+fn write_files(folder: &Path, ranks: Option<Arc<dyn Ranks>>) -> Result<(), Error> {
+    let mut contact = sphere(ranks)?;
+    let mut npz = NpzSeries::create(folder.join("npz"), Metadata::new("check"), &Field::ALL)?;
+    let mut vtk = VtkSeries::create(folder.join("vtk"), Metadata::new("check"), &Field::ALL)?;
+    for dt in [0.0, 0.3] {
+        contact.step(dt, Load::force(1.0))?;
+        npz.write(&contact)?;
+        vtk.write(&contact)?;
+    }
+    Ok(())
+}
+
+/// A run by steps chosen by their error, which is saved in the middle, goes on from there, or does neither: a hash of its end.
+fn hold(ranks: Option<Arc<dyn Ranks>>, from: Option<&str>, to: Option<&str>) -> Result<u64, Error> {
+    let mut contact = sphere(ranks)?;
+    if let Some(path) = from {
+        contact.resume(path)?;
+    }
+    let history = PiecewiseLinear::new(&[(0.0, Load::force(0.0)), (1.0, Load::force(1.0)), (2.0, Load::force(0.4))])?;
+    let mut run = contact.follow(&history, Stepping::adaptive(1.0e-2), 2.0);
+    let mut hash = 0xcbf2_9ce4_8422_2325;
+    while let Some(report) = run.next_step()? {
+        if let (Some(path), true) = (to, report.time > 0.5) {
+            run.save(path)?;
+            return Ok(hash);
+        }
+    }
+    add(&mut hash, &[contact.force(), contact.approach(), contact.contact_area()]);
+    add(&mut hash, &contact.gathered(contact.pressure(), 0)?.unwrap_or_default());
+    add(&mut hash, &contact.gathered(contact.displacement(), 0)?.unwrap_or_default());
+    Ok(hash)
 }
 
 fn sphere(ranks: Option<Arc<dyn Ranks>>) -> Result<ViscoelasticContact, Error> {

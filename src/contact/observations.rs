@@ -167,10 +167,15 @@ impl ViscoelasticContact {
     ///
     /// # Errors
     /// If `at` lies outside the grid, or there is no memory for the gap.
+    ///
+    /// A call of all [ranks](crate::ranks) that share out the contact, each of which gets the whole profile.
     pub fn profile(&self, along: Axis, at: f64) -> Result<LineProfile> {
-        self.not_shared("a profile")?;
-        let gap = self.gap()?;
-        LineProfile::new(self.grid(), along, at, [self.pressure(), self.displacement(), &gap])
+        LineProfile::new(self.grid(), along, at, |line| {
+            let gap = self.gap()?;
+            let fields = [self.pressure(), self.displacement(), &gap];
+            let rows = self.computation.state.region.rows();
+            caught(&rows, || Ok(fields.map(|field| self.line_of(field, along, line))))
+        })
     }
 
     /// The connected patches of the contact; where the bodies are periodic, the first and the last cells are
@@ -211,7 +216,7 @@ impl ViscoelasticContact {
 
     /// The gap of every cell \[m\].
     fn gap(&self) -> Result<Vec<f64>> {
-        let mut gap = memory::field("the gap", self.grid().len(), 0.0)?;
+        let mut gap = memory::field("the gap", self.pressure().len(), 0.0)?;
         self.gap_into(&mut gap)?;
         Ok(gap)
     }

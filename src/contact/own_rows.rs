@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::contact::state::State;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{RanksError, Result, count_within, exact_length};
+use crate::observe::Axis;
 #[cfg(any(feature = "npy", feature = "vtk"))]
 use crate::ranks::Rows;
 use crate::ranks::caught;
@@ -55,6 +56,32 @@ impl ViscoelasticContact {
             let brought = self.bring(field, to, 0..n1, 0..n2)?;
             Ok(brought.map(|whole| (0..n1).flat_map(|row| whole.row(row)).copied().collect()))
         })
+    }
+
+    /// The values of a field along a line of cells, of all ranks.
+    pub(super) fn line_of(&self, field: &[f64], along: Axis, line: usize) -> Vec<f64> {
+        let ([n1, n2], rows) = (self.grid().cells(), self.computation.state.region.rows());
+        if !rows.are_shared() {
+            let cell = |k: usize| if along == Axis::X1 { k * n2 + line } else { line * n2 + k };
+            let length = if along == Axis::X1 { n1 } else { n2 };
+            return (0..length).map(|k| field[cell(k)]).collect();
+        }
+        let first = n1 - rows.cells()[0];
+        let computed = |row: usize| if row < first { n1 - 1 - row - first } else { row - first };
+        let gathered = match along {
+            Axis::X1 => {
+                let own = field.iter().skip(line).step_by(n2).copied();
+                let all = |all: &[f64]| (0..n1).map(|row| all[computed(row)]).collect();
+                rows.gather(own, |rank| rows.of(rank).len(), all)
+            }
+            Axis::X2 => {
+                let (row, own) = (computed(line), rows.own());
+                let start = if own.contains(&row) { (row - own.start) * n2 } else { field.len() };
+                let count = |rank: usize| if rows.of(rank).contains(&row) { n2 } else { 0 };
+                rows.gather(field[start..].iter().take(n2).copied(), count, <[f64]>::to_vec)
+            }
+        };
+        gathered.unwrap_or_default()
     }
 
     /// Goes on where every rank does.

@@ -49,25 +49,19 @@ pub struct LineProfile {
 }
 
 impl LineProfile {
-    /// The values of the fields along the line of cells that contains the other coordinate `at` \[m\].
+    /// Along the line of cells that contains the other coordinate `at` \[m\]; `values_of` gives pressure, displacement and gap
+    /// on it.
     pub(crate) fn new(
         grid: &Grid,
         along: Axis,
         at: f64,
-        [pressure, displacement, gap]: [&[f64]; 3],
+        values_of: impl FnOnce(usize) -> Result<[Vec<f64>; 3]>,
     ) -> Result<LineProfile> {
         let (along, across) = along.and_other();
-        let cells = grid.cells();
         let line = line_through(grid, across, ("coordinate of the profile", at))?;
-        let cell = |k: usize| if along == 0 { k * cells[1] + line } else { line * cells[1] + k };
-        let values_of = |field: &[f64]| (0..cells[along]).map(|k| field[cell(k)]).collect();
-        Ok(LineProfile {
-            at: grid.coordinate(across, line),
-            positions: (0..cells[along]).map(|k| grid.coordinate(along, k)).collect(),
-            pressure: values_of(pressure),
-            displacement: values_of(displacement),
-            gap: values_of(gap),
-        })
+        let positions = (0..grid.cells()[along]).map(|k| grid.coordinate(along, k)).collect();
+        let [pressure, displacement, gap] = values_of(line)?;
+        Ok(LineProfile { at: grid.coordinate(across, line), positions, pressure, displacement, gap })
     }
 }
 

@@ -30,9 +30,10 @@
 //! nothing to do.
 //!
 //! Every call that computes is a call of all ranks, in the same order and with the same arguments: steps, runs, and
-//! observations that add over cells ([`moment`](crate::ViscoelasticContact::moment),
-//! [`max_pressure`](crate::ViscoelasticContact::max_pressure)). What a rank knows by itself may be asked by one alone: time,
-//! force, approach, tilt, contact cells, own rows.
+//! observations that look at all cells ([`moment`](crate::ViscoelasticContact::moment),
+//! [`max_pressure`](crate::ViscoelasticContact::max_pressure), [`contact_area`](crate::ViscoelasticContact::contact_area),
+//! [`profile`](crate::ViscoelasticContact::profile)), files and checkpoints. What a rank knows by itself may be asked by one
+//! alone: time, force, approach, tilt, contact cells, own rows.
 //!
 //! | covered | refused, by [`RanksError::NotShared`] |
 //! |---|---|
@@ -40,7 +41,12 @@
 //! | symmetry: half or a quarter of the grid | loads that break a symmetry that was found (set [`Settings::symmetry`](crate::contact::Settings::symmetry) to false) |
 //! | force and approach, tilts, runs in steps given or chosen by their error | indenters that move or change, [`Frame::Indenter`](crate::contact::Frame::Indenter) |
 //! | series of relaxation times | direct sums, [`Solver::PolonskyKeer`](crate::contact::Solver::PolonskyKeer) |
-//! | snapshots in memory | checkpoints, files, pictures, patches, profiles, stresses |
+//! | snapshots in memory; checkpoints, which any number of ranks resumes | checkpoints of a window of the grid ([`Settings::window`](crate::contact::Settings::window)), or of indenters that have moved |
+//! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses; [`mesh_error`](crate::ViscoelasticContact::mesh_error) is `None` |
+//!
+//! Files are written by rank 0, with the same bytes as those of one process; the rows of the others come to it some at a time. A
+//! checkpoint is a file with what all have in common, and beside it one for each rank with its rows, on a file system that all
+//! ranks see: `ViscoelasticContact::save`.
 //!
 //! No rank needs memory for the whole grid: [`Builder::ranks`](crate::contact::Builder::ranks), given before the geometry, has
 //! each evaluate it on own rows, random surfaces are made by [`Rough::shared`](crate::geometry::Rough::shared), coefficients of

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use viscocontact::num_complex::Complex64;
+use viscocontact::observe::Axis;
 use viscocontact::prelude::*;
 use viscocontact::ranks::{Ranks, RanksError, Threads};
 
@@ -128,6 +129,32 @@ fn ranks_without_rows_get_the_same_reports() {
         assert_eq!((rank.1, rank.2, rank.3), (32 * rank.0, seen[0].2, seen[0].3));
     }
     assert_eq!(seen.iter().map(|rank| rank.4).collect::<Vec<_>>(), [None, None, Some(32 * 32)]);
+}
+
+/// All ranks get the profile that one process sees, across own rows and along a row of another, folded or not.
+#[test]
+fn profiles_are_those_of_one_process() {
+    for symmetry in [true, false] {
+        let build = || {
+            ViscoelasticContact::builder(Grid::new([384, 200], [4.0e-3, 3.0e-3]).unwrap())
+                .geometry(&Sphere::new(10.0e-3).unwrap())
+                .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
+                .settings(Settings::default().with_symmetry(symmetry).with_window(false))
+        };
+        let lines = [(Axis::X1, 0.3e-3), (Axis::X2, -0.5e-3), (Axis::X2, 0.1e-3), (Axis::X1, -1.5e-3)];
+        let look = |mut contact: ViscoelasticContact| {
+            contact.step(0.0, Load::force(1.0)).unwrap();
+            assert!(contact.profile(Axis::X1, 1.6e-3).is_err());
+            lines.map(|(axis, at)| contact.profile(axis, at).unwrap())
+        };
+        let alone = look(build().build().unwrap());
+        assert!(alone[..3].iter().all(|profile| profile.pressure.iter().any(|&p| p > 0.0)));
+        for size in [1, 3, 5] {
+            for seen in Threads::run(size, |ranks| look(build().ranks(ranks).build().unwrap())).unwrap() {
+                assert_eq!(seen, alone);
+            }
+        }
+    }
 }
 
 /// A step that one rank asks for wrongly fails on all, and leaves the contact as it was.
@@ -314,7 +341,7 @@ fn what_is_not_shared_is_refused_by_name() {
         not_shared(contact.patches().unwrap_err());
         not_shared(contact.stress().unwrap_err());
         not_shared(contact.set_geometry(&Sphere::new(1.0).unwrap()).unwrap_err());
-        not_shared(contact.profile(viscocontact::observe::Axis::X1, 0.0).unwrap_err());
+        not_shared(contact.pressure_distribution(10).unwrap_err());
         // the load would have to unfold the fields
         not_shared(contact.step(0.1, Load::eccentric_force(1.0, [1.0e-4, 0.0])).unwrap_err());
         contact.step(0.1, Load::force(1.0)).unwrap();

@@ -11,7 +11,8 @@ use crate::ranks::caught;
 impl Follow<'_> {
     /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end: no more is lost with
     /// the process. A contact that is built alike and resumes from the file ([`ViscoelasticContact::resume`]) goes on
-    /// with the next run of the same stepping as if nothing had happened, bitwise.
+    /// with the next run of the same stepping as if nothing had happened, bitwise. Where [ranks](crate::ranks) share out the
+    /// contact, all of them save when the time has passed on one.
     ///
     /// Needs the feature `checkpoint`.
     ///

@@ -58,6 +58,13 @@ impl ViscoelasticContact {
     /// Contacts may save to one path at once: the file is always that of one of them, the last to finish in the end. Where the path
     /// is a link, the file that it leads to is replaced.
     ///
+    /// Where [ranks](crate::ranks) share out the contact, it is a call of all of them. Each writes its rows to a file of its own
+    /// beside `path`, whose name goes on with a mark of the save and a number; all must see the folder. Then the file at `path`,
+    /// which leads to those, is replaced, and those of the save before are removed. Whenever ranks are lost, it leads to all
+    /// files of one save. What they had begun to write is left, and removed with the save after the next; so only one group may
+    /// save to a path at a time. Any number of ranks can resume from it, one process too, and any number of ranks from the file
+    /// of one process.
+    ///
     /// # Errors
     /// If the file cannot be written, or there is something other than a file at `path` ([`Error::NotAFile`]).
     pub fn save(&self, path: impl AsRef<Path>) -> Result<()> {
@@ -89,7 +96,13 @@ impl ViscoelasticContact {
     ///
     /// # Errors
     /// If the file cannot be read, is no checkpoint, is of a newer or older format, cut short, damaged, or of another scene
-    /// ([`Error::Checkpoint`]); the contact is then as it was.
+    /// ([`Error::Checkpoint`]); the contact is then as it was. If ranks saved it, and one of their files is missing, damaged or of
+    /// another save ([`CheckpointError::Rows`]).
+    ///
+    /// Where [ranks](crate::ranks) share out the contact, each reads what holds its rows, one file at a time; all must be
+    /// able to go on ([`RanksError::Failed`](crate::ranks::RanksError::Failed)). They can not from a window of the grid
+    /// ([`Settings::window`](crate::contact::Settings::window)), nor from where an indenter has moved
+    /// ([`CheckpointError::OtherScene`]).
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let (path, rows) = (path.as_ref(), self.computation.state.region.rows());
         caught(&rows, || {

@@ -115,6 +115,9 @@ impl Common<'_> {
     ) -> Result<(State, Option<Progress>), CheckpointError> {
         self.scene.require(&Fingerprint::of(&contact.scene))?;
         let grid = &contact.scene.grid;
+        if (0..2).any(|axis| self.folded[axis] && !grid.cells()[axis].is_multiple_of(2)) {
+            return Err(CheckpointError::Malformed { what: "a symmetry that its grid cannot have".into() });
+        }
         let Range { start: mut next, end } = Region::whole(grid, self.folded).computed_rows();
         for RowsFile { rows, .. } in &self.files {
             if rows.start != next || rows.is_empty() || rows.end > end {

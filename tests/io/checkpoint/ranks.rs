@@ -121,11 +121,11 @@ fn given(
 }
 
 /// In the middle of a run of steps chosen by their error: a past of two relaxation times with both differences, the control of
-/// the length.
+/// the length. Ranks begin within a block of the past, and of five one has no rows.
 #[test]
 fn adaptive_loading_and_unloading() {
     let build = || {
-        let grid = Grid::square(384, 4.0e-3)?;
+        let grid = Grid::new([384, 340], [4.0e-3, 3.6e-3])?;
         let body = Material::incompressible(GeneralizedMaxwell::new(1.0e6, &[(1.0e6, 0.3), (0.5e6, 2.0)])?);
         Ok(ViscoelasticContact::builder(grid).geometry(&Sphere::new(10.0e-3)?).material(body).settings(settings()))
     };
