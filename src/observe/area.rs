@@ -1,6 +1,6 @@
 //! Contact area, to a fraction of a cell.
 
-use std::ops::RangeInclusive;
+use std::ops::Range;
 
 use crate::Grid;
 use crate::contact::Extent;
@@ -43,11 +43,11 @@ impl Pressed<'_> {
 
     /// Squares of four cell centres: their lower corners are a row and a column back, beyond the grid or, at n, across the seam
     /// of a period.
-    fn squares(&self, axis: usize) -> RangeInclusive<usize> {
+    fn squares(&self, axis: usize) -> Range<usize> {
         match self.extent {
-            None => 1..=0,
-            Some(Extent { low, .. }) if self.periodic[axis] && low[axis] == 0 => 1..=self.grid.cells()[axis],
-            Some(Extent { low, high }) => low[axis]..=high[axis] + 1,
+            None => 0..0,
+            Some(Extent { low, .. }) if self.periodic[axis] && low[axis] == 0 => 1..self.grid.cells()[axis] + 1,
+            Some(Extent { low, high }) => low[axis]..high[axis] + 2,
         }
     }
 

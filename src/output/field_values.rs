@@ -15,6 +15,7 @@ use crate::ranks::caught;
 /// Cells that ranks bring at a time, or one row or some columns where they have more.
 const PIECE_CELLS: usize = 1 << 16;
 /// Least columns at a time: fewer numbers beside each other are slow to find.
+#[cfg(feature = "vtk")]
 const LEAST_COLUMNS: usize = 8;
 
 /// The values of some fields, each to be taken once, in this order. Where ranks share out the contact, rank 0 takes them, and
