@@ -11,7 +11,8 @@ if ! command -v valgrind >/dev/null; then
     exit 0
 fi
 compiler=$(rustc --version | cut -d' ' -f2)
-cargo build --quiet --release --package viscocontact-benches --bin instructions
+# with the feature of the main example, so that one build of the crate serves both
+cargo build --quiet --release --package viscocontact-benches --bin instructions --features viscocontact/plot
 program=${CARGO_TARGET_DIR:-target}/release/instructions
 mkdir -p target/instructions
 

@@ -8,9 +8,10 @@ if ! command -v mpirun >/dev/null; then
     echo "skipped: no mpirun"
     exit 0
 fi
+export CARGO_TARGET_DIR="${CARGO_TARGET_DIR:-$(cd .. && pwd)/target}"
 cargo build --quiet --example check
 cargo test --quiet --lib
-check=${CARGO_TARGET_DIR:-target}/debug/examples/check
+check=$CARGO_TARGET_DIR/debug/examples/check
 # longest time that a failure of one rank may keep the others [s]
 limit=60
 
