@@ -11,8 +11,8 @@ if ! command -v valgrind >/dev/null; then
     exit 0
 fi
 compiler=$(rustc --version | cut -d' ' -f2)
-# with the feature of the main example, so that one build of the crate serves both
-cargo build --quiet --release --package viscocontact-benches --bin instructions --features viscocontact/plot
+# beside the main example, so that one build of the crate serves both
+cargo build --quiet --release --features plot --example step_loaded_sphere --bin instructions
 program=${CARGO_TARGET_DIR:-target}/release/instructions
 mkdir -p target/instructions
 

@@ -1,6 +1,6 @@
 //! Love's coefficients against his four-term closed form with so many digits that none are lost where it cancels.
 
-use astro_float::{BigFloat, Consts, RoundingMode};
+use astro_float_num::{BigFloat, Consts, RoundingMode};
 use viscocontact::{Grid, InfluenceKernel};
 
 const BITS: usize = 320;
