@@ -132,10 +132,11 @@ impl Footprint<'_> {
             Some(rows) => self.kernel.own_bytes(rows, folded),
             None => self.kernel.bytes_on(cells, folded),
         };
+        let rows = shared.clone().unwrap_or_else(|| Rows::all(cells));
         let sums = Bands::bytes(&Rows::all(cells), self.bodies) as u128;
         let solver = match self.settings.solver {
             // three fields, a mark, and runs of cells
-            Solver::ActiveSet => (24 + 1 + 4) * n + sums + inverse + Extension::bytes(cells),
+            Solver::ActiveSet => (24 + 1 + 4) * n + sums + inverse + Extension::bytes(&rows),
             // three fields, a mark, and runs of cells
             Solver::PolonskyKeer => (24 + 1 + 4) * n + sums,
         };

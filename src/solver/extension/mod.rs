@@ -33,8 +33,8 @@ const TRUST: f64 = 1.5;
 /// Every row of a level is computed from finished rows of another one: threads share the rows, and the answer does not depend on
 /// their number.
 ///
-/// Where ranks share out the cells, their bands are whole rows of blocks of 8 × 8 cells. Blocks of 2 × 2 and 4 × 4 are those
-/// of own rows, to which a row of a neighbour is added where a pass needs it. Larger ones, a 64th as many numbers as
+/// Where ranks share out the cells, their bands are whole rows of blocks of 16 × 16 cells. Blocks of 2 × 2, 4 × 4 and 8 × 8 are
+/// those of own rows, to which a row of a neighbour is added where a pass needs it. Larger ones, a 256th as many numbers as
 /// there are cells, are gathered, and every rank computes all of them.
 #[derive(Debug, Clone)]
 pub(crate) struct Extension {
@@ -88,8 +88,8 @@ struct Level {
     ghosts: Ghosts,
 }
 
-/// Most levels of which a rank keeps own rows alone: the next one has blocks as high as a tile.
-const MOST_LOCAL: usize = 2;
+/// Most levels of which a rank keeps own rows alone: the next one has blocks as high as a band.
+const MOST_LOCAL: usize = 3;
 
 impl Level {
     fn blocks(&self) -> Blocks<'_> {
@@ -133,10 +133,16 @@ impl Extension {
         }
     }
 
-    /// Bytes that it takes.
-    pub(crate) fn bytes(cells: [usize; 2]) -> u128 {
-        let blocks: u128 = sizes(cells).map(|size| size[0] as u128 * size[1] as u128).sum();
-        let threads = lanes(cells[0].saturating_mul(cells[1])).min(cells[0]);
+    /// Bytes that it takes: of own rows, and of all where they are gathered.
+    pub(crate) fn bytes(rows: &Rows) -> u128 {
+        let cells = rows.cells();
+        let own = |(height, size): (usize, [usize; 2])| {
+            let kept =
+                if rows.are_shared() && height <= MOST_LOCAL { blocks_of(rows.own(), height).len() } else { size[0] };
+            kept as u128 * size[1] as u128
+        };
+        let blocks: u128 = (1..).zip(sizes(cells)).map(own).sum();
+        let threads = lanes(rows.own().len().saturating_mul(cells[1])).min(rows.own().len());
         16 * blocks + threads as u128 * RowBuffers::bytes(cells[1])
     }
 
