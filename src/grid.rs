@@ -110,7 +110,7 @@ impl Grid {
     }
 
     /// Coordinate of the first cell centre along `axis` \[cells\]: a whole number, and a half or nothing.
-    pub(crate) fn from_origin(&self, axis: usize) -> (i64, f64) {
+    pub(crate) fn offset_of_first(&self, axis: usize) -> (i64, f64) {
         let halves = self.start[axis].rem_euclid(2);
         ((self.start[axis] - halves) / 2, 0.5 * halves as f64)
     }

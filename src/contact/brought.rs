@@ -2,10 +2,9 @@
 
 use std::ops::Range;
 
-use num_complex::Complex64;
-
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::RanksError;
+use crate::ranks::exchange_numbers;
 
 /// A rectangle of cells of the whole grid.
 #[derive(Debug)]
@@ -51,29 +50,14 @@ impl ViscoelasticContact {
         };
         let whole = Brought { rows: rows.clone(), columns: columns.clone(), values: Vec::new(), folded: 2 * first };
         let Some(group) = all.group() else { return Ok(None) };
-        // two numbers are sent as a complex one
-        let length = |rank: usize| (of(rank).len() * columns.len()).div_ceil(2);
-        let (rank, start) = (group.rank(), first + all.own().start);
-        let mut own = of(rank).flat_map(|row| &field[(row - start) * n2..(row - start + 1) * n2][columns.clone()]);
-        let send: Vec<_> = std::iter::from_fn(|| {
-            let first = *own.next()?;
-            Some(Complex64::new(first, own.next().copied().unwrap_or(0.0)))
-        })
-        .collect();
-        let ranks = || 0..all.ranks();
-        let sent: Vec<usize> = ranks().map(|other| if other == to { send.len() } else { 0 }).collect();
-        let counts: Vec<usize> = ranks().map(|other| if rank == to { length(other) } else { 0 }).collect();
-        let mut received = vec![Complex64::default(); counts.iter().sum()];
-        group.exchange(&send, &sent, &mut received, &counts)?;
-        if rank != to {
+        let (own_rank, start) = (group.rank(), first + all.own().start);
+        let own = of(own_rank).flat_map(|row| &field[(row - start) * n2..(row - start + 1) * n2][columns.clone()]);
+        let mut pieces = vec![Vec::new(); all.ranks()];
+        pieces[to] = own.copied().collect();
+        let count = |rank: usize| if own_rank == to { of(rank).len() * columns.len() } else { 0 };
+        let values = exchange_numbers(&**group, pieces, count)?;
+        if own_rank != to {
             return Ok(None);
-        }
-        let mut values = Vec::with_capacity(rows.len() * columns.len());
-        let mut next = 0;
-        for other in ranks() {
-            let numbers = received[next..next + counts[other]].iter().flat_map(|z| [z.re, z.im]);
-            values.extend(numbers.take(of(other).len() * columns.len()));
-            next += counts[other];
         }
         Ok(Some(Brought { values, ..whole }))
     }

@@ -120,7 +120,7 @@ impl Builder {
         let Builder { grid, settings, temperature, .. } = self;
         let even = gap.even_axes();
         let folded = even.map(|even| even && settings.symmetry);
-        let region = Region::shared(&grid, folded, &rows);
+        let region = Region::shared(&grid, folded, rows);
         let all = region.shown_len();
         let footprint = Footprint { all, bodies: 1, settings: &settings, kernel: &kernel, history: &history };
         rows.agree(footprint.check(&Computed::on(&region), 0))?;

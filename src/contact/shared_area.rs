@@ -3,12 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use num_complex::Complex64;
-
 use crate::contact::state::State;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::observe::area::{Pressed, REACH};
-use crate::ranks::{Ranks, depart};
+use crate::ranks::{Ranks, depart, exchange_numbers};
 
 /// Rows that are looked at together.
 const PIECE: usize = 64;
@@ -111,26 +109,17 @@ impl ViscoelasticContact {
             near.filter_map(|row| self.computed_row(row)).filter(|row| !own.contains(row)).collect::<BTreeSet<_>>()
         };
         let n2 = self.grid().cells()[1];
-        let (own, length) = (self.rows_of(group.rank()), n2.div_ceil(2));
-        let (mut send, mut row_sent, zero) = (Vec::new(), vec![0.0; n2], Complex64::default());
-        let send_counts: Vec<usize> = (0..group.size())
-            .map(|rank| {
-                let before = send.len();
-                for row in wanted(rank).into_iter().filter(|row| own.contains(row)) {
-                    self.marked_row(row, &mut row_sent);
-                    let pairs = row_sent.chunks(2);
-                    send.extend(pairs.map(|pair| Complex64::new(pair[0], pair.get(1).copied().unwrap_or(0.0))));
-                }
-                send.len() - before
-            })
-            .collect();
+        let own = self.rows_of(group.rank());
+        let pieces = (0..group.size()).map(|rank| {
+            let sent = wanted(rank).into_iter().filter(|row| own.contains(row)).collect::<Vec<_>>();
+            let mut piece = vec![0.0; sent.len() * n2];
+            sent.into_iter().zip(piece.chunks_exact_mut(n2)).for_each(|(row, out)| self.marked_row(row, out));
+            piece
+        });
         let rows = wanted(group.rank());
-        let counts: Vec<usize> =
-            (0..group.size()).map(|rank| length * rows.range(self.rows_of(rank)).count()).collect();
-        let mut received = vec![zero; counts.iter().sum()];
-        group.exchange(&send, &send_counts, &mut received, &counts).unwrap_or_else(|error| depart(error));
-        let numbers = received.chunks_exact(length.max(1));
-        let fields = numbers.map(|row| row.iter().flat_map(|z| [z.re, z.im]).take(n2).collect());
+        let count = |rank: usize| n2 * rows.range(self.rows_of(rank)).count();
+        let received = exchange_numbers(group, pieces.collect(), count).unwrap_or_else(|error| depart(error));
+        let fields = received.chunks_exact(n2).map(<[f64]>::to_vec).collect::<Vec<_>>();
         rows.into_iter().zip(fields).collect()
     }
 }

@@ -6,10 +6,18 @@ use num_complex::Complex64;
 
 use super::rows::depart;
 use super::{Ranks, Rows};
+use crate::error::RanksError;
 
 /// Sends each rank its piece, and returns the `count` numbers of each rank, one rank after the other. Two numbers travel as a
 /// complex one.
-pub(crate) fn exchange_numbers(group: &dyn Ranks, pieces: Vec<Vec<f64>>, count: impl Fn(usize) -> usize) -> Vec<f64> {
+///
+/// # Errors
+/// If a rank has left.
+pub(crate) fn exchange_numbers(
+    group: &dyn Ranks,
+    pieces: Vec<Vec<f64>>,
+    count: impl Fn(usize) -> usize,
+) -> Result<Vec<f64>, RanksError> {
     let sent: Vec<usize> = pieces.iter().map(|piece| piece.len().div_ceil(2)).collect();
     let mut send = Vec::with_capacity(sent.iter().sum());
     for piece in pieces {
@@ -17,7 +25,7 @@ pub(crate) fn exchange_numbers(group: &dyn Ranks, pieces: Vec<Vec<f64>>, count: 
     }
     let counts: Vec<usize> = (0..group.size()).map(|rank| count(rank).div_ceil(2)).collect();
     let mut received = vec![Complex64::default(); counts.iter().sum()];
-    group.exchange(&send, &sent, &mut received, &counts).unwrap_or_else(|error| depart(error));
+    group.exchange(&send, &sent, &mut received, &counts)?;
     drop(send);
     let mut numbers = Vec::with_capacity((0..group.size()).map(&count).sum());
     let mut rest = &received[..];
@@ -26,7 +34,7 @@ pub(crate) fn exchange_numbers(group: &dyn Ranks, pieces: Vec<Vec<f64>>, count: 
         numbers.extend(own.iter().flat_map(|pair| [pair.re, pair.im]).take(count(rank)));
         rest = others;
     }
-    numbers
+    Ok(numbers)
 }
 
 impl Rows {
@@ -49,6 +57,7 @@ impl Rows {
             }
         });
         exchange_numbers(&**group, pieces.collect(), |rank| common(self.of(rank), to.own()).len() * columns)
+            .unwrap_or_else(|error| depart(error))
     }
 }
 

@@ -157,7 +157,7 @@ impl HeightMap {
     /// Position of the first cell of `grid` in the map shifted by `by`: index of the nearest point, and the fraction of a cell
     /// from there. It is counted from the origin, so that the fraction is the same to the last bit for all rows of a grid.
     fn offset(&self, grid: &Grid, by: [f64; 2], axis: usize) -> (f64, f64) {
-        let (cells, half) = grid.from_origin(axis);
+        let (cells, half) = grid.offset_of_first(axis);
         let position = self.index(axis, half * grid.spacing()[axis] - by[axis]);
         let whole = position.round();
         (whole + cells as f64, position - whole)

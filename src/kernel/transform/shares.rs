@@ -75,7 +75,7 @@ impl Shares {
             written.iter_mut().enumerate().for_each(|(rank, piece)| piece.extend_from_slice(&row[columns(rank)]));
         }
         let own = columns(self.group.rank()).len();
-        exchange_numbers(&*self.group, written, |rank| rows(rank).len() * own)
+        exchange_numbers(&*self.group, written, |rank| rows(rank).len() * own).unwrap_or_else(|error| depart(error))
     }
 
     /// Most complex values that this rank has at a time: of own rows, or of own columns.
