@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Counts the instructions of small scenes with callgrind, and compares them with benches/instructions.csv: each may
-# differ by 3 %. `benches/instructions.sh --record` writes the file anew. Counts belong to a compiler: with another one
-# they are shown, not judged. Needs valgrind; without it, says so and succeeds.
+# differ by 3 %. Takes the build of the tests, or with `--release` that of users. With `--record` the counts are written to
+# the file instead. They belong to a compiler: with another one they are shown, not judged. Needs valgrind; without it,
+# says so and succeeds.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 recorded=benches/instructions.csv
@@ -11,9 +12,17 @@ if ! command -v valgrind >/dev/null; then
     exit 0
 fi
 compiler=$(rustc --version | cut -d' ' -f2)
-# beside the main example, so that one build of the crate serves both
-cargo build --quiet --release --features plot --example step_loaded_sphere --bin instructions
-program=${CARGO_TARGET_DIR:-target}/release/instructions
+if [[ " $* " = *" --release "* ]]; then
+    build=release
+    # beside the main example, so that one build of the crate serves both
+    cargo build --quiet --release --features plot --example step_loaded_sphere --bin instructions
+    program=${CARGO_TARGET_DIR:-target}/release/instructions
+else
+    build=tests
+    # beside a test, so that dependencies have the features of the tests
+    cargo build --quiet --all-features --package viscocontact-tests --bin instructions --test allocations
+    program=${CARGO_TARGET_DIR:-target}/debug/instructions
+fi
 mkdir -p target/instructions
 
 count() {
@@ -26,12 +35,10 @@ count() {
 }
 
 names=(held_sphere eccentric_punch wavy_surface one_relaxation_time thirty_relaxation_times)
-if [ "${1-}" = --record ]; then
-    echo "scene,instructions,rustc" >"$recorded"
-    for k in "${!names[@]}"; do
-        now=$(count "$k")
-        echo "${names[$k]},$now,$compiler" >>"$recorded"
-    done
+if [[ " $* " = *" --record "* ]]; then
+    others=$(tail -n +2 "$recorded" | grep -v ",$build," || true)
+    own=$(for k in "${!names[@]}"; do echo "${names[$k]},$build,$(count "$k"),$compiler"; done)
+    { echo "scene,build,instructions,rustc"; printf '%s\n' "$others" "$own" | grep . | sort -t, -k2,2 -s; } >"$recorded"
     cat "$recorded"
     exit
 fi
@@ -40,7 +47,7 @@ counts=()
 for k in "${!names[@]}"; do
     now=$(count "$k")
     counts+=("$now")
-    if ! IFS=, read -r _ before with < <(grep "^${names[$k]}," "$recorded"); then
+    if ! IFS=, read -r _ _ before with < <(grep "^${names[$k]},$build," "$recorded"); then
         echo "${names[$k]}: $now instructions, not recorded"
         continue
     fi
@@ -49,7 +56,7 @@ for k in "${!names[@]}"; do
     if [ "$with" != "$compiler" ]; then
         verdict="recorded with rustc $with, not judged"
     elif awk -v c="$change" 'BEGIN { exit !(c > 3 || c < -3) }'; then
-        verdict="MORE THAN 3 % (if it is meant to be: benches/instructions.sh --record)"
+        verdict="MORE THAN 3 % (if it is meant to be: the same with --record)"
         failed=1
     fi
     echo "${names[$k]}: $now instructions, $change %: $verdict"

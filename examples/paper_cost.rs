@@ -5,7 +5,7 @@
 //! Times are processor times where the system tells them (Linux), so that a busy machine disturbs them little.
 //!
 //! `RAYON_NUM_THREADS=1 cargo run --release --features plot --example paper_cost`
-//! (twelve minutes), or with `-- --quick` (half a minute)
+//! (six minutes), or with `-- --quick` (half a minute)
 
 #[path = "support/scenes/step_loaded_sphere.rs"]
 mod step_loaded_sphere;

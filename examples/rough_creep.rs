@@ -321,13 +321,13 @@ impl Files {
             #[cfg(feature = "npy")]
             npz: viscocontact::output::NpzSeries::create_or_replace(
                 args.output.join("npz"),
-                scene.clone(),
+                scene,
                 &viscocontact::output::Field::ALL,
             )?,
             #[cfg(feature = "vtk")]
             vtk: viscocontact::output::VtkSeries::create_or_replace(
                 args.output.join("vtk"),
-                scene.clone(),
+                scene,
                 &viscocontact::output::Field::ALL,
             )?,
         })

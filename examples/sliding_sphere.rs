@@ -157,7 +157,7 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     {
         use viscocontact::output::{Field, Metadata, VtkSeries};
         let scene = Metadata::new("Sphere sliding steadily").note("friction", friction.to_string());
-        VtkSeries::create_or_replace(output.join("vtk"), scene, &Field::ALL)?.write(&contact)?;
+        VtkSeries::create_or_replace(output.join("vtk"), &scene, &Field::ALL)?.write(&contact)?;
     }
     Ok(())
 }

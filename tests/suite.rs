@@ -1,6 +1,6 @@
 //! The tests that see what is public: one module for each doubt that a user may have.
 
-use viscocontact_tests as common;
+use viscocontact_scenes as common;
 
 mod io;
 mod kernel;

@@ -21,15 +21,27 @@ where
     T::Item: Send,
 {
     let arch = Arch::new();
-    #[cfg(feature = "rayon")]
-    if lanes.len() > 1 {
-        use rayon::prelude::*;
-        let shares = lanes.par_iter_mut().zip(data.par_chunks_mut(length));
-        shares.enumerate().for_each(|(k, (lane, share))| arch.dispatch(Vectorised { task, k, lane, share }));
-        return;
-    }
-    for (k, (lane, share)) in lanes.iter_mut().zip(data.chunks_mut(length)).enumerate() {
-        arch.dispatch(Vectorised { task, k, lane, share });
+    share_out(0, lanes, data, length, &|k, lane, share| arch.dispatch(Vectorised { task, k, lane, share }));
+}
+
+fn share_out<L: Send, T: Send>(
+    first: usize,
+    lanes: &mut [L],
+    data: &mut [T],
+    length: usize,
+    job: &(dyn Fn(usize, &mut L, &mut [T]) + Sync),
+) {
+    if lanes.len() > 1 && data.len() > length {
+        let middle = lanes.len() / 2;
+        let (lanes, other_lanes) = lanes.split_at_mut(middle);
+        let (data, other_data) = data.split_at_mut(middle.saturating_mul(length).min(data.len()));
+        join(
+            true,
+            || share_out(first, lanes, data, length, job),
+            || share_out(first + middle, other_lanes, other_data, length, job),
+        );
+    } else if let (Some(lane), Some(share)) = (lanes.first_mut(), data.chunks_mut(length).next()) {
+        job(first, lane, share);
     }
 }
 
@@ -50,17 +62,24 @@ impl<T: Task> WithSimd for Vectorised<'_, T> {
 }
 
 /// Runs both closures, in parallel if they are `shared` and the feature `rayon` is on.
-pub(crate) fn join<A: Send, B: Send>(
-    shared: bool,
-    first: impl FnOnce() -> A + Send,
-    second: impl FnOnce() -> B + Send,
-) -> (A, B) {
+pub(crate) fn join(shared: bool, first: impl FnOnce() + Send, second: impl FnOnce() + Send) {
     #[cfg(feature = "rayon")]
     if shared {
-        return rayon::join(first, second);
+        let (mut first, mut second) = (Some(first), Some(second));
+        return in_parallel(&mut || first.take().map_or((), |run| run()), &mut || {
+            second.take().map_or((), |run| run())
+        });
     }
     let _ = shared;
-    (first(), second())
+    first();
+    second();
+}
+
+/// [`rayon::join`], whose many functions are compiled once, and not for each pair of closures: they were a tenth of the
+/// machine code of this crate.
+#[cfg(feature = "rayon")]
+fn in_parallel(first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send)) {
+    rayon::join(first, second);
 }
 
 /// Number of threads that share the work on a field of `cells` cells.
@@ -95,7 +114,7 @@ fn halve<T: Send, const M: usize>(
     [first, cells]: [usize; 2],
     fields: [&mut [T]; M],
     shared: bool,
-    job: &(impl Fn(usize, [&mut [T]; M]) + Sync),
+    job: &(dyn Fn(usize, [&mut [T]; M]) + Sync),
 ) {
     if cells <= BAND_CELLS {
         return job(first, fields);

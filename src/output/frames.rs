@@ -27,7 +27,7 @@ impl Frames {
     pub(super) fn create(
         folder: &Path,
         extension: &'static str,
-        (metadata, fields): (Metadata, &[Field]),
+        (metadata, fields): (&Metadata, &[Field]),
         replaced: bool,
     ) -> Result<Frames> {
         if let Some(k) = (1..fields.len()).find(|&k| fields[..k].contains(&fields[k])) {
@@ -50,7 +50,7 @@ impl Frames {
             check_regular(&entry.path())?;
             remove(&entry.path())?;
         }
-        let (folder, fields) = (folder.to_owned(), fields.to_vec());
+        let (folder, metadata, fields) = (folder.to_owned(), metadata.clone(), fields.to_vec());
         Ok(Frames { folder, extension, written: 0, metadata, fields, buffer: Vec::new() })
     }
 

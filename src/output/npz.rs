@@ -35,7 +35,7 @@ use crate::output::{Field, Metadata, npy};
 ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
 ///     .build()?;
 /// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-npz-{}", std::process::id()));
-/// let mut series = NpzSeries::create(&folder, Metadata::new("Ball on rubber"), &[Field::Pressure])?;
+/// let mut series = NpzSeries::create(&folder, &Metadata::new("Ball on rubber"), &[Field::Pressure])?;
 /// contact.step(0.0, Load::force(0.5))?;
 /// for _ in 0..3 {
 ///     contact.step(0.1, Load::force(0.5))?;
@@ -56,7 +56,7 @@ impl NpzSeries {
     /// # Errors
     /// If the folder cannot be used or contains frames already ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)), or a
     /// field is requested twice.
-    pub fn create(folder: impl AsRef<Path>, metadata: Metadata, fields: &[Field]) -> Result<NpzSeries> {
+    pub fn create(folder: impl AsRef<Path>, metadata: &Metadata, fields: &[Field]) -> Result<NpzSeries> {
         NpzSeries::begin(folder.as_ref(), (metadata, fields), false)
     }
 
@@ -64,11 +64,11 @@ impl NpzSeries {
     ///
     /// # Errors
     /// If the folder or its frames cannot be used, or a field is requested twice.
-    pub fn create_or_replace(folder: impl AsRef<Path>, metadata: Metadata, fields: &[Field]) -> Result<NpzSeries> {
+    pub fn create_or_replace(folder: impl AsRef<Path>, metadata: &Metadata, fields: &[Field]) -> Result<NpzSeries> {
         NpzSeries::begin(folder.as_ref(), (metadata, fields), true)
     }
 
-    fn begin(folder: &Path, contents: (Metadata, &[Field]), replaced: bool) -> Result<NpzSeries> {
+    fn begin(folder: &Path, contents: (&Metadata, &[Field]), replaced: bool) -> Result<NpzSeries> {
         Ok(NpzSeries { frames: Frames::create(folder, "npz", contents, replaced)? })
     }
 

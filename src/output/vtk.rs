@@ -35,7 +35,7 @@ const COLLECTION: &str = "series.pvd";
 ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
 ///     .build()?;
 /// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-vtk-{}", std::process::id()));
-/// let mut series = VtkSeries::create(&folder, Metadata::new("Ball on rubber"), &Field::ALL)?;
+/// let mut series = VtkSeries::create(&folder, &Metadata::new("Ball on rubber"), &Field::ALL)?;
 /// contact.step(0.0, Load::force(0.5))?;
 /// for _ in 0..3 {
 ///     contact.step(0.1, Load::force(0.5))?;
@@ -58,7 +58,7 @@ impl VtkSeries {
     /// # Errors
     /// If the folder cannot be used or contains frames already ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)), or a
     /// field is requested twice.
-    pub fn create(folder: impl AsRef<Path>, metadata: Metadata, fields: &[Field]) -> Result<VtkSeries> {
+    pub fn create(folder: impl AsRef<Path>, metadata: &Metadata, fields: &[Field]) -> Result<VtkSeries> {
         VtkSeries::begin(folder.as_ref(), (metadata, fields), false)
     }
 
@@ -66,11 +66,11 @@ impl VtkSeries {
     ///
     /// # Errors
     /// If the folder or its frames cannot be used, or a field is requested twice.
-    pub fn create_or_replace(folder: impl AsRef<Path>, metadata: Metadata, fields: &[Field]) -> Result<VtkSeries> {
+    pub fn create_or_replace(folder: impl AsRef<Path>, metadata: &Metadata, fields: &[Field]) -> Result<VtkSeries> {
         VtkSeries::begin(folder.as_ref(), (metadata, fields), true)
     }
 
-    fn begin(folder: &Path, contents: (Metadata, &[Field]), replaced: bool) -> Result<VtkSeries> {
+    fn begin(folder: &Path, contents: (&Metadata, &[Field]), replaced: bool) -> Result<VtkSeries> {
         let frames = Frames::create(folder, "vti", contents, replaced)?;
         let collection = folder.join(COLLECTION);
         if replaced && collection.exists() {

@@ -318,18 +318,21 @@ pub(crate) fn part(n: usize, rank: usize, size: usize) -> Range<usize> {
 }
 
 /// Joins what is found in some bands by halves.
-fn halves<T: Send>(
+fn halves<const K: usize>(
     bands: Range<usize>,
     in_threads: bool,
-    part: &(impl Fn(usize) -> T + Sync),
-    merge: &(impl Fn(T, T) -> T + Sync),
-) -> T {
+    part: &(dyn Fn(usize) -> [f64; K] + Sync),
+    merge: &(dyn Fn([f64; K], [f64; K]) -> [f64; K] + Sync),
+) -> [f64; K] {
     if bands.len() <= 1 {
         return part(bands.start);
     }
     let middle = bands.start + bands.len() / 2;
-    let [before, after] =
-        [bands.start..middle, middle..bands.end].map(|half| move || halves(half, in_threads, part, merge));
-    let (before, after) = join(in_threads, before, after);
+    let (mut before, mut after) = ([0.0; K], [0.0; K]);
+    join(
+        in_threads,
+        || before = halves(bands.start..middle, in_threads, part, merge),
+        || after = halves(middle..bands.end, in_threads, part, merge),
+    );
     merge(before, after)
 }

@@ -133,6 +133,9 @@ fn join_ranks(rows: &Rows, bodies: usize, found: &mut [Found]) {
     }
 }
 
+/// What is done to a band: its cells, its parts of the outputs, and what is found in it.
+type Job<'a, const M: usize> = dyn Fn(Range<usize>, [&mut [f64]; M], &mut [Found]) + Sync + 'a;
+
 /// Halves the cells down to single bands, and calls `job` with each.
 fn halve<const M: usize>(
     cells: Range<usize>,
@@ -140,7 +143,7 @@ fn halve<const M: usize>(
     found: &mut [Found],
     (bodies, band): (usize, usize),
     shared: bool,
-    job: &(impl Fn(Range<usize>, [&mut [f64]; M], &mut [Found]) + Sync),
+    job: &Job<'_, M>,
 ) {
     if found.len() == bodies {
         return job(cells, outputs, found);

@@ -6,7 +6,7 @@ mod steps;
 
 use std::alloc::System;
 
-use viscocontact_tests as common;
+use viscocontact_scenes as common;
 
 use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
 

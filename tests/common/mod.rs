@@ -13,6 +13,7 @@ pub mod oscillation;
 #[path = "../../examples/support/scenes/paper_figures.rs"]
 pub mod paper_figures;
 pub mod protocol;
+pub mod quadratic;
 pub mod random_bodies;
 pub mod random_histories;
 pub mod random_scenes;

@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 fn root() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
@@ -101,6 +102,29 @@ fn commands_and_files_exist() {
         }
     }
     assert!(missing.is_empty(), "{missing:#?}");
+}
+
+/// What `cargo test --test suite` is told to run, in documents and in comments of tests, is the start or a part of the name of a
+/// test that there is.
+#[test]
+fn tests_that_are_named_exist() {
+    let list = Command::new(std::env::current_exe().unwrap()).args(["--list", "--format", "terse"]).output().unwrap();
+    let list = String::from_utf8(list.stdout).unwrap();
+    let names: Vec<&str> = list.lines().filter_map(|line| line.strip_suffix(": test")).collect();
+    assert!(names.contains(&"io::documents::tests_that_are_named_exist"), "{list}");
+    let (mut missing, mut found) = (Vec::new(), 0);
+    let comments = sources(&root().join("tests")).into_iter().filter(|path| !path.ends_with("documents.rs"));
+    let comments = comments.map(|path| (path.clone(), fs::read_to_string(path).unwrap()));
+    for (path, text) in documents().into_iter().chain(comments) {
+        let commands = between(&text, "--test suite ", '\n').map(|rest| rest.split('`').next().unwrap_or(rest));
+        for name in commands.filter_map(|rest| rest.split(' ').find(|word| !word.starts_with('-'))) {
+            found += 1;
+            if !names.iter().any(|test| test.contains(name)) {
+                missing.push(format!("{}: {name}", path.display()));
+            }
+        }
+    }
+    assert!(missing.is_empty() && found > 20, "{found} {missing:#?}");
 }
 
 /// Every example has its place in the gallery and the README, those that are packages of their own included.

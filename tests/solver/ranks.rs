@@ -65,11 +65,11 @@ fn course(builder: Parts, scene: Scene, start: &Start) -> Result<Course, Error> 
     })
 }
 
-/// Compares the scene on 1 to 5 ranks with that of one process, and on more than there are bands of rows.
+/// Compares the scene on some numbers of ranks with that of one process: on fewer and on more than there are bands of rows.
 fn same_on_all(builder: Parts, scene: Scene) {
     let alone = course(builder, scene, &Start { ranks: None, on_own_rows: false }).unwrap();
     assert!(alone.pressure.iter().any(|&p| p != 0) && !alone.reports.is_empty());
-    for size in [1, 2, 3, 4, 5, 8] {
+    for size in [1, 3, 4, 8] {
         let start = |ranks| Start { ranks: Some(ranks), on_own_rows: size != 3 };
         let courses = Threads::run(size, |ranks| course(builder, scene, &start(ranks))).unwrap();
         for (rank, course) in courses.into_iter().enumerate() {
@@ -229,7 +229,7 @@ fn measured_surface_shifted() {
 #[test]
 fn line() {
     let builder: Parts = |start| {
-        let grid = Grid::new([45_000, 1], [4.0e-3, 1.0])?;
+        let grid = Grid::new([25_000, 1], [4.0e-3, 1.0])?;
         let kernel = Arc::new(InfluenceKernel::line(&grid, 1.0)?);
         let cylinder = Cylinder::new(10.0e-3)?;
         let settings = settings().with_symmetry(false);

@@ -40,7 +40,7 @@ fn share_of_cells(contact: &ViscoelasticContact) -> f64 {
 #[test]
 fn area_is_proportional_to_small_loads() {
     let (load, mut kappas) = (0.03, Vec::new());
-    for seed in 0..10 {
+    for seed in 0..5 {
         let (grid, shape) = rough(1024, 8.0, seed);
         let mut contact = pressed(&grid, &shape, elastic(), Settings::default().with_tolerance(1e-4));
         contact.step(0.0, Load::force(force(load))).unwrap();
@@ -49,8 +49,8 @@ fn area_is_proportional_to_small_loads() {
         println!("seed {seed}: κ = {:.3}, counting cells {counted:.3}", kappas[seed as usize]);
         assert!((1.6..2.3).contains(&kappas[seed as usize]) && (1.6..2.4).contains(&counted), "{kappas:?} {counted}");
     }
-    let mean = kappas.iter().sum::<f64>() / 10.0;
-    let spread = (kappas.iter().map(|kappa| (kappa - mean).powi(2)).sum::<f64>() / 9.0).sqrt();
+    let mean = kappas.iter().sum::<f64>() / 5.0;
+    let spread = (kappas.iter().map(|kappa| (kappa - mean).powi(2)).sum::<f64>() / 4.0).sqrt();
     println!("κ = {mean:.3} ± {spread:.3}");
     assert!(spread < 0.15, "{spread}");
 }

@@ -1,6 +1,6 @@
 //! Whether runs come to their end, and in how many steps: ordinary protocols on ordinary bodies, and random scenes.
 //!
-//! By hand: `PROTOCOLS_SCENES=5000 PROTOCOLS_SEED=7 cargo test --release --test suite time::runs -- --nocapture`.
+//! By hand: `PROTOCOLS_SCENES=5000 PROTOCOLS_SEED=7 cargo test --release --test suite time::protocols_run -- --nocapture`.
 
 use std::collections::BTreeMap;
 
@@ -81,7 +81,7 @@ fn ordinary_protocols_run_to_their_end() {
 /// The same history, never below a hundredth of its greatest load, is no more than twice as easy.
 #[test]
 fn random_protocols_run_to_their_end() {
-    let scenes = from_environment("PROTOCOLS_SCENES", 500);
+    let scenes = from_environment("PROTOCOLS_SCENES", 250);
     let seed = from_environment("PROTOCOLS_SEED", 2);
     let (mut failures, mut compared, mut total) = (Vec::new(), Vec::new(), [0; 2]);
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();

@@ -1,5 +1,6 @@
 //! Does a temperature that changes do what the reduced time says?
 
+use approx::assert_abs_diff_eq;
 use viscocontact::observe::StressHistory;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
@@ -143,7 +144,7 @@ fn steps_are_those_of_the_reduced_time_on_random_scenes() {
             close(a.approach, b.approach, 1e-9, &what);
             assert_eq!(a.contact_cells, b.contact_cells, "{what}");
             close(own.reduced_time(), plain.time(), 1e-12, &what);
-            assert!((a.dt - length).abs() <= 1e-15 * end);
+            assert_abs_diff_eq!(a.dt, length, epsilon = 1e-15 * end);
         }
     }
 }

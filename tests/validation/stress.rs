@@ -4,6 +4,7 @@
 use std::sync::Arc;
 
 use super::rolling::{FINE, roll, scene};
+use approx::{assert_abs_diff_eq, assert_relative_eq};
 use viscocontact::KernelError;
 use viscocontact::analytic::Hertz;
 use viscocontact::observe::{Axis, Stress, StressHistory, SubsurfaceStress};
@@ -115,9 +116,9 @@ fn a_cylinder_yields_where_hertz_says() {
             let root = f64::sqrt(1.0 + zeta * zeta);
             let stress = stress.at(&[[0.0, 0.0, zeta * a]]).unwrap()[0];
             let (across, along) = if axis == 0 { (stress.s11, stress.s22) } else { (stress.s22, stress.s11) };
-            assert!((across + peak * ((1.0 + 2.0 * zeta * zeta) / root - 2.0 * zeta)).abs() < 1e-3 * peak);
-            assert!((stress.s33 + peak / root).abs() < 1e-3 * peak);
-            assert!((along - nu * (across + stress.s33)).abs() < 1e-9 * peak);
+            assert_abs_diff_eq!(across, -peak * ((1.0 + 2.0 * zeta * zeta) / root - 2.0 * zeta), epsilon = 1e-3 * peak);
+            assert_abs_diff_eq!(stress.s33, -peak / root, epsilon = 1e-3 * peak);
+            assert_abs_diff_eq!(along, nu * (across + stress.s33), epsilon = 1e-9 * peak);
         }
     }
 }
@@ -205,7 +206,7 @@ fn sections_and_volumes_are_cut_from_planes() {
         (0..20).for_each(|j| same(second.values[3 * j + k], plane[20 * 8 + j]));
         let point = [first.positions[5], first.at, depth];
         let (found, exact) = (first.values[15 + k].von_mises(), stress.at(&[point]).unwrap()[0].von_mises());
-        assert!((found / exact - 1.0).abs() < 1e-11);
+        assert_relative_eq!(found, exact, epsilon = 0.0, max_relative = 1e-11);
     }
     assert_eq!(volume.plane(3), None);
     assert_eq!(first.map(Stress::von_mises).len(), 72);
@@ -228,14 +229,15 @@ fn below_a_rolling_cylinder_the_stress_skews_with_the_pressure() {
         let at = peak.position[0];
         let skew = [0.5, 1.0].map(|steps| of(at + direction * steps * a) - of(at - direction * steps * a));
         let greatest = section.map(Stress::tresca).into_iter().fold(0.0, f64::max);
-        assert!((greatest / peak.value - 1.0).abs() < 2e-3 && greatest <= peak.value * (1.0 + 1e-12));
+        assert_relative_eq!(greatest, peak.value, epsilon = 0.0, max_relative = 2e-3);
+        assert!(greatest <= peak.value * (1.0 + 1e-12));
         let place = [direction * (at - rolled.at), peak.position[2], direction * (middle - rolled.at)];
         (place.map(|x| x / a), peak.value, skew.map(|skew| skew / peak.value))
     });
     println!("place, depth, centre of pressure over a: {:.3?}, skew {:.3?}", ahead.0, ahead.2);
     assert!(ahead.0[0] > 0.05 && ahead.0[2] > 0.05, "{ahead:?}");
     assert!(ahead.2[0].abs() > 0.02, "{ahead:?}");
-    assert!((ahead.1 / back.1 - 1.0).abs() < 1e-3);
+    assert_relative_eq!(ahead.1, back.1, epsilon = 0.0, max_relative = 1e-3);
     assert!(ahead.0.iter().zip(back.0).all(|(one, other)| (one - other).abs() < 1.0 / FINE), "{ahead:?} {back:?}");
 }
 

@@ -117,7 +117,7 @@ impl RollingCylinder {
 }
 
 /// Gauss' elimination with row pivoting, the right-hand side in the last column.
-fn eliminate(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
+pub fn eliminate(mut rows: Vec<Vec<f64>>) -> Vec<f64> {
     let n = rows.len();
     for k in 0..n {
         let pivot = (k..n).max_by(|&a, &b| rows[a][k].abs().total_cmp(&rows[b][k].abs())).unwrap();

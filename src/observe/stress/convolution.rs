@@ -84,7 +84,7 @@ fn halve<T: Send>(
     values: &mut [T],
     length: usize,
     [first, shares]: [usize; 2],
-    job: &(impl Fn(usize, &mut [T]) + Sync),
+    job: &(dyn Fn(usize, &mut [T]) + Sync),
 ) {
     let middle = values.len() / length / 2;
     if shares < 2 || middle == 0 {

@@ -1,7 +1,6 @@
 //! The whole stepper on random scenes, against a dense reference that shares no code with it.
 
 mod hereditary_integral;
-mod quadratic;
 mod reference;
 mod scenes;
 

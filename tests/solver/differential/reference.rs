@@ -3,6 +3,7 @@
 
 use std::f64::consts::PI;
 
+use crate::common::quadratic;
 use viscocontact::prelude::*;
 
 use super::hereditary_integral::HereditaryIntegral;
@@ -149,7 +150,7 @@ impl Reference {
         let gap: Vec<f64> = gap.iter().map(|g| g / h).collect();
         let columns: Vec<Vec<f64>> = modes.iter().map(|mode| cells.iter().map(|&k| mode.0[k]).collect()).collect();
         let right: Vec<f64> = modes.iter().map(|mode| mode.1 / unit).collect();
-        let (p, y) = super::quadratic::minimum(&matrix, &gap, &columns, &right)?;
+        let (p, y) = quadratic::minimum(&matrix, &gap, &columns, &right)?;
         cells.iter().zip(&p).for_each(|(&k, p)| pressure[k] = unit * p);
         let mut y = y.iter().map(|y| h * y);
         for (found, _) in found.iter_mut().zip(motions).filter(|(_, motion)| !motion.released) {
