@@ -19,8 +19,7 @@ if [[ " $* " = *" --release "* ]]; then
     program=${CARGO_TARGET_DIR:-target}/release/instructions
 else
     build=tests
-    # beside a test, so that dependencies have the features of the tests
-    cargo build --quiet --all-features --package viscocontact-tests --bin instructions --test allocations
+    cargo test --quiet --all-features --no-run
     program=${CARGO_TARGET_DIR:-target}/debug/instructions
 fi
 mkdir -p target/instructions
