@@ -58,6 +58,7 @@ mod picture;
 mod quantity;
 mod section;
 mod shape;
+mod svg;
 
 pub use animation::Animation;
 pub use axis::scientific;

@@ -7,7 +7,8 @@ use std::path::Path;
 use crate::error::{Error, Result, count_within, least_length};
 use crate::file::replace;
 use crate::plot::canvas::{Canvas, png_file};
-use crate::plot::shape::{Shape, svg};
+use crate::plot::shape::Shape;
+use crate::plot::svg;
 
 /// Greatest width or height of a picture in pixels.
 const MAX_SIDE: usize = 16_384;
@@ -66,8 +67,8 @@ impl Picture {
     }
 
     /// Writes the picture to a file in the format of its extension, `.png` or `.svg`. SVG files have the same size and
-    /// sharp lines at any magnification; their texts are texts, in a similar font of the reader's system. Cells of maps
-    /// are rectangles: a map of 512² cells can take 20 MB. An existing file is replaced when the new one is complete.
+    /// sharp lines at any magnification; their texts are texts, in a similar font of the reader's system. Maps are images in
+    /// them, of a pixel for each cell. An existing file is replaced when the new one is complete.
     ///
     /// # Errors
     /// [`Error::Extension`] if the extension is another, or if the file cannot be written.
@@ -76,7 +77,7 @@ impl Picture {
         match check_extension(path, &["png", "svg"])? {
             0 => replace(path, |out| png_file(out, self.size, &self.rgb)),
             _ => {
-                let document = svg(self.size, &self.drawn)?;
+                let document = svg::document(self.size, &self.drawn)?;
                 replace(path, |out| out.write_all(document.as_bytes()))
             }
         }
@@ -157,6 +158,8 @@ mod tests {
     #[test]
     fn svg_files_are_well_formed_and_hold_the_texts() {
         use crate::plot::{COLORS, Chart, Legend, Map, Quantity, Style};
+        use base64::Engine as _;
+        use base64::prelude::BASE64_STANDARD;
         let mut chart = Chart::new("A < B & \u{1} > \"τ\"", Quantity::of("time", "s"), "q", Legend::UpperLeft);
         chart.add("measured <τ>", COLORS[0], Style::LineAndDots, vec![(0.0, 0.0), (f64::NAN, 1.0), (2.0e-3, 5.0e-6)]);
         let grid = crate::Grid::new([2, 3], [1.0, 1.5]).unwrap();
@@ -172,8 +175,19 @@ mod tests {
         {
             assert!(texts.contains(&label), "{label} is not in {texts:?}");
         }
-        let count = |name| document.descendants().filter(|node| node.has_tag_name(name)).count();
-        // two points and the one in the legend; background, legend, six cells and 256 of the colour bar
-        assert_eq!([count("circle"), count("rect")], [3, 264]);
+        let of = |name| document.descendants().filter(move |node| node.has_tag_name(name)).collect::<Vec<_>>();
+        // two points and the one in the legend; background and legend; cells and colour bar
+        assert_eq!(["circle", "rect", "image"].map(|name| of(name).len()), [3, 2, 2]);
+        let source = of("image")[0].attribute(("http://www.w3.org/1999/xlink", "href")).unwrap();
+        let png = BASE64_STANDARD.decode(source.strip_prefix("data:image/png;base64,").unwrap()).unwrap();
+        let mut decoder = png::Decoder::new(std::io::Cursor::new(png));
+        decoder.set_transformations(png::Transformations::EXPAND);
+        let mut reader = decoder.read_info().unwrap();
+        let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+        reader.next_frame(&mut pixels).unwrap();
+        // top row first: x2 grows upwards
+        let colors = [2.0, 5.0, 1.0, f64::NAN, 0.0, 3.0]
+            .map(|value| if value.is_nan() { Color::WHITE } else { Color::on_scale(value / 5.0) });
+        assert_eq!(pixels, colors.map(|Color(red, green, blue)| [red, green, blue]).concat());
     }
 }

@@ -1,10 +1,9 @@
-//! Shapes, drawn by plotters as pixels and as SVG.
+//! Shapes, drawn by plotters as pixels.
 
 use std::fmt::Display;
 
-use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color as _, FontDesc, FontFamily, FontStyle, FontTransform, RGBColor, ShapeStyle, TextStyle};
+use plotters::backend::{BitMapBackend, DrawingBackend};
+use plotters::style::{Color as _, RGBColor, ShapeStyle};
 
 use crate::error::{Error, Result};
 use crate::plot::{Color, font};
@@ -12,12 +11,6 @@ use crate::plot::{Color, font};
 /// Coordinates of shapes are whole parts of pixels, of which a pixel has so many along each side. Pixels are averages
 /// of their parts: edges are smooth although plotters draws at whole coordinates.
 pub(super) const FINE: u32 = 4;
-
-/// Cells extend this far under the next ones, two pixels.
-const OVERLAP: i32 = 2 * FINE as i32;
-
-/// The font of the pixels, then those that most systems have.
-const FONTS: &str = "'Ubuntu Light', Ubuntu, Arial, Helvetica, 'Liberation Sans', sans-serif";
 
 /// A point, or two opposite corners, in parts of pixels.
 pub(super) type Point = (i32, i32);
@@ -66,35 +59,16 @@ pub(super) fn pixels(size: [u32; 2], shapes: &[Shape]) -> Result<Vec<u8>> {
     Ok(parts.chunks_exact(3 * fine * width as usize).flat_map(row_of_pixels).collect())
 }
 
-/// The SVG document of pictures that begin at given distances from the left edge.
-///
-/// # Errors
-/// If the backend fails, which is not expected.
-pub(super) fn svg(size: [u32; 2], pictures: &[(u32, Vec<Shape>)]) -> Result<String> {
-    let [width, height] = size.map(|side| side * FINE);
-    let mut document = String::new();
-    let mut backend = SVGBackend::with_string(&mut document, (width, height));
-    backend.draw_rect((0, 0), (width as i32, height as i32), &fill(Color::WHITE), true).map_err(failed)?;
-    for (left, shapes) in pictures {
-        shapes.iter().try_for_each(|shape| shape.draw(&mut backend, (left * FINE) as i32))?;
-    }
-    backend.present().map_err(failed)?;
-    drop(backend);
-    let sides = |[width, height]: [u32; 2]| format!("width=\"{width}\" height=\"{height}\"");
-    let round = " stroke-linecap=\"round\" stroke-linejoin=\"round\"";
-    Ok(document.replacen(&sides([width, height]), &(sides(size) + round), 1))
-}
-
-fn failed(error: impl Display) -> Error {
+pub(super) fn failed(error: impl Display) -> Error {
     crate::file::failed("a picture".as_ref(), std::io::Error::other(error.to_string()))
 }
 
-fn fill(Color(red, green, blue): Color) -> ShapeStyle {
+pub(super) fn fill(Color(red, green, blue): Color) -> ShapeStyle {
     RGBColor(red, green, blue).filled()
 }
 
 impl Shape {
-    fn draw(&self, target: &mut impl Target, left: i32) -> Result<()> {
+    pub(super) fn draw(&self, target: &mut impl Target, left: i32) -> Result<()> {
         let moved = |(x, y): Point| (x + left, y);
         match self {
             Shape::Line { points, width, color } => {
@@ -123,9 +97,7 @@ impl Shape {
                     let mut i = 0;
                     for run in row.chunk_by(|a, b| a == b) {
                         let [from, to] = [i, i + run.len()].map(|i| edge(left, right, i, *columns));
-                        // the next cells cover what lies beyond an edge: viewers of SVG show no gaps between cells
-                        let end = ((to + OVERLAP).min(right), (below + OVERLAP).min(bottom));
-                        target.draw_rect((from, above), end, &fill(run[0]), true).map_err(failed)?;
+                        target.draw_rect((from, above), (to, below), &fill(run[0]), true).map_err(failed)?;
                         i += run.len();
                     }
                 }
@@ -137,7 +109,7 @@ impl Shape {
 }
 
 /// A backend, and what it does not draw as pictures need it.
-trait Target: DrawingBackend {
+pub(super) trait Target: DrawingBackend {
     fn line(&mut self, points: &[Point], style: ShapeStyle) -> Result<()>;
     fn text(&mut self, text: &str, at: Point, size: u32, anchor: Anchor, upright: bool) -> Result<()>;
 }
@@ -188,28 +160,4 @@ fn piece([from, to]: [Point; 2], width: f64) -> [Point; 4] {
         near.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).map_or(end, |(x, y)| (x as i32, y as i32))
     };
     [corner(from, 1.0), corner(to, 1.0), corner(to, -1.0), corner(from, -1.0)]
-}
-
-impl Target for SVGBackend<'_> {
-    fn line(&mut self, points: &[Point], style: ShapeStyle) -> Result<()> {
-        self.draw_path(points.iter().copied(), &style).map_err(failed)
-    }
-
-    fn text(&mut self, text: &str, at: Point, size: u32, anchor: Anchor, upright: bool) -> Result<()> {
-        let horizontal = match anchor {
-            Anchor::Start => HPos::Left,
-            Anchor::Middle => HPos::Center,
-            Anchor::End => HPos::Right,
-        };
-        // plotters writes sizes divided by 1.24, and a top 0.76 em above the baseline
-        let font = FontDesc::new(FontFamily::Name(FONTS), 1.24 * f64::from(size), FontStyle::Normal);
-        let ascent = (0.76 * f64::from(size)).round() as i32;
-        let (font, at) = if upright {
-            (font.transform(FontTransform::Rotate270), (at.0 - ascent, at.1))
-        } else {
-            (font, (at.0, at.1 - ascent))
-        };
-        let style = TextStyle::from(font).pos(Pos::new(horizontal, VPos::Top));
-        self.draw_text(text, &style, at).map_err(failed)
-    }
 }
