@@ -28,4 +28,5 @@ pub mod spheres;
 #[path = "../../examples/support/scenes/step_loaded_sphere.rs"]
 pub mod step_loaded_sphere;
 pub mod truth;
+pub mod watched_ranks;
 pub mod watched_runs;

@@ -5,44 +5,11 @@ use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use crate::common::watched_ranks::{Call, WatchedRanks};
 use viscocontact::num_complex::Complex64;
 use viscocontact::observe::Axis;
 use viscocontact::prelude::*;
 use viscocontact::ranks::{Ranks, RanksError, Threads};
-
-/// Numbers that a rank sends to others, call by call.
-#[derive(Debug)]
-struct Counting {
-    inner: Arc<dyn Ranks>,
-    /// Complex numbers of each exchange.
-    exchanged: Mutex<Vec<usize>>,
-}
-
-impl Ranks for Counting {
-    fn rank(&self) -> usize {
-        self.inner.rank()
-    }
-
-    fn size(&self) -> usize {
-        self.inner.size()
-    }
-
-    fn gather(&self, own: &[f64], counts: &[usize], all: &mut [f64]) -> Result<(), RanksError> {
-        self.inner.gather(own, counts, all)
-    }
-
-    fn exchange(
-        &self,
-        send: &[Complex64],
-        send_counts: &[usize],
-        received: &mut [Complex64],
-        receive_counts: &[usize],
-    ) -> Result<(), RanksError> {
-        let to_others = send_counts.iter().sum::<usize>() - send_counts[self.rank()];
-        self.exchanged.lock().unwrap().push(to_others);
-        self.inner.exchange(send, send_counts, received, receive_counts)
-    }
-}
 
 fn sphere(cells: usize, ranks: Arc<dyn Ranks>) -> Result<ViscoelasticContact, Error> {
     ViscoelasticContact::builder(Grid::square(cells, 4.0e-3)?)
@@ -69,12 +36,20 @@ fn within_a_minute<T: Send + 'static>(job: impl FnOnce() -> T + Send + 'static) 
 fn bytes_on_the_wire_are_those_of_the_formula() {
     let (cells, size) = (256, 4);
     let sent = Threads::run(size, |ranks| {
-        let counting = Arc::new(Counting { inner: ranks, exchanged: Mutex::default() });
-        let mut contact = sphere(cells, Arc::clone(&counting) as Arc<dyn Ranks>).unwrap();
+        // complex numbers that go to other ranks, exchange by exchange
+        let sent = Arc::new(Mutex::new(Vec::new()));
+        let noted = Arc::clone(&sent);
+        let watched = WatchedRanks::around(ranks, move |call| {
+            if let Call::Exchange(to_others) = call {
+                noted.lock().unwrap().push(to_others);
+            }
+            Ok(())
+        });
+        let mut contact = sphere(cells, watched).unwrap();
         contact.step(0.0, Load::force(1.0)).unwrap();
-        counting.exchanged.lock().unwrap().clear();
+        sent.lock().unwrap().clear();
         let report = contact.step(0.2, Load::force(1.0)).unwrap();
-        let exchanged = counting.exchanged.lock().unwrap().clone();
+        let exchanged = sent.lock().unwrap().clone();
         (report, contact.rows().len(), exchanged)
     })
     .unwrap();

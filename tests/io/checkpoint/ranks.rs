@@ -3,15 +3,15 @@
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
+use crate::common::watched_ranks::WatchedRanks;
 use approx::assert_abs_diff_eq;
 use viscocontact::contact::CheckpointError;
-use viscocontact::num_complex::Complex64;
 use viscocontact::prelude::*;
-use viscocontact::ranks::{Ranks, RanksError, Threads};
+use viscocontact::ranks::{RanksError, Threads};
 
 /// An empty folder of this name and process.
 fn folder(name: &str) -> PathBuf {
@@ -360,47 +360,6 @@ fn failed_saves_leave_the_old_one() {
     fs::remove_dir_all(folder).unwrap();
 }
 
-/// A rank that leaves at a given call.
-#[derive(Debug)]
-struct Leaving {
-    inner: Arc<dyn Ranks>,
-    calls: AtomicUsize,
-    at: Mutex<usize>,
-}
-
-impl Leaving {
-    fn call(&self) -> Result<(), RanksError> {
-        let left = self.calls.fetch_add(1, Ordering::Relaxed) >= *self.at.lock().unwrap();
-        if left { Err(RanksError::Left { rank: self.inner.rank() }) } else { Ok(()) }
-    }
-}
-
-impl Ranks for Leaving {
-    fn rank(&self) -> usize {
-        self.inner.rank()
-    }
-
-    fn size(&self) -> usize {
-        self.inner.size()
-    }
-
-    fn gather(&self, own: &[f64], counts: &[usize], all: &mut [f64]) -> Result<(), RanksError> {
-        self.call()?;
-        self.inner.gather(own, counts, all)
-    }
-
-    fn exchange(
-        &self,
-        send: &[Complex64],
-        send_counts: &[usize],
-        received: &mut [Complex64],
-        receive_counts: &[usize],
-    ) -> Result<(), RanksError> {
-        self.call()?;
-        self.inner.exchange(send, send_counts, received, receive_counts)
-    }
-}
-
 /// Whenever a rank is lost in the middle of a save, the file leads to the save before or to this one, whole.
 #[test]
 fn a_rank_that_is_lost_during_a_save_spoils_nothing() {
@@ -417,13 +376,18 @@ fn a_rank_that_is_lost_during_a_save_spoils_nothing() {
         for lost in 0..3 {
             let saved = Threads::run(3, |ranks| {
                 let rank = ranks.rank();
-                let leaving = Leaving { inner: ranks, calls: AtomicUsize::new(0), at: Mutex::new(usize::MAX) };
-                let leaving = Arc::new(leaving);
-                let mut contact = sphere().unwrap().ranks(Arc::clone(&leaving) as Arc<dyn Ranks>).build().unwrap();
+                // a rank leaves when no more calls are left to it
+                let calls_left = Arc::new(AtomicUsize::new(usize::MAX));
+                let left = Arc::clone(&calls_left);
+                let leaving = WatchedRanks::around(ranks, move |_| {
+                    let next = |left: usize| left.checked_sub(1);
+                    let calls = left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, next);
+                    calls.map(|_| ()).map_err(|_| RanksError::Left { rank })
+                });
+                let mut contact = sphere().unwrap().ranks(leaving).build().unwrap();
                 contact.step(0.0, Load::force(1.5)).unwrap();
                 if rank == lost {
-                    leaving.calls.store(0, Ordering::Relaxed);
-                    *leaving.at.lock().unwrap() = at;
+                    calls_left.store(at, Ordering::Relaxed);
                 }
                 contact.save(&path)
             })
