@@ -36,7 +36,7 @@ count() {
 names=(held_sphere eccentric_punch wavy_surface one_relaxation_time thirty_relaxation_times)
 if [[ " $* " = *" --record "* ]]; then
     others=$(tail -n +2 "$recorded" | grep -v ",$build," || true)
-    own=$(for k in "${!names[@]}"; do echo "${names[$k]},$build,$(count "$k"),$compiler"; done)
+    own=$(for k in "${!names[@]}"; do now=$(count "$k") || exit 1; echo "${names[$k]},$build,$now,$compiler"; done)
     { echo "scene,build,instructions,rustc"; printf '%s\n' "$others" "$own" | grep . | sort -t, -k2,2 -s; } >"$recorded"
     cat "$recorded"
     exit

@@ -24,7 +24,7 @@ struct Args {
     #[arg(long, default_value_t = 13)]
     speeds: usize,
     /// Surfaces at each speed.
-    #[arg(long, default_value_t = 8)]
+    #[arg(long, default_value_t = 8, value_parser = support::at_least_one)]
     seeds: usize,
     /// Cells along a period.
     #[arg(long, default_value_t = 128)]

@@ -39,7 +39,7 @@ struct Args {
     #[arg(long, default_value_t = 100)]
     steps_of_cells: usize,
     /// No run is started that is likely to take longer than this [s].
-    #[arg(long, default_value_t = 150.0)]
+    #[arg(long, default_value_t = 150.0, value_parser = support::positive)]
     longest: f64,
     /// Runs are repeated for so long [s].
     #[arg(long, default_value_t = 1.5)]

@@ -36,10 +36,10 @@ struct Args {
     #[arg(long, default_value_t = 0.01)]
     tau: f64,
     /// Radius of the cylinder [m].
-    #[arg(long, default_value_t = 0.02)]
+    #[arg(long, default_value_t = 0.02, value_parser = support::positive)]
     radius: f64,
     /// Force on a metre of the cylinder [N/m].
-    #[arg(long, default_value_t = 500.0)]
+    #[arg(long, default_value_t = 500.0, value_parser = support::positive)]
     load: f64,
     /// Cells on half the width of the contact with the glassy body.
     #[arg(long, default_value_t = 32)]

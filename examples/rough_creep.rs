@@ -44,10 +44,10 @@ struct Args {
     #[arg(long, default_value_t = 0.35)]
     poisson: f64,
     /// First time shown [s].
-    #[arg(long, default_value_t = 1.0e-3)]
+    #[arg(long, default_value_t = 1.0e-3, value_parser = support::positive)]
     from: f64,
     /// Time at which half of the load is taken off, and length of the hold after it [s].
-    #[arg(long, default_value_t = 1.0e6)]
+    #[arg(long, default_value_t = 1.0e6, value_parser = support::positive)]
     to: f64,
     /// Mean pressure, in units of rms slope / C at the first time shown.
     #[arg(long, default_value_t = 0.03)]

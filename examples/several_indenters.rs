@@ -55,7 +55,7 @@ struct Args {
     #[arg(long, default_value_t = 192)]
     cells: usize,
     /// Steps in a retardation time.
-    #[arg(long, default_value_t = 20)]
+    #[arg(long, default_value_t = 20, value_parser = clap::value_parser!(u32).range(1..))]
     steps: u32,
     /// Coarse and fast: 64 cells, 10 steps.
     #[arg(long)]
@@ -192,7 +192,7 @@ fn in_turn(args: &Args, scene: &Indenters, material: &Material) -> Result<(), Bo
             for body in 0..3 {
                 let computed = approach(&punches, body);
                 exact_curves[body].push((time / args.tau, 1e6 * exact[body]));
-                if k % (args.steps / 5) == 0 {
+                if k % (args.steps / 5).max(1) == 0 {
                     dots.push((time / args.tau, 1e6 * computed));
                 }
                 table.serialize((time, body, computed, exact[body]))?;

@@ -32,10 +32,10 @@ struct Args {
     #[arg(long, default_value_t = 0.01)]
     tau: f64,
     /// Radius of the sphere [m].
-    #[arg(long, default_value_t = 0.01)]
+    #[arg(long, default_value_t = 0.01, value_parser = support::positive)]
     radius: f64,
     /// Force [N].
-    #[arg(long, default_value_t = 0.5)]
+    #[arg(long, default_value_t = 0.5, value_parser = support::positive)]
     load: f64,
     /// Cells on the radius of the contact with the glassy solid.
     #[arg(long, default_value_t = 16)]

@@ -16,3 +16,14 @@ pub fn finish(result: Result<(), Box<dyn Error>>) {
         std::process::exit(1);
     }
 }
+
+/// Reads a positive number of the command line.
+pub fn positive(text: &str) -> Result<f64, String> {
+    let value = text.parse().map_err(|_| "not a number".to_owned())?;
+    if f64::is_finite(value) && value > 0.0 { Ok(value) } else { Err("must be positive".to_owned()) }
+}
+
+/// Reads a number of things of the command line.
+pub fn at_least_one(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|&count| count > 0).ok_or_else(|| "must be a number from 1 on".to_owned())
+}

@@ -17,7 +17,7 @@ use crate::rheology::{CreepSpectrum, Material, RelaxationSpectrum};
 ///
 /// E being the relaxation modulus that belongs to the contact compliance C. For a step load
 /// a³ = (3/4) R W C(t); with the compliance of an incompressible Maxwell body, or of a Zener body with
-/// G = G_K, this is Table 1 of the source [paper](crate::paper), and it holds for every other exponential series too.
+/// G = G_K, this is Table 1 of the source [paper](crate::paper), drawn in its Figures 4 and 5, and it holds for every other exponential series too.
 ///
 /// ```
 /// use viscocontact::analytic::GrowingSphere;

@@ -61,12 +61,12 @@ impl ViscoelasticContact {
         self.computation.state.loads[0]
     }
 
-    /// Contact pressure \[Pa\], one value per cell, ≥ 0; of own [rows](ViscoelasticContact::rows) where ranks share them out.
+    /// Contact pressure \[Pa\], one value per cell, ≥ 0 (Eq. 2 of the [paper](crate::paper)); of own [rows](ViscoelasticContact::rows) where ranks share them out.
     pub fn pressure(&self) -> &[f64] {
         self.view.pressure(&self.computation.state)
     }
 
-    /// Composite normal surface displacement, positive into the bodies \[m\], one value per cell; of own
+    /// Composite normal surface displacement, positive into the bodies \[m\], one value per cell (Eq. 10 of the [paper](crate::paper)); of own
     /// [rows](ViscoelasticContact::rows) where ranks share them out.
     ///
     /// With [`Settings::window`] the first call after a step costs a convolution on the whole grid, and memory for its

@@ -75,7 +75,7 @@ pub enum Solver {
     PolonskyKeer,
 }
 
-/// The time rule of the hereditary integral.
+/// The time rule of the hereditary integral. Figure 6 of the [paper](crate::paper) compares numbers of steps by its rule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -99,7 +99,7 @@ pub enum TimeRule {
     /// an elastic response.
     Rectangle,
     /// [`TimeRule::Rectangle`] at the cost that the source paper states (section 4), O(N_t² N₁N₂ log(N₁N₂)): the history is
-    /// kept as pressures, and each step convolves all past increments anew. The pressures are those of
+    /// kept as pressures, and each step convolves all past increments anew, as Eq. 11 is written. The pressures are those of
     /// [`TimeRule::Rectangle`] to within rounding. For comparisons of cost only.
     RectangleUncached,
     /// A direct sum over all past steps with the rheology's own J(t), without a series: first order, stable for steps of

@@ -104,7 +104,7 @@ impl Load {
     }
 
     /// A normal force \[N\] at the point `at` \[m\]: the body tilts freely until the resultant of the pressure acts
-    /// there (Eq. 5 of the [paper](crate::paper)).
+    /// there (Eq. 5 of the [paper](crate::paper); its Figures 2 and 3).
     pub fn eccentric_force(normal: f64, at: [f64; 2]) -> Load {
         Load::Force { normal, tilt: at.map(|at| Tilt::Free { at }) }
     }

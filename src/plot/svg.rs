@@ -54,15 +54,20 @@ fn written(draw: impl FnOnce(&mut SVGBackend<'_>) -> Result<()>) -> Result<Strin
     inner.map(str::to_owned).ok_or_else(|| failed("a document of plotters without a beginning and an end"))
 }
 
-/// Cells as an image of a pixel each, which viewers do not smooth: a map takes what it takes as PNG, where rectangles would take a
+/// Cells as an image of a pixel each, which viewers do not smooth unless there are more cells than pixels: a map takes what it takes as PNG, where rectangles would take a
 /// hundred bytes for each cell.
 fn image([(left, top), (right, bottom)]: [Point; 2], columns: usize, colors: &[Color], start: i32) -> Result<String> {
+    let rows = colors.len() / columns;
     let rgb: Vec<u8> = colors.iter().flat_map(|&Color(red, green, blue)| [red, green, blue]).collect();
     let mut png = Vec::new();
-    png_file(&mut png, [columns as u32, (colors.len() / columns) as u32], &rgb).map_err(failed)?;
+    png_file(&mut png, [columns as u32, rows as u32], &rgb).map_err(failed)?;
+    let larger_than_pixels =
+        right - left >= (FINE * columns as u32) as i32 && bottom - top >= (FINE * rows as u32) as i32;
+    let sharp =
+        if larger_than_pixels { " style=\"image-rendering:crisp-edges;image-rendering:pixelated\"" } else { "" };
     Ok(format!(
-        "<image x=\"{}\" y=\"{top}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" \
-         style=\"image-rendering:crisp-edges;image-rendering:pixelated\" xlink:href=\"data:image/png;base64,{}\"/>\n",
+        "<image x=\"{}\" y=\"{top}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\"{sharp} \
+         xlink:href=\"data:image/png;base64,{}\"/>\n",
         left + start,
         right - left,
         bottom - top,

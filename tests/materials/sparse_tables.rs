@@ -1,6 +1,7 @@
 //! Tables of few rows: smooth bodies over four to eight decades, with and without noise. What is fitted is compared with the
-//! exact model at the rows and between them.
+//! exact model at the rows and between them. `SPARSE_SEEDS` (2) times seven bodies are drawn.
 
+use crate::common::environment::from_environment;
 use crate::common::noise::{noise, uniform};
 use crate::common::spheres::sphere_on;
 use viscocontact::contact::Warning;
@@ -9,7 +10,6 @@ use viscocontact::rheology::{CreepSpectrum, FitReport, FitWarning, RelaxationSpe
 
 /// Rows of the tables of a body. 10 are every other one of 19, these of 37.
 const ROWS: [usize; 6] = [10, 13, 19, 25, 37, 60];
-const SEEDS: u64 = 2;
 /// Tables are told apart by their rows a decade, from these on.
 const CLASSES: [f64; 7] = [1.0, 1.5, 2.0, 2.5, 3.5, 5.0, 8.0];
 
@@ -57,7 +57,7 @@ impl Body {
     }
 
     fn all() -> impl Iterator<Item = Body> {
-        (0..SEEDS).flat_map(|seed| (0..7).map(move |kind| Body::new(kind, seed)))
+        (0..from_environment("SPARSE_SEEDS", 2)).flat_map(|seed| (0..7).map(move |kind| Body::new(kind, seed)))
     }
 
     /// What has a relaxation in closed form: the body itself, or a series within 2e-6 of it.
