@@ -20,15 +20,13 @@ const FONTS: &str = "'Ubuntu Light', Ubuntu, Arial, Helvetica, 'Liberation Sans'
 /// If the backend fails, which is not expected.
 pub(super) fn document(size: [u32; 2], pictures: &[(u32, Vec<Shape>)]) -> Result<String> {
     let [width, height] = size.map(|side| side * FINE);
-    let white = |backend: &mut SVGBackend<'_>| {
-        backend.draw_rect((0, 0), (width as i32, height as i32), &fill(Color::WHITE), true).map_err(failed)
-    };
     let mut document = format!(
         "<svg width=\"{}\" height=\"{}\" viewBox=\"0 0 {width} {height}\" xmlns=\"http://www.w3.org/2000/svg\" \
          xmlns:xlink=\"http://www.w3.org/1999/xlink\" stroke-linecap=\"round\" stroke-linejoin=\"round\">\n",
         size[0], size[1]
     );
-    document += &written(white)?;
+    let corner = (width as i32, height as i32);
+    document += &written(|paper| paper.draw_rect((0, 0), corner, &fill(Color::WHITE), true).map_err(failed))?;
     for (left, shapes) in pictures {
         let left = (left * FINE) as i32;
         let is_image = |shape: &Shape| matches!(shape, Shape::Cells { .. });
@@ -54,8 +52,8 @@ fn written(draw: impl FnOnce(&mut SVGBackend<'_>) -> Result<()>) -> Result<Strin
     inner.map(str::to_owned).ok_or_else(|| failed("a document of plotters without a beginning and an end"))
 }
 
-/// Cells as an image of a pixel each, which viewers do not smooth unless there are more cells than pixels: a map takes what it takes as PNG, where rectangles would take a
-/// hundred bytes for each cell.
+/// Cells as an image of a pixel each, which viewers do not smooth unless there are more cells than pixels. A map takes what
+/// it takes as PNG; rectangles would take a hundred bytes for each cell.
 fn image([(left, top), (right, bottom)]: [Point; 2], columns: usize, colors: &[Color], start: i32) -> Result<String> {
     let rows = colors.len() / columns;
     let rgb: Vec<u8> = colors.iter().flat_map(|&Color(red, green, blue)| [red, green, blue]).collect();

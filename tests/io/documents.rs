@@ -104,7 +104,7 @@ fn commands_and_files_exist() {
     assert!(missing.is_empty(), "{missing:#?}");
 }
 
-/// What `cargo test --test suite` is told to run, in documents and in comments of tests, is the start or a part of the name of a
+/// What `cargo test --test suite` is told to run, in documents, comments of tests and the workflow, is part of the name of a
 /// test that there is.
 #[test]
 fn tests_that_are_named_exist() {
