@@ -18,7 +18,7 @@ mod accessors;
 
 mod observations;
 
-mod state_within_step;
+mod within_step;
 
 mod snapshot;
 
@@ -62,7 +62,6 @@ pub use run::follow::Follow;
 pub use run::stepping::Stepping;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use snapshot::Snapshot;
-pub use state_within_step::StateWithinStep;
 pub use viscoelastic::ViscoelasticContact;
 pub use warning::{Warning, Warnings};
 pub(crate) use window::extent::Extent;

@@ -37,9 +37,11 @@ impl ViscoelasticContact {
             self.computation.check_memory_for(&self.scene, &region.unfolded(still_folded))?;
         }
         let state = &mut self.computation.state;
-        (state.indenter, state.indenter_is_new) = (Arc::new(indenter), true);
+        let before = std::mem::replace(&mut state.indenter, Arc::new(indenter));
+        state.start.replaced.get_or_insert(before);
+        state.indenter_is_new = true;
         state.extrapolation.interrupt();
-        state.forget_slopes();
+        state.history.forget_slopes();
         Ok(())
     }
 }

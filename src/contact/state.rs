@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::contact::extrapolation::Extrapolation;
 use crate::contact::indenter::Indenter;
 use crate::contact::window::region::Region;
-use crate::hereditary::{History, Interval, MAX_GROWTH};
+use crate::hereditary::{History, Interpolant, Interval};
 use crate::load::Load;
 use crate::solver::{RigidMotion, Solution};
 
@@ -29,11 +29,7 @@ pub(crate) struct State {
     pub(super) current: Equilibrium,
     /// At the start of the last step.
     pub(super) previous: Equilibrium,
-    /// At the start of the step before the last, where the last one follows the polynomial through it.
-    pub(super) earlier: Option<Node>,
-    /// Whether the last step tells how the next goes on: not after a jump, a corner or a step over the bodies, nor with a new
-    /// indenter.
-    pub(super) goes_on: bool,
+    pub(super) start: StepStart,
     pub(super) extrapolation: Extrapolation,
     /// The greatest means of displacement and v over the contact so far, as far as errors were taken relative to them.
     pub(super) greatest: [f64; 2],
@@ -83,24 +79,28 @@ pub(crate) struct Equilibrium {
     pub(super) sum: f64,
 }
 
-/// What is kept of the start of the step before the last.
-#[derive(Debug, Clone, Copy)]
+/// The start of the last step, besides `previous` and the fields that the history keeps.
+#[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
-pub(crate) struct Node {
-    /// Length of the step before the last.
-    pub(super) dt: f64,
-    /// Motion of the first body.
-    pub(super) motion: RigidMotion,
-    /// Normal force on all bodies together.
-    pub(super) force: f64,
+pub(crate) struct StepStart {
+    pub(super) clock: Clock,
+    pub(super) loads: Vec<Load>,
+    /// How the last step took the displacement to change.
+    pub(super) interpolant: Interpolant,
+    /// Whether the indenter of the last step was set just before it.
+    pub(super) indenter_was_new: bool,
+    /// The indenter of the last step, where it has been replaced since.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    pub(super) replaced: Option<Arc<Indenter>>,
 }
 
-#[cfg(feature = "checkpoint")]
-impl Node {
-    /// Whether it can be followed by a step: a file may hold anything.
-    pub(super) fn is_sound(&self) -> bool {
-        let Node { dt, motion: RigidMotion { approach, tilt: [tilt1, tilt2] }, force } = *self;
-        dt > 0.0 && [dt, approach, tilt1, tilt2, force].iter().all(|value| value.is_finite())
+impl StepStart {
+    /// Copies another without reallocating.
+    fn copy_from(&mut self, other: &StepStart) {
+        let StepStart { clock, loads, interpolant, indenter_was_new, replaced } = self;
+        (*clock, *interpolant, *indenter_was_new) = (other.clock, other.interpolant, other.indenter_was_new);
+        loads.clone_from(&other.loads);
+        replaced.clone_from(&other.replaced);
     }
 }
 
@@ -121,8 +121,7 @@ impl State {
             history,
             previous: current.clone(),
             current,
-            earlier: None,
-            goes_on: false,
+            start: StepStart { loads: vec![Load::force(0.0); bodies], ..StepStart::default() },
             extrapolation: Extrapolation::default(),
             greatest: [0.0; 2],
         }
@@ -142,18 +141,24 @@ impl State {
         }
     }
 
-    /// The last step says nothing about how the state goes on, as at a corner of the load.
-    pub(super) fn forget_slopes(&mut self) {
-        self.history.forget_slopes();
-        self.goes_on = false;
+    /// Keeps the start of a step that is accepted with this state still that before it.
+    pub(super) fn keep_start(&mut self, interpolant: Interpolant) {
+        let StepStart { clock, loads, interpolant: kept, indenter_was_new, replaced } = &mut self.start;
+        (*clock, *kept, *indenter_was_new, *replaced) = (self.clock, interpolant, self.indenter_is_new, None);
+        loads.copy_from_slice(&self.loads);
     }
 
-    /// Keeps the start of the last step where the `next`, which the history has just committed, follows a quadratic through it.
-    pub(super) fn keep_earlier(&mut self, next: Interval) {
-        let (Equilibrium { motions, .. }, dt) = (&self.previous, self.clock.last_dt);
-        let follows = self.goes_on && next.dt <= MAX_GROWTH * dt && self.history.followed_quadratic(next);
-        self.earlier = follows.then(|| Node { dt, motion: motions[0], force: self.force_of(&self.previous) });
-        self.goes_on = next.dt > 0.0 && next.stride == [0; 2];
+    /// Returns to the start of the last step, which the history must still keep.
+    pub(super) fn roll_back(&mut self) {
+        self.history.roll_back(!self.is_undisturbed());
+        self.current.copy_from(&self.previous);
+        self.clock = self.start.clock;
+        self.loads.copy_from_slice(&self.start.loads);
+        if let Some(replaced) = self.start.replaced.take() {
+            self.indenter = replaced;
+        }
+        self.indenter_is_new = self.start.indenter_was_new;
+        self.extrapolation.interrupt();
     }
 
     /// Whether no pressure has ever acted.
@@ -178,19 +183,18 @@ impl State {
             history,
             current,
             previous,
-            earlier,
-            goes_on,
+            start,
             extrapolation,
             greatest,
         } = self;
-        (*clock, *extrapolation) = (other.clock, other.extrapolation);
-        (*earlier, *goes_on, *greatest) = (other.earlier, other.goes_on, other.greatest);
+        (*clock, *extrapolation, *greatest) = (other.clock, other.extrapolation, other.greatest);
         (*indenter_is_new, *region_is_placed) = (other.indenter_is_new, other.region_is_placed);
         loads.clone_from(&other.loads);
         indenter.clone_from(&other.indenter);
         history.copy_from(&other.history);
         current.copy_from(&other.current);
         previous.copy_from(&other.previous);
+        start.copy_from(&other.start);
     }
 }
 

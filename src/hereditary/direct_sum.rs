@@ -123,6 +123,11 @@ impl DirectSum {
         self.increments.push((when, increment));
     }
 
+    /// Drops the increment of the step committed last.
+    pub(super) fn roll_back(&mut self) {
+        self.increments.pop();
+    }
+
     /// Whether its weighting is that of another, and every increment has so many cells.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &DirectSum, cells: usize) -> bool {

@@ -4,9 +4,11 @@ use crate::hereditary::moments::{moments as moments_of, slopes as slopes_of};
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 
 /// How the displacement is taken to change with time within a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) enum Interpolant {
     /// Linear, and that stays so.
+    #[default]
     Linear,
     /// Linear, with the step before raised to a quadratic by what this step adds to its nodes. Quadratic for bodies with an
     /// immediate dashpot, which answer the slope at the end.
@@ -50,6 +52,8 @@ pub(crate) struct ExponentialRule {
     kept: usize,
     /// The term that the last step lacks, 0 for none.
     lacking: usize,
+    /// The three above at the start of the last step.
+    at_start: ([f64; 2], usize, usize),
     /// Of the step predicted last.
     pub(super) tried: Weights,
     /// Of the step committed last, which the fields take in with the next prediction.
@@ -93,7 +97,7 @@ pub(crate) struct Weights {
 /// e^(−700) is near the smallest normal number: what decays further counts as zero.
 const MAX_EXPONENT: f64 = 700.0;
 /// A step that is longer than so many times the one before is not continued from it by a quadratic, ...
-pub(crate) const MAX_GROWTH: f64 = 4.0;
+const MAX_GROWTH: f64 = 4.0;
 /// ... nor one of a body with an immediate dashpot, whose errors grow beyond 1 + √2.
 const MAX_GROWTH_OF_DASHPOT: f64 = 2.41;
 /// A step that is shorter than this part of the one before was cut short by something that happened: the step before is not
@@ -124,6 +128,7 @@ impl ExponentialRule {
             known: 0,
             kept: 0,
             lacking: 0,
+            at_start: ([0.0; 2], 0, 0),
             committed: weights.clone(),
             tried: weights,
             greatest: 0.0,
@@ -187,11 +192,6 @@ impl ExponentialRule {
         (relaxing + self.relaxation.viscosity() / self.tried.dt) * jump - self.tried.answer * bend
     }
 
-    /// Whether u was quadratic on the step committed last.
-    pub(super) fn followed_quadratic(&self) -> bool {
-        self.committed.degree == 2
-    }
-
     /// Whether the next step puts right the one predicted last.
     pub(super) fn corrects(&self) -> bool {
         self.tried.corrects[1]
@@ -228,6 +228,7 @@ impl ExponentialRule {
             return;
         }
         (self.spans, self.known, self.kept, self.lacking) = (other.spans, other.known, other.kept, other.lacking);
+        self.at_start = other.at_start;
         (self.greatest, self.repeated) = (other.greatest, other.repeated);
         self.tried.copy_from(&other.tried);
         self.committed.copy_from(&other.committed);
@@ -237,13 +238,16 @@ impl ExponentialRule {
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &ExponentialRule) -> bool {
         let branches = other.branches();
-        let steps = self.spans.iter().take(self.known).all(|&span| span > 0.0 && span.is_finite());
+        let follows = |(spans, known, lacking): ([f64; 2], usize, usize)| {
+            known <= self.kept
+                && [0, 2, 3].contains(&lacking)
+                && spans.iter().take(known).all(|&span| span > 0.0 && span.is_finite())
+        };
         self.relaxation.terms().len() == branches
             && [&self.tried, &self.committed].iter().all(|weights| weights.branches.len() == branches)
-            && self.known <= self.kept
             && self.kept <= 2
-            && [0, 2, 3].contains(&self.lacking)
-            && steps
+            && follows((self.spans, self.known, self.lacking))
+            && follows(self.at_start)
     }
 
     /// The past says nothing about how u goes on, as after a corner of the load.
@@ -332,10 +336,16 @@ impl ExponentialRule {
     /// Accepts the step predicted last.
     pub(crate) fn commit(&mut self) {
         let step = &self.tried;
+        self.at_start = (self.spans, self.known, self.lacking);
         self.known = step.known;
         self.spans = if step.dt > 0.0 { [step.dt, self.spans[0]] } else { [0.0; 2] };
         self.lacking = if step.corrects[1] && self.known > 0 { step.degree + 1 } else { 0 };
         self.committed.copy_from(&self.tried);
+    }
+
+    /// Returns to the start of the step accepted last.
+    pub(super) fn roll_back(&mut self) {
+        (self.spans, self.known, self.lacking) = self.at_start;
     }
 }
 

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 #[cfg(feature = "checkpoint")]
 use crate::hereditary::common_cells::CommonCells;
 use crate::hereditary::direct_sum::{DirectSum, Weighting};
-use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
+use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::interval::Interval;
 use crate::hereditary::moving_frame::MovingFrame;
 use crate::hereditary::remembered_field::RememberedField;
@@ -21,8 +21,8 @@ pub(crate) struct History {
     /// Where only a window of the grid is computed, the field U whose convolution K U is the displacement elsewhere.
     /// Zero wherever there never was contact.
     far: Option<RememberedField>,
-    /// Whether the trial of the displacement is that before the last step, cell by cell.
-    before_is_kept: bool,
+    /// Whether the start of the last step is kept: the trial of each field, and what the past has yet to take in.
+    start_is_kept: bool,
 }
 
 /// How the displacement follows from its past.
@@ -99,7 +99,7 @@ impl Rule {
 impl History {
     fn new(rule: Rule) -> History {
         let displacement = RememberedField::new(rule.branches(), 0);
-        History { rule, displacement, far: None, before_is_kept: true }
+        History { rule, displacement, far: None, start_is_kept: false }
     }
 
     /// Undisturbed bodies with contact compliance `creep`, by the exponential rule; on no cells yet.
@@ -126,7 +126,7 @@ impl History {
         let kept = rule.exponential().map_or(0, ExponentialRule::least_kept);
         let displacement = self.displacement.undisturbed_on(cells[0] * cells[1], kept);
         let far = (window && self.has_far_field()).then(|| displacement.clone());
-        History { rule, displacement, far, before_is_kept: true }
+        History { rule, displacement, far, start_is_kept: false }
     }
 
     /// Whether the displacement outside a window of the grid can be found.
@@ -171,32 +171,43 @@ impl History {
         &self.displacement.trial
     }
 
-    /// The displacement before the last step, unless a step was tried in the meantime or the bodies moved.
-    pub(crate) fn displacement_before(&self) -> Option<&[f64]> {
-        self.before_is_kept.then(|| self.trial())
+    /// Whether [`History::roll_back`] can return to the start of the last step: not once another step was tried, nor where the
+    /// bodies moved.
+    pub(crate) fn start_is_kept(&self) -> bool {
+        self.start_is_kept
+    }
+
+    /// Gives up the start of the last step.
+    pub(crate) fn forget_start(&mut self) {
+        self.start_is_kept = false;
+    }
+
+    /// Returns to the start of the last step, which must be kept; `touched` tells whether the step was taken into a direct sum.
+    pub(crate) fn roll_back(&mut self, touched: bool) {
+        let History { rule, displacement, far, start_is_kept } = self;
+        far.iter_mut().for_each(RememberedField::roll_back);
+        match rule {
+            Rule::Exponential(own) => {
+                own.roll_back();
+                displacement.roll_back();
+            }
+            Rule::MovingFrame(own, frame) => {
+                own.roll_back();
+                frame.roll_back(displacement);
+            }
+            Rule::DirectSum(own) => {
+                if touched {
+                    own.roll_back();
+                }
+                displacement.roll_back();
+            }
+        }
+        *start_is_kept = false;
     }
 
     /// The change of the displacement in the last step, once the next is predicted; none where it is not kept.
     pub(crate) fn last_change(&self) -> Option<&[f64]> {
         Some(self.displacement.past.differences()[0]).filter(|change| !change.is_empty())
-    }
-
-    /// Whether the displacement followed a quadratic in the last step; that of an elastic body, without past, may follow any.
-    pub(crate) fn followed_quadratic(&self, last: Interval) -> bool {
-        self.exponential_rule().is_some_and(|rule| match rule.remembers() {
-            true => rule.followed_quadratic(),
-            false => last.interpolant == Interpolant::CorrectedQuadratic,
-        })
-    }
-
-    /// The changes of the displacement and of the source of its far field in the step before the last, where they are kept
-    /// and [`History::displacement_before`] is known.
-    pub(crate) fn change_before(&self) -> Option<(&[f64], Option<&[f64]>)> {
-        let change = self.displacement.past.change_before()?;
-        match &self.far {
-            Some(far) => far.past.change_before().map(|far| (change, Some(far))),
-            None => Some((change, None)),
-        }
     }
 
     /// The source U of the far field, if only a window is computed.
@@ -228,7 +239,7 @@ impl History {
         kernel: &LocalKernel,
         work: &mut Workspace,
     ) -> Result<(f64, usize)> {
-        self.before_is_kept = false;
+        self.start_is_kept = false;
         let History { rule, displacement, far, .. } = self;
         match rule {
             Rule::Exponential(own) => {
@@ -323,12 +334,13 @@ impl History {
             }
         }
         // under bodies that moved, the field before the step belongs to other places
-        self.before_is_kept = step.stride == [0; 2];
+        self.start_is_kept = step.stride == [0; 2];
     }
 
-    /// The same past on other cells. The displacement before the last step stays behind.
+    /// The same past on other cells. The start of the last step is given up.
     pub(crate) fn carried(&mut self, transfer: &mut impl Transfer) -> History {
         let cells = transfer.cells();
+        self.start_is_kept = false;
         let (count, History { rule, displacement, far, .. }) = (cells[0] * cells[1], self);
         if let Some(own) = rule.exponential() {
             displacement.settle(own);
@@ -345,12 +357,12 @@ impl History {
         let displacement = displacement.carried(count, far.as_ref(), |own, source| transfer.induced(own, source));
         let far = far.as_ref().filter(|_| !transfer.covers());
         let far = far.map(|far| far.carried(count, None, |own, _| transfer.confined(own)));
-        History { rule, displacement, far, before_is_kept: false }
+        History { rule, displacement, far, start_is_kept: false }
     }
 
     /// Copies another without reallocating where both have the same rule and cells, and no direct sum grows.
     pub(crate) fn copy_from(&mut self, other: &History) {
-        self.before_is_kept = other.before_is_kept;
+        self.start_is_kept = other.start_is_kept;
         self.rule.copy_from(&other.rule);
         self.displacement.copy_from(&other.displacement);
         match (&mut self.far, &other.far) {
@@ -362,9 +374,9 @@ impl History {
     /// The same on `cells` other cells, with every field zero; by the exponential rule, on no window of a grid.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn blank_on(&self, cells: usize) -> History {
-        let History { rule, displacement, before_is_kept, .. } = self;
+        let History { rule, displacement, start_is_kept, .. } = self;
         let displacement = displacement.blank_on(cells);
-        History { rule: rule.clone(), displacement, far: None, before_is_kept: *before_is_kept }
+        History { rule: rule.clone(), displacement, far: None, start_is_kept: *start_is_kept }
     }
 
     /// Copies the cells in common with another of the same rule.

@@ -32,17 +32,15 @@ mod past;
 mod remembered_field;
 #[cfg(test)]
 mod rule_tests;
-mod step_polynomial;
 mod time_error;
 mod transfer;
 
 #[cfg(feature = "checkpoint")]
 pub(crate) use common_cells::CommonCells;
 pub(crate) use direct_sum::Weighting;
-pub(crate) use exponential_rule::{ExponentialRule, Interpolant, MAX_GROWTH};
+pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
 pub(crate) use history::{History, HistoryInputs, no_elastic_response};
 pub(crate) use interval::Interval;
 pub(crate) use remembered_field::RememberedField;
-pub(crate) use step_polynomial::StepPolynomial;
 pub(crate) use time_error::{ErrorMeasure, TimeError};
 pub(crate) use transfer::Transfer;

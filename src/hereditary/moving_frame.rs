@@ -98,6 +98,11 @@ impl MovingFrame {
         }
     }
 
+    /// Returns to the start of the step accepted last, in which the bodies did not move, `displacement` with it.
+    pub(crate) fn roll_back(&mut self, displacement: &mut RememberedField) {
+        [displacement, &mut self.source, &mut self.remainder].into_iter().for_each(RememberedField::roll_back);
+    }
+
     /// The same past on other cells; `carry` says what a field is there.
     pub(crate) fn carried(
         &mut self,

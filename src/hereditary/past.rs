@@ -93,10 +93,9 @@ impl Past {
         [&self.differences[0], &self.differences[1]]
     }
 
-    /// The change of the field in the step before the last, until that is taken in; none where it is not kept.
-    pub(super) fn change_before(&self) -> Option<&[f64]> {
-        let [first, _] = self.differences();
-        (self.waiting && !first.is_empty()).then_some(first)
+    /// Drops the step committed last, which has not been taken in.
+    pub(super) fn roll_back(&mut self) {
+        self.waiting = false;
     }
 
     /// Calls `take` with c Σ e^(−z_i) q_i less the share of the differences, for each cell that is `wanted`; after

@@ -88,6 +88,12 @@ impl RememberedField {
         std::mem::swap(&mut self.now, &mut self.trial);
     }
 
+    /// Returns to the start of the step accepted last; only before anything else is predicted.
+    pub(super) fn roll_back(&mut self) {
+        self.past.roll_back();
+        std::mem::swap(&mut self.now, &mut self.trial);
+    }
+
     /// Lets the past take in the last step, so that nothing depends on the field before it any more.
     pub(super) fn settle(&mut self, rule: &ExponentialRule) {
         self.past.settle(rule, &self.trial, &self.now);

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use viscocontact::contact::Builder;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
@@ -116,13 +117,22 @@ impl RandomScene {
     }
 
     fn contact_of(&self, material: Material, time_rule: TimeRule, tolerance: f64) -> ViscoelasticContact {
+        let settings = Settings::default().with_tolerance(tolerance).with_time_rule(time_rule);
+        self.builder(settings).material(material).build().unwrap()
+    }
+
+    /// The scene before it is built, with contact allowed at the edge.
+    pub fn builder(&self, settings: Settings) -> Builder {
         ViscoelasticContact::builder(self.grid.clone())
             .geometry(&*self.geometry)
-            .material(material)
+            .material(self.body.material.clone())
             .kernel(self.kernel.clone())
-            .settings(Settings::default().with_tolerance(tolerance).with_time_rule(time_rule).with_edge(Edge::Allow))
-            .build()
-            .unwrap()
+            .settings(settings.with_edge(Edge::Allow))
+    }
+
+    /// The grid of the scene.
+    pub fn grid(&self) -> &Grid {
+        &self.grid
     }
 
     /// The contact before any load, whose problems are solved to `tolerance`.

@@ -4,6 +4,7 @@ mod adaptive;
 mod fixed_steps;
 mod follow;
 mod honest;
+mod inside;
 mod protocols;
 mod protocols_run;
 mod temperature;

@@ -32,6 +32,7 @@ impl Assembled {
         };
         let state = State {
             loads: state.loads.clone(),
+            start: state.start.clone(),
             indenter: Arc::clone(&state.indenter),
             history: state.history.blank_on(cells),
             current: blank(&state.current),

@@ -35,7 +35,7 @@ pub(super) fn check(
     rows: Option<&Region>,
 ) -> Result<(), CheckpointError> {
     let (scene, built) = (&contact.scene, &contact.computation.state.history);
-    let State { clock, loads, indenter, region, history, current, previous, earlier, .. } = state;
+    let State { clock, loads, indenter, region, history, current, previous, start, .. } = state;
     let (bodies, gap, cells) = (scene.bodies, indenter.gap(), region.len());
     let covers = rows.is_some() || region.covers();
     let allowed = match rows {
@@ -55,7 +55,7 @@ pub(super) fn check(
         Some(owner) => bodies > 1 && owner.len() == gap_cells && owner.iter().all(of_a_body),
         None => bodies == 1,
     };
-    let fits = [loads.len(), indenter.bodies()] == [bodies; 2]
+    let fits = [loads.len(), start.loads.len(), indenter.bodies()] == [bodies; 3]
         && complete(current)
         && complete(previous)
         && gap.above.len() == gap_cells
@@ -65,16 +65,21 @@ pub(super) fn check(
         return malformed("fields that do not fit its region, or another time rule");
     }
     let finite = |fields: &[&[f64]]| fields.iter().all(|field| field.iter().all(|value| value.is_finite()));
-    let times = [clock.time, clock.last_length, clock.reduced_time, clock.undisturbed_until, clock.last_dt];
+    let times_of = |clock: &Clock| {
+        [clock.time, clock.last_length, clock.reduced_time, clock.undisturbed_until, clock.last_dt]
+    };
+    let times = [times_of(clock), times_of(&start.clock)].concat();
     let sound = |Equilibrium { solution, motions, .. }: &Equilibrium| {
         finite(&[&solution.pressure, &solution.potential])
             && motions.iter().all(|motion| finite(&[&[motion.approach], &motion.tilt]))
     };
+    let start_of_step = if history.start_is_kept() { history.trial() } else { &[] };
     let sound =
-        finite(&[&times, &[gap.datum], history.displacement(), history.displacement_before().unwrap_or_default()])
+        finite(&[&times, &[gap.datum], history.displacement(), start_of_step])
             && sound(current)
             && sound(previous)
-            && earlier.is_none_or(|earlier| earlier.is_sound())
+            && start.clock.time <= clock.time
+            && start.loads.iter().all(|load| load.validate().is_ok())
             && current.solution.pressure.iter().all(|&p| p >= 0.0)
             && gap.above.iter().all(|&gap| gap >= 0.0)
             && times.iter().all(|&time| time >= 0.0);

@@ -24,7 +24,7 @@ pub(super) enum Kind {
 }
 
 /// Raised whenever what is saved changes.
-pub(super) const VERSION: u32 = 6;
+pub(super) const VERSION: u32 = 7;
 /// Magic number, version, length, checksum of all but itself.
 const HEADER: usize = 24;
 const CHECKSUM: usize = 20;

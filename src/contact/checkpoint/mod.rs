@@ -111,6 +111,10 @@ impl ViscoelasticContact {
             // not one save on one rank and the next on another
             rows.same([f64::from(checksum)])?;
             state.sum_up();
+            if state.indenter_is_new {
+                // the indenter of the last step is not saved
+                state.history.forget_start();
+            }
             self.computation = Computation::new(&self.scene, state);
             self.view.refresh(&self.computation.state);
             self.progress = progress.map(Box::new);

@@ -40,7 +40,7 @@ const SAME_TIME: f64 = 1e-6;
 /// ```
 ///
 /// With [`Stepping::adaptive`] the steps follow what happens, here over nine decades of time; the state in between
-/// is there for the asking, [`ViscoelasticContact::within_step`]:
+/// is there for the asking, [`Follow::within_step`]:
 ///
 /// ```
 /// # use viscocontact::prelude::*;
@@ -63,7 +63,7 @@ const SAME_TIME: f64 = 1e-6;
 #[must_use = "a run takes no step until next_step is called"]
 pub struct Follow<'a> {
     pub(in crate::contact) contact: Held<'a>,
-    pub(super) history: HeldHistory<'a>,
+    pub(in crate::contact) history: HeldHistory<'a>,
     stepping: Stepping,
     pub(super) until: f64,
     pub(in crate::contact) progress: Progress,
@@ -206,7 +206,7 @@ impl<'a> Follow<'a> {
         let load = self.history.before(time).validated_at(time)?;
         let report = self.step_to(time, time - now, load)?;
         if time == corner {
-            self.contact.computation.state.forget_slopes();
+            self.contact.computation.state.history.forget_slopes();
         }
         Ok(Some(report))
     }
@@ -228,7 +228,7 @@ impl<'a> Follow<'a> {
         Ok(report)
     }
 
-    fn solver_tolerance(&self) -> f64 {
+    pub(in crate::contact) fn solver_tolerance(&self) -> f64 {
         let wanted = self.contact.settings().tolerance;
         self.progress.control.as_ref().map_or(wanted, |control| control.solver_tolerance(wanted))
     }

@@ -16,8 +16,12 @@ impl Computation {
         let (before, after) = (&state.current.solution, &trial.solution);
         let pressed = [[&before.pressure[..], &after.pressure], [&before.potential, &after.potential]];
         state.history.commit(interval, pressed, touched);
+        if step.indenter.id() != state.indenter.id() {
+            // where the indenter was within the step is not known
+            state.history.forget_start();
+        }
 
-        state.keep_earlier(interval);
+        state.keep_start(interval.interpolant);
         std::mem::swap(&mut state.previous, &mut state.current);
         std::mem::swap(&mut state.current.solution, &mut trial.solution);
         (state.current.contact_cells, state.current.sum) = (state.region.images() * contact_cells, sum);

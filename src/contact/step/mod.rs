@@ -142,16 +142,21 @@ impl ViscoelasticContact {
 
     /// Makes an attempt the state. Nothing here can fail.
     pub(in crate::contact) fn accept(&mut self, attempt: Attempt, step: Step<'_>, error: TimeError) -> StepReport {
-        if let Some(larger) = attempt.larger {
-            self.computation = *larger;
-        }
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
-        self.computation.accept(step, attempt.sum, error.sizes);
-        self.view.refresh(&self.computation.state);
+        self.adopt(attempt, step, error.sizes);
         let report = StepReport { time_error: estimated.then_some(error.relative), ..self.report() };
         report.emit();
         report
+    }
+
+    /// Makes an attempt the state, without a report; `sizes` are the means of displacement and v in contact.
+    pub(in crate::contact) fn adopt(&mut self, attempt: Attempt, step: Step<'_>, sizes: [f64; 2]) {
+        if let Some(larger) = attempt.larger {
+            self.computation = *larger;
+        }
+        self.computation.accept(step, attempt.sum, sizes);
+        self.view.refresh(&self.computation.state);
     }
 
     fn report(&self) -> StepReport {

@@ -69,6 +69,7 @@ pub(in crate::contact) fn carried(
     });
     let carried = State {
         loads: state.loads.clone(),
+        start: state.start.clone(),
         indenter: state.indenter.clone(),
         region,
         history,

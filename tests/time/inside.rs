@@ -1,0 +1,326 @@
+//! Is the state within a step as exact as one at the end of a step?
+//!
+//! The forge runs 300 scenes. By hand: `INSIDE_SCENES=300 cargo test --test suite time::inside -- --nocapture`; `INSIDE_SEED=7`
+//! draws others, `INSIDE_FIRST=17` begins with that number, `INSIDE_LINES=1` prints every scene.
+
+use std::sync::Arc;
+
+use approx::assert_abs_diff_eq;
+use viscocontact::Error;
+use viscocontact::prelude::*;
+use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
+
+use crate::common::draws::Draws;
+use crate::common::environment::from_environment;
+use crate::common::random_scenes::RandomScene;
+use crate::common::runs::scenes;
+use crate::common::spheres::builder_on;
+
+/// A history that is one until a time, and another from then on.
+#[derive(Debug)]
+struct InTurn<'a> {
+    first: &'a dyn LoadHistory,
+    until: f64,
+    then: Ramp,
+}
+
+impl LoadHistory for InTurn<'_> {
+    fn at(&self, t: f64) -> Load {
+        if t < self.until { self.first.at(t) } else { self.then.at(t) }
+    }
+
+    fn before(&self, t: f64) -> Load {
+        if t <= self.until { self.first.before(t) } else { self.then.before(t) }
+    }
+
+    fn next_breakpoint(&self, after: f64) -> Option<f64> {
+        let first = self.first.next_breakpoint(after).filter(|&time| time < self.until);
+        first.or((after < self.until).then_some(self.until)).or_else(|| self.then.next_breakpoint(after))
+    }
+}
+
+/// A run of so many steps does not end.
+const MOST_STEPS: usize = 20_000;
+
+/// What is seen of a state.
+struct Seen {
+    /// Approach, force, tilt times half the length of the grid, greatest pressure.
+    values: [f64; 4],
+    pressure: Vec<f64>,
+}
+
+/// On a mesh the contact area changes by whole cells: it is off by the cells that are in contact in one of two states only, and so by
+/// the greatest pressure that acts on such a cell.
+const QUANTITIES: [&str; 5] = ["approach", "force", "tilt", "greatest pressure", "contact area"];
+
+fn seen(contact: &ViscoelasticContact) -> Seen {
+    let [tilt1, tilt2] = contact.tilt();
+    let half = 0.5 * contact.grid().lengths()[0];
+    let values = [contact.approach(), contact.force(), half * (tilt1 + tilt2), contact.max_pressure()];
+    Seen { values, pressure: contact.pressure().to_vec() }
+}
+
+/// By how much two states differ.
+fn differences(one: &Seen, other: &Seen) -> [f64; 5] {
+    let by = |which: usize| (one.values[which] - other.values[which]).abs();
+    let cells = one.pressure.iter().zip(&other.pressure).filter(|(one, other)| (**one > 0.0) != (**other > 0.0));
+    [by(0), by(1), by(2), by(3), cells.fold(0.0, |most, (one, other)| most.max(one.max(*other)))]
+}
+
+/// In given steps: the state is the one of a shorter step from the same start, whatever is computed and by whichever rule. Where
+/// the indenter or the bodies move in a step, only its end is left.
+#[test]
+fn a_state_within_a_given_step_is_a_shorter_step() {
+    for (name, build, step) in scenes() {
+        let mut contact = build();
+        for k in 0..7 {
+            let start = contact.clone();
+            let report = step(&mut contact, k);
+            let time = report.time - 0.3 * report.dt;
+            if name.contains("rolling") || name.contains("sliding") {
+                assert!(report.dt == 0.0 || matches!(contact.within_step(time), Err(Error::OutOfRange { .. })), "{name}");
+                continue;
+            }
+            assert_eq!(contact.within_step(report.time).unwrap().pressure(), contact.pressure());
+            if report.dt == 0.0 {
+                continue;
+            }
+            let at_start = contact.within_step(start.time());
+            assert!(at_start.is_ok_and(|found| found.pressure() == start.pressure()), "{name}, start of step {k}");
+            let within = contact.within_step(time).unwrap();
+            let mut twin = start.clone();
+            let share = (time - start.time()) / report.dt;
+            let between = |a: f64, b: f64| a + share * (b - a);
+            let loads: Vec<Load> = (0..contact.bodies())
+                .map(|body| {
+                    let [before, after] = [&start, &contact].map(|contact| contact.body(body).unwrap().force);
+                    match (start.load().tilt(), contact.load().tilt()) {
+                        ([Tilt::Free { at: a1 }, Tilt::Free { at: a2 }], [Tilt::Free { at: b1 }, Tilt::Free { at: b2 }]) => {
+                            Load::eccentric_force(between(before, after), [between(a1, b1), between(a2, b2)])
+                        }
+                        (_, [Tilt::Free { at: b1 }, Tilt::Free { at: b2 }]) => {
+                            Load::eccentric_force(between(before, after), [b1, b2])
+                        }
+                        _ => Load::force(between(before, after)),
+                    }
+                })
+                .collect();
+            twin.step_each(time - start.time(), &loads).unwrap();
+            let off = differences(&seen(&within), &seen(&twin));
+            let [approach, force, tilt, most] = seen(&contact).values;
+            let greatest = [approach, force, approach + tilt.abs(), most, most];
+            for (which, quantity) in QUANTITIES.iter().enumerate() {
+                assert!(off[which] <= 1e-4 * greatest[which], "{name}, step {k}: {quantity} {off:?} of {greatest:?}");
+            }
+            // it goes on like any other contact
+            let mut further = within.clone();
+            further.step_each(report.time - time, &loads).unwrap();
+            assert!(further.within_step(report.time).is_ok());
+        }
+    }
+}
+
+/// After a jump nothing before the step tells how it goes on: half of a long step is a step of half its length, not half of what
+/// happens in it. The ends are the states themselves, and other times are refused.
+#[test]
+fn half_of_a_long_relaxation_is_not_half_of_its_end() {
+    let zener = Material::incompressible(Zener::new(1.0e6, 0.1e6, 0.1e6).unwrap());
+    let mut contact = builder_on(Grid::square(32, 4.0e-3).unwrap(), zener).build().unwrap();
+    contact.step(0.0, Load::approach(2.0e-5)).unwrap();
+    let (start, instant) = (contact.clone(), contact.force());
+    contact.step(10.0, Load::approach(2.0e-5)).unwrap();
+    let relaxed = contact.force();
+    let time = 0.5;
+    // G(t) = G∞ + (G − G∞) e^(−t/τ): the force under a held approach follows it
+    let (rubbery, tau) = (0.1 / 1.1, 0.1 / 1.1);
+    let modulus = |t: f64| rubbery + (1.0 - rubbery) * (-t / tau).exp();
+    let within = contact.within_step(time).unwrap();
+    assert_abs_diff_eq!(within.force(), instant * modulus(time), epsilon = 1e-5 * instant);
+    assert_abs_diff_eq!(relaxed, instant * rubbery, epsilon = 1e-5 * instant);
+    assert_eq!(within.approach(), 2.0e-5);
+    assert_eq!(contact.within_step(0.0).unwrap().pressure(), start.pressure());
+    for outside in [-0.1, 10.1, f64::NAN] {
+        assert!(matches!(contact.within_step(outside), Err(Error::OutOfRange { .. })), "{outside}");
+    }
+    // a step that fails has overwritten the start of the last one
+    assert!(contact.step(1.0, Load::force(1.0e6)).is_err());
+    assert!(contact.within_step(time).is_err() && contact.within_step(10.0).is_ok());
+}
+
+/// A random scene, in part with a layer, a temperature that changes, or force and approach in turn.
+struct Inside {
+    scene: RandomScene,
+    what: &'static str,
+    kernel: Option<Arc<InfluenceKernel>>,
+    temperature: Option<TemperatureHistory>,
+}
+
+impl Inside {
+    fn new(seed: u64, number: u64) -> Inside {
+        let mut draws = Draws::new(seed.wrapping_mul(7_777_777).wrapping_add(number));
+        let scene = RandomScene::new(seed, number);
+        let (mut kernel, mut temperature, mut what) = (None, None, "");
+        match draws.below(5) {
+            0 => {
+                let thickness = scene.grid().lengths()[0] * draws.power_of_ten(-1.0, 0.5);
+                let layer = match draws.below(3) {
+                    0 => Layer::bonded_to_rigid(thickness, 0.5),
+                    1 => Layer::frictionless_on_rigid(thickness, 0.5),
+                    _ => Layer::bonded_to_half_space(thickness, 0.5, draws.power_of_ten(-1.0, 1.0), 0.5),
+                };
+                kernel = Some(Arc::new(InfluenceKernel::layer(scene.grid(), layer.unwrap()).unwrap()));
+                what = "layer, ";
+            }
+            1 => {
+                let law = TimeTemperature::wlf(10.0, 60.0, 300.0).unwrap();
+                let (warmer, until) = (draws.between(-8.0, 8.0), scene.body.until);
+                let table = [(0.0, 300.0), (0.4 * until, 300.0 + warmer), (1.1 * until, 300.0)];
+                temperature = Some(TemperatureHistory::table(law, &table).unwrap());
+                what = "temperature, ";
+            }
+            2 if scene.body.is_elastic_at_once() => what = "in turn, ",
+            _ => {}
+        }
+        Inside { scene, what, kernel, temperature }
+    }
+
+    fn contact(&self, tolerance: f64) -> ViscoelasticContact {
+        let mut builder = self.scene.builder(Settings::default().with_tolerance(tolerance));
+        if let Some(kernel) = &self.kernel {
+            builder = builder.kernel(kernel.clone());
+        }
+        if let Some(temperature) = &self.temperature {
+            builder = builder.temperature(temperature.clone());
+        }
+        builder.build().unwrap()
+    }
+
+    /// Force and approach in turn: from the state that the first half of the history leads to, the other is given.
+    fn in_turn(&self) -> Result<InTurn<'_>, Error> {
+        let (first, until) = (self.scene.load(), self.scene.body.until);
+        let half = 0.5 * until;
+        let mut contact = self.contact(1e-9);
+        let mut run = contact.follow(first, Stepping::adaptive(1e-5), half);
+        while run.next_step()?.is_some() {}
+        let turned = |part: f64| match first.before(half) {
+            Load::Force { .. } => Load::approach(contact.approach() + (part - 1.0) * contact.approach().abs()),
+            _ => Load::force(part * contact.force()),
+        };
+        let then = Ramp::new(turned(1.0), turned(1.2), until)?;
+        Ok(InTurn { first, until: half, then })
+    }
+
+    /// States within the steps of a run with this `tolerance`, and at their ends.
+    fn run(&self, history: &dyn LoadHistory, tolerance: f64) -> Result<Run, Error> {
+        let mut contact = self.contact(Settings::default().tolerance.min(0.01 * tolerance));
+        let mut run = contact.follow(history, Stepping::adaptive(tolerance), self.scene.body.until);
+        let (mut states, mut steps) = (Vec::new(), 0);
+        while let Some(report) = run.next_step()? {
+            steps += 1;
+            assert!(steps < MOST_STEPS, "endless at {:e} s: {}{}", report.time, self.what, self.scene.name);
+            for share in [0.25, 0.5, 0.75].into_iter().filter(|_| report.dt > 0.0) {
+                let time = report.time - (1.0 - share) * report.dt;
+                if time > report.time - report.dt && time < report.time {
+                    let within = run.within_step(time)?;
+                    states.push((time, true, seen(&within)));
+                }
+            }
+            if report.dt > 0.0 {
+                states.push((report.time, false, seen(run.contact())));
+            }
+        }
+        let pressure = run.error_budget().pressure.unwrap_or(0.0).max(tolerance);
+        Ok(Run { states, pressure })
+    }
+
+    /// The states of a run that is much more exact, at the times of another, where it ends steps.
+    fn truth(&self, history: &dyn LoadHistory, tolerance: f64, times: &[f64]) -> Result<Vec<(f64, Seen)>, Error> {
+        let mut contact = self.contact(1e-9);
+        let fine = Stepping::adaptive((0.02 * tolerance).max(1e-8));
+        let mut run = contact.follow(history, fine, self.scene.body.until).stop_at(times)?;
+        let mut states = Vec::new();
+        while let Some(report) = run.next_step()? {
+            if report.dt > 0.0 && times.binary_search_by(|time| time.total_cmp(&report.time)).is_ok() {
+                states.push((report.time, seen(run.contact())));
+            }
+        }
+        Ok(states)
+    }
+}
+
+struct Run {
+    /// Times, whether they lie within a step, and the states.
+    states: Vec<(f64, bool, Seen)>,
+    /// What the budget says of the pressure.
+    pressure: f64,
+}
+
+/// Greatest error of each quantity, relative to the greatest of the run, in tolerances, those of pressures in what the budget says
+/// of them: within the steps of a run, and at their ends.
+fn errors(inside: &Inside, tolerance: f64) -> Result<[[f64; 5]; 2], Error> {
+    let in_turn;
+    let history: &dyn LoadHistory = if inside.what.starts_with("in turn") {
+        in_turn = inside.in_turn()?;
+        &in_turn
+    } else {
+        inside.scene.load()
+    };
+    let Run { states, pressure } = inside.run(history, tolerance)?;
+    let times: Vec<f64> = states.iter().map(|(time, ..)| *time).collect();
+    let exact = inside.truth(history, tolerance, &times)?;
+    let values = |which: usize| exact.iter().fold(0.0, |most: f64, (_, seen)| most.max(seen.values[which].abs()));
+    // a tilt is a displacement at the end of the grid
+    let greatest = [values(0), values(1), values(0).max(values(2)), values(3), values(3)];
+    let mut worst = [[0.0_f64; 5]; 2];
+    for (time, within, found) in &states {
+        let at = exact.partition_point(|(exact, _)| exact < time);
+        let (_, exact) = exact.get(at).filter(|(exact, _)| exact == time).expect("the run stops there");
+        let off = differences(found, exact);
+        for which in 0..5 {
+            let asked = if which > 2 { pressure } else { tolerance };
+            let worst = &mut worst[usize::from(!within)][which];
+            *worst = worst.max(off[which] / greatest[which].max(1e-300) / asked);
+        }
+    }
+    Ok(worst)
+}
+
+/// States within the steps of adaptive runs are at most twice as far off as was asked for, the greatest pressure than the budget
+/// states.
+#[test]
+fn states_within_adaptive_steps_are_as_exact_as_was_asked() {
+    let (scenes, seed) = (from_environment("INSIDE_SCENES", 10), from_environment("INSIDE_SEED", 1));
+    let first = from_environment("INSIDE_FIRST", 0);
+    let lines = from_environment("INSIDE_LINES", 0) > 0;
+    let (mut all, mut failed) = (Vec::new(), 0);
+    for number in first..first + scenes {
+        let inside = Inside::new(seed, number);
+        for tolerance in [1e-3, 1e-4] {
+            match errors(&inside, tolerance) {
+                Ok(errors) => {
+                    if lines || errors[0].iter().any(|&error| error > 2.0) {
+                        let [within, ends] = errors;
+                        println!("{tolerance:.0e} {within:.2?}, ends {ends:.2?} {}{}", inside.what, inside.scene.name);
+                    }
+                    all.push(errors);
+                }
+                Err(error) => {
+                    println!("{tolerance:.0e} {error} {}{}", inside.what, inside.scene.name);
+                    failed += 1;
+                }
+            }
+        }
+    }
+    println!("true over asked, or over the budget of the pressure:");
+    for (which, name) in QUANTITIES.iter().enumerate() {
+        for (where_, side) in ["within", "ends"].into_iter().zip([0, 1]) {
+            let mut of: Vec<f64> = all.iter().map(|errors: &[[f64; 5]; 2]| errors[side][which]).collect();
+            of.sort_by(f64::total_cmp);
+            let at = |part: f64| of[(part * (of.len() - 1) as f64).round() as usize];
+            let above = of.iter().filter(|&&error| error > 2.0).count();
+            let [median, most] = [at(0.5), at(1.0)];
+            println!("{name:<18} {where_:<7} median {median:.3}, 99 % {:.2}, most {most:.2}, above 2: {above} of {}", at(0.99), of.len());
+        }
+    }
+    println!("{failed} runs failed");
+}
