@@ -243,8 +243,8 @@ impl History {
         let History { rule, displacement, far, .. } = self;
         match rule {
             Rule::Exponential(own) => {
-                // on periodic bodies u is measured from its mean
-                let least_side = if kernel.mean_is_held() { f64::INFINITY } else { inputs.least_side };
+                // u tells nothing by its sign where pressures raise the surface
+                let least_side = if kernel.raises() { f64::INFINITY } else { inputs.least_side };
                 displacement.predict_non_negative(own, (step.dt, step.interpolant), least_side, kernel.rows());
                 far.iter_mut().for_each(|far| far.predict(own));
                 Ok((own.compliance(), 0))
@@ -264,10 +264,7 @@ impl History {
                     kernel.apply(source, trial, work);
                     trial.iter_mut().zip(remainder).for_each(|(u_old, &e)| *u_old += e);
                     convolutions += 1;
-                    if kernel.mean_is_held()
-                        || !own.has_less()
-                        || !displacement.dips(own, inputs.least_side, kernel.rows())
-                    {
+                    if kernel.raises() || !own.has_less() || !displacement.dips(own, inputs.least_side, kernel.rows()) {
                         return Ok((own.compliance(), convolutions));
                     }
                     own.weigh_less();

@@ -26,7 +26,13 @@ const FARTHEST_DATUM: f64 = 1e120;
 
 impl InfluenceKernel {
     pub(super) fn new(grid: &Grid, influence: Influence) -> InfluenceKernel {
-        InfluenceKernel { grid: grid.clone(), influence, operators: Default::default(), on_itself: Default::default() }
+        InfluenceKernel {
+            grid: grid.clone(),
+            influence,
+            operators: Default::default(),
+            on_itself: Default::default(),
+            raises: Default::default(),
+        }
     }
 
     /// The kernel of an elastic half-space (Eq. 6 of the [paper](crate::paper)): Love's coefficients, right to 1e-14 at every

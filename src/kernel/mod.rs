@@ -80,6 +80,7 @@ pub struct InfluenceKernel {
     operators: [OnceLock<Arc<SpectralOperator>>; 4],
     /// The influence of a cell on itself, once it is needed.
     on_itself: OnceLock<f64>,
+    raises: OnceLock<bool>,
 }
 
 /// Buffers of [`InfluenceKernel::convolve`], made by [`InfluenceKernel::workspace`].
@@ -97,6 +98,7 @@ pub(crate) struct LocalKernel {
     folded: [bool; 2],
     self_influence: f64,
     softest: Option<f64>,
+    raises: bool,
 }
 
 impl InfluenceKernel {
@@ -264,6 +266,7 @@ impl InfluenceKernel {
             folded,
             self_influence: self.self_influence(),
             softest: self.influence.softest_wave_if_mean_is_held(&self.grid),
+            raises: *self.raises.get_or_init(|| self.influence.raises(&self.grid)),
         }
     }
 
@@ -333,6 +336,11 @@ impl LocalKernel {
     /// Whether the mean displacement is fixed: then the approach cannot exceed that of full contact.
     pub(crate) fn mean_is_held(&self) -> bool {
         self.softest.is_some()
+    }
+
+    /// Whether a pressure raises the surface somewhere, so that displacements may be negative.
+    pub(crate) fn raises(&self) -> bool {
+        self.raises
     }
 
     /// The layer, if the body is one.

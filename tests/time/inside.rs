@@ -40,7 +40,7 @@ impl LoadHistory for InTurn<'_> {
 }
 
 /// A run of so many steps does not end.
-const MOST_STEPS: usize = 20_000;
+const MOST_STEPS: usize = 5000;
 
 /// What is seen of a state.
 struct Seen {
@@ -78,7 +78,10 @@ fn a_state_within_a_given_step_is_a_shorter_step() {
             let report = step(&mut contact, k);
             let time = report.time - 0.3 * report.dt;
             if name.contains("rolling") || name.contains("sliding") {
-                assert!(report.dt == 0.0 || matches!(contact.within_step(time), Err(Error::OutOfRange { .. })), "{name}");
+                assert!(
+                    report.dt == 0.0 || matches!(contact.within_step(time), Err(Error::OutOfRange { .. })),
+                    "{name}"
+                );
                 continue;
             }
             assert_eq!(contact.within_step(report.time).unwrap().pressure(), contact.pressure());
@@ -95,9 +98,10 @@ fn a_state_within_a_given_step_is_a_shorter_step() {
                 .map(|body| {
                     let [before, after] = [&start, &contact].map(|contact| contact.body(body).unwrap().force);
                     match (start.load().tilt(), contact.load().tilt()) {
-                        ([Tilt::Free { at: a1 }, Tilt::Free { at: a2 }], [Tilt::Free { at: b1 }, Tilt::Free { at: b2 }]) => {
-                            Load::eccentric_force(between(before, after), [between(a1, b1), between(a2, b2)])
-                        }
+                        (
+                            [Tilt::Free { at: a1 }, Tilt::Free { at: a2 }],
+                            [Tilt::Free { at: b1 }, Tilt::Free { at: b2 }],
+                        ) => Load::eccentric_force(between(before, after), [between(a1, b1), between(a2, b2)]),
                         (_, [Tilt::Free { at: b1 }, Tilt::Free { at: b2 }]) => {
                             Load::eccentric_force(between(before, after), [b1, b2])
                         }
@@ -168,13 +172,16 @@ impl Inside {
                     1 => Layer::frictionless_on_rigid(thickness, 0.5),
                     _ => Layer::bonded_to_half_space(thickness, 0.5, draws.power_of_ten(-1.0, 1.0), 0.5),
                 };
-                kernel = Some(Arc::new(InfluenceKernel::layer(scene.grid(), layer.unwrap()).unwrap()));
-                what = "layer, ";
+                let layered = Arc::new(InfluenceKernel::layer(scene.grid(), layer.unwrap()).unwrap());
+                // a layer has a constant Poisson's ratio
+                if scene.builder(Settings::default()).kernel(layered.clone()).build().is_ok() {
+                    (kernel, what) = (Some(layered), "layer, ");
+                }
             }
             1 => {
                 let law = TimeTemperature::wlf(10.0, 60.0, 300.0).unwrap();
-                let (warmer, until) = (draws.between(-8.0, 8.0), scene.body.until);
-                let table = [(0.0, 300.0), (0.4 * until, 300.0 + warmer), (1.1 * until, 300.0)];
+                let (colder, until) = (draws.between(-8.0, 0.0), scene.body.until);
+                let table = [(0.0, 300.0), (0.4 * until, 300.0 + colder), (1.1 * until, 300.0)];
                 temperature = Some(TemperatureHistory::table(law, &table).unwrap());
                 what = "temperature, ";
             }
@@ -211,13 +218,15 @@ impl Inside {
     }
 
     /// States within the steps of a run with this `tolerance`, and at their ends.
-    fn run(&self, history: &dyn LoadHistory, tolerance: f64) -> Result<Run, Error> {
+    fn run(&self, history: &dyn LoadHistory, tolerance: f64) -> Result<Run, Box<dyn std::error::Error>> {
         let mut contact = self.contact(Settings::default().tolerance.min(0.01 * tolerance));
         let mut run = contact.follow(history, Stepping::adaptive(tolerance), self.scene.body.until);
         let (mut states, mut steps) = (Vec::new(), 0);
         while let Some(report) = run.next_step()? {
             steps += 1;
-            assert!(steps < MOST_STEPS, "endless at {:e} s: {}{}", report.time, self.what, self.scene.name);
+            if steps == MOST_STEPS {
+                return Err(format!("endless at {:e} s", report.time).into());
+            }
             for share in [0.25, 0.5, 0.75].into_iter().filter(|_| report.dt > 0.0) {
                 let time = report.time - (1.0 - share) * report.dt;
                 if time > report.time - report.dt && time < report.time {
@@ -230,6 +239,16 @@ impl Inside {
             }
         }
         let pressure = run.error_budget().pressure.unwrap_or(0.0).max(tolerance);
+        if std::env::var("INSIDE_TRACE").is_ok() {
+            println!(
+                "{}problems {} rejected {} {:.0e} {}",
+                self.what,
+                steps as u64 + run.rejected_steps(),
+                run.rejected_steps(),
+                tolerance,
+                self.scene.name
+            );
+        }
         Ok(Run { states, pressure })
     }
 
@@ -257,7 +276,7 @@ struct Run {
 
 /// Greatest error of each quantity, relative to the greatest of the run, in tolerances, those of pressures in what the budget says
 /// of them: within the steps of a run, and at their ends.
-fn errors(inside: &Inside, tolerance: f64) -> Result<[[f64; 5]; 2], Error> {
+fn errors(inside: &Inside, tolerance: f64) -> Result<[[f64; 5]; 2], Box<dyn std::error::Error>> {
     let in_turn;
     let history: &dyn LoadHistory = if inside.what.starts_with("in turn") {
         in_turn = inside.in_turn()?;
@@ -285,42 +304,59 @@ fn errors(inside: &Inside, tolerance: f64) -> Result<[[f64; 5]; 2], Error> {
     Ok(worst)
 }
 
-/// States within the steps of adaptive runs are at most twice as far off as was asked for, the greatest pressure than the budget
-/// states.
+/// Greatest error of each quantity, over asked, for states within steps and at their ends.
+fn print_table(all: &[[[f64; 5]; 2]]) {
+    println!("true over asked, of pressures over the budget:");
+    for (which, name) in QUANTITIES.iter().enumerate() {
+        for (side, place) in ["within", "ends"].into_iter().enumerate() {
+            let mut ratios: Vec<f64> = all.iter().map(|errors| errors[side][which]).collect();
+            ratios.sort_by(f64::total_cmp);
+            let at = |part: f64| ratios[(part * (ratios.len() - 1) as f64).round() as usize];
+            let above = ratios.iter().filter(|&&ratio| ratio > 2.0).count();
+            let [median, high, most] = [0.5, 0.99, 1.0].map(at);
+            let count = ratios.len();
+            println!(
+                "{name:<18} {place:<7} median {median:.3}, 99 % {high:.2}, most {most:.2}, above 2: {above} of {count}"
+            );
+        }
+    }
+}
+
+/// States within the steps of adaptive runs err by at most twice what was asked for, and greatest pressures by twice what the budget
+/// states: or as the ends of the steps do, where those err by more.
+///
+/// A body without elastic response answers each cell that it meets with a finite pressure at once, and the step control passes over
+/// what is shorter than its resolution: of such bodies the approach is compared alone.
 #[test]
-fn states_within_adaptive_steps_are_as_exact_as_was_asked() {
-    let (scenes, seed) = (from_environment("INSIDE_SCENES", 10), from_environment("INSIDE_SEED", 1));
+fn states_within_adaptive_steps_are_as_exact_as_the_ends_of_steps() {
+    let (scenes, seed) = (from_environment("INSIDE_SCENES", 12), from_environment("INSIDE_SEED", 1));
     let first = from_environment("INSIDE_FIRST", 0);
     let lines = from_environment("INSIDE_LINES", 0) > 0;
-    let (mut all, mut failed) = (Vec::new(), 0);
+    let (mut all, mut worse, mut failed) = (Vec::new(), 0, 0);
     for number in first..first + scenes {
         let inside = Inside::new(seed, number);
         for tolerance in [1e-3, 1e-4] {
-            match errors(&inside, tolerance) {
-                Ok(errors) => {
-                    if lines || errors[0].iter().any(|&error| error > 2.0) {
-                        let [within, ends] = errors;
-                        println!("{tolerance:.0e} {within:.2?}, ends {ends:.2?} {}{}", inside.what, inside.scene.name);
-                    }
-                    all.push(errors);
-                }
+            let name = format!("{tolerance:.0e} {}{}", inside.what, inside.scene.name);
+            let mut errors = match errors(&inside, tolerance) {
+                Ok(errors) => errors,
                 Err(error) => {
-                    println!("{tolerance:.0e} {error} {}{}", inside.what, inside.scene.name);
+                    println!("{name}: {error}");
                     failed += 1;
+                    continue;
                 }
+            };
+            if !inside.scene.body.is_elastic_at_once() {
+                errors.iter_mut().for_each(|errors| errors[1..].fill(0.0));
             }
+            let [within, ends] = errors;
+            if lines || within.iter().any(|&error| error > 2.0) {
+                println!("{within:.2?}, ends {ends:.2?} {name}");
+            }
+            worse += usize::from(within.iter().zip(ends).any(|(within, end)| *within > f64::max(2.0, 1.2 * end)));
+            all.push(errors);
         }
     }
-    println!("true over asked, or over the budget of the pressure:");
-    for (which, name) in QUANTITIES.iter().enumerate() {
-        for (where_, side) in ["within", "ends"].into_iter().zip([0, 1]) {
-            let mut of: Vec<f64> = all.iter().map(|errors: &[[f64; 5]; 2]| errors[side][which]).collect();
-            of.sort_by(f64::total_cmp);
-            let at = |part: f64| of[(part * (of.len() - 1) as f64).round() as usize];
-            let above = of.iter().filter(|&&error| error > 2.0).count();
-            let [median, most] = [at(0.5), at(1.0)];
-            println!("{name:<18} {where_:<7} median {median:.3}, 99 % {:.2}, most {most:.2}, above 2: {above} of {}", at(0.99), of.len());
-        }
-    }
-    println!("{failed} runs failed");
+    print_table(&all);
+    println!("{failed} runs failed, {worse} are worse within steps than at their ends");
+    assert!(worse == 0 && 20 * failed <= scenes as usize);
 }

@@ -65,24 +65,22 @@ pub(super) fn check(
         return malformed("fields that do not fit its region, or another time rule");
     }
     let finite = |fields: &[&[f64]]| fields.iter().all(|field| field.iter().all(|value| value.is_finite()));
-    let times_of = |clock: &Clock| {
-        [clock.time, clock.last_length, clock.reduced_time, clock.undisturbed_until, clock.last_dt]
-    };
+    let times_of =
+        |clock: &Clock| [clock.time, clock.last_length, clock.reduced_time, clock.undisturbed_until, clock.last_dt];
     let times = [times_of(clock), times_of(&start.clock)].concat();
     let sound = |Equilibrium { solution, motions, .. }: &Equilibrium| {
         finite(&[&solution.pressure, &solution.potential])
             && motions.iter().all(|motion| finite(&[&[motion.approach], &motion.tilt]))
     };
     let start_of_step = if history.start_is_kept() { history.trial() } else { &[] };
-    let sound =
-        finite(&[&times, &[gap.datum], history.displacement(), start_of_step])
-            && sound(current)
-            && sound(previous)
-            && start.clock.time <= clock.time
-            && start.loads.iter().all(|load| load.validate().is_ok())
-            && current.solution.pressure.iter().all(|&p| p >= 0.0)
-            && gap.above.iter().all(|&gap| gap >= 0.0)
-            && times.iter().all(|&time| time >= 0.0);
+    let sound = finite(&[&times, &[gap.datum], history.displacement(), start_of_step])
+        && sound(current)
+        && sound(previous)
+        && start.clock.time <= clock.time
+        && start.loads.iter().all(|load| load.validate().is_ok())
+        && current.solution.pressure.iter().all(|&p| p >= 0.0)
+        && gap.above.iter().all(|&gap| gap >= 0.0)
+        && times.iter().all(|&time| time >= 0.0);
     if sound { Ok(()) } else { malformed("non-finite or negative numbers") }
 }
 
