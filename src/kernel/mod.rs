@@ -92,6 +92,8 @@ pub(crate) struct LocalKernel {
     /// The own rows.
     grid: Grid,
     rows: Rows,
+    /// The grid that the kernel was made for, the periods of which are those of its waves.
+    whole: Grid,
     operator: Arc<SpectralOperator>,
     influence: Influence,
     folded: [bool; 2],
@@ -259,6 +261,7 @@ impl InfluenceKernel {
         LocalKernel {
             grid: part.clone(),
             rows: rows.clone(),
+            whole: self.grid.clone(),
             operator,
             influence: self.influence.clone(),
             folded,
@@ -342,7 +345,7 @@ impl LocalKernel {
 
     /// An approximate inverse, on a layout without padding.
     pub(crate) fn inverse(&self) -> SpectralOperator {
-        let (layout, symbol) = self.influence.inverse(&self.grid, self.rows.cells(), self.folded);
+        let (layout, symbol) = self.influence.inverse(&self.whole, self.rows.cells(), self.folded);
         match Shares::new(&layout, &self.rows) {
             Some(shares) => SpectralOperator::shared(layout, shares, symbol),
             None => SpectralOperator::from_symbol(layout, symbol),

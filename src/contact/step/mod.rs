@@ -252,7 +252,8 @@ impl Computation {
         converged(outcome, scene, &trial.solution, step)?;
         trial.solution.counts.convolutions += convolutions;
         let pressure = &trial.solution.pressure;
-        material_is_known(scene, state, step, state.is_undisturbed() && pressure.iter().any(|&p| p > 0.0))?;
+        let touched = state.is_undisturbed() && state.region.is_positive_anywhere(pressure);
+        material_is_known(scene, state, step, touched)?;
 
         // what the bodies will remember
         let (integrated, before) = (state.history.integrates_displacement(), &state.current.solution.pressure);
