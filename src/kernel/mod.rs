@@ -30,7 +30,7 @@ mod strip;
 mod transform;
 
 pub(crate) use influence::HalfSpace;
-pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, join, lanes, middle};
+pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, in_pool, join, lanes, middle};
 pub use layer::Layer;
 pub(crate) use layout::{fast_length, images};
 pub(crate) use transform::{SpectralOperator, TransformWorkspace, rows_in_a_tile};

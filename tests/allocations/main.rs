@@ -1,8 +1,10 @@
-//! What is allocated, counted: by steps nothing, by a contact what its builder announces.
+//! What is allocated, counted: by steps next to nothing, by a contact what its builder announces.
 
 mod memory;
 mod ranks;
 mod steps;
+#[cfg(feature = "rayon")]
+mod threads;
 
 use std::alloc::System;
 
@@ -15,10 +17,17 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 // Without the test harness, whose own threads would be counted: the allocator counts the whole process.
 fn main() {
+    #[cfg(feature = "rayon")]
+    rayon::ThreadPoolBuilder::new().num_threads(2).build_global().unwrap();
     steps::steps_allocate_nothing();
     println!("steps allocate nothing: ok");
     steps::tilting_steps_allocate_nothing();
     println!("tilting steps allocate nothing: ok");
+    #[cfg(feature = "rayon")]
+    {
+        threads::steps_on_threads_allocate_blocks_of_a_queue();
+        println!("steps on threads allocate blocks of a queue: ok");
+    }
     ranks::warm_steps_of_ranks_allocate_nothing();
     println!("warm steps of ranks allocate nothing: ok");
     ranks::ranks_announce_what_is_counted();
