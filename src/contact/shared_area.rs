@@ -50,7 +50,8 @@ impl ViscoelasticContact {
                 covered.extend(squares(piece).map(|row| [pressed.covered_in_row(row)]));
             }
         }
-        let [covered] = self.sum_in_order(covered.into_iter(), |rank| self.with_images(self.rows_of(rank)).map(squares));
+        let [covered] =
+            self.sum_in_order(covered.into_iter(), |rank| self.with_images(self.rows_of(rank)).map(squares));
         covered * self.grid().cell_area()
     }
 

@@ -17,8 +17,6 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 // Without the test harness, whose own threads would be counted: the allocator counts the whole process.
 fn main() {
-    #[cfg(feature = "rayon")]
-    rayon::ThreadPoolBuilder::new().num_threads(2).build_global().unwrap();
     steps::steps_allocate_nothing();
     println!("steps allocate nothing: ok");
     steps::tilting_steps_allocate_nothing();
