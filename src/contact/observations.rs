@@ -32,7 +32,7 @@ impl ViscoelasticContact {
     /// Estimates what the mesh costs in accuracy, from the cells on the rim of the contact: from how many they are among
     /// all, δ, and from the share s of the force that they carry. s √δ is of second order in the cell width where the
     /// pressure falls to zero at the edge, and of first order where it is singular there. `None` without contact, and in
-    /// full contact of periodic bodies, which has no rim; `None`, too, where [ranks](crate::ranks) share out the rows.
+    /// full contact of periodic bodies, which has no rim.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -45,15 +45,16 @@ impl ViscoelasticContact {
     /// contact.step(0.0, Load::force(0.5))?;
     /// let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 0.5)?;
     /// let error = (contact.approach() / hertz.approach() - 1.0).abs();
-    /// let estimate = contact.mesh_error().expect("in contact").approach;
+    /// let estimate = contact.mesh_error()?.expect("in contact").approach;
     /// assert!(error < 2.0 * estimate && error > 0.2 * estimate);
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
-    pub fn mesh_error(&self) -> Option<MeshError> {
-        if self.computation.state.region.is_shared() {
-            return None;
-        }
-        self.pressed().mesh_error(self.contact_cells())
+    ///
+    /// # Errors
+    /// If [ranks](crate::ranks) share out the rows.
+    pub fn mesh_error(&self) -> Result<Option<MeshError>> {
+        self.not_shared("the error due to the mesh")?;
+        Ok(self.pressed().mesh_error(self.contact_cells()))
     }
 
     /// Normal stiffness of the contact over the contact modulus \[m\]: dW/dω = E* times this while the contact area stays as

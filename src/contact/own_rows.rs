@@ -84,6 +84,55 @@ impl ViscoelasticContact {
         gathered.unwrap_or_default()
     }
 
+    /// The computed rows of a rank, as rows of the whole grid.
+    pub(super) fn rows_of(&self, rank: usize) -> Range<usize> {
+        let region = &self.computation.state.region;
+        let rows = region.rows();
+        let (first, of) = (region.computed_rows().start - rows.own().start, rows.of(rank));
+        first + of.start..first + of.end
+    }
+
+    /// Some shared rows, and their images where rows are folded.
+    pub(super) fn with_images(&self, rows: Range<usize>) -> [Range<usize>; 2] {
+        let (region, n1) = (&self.computation.state.region, self.grid().cells()[0]);
+        let images = if region.is_shared() && region.folded()[0] { n1 - rows.end..n1 - rows.start } else { 0..0 };
+        [rows, images]
+    }
+
+    /// Σ of what each rank has `found` in the rows at its `places`, in the order of the rows. A call of all ranks.
+    pub(super) fn sum_in_order<const K: usize>(
+        &self,
+        found: impl Iterator<Item = [f64; K]>,
+        places: impl Fn(usize) -> [Range<usize>; 2],
+    ) -> [f64; K] {
+        let (rows, n1) = (self.computation.state.region.rows(), self.grid().cells()[0]);
+        let add = |a: [f64; K], b: [f64; K]| std::array::from_fn(|n| a[n] + b[n]);
+        if !rows.are_shared() {
+            return found.fold([0.0; K], add);
+        }
+        let count = |rank: usize| K * places(rank).iter().map(ExactSizeIterator::len).sum::<usize>();
+        let sum = rows.gather(found.flatten(), count, |all| {
+            let (mut in_order, mut rest) = (vec![[0.0; K]; n1 + 1], all.as_chunks::<K>().0);
+            for place in (0..rows.ranks()).flat_map(&places) {
+                let (own, others) = rest.split_at(place.len());
+                in_order[place].copy_from_slice(own);
+                rest = others;
+            }
+            in_order.into_iter().fold([0.0; K], add)
+        });
+        sum.unwrap_or([0.0; K])
+    }
+
+    /// Σ over all rows of the whole grid, in their order, of what `of_row` finds in the pressure of a row, given its number. A
+    /// call of all ranks.
+    pub(super) fn sum_of_rows<const K: usize>(&self, of_row: impl Fn(usize, &[f64]) -> [f64; K]) -> [f64; K] {
+        let ([n1, n2], own, pressure) = (self.grid().cells(), self.rows(), self.pressure());
+        let row = |i: usize| &pressure[(i - own.start) * n2..][..n2];
+        let computed = |i: usize| if own.contains(&i) { i } else { n1 - 1 - i };
+        let found = self.with_images(own.clone()).into_iter().flatten().map(|i| of_row(i, row(computed(i))));
+        self.sum_in_order(found, |rank| self.with_images(self.rows_of(rank)))
+    }
+
     /// Goes on where every rank does.
     #[cfg(any(feature = "csv", feature = "vtk"))]
     pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {

@@ -22,18 +22,13 @@ impl ViscoelasticContact {
         let Some(group) = rows.group() else { return 0.0 };
         let extent = region.reach(&current.solution.pressure);
         let beside = self.rows_beside(&**group);
-        // of a folded axis the rows below are images of those above
-        let halves = |own: Range<usize>| {
-            let images = if region.folded()[0] { n1 - own.end..n1 - own.start } else { 0..0 };
-            [own, images]
-        };
         // squares whose upper corners are in some rows; the last rows have those across the end, too
         let squares = |rows: Range<usize>| {
             let beyond = usize::from(rows.end == n1 && !rows.is_empty());
             rows.start..rows.end + beyond
         };
         let (mut covered, mut pressure, mut gap) = (Vec::new(), Vec::new(), Vec::new());
-        for half in halves(region.computed_rows()) {
+        for half in self.with_images(region.computed_rows()) {
             for start in half.clone().step_by(PIECE) {
                 let piece = start..(start + PIECE).min(half.end);
                 let first = start as isize - 1 - REACH as isize;
@@ -52,29 +47,12 @@ impl ViscoelasticContact {
                 pressure.iter_mut().for_each(|p| *p = p.max(0.0));
                 let (periodic, first) = (self.scene.kernel.periodic_axes(), Some(first));
                 let pressed = Pressed { grid: self.grid(), first, periodic, pressure: &pressure, gap: &gap, extent };
-                covered.extend(squares(piece).map(|row| pressed.covered_in_row(row)));
+                covered.extend(squares(piece).map(|row| [pressed.covered_in_row(row)]));
             }
         }
-        let of = |rank: usize| halves(self.rows_of(rank)).map(squares);
-        let count = |rank: usize| of(rank).iter().map(ExactSizeIterator::len).sum();
-        let found = rows.gather(covered.into_iter(), count, |all| {
-            let (mut in_order, mut next) = (vec![0.0; n1 + 1], 0);
-            for place in (0..rows.ranks()).flat_map(of) {
-                let count = place.len();
-                in_order[place].copy_from_slice(&all[next..next + count]);
-                next += count;
-            }
-            in_order.into_iter().sum::<f64>()
-        });
-        found.unwrap_or(0.0) * self.grid().cell_area()
-    }
-
-    /// The computed rows of a rank, as rows of the whole grid.
-    fn rows_of(&self, rank: usize) -> Range<usize> {
-        let region = &self.computation.state.region;
-        let rows = region.rows();
-        let (first, of) = (region.computed_rows().start - rows.own().start, rows.of(rank));
-        first + of.start..first + of.end
+        let [covered] =
+            self.sum_in_order(covered.into_iter(), |rank| self.with_images(self.rows_of(rank)).map(squares));
+        covered * self.grid().cell_area()
     }
 
     /// The computed row that a row is, or is the image of; none beyond a grid that ends.

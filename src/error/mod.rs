@@ -4,6 +4,7 @@
 mod checkpoint;
 mod checks;
 mod convergence;
+mod debug;
 mod kernel;
 mod load;
 mod map;
@@ -39,7 +40,10 @@ use crate::rounded::{TIME, rounded};
 /// let error = Maxwell::new(-1.0e6, 1.0e6).unwrap_err();
 /// assert_eq!(error.to_string(), "shear modulus = -1000000.0 is not allowed: it must be finite and > 0");
 /// ```
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+///
+/// `Debug` prints the message and its causes, so that a program whose `main` returns [`Result`] ends with what to do; `{:#?}`
+/// prints the fields.
+#[derive(Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
     /// A number is outside its allowed range, or not finite.

@@ -82,6 +82,17 @@ fn in_parallel(first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Sen
     rayon::join(first, second);
 }
 
+/// Runs `job`, which works on fields of so many cells, on a thread of the pool if threads share the work. A call from a thread
+/// outside of the pool goes through its queue, which allocates a block for 63 calls: many loops go through it once.
+pub(crate) fn in_pool<T: Send>(cells: usize, job: impl FnOnce() -> T + Send) -> T {
+    #[cfg(feature = "rayon")]
+    if lanes(cells) > 1 {
+        return rayon::scope(|_| job());
+    }
+    let _ = cells;
+    job()
+}
+
 /// Number of threads that share the work on a field of `cells` cells.
 pub(crate) fn lanes(cells: usize) -> usize {
     #[cfg(feature = "rayon")]

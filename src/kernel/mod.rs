@@ -30,7 +30,7 @@ mod strip;
 mod transform;
 
 pub(crate) use influence::HalfSpace;
-pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, join, lanes, middle};
+pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, in_pool, join, lanes, middle};
 pub use layer::Layer;
 pub(crate) use layout::{fast_length, images};
 pub(crate) use transform::{SpectralOperator, TransformWorkspace, rows_in_a_tile};
@@ -93,6 +93,8 @@ pub(crate) struct LocalKernel {
     /// The own rows.
     grid: Grid,
     rows: Rows,
+    /// The grid that the kernel was made for, the periods of which are those of its waves.
+    whole: Grid,
     operator: Arc<SpectralOperator>,
     influence: Influence,
     folded: [bool; 2],
@@ -261,6 +263,7 @@ impl InfluenceKernel {
         LocalKernel {
             grid: part.clone(),
             rows: rows.clone(),
+            whole: self.grid.clone(),
             operator,
             influence: self.influence.clone(),
             folded,
@@ -350,7 +353,7 @@ impl LocalKernel {
 
     /// An approximate inverse, on a layout without padding.
     pub(crate) fn inverse(&self) -> SpectralOperator {
-        let (layout, symbol) = self.influence.inverse(&self.grid, self.rows.cells(), self.folded);
+        let (layout, symbol) = self.influence.inverse(&self.whole, self.rows.cells(), self.folded);
         match Shares::new(&layout, &self.rows) {
             Some(shares) => SpectralOperator::shared(layout, shares, symbol),
             None => SpectralOperator::from_symbol(layout, symbol),

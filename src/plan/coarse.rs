@@ -90,8 +90,8 @@ impl Run {
     }
 
     fn add(&mut self, contact: &ViscoelasticContact, report: &StepReport) {
-        let (rim, singular) =
-            contact.mesh_error().map_or((0.0, 0.0), |error| (error.max_pressure - error.singular, error.singular));
+        let mesh = contact.mesh_error().unwrap_or_default();
+        let (rim, singular) = mesh.map_or((0.0, 0.0), |error| (error.max_pressure - error.singular, error.singular));
         self.convolutions += report.convolution_equivalents();
         self.steps.push((report.dt, contact.load()));
         self.states.push(State {

@@ -32,7 +32,8 @@
 //! Every call that computes is a call of all ranks, in the same order and with the same arguments: steps, runs, and
 //! observations that look at all cells ([`moment`](crate::ViscoelasticContact::moment),
 //! [`max_pressure`](crate::ViscoelasticContact::max_pressure), [`contact_area`](crate::ViscoelasticContact::contact_area),
-//! [`profile`](crate::ViscoelasticContact::profile)), files and checkpoints. What a rank knows by itself may be asked by one
+//! [`lateral_force`](crate::ViscoelasticContact::lateral_force), [`profile`](crate::ViscoelasticContact::profile)), files and
+//! checkpoints. What a rank knows by itself may be asked by one
 //! alone: time, force, approach, tilt, contact cells, own rows.
 //!
 //! | covered | refused, by [`RanksError::NotShared`] |
@@ -42,7 +43,7 @@
 //! | force and approach, tilts, runs in steps given or chosen by their error | indenters that move or change, [`Frame::Indenter`](crate::contact::Frame::Indenter) |
 //! | series of relaxation times | direct sums, [`Solver::PolonskyKeer`](crate::contact::Solver::PolonskyKeer) |
 //! | snapshots in memory; checkpoints, which any number of ranks resumes | checkpoints of a window of the grid ([`Settings::window`](crate::contact::Settings::window)), or of indenters that have moved |
-//! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses; [`mesh_error`](crate::ViscoelasticContact::mesh_error) is `None` |
+//! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses, [`mesh_error`](crate::ViscoelasticContact::mesh_error) |
 //!
 //! Files are written by rank 0, with the same bytes as those of one process; the rows of the others come to it some at a time. A
 //! checkpoint is a file with what all have in common, and beside it one for each rank with its rows, on a file system that all

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use crate::error::{Error, RanksError, Result};
+use crate::error::{RanksError, Result};
 use crate::kernel::{BAND_CELLS, join, lanes, rows_in_a_tile};
 use crate::ranks::Ranks;
 use crate::sum;
@@ -211,7 +211,7 @@ impl Rows {
     /// Goes on only where every rank does: where one has failed, all get the same error.
     pub(crate) fn agree<T>(&self, own: Result<T>) -> Result<T> {
         let Some(shared) = &self.shared else { return own };
-        let message = own.as_ref().err().map_or(String::new(), told);
+        let message = own.as_ref().err().map_or(String::new(), |error| format!("{error:?}"));
         // those of 53 bits are kept
         let mark = message.bytes().fold(0_u64, |mark, byte| (mark * 31 + u64::from(byte)) % (1 << 53));
         let found = shared.gather(
@@ -282,12 +282,6 @@ impl Shared {
     fn put_back(&self, buffers: Buffers) {
         *self.buffers.lock().unwrap_or_else(PoisonError::into_inner) = buffers;
     }
-}
-
-/// An error with its causes, in words.
-fn told(error: &Error) -> String {
-    let causes = std::iter::successors(std::error::Error::source(error), |cause| cause.source());
-    causes.fold(error.to_string(), |message, cause| format!("{message}: {cause}"))
 }
 
 /// Ends the call at hand, up to where it is [`caught`]: sums have no error to return. In a program built with `panic = "abort"`

@@ -33,8 +33,9 @@ use crate::rheology::TimeTemperature;
 ///     .temperature(warming)
 ///     .build()?;
 /// contact.step(0.0, Load::force(0.5))?;
-/// contact.step(1.0, Load::force(0.5))?;
-/// assert!(contact.reduced_time() > contact.time());
+/// let jumped = contact.approach();
+/// contact.step(60.0, Load::force(0.5))?; // the retardation time of 1000 s is long over
+/// assert!(contact.reduced_time() > 8_000.0 * contact.time() && contact.approach() > 20.0 * jumped);
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Clone)]

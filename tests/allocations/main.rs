@@ -1,8 +1,10 @@
-//! What is allocated, counted: by steps nothing, by a contact what its builder announces.
+//! What is allocated, counted: by steps next to nothing, by a contact what its builder announces.
 
 mod memory;
 mod ranks;
 mod steps;
+#[cfg(feature = "rayon")]
+mod threads;
 
 use std::alloc::System;
 
@@ -19,6 +21,11 @@ fn main() {
     println!("steps allocate nothing: ok");
     steps::tilting_steps_allocate_nothing();
     println!("tilting steps allocate nothing: ok");
+    #[cfg(feature = "rayon")]
+    {
+        threads::steps_on_threads_allocate_blocks_of_a_queue();
+        println!("steps on threads allocate blocks of a queue: ok");
+    }
     ranks::warm_steps_of_ranks_allocate_nothing();
     println!("warm steps of ranks allocate nothing: ok");
     ranks::ranks_announce_what_is_counted();

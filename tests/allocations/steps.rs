@@ -97,6 +97,18 @@ pub fn steps_allocate_nothing() {
         }
     }
 
+    // nor, after the first two, do steps of runs
+    for stepping in [Stepping::fixed(0.05), Stepping::adaptive(1.0e-4)] {
+        let mut contact = scene.contact(48, Settings::default().with_window(false)).unwrap();
+        let ramp = Ramp::new(Load::force(0.1), Load::force(1.0), 1.0).unwrap();
+        let mut run = contact.follow(&ramp, stepping, 2.0);
+        (0..2).for_each(|_| _ = run.next_step().unwrap());
+        let region = Region::new(ALLOCATOR);
+        while run.next_step().unwrap().is_some() {}
+        let change = region.change();
+        assert_eq!((change.allocations, change.reallocations), (0, 0), "{stepping:?}: {change:?}");
+    }
+
     // nor do steps over the bodies, on any kernel, with several relaxation times
     let body = || {
         let terms = [(1.0e6, 0.1), (1.0e6, 1.0), (1.0e6, 10.0)];

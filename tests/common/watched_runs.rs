@@ -67,7 +67,7 @@ impl Stopped {
     /// The name of the error, or what stands in for it.
     pub fn reason(&self) -> String {
         match self {
-            Stopped::Failed { error, .. } => format!("{error:?}").split([' ', '(']).next().unwrap_or_default().into(),
+            Stopped::Failed { error, .. } => format!("{error:#?}").split([' ', '(']).next().unwrap_or_default().into(),
             Stopped::Endless { .. } => "endless".into(),
         }
     }

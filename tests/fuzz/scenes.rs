@@ -102,7 +102,7 @@ pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Sou
         finite("body", [body.approach, body.force].into_iter().chain(body.tilt))?;
         finite("moment of a body", body.moment)?;
     }
-    if let Some(space) = contact.mesh_error() {
+    if let Some(space) = contact.mesh_error().unwrap() {
         known("error of the mesh", [space.approach, space.max_pressure, space.area, space.singular])?;
     }
     known("pressures", [contact.mean_pressure(), contact.max_pressure()])?;

@@ -3,6 +3,7 @@
 use crate::common::bodies::maxwell;
 use crate::common::spheres::{builder_on, sphere, sphere_on};
 use approx::assert_abs_diff_eq;
+use std::process::Command;
 use std::sync::Arc;
 
 use viscocontact::KernelError;
@@ -333,4 +334,33 @@ fn shapes_beyond_numbers_are_refused() {
     assert_eq!(field(Wavy::new(1.2e308, 1.0).unwrap_err()), "amplitude along x1");
     let far = Shifted::new(Sphere::new(1e300).unwrap(), [1e271, 1e300]).unwrap();
     assert!(!far.initial_gap(0.1, 0.1).is_nan());
+}
+
+/// What a program prints whose `main` returns an error: the message, what to do, and the causes.
+#[test]
+fn a_program_that_returns_an_error_says_what_to_do() {
+    let printed = |arguments: &[&str]| {
+        let ended = Command::new(env!("CARGO_BIN_EXE_failing_program")).args(arguments).output().unwrap();
+        assert!(!ended.status.success() && ended.stdout.is_empty());
+        String::from_utf8(ended.stderr).unwrap()
+    };
+    let advice = "enlarge the grid, or set Settings::edge to Edge::Allow if the body ends there";
+    let expected = format!("Error: at t = 0 s the contact touches the edge of the grid on 60 cells: {advice}\n");
+    assert_eq!(printed(&[]), expected);
+    if cfg!(feature = "csv") {
+        let (path, cause) = ("no/such/folder/history.csv", "No such file or directory (os error 2)");
+        assert_eq!(printed(&[path]), format!("Error: {path} cannot be written: {cause}\n"));
+    }
+}
+
+/// The fields of an error, for those who look for them, are those of its pattern.
+#[test]
+fn an_error_prints_its_fields_when_asked() {
+    let edge = Error::ContactAtEdge { time: 0.5, cells: 12 };
+    assert_eq!(format!("{edge:#?}"), "ContactAtEdge {\n    time: 0.5,\n    cells: 12,\n}");
+    assert_eq!(format!("{:#?}", Error::OtherContact), "OtherContact");
+    let load = Error::from(LoadError::InvalidBreakpoint { after: 1.0, breakpoint: 0.5 });
+    let fields = "InvalidBreakpoint {\n        after: 1.0,\n        breakpoint: 0.5,\n    }";
+    assert_eq!(format!("{load:#?}"), format!("Load(\n    {fields},\n)"));
+    assert_eq!(format!("{load:?}"), load.to_string());
 }

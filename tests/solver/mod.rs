@@ -6,6 +6,7 @@ mod extremes;
 mod loads;
 mod population;
 mod ranks;
+mod ranks_at_random;
 mod ranks_together;
 mod region;
 mod work;

@@ -265,6 +265,21 @@ fn no_rank_waits_for_one_that_has_left() {
     assert_eq!(left[0], None);
     assert!(left[1..].iter().all(|error| *error == Some(Error::Ranks(RanksError::Left { rank: 0 }))), "{left:?}");
 
+    // a run looks ahead before its first step
+    for stepping in [Stepping::fixed(0.1), Stepping::adaptive(1.0e-2)] {
+        let left = within_a_minute(move || {
+            Threads::run(3, |ranks| {
+                let rank = ranks.rank();
+                let mut contact = sphere(128, ranks).unwrap();
+                let ramp = Ramp::new(Load::force(0.0), Load::force(1.0), 1.0).unwrap();
+                let mut run = contact.follow(&ramp, stepping, 1.0);
+                (rank > 0).then(|| run.next_step().unwrap_err())
+            })
+            .unwrap()
+        });
+        assert!(left[1..].iter().all(|error| *error == Some(Error::Ranks(RanksError::Left { rank: 0 }))), "{left:?}");
+    }
+
     let (panic, others) = within_a_minute(|| {
         let others = Arc::new(Mutex::new(Vec::new()));
         let seen = Arc::clone(&others);
@@ -318,6 +333,7 @@ fn what_is_not_shared_is_refused_by_name() {
         not_shared(contact.stress().unwrap_err());
         not_shared(contact.set_geometry(&Sphere::new(1.0).unwrap()).unwrap_err());
         not_shared(contact.pressure_distribution(10).unwrap_err());
+        not_shared(contact.mesh_error().unwrap_err());
         // the load would have to unfold the fields
         not_shared(contact.step(0.1, Load::eccentric_force(1.0, [1.0e-4, 0.0])).unwrap_err());
         contact.step(0.1, Load::force(1.0)).unwrap();

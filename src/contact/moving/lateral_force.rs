@@ -17,7 +17,7 @@ impl ViscoelasticContact {
     /// with waves of 8 cells 2e-5. Where the rise is not finite, beside the rim of a face, there is no slope: what a rim
     /// carries is in [`TravelReport::power`](crate::contact::TravelReport) alone. NaN where the shape's gap is.
     ///
-    /// NaN where [ranks](crate::ranks) share out the rows.
+    /// A call of all [ranks](crate::ranks) that share out the contact.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -32,25 +32,22 @@ impl ViscoelasticContact {
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     pub fn lateral_force(&self, shape: &dyn crate::geometry::Geometry) -> [f64; 2] {
-        if self.computation.state.region.is_shared() {
-            return [f64::NAN; 2];
-        }
         let (n2, [half1, half2]) = (self.grid().cells()[1], self.grid().spacing().map(|side| 0.5 * side));
         let rise = |ahead: f64, behind: f64| {
             let rise = ahead - behind;
             if rise.is_finite() || ahead.is_nan() || behind.is_nan() { rise } else { 0.0 }
         };
         let gap = self.computation.state.indenter.gap();
-        let (mut sums, tilt) = ([0.0; 2], self.tilt());
-        for (i, row) in self.pressure().chunks_exact(n2).enumerate() {
+        let of_row = |i: usize, row: &[f64]| {
             let (mut own, x1) = ([0.0; 2], self.grid().coordinate(0, i));
             for (j, &p) in row.iter().enumerate().filter(|(j, p)| **p > 0.0 && gap.owner(i * n2 + j) == 0) {
                 let x2 = self.grid().coordinate(1, j);
                 own[0] += p * (rise(shape.initial_gap(x1 + half1, x2), shape.initial_gap(x1 - half1, x2)));
                 own[1] += p * (rise(shape.initial_gap(x1, x2 + half2), shape.initial_gap(x1, x2 - half2)));
             }
-            sums = [sums[0] + own[0], sums[1] + own[1]];
-        }
+            own
+        };
+        let (sums, tilt) = (self.sum_of_rows(of_row), self.tilt());
         let force = self.body(0).map_or(0.0, |body| body.force);
         [0, 1].map(|axis| sums[axis] * self.grid().spacing()[1 - axis] - tilt[axis] * force)
     }

@@ -62,7 +62,7 @@ impl Follow<'_> {
             let outlook = control.outlook(scene, &loads[0], [age, end]);
             let mut error = error_in_time(scene, computed, &step, outlook);
             // how bodies moved that stayed apart makes no difference
-            if !(parted && computed.trial.solution.pressure.iter().all(|&p| p == 0.0)) {
+            if !parted || computed.state.region.is_positive_anywhere(&computed.trial.solution.pressure) {
                 error.relative = error.relative.max(straying);
             }
             let by_kinks = error.by_kinks && error.relative > control.tolerance;
@@ -76,7 +76,8 @@ impl Follow<'_> {
                 }
                 report.convolutions += wasted[0];
                 report.preconditioner_applications += wasted[1];
-                self.progress.include([error.relative, error.greatest, report.residual], self.contact.mesh_error());
+                let mesh = self.contact.mesh_error().unwrap_or_default();
+                self.progress.include([error.relative, error.greatest, report.residual], mesh);
                 return Ok(report);
             }
             events::rejected(time, dt, error.relative, control.tolerance);

@@ -13,6 +13,7 @@ use crate::contact::step::error_in_time::Outlook;
 use crate::contact::viscoelastic::ViscoelasticContact;
 use crate::error::{Error, LoadError, Result, finite, positive, within};
 use crate::load::{Load, LoadHistory};
+use crate::ranks::caught;
 
 /// Two times closer than this fraction of a step are the same time.
 const SAME_TIME: f64 = 1e-6;
@@ -197,7 +198,8 @@ impl<'a> Follow<'a> {
         }
         let corner = corner.min(self.contact.scene.next_temperature_corner(now));
         if let Some(mut control) = self.progress.control.take() {
-            let report = self.adaptive_step(&mut control, corner);
+            let rows = self.contact.computation.state.region.rows();
+            let report = caught(&rows, || self.adaptive_step(&mut control, corner));
             self.progress.control = Some(control);
             return report.map(Some);
         }
@@ -215,17 +217,21 @@ impl<'a> Follow<'a> {
     fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
         let tolerance = self.solver_tolerance();
         let loads = [load];
-        let step = self.contact.request(time, dt, &loads, tolerance)?;
-        let ViscoelasticContact { scene, computation, .. } = &*self.contact;
-        if self.progress.scale.is_none() {
-            self.progress.scale = Some(RunScale::new(scene, &computation.state, &*self.history, self.until)?);
-        }
-        let age = step.interval.reduced - computation.state.clock.undisturbed_until;
-        let expected = self.progress.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, &load, age));
-        let outlook = Outlook { expected, ..Outlook::default() };
-        let (report, error) = self.contact.take_expecting(step, outlook)?;
-        self.progress.include([error.relative, error.greatest, report.residual], self.contact.mesh_error());
-        Ok(report)
+        let rows = self.contact.computation.state.region.rows();
+        caught(&rows, || {
+            let step = self.contact.request(time, dt, &loads, tolerance)?;
+            let ViscoelasticContact { scene, computation, .. } = &*self.contact;
+            if self.progress.scale.is_none() {
+                self.progress.scale = Some(RunScale::new(scene, &computation.state, &*self.history, self.until)?);
+            }
+            let age = step.interval.reduced - computation.state.clock.undisturbed_until;
+            let expected = self.progress.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, &load, age));
+            let outlook = Outlook { expected, ..Outlook::default() };
+            let (report, error) = self.contact.take_expecting(step, outlook)?;
+            let mesh = self.contact.mesh_error().unwrap_or_default();
+            self.progress.include([error.relative, error.greatest, report.residual], mesh);
+            Ok(report)
+        })
     }
 
     pub(in crate::contact) fn solver_tolerance(&self) -> f64 {
@@ -256,7 +262,7 @@ impl<'a> Follow<'a> {
 
     /// What is known of the error of the answer so far.
     pub fn error_budget(&self) -> ErrorBudget {
-        self.progress.error_budget(self.contact.mesh_error())
+        self.progress.error_budget(self.contact.mesh_error().unwrap_or_default())
     }
 
     /// Steps that were tried and found too long, with [`Stepping::adaptive`].

@@ -39,6 +39,7 @@ use crate::contact::window::region::Region;
 use crate::error::{Error, Result, non_negative};
 use crate::events;
 use crate::hereditary::{Interval, TimeError};
+use crate::kernel::in_pool;
 use crate::load::Load;
 use crate::ranks::caught;
 use crate::solver::Stop;
@@ -126,11 +127,17 @@ impl ViscoelasticContact {
 
     /// Computes a step. The state stays as it is.
     pub(in crate::contact) fn attempt(&mut self, step: &Step<'_>) -> Result<Attempt> {
-        let (mut larger, rows) = (None, self.computation.state.region.rows());
+        let (mut larger, region) = (None, &self.computation.state.region);
+        let (rows, from) = (region.rows(), region.cells());
+        // ranks wait for each other, which they must not do on threads that all of them need
+        let cells = if region.is_shared() { 0 } else { region.len() };
         let tried = caught(&rows, || {
             rows.same(marks(step))?;
-            compute(&self.scene, &mut self.computation, &mut larger, step)
+            in_pool(cells, || compute(&self.scene, &mut self.computation, &mut larger, step))
         });
+        if let Some(larger) = &larger {
+            events::moved(from, larger.state.region.cells());
+        }
         if let Err(error) = &tried {
             events::failed(step.interval.time, step.interval.length, error);
             if let Some(larger) = &larger {
@@ -257,7 +264,8 @@ impl Computation {
         converged(outcome, scene, &trial.solution, step)?;
         trial.solution.counts.convolutions += convolutions;
         let pressure = &trial.solution.pressure;
-        material_is_known(scene, state, step, state.is_undisturbed() && pressure.iter().any(|&p| p > 0.0))?;
+        let touched = state.is_undisturbed() && state.region.is_positive_anywhere(pressure);
+        material_is_known(scene, state, step, touched)?;
 
         // what the bodies will remember
         let (integrated, before) = (state.history.integrates_displacement(), &state.current.solution.pressure);

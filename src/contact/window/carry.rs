@@ -5,7 +5,6 @@ use crate::contact::scene::Scene;
 use crate::contact::state::{Equilibrium, State};
 use crate::contact::window::region::Region;
 use crate::contact::window::window::Window;
-use crate::events;
 use crate::hereditary::Transfer;
 use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::Solution;
@@ -54,7 +53,6 @@ pub(in crate::contact) fn carried(
     let mut window = Window::new(scene, &region, indenter);
     let (kernel, work) = window.kernel_and_work();
     let mut carry = Carry { from: &state.region, to: &region, kernel, work };
-    events::moved(state.region.cells(), region.cells());
     let history = state.history.carried(&mut carry);
     let [current, previous] = [&state.current, &state.previous].map(|old| {
         let Solution { pressure, potential, motions, .. } = &old.solution;

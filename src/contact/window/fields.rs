@@ -70,6 +70,11 @@ impl Region {
         (0..other.len()).map(|k| self.find(other.cell(k)).map_or_else(|| elsewhere(k), |own_k| own[own_k])).collect()
     }
 
+    /// Whether a field is positive anywhere, in the rows of any rank.
+    pub(crate) fn is_positive_anywhere(&self, own: &[f64]) -> bool {
+        self.rows().any(own.iter().any(|&value| value > 0.0))
+    }
+
     /// The smallest rectangle of the whole grid that holds all cells, mirror images included, with a positive value in `own`;
     /// `None` if there is none.
     pub(crate) fn reach(&self, own: &[f64]) -> Option<Extent> {

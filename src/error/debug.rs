@@ -1,0 +1,72 @@
+//! How an error prints that ends a program.
+
+use std::error::Error as _;
+use std::fmt;
+
+use super::Error;
+
+/// The message and its causes: a `main` that returns a [`Result`](crate::Result) prints errors so. `{:#?}` prints the fields.
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if f.alternate() {
+            return self.fmt_fields(f);
+        }
+        write!(f, "{self}")?;
+        let mut next = self.source();
+        while let Some(cause) = next {
+            write!(f, ": {cause}")?;
+            next = cause.source();
+        }
+        Ok(())
+    }
+}
+
+/// Implements `Error::fmt_fields`, which prints as a derived `Debug` does.
+macro_rules! fmt_fields {
+    ($($tuple:ident)*; $($(#[$cfg:meta])? $variant:ident { $($field:ident)* })*) => {
+        impl Error {
+            fn fmt_fields(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                match self {
+                    $(Error::$tuple(error) => f.debug_tuple(stringify!($tuple)).field(error).finish(),)*
+                    $($(#[$cfg])? Error::$variant { $($field),* } => {
+                        f.debug_struct(stringify!($variant))$(.field(stringify!($field), $field))*.finish()
+                    })*
+                }
+            }
+        }
+    };
+}
+
+fmt_fields! {
+    Kernel Load Map Material Output Ranks Table;
+    BeyondFullContact { time approach greatest }
+    BeyondMaterial { time age known_until }
+    BeyondReach { time reach }
+    #[cfg(feature = "checkpoint")]
+    Checkpoint { path source }
+    ContactAtEdge { time cells }
+    CountOutOfRange { field value allowed }
+    Extension { path allowed }
+    HistoryFull { time steps bytes limit }
+    InvalidGap { cell position value }
+    LoadOutsideHull { time body at }
+    Missing { part }
+    NoContact { time }
+    NoDomain { length }
+    NoElasticResponse { time what }
+    NotAFile { path kind }
+    NotConverged { time dt iterations residual tolerance convergence }
+    NothingToTouch { body cells }
+    NotSteady { distance change tolerance }
+    OtherContact {}
+    OutOfMemory { what bytes }
+    OutOfOrder { field index value previous rule }
+    OutOfRange { field value allowed }
+    Overflow { time what }
+    StepTooShort { time dt tolerance }
+    TiltOfPeriodic { time axis }
+    WrongFrame { what }
+    WrongLength { field len expected exact }
+    WrongNumberOfBodies { given bodies }
+    WrongNumberOfLoads { loads bodies }
+}
