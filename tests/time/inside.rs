@@ -151,6 +151,66 @@ fn half_of_a_long_relaxation_is_not_half_of_its_end() {
     assert!(contact.within_step(time).is_err() && contact.within_step(10.0).is_ok());
 }
 
+/// A ball under steps, and ramps with holds, of force and approach: the quarters of all adaptive steps, some of which span the whole
+/// relaxation.
+#[test]
+fn states_within_steps_of_a_held_ball_are_exact() {
+    let zener = || Material::incompressible(Zener::new(1.0e6, 0.3e6, 0.3e6).unwrap());
+    let four = [(0.4e6, 3.0e-3), (0.3e6, 3.0e-2), (0.2e6, 0.3), (0.1e6, 3.0)];
+    let four_times = || Material::incompressible(GeneralizedMaxwell::new(0.1e6, &four).unwrap());
+    let (depth, force) = (Load::approach(3.0e-5), Load::force(0.5));
+    let (no_depth, no_force) = (Load::approach(0.0), Load::force(0.0));
+    let histories: [(&str, Box<dyn LoadHistory>); 4] = [
+        ("approach step", Box::new(StepLoad::new(depth).unwrap())),
+        ("approach ramp and hold", Box::new(Ramp::new(no_depth, depth, 1.0).unwrap())),
+        ("force step", Box::new(StepLoad::new(force).unwrap())),
+        ("force ramp and hold", Box::new(Ramp::new(no_force, force, 1.0).unwrap())),
+    ];
+    let (cells, tolerance) = (from_environment("INSIDE_CELLS", 24) as usize, 1e-4);
+    for (name, history) in &histories {
+        for (body, material) in [("Zener", zener()), ("four times", four_times())] {
+            let contact = |tolerance: f64| {
+                let grid = Grid::square(cells, 5.0e-3).unwrap();
+                let settings = Settings::default().with_tolerance(tolerance);
+                builder_on(grid, material.clone()).settings(settings).build().unwrap()
+            };
+            let mut coarse = contact(1e-6);
+            let mut run = coarse.follow(&**history, Stepping::adaptive(tolerance), 10.0);
+            let mut states = Vec::new();
+            while let Some(report) = run.next_step().unwrap() {
+                for share in [0.25, 0.5, 0.75].into_iter().filter(|_| report.dt > 0.0) {
+                    let time = report.time - (1.0 - share) * report.dt;
+                    states.push((time, seen(&run.within_step(time).unwrap())));
+                }
+            }
+            let times: Vec<f64> = states.iter().map(|(time, _)| *time).collect();
+            let mut fine = contact(1e-9);
+            let mut run = fine.follow(&**history, Stepping::adaptive(2e-6), 10.0).stop_at(&times).unwrap();
+            let mut exact = Vec::new();
+            while let Some(report) = run.next_step().unwrap() {
+                exact.push((report.time, seen(run.contact())));
+            }
+            let mut worst = [0.0_f64; 4];
+            for (time, found) in &states {
+                let (_, there) = exact.iter().find(|(exact, _)| exact == time).unwrap();
+                let off = differences(found, there);
+                for which in [0, 1, 3] {
+                    let greatest = exact.iter().fold(0.0, |most: f64, (_, seen)| most.max(seen.values[which].abs()));
+                    worst[which] = worst[which].max(off[which] / greatest / tolerance);
+                }
+            }
+            println!(
+                "{name}, {body}: {} looks, approach {:.2}, force {:.2}, pressure {:.2} of what was asked",
+                states.len(),
+                worst[0],
+                worst[1],
+                worst[3]
+            );
+            assert!(worst[0] <= 2.0 && worst[1] <= 2.0, "{name}, {body}: {worst:?}");
+        }
+    }
+}
+
 /// A random scene, in part with a layer, a temperature that changes, or force and approach in turn.
 struct Inside {
     scene: RandomScene,
