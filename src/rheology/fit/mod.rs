@@ -14,12 +14,15 @@ mod measured;
 mod nnls;
 mod polish;
 mod report;
+mod uncertainty;
 
 pub use basis::MaterialFunction;
 pub(crate) use basis::{FittedSeries, Sample};
+pub(crate) use uncertainty::Uncertainty;
 pub use report::{FitReport, FitSample, FitWarning};
 
 use faer::{Col, Mat};
+use measured::DENSITY;
 use polish::polish;
 
 /// The class of series to search.
