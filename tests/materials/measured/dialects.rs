@@ -154,7 +154,7 @@ fn units_are_read_however_they_follow_the_symbol() {
                     let units = if first { Units { abscissa: given, value: 1.0 } } else { Units { abscissa: 1.0, value: given } };
                     let column = if dynamic { ";G''" } else { "" };
                     let headings = if first { format!("{quoted};{}", if dynamic { "G'" } else { "J" }) } else { format!("x;{quoted}") };
-                    let rows = if dynamic { "1;1.0;0.2\n3;1.5;0.4\n10;2.2;0.4\n30;2.5;0.1\n" } else { "1;1.0\n2;1.1\n4;1.3\n8;1.4\n" };
+                    let rows = if dynamic { "0.1;1.0;0.2\n1;1.5;0.4\n10;2.2;0.4\n100;2.5;0.1\n" } else { "1;1.0\n2;1.1\n4;1.3\n8;1.4\n" };
                     let headings = if first { headings } else { headings.replace('x', if dynamic { "omega" } else { "t" }) };
                     let text = format!("{headings}{column}\n{rows}");
                     if dynamic {
