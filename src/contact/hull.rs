@@ -132,7 +132,10 @@ mod tests {
         assert!(contains(&hull, [1.4, -2.4]) && contains(&hull, [1.5, 0.0]) && contains(&hull, [1.5, 2.5]));
         assert!(!contains(&hull, [1.5 + 1e-9, 0.0]) && !contains(&hull, [1.6, 0.0]));
         assert_eq!(hull.balanced_at([1.5 - 1e-12, 0.5], [true; 2]), Some([1.5, 0.5]));
-        assert!(hull.balanced_at([1.4, 99.0], [true, false]).is_some() && hull.balanced_at([1.6, 0.0], [true, false]).is_none());
+        assert!(
+            hull.balanced_at([1.4, 99.0], [true, false]).is_some()
+                && hull.balanced_at([1.6, 0.0], [true, false]).is_none()
+        );
         assert!(hull.balanced_at([99.0, 99.0], [false, false]).is_some());
     }
 
@@ -156,7 +159,9 @@ mod tests {
         let row = hull([1, 5], |_, _| true);
         assert!(contains(&row, [0.0, 1.9]) && !contains(&row, [0.0, 2.1]) && !contains(&row, [0.1, 0.0]));
         let diagonal = hull([5, 5], |x, y| x == y);
-        assert!(contains(&diagonal, [0.5, 0.5]) && !contains(&diagonal, [0.5, 0.4]) && !contains(&diagonal, [2.5, 2.5]));
+        assert!(
+            contains(&diagonal, [0.5, 0.5]) && !contains(&diagonal, [0.5, 0.4]) && !contains(&diagonal, [2.5, 2.5])
+        );
         let point = hull([5, 5], |x, y| x == 1.0 && y == 0.0);
         assert!(contains(&point, [1.0, 0.0]) && !contains(&point, [1.1, 0.0]));
     }

@@ -144,7 +144,7 @@ impl TemperatureHistory {
     ///
     /// # Errors
     /// If a time is not finite, `to` is before `from`, the reduced time overflows, a closure is too rough
-    /// ([`MaterialError::RoughTemperature`](crate::error::MaterialError::RoughTemperature)), or for a temperature in between as
+    /// ([`MaterialError::RoughTemperature`](crate::rheology::MaterialError::RoughTemperature)), or for a temperature in between as
     /// [`TimeTemperature::shift_factor`].
     pub fn reduced_time(&self, from: f64, to: f64) -> Result<f64> {
         finite("start of the reduced time", from)?;

@@ -3,9 +3,11 @@
 mod conditions;
 mod differential;
 mod extremes;
+mod limits;
 mod loads;
 mod population;
 mod ranks;
 mod ranks_together;
 mod region;
+mod several;
 mod work;

@@ -38,7 +38,9 @@ pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
 pub(super) fn find_free_motions(scene: &Scene, region: &Region, step: &Step<'_>, free: &mut [Freedom]) {
     for (body, (own, load)) in free.iter_mut().zip(step.loads).enumerate() {
         *own = freedom(load, &scene.grid);
-        if own.tilts() && let Some(point) = step.indenter.hull(body, &scene.grid).balanced_at(own.point, own.tilt) {
+        if own.tilts()
+            && let Some(point) = step.indenter.hull(body, &scene.grid).balanced_at(own.point, own.tilt)
+        {
             own.point = point;
         }
         own.tilt = [0, 1].map(|axis| own.tilt[axis] && !region.folded()[axis]);

@@ -18,8 +18,8 @@ mod uncertainty;
 
 pub use basis::MaterialFunction;
 pub(crate) use basis::{FittedSeries, Sample};
-pub(crate) use uncertainty::Uncertainty;
 pub use report::{FitReport, FitSample, FitWarning};
+pub(crate) use uncertainty::Uncertainty;
 
 use faer::{Col, Mat};
 use measured::DENSITY;

@@ -23,6 +23,8 @@ impl FitSample {
     }
 }
 
+/// Creep that is less uncertain than this is known, for the display.
+const KNOWN: f64 = 0.05;
 /// Uncertainties and systematic misfits below this need no warning.
 const TOLERABLE: f64 = 5e-3;
 /// An uncertainty of more than this times the misfit is not due to the scatter of the samples.
@@ -209,6 +211,13 @@ impl fmt::Display for FitReport {
         )?;
         if self.wrong_way > 0.0 {
             write!(f, "; the data deviate from a monotone curve by at most {:.1e}, taken as noise", self.wrong_way)?;
+        }
+        if self.uncertainty() > 0.0 {
+            write!(f, "; creep uncertain by {:.1} % at most", 100.0 * self.uncertainty())?;
+            let last = self.uncertainties().filter(|(_, uncertainty)| *uncertainty > KNOWN).last();
+            if let Some((time, _)) = last {
+                write!(f, ", by less than {:.0} % only after {time:.3e} s", 100.0 * KNOWN)?;
+            }
         }
         if let Some(warning) = self.warning {
             write!(f, "; {warning}")?;

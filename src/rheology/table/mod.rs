@@ -103,8 +103,13 @@ tabulated!(TabulatedCreep, CREEP);
 
 /// A body given by its measured relaxation modulus: pairs of time \[s\] and G \[Pa\].
 ///
-/// Fitted as [`TabulatedCreep`] is, then converted to creep exactly. Known up to the last time of the data; relaxation
-/// before the first time is not resolved.
+/// Fitted as [`TabulatedCreep`] is, then converted to creep exactly. Known up to the last time of the data.
+///
+/// A table without a modulus at t = 0 does not show the relaxation before its first time, which slows the creep for many times
+/// as long: after a drop to a tenth, creep is uncertain by a factor of two at the first time, and by 5 % at about five times
+/// as long. [`FitReport::uncertainties`] includes it, and [`Rheology::measured`](crate::rheology::Rheology::measured) begins
+/// where it is below 5 %, so that shorter steps of a contact warn by
+/// [`Warning::FasterThanMaterial`](crate::contact::Warning::FasterThanMaterial).
 ///
 /// ```
 /// use viscocontact::rheology::{Rheology, TabulatedRelaxation};

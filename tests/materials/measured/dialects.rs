@@ -115,7 +115,8 @@ fn units_of_headings_are_those_given() {
 #[test]
 fn units_are_read_however_they_follow_the_symbol() {
     type Case = (&'static [&'static str], f64);
-    const TIMES: [Case; 4] = [(&["s", "sec"], 1.0), (&["ms"], 1e-3), (&["min", "mins"], 60.0), (&["h", "hours"], 3600.0)];
+    const TIMES: [Case; 4] =
+        [(&["s", "sec"], 1.0), (&["ms"], 1e-3), (&["min", "mins"], 60.0), (&["h", "hours"], 3600.0)];
     const RATES: [Case; 3] = [
         (&["rad/s", "rad s^-1", "rad·s⁻¹", "1/s", "s^-1"], 1.0),
         (&["Hz", "hertz"], std::f64::consts::TAU),
@@ -151,11 +152,24 @@ fn units_are_read_however_they_follow_the_symbol() {
                 let (heading, unit) = heading;
                 let quoted = format!("\"{heading}\"");
                 let table = |given: f64| {
-                    let units = if first { Units { abscissa: given, value: 1.0 } } else { Units { abscissa: 1.0, value: given } };
+                    let units = if first {
+                        Units { abscissa: given, value: 1.0 }
+                    } else {
+                        Units { abscissa: 1.0, value: given }
+                    };
                     let column = if dynamic { ";G''" } else { "" };
-                    let headings = if first { format!("{quoted};{}", if dynamic { "G'" } else { "J" }) } else { format!("x;{quoted}") };
-                    let rows = if dynamic { "0.1;1.0;0.2\n1;1.5;0.4\n10;2.2;0.4\n100;2.5;0.1\n" } else { "1;1.0\n2;1.1\n4;1.3\n8;1.4\n" };
-                    let headings = if first { headings } else { headings.replace('x', if dynamic { "omega" } else { "t" }) };
+                    let headings = if first {
+                        format!("{quoted};{}", if dynamic { "G'" } else { "J" })
+                    } else {
+                        format!("x;{quoted}")
+                    };
+                    let rows = if dynamic {
+                        "0.1;1.0;0.2\n1;1.5;0.4\n10;2.2;0.4\n100;2.5;0.1\n"
+                    } else {
+                        "1;1.0\n2;1.1\n4;1.3\n8;1.4\n"
+                    };
+                    let headings =
+                        if first { headings } else { headings.replace('x', if dynamic { "omega" } else { "t" }) };
                     let text = format!("{headings}{column}\n{rows}");
                     if dynamic {
                         TabulatedDynamic::from_csv_reader(text.as_bytes(), units).map(|_| ())
