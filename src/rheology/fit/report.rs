@@ -161,19 +161,20 @@ impl FitReport {
         self.wrong_way
     }
 
-    /// The greatest [uncertainty](FitReport::uncertainties) of the creep compliance at the measured times. 0 for a
+    /// The relative error ε of the creep compliance J that is not exceeded at any measured time, for 95 % of tables with noise:
+    /// the compliance of the body is between J/(1 + ε) and J (1 + ε). The greatest of [`FitReport::uncertainties`]. 0 for a
     /// function, which is sampled as finely as needed.
     pub fn uncertainty(&self) -> f64 {
         self.uncertainties().map(|(_, uncertainty)| uncertainty).fold(0.0, f64::max)
     }
 
-    /// Times \[s\] from the first measured one to the last, and the uncertainty ε of the creep compliance J there: the
-    /// compliance of the body is between J/(1 + ε) and J (1 + ε). None for a function.
+    /// Times \[s\] from the first measured one to the last, and the uncertainty ε of the creep compliance J there: at each of
+    /// them the compliance of the body is between J/(1 + ε) and J (1 + ε) for 95 % of tables whose errors are independent, and
+    /// a fixed part of each value. None for a function.
     ///
-    /// It is inside at all of these times for 95 % of tables whose errors are independent, and a fixed part of each
-    /// value. The interval includes the creep of other series that fit the samples equally well, and for relaxation
-    /// moduli without a value at t = 0 that of bodies which have relaxed before the first sample from up to ten times
-    /// its value: no measurement shows it, and it slows the creep for many times as long.
+    /// The interval includes the creep of other series that fit the samples equally well. For relaxation moduli without a
+    /// value at t = 0 these are bodies which have relaxed, before the first sample, from up to ten times its value: no
+    /// measurement shows it, and it slows the creep for many times as long.
     pub fn uncertainties(&self) -> impl ExactSizeIterator<Item = (f64, f64)> + '_ {
         self.interval.iter().map(|&(time, logarithm)| (time, logarithm.exp_m1()))
     }

@@ -16,8 +16,8 @@ use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 
 /// Number of tables drawn.
 const DRAWN: usize = 16;
-/// Half the width of the interval over the standard deviation of the tables drawn: with it the whole curve lies inside
-/// for 95 % of tables, as tests/materials/intervals.rs shows.
+/// Half the width of the interval over the standard deviation of the tables drawn: with it 95 % of tables are inside, as
+/// tests/materials/intervals.rs shows.
 const DEVIATIONS: f64 = 2.2;
 /// Times per decade at which the interval is computed.
 const PER_DECADE: f64 = 8.0;

@@ -106,8 +106,8 @@ tabulated!(TabulatedCreep, CREEP);
 /// Fitted as [`TabulatedCreep`] is, then converted to creep exactly. Known up to the last time of the data.
 ///
 /// A table without a modulus at t = 0 does not show the relaxation before its first time, which slows the creep for many times
-/// as long: after a drop to a tenth, creep is uncertain by a factor of two at the first time, and by 5 % at about five times
-/// as long. [`FitReport::uncertainties`] includes it, and [`Rheology::measured`](crate::rheology::Rheology::measured) begins
+/// as long: after a drop to a tenth, creep is uncertain by a factor of two at the first time, and by 5 % at five times as
+/// long or more. [`FitReport::uncertainties`] includes it, and [`Rheology::measured`](crate::rheology::Rheology::measured) begins
 /// where it is below 5 %, so that shorter steps of a contact warn by
 /// [`Warning::FasterThanMaterial`](crate::contact::Warning::FasterThanMaterial).
 ///
