@@ -1,9 +1,12 @@
-//! Where a load may act: inside the convex hull of the cells that a body may touch.
+//! Where a load may act: in the convex hull of the cells that a body may touch.
 
 use crate::Grid;
 
-/// Distances below this fraction of the grid's length count as none.
-const TOUCHING: f64 = 1e-9;
+/// Corners nearer to a line than this fraction of the grid's length are on it.
+const COLLINEAR: f64 = 1e-12;
+/// A load nearer to the boundary than this fraction of the grid's length is on it: the shares of the force that inner cells
+/// would carry are rounding.
+const ON_BOUNDARY: f64 = 1e-11;
 
 /// The convex hull of some cell centres.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,12 +39,12 @@ impl Hull {
             }
         }
         let [l1, l2] = grid.lengths();
-        let tolerance = TOUCHING * l1.max(l2);
-        let area = tolerance * l1.min(l2);
+        let tolerance = ON_BOUNDARY * l1.max(l2);
+        let area = COLLINEAR * l1.max(l2) * l1.min(l2);
         let half = |points: &mut dyn Iterator<Item = [f64; 2]>| {
             let mut chain: Vec<[f64; 2]> = Vec::new();
             for point in points {
-                while chain.len() >= 2 && cross(chain[chain.len() - 2], chain[chain.len() - 1], point) <= area * 1e-3 {
+                while chain.len() >= 2 && cross(chain[chain.len() - 2], chain[chain.len() - 1], point) <= area {
                     chain.pop();
                 }
                 chain.push(point);
@@ -57,47 +60,48 @@ impl Hull {
         Hull { corners, tolerance }
     }
 
-    /// Whether pressures on more than its boundary can balance a force at `point`. An axis along which the
-    /// body cannot tilt does not count.
-    pub(crate) fn admits(&self, point: [f64; 2], tilts: [bool; 2]) -> bool {
+    /// The point at which pressures balance a force at `point`: this one, or the nearest of the boundary if that is as near as
+    /// rounding; the body then rests on an edge or a corner. `None` if it acts outside. An axis along which the body cannot
+    /// tilt does not count.
+    pub(crate) fn balanced_at(&self, point: [f64; 2], tilts: [bool; 2]) -> Option<[f64; 2]> {
         match tilts {
-            [false, false] => true,
-            [true, false] => self.spans(0, point[0]),
-            [false, true] => self.spans(1, point[1]),
-            [true, true] => self.contains(point),
+            [false, false] => Some(point),
+            [true, false] => Some([self.within_span(0, point[0])?, point[1]]),
+            [false, true] => Some([point[0], self.within_span(1, point[1])?]),
+            [true, true] => self.within(point),
         }
     }
 
-    /// Whether `x` lies between the least and the greatest coordinate along `axis`.
-    fn spans(&self, axis: usize, x: f64) -> bool {
+    /// `x`, or the end of the range of coordinates along `axis` that it is at.
+    fn within_span(&self, axis: usize, x: f64) -> Option<f64> {
         let low = self.corners.iter().map(|corner| corner[axis]).fold(f64::INFINITY, f64::min);
         let high = self.corners.iter().map(|corner| corner[axis]).fold(f64::NEG_INFINITY, f64::max);
-        between(low, high, x, self.tolerance)
+        let ends = [low, high].into_iter().find(|end| (x - end).abs() <= self.tolerance);
+        ends.or_else(|| (low < x && x < high).then_some(x))
     }
 
-    fn contains(&self, point: [f64; 2]) -> bool {
-        match self.corners[..] {
-            [] => false,
-            [only] => (point[0] - only[0]).hypot(point[1] - only[1]) <= self.tolerance,
-            [from, to] => {
-                let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-                let along =
-                    ((point[0] - from[0]) * (to[0] - from[0]) + (point[1] - from[1]) * (to[1] - from[1])) / length;
-                cross(from, to, point).abs() <= self.tolerance * length && between(0.0, length, along, self.tolerance)
-            }
-            ref corners => {
-                let edges = corners.iter().zip(corners.iter().cycle().skip(1));
-                edges.map(|(&from, &to)| (from, to)).all(|(from, to)| {
-                    cross(from, to, point) > self.tolerance * (to[0] - from[0]).hypot(to[1] - from[1])
-                })
-            }
+    fn within(&self, point: [f64; 2]) -> Option<[f64; 2]> {
+        let edges = || self.corners.iter().zip(self.corners.iter().cycle().skip(1)).map(|(&from, &to)| (from, to));
+        let distance = |other: [f64; 2]| (point[0] - other[0]).hypot(point[1] - other[1]);
+        if let Some(&corner) = self.corners.iter().find(|&&corner| distance(corner) <= self.tolerance) {
+            return Some(corner);
         }
+        let nearest = edges().map(|(from, to)| nearest_on(from, to, point));
+        let nearest = nearest.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
+        if distance(nearest) <= self.tolerance {
+            return Some(nearest);
+        }
+        edges().all(|(from, to)| cross(from, to, point) > 0.0).then_some(point)
     }
 }
 
-/// Strictly inside an interval, or on it where it is a point.
-fn between(low: f64, high: f64, x: f64, tolerance: f64) -> bool {
-    if high - low <= tolerance { (x - low).abs() <= tolerance } else { x > low + tolerance && x < high - tolerance }
+/// The nearest point between two others.
+fn nearest_on(from: [f64; 2], to: [f64; 2], point: [f64; 2]) -> [f64; 2] {
+    let way = [to[0] - from[0], to[1] - from[1]];
+    let square = way[0] * way[0] + way[1] * way[1];
+    let along = (point[0] - from[0]) * way[0] + (point[1] - from[1]) * way[1];
+    let share = if square > 0.0 { (along / square).clamp(0.0, 1.0) } else { 0.0 };
+    [from[0] + share * way[0], from[1] + share * way[1]]
 }
 
 /// Twice the area of the triangle a, b, c: positive if c lies left of the way from a to b.
@@ -117,37 +121,48 @@ mod tests {
         })
     }
 
+    fn contains(hull: &Hull, point: [f64; 2]) -> bool {
+        hull.balanced_at(point, [true, true]).is_some()
+    }
+
     #[test]
     fn a_full_grid_is_a_rectangle() {
         let hull = hull([4, 6], |_, _| true);
         assert_eq!(hull.corners.len(), 4);
-        assert!(hull.contains([1.4, -2.4]) && !hull.contains([1.5, 0.0]) && !hull.contains([1.6, 0.0]));
-        assert!(hull.admits([1.4, 99.0], [true, false]) && !hull.admits([1.6, 0.0], [true, false]));
-        assert!(hull.admits([99.0, 99.0], [false, false]));
+        assert!(contains(&hull, [1.4, -2.4]) && contains(&hull, [1.5, 0.0]) && contains(&hull, [1.5, 2.5]));
+        assert!(!contains(&hull, [1.5 + 1e-9, 0.0]) && !contains(&hull, [1.6, 0.0]));
+        assert_eq!(hull.balanced_at([1.5 - 1e-12, 0.5], [true; 2]), Some([1.5, 0.5]));
+        assert!(
+            hull.balanced_at([1.4, 99.0], [true, false]).is_some()
+                && hull.balanced_at([1.6, 0.0], [true, false]).is_none()
+        );
+        assert!(hull.balanced_at([99.0, 99.0], [false, false]).is_some());
     }
 
     #[test]
     fn two_feet_hold_what_lies_between() {
         let hull = hull([9, 9], |x, _| x.abs() > 3.0);
-        assert!(hull.contains([0.0, 0.0]) && hull.contains([2.0, 3.0]) && !hull.contains([4.1, 0.0]));
+        assert!(contains(&hull, [0.0, 0.0]) && contains(&hull, [2.0, 3.0]) && !contains(&hull, [4.1, 0.0]));
     }
 
     #[test]
     fn a_disc_has_no_corners_outside() {
         let hull = hull([41, 41], |x, y| x.hypot(y) < 18.0);
         for angle in (0..60).map(|k| k as f64 / 60.0 * std::f64::consts::TAU) {
-            assert!(hull.contains([16.5 * angle.cos(), 16.5 * angle.sin()]));
-            assert!(!hull.contains([18.0 * angle.cos(), 18.0 * angle.sin()]));
+            assert!(contains(&hull, [16.5 * angle.cos(), 16.5 * angle.sin()]));
+            assert!(!contains(&hull, [18.0 * angle.cos(), 18.0 * angle.sin()]));
         }
     }
 
     #[test]
     fn rows_diagonals_and_points() {
         let row = hull([1, 5], |_, _| true);
-        assert!(row.contains([0.0, 1.9]) && !row.contains([0.0, 2.1]) && !row.contains([0.1, 0.0]));
+        assert!(contains(&row, [0.0, 1.9]) && !contains(&row, [0.0, 2.1]) && !contains(&row, [0.1, 0.0]));
         let diagonal = hull([5, 5], |x, y| x == y);
-        assert!(diagonal.contains([0.5, 0.5]) && !diagonal.contains([0.5, 0.4]) && !diagonal.contains([2.5, 2.5]));
+        assert!(
+            contains(&diagonal, [0.5, 0.5]) && !contains(&diagonal, [0.5, 0.4]) && !contains(&diagonal, [2.5, 2.5])
+        );
         let point = hull([5, 5], |x, y| x == 1.0 && y == 0.0);
-        assert!(point.contains([1.0, 0.0]) && !point.contains([1.1, 0.0]));
+        assert!(contains(&point, [1.0, 0.0]) && !contains(&point, [1.1, 0.0]));
     }
 }

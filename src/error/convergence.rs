@@ -8,6 +8,8 @@ const PROGRESS: f64 = 0.9;
 const GROWN: f64 = 10.0;
 /// A residual below this that no longer falls is rounding.
 const ROUNDING: f64 = 1e-8;
+/// A solver that makes no progress at residuals above this is not hindered by rounding.
+const STALLED: f64 = 1e-3;
 /// Fewer residuals show no trend.
 const FEWEST: usize = 4;
 
@@ -34,7 +36,7 @@ pub struct Convergence {
     tolerance: f64,
     /// Whether the solver lowers the energy of the contact in every iteration, whatever the residual does.
     monotone: bool,
-    /// Whether the solver found that rounding prevents further progress.
+    /// Whether the solver ended because no step made progress.
     stagnated: bool,
 }
 
@@ -75,7 +77,7 @@ impl Convergence {
     /// How the residual changed.
     pub fn trend(&self) -> Trend {
         if self.stagnated {
-            return Trend::Rounding;
+            return if self.lowest() > STALLED { Trend::Stalled } else { Trend::Rounding };
         }
         if self.samples.len() < FEWEST {
             return Trend::TooFew;
@@ -128,6 +130,9 @@ impl fmt::Display for Convergence {
                 f,
                 "the residual stagnates at {lowest:.1e}, the level of rounding: raise Settings::tolerance above that, or bring the scales of the scene closer together (a grid not much larger than the contact)"
             ),
+            (Trend::Stalled, true) if self.stagnated => {
+                write!(f, "the residual stagnates at {lowest:.1e}, far above rounding: take smaller steps")
+            }
             (_, true) => {
                 write!(f, "the lowest residual so far is {lowest:.1e}: raise Settings::max_iterations")
             }
@@ -168,6 +173,11 @@ mod tests {
         }
         let few = Convergence::new(vec![(0, 1.0), (1, 0.5)], 1e-6, false, false);
         assert_eq!(few.trend(), Trend::TooFew);
+        for (residual, trend) in [(3e-2, Trend::Stalled), (1e-9, Trend::Rounding)] {
+            let stagnated = Convergence::new(vec![(0, 1.0), (80, residual)], 1e-10, true, true);
+            assert_eq!(stagnated.trend(), trend);
+            assert_eq!(stagnated.to_string().contains("smaller steps"), trend == Trend::Stalled, "{stagnated}");
+        }
         let none = Convergence::new(Vec::new(), 1e-6, false, false);
         assert!(none.lowest() == f64::INFINITY && !none.to_string().is_empty());
     }

@@ -45,6 +45,21 @@ pub enum MaterialError {
         tolerance: f64,
     },
 
+    /// A temperature given by a closure changes so roughly that the reduced time between two times is less accurate than five
+    /// digits: it jumps or bends at many times that are not named as corners, or is noisy. Name the corners, or give a
+    /// [table](crate::rheology::TemperatureHistory::table), whose corners are known.
+    #[error(
+        "the temperature between {from} s and {to} s is too rough for its reduced time, which is known to {accuracy:.0e}: name its corners, or give it as a table (TemperatureHistory::table)"
+    )]
+    RoughTemperature {
+        /// Start of the piece between corners \[s\].
+        from: f64,
+        /// Its end \[s\].
+        to: f64,
+        /// Relative accuracy reached.
+        accuracy: f64,
+    },
+
     /// No published material has this name.
     #[error("there is no published material named {name:?}; known are: {known}")]
     Unknown {

@@ -100,6 +100,8 @@ const MAX_EXPONENT: f64 = 700.0;
 const MAX_GROWTH: f64 = 4.0;
 /// ... nor one of a body with an immediate dashpot, whose errors grow beyond 1 + √2.
 const MAX_GROWTH_OF_DASHPOT: f64 = 2.41;
+/// Steps whose lengths are farther apart than this factor say nothing about each other: its square must be a number.
+const MAX_RATIO: f64 = 1e150;
 /// A step that is shorter than this part of the one before was cut short by something that happened: the step before is not
 /// told about it.
 const MIN_CORRECTING: f64 = 0.5;
@@ -283,7 +285,8 @@ impl ExponentialRule {
 
     fn weigh_as(&mut self, dt: f64, degree: usize, corrects: [bool; 2]) {
         let jump = dt == 0.0;
-        let known = if jump { 0 } else { self.known };
+        let apart = self.known > 0 && !(1.0 / MAX_RATIO..=MAX_RATIO).contains(&(self.spans[0] / dt));
+        let known = if jump || apart { 0 } else { self.known };
         let degree = degree.min(known + 1);
         let lacking = if corrects[0] && known + 1 >= self.lacking { self.lacking } else { 0 };
         let [past, before] = [0, 1].map(|k| if k < known { self.spans[k] / dt } else { 0.0 });

@@ -2,7 +2,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use crate::ascending::Ascending;
-use crate::error::{Error, Result, finite, least_length, within};
+use crate::error::{Error, MaterialError, Result, finite, least_length, within};
 use crate::quadrature::GaussLegendre;
 use crate::rheology::TimeTemperature;
 
@@ -58,8 +58,12 @@ enum Course {
 /// Points of the quadrature over a piece; two halves must agree with it.
 const POINTS: usize = 12;
 const AGREEMENT: f64 = 1e-13;
-/// A piece is halved so many times at most: then it is as short as the resolution of a time.
-const MAX_HALVINGS: u32 = 50;
+/// Most pieces of a quadrature, and the agreement that they must reach together if this is not enough.
+const MAX_PIECES: usize = 1 << 14;
+const LEAST_AGREEMENT: f64 = 1e-5;
+/// Of a temperature with noise, so many pieces agree no better than this part of what their halves do: the rest is noise.
+const NOISY_PIECES: usize = 512;
+const NOISE: f64 = 0.75;
 /// Lengths in t are found from lengths in ξ to this part, in so many trials: only their order matters.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 const MAX_TRIALS: usize = 100;
@@ -136,10 +140,13 @@ impl TemperatureHistory {
         }
     }
 
-    /// The reduced time \[s\] that passes between two times: ∫ dt/a_T(T(t)), to thirteen digits.
+    /// The reduced time \[s\] that passes between two times: ∫ dt/a_T(T(t)), to thirteen digits where the temperature is
+    /// smooth between its corners, and to five at least.
     ///
     /// # Errors
-    /// If a time is not finite, `to` is before `from`, or for a temperature in between as [`TimeTemperature::shift_factor`].
+    /// If a time is not finite, `to` is before `from`, the reduced time overflows, a closure is too rough
+    /// ([`MaterialError::RoughTemperature`](crate::rheology::MaterialError::RoughTemperature)), or for a temperature in between as
+    /// [`TimeTemperature::shift_factor`].
     pub fn reduced_time(&self, from: f64, to: f64) -> Result<f64> {
         finite("start of the reduced time", from)?;
         finite("end of the reduced time", to)?;
@@ -196,22 +203,41 @@ impl TemperatureHistory {
                 return Ok((to - from) / self.law.shift_factor(ends[0])?);
             }
         }
-        let whole = self.quadrature(from, to)?;
-        self.halved(from, to, whole, whole, MAX_HALVINGS)
+        self.halved(from, to)
     }
 
-    /// `whole`, the quadrature over a piece, made exact to a small part of `all`.
-    fn halved(&self, from: f64, to: f64, whole: f64, all: f64, left: u32) -> Result<f64> {
-        let middle = 0.5 * (from + to);
-        if left == 0 || middle <= from || middle >= to {
-            return Ok(whole);
+    /// The quadrature over a piece, which is halved where halves do not agree with it.
+    fn halved(&self, from: f64, to: f64) -> Result<f64> {
+        let whole = finite("reduced time", self.quadrature(from, to)?)?;
+        let (mut pieces, mut finer) = (vec![(from, to, whole)], Vec::new());
+        let (mut sum, mut all, mut computed) = (0.0, whole, 0);
+        let (mut apart, mut before) = (0.0, f64::INFINITY);
+        while !pieces.is_empty() && computed < MAX_PIECES && (pieces.len() < NOISY_PIECES || apart <= NOISE * before) {
+            computed += pieces.len();
+            (apart, before) = (0.0, apart);
+            for (from, to, whole) in pieces.drain(..) {
+                let middle = from + 0.5 * (to - from);
+                if middle <= from || middle >= to {
+                    sum += whole; // as short as the resolution of a time
+                    continue;
+                }
+                let (first, second) = (self.quadrature(from, middle)?, self.quadrature(middle, to)?);
+                all = all.max(first + second);
+                let difference = (first + second - whole).abs();
+                if difference <= AGREEMENT * all {
+                    sum += first + second;
+                } else {
+                    apart += difference;
+                    finer.extend([(from, middle, first), (middle, to, second)]);
+                }
+            }
+            std::mem::swap(&mut pieces, &mut finer);
         }
-        let (first, second) = (self.quadrature(from, middle)?, self.quadrature(middle, to)?);
-        let all = all.max(first + second);
-        if (first + second - whole).abs() <= AGREEMENT * all {
-            return Ok(first + second);
+        let sum = sum + pieces.iter().map(|(_, _, part)| part).sum::<f64>();
+        if !pieces.is_empty() && apart > LEAST_AGREEMENT * sum {
+            return Err(MaterialError::RoughTemperature { from, to, accuracy: apart / sum }.into());
         }
-        Ok(self.halved(from, middle, first, all, left - 1)? + self.halved(middle, to, second, all, left - 1)?)
+        Ok(sum)
     }
 
     fn quadrature(&self, from: f64, to: f64) -> Result<f64> {

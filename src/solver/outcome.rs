@@ -74,8 +74,14 @@ impl ResidualSums {
     pub(crate) fn note(&mut self, problem: &Problem<'_>, penetration: f64, rounding: f64, solution: &mut Solution) {
         self.cancellation = problem.rounding(&solution.pressure) + rounding;
         solution.residual = self.relative_residual(penetration);
-        // a smaller residual cannot be detected
-        solution.rounding = if self.displacement > 0.0 { self.rounding() / self.yielding() } else { 0.0 };
+        // a smaller residual cannot be detected; where squares of displacements vanish, none can
+        solution.rounding = if self.displacement > 0.0 {
+            (self.rounding() + UNDERFLOW) / self.yielding()
+        } else if problem.rows().any(solution.pressure.iter().any(|&p| p > 0.0)) {
+            f64::INFINITY
+        } else {
+            0.0
+        };
         solution.trace.note(solution.counts.iterations, solution.residual);
     }
 

@@ -3,10 +3,12 @@
 mod conditions;
 mod differential;
 mod extremes;
+mod limits;
 mod loads;
 mod population;
 mod ranks;
 mod ranks_at_random;
 mod ranks_together;
 mod region;
+mod several;
 mod work;

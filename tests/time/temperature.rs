@@ -333,3 +333,62 @@ fn files_tell_the_temperature() {
     assert!(json.contains("\"temperature\": ") && json.contains("310.5") && json.contains("Wlf"), "{json}");
     assert!(!Metadata::new("constant").json(&scene().build().unwrap()).contains("\"temperature\""));
 }
+
+/// Noise, steps and bends in a closure cost a bounded number of evaluations; what they leave open is said, and what overflows
+/// ends at once.
+#[test]
+fn rough_temperatures_cost_little() {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
+    use viscocontact::Error;
+    use viscocontact::rheology::MaterialError;
+
+    type Closure = fn(f64) -> f64;
+    let noise: Closure = |t| ((t * 1e9).sin() * 43758.5453).fract();
+    let knots: Closure = |t| {
+        let (k, share) = ((1000.0 * t).floor(), (1000.0 * t).fract());
+        let knot = |k: f64| 0.3 * ((k * 7919.0) % 13.0);
+        knot(k) + share * (knot(k + 1.0) - knot(k))
+    };
+    let cases: [(&str, Closure, usize, Option<f64>); 7] = [
+        ("smooth", |t| 10.0 * t, 200, Some(1e-13)),
+        ("single precision", |t| f64::from(10.0_f32 * t as f32), 500_000, Some(1e-8)),
+        ("stairs", |t| 0.1 * (100.0 * t).floor(), 500_000, Some(1e-12)),
+        ("bends", knots, 500_000, Some(1e-12)),
+        ("little noise", |t| 10.0 * t + 1e-6 * ((t * 1e9).sin() * 43758.5453).fract(), 100_000, Some(1e-6)),
+        ("noise", noise, 100_000, None),
+        ("overflow", |_| 1e4, 100, None),
+    ];
+    for (name, closure, most, accuracy) in cases {
+        let calls = Arc::new(AtomicUsize::new(0));
+        let counted = Arc::clone(&calls);
+        let at = move |t: f64| {
+            counted.fetch_add(1, Relaxed);
+            REFERENCE + closure(t)
+        };
+        let history = TemperatureHistory::function(wlf(), at, &[]).unwrap();
+        let until = if name == "overflow" { 1e308 } else { 1.0 };
+        let found = history.reduced_time(0.0, until);
+        println!("{name}: {found:?} after {} calls", calls.load(Relaxed));
+        assert!(calls.load(Relaxed) < most, "{name}: {}", calls.load(Relaxed));
+        match accuracy {
+            // the mean over a million points, which meets every knot and stair
+            Some(within) => {
+                let exact = |t: f64| 1.0 / wlf().shift_factor(REFERENCE + closure(t)).unwrap();
+                let points = 1_000_000;
+                let nodes = [0.5 - 0.5 / 3_f64.sqrt(), 0.5 + 0.5 / 3_f64.sqrt()];
+                let mean: f64 = (0..points)
+                    .map(|k| {
+                        nodes.iter().map(|node| 0.5 * exact((f64::from(k) + node) / f64::from(points))).sum::<f64>()
+                    })
+                    .sum();
+                close(found.unwrap(), mean / f64::from(points), within.max(1e-11), name);
+            }
+            None if name == "overflow" => assert!(matches!(found, Err(Error::OutOfRange { .. })), "{found:?}"),
+            None => {
+                let rough = matches!(found, Err(Error::Material(MaterialError::RoughTemperature { accuracy, .. })) if accuracy > 1e-5);
+                assert!(rough, "{found:?}");
+            }
+        }
+    }
+}

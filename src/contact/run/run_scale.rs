@@ -3,7 +3,7 @@
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::window::placement::resting_depth;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, within};
 use crate::load::{Load, LoadHistory};
 
 /// Loads and displacements below this part of the greatest of the run are measured relative to that part.
@@ -15,6 +15,9 @@ const TIMES_PER_DECADE: i32 = 4;
 const DECADES: i32 = 12;
 /// ... and at so many of its breakpoints.
 const BREAKPOINTS: usize = 1000;
+/// Least of the greatest force \[N\] and depth \[m\] of a run: fractions of smaller ones are rounded away, so that no step is
+/// short enough for their changes.
+const LEAST: f64 = 1e-290;
 
 /// What is small in a run: the greatest loads of its history, and the displacement that they are likely to cause. Near nothing,
 /// at first touch, when bodies part, or under a load that starts like a power of time, errors relative to the state itself
@@ -62,6 +65,10 @@ impl RunScale {
                 }
             }
         }
+        let large_enough = |size: f64| size == 0.0 || size >= LEAST;
+        let allowed = "0, or 1e-290 at least, for adaptive steps: choose other units, or Stepping::fixed";
+        within("greatest force of the run", scale.force, large_enough(scale.force), allowed)?;
+        within("greatest depth of the run", scale.depth, large_enough(scale.depth), allowed)?;
         if scale.force > 0.0 && compliance > 0.0 {
             scale.depth_over_compliance = resting_depth(scene, state, scale.force * compliance) / compliance;
         }

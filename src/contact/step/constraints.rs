@@ -27,7 +27,7 @@ pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
             return Err(Error::Overflow { time, what: "the force over the area of a cell" });
         }
         let balanced = tilt != [false; 2] && !(translation && total == 0.0);
-        if balanced && !step.indenter.hull(body, grid).admits(point, tilt) {
+        if balanced && step.indenter.hull(body, grid).balanced_at(point, tilt).is_none() {
             return Err(Error::LoadOutsideHull { time, body, at: point });
         }
     }
@@ -35,9 +35,14 @@ pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
 }
 
 /// Writes what the loads leave free of each body. A tilt about a folded axis vanishes by symmetry.
-pub(super) fn find_free_motions(scene: &Scene, region: &Region, loads: &[Load], free: &mut [Freedom]) {
-    for (own, load) in free.iter_mut().zip(loads) {
+pub(super) fn find_free_motions(scene: &Scene, region: &Region, step: &Step<'_>, free: &mut [Freedom]) {
+    for (body, (own, load)) in free.iter_mut().zip(step.loads).enumerate() {
         *own = freedom(load, &scene.grid);
+        if own.tilts()
+            && let Some(point) = step.indenter.hull(body, &scene.grid).balanced_at(own.point, own.tilt)
+        {
+            own.point = point;
+        }
         own.tilt = [0, 1].map(|axis| own.tilt[axis] && !region.folded()[axis]);
         own.total /= region.images() as f64;
     }

@@ -236,7 +236,7 @@ impl Computation {
     fn solve(&mut self, scene: &Scene, step: &Step<'_>) -> Result<()> {
         let Computation { state, window, trial } = self;
         window.follow(&state.region, &step.indenter);
-        find_free_motions(scene, &state.region, step.loads, &mut trial.free);
+        find_free_motions(scene, &state.region, step, &mut trial.free);
         material_is_known(scene, state, step, !state.is_undisturbed())?;
 
         // u = u_old + c K p

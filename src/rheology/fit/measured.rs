@@ -10,9 +10,9 @@ use super::polish::polish;
 use super::{LONG, Search};
 
 /// Misfits below this need no further term: no measurement is that accurate.
-const FLOOR: f64 = 3e-5;
+pub(super) const FLOOR: f64 = 3e-5;
 /// Times per decade of the first fit.
-const DENSITY: f64 = 6.0;
+pub(super) const DENSITY: f64 = 6.0;
 /// Mergers tried, cheapest first: with noise the first-order cost is a poor estimate.
 const TRIES: usize = 6;
 /// With fewer values per parameter than this a smooth spectrum is preferred to a sparse one.
@@ -36,10 +36,23 @@ const FOLLOWED: f64 = 8.0;
 /// Greatest number of points over all samples of a table: one over many decades is followed more coarsely.
 const FOLLOWED_IN_ALL: f64 = 64.0;
 
+/// A series fitted to measurements.
+#[derive(Debug, Clone)]
+pub(crate) struct Measured {
+    /// The series with the best prediction.
+    pub(crate) series: FittedSeries,
+    /// The series of least squares, which fits the samples equally well.
+    pub(crate) least_squares: FittedSeries,
+    /// Relative deviation of the two, at or between the samples.
+    pub(crate) ambiguity: f64,
+    /// Relative standard deviation of one measurement, and the degrees of freedom of its estimate.
+    pub(crate) noise: f64,
+    pub(crate) freedoms: f64,
+}
+
 impl Search {
-    /// The series with the best prediction for measurements, and the relative deviation from it, at or between the
-    /// samples, of another series that fits them equally well.
-    pub(crate) fn measured(&self, samples: &[Sample]) -> (FittedSeries, f64) {
+    /// The series with the best prediction for measurements.
+    pub(crate) fn measured(&self, samples: &[Sample]) -> Measured {
         let start = self.on_grid(samples, DENSITY);
         // each strength that is not zero is a parameter of non-negative least squares (Meyer & Woodroofe, Ann. Statist.
         // 28, 2000)
@@ -56,8 +69,8 @@ impl Search {
             Some(curve) => self.within(&along(&curve, samples), FOLLOWS.max(FOLLOWS_NOISE * noise)),
             None => self.sparse(&start, samples, noise.max(FLOOR * root)),
         };
-        let uncertainty = series.worst(&along(&start, samples));
-        (series, uncertainty)
+        let ambiguity = series.worst(&along(&start, samples));
+        Measured { series, least_squares: start, ambiguity, noise, freedoms: left }
     }
 
     /// The terms that improve the prediction, by the criterion of Mallows (Technometrics 15, 1973).

@@ -14,12 +14,15 @@ mod measured;
 mod nnls;
 mod polish;
 mod report;
+mod uncertainty;
 
 pub use basis::MaterialFunction;
 pub(crate) use basis::{FittedSeries, Sample};
 pub use report::{FitReport, FitSample, FitWarning};
+pub(crate) use uncertainty::Uncertainty;
 
 use faer::{Col, Mat};
+use measured::DENSITY;
 use polish::polish;
 
 /// The class of series to search.

@@ -3,13 +3,17 @@
 use faer::{Col, Mat};
 
 use super::Search;
-use super::basis::{FittedSeries, Sample};
+use super::basis::{FittedSeries, MaterialFunction, Sample};
 use super::nnls::solve;
 
 /// Greatest change of the logarithm of a parameter in one iteration.
 const MAX_CHANGE: f64 = 1.5;
 
-/// Levenberg–Marquardt in the logarithms of strengths and times, which keeps both positive. Ends after
+/// The first sample over the shortest time of a term of relaxation, of which nothing is left there.
+const DECAYED: f64 = 30.0;
+
+/// Levenberg–Marquardt in the logarithms of strengths and times, which keeps both positive. The strength of a term of
+/// relaxation is its modulus at the first sample: that at t = 0 changes by orders of magnitude with the time. Ends after
 /// `iterations`, when `done`, or when the squares no longer decrease.
 pub(crate) fn polish(
     start: &FittedSeries,
@@ -28,7 +32,8 @@ pub(crate) fn polish(
         let (jacobian, misfits) = linearise(&best, samples, search);
         let mut improved = None;
         for _ in 0..6 {
-            let trial = moved(&best, search, &damped_step(&jacobian, &misfits, damping));
+            let step = damped_step(&jacobian, &misfits, damping);
+            let trial = moved(&best, search, &step, first_time(samples));
             let trial_squares = trial.squares(samples);
             if trial_squares < squares {
                 improved = Some((trial, trial_squares));
@@ -54,6 +59,7 @@ fn linearise(series: &FittedSeries, samples: &[Sample], search: &Search) -> (Mat
     let ends = usize::from(constant_moves) + usize::from(slope_moves);
     let mut jacobian = Mat::zeros(samples.len(), ends + 2 * series.terms.len());
     let mut misfits = Col::zeros(samples.len());
+    let first = first_time(samples);
     for (i, sample) in samples.iter().enumerate() {
         let (function, root) = (sample.function, sample.weight.sqrt());
         let weight = root / sample.value;
@@ -71,7 +77,7 @@ fn linearise(series: &FittedSeries, samples: &[Sample], search: &Search) -> (Mat
         for &(strength, lambda) in &series.terms {
             let (value, derivative) = function.term(sample.x, lambda);
             jacobian[(i, column)] = strength * value * weight;
-            jacobian[(i, column + 1)] = strength * derivative * weight;
+            jacobian[(i, column + 1)] = strength * (derivative - first / lambda * value) * weight;
             column += 2;
         }
     }
@@ -96,7 +102,12 @@ fn damped_step(jacobian: &Mat<f64>, misfits: &Col<f64>, damping: f64) -> Vec<f64
     solve(&matrix, &right)
 }
 
-fn moved(series: &FittedSeries, search: &Search, step: &[f64]) -> FittedSeries {
+/// The time at which the strength of a term is taken.
+fn first_time(samples: &[Sample]) -> f64 {
+    if samples[0].function == MaterialFunction::Relaxation { samples[0].x } else { 0.0 }
+}
+
+fn moved(series: &FittedSeries, search: &Search, step: &[f64], first: f64) -> FittedSeries {
     let mut step = step.iter().map(|d| d.clamp(-MAX_CHANGE, MAX_CHANGE).exp());
     let mut next = || step.next().unwrap_or(1.0);
     let mut moved = series.clone();
@@ -108,8 +119,9 @@ fn moved(series: &FittedSeries, search: &Search, step: &[f64]) -> FittedSeries {
         moved.slope *= next();
     }
     for (strength, lambda) in &mut moved.terms {
-        *strength *= next();
-        *lambda *= next();
+        let (grown, before) = (next(), *lambda);
+        *lambda = (before * next()).max(first / DECAYED);
+        *strength *= grown * (first / *lambda - first / before).exp();
     }
     moved
 }

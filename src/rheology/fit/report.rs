@@ -23,6 +23,8 @@ impl FitSample {
     }
 }
 
+/// Creep that is less uncertain than this is known, for the display.
+const KNOWN: f64 = 0.05;
 /// Uncertainties and systematic misfits below this need no warning.
 const TOLERABLE: f64 = 5e-3;
 /// An uncertainty of more than this times the misfit is not due to the scatter of the samples.
@@ -37,7 +39,7 @@ const SYSTEMATIC: f64 = 1.0;
 pub enum FitWarning {
     /// There are too few samples to determine the curve between them: measure more per decade.
     FewSamples {
-        /// [`FitReport::uncertainty`].
+        /// Relative deviation, between the samples, of another series that fits them equally well.
         uncertainty: f64,
     },
     /// No series fits the samples within their scatter: the body is not linear, it ages, or the specimen slipped.
@@ -77,7 +79,7 @@ pub struct FitReport {
     samples: Vec<FitSample>,
     terms: usize,
     wrong_way: f64,
-    uncertainty: f64,
+    interval: Vec<(f64, f64)>,
     warning: Option<FitWarning>,
 }
 
@@ -95,20 +97,21 @@ impl FitReport {
 
     /// The report of an exact series.
     pub(crate) fn exact(terms: usize) -> FitReport {
-        FitReport { samples: Vec::new(), terms, wrong_way: 0.0, uncertainty: 0.0, warning: None }
+        FitReport { samples: Vec::new(), terms, wrong_way: 0.0, interval: Vec::new(), warning: None }
     }
 
-    /// The report with the deviation from monotone and the uncertainty of measurements.
-    pub(crate) fn of_measurements(self, wrong_way: f64, uncertainty: f64) -> FitReport {
+    /// The report of measurements: their deviation from monotone, the deviation of two series that fit them, and the
+    /// interval of their creep.
+    pub(crate) fn of_measurements(self, wrong_way: f64, ambiguity: f64, interval: Vec<(f64, f64)>) -> FitReport {
         let rms = self.rms_misfit();
-        let warning = if uncertainty > TOLERABLE.max(OVER_SCATTER * rms) {
-            Some(FitWarning::FewSamples { uncertainty })
+        let warning = if ambiguity > TOLERABLE.max(OVER_SCATTER * rms) {
+            Some(FitWarning::FewSamples { uncertainty: ambiguity })
         } else if rms > TOLERABLE && self.is_systematic() {
             Some(FitWarning::Systematic { rms })
         } else {
             None
         };
-        FitReport { wrong_way, uncertainty, warning, ..self }
+        FitReport { wrong_way, interval, warning, ..self }
     }
 
     /// Whether misfits resemble those of their neighbours.
@@ -158,10 +161,22 @@ impl FitReport {
         self.wrong_way
     }
 
-    /// Relative deviation, at or between the samples, of another series that fits them equally well. 0 for a function,
-    /// which is sampled as finely as needed.
+    /// The relative error ε of the creep compliance J that is not exceeded at any measured time, for 95 % of tables with noise:
+    /// the compliance of the body is between J/(1 + ε) and J (1 + ε). The greatest of [`FitReport::uncertainties`]. 0 for a
+    /// function, which is sampled as finely as needed.
     pub fn uncertainty(&self) -> f64 {
-        self.uncertainty
+        self.uncertainties().map(|(_, uncertainty)| uncertainty).fold(0.0, f64::max)
+    }
+
+    /// Times \[s\] from the first measured one to the last, and the uncertainty ε of the creep compliance J there: at each of
+    /// them the compliance of the body is between J/(1 + ε) and J (1 + ε) for 95 % of tables whose errors are independent, and
+    /// a fixed part of each value. None for a function.
+    ///
+    /// The interval includes the creep of other series that fit the samples equally well. For relaxation moduli without a
+    /// value at t = 0 these are bodies which have relaxed, before the first sample, from up to ten times its value: no
+    /// measurement shows it, and it slows the creep for many times as long.
+    pub fn uncertainties(&self) -> impl ExactSizeIterator<Item = (f64, f64)> + '_ {
+        self.interval.iter().map(|&(time, logarithm)| (time, logarithm.exp_m1()))
     }
 
     /// The warning, if any; for measurements only. Steps of a contact with such a material have
@@ -197,6 +212,13 @@ impl fmt::Display for FitReport {
         )?;
         if self.wrong_way > 0.0 {
             write!(f, "; the data deviate from a monotone curve by at most {:.1e}, taken as noise", self.wrong_way)?;
+        }
+        if self.uncertainty() > 0.0 {
+            write!(f, "; creep uncertain by {:.1} % at most", 100.0 * self.uncertainty())?;
+            let last = self.uncertainties().filter(|(_, uncertainty)| *uncertainty > KNOWN).last();
+            if let Some((time, _)) = last {
+                write!(f, ", by less than {:.0} % only after {time:.3e} s", 100.0 * KNOWN)?;
+            }
         }
         if let Some(warning) = self.warning {
             write!(f, "; {warning}")?;

@@ -10,8 +10,8 @@ pub use self::csv::Units;
 pub use master_curve::{Isotherm, MasterCurve};
 
 use crate::error::{Place, Result, TableError, exact_length};
-use crate::rheology::fit::{FitReport, Sample, Search};
-use crate::rheology::{CreepSeries, CreepSpectrum, RelaxationSpectrum, forward_rheology};
+use crate::rheology::fit::{FitReport, Sample, Search, Uncertainty};
+use crate::rheology::{CreepSeries, CreepSpectrum, forward_rheology};
 use data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
 
 /// Greatest root mean square misfit of an accepted fit.
@@ -22,6 +22,10 @@ const MEANS_PER_DECADE: f64 = 24.0;
 const DECADES: f64 = 30.0;
 /// Factor by which the times of the terms extend beyond the data.
 const BEYOND: f64 = 3.0;
+/// The same factor before the first of relaxation moduli, where shorter terms fit them better: by this number of
+/// variances of the scatter, or more.
+const BEYOND_FAST: f64 = 10.0;
+const NOTICEABLE: f64 = 12.0;
 
 /// Methods common to the three kinds of table.
 macro_rules! tabulated {
@@ -99,8 +103,13 @@ tabulated!(TabulatedCreep, CREEP);
 
 /// A body given by its measured relaxation modulus: pairs of time \[s\] and G \[Pa\].
 ///
-/// Fitted as [`TabulatedCreep`] is, then converted to creep exactly. Known up to the last time of the data; relaxation
-/// before the first time is not resolved.
+/// Fitted as [`TabulatedCreep`] is, then converted to creep exactly. Known up to the last time of the data.
+///
+/// A table without a modulus at t = 0 does not show the relaxation before its first time, which slows the creep for many times
+/// as long: after a drop to a tenth, creep is uncertain by a factor of two at the first time, and by 5 % at five times as
+/// long or more. [`FitReport::uncertainties`] includes it, and [`Rheology::measured`](crate::rheology::Rheology::measured) begins
+/// where it is below 5 %, so that shorter steps of a contact warn by
+/// [`Warning::FasterThanMaterial`](crate::contact::Warning::FasterThanMaterial).
 ///
 /// ```
 /// use viscocontact::rheology::{Rheology, TabulatedRelaxation};
@@ -179,18 +188,27 @@ fn fitted(layout: Layout, rows: Vec<Row>) -> Result<CreepSeries> {
     let time = |x: f64| if layout.zero { x } else { 1.0 / x };
     let positive = || samples.iter().map(|sample| time(sample.x)).filter(|t| *t > 0.0);
     let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
-    let search = Search { constant: None, slope: layout == CREEP, times: [first / BEYOND, last * BEYOND] };
-    let (series, uncertainty) = search.measured(&averaged(&samples, (last / first).log10()));
-    let report = FitReport::new(&series, &samples).of_measurements(wrong_way, uncertainty);
+    let averaged = averaged(&samples, (last / first).log10());
+    let mut search = Search { constant: None, slope: layout == CREEP, times: [first / BEYOND, last * BEYOND] };
+    let mut measured = search.measured(&averaged);
+    if layout == RELAXATION && samples[0].x > 0.0 {
+        // what is left at the first time of terms that are shorter
+        let wider = Search { times: [first / BEYOND_FAST, last * BEYOND], ..search.clone() };
+        let other = wider.measured(&averaged);
+        if other.least_squares.squares(&averaged) + NOTICEABLE * other.noise.powi(2)
+            < measured.least_squares.squares(&averaged)
+        {
+            (search, measured) = (wider, other);
+        }
+    }
+    let Uncertainty { interval, known_from } = measured.uncertainty(&search, &averaged, [first, last])?;
+    let report = FitReport::new(&measured.series, &samples).of_measurements(wrong_way, measured.ambiguity, interval);
     if let Some(worst) = report.worst().filter(|_| report.rms_misfit() > MOST_MISFIT) {
         let (table, rms) = (layout.table, report.rms_misfit());
         return Err(TableError::Inconsistent { table, rms, worst: worst.misfit().abs(), x: worst.x }.into());
     }
-    let spectrum = match layout {
-        CREEP => CreepSpectrum::new(series.constant, series.slope, &series.terms)?,
-        _ => RelaxationSpectrum::new(series.constant, 0.0, &series.terms)?.creep(),
-    };
-    Ok(CreepSeries { spectrum, report, known_until: last, measured: [first, last] })
+    let spectrum = measured.series.creep(samples[0].function)?;
+    Ok(CreepSeries { spectrum, report, known_until: last, measured: [known_from, last] })
 }
 
 /// Replaces neighbouring samples by their geometric means where there are more than a fit needs.

@@ -119,13 +119,22 @@ impl ActiveSet {
             }
             // where no force is prescribed, the pressure may be rounding itself: no cell moves more than by this
             let kernel = problem.kernel;
-            let moved = problem.compliance * kernel.self_influence() * kernel.images() * changed;
-            moved <= self.unseen(problem, tolerance, solution)
+            let moved = problem.compliance * kernel.self_influence() * kernel.images();
+            let [unseen, rounding] = self.unseen(problem, tolerance, solution);
+            if moved * carried <= rounding {
+                // the body is held by a touch
+                self.set.cells(problem, body).for_each(|k| solution.pressure[k] = 0.0);
+                if !problem.rows().any(solution.pressure.iter().any(|&p| p != 0.0)) {
+                    solution.potential.fill(0.0);
+                }
+                return true;
+            }
+            moved * changed <= unseen
         })
     }
 
-    /// The displacement that a residual below the tolerance does not show.
-    fn unseen(&self, problem: &Problem<'_>, tolerance: f64, solution: &Solution) -> f64 {
+    /// The displacement that a residual below the tolerance does not show, and the rounding of the gap in it.
+    fn unseen(&self, problem: &Problem<'_>, tolerance: f64, solution: &Solution) -> [f64; 2] {
         let square = self.set.sum_over_all(problem, |k| (problem.compliance * solution.potential[k]).powi(2));
         let sums = ResidualSums {
             displacement: square,
@@ -134,6 +143,6 @@ impl ActiveSet {
             cancellation: problem.rounding(&solution.pressure) + self.guess_rounding,
             ..ResidualSums::default()
         };
-        tolerance * sums.yielding() + sums.rounding()
+        [tolerance * sums.yielding() + sums.rounding(), sums.rounding()]
     }
 }

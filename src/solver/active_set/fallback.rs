@@ -54,7 +54,7 @@ impl ActiveSet {
         if let Err(body) = self.make_feasible(problem, solution, work) {
             return Outcome::Unbalanced(body);
         }
-        let (mut gained, mut joins_without_gain) = (true, 0);
+        let (mut gained, mut joins_without_gain, mut blocked) = (true, 0, false);
         self.search.energy = 0.0;
         loop {
             let (mut state, penetration) = self.advance(problem, solution, 0.0);
@@ -62,8 +62,9 @@ impl ActiveSet {
             if let Some(outcome) = stop.outcome(solution, || true) {
                 return outcome;
             }
-            let joins = penetration > JOIN_OVER_RMS * state.rms();
-            if joins {
+            let penetrates = penetration > JOIN_OVER_RMS * state.rms();
+            // cells at zero that blocked the step have left; where they joined again before any gain, they would block the next
+            if penetrates && !blocked {
                 joins_without_gain = if gained { 0 } else { joins_without_gain + 1 };
                 if joins_without_gain > MAX_JOINS_WITHOUT_GAIN {
                     return Outcome::Stagnated;
@@ -74,11 +75,13 @@ impl ActiveSet {
             }
             solution.counts.iterations += 1;
             solution.counts.fallback_iterations += 1;
-            let cells = state.cells;
+            let cells = self.set.count();
             let towards = if joins_without_gain > 1 { Towards::Residual } else { Towards::Preconditioned };
-            match self.step_downhill(problem, towards, solution, work) {
-                0.0 if !joins && self.set.count() == cells => return Outcome::Stagnated,
-                gain => gained |= gain > 0.0,
+            let gain = self.step_downhill(problem, towards, solution, work);
+            gained |= gain > 0.0;
+            blocked = gain <= 0.0 && self.set.count() < cells;
+            if gain <= 0.0 && !blocked && !penetrates {
+                return Outcome::Stagnated;
             }
         }
     }

@@ -240,7 +240,9 @@ impl ActiveSet {
         *energy = curvature;
         if !self.changes.any() {
             // a direction that vanishes, as on a single cell, gains nothing
-            let length = slope / (problem.compliance * curvature);
+            // the product of small ones may vanish
+            let product = problem.compliance * curvature;
+            let length = if product > 0.0 { slope / product } else { slope / curvature / problem.compliance };
             let downhill = slope > 0.0 && curvature > 0.0 && length.is_finite();
             if downhill {
                 self.search.length = length * problem.compliance;

@@ -111,6 +111,95 @@ fn units_of_headings_are_those_given() {
     assert_eq!(message, "line 1, column 1: the heading \"time [min]\" says min, but Units::abscissa = 1 means s");
 }
 
+/// Every unit after a symbol, with and without brackets: read where it is given, else refused by its own name.
+#[test]
+fn units_are_read_however_they_follow_the_symbol() {
+    type Case = (&'static [&'static str], f64);
+    const TIMES: [Case; 4] =
+        [(&["s", "sec"], 1.0), (&["ms"], 1e-3), (&["min", "mins"], 60.0), (&["h", "hours"], 3600.0)];
+    const RATES: [Case; 3] = [
+        (&["rad/s", "rad s^-1", "rad·s⁻¹", "1/s", "s^-1"], 1.0),
+        (&["Hz", "hertz"], std::f64::consts::TAU),
+        (&["kHz"], 1e3 * std::f64::consts::TAU),
+    ];
+    const MODULI: [Case; 4] = [
+        (&["Pa", "N/m2", "N/m^2", "N m^-2"], 1.0),
+        (&["MPa", "N/mm²", "10^6 Pa"], 1e6),
+        (&["GPa", "10⁹ Pa"], 1e9),
+        (&["dyn/cm^2"], 0.1),
+    ];
+    const COMPLIANCES: [Case; 4] = [
+        (&["1/Pa", "Pa^-1", "Pa-1", "Pa⁻¹", "m²/N", "m^2 N^-1", "1/(Pa)"], 1.0),
+        (&["1/MPa", "MPa-1", "mm2/N", "10^-6 1/Pa", "10⁻⁶/Pa"], 1e-6),
+        (&["1/GPa", "GPa^-1", "10^-9 Pa^-1", "10^{-9} 1/Pa", "1e-9 1/Pa"], 1e-9),
+        (&["cm^2/dyn"], 10.0),
+    ];
+    let written = |symbol: &str, unit: &str| {
+        let spaced = [" ", "_", " in ", ": ", " = ", " | ", ", "].map(|between| format!("{symbol}{between}{unit}"));
+        let enclosed = [["[", "]"], [" [", "]"], [" (", ")"], ["/(", ")"], [" / (", ")"], [" {", "}"]];
+        let enclosed = enclosed.map(|[open, close]| format!("{symbol}{open}{unit}{close}"));
+        // braces within braces are none of them
+        let nested = unit.contains('{');
+        spaced.into_iter().chain(enclosed).filter(move |heading| !nested || !heading.ends_with('}'))
+    };
+    let (mut read, mut refused) = (0, 0);
+    for (symbols, kinds, dynamic, first) in [
+        (["t", "time", "Time"], &TIMES[..], false, true),
+        (["omega", "ω", "Frequency"], &RATES, true, true),
+        (["J", "J(t)", "Creep compliance"], &COMPLIANCES, false, false),
+        (["G'", "E'", "Storage modulus"], &MODULI, true, false),
+    ] {
+        for (symbol, (units, size)) in symbols.iter().flat_map(|symbol| kinds.iter().map(move |kind| (symbol, kind))) {
+            for heading in units.iter().flat_map(|unit| written(symbol, unit).map(move |heading| (heading, unit))) {
+                let (heading, unit) = heading;
+                let quoted = format!("\"{heading}\"");
+                let table = |given: f64| {
+                    let units = if first {
+                        Units { abscissa: given, value: 1.0 }
+                    } else {
+                        Units { abscissa: 1.0, value: given }
+                    };
+                    let column = if dynamic { ";G''" } else { "" };
+                    let headings = if first {
+                        format!("{quoted};{}", if dynamic { "G'" } else { "J" })
+                    } else {
+                        format!("x;{quoted}")
+                    };
+                    let rows = if dynamic {
+                        "0.1;1.0;0.2\n1;1.5;0.4\n10;2.2;0.4\n100;2.5;0.1\n"
+                    } else {
+                        "1;1.0\n2;1.1\n4;1.3\n8;1.4\n"
+                    };
+                    let headings =
+                        if first { headings } else { headings.replace('x', if dynamic { "omega" } else { "t" }) };
+                    let text = format!("{headings}{column}\n{rows}");
+                    if dynamic {
+                        TabulatedDynamic::from_csv_reader(text.as_bytes(), units).map(|_| ())
+                    } else {
+                        TabulatedCreep::from_csv_reader(text.as_bytes(), units).map(|_| ())
+                    }
+                };
+                table(*size).unwrap_or_else(|error| panic!("{heading}: {error}"));
+                read += 1;
+                for &(_, other) in kinds {
+                    let also = unit.contains("/s") || unit.starts_with("s^") && !unit.starts_with("rad");
+                    if other == *size || also {
+                        continue;
+                    }
+                    match table(other).unwrap_err() {
+                        Error::Table(TableError::Unit { unit: said, .. }) => assert_eq!(said, *unit, "{heading}"),
+                        Error::Table(TableError::Hertz { .. }) => assert!(["Hz", "hertz"].contains(unit), "{heading}"),
+                        error => panic!("{heading}: {error}"),
+                    }
+                    refused += 1;
+                }
+            }
+        }
+    }
+    println!("{read} headings read, {refused} refused");
+    assert!(read > 1000 && refused > 2000);
+}
+
 /// How a table is written.
 struct Dialect {
     separator: char,

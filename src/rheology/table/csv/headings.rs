@@ -2,7 +2,7 @@
 
 use super::Units;
 use super::number::shortened;
-use super::unit::{Kind, readings, same};
+use super::unit::{Kind, TAU, readings, same};
 use crate::error::TableError;
 use crate::rheology::fit::MaterialFunction;
 use crate::rheology::table::data::Layout;
@@ -35,7 +35,7 @@ pub(super) fn columns(
                 return None;
             }
             let heading = heading.to_lowercase();
-            let word = heading.split(|c: char| " [(_/,;|*".contains(c)).next().unwrap_or_default();
+            let word = heading.split(|c: char| " [({_/,;:=.|*".contains(c)).next().unwrap_or_default();
             names.iter().copied().find(|name| words(name).contains(&word))
         })
         .collect();
@@ -64,10 +64,6 @@ pub(super) fn check_units(
     layout: &Layout,
     units: Units,
 ) -> Result<(), TableError> {
-    let heading = &headings[order[0]];
-    if heading.to_lowercase().contains("hz") && units.abscissa == 1.0 {
-        return Err(TableError::Hertz { line, heading: heading.clone() });
-    }
     let abscissa = if layout.zero { Kind::Time } else { Kind::Frequency };
     let values = layout.columns.iter().map(|&(_, function)| match function {
         MaterialFunction::Creep => Kind::Compliance,
@@ -84,14 +80,17 @@ pub(super) fn check_units(
         if let Some(logarithm) = logarithm(heading) {
             return refused(logarithm);
         }
-        for (text, enclosed) in unit_texts(heading) {
+        for (text, marked) in unit_texts(heading) {
             let readings = readings(text);
-            let right = readings.iter().filter(|reading| reading.0 == kind);
-            if right.clone().any(|reading| same(reading.1, given)) {
+            let right = || readings.iter().filter(|reading| reading.0 == kind);
+            if right().any(|reading| same(reading.1, given)) {
                 break;
             }
+            if kind == Kind::Frequency && given == 1.0 && right().any(|reading| same(reading.1, TAU)) {
+                return Err(TableError::Hertz { line, heading: heading.clone() });
+            }
             // G(s) is a function, and a last word need not be a unit
-            let clear = right.clone().next().is_some() || enclosed && text.chars().count() > 1;
+            let clear = right().next().is_some() || marked && text.chars().count() > 1;
             // text in square brackets is a unit, known or not
             let square = heading.contains(&format!("[{text}")) && text.contains(char::is_alphabetic);
             if clear && !readings.is_empty() || square {
@@ -108,28 +107,32 @@ fn logarithm(heading: &str) -> Option<&str> {
     ["log", "log10", "lg", "ln"].contains(&word.to_ascii_lowercase().as_str()).then_some(word)
 }
 
-/// Possible units in a heading: in brackets, after a slash, or its last word; and whether brackets or a slash mark it.
+/// Characters between a symbol and its unit, and brackets.
+const SEPARATORS: &str = " _,;:=|/-.";
+const BRACKETS: [[char; 2]; 3] = [['[', ']'], ['(', ')'], ['{', '}']];
+
+/// Possible units in a heading, and whether brackets or a slash mark them: its end, else the end of the part before a
+/// bracket, and the texts in brackets.
 fn unit_texts(heading: &str) -> Vec<(&str, bool)> {
-    let mut texts = Vec::new();
-    let mut outside = heading;
-    for brackets in [['[', ']'], ['(', ')']] {
-        if let Some((before, rest)) = heading.rsplit_once(brackets[0])
-            && let Some((inside, _)) = rest.rsplit_once(brackets[1])
-        {
-            texts.push((inside.trim(), true));
-            outside = if before.len() < outside.len() { before } else { outside };
-        }
-    }
-    if let Some((_, below)) = outside.split_once('/') {
-        texts.push((below.trim(), true));
-    }
-    let mut words = outside.trim().rsplit([' ', '_', ',']);
-    if let (Some(last), Some(before)) = (words.next(), words.next())
-        && !before.contains(|c: char| c.is_ascii_digit())
-    {
-        texts.push((last, false));
-    }
-    texts
+    let inside = BRACKETS.iter().filter_map(|[open, close]| {
+        let (before, rest) = heading.rsplit_once(*open)?;
+        Some((before, rest.rsplit_once(*close)?.0.trim()))
+    });
+    let before = inside.clone().map(|(before, _)| before).min_by_key(|before| before.len());
+    let end = last_unit(heading).or_else(|| last_unit(before?));
+    end.into_iter().chain(inside.map(|(_, text)| (text, true))).collect()
+}
+
+/// The longest end of a text that is a unit: of `J 1/Pa`, this is 1/Pa, and not Pa. None after a number, as in `E at 5 MPa`.
+fn last_unit(text: &str) -> Option<(&str, bool)> {
+    let opens = |c: char| BRACKETS.iter().any(|[open, _]| *open == c);
+    let starts = text.char_indices().filter(|&(_, c)| SEPARATORS.contains(c) || opens(c));
+    let found = starts.map(|(at, c)| (at, c, if opens(c) { &text[at..] } else { text[at + c.len_utf8()..].trim() }));
+    let (at, mark, unit) = found.into_iter().find(|(_, _, unit)| !readings(unit).is_empty())?;
+    let word = text[..at].trim_end().rsplit(|c: char| SEPARATORS.contains(c)).next()?;
+    let bare = BRACKETS.iter().find_map(|[open, close]| unit.strip_prefix(*open)?.strip_suffix(*close));
+    let marked = mark == '/' || bare.is_some();
+    (marked || word.parse::<f64>().is_err()).then_some((bare.unwrap_or(unit).trim(), marked))
 }
 
 #[cfg(test)]
@@ -147,13 +150,23 @@ mod tests {
     }
 
     #[test]
-    fn units_are_in_brackets_after_slashes_or_last() {
-        assert_eq!(unit_texts("time [s]"), [("s", true)]);
-        assert_eq!(unit_texts("J / (1/GPa)"), [("1/GPa", true), ("", true), ("/", false)]);
-        assert_eq!(unit_texts("t/min"), [("min", true)]);
-        assert_eq!(unit_texts("J/GPa^-1"), [("GPa^-1", true)]);
-        assert_eq!(unit_texts("E_MPa"), [("MPa", false)]);
-        assert_eq!(unit_texts("E at 5 MPa"), []);
-        assert_eq!(unit_texts("G'"), []);
+    fn units_end_a_heading_or_stand_in_brackets() {
+        for (heading, unit) in [
+            ("time [s]", "s"),
+            ("J / (1/GPa)", "1/GPa"),
+            ("t/min", "min"),
+            ("J/GPa^-1", "GPa^-1"),
+            ("J 1/Pa", "1/Pa"),
+            ("J_1/Pa", "1/Pa"),
+            ("J 1/(GPa)", "1/(GPa)"),
+            ("J1 10^{-9} 1/Pa", "10^{-9} 1/Pa"),
+            ("E_MPa", "MPa"),
+            ("E MPa (at 23 °C)", "MPa"),
+        ] {
+            assert_eq!(unit_texts(heading).first().map(|text| text.0), Some(unit), "{heading}");
+        }
+        for heading in ["E at 5 MPa", "G'", "J (dry)"] {
+            assert!(unit_texts(heading).iter().all(|(text, _)| readings(text).is_empty()), "{heading}");
+        }
     }
 }

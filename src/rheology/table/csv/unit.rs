@@ -12,33 +12,36 @@ pub(super) enum Kind {
 /// The quantity of a unit, and its size in s, rad/s, Pa or 1/Pa.
 pub(super) type Unit = (Kind, f64);
 
-const TAU: f64 = std::f64::consts::TAU;
+pub(super) const TAU: f64 = std::f64::consts::TAU;
 
 /// Names of each unit, that used in errors first; its quantity and size.
-const UNITS: [(&[&str], Kind, f64); 23] = [
-    (&["s", "sec", "second", "seconds"], Kind::Time, 1.0),
+const UNITS: [(&[&str], Kind, f64); 26] = [
+    (&["s", "sec", "secs", "second", "seconds"], Kind::Time, 1.0),
     (&["ms"], Kind::Time, 1e-3),
     (&["µs", "us"], Kind::Time, 1e-6),
     (&["ns"], Kind::Time, 1e-9),
-    (&["min", "minute", "minutes"], Kind::Time, 60.0),
-    (&["h", "hr", "hour", "hours"], Kind::Time, 3600.0),
+    (&["min", "mins", "minute", "minutes"], Kind::Time, 60.0),
+    (&["h", "hr", "hrs", "hour", "hours"], Kind::Time, 3600.0),
     (&["d", "day", "days"], Kind::Time, 86400.0),
     (&["week", "weeks"], Kind::Time, 604_800.0),
     (&["year", "years"], Kind::Time, 31_557_600.0),
-    (&["Hz"], Kind::Frequency, TAU),
+    (&["Hz", "hertz"], Kind::Frequency, TAU),
     (&["mHz"], Kind::Frequency, 1e-3 * TAU),
     (&["kHz"], Kind::Frequency, 1e3 * TAU),
     (&["MHz"], Kind::Frequency, 1e6 * TAU),
-    (&["Pa", "N/m2"], Kind::Modulus, 1.0),
+    (&["Pa", "pascal", "N/m2", "Nm-2"], Kind::Modulus, 1.0),
     (&["mPa"], Kind::Modulus, 1e-3),
-    (&["kPa"], Kind::Modulus, 1e3),
-    (&["MPa", "N/mm2"], Kind::Modulus, 1e6),
-    (&["GPa"], Kind::Modulus, 1e9),
-    (&["TPa"], Kind::Modulus, 1e12),
-    (&["dyn/cm2"], Kind::Modulus, 0.1),
+    (&["kPa", "kN/m2"], Kind::Modulus, 1e3),
+    (&["MPa", "N/mm2", "Nmm-2", "MN/m2"], Kind::Modulus, 1e6),
+    (&["GPa", "kN/mm2", "GN/m2"], Kind::Modulus, 1e9),
+    (&["TPa", "N/µm2"], Kind::Modulus, 1e12),
+    (&["dyn/cm2", "dyne/cm2", "dyncm-2"], Kind::Modulus, 0.1),
     (&["bar"], Kind::Modulus, 1e5),
+    (&["mbar"], Kind::Modulus, 1e2),
     (&["kbar"], Kind::Modulus, 1e8),
+    (&["N/cm2", "Ncm-2"], Kind::Modulus, 1e4),
     (&["psi"], Kind::Modulus, 6894.757),
+    (&["ksi"], Kind::Modulus, 6_894_757.0),
 ];
 
 impl Kind {
@@ -76,30 +79,44 @@ pub(super) fn readings(text: &str) -> Vec<Unit> {
         }
         plain.push(raised.unwrap_or(if c == 'μ' { 'µ' } else { c }));
     }
-    let (scale, unit) = scaled(&plain);
+    let (scale, unit) = scaled(enclosed(&plain));
     let unit: String = unit.chars().filter(|c| !" ^·*".contains(*c)).collect();
-    let unit = unit.trim_end_matches('.').to_owned();
-    let mut found = simple(&unit);
+    let unit = enclosed(unit.trim_end_matches('.'));
+    let mut found = simple(unit);
     let below = unit.strip_prefix("1/").or_else(|| unit.strip_prefix('/')).or_else(|| unit.strip_suffix("-1"));
-    if let Some(below) = below {
-        let below = below.strip_prefix('(').and_then(|below| below.strip_suffix(')')).unwrap_or(below);
-        for (kind, size) in simple(below) {
-            match kind {
-                Kind::Time => found.extend([(Kind::Frequency, 1.0 / size), (Kind::Frequency, TAU / size)]),
-                Kind::Modulus => found.push((Kind::Compliance, 1.0 / size)),
-                Kind::Frequency | Kind::Compliance => {}
-            }
+    for (kind, size) in below.map(|below| simple(enclosed(below))).unwrap_or_default() {
+        match kind {
+            Kind::Time => found.extend([(Kind::Frequency, 1.0 / size), (Kind::Frequency, TAU / size)]),
+            Kind::Modulus => found.push((Kind::Compliance, 1.0 / size)),
+            Kind::Frequency | Kind::Compliance => {}
         }
     }
-    match unit.as_str() {
-        "m2/N" => found.push((Kind::Compliance, 1.0)),
-        "cm2/dyn" | "cm2dyn-1" | "dyn-1cm2" => found.push((Kind::Compliance, 10.0)),
-        "µm2/N" => found.push((Kind::Compliance, 1e-12)),
-        "mm2/N" => found.push((Kind::Compliance, 1e-6)),
-        "rad/s" | "rads-1" | "rad/sec" => found.push((Kind::Frequency, 1.0)),
-        _ => {}
+    // rad/s, rad s^-1
+    if let Some(rate) = unit.strip_prefix("rad") {
+        let time = rate.strip_prefix('/').or_else(|| rate.strip_suffix("-1")).unwrap_or_default();
+        let times = simple(time).into_iter().filter(|(kind, _)| *kind == Kind::Time);
+        found.extend(times.map(|(_, size)| (Kind::Frequency, 1.0 / size)));
+    }
+    // m2/N, m2 N^-1, N^-1 m2: the reciprocal of N/m2
+    let area_over_force = unit.split_once('/').filter(|(area, _)| area.ends_with('2'));
+    let area_and_force = unit.strip_suffix("-1").and_then(|product| product.split_once('2'));
+    let force_and_area = unit.split_once("-1").filter(|(_, area)| area.ends_with('2'));
+    let pairs = [
+        area_over_force.map(|(area, force)| format!("{force}/{area}")),
+        area_and_force.map(|(area, force)| format!("{force}/{area}2")),
+        force_and_area.map(|(force, area)| format!("{force}/{area}")),
+    ];
+    for modulus in pairs.iter().flatten() {
+        found.extend(simple(modulus).into_iter().map(|(_, size)| (Kind::Compliance, 1.0 / size)));
     }
     found.into_iter().map(|(kind, size)| (kind, scale * size)).collect()
+}
+
+/// The text without brackets around it.
+fn enclosed(text: &str) -> &str {
+    let pairs = [['(', ')'], ['[', ']'], ['{', '}']];
+    let inside = pairs.iter().find_map(|[open, close]| text.trim().strip_prefix(*open)?.strip_suffix(*close));
+    inside.filter(|inside| !inside.contains(['(', '[', '{'])).unwrap_or(text)
 }
 
 /// The power of ten before a unit, and the unit.

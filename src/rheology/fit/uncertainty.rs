@@ -1,0 +1,132 @@
+//! How far the creep of a series fitted to measurements may be from that of the body.
+//!
+//! Three causes add up. The samples scatter: tables drawn at random from the series, with the same scatter, are fitted
+//! anew. The samples do not determine the curve between them: the series of least squares fits them as well as the
+//! sparse one. Moduli measured after the load do not show the relaxation before the first of them: a term that has
+//! decayed at the first sample fits as well as none, and slows the creep.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::basis::{FittedSeries, MaterialFunction, Sample};
+use super::measured::{FLOOR, Measured};
+use super::{DENSITY, Search};
+use crate::error::Result;
+use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
+
+/// Number of tables drawn.
+const DRAWN: usize = 16;
+/// Half the width of the interval over the standard deviation of the tables drawn: with it 95 % of tables are inside, as
+/// tests/materials/intervals.rs shows.
+const DEVIATIONS: f64 = 2.2;
+/// Times per decade at which the interval is computed.
+const PER_DECADE: f64 = 8.0;
+/// A body relaxes before the first sample from at most so many times the modulus measured there.
+const HIDDEN_MODULUS: f64 = 10.0;
+/// Creep counts as known where relaxation before the first sample changes it by less than this.
+const KNOWN: f64 = 0.05;
+
+/// An interval of the creep compliance of a table.
+#[derive(Debug, Clone)]
+pub(crate) struct Uncertainty {
+    /// Times \[s\], ascending, and the logarithm of the bound of J over that of the fit and of its reciprocal.
+    pub(crate) interval: Vec<(f64, f64)>,
+    /// The time from which creep does not depend on relaxation before the first sample.
+    pub(crate) known_from: f64,
+}
+
+impl FittedSeries {
+    /// The creep of the series, which represents `function`.
+    pub(crate) fn creep(&self, function: MaterialFunction) -> Result<CreepSpectrum> {
+        match function {
+            MaterialFunction::Creep => CreepSpectrum::new(self.constant, self.slope, &self.terms),
+            _ => Ok(RelaxationSpectrum::new(self.constant, 0.0, &self.terms)?.creep()),
+        }
+    }
+}
+
+impl Measured {
+    /// The interval of the creep compliance from the time `first` to `last`.
+    pub(crate) fn uncertainty(
+        &self,
+        search: &Search,
+        samples: &[Sample],
+        [first, last]: [f64; 2],
+    ) -> Result<Uncertainty> {
+        let function = samples[0].function;
+        let creep = self.series.creep(function)?;
+        let other = self.least_squares.creep(function)?;
+        let drawn = if self.noise > FLOOR { self.drawn(search, samples) } else { Vec::new() };
+        let scale = DEVIATIONS * student(self.freedoms);
+        let spread = |deviation: &dyn Fn(&CreepSpectrum) -> f64| {
+            let squares: f64 = drawn.iter().map(|drawn| deviation(drawn).powi(2)).sum();
+            scale * (squares / drawn.len().max(1) as f64).sqrt()
+        };
+        let unmeasured = function == MaterialFunction::Relaxation && samples[0].x > 0.0;
+        let hidden = if unmeasured {
+            let unseen = FLOOR + scale * self.noise / samples[0].weight.sqrt();
+            let bodies = [self.with_hidden_term(first, unseen), self.with_slow_terms(samples, unseen)];
+            bodies.iter().map(|series| series.creep(function)).collect::<Result<Vec<_>>>()?
+        } else {
+            Vec::new()
+        };
+        let steps = ((last / first).log10() * PER_DECADE).ceil().max(1.0);
+        let (mut interval, mut known_from) = (Vec::new(), first);
+        for k in 0..=steps as usize {
+            let time = first * (last / first).powf(k as f64 / steps);
+            let apart = |other: &CreepSpectrum| (other.compliance(time) / creep.compliance(time)).ln().abs();
+            let by_hidden = hidden.iter().map(apart).fold(0.0, f64::max);
+            if by_hidden > KNOWN.ln_1p() {
+                known_from = time;
+            }
+            interval.push((time, FLOOR + spread(&apart) + apart(&other) + by_hidden));
+        }
+        Ok(Uncertainty { interval, known_from })
+    }
+
+    /// The creep of series fitted to tables drawn from this one. The signs of the errors are random.
+    fn drawn(&self, search: &Search, samples: &[Sample]) -> Vec<CreepSpectrum> {
+        let mut random = ChaCha8Rng::seed_from_u64(0);
+        let mut table = samples.to_vec();
+        let mut draw = || {
+            for sample in &mut table {
+                let sign = if random.next_u32() & 1 == 0 { 1.0 } else { -1.0 };
+                let error = sign * (self.noise / sample.weight.sqrt()).min(0.5);
+                sample.value = self.series.value(sample.function, sample.x) * (1.0 + error);
+            }
+            search.on_grid(&table, DENSITY).creep(samples[0].function).ok()
+        };
+        (0..DRAWN).filter_map(|_| draw()).collect()
+    }
+
+    /// The series and a term that has decayed to the part `unseen` of the modulus at the time `first`.
+    fn with_hidden_term(&self, first: f64, unseen: f64) -> FittedSeries {
+        let mut series = self.series.clone();
+        let modulus = HIDDEN_MODULUS * series.value(MaterialFunction::Relaxation, first);
+        series.terms.push((modulus, first / (HIDDEN_MODULUS / unseen.min(1.0)).ln()));
+        series
+    }
+
+    /// The series with terms that decay before the first sample replaced by slower ones, equal at the first sample, of
+    /// which the part `unseen` of the modulus is left at the second.
+    fn with_slow_terms(&self, samples: &[Sample], unseen: f64) -> FittedSeries {
+        let mut series = self.series.clone();
+        let (first, second) = (samples[0].x, samples[1].x);
+        let least = unseen * series.value(MaterialFunction::Relaxation, first);
+        for (strength, time) in &mut series.terms {
+            let left = *strength * (-first / *time).exp();
+            let slow = (second - first) / (left / least).ln();
+            if left <= least {
+                *strength = 0.0;
+            } else if *time < first && *time < slow {
+                (*strength, *time) = (left * (first / slow).exp(), slow);
+            }
+        }
+        series
+    }
+}
+
+/// The 97.5 % quantile of Student's distribution over that of the normal one, within 3 %.
+fn student(freedoms: f64) -> f64 {
+    1.0 + 1.3 / freedoms + 4.0 / freedoms.powi(3)
+}
