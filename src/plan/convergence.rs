@@ -22,8 +22,8 @@ const MAX_ZOOMS: usize = 12;
 const GROWTH: f64 = 1.2;
 const MAX_GROWTHS: u32 = 5;
 /// Differences of a greatest pressure of second order are three times the error on the finer mesh; up to this many times the
-/// estimate from the rim they count as such.
-const MAX_DIFFERENCE_OVER_RIM: f64 = 4.0;
+/// estimate from the peak's neighbours they count as such.
+const MAX_DIFFERENCE_OVER_PEAK: f64 = 4.0;
 /// Bound of the power of the number of cells across with which the convolutions of a run grow.
 const MAX_WORK_ORDER: f64 = 0.4;
 /// A greatest pressure that depends on the steps on a coarse mesh does so more on a finer one, whose cells a growing edge
@@ -113,8 +113,6 @@ struct Meshes {
     pressure_over_time: Vec<f64>,
     radius: Vec<f64>,
     finest: Run,
-    /// Whether the contact was resolved on the mesh before when the pressure was greatest.
-    peak_resolved: bool,
     /// Cells along the longer side.
     side: usize,
     /// Power of the cells across with which the convolutions grow.
@@ -131,7 +129,6 @@ impl Meshes {
             pressure_over_time: Vec::new(),
             radius: Vec::new(),
             finest: base,
-            peak_resolved: false,
             side: 0,
             growth: 0.0,
         };
@@ -154,7 +151,6 @@ impl Meshes {
         let (coarse, fine) = (&self.finest.states, &finer.states);
         let over = |of: fn(&State) -> f64, all: bool| difference(coarse, fine, of, all);
         let [before, now] = [coarse, fine].map(|states| greatest(states, |state| state.pressure));
-        self.peak_resolved = coarse.iter().any(|state| state.pressure == before && state.resolved);
         self.main.push(over(|state| state.approach, true).max(over(|state| state.force, true)));
         self.pressure.push(relative((before - now).abs(), now));
         self.pressure_over_time.push(over(|state| state.pressure, false));
@@ -188,19 +184,24 @@ impl Meshes {
         Convergence { error: convolutions, order: -self.growth, across: self.across, converges: true }
     }
 
-    /// The greatest pressure of the run. Differences of a single number may be small or large by chance: where they agree
-    /// with the estimate from the rim, the pressure is as smooth as in an elastic contact. A small contact must be resolved
-    /// before its pressure can be said not to converge.
+    /// The greatest pressure of the run, which converges only if the finest mesh resolves its peak. Differences of a single
+    /// number may be small or large by chance: where they agree with the estimate from the peak's neighbours, the pressure is as
+    /// smooth as in an elastic contact.
     fn pressure(&self) -> Convergence {
-        let states = &self.finest.states;
-        let highest = greatest(states, |state| state.pressure);
-        let rim = states.iter().find(|state| state.pressure == highest).map_or(0.0, |state| state.rim);
         let law = Convergence::smooth(&self.pressure, self.across);
-        if self.pressure.last().is_some_and(|&last| last <= MAX_DIFFERENCE_OVER_RIM * rim) {
-            let error = Convergence::second_order(&self.pressure).max(rim);
+        let Some(peak) = self.highest().and_then(|state| state.peak) else {
+            return Convergence { converges: false, ..law };
+        };
+        if self.pressure.last().is_some_and(|&last| last <= MAX_DIFFERENCE_OVER_PEAK * peak) {
+            let error = Convergence::second_order(&self.pressure).max(peak);
             return Convergence { error, order: ORDERS[1], converges: true, ..law };
         }
-        Convergence { converges: law.converges || !self.peak_resolved, ..law }
+        law
+    }
+
+    /// The state with the greatest pressure.
+    fn highest(&self) -> Option<&State> {
+        self.finest.states.iter().max_by(|a, b| a.pressure.total_cmp(&b.pressure))
     }
 }
 
@@ -256,7 +257,13 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Conver
         let base = part.repeat(grid_with(extent, LEAST_ACROSS)?, &base.steps)?;
         Meshes::refine(&part, extent, base, |meshes| {
             let pressure = meshes.pressure();
-            if pressure.converges { pressure.across_for(scene.accuracy.space()) } else { 0.0 }
+            if pressure.converges {
+                pressure.across_for(scene.accuracy.space())
+            } else if meshes.highest().is_some_and(|state| state.resolved) {
+                0.0
+            } else {
+                f64::INFINITY
+            }
         })
     })?;
     let larger = [0, 1].map(|axis| whole.width[axis] / extent.width[axis]);

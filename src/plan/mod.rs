@@ -75,8 +75,6 @@ pub struct Plan {
     time_error: Option<f64>,
     convolutions: f64,
     error: MeshError,
-    /// Whether the greatest pressure of the run converges with mesh and steps.
-    pressure_converges: bool,
     /// Greatest error of mesh and steps of the greatest pressure at any time.
     pressure_over_time: f64,
     bytes: u64,
@@ -177,9 +175,10 @@ impl Plan {
         }
         let grid = grid_with(&extent, across)?;
         let across = across * grid.cells()[0] as f64 / sides[0];
+        let converges = found.pressure_converges(accuracy);
         let error = MeshError {
             approach: found.main.at(across).max(found.singular.at(across)),
-            max_pressure: found.pressure.at(across),
+            max_pressure: converges.then(|| found.pressure.at(across)),
             area: 2.0 * found.radius.at(across),
             singular: found.singular.at(across),
         };
@@ -196,7 +195,6 @@ impl Plan {
             time_error: found.steps.error.map(|error| error.main),
             convolutions: found.work.at(across),
             error,
-            pressure_converges: found.pressure_converges(accuracy),
             pressure_over_time: found.pressure_over_time.at(across)
                 + found.steps.error.map_or(0.0, |error| error.pressure_over_time),
             bytes: memory.total() + slope,
@@ -253,7 +251,7 @@ impl Plan {
     /// Whether the greatest pressure of the run converges with mesh and steps. If not, as under the edges of punches and the
     /// tips of cones, where it is infinite, and under moving edges of bodies that creep fast, it is not promised.
     pub fn pressure_converges(&self) -> bool {
-        self.pressure_converges
+        self.error.max_pressure.is_some()
     }
 
     /// Expected greatest error of mesh and steps, over all times, of the greatest pressure at that time, relative to the
@@ -264,7 +262,7 @@ impl Plan {
     }
 
     /// Expected errors of the mesh, relative to the greatest values of the run: of approach and force and of the contact area
-    /// at all times, and of the greatest pressure of the run.
+    /// at all times, and of the greatest pressure of the run, if it converges.
     pub fn mesh_error(&self) -> MeshError {
         self.error
     }
@@ -276,18 +274,13 @@ impl std::fmt::Display for Plan {
         write!(
             f,
             "for {:.0e}: {n1} × {n2} cells on {l1:.3e} m × {l2:.3e} m, about {} steps, {:.0} convolutions, {:.1} MB; errors of the \
-             mesh: approach {:.1e}, peak pressure {:.1e}, area {:.1e}",
+             mesh: {}",
             self.accuracy.target(),
             self.steps,
             self.convolutions,
             self.bytes as f64 * 1e-6,
-            self.error.approach,
-            self.error.max_pressure,
-            self.error.area
+            self.error
         )?;
-        if !self.pressure_converges {
-            write!(f, "; the peak pressure does not converge")?;
-        }
         match self.time_error {
             None => write!(f, "; the error in time is unknown"),
             Some(error) if error > self.accuracy.target() => {

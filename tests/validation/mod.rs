@@ -4,6 +4,7 @@ mod analytic;
 mod equations;
 mod hertz;
 mod layers;
+mod mesh_error;
 mod oscillation;
 mod paper_figures;
 mod plan;

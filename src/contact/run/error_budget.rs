@@ -43,10 +43,10 @@ pub struct ErrorBudget {
     /// point, and the greatest pressure, may be off by. It is largest where a body meets cells faster than the steps resolve,
     /// which hardly moves the body. `None` before the first step.
     pub pressure: Option<f64>,
-    /// Errors due to the mesh, of the present state; `None` without contact.
+    /// Errors due to the mesh, of the present state; `None` without contact, and of a contact that the cells do not resolve.
     pub mesh: Option<MeshError>,
-    /// The greatest errors due to the mesh of all states of the run, each of them relative to its own state: largest where few
-    /// cells are in contact. `None` if there was no contact.
+    /// The greatest errors due to the mesh of all states of the run that have an estimate, each of them relative to its own
+    /// state: largest where few cells are in contact. `None` if no state has one.
     pub max_mesh: Option<MeshError>,
     /// Greatest residual of the contact problems, of the displacement.
     pub solver: f64,
@@ -59,7 +59,7 @@ impl fmt::Display for ErrorBudget {
         write!(f, "error in time {} (pressure {}), mesh: ", known(self.time), known(self.pressure))?;
         match self.mesh {
             Some(mesh) => write!(f, "{mesh}")?,
-            None => f.write_str("not estimated, there is no contact")?,
+            None => f.write_str("not estimated")?,
         }
         if let Some(greatest) = self.max_mesh {
             write!(f, " (greatest of the run: {greatest})")?;
