@@ -15,7 +15,8 @@ use crate::geometry::Geometry;
 use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
 use crate::plan::coarse::{Extent, Scene};
-use crate::plan::convergence::{DOMAIN_TO_CONTACT, converge, grid_with};
+use crate::plan::convergence::{DOMAIN_TO_CONTACT, Found, converge, grid_with};
+use crate::plan::law::Convergence;
 use crate::rheology::{Material, TemperatureHistory};
 
 /// A scene planned for an accuracy: the extent of the contact, the cells and steps needed, and their cost.
@@ -164,10 +165,17 @@ impl Plan {
         let tolerance = accuracy.step_tolerance();
         let scene = Scene { geometry, material, temperature, history, until, whole: until, accuracy, tolerance };
         let extent = Extent::of(&scene)?;
-        let found = extent.held(|extent| converge(&scene, extent, area))?;
+        let mut found = extent.held(|extent| converge(&scene, extent, area))?;
         let extent = Extent { reach: found.reach, ..extent };
-        let across = found.across_for(accuracy, area).max(LEAST_ACROSS);
-        let sides = [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * extent.reach[axis] / extent.width[axis]);
+        let needed = |found: &Found| {
+            let across = found.across_for(accuracy, area).max(LEAST_ACROSS);
+            (across, [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * extent.reach[axis] / extent.width[axis]))
+        };
+        let (mut across, mut sides) = needed(&found);
+        if sides[0].max(sides[1]) > MOST_CELLS as f64 {
+            found.pressure = Convergence::NONE;
+            (across, sides) = needed(&found);
+        }
         let wanted = sides[0].max(sides[1]);
         if wanted.is_nan() || wanted > MOST_CELLS as f64 {
             let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
