@@ -29,12 +29,12 @@ pub struct MeshError {
 /// for cones.
 const SMOOTH_SHARE: f64 = 2.3;
 /// Errors of the approach over (share of the rim)·√(rim cells/2 cells), of smooth edges and of singular ones.
-const SMOOTH: f64 = 0.045;
+const SMOOTH: f64 = 0.05;
 const SINGULAR: f64 = 0.13;
 /// Pressure of the rim over that of the mean cell, above which the edge counts as singular: 1.8 and more under punches.
 const RISING: f64 = 1.4;
 /// Error of the approach over (share of the cells where the end of contact is unknown)·(rim cells/2 cells).
-const UNKNOWN: f64 = 0.08;
+const UNKNOWN: f64 = 0.1;
 /// Errors of approach and area over the force and the area in the outermost cells of a shape, each straight piece of its
 /// edge taken for an independent error.
 const SHAPE_IN_APPROACH: f64 = 0.15;
@@ -61,6 +61,8 @@ const LEAST_GAP: f64 = 4.0 / 3.0;
 const MOST_DROP: f64 = 0.3;
 const LEAST_GROWTH: f64 = 3.0;
 const SMOOTH_GROWTH: f64 = 4.0;
+/// A smaller drop is rounding.
+const FLAT: f64 = 1e-12;
 /// Error of the peak: over the drop on the steeper sides, of wide peaks, and over the square of the mean drop, of narrow ones.
 const PEAK: f64 = 0.11;
 const NARROW_PEAK: f64 = 0.5;
@@ -122,13 +124,26 @@ struct Rim {
     rising: f64,
 }
 
+/// Whether a cell has a greater pressure than its neighbours.
+enum Peak {
+    None,
+    /// By which part of it the pressure falls to the neighbours.
+    Unresolved {
+        drop: f64,
+    },
+    Resolved {
+        error: f64,
+    },
+}
+
 impl Pressed<'_> {
     /// The errors due to the mesh of a contact of so many cells. `None` without a rim, and of contacts, or periodic gaps,
     /// that the cells do not resolve.
     pub(crate) fn mesh_error(&self, contact_cells: usize) -> Option<MeshError> {
         let Extent { low, high } = self.extent?;
         let rows = (low[0]..=high[0]).map(|i| self.columns(i, low[1]..high[1] + 1));
-        let (total, highest) = rows.fold((0.0, 0.0_f64), |(total, highest), row| (total + sum(row), highest.max(most(row))));
+        let (total, highest) =
+            rows.fold((0.0, 0.0_f64), |(total, highest), row| (total + sum(row), highest.max(most(row))));
         let rim = self.rim(low, high);
         if total == 0.0 || rim.cells == 0 {
             return None;
@@ -152,7 +167,8 @@ impl Pressed<'_> {
         let shape = SHAPE_IN_APPROACH * rim.shape_pressures.sqrt() / total;
         let approach = stiffness * (SMOOTH * smooth + unknown) + singular + shape;
         // at an edge of the shape the pressure is infinite
-        let at_rim = rim.shape_lengths > 0.0 || rim.highest > MOST_AT_RIM * highest || rim.rising > MOST_RISING * highest;
+        let at_rim =
+            rim.shape_lengths > 0.0 || rim.highest > MOST_AT_RIM * highest || rim.rising > MOST_RISING * highest;
         let peak = if at_rim { None } else { self.peak_error(low, high, highest) };
         Some(MeshError {
             approach,
@@ -179,28 +195,33 @@ impl Pressed<'_> {
                     continue;
                 }
                 for (j, &p) in piece.zip(pressure).filter(|(_, p)| **p >= least) {
-                    let at = |by: [isize; 2]| self.pressure_at([i as isize + by[0], j as isize + by[1]]);
-                    let beside = SIDES.map(at);
-                    if beside.iter().any(|&other| other > p) {
-                        continue;
-                    }
-                    let drop = |beside: [f64; 4]| 2.0 - 0.5 * beside.iter().sum::<f64>() / p;
-                    let near = drop(beside);
-                    let growth = drop(SIDES.map(|by| at(by.map(|by| 2 * by)))) / near;
-                    let unresolved = beside.contains(&0.0) || near > MOST_DROP || growth < LEAST_GROWTH;
-                    if unresolved && p * (1.0 + near) >= highest {
-                        return None;
-                    }
-                    let [before, left, right, behind] = beside;
-                    let steep = 2.0 - (before.min(behind) + left.min(right)) / p;
-                    let error = PEAK * steep * (SMOOTH_GROWTH / growth).powi(4) + NARROW_PEAK * near * near;
-                    if !unresolved && near > 0.0 && p * (1.0 + TRUSTED * error) >= highest {
-                        worst = worst.max(error);
+                    match self.peak([i as isize, j as isize], p) {
+                        Peak::Unresolved { drop } if p * (1.0 + drop) >= highest => return None,
+                        Peak::Resolved { error } if p * (1.0 + TRUSTED * error) >= highest => worst = worst.max(error),
+                        _ => {}
                     }
                 }
             }
         }
         Some(worst)
+    }
+
+    /// Whether the pressure p in a cell is a peak.
+    fn peak(&self, cell: [isize; 2], p: f64) -> Peak {
+        let at = |side: [isize; 2]| self.pressure_at([cell[0] + side[0], cell[1] + side[1]]);
+        let beside = SIDES.map(at);
+        let drop = |beside: [f64; 4]| 2.0 - 0.5 * beside.iter().sum::<f64>() / p;
+        let near = drop(beside);
+        if beside.iter().any(|&other| other > p) || near < FLAT {
+            return Peak::None;
+        }
+        let growth = drop(SIDES.map(|side| at(side.map(|index| 2 * index)))) / near;
+        if beside.contains(&0.0) || near > MOST_DROP || growth < LEAST_GROWTH {
+            return Peak::Unresolved { drop: near };
+        }
+        let [before, left, right, behind] = beside;
+        let steep = 2.0 - (before.min(behind) + left.min(right)) / p;
+        Peak::Resolved { error: PEAK * steep * (SMOOTH_GROWTH / growth).powi(4) + NARROW_PEAK * near * near }
     }
 
     fn rim(&self, low: [usize; 2], high: [usize; 2]) -> Rim {
@@ -240,9 +261,7 @@ impl Pressed<'_> {
                 End::OfShape => 0.0,
                 End::Unknown => PLACE_UNKNOWN,
                 End::Line(_) => PLACE_OF_ONE,
-                End::LineAndParabola(line, parabola) => {
-                    PLACE_OF_TWO + PLACE_OF_DIFFERENCE * (parabola - line).abs()
-                }
+                End::LineAndParabola(line, parabola) => PLACE_OF_TWO + PLACE_OF_DIFFERENCE * (parabola - line).abs(),
             };
             match end {
                 End::OfShape => self.add_edge(cell, side, rim),

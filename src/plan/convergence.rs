@@ -210,7 +210,8 @@ impl Meshes {
         let Some(highest) = self.highest() else { return Ok(false) };
         let small = |state: &State| !state.resolved || state.radius == 0.0;
         let starts = std::iter::once(true).chain(states.iter().map(small));
-        let ends = starts.zip(states).zip(steps).filter(|((start, state), _)| *start && !small(state) && state.time > 0.0);
+        let ends =
+            starts.zip(states).zip(steps).filter(|((start, state), _)| *start && !small(state) && state.time > 0.0);
         let normal = |load: &Load| match *load {
             Load::Approach { approach, .. } => (false, approach),
             Load::Force { normal, .. } => (true, normal),
@@ -280,8 +281,8 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Conver
     let (mut until, mut zooms) = (until, 0);
     let (part, extent, base) = loop {
         let part = Scene { until, ..*scene };
-        let (extent, base) = Extent::of(&part)?
-            .held(|extent| Ok((*extent, part.follow(grid_with(extent, LEAST_ACROSS)?)?)))?;
+        let (extent, base) =
+            Extent::of(&part)?.held(|extent| Ok((*extent, part.follow(grid_with(extent, LEAST_ACROSS)?)?)))?;
         zooms += 1;
         match part.before_growth(&base).filter(|_| zooms < MAX_ZOOMS) {
             Some(earlier) => until = earlier,

@@ -31,7 +31,7 @@ use crate::rheology::{Material, TemperatureHistory};
 /// # What is promised
 /// For twice the accuracy at most, relative to the greatest value of the run:
 /// * approach and force at all times,
-/// * the greatest pressure of the run, if it converges ([`Plan::pressure_converges`]),
+/// * the greatest pressure of the run, if it converges and the coarse runs resolve its peak ([`Plan::pressure_converges`]),
 /// * with [`Plan::with_area`], the contact radius wherever the contact is at least 8 cells across.
 ///
 /// The plan says what it does not promise: [`Plan::mesh_error`] estimates the error of the area,
@@ -91,7 +91,7 @@ impl Plan {
     ///
     /// # Errors
     /// If the time is not finite and positive, a part is invalid, no domain holds the contact, the coarse runs fail, or
-    /// the target needs more than 8192 cells along a side.
+    /// approach and force need more than 8192 cells along a side.
     pub fn new(
         geometry: &dyn Geometry,
         material: &Material,
@@ -256,8 +256,10 @@ impl Plan {
         self.time_error
     }
 
-    /// Whether the greatest pressure of the run converges with mesh and steps. If not, as under the edges of punches and the
-    /// tips of cones, where it is infinite, and under moving edges of bodies that creep fast, it is not promised.
+    /// Whether the greatest pressure of the run is promised. It is not where it does not converge with mesh and steps, as under
+    /// the edges of punches and the tips of cones, where it is infinite, and under moving edges of bodies that creep fast; where
+    /// it may have been greater while the contact was too small for the coarse runs, as under ramps on bodies that creep fast;
+    /// and where it would need more than 8192 cells along a side.
     pub fn pressure_converges(&self) -> bool {
         self.error.max_pressure.is_some()
     }

@@ -48,9 +48,11 @@ fn random_shape(draws: &mut Draws, grid: &Grid) -> Shape {
         }
         5 => {
             let half = 0.5 * LENGTH * draws.between(0.2, 0.8);
-            let shape = FnGeometry::new(move |x1: f64, x2: f64| {
-                if x2.abs() <= half { x1 * x1 / (2.0 * RADIUS) } else { f64::INFINITY }
-            });
+            let shape = FnGeometry::new(
+                move |x1: f64, x2: f64| {
+                    if x2.abs() <= half { x1 * x1 / (2.0 * RADIUS) } else { f64::INFINITY }
+                },
+            );
             ("cylinder with ends", round, Arc::new(Shifted::new(shape, by).unwrap()))
         }
         6 => ("round punch", round, Arc::new(Shifted::new(FlatPunch::circular(reach).unwrap(), by).unwrap())),
@@ -179,7 +181,9 @@ impl Shape {
                 Ok([self.observe(grid, loading, full)?, self.observe(&fine, loading, full)?])
             };
             match both() {
-                Ok(both) if both.iter().all(|(values, _)| values.iter().all(|&value| value > 0.0)) => return Some(both),
+                Ok(both) if both.iter().all(|(values, _)| values.iter().all(|&value| value > 0.0)) => {
+                    return Some(both);
+                }
                 Err(Error::ContactAtEdge { .. } | Error::BeyondFullContact { .. }) => depth *= 0.6,
                 Ok(_) | Err(Error::NothingToTouch { .. } | Error::NotConverged { .. }) => depth *= 1.37,
                 Err(error) => panic!("{}: {error}", self.name),

@@ -215,7 +215,8 @@ fn deliver(scene: &Scene) -> Result<Option<([Option<f64>; 2], String)>, Error> {
 
 #[test]
 fn no_plan_is_refused_and_none_breaks_its_promise() {
-    let (seed, first, count) = (from_environment("PLANS_SEED", 1), from_environment("PLANS_FIRST", 0), from_environment("PLANS", 8));
+    let (seed, first, count) =
+        (from_environment("PLANS_SEED", 1), from_environment("PLANS_FIRST", 0), from_environment("PLANS", 8));
     let (mut failed, mut promised, mut delivered) = (vec![], 0, 0);
     for number in first..first + count {
         let scene = scene(seed, number);
