@@ -11,7 +11,7 @@ pub enum Warning {
     /// [`Edge::Refuse`](crate::contact::Edge::Refuse).
     NearEdge,
     /// The contact is fewer than 8 cells across, or, unless it is a line, has fewer than 50. Refine the mesh;
-    /// [`ViscoelasticContact::mesh_error`](crate::ViscoelasticContact::mesh_error) estimates the error. A sphere's approach,
+    /// [`ViscoelasticContact::mesh_error`](crate::ViscoelasticContact::mesh_error) estimates the error from 5 on. A sphere's approach,
     /// greatest pressure and contact area err by up to 1.3 %, 4 % and 8 % with contacts of 4 cells across, by 0.5 %, 1.5 % and 2.5 % with 8.
     FewCells,
     /// The loading time exceeds that over which the material was measured: a table is extrapolated beyond its data

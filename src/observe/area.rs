@@ -20,6 +20,18 @@ const RISES: f64 = 1.0 + 1e-6;
 /// So many rows and columns beyond its corners the pressure decides on what is covered of a square.
 pub(crate) const REACH: usize = 3;
 
+/// Where contact ends between the centres of a cell in contact and of a neighbour that is not, in cells from the first.
+pub(crate) enum End {
+    /// At an edge of the shape, beyond which there is nothing to touch.
+    OfShape,
+    /// Anywhere: the pressure has no root near the edge, as under a fast growing contact, where it ends within a cell.
+    Unknown,
+    /// At the zero of the straight line through p² of the last two cells.
+    Line(f64),
+    /// There, and at the zero of the parabola through p² of the three cells before the last.
+    LineAndParabola(f64, f64),
+}
+
 /// A pressure on a grid, or some rows of it, and where there is something to touch.
 pub(crate) struct Pressed<'a> {
     pub(crate) grid: &'a Grid,
@@ -111,22 +123,30 @@ impl Pressed<'_> {
     /// How far contact reaches from the centre of a cell in contact towards its neighbour that is not, in cells.
     fn reach(&self, from: [isize; 2], to: [isize; 2]) -> f64 {
         const TO_THE_RIM: f64 = 0.5;
+        match self.end(from, to) {
+            End::OfShape | End::Unknown => TO_THE_RIM,
+            End::Line(line) => line,
+            End::LineAndParabola(line, parabola) => LAST_TWO * line + THREE_BEFORE * parabola,
+        }
+    }
+
+    /// Where contact ends between a cell in contact and its neighbour that is not.
+    pub(crate) fn end(&self, from: [isize; 2], to: [isize; 2]) -> End {
         if !self.touchable(to) {
-            return TO_THE_RIM;
+            return End::OfShape;
         }
         let back = |k: isize| {
             let p = self.pressure_at([0, 1].map(|axis| from[axis] + k * (from[axis] - to[axis])));
             p * p
         };
         let [last, second, third, fourth] = [back(0), back(1), back(2), back(3)];
-        let linear = if second > last { last / (second - last) } else { f64::INFINITY };
-        if linear > TOO_FAR {
-            // no root at the edge: a flat pressure that ends within a cell, as under a fast growing contact
-            return TO_THE_RIM;
+        let line = if second > last { last / (second - last) } else { f64::INFINITY };
+        if line > TOO_FAR {
+            return End::Unknown;
         }
-        let linear = linear.min(1.0);
+        let line = line.min(1.0);
         if !(third > RISES * second && fourth > RISES * third) {
-            return linear;
+            return End::Line(line);
         }
         // f(x) = second + slope x + bend x² at x = 0, −1, −2; its zero, one cell further out
         let slope = 0.5 * (3.0 * second - 4.0 * third + fourth);
@@ -134,7 +154,7 @@ impl Pressed<'_> {
         let discriminant = slope * slope - 4.0 * bend * second;
         let zero =
             if discriminant >= 0.0 { -2.0 * second / (slope - discriminant.sqrt()) } else { second / (third - second) };
-        LAST_TWO * linear + THREE_BEFORE * (zero - 1.0).clamp(0.0, 1.0)
+        End::LineAndParabola(line, (zero - 1.0).clamp(0.0, 1.0))
     }
 
     /// Pressure in a cell, around the period where there is one; zero beyond the grid.

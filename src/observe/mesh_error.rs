@@ -4,8 +4,8 @@ use std::fmt;
 use std::ops::Range;
 
 use crate::contact::Extent;
-use crate::observe::area::Pressed;
-use crate::sum::sum;
+use crate::observe::area::{End, Pressed};
+use crate::sum::{most, sum};
 
 /// Estimated relative errors of a state due to the width of its cells, made by
 /// [`ViscoelasticContact::mesh_error`](crate::ViscoelasticContact::mesh_error). Typical sizes, not bounds.
@@ -15,38 +15,77 @@ use crate::sum::sum;
 pub struct MeshError {
     /// Of the approach, or of the force where the approach is given.
     pub approach: f64,
-    /// Of the greatest pressure of a smooth contact; the pressure at the rim of a punch is infinite and has none.
-    pub max_pressure: f64,
+    /// Of the greatest pressure. `None` where the pressure near its greatest value does not look like that of a smooth
+    /// peak: it does not converge there (the tip of a cone, the edge of a punch), or the cells do not resolve it.
+    pub max_pressure: Option<f64>,
     /// Of the contact area.
     pub area: f64,
-    /// The part of the approach's error that is of first order in the cell width: that of singular edges. The rest is of
-    /// second order.
+    /// The part of the approach's error that is due to an infinite pressure at the edge, of first order in the cell width.
+    /// The rest is of second order on smooth shapes; where a shape ends between cells, it is of first order too.
     pub singular: f64,
 }
 
 /// The share of the force on the rim of a smooth contact is this times (rim cells/2 cells)^(3/2): 2.3 for spheres, 1.6
 /// for cones.
 const SMOOTH_SHARE: f64 = 2.3;
-/// Errors over (share of the rim)·√(rim cells/2 cells), as measured on spheres, ellipsoids, cones and punches of 12 to 200
-/// cells across: approach of smooth contacts (0.02 … 0.04), of singular ones (0.10 … 0.15), peak pressure (0.11 … 0.14 below 24 cells).
-const SMOOTH_APPROACH: f64 = 0.035;
-const SINGULAR_APPROACH: f64 = 0.13;
-const PEAK: f64 = 0.12;
+/// Errors of the approach over (share of the rim)·√(rim cells/2 cells), of smooth edges and of singular ones.
+const SMOOTH: f64 = 0.05;
+const SINGULAR: f64 = 0.13;
 /// Pressure of the rim over that of the mean cell, above which the edge counts as singular: 1.8 and more under punches.
-const SINGULAR: f64 = 1.4;
-/// Error of the area, 0.13 (rim cells/2 cells)^1.2 on spheres.
-const AREA: f64 = 0.13;
-const AREA_ORDER: f64 = 1.2;
+const RISING: f64 = 1.4;
+/// Error of the approach over (share of the cells where the end of contact is unknown)·(rim cells/2 cells).
+const UNKNOWN: f64 = 0.1;
+/// Errors of approach and area over the force and the area in the outermost cells of a shape, each straight piece of its
+/// edge taken for an independent error.
+const SHAPE_IN_APPROACH: f64 = 0.15;
+const SHAPE_IN_AREA: f64 = 0.45;
+/// Error of the place where contact ends, in cells: where it is unknown, where one estimate exists, and where two do, of which
+/// their difference adds the last.
+const PLACE_UNKNOWN: f64 = 0.14;
+const PLACE_OF_ONE: f64 = 0.07;
+const PLACE_OF_TWO: f64 = 0.035;
+const PLACE_OF_DIFFERENCE: f64 = 0.28;
+
+/// Periodic bodies are the more sensitive the smaller the share of the cells is that do not touch, the approach by its square
+/// inverted, the area by this power of that.
+const STIFFNESS_IN_AREA: f64 = 0.25;
+
+/// A contact is resolved if no more than this share of its cells is on the rim (about five cells across), less than this
+/// share of its sides belongs to pieces of one or two cells, and a periodic gap has so many cells for one of the rim.
+const MOST_RIM: f64 = 0.6;
+const MOST_NARROW: f64 = 0.5;
+const LEAST_GAP: f64 = 4.0 / 3.0;
+
+/// A peak is resolved if the pressure falls by no more than this share to the neighbours, along x1 and x2 together, and
+/// by at least so many times that to the second neighbours: 4 at smooth peaks, 3 where p = c − r^0.8, 1.5 at tips of cones.
+const MOST_DROP: f64 = 0.3;
+const LEAST_GROWTH: f64 = 3.0;
+const SMOOTH_GROWTH: f64 = 4.0;
+/// A smaller drop is rounding.
+const FLAT: f64 = 1e-12;
+/// Error of the peak: over the drop on the steeper sides, of wide peaks, and over the square of the mean drop, of narrow ones.
+const PEAK: f64 = 0.11;
+const NARROW_PEAK: f64 = 0.5;
+/// Other peaks of this share of the greatest pressure may exceed it on a finer mesh.
+const OTHER_PEAKS: f64 = 0.85;
+/// A pressure at the rim of more than these shares of the greatest may exceed it on a finer mesh: one that falls towards the
+/// rim, and one that does not.
+const MOST_AT_RIM: f64 = 0.75;
+const MOST_RISING: f64 = 0.5;
+/// A state is believed to this many times its estimated error.
+const TRUSTED: f64 = 3.0;
 
 /// So many cells of a row are looked at together.
 const PIECE: usize = 16;
+const SIDES: [[isize; 2]; 4] = [[-1, 0], [0, -1], [0, 1], [1, 0]];
 
 impl MeshError {
-    /// The greater of each error.
+    /// The greater of each error; of the greatest pressure, the greater known one.
     pub(crate) fn max(self, other: MeshError) -> MeshError {
+        let known = [self.max_pressure, other.max_pressure].into_iter().flatten();
         MeshError {
             approach: self.approach.max(other.approach),
-            max_pressure: self.max_pressure.max(other.max_pressure),
+            max_pressure: known.reduce(f64::max),
             area: self.area.max(other.area),
             singular: self.singular.max(other.singular),
         }
@@ -57,53 +96,206 @@ impl MeshError {
 impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let MeshError { approach, max_pressure, area, .. } = self;
-        write!(f, "approach {approach:.1e}, pressure {max_pressure:.1e}, area {area:.1e}")
+        match max_pressure {
+            Some(max_pressure) => write!(f, "approach {approach:.1e}, pressure {max_pressure:.1e}, area {area:.1e}"),
+            None => write!(f, "approach {approach:.1e}, pressure not resolved, area {area:.1e}"),
+        }
     }
 }
 
+/// What the cells in contact that have a neighbour without pressure show, and their sides towards such neighbours.
+#[derive(Debug, Default, Clone, Copy, PartialEq)]
+struct Rim {
+    cells: usize,
+    pressure: f64,
+    /// Sum of the pressures of cells with a side where the end of contact is unknown.
+    unknown_pressure: f64,
+    /// Sides, and those of pieces one or two cells wide.
+    sides: usize,
+    narrow_sides: usize,
+    /// Sum of the errors of the place where contact ends, in cells.
+    place: f64,
+    /// Sums over the straight pieces of the edge of the shape: of their lengths squared, in cells, and of their pressures
+    /// squared.
+    shape_lengths: f64,
+    shape_pressures: f64,
+    /// Greatest pressure, and that of a cell from which the pressure does not rise inwards.
+    highest: f64,
+    rising: f64,
+}
+
+/// Whether a cell has a greater pressure than its neighbours.
+enum Peak {
+    None,
+    /// By which part of it the pressure falls to the neighbours.
+    Unresolved {
+        drop: f64,
+    },
+    Resolved {
+        error: f64,
+    },
+}
+
 impl Pressed<'_> {
-    /// The errors due to the mesh, estimated from the cells on the rim of a contact of so many cells; none without a rim.
+    /// The errors due to the mesh of a contact of so many cells. `None` without a rim, and of contacts, or periodic gaps,
+    /// that the cells do not resolve.
     pub(crate) fn mesh_error(&self, contact_cells: usize) -> Option<MeshError> {
         let Extent { low, high } = self.extent?;
-        let n2 = self.grid.cells()[1];
-        let row = |i: usize| &self.pressure[i * n2 + low[1]..=i * n2 + high[1]];
-        let total: f64 = (low[0]..=high[0]).map(|i| sum(row(i))).sum();
-        let (rim_cells, rim) = self.rim(low, high);
-        if total == 0.0 || rim_cells == 0 {
+        let rows = (low[0]..=high[0]).map(|i| self.columns(i, low[1]..high[1] + 1));
+        let (total, highest) =
+            rows.fold((0.0, 0.0_f64), |(total, highest), row| (total + sum(row), highest.max(most(row))));
+        let rim = self.rim(low, high);
+        if total == 0.0 || rim.cells == 0 {
             return None;
         }
-        let (share, delta) = (rim / total, rim_cells as f64 / (2 * contact_cells) as f64);
+        let (cells, rim_cells) = (contact_cells as f64, rim.cells as f64);
+        let all = self.grid.len() as f64;
+        let bounded_gap = self.periodic == [true; 2];
+        if rim_cells > MOST_RIM * cells
+            || rim.narrow_sides as f64 >= MOST_NARROW * rim.sides as f64
+            || (bounded_gap && LEAST_GAP * rim_cells > all - cells)
+        {
+            return None;
+        }
+        let (share, delta) = (rim.pressure / total, rim_cells / (2.0 * cells));
         let smooth = share.min(SMOOTH_SHARE * delta.powf(1.5)) * delta.sqrt();
         // at a singular edge the pressure rises to the rim; creep raises it towards a growing rim, but lets it fall there
-        let rises = rim / rim_cells as f64 > SINGULAR * total / contact_cells as f64;
-        let singular = if rises { SINGULAR_APPROACH * (share * delta.sqrt() - smooth) } else { 0.0 };
+        let rises = rim.pressure / rim_cells > RISING * total / cells;
+        let stiffness = if bounded_gap { (all / (all - cells)).powi(2) } else { 1.0 };
+        let singular = if rises { stiffness * SINGULAR * (share * delta.sqrt() - smooth) } else { 0.0 };
+        let unknown = UNKNOWN * rim.unknown_pressure / total * delta;
+        let shape = SHAPE_IN_APPROACH * rim.shape_pressures.sqrt() / total;
+        let approach = stiffness * (SMOOTH * smooth + unknown) + singular + shape;
+        // at an edge of the shape the pressure is infinite
+        let at_rim =
+            rim.shape_lengths > 0.0 || rim.highest > MOST_AT_RIM * highest || rim.rising > MOST_RISING * highest;
+        let peak = if at_rim { None } else { self.peak_error(low, high, highest) };
         Some(MeshError {
-            approach: SMOOTH_APPROACH * smooth + singular,
-            max_pressure: PEAK * smooth + singular,
-            area: AREA * delta.powf(AREA_ORDER),
+            approach,
+            max_pressure: peak.map(|peak| peak + approach),
+            area: (stiffness.powf(STIFFNESS_IN_AREA) * rim.place + SHAPE_IN_AREA * rim.shape_lengths.sqrt()) / cells,
             singular,
         })
     }
 
-    /// Number of the cells in contact that have a neighbour without pressure, and the sum of their pressures.
-    fn rim(&self, low: [usize; 2], high: [usize; 2]) -> (usize, f64) {
+    fn columns(&self, i: usize, columns: Range<usize>) -> &[f64] {
+        &self.pressure[i * self.grid.cells()[1]..][columns]
+    }
+
+    /// The error of the greatest pressure: of each peak from the curvature of the pressure there, the largest of those that may
+    /// be the greatest on a finer mesh. `None` if one of them is not resolved.
+    fn peak_error(&self, low: [usize; 2], high: [usize; 2], highest: f64) -> Option<f64> {
+        let least = OTHER_PEAKS * highest;
+        let mut worst = 0.0_f64;
+        for i in low[0]..=high[0] {
+            for start in (low[1]..=high[1]).step_by(PIECE) {
+                let piece = start..(start + PIECE).min(high[1] + 1);
+                let pressure = self.columns(i, piece.clone());
+                if !pressure.iter().fold(false, |any, &p| any | (p >= least)) {
+                    continue;
+                }
+                for (j, &p) in piece.zip(pressure).filter(|(_, p)| **p >= least) {
+                    match self.peak([i as isize, j as isize], p) {
+                        Peak::Unresolved { drop } if p * (1.0 + drop) >= highest => return None,
+                        Peak::Resolved { error } if p * (1.0 + TRUSTED * error) >= highest => worst = worst.max(error),
+                        _ => {}
+                    }
+                }
+            }
+        }
+        Some(worst)
+    }
+
+    /// Whether the pressure p in a cell is a peak.
+    fn peak(&self, cell: [isize; 2], p: f64) -> Peak {
+        let at = |side: [isize; 2]| self.pressure_at([cell[0] + side[0], cell[1] + side[1]]);
+        let beside = SIDES.map(at);
+        let drop = |beside: [f64; 4]| 2.0 - 0.5 * beside.iter().sum::<f64>() / p;
+        let near = drop(beside);
+        if beside.iter().any(|&other| other > p) || near < FLAT {
+            return Peak::None;
+        }
+        let growth = drop(SIDES.map(|side| at(side.map(|index| 2 * index)))) / near;
+        if beside.contains(&0.0) || near > MOST_DROP || growth < LEAST_GROWTH {
+            return Peak::Unresolved { drop: near };
+        }
+        let [before, left, right, behind] = beside;
+        let steep = 2.0 - (before.min(behind) + left.min(right)) / p;
+        Peak::Resolved { error: PEAK * steep * (SMOOTH_GROWTH / growth).powi(4) + NARROW_PEAK * near * near }
+    }
+
+    fn rim(&self, low: [usize; 2], high: [usize; 2]) -> Rim {
         let n2 = self.grid.cells()[1];
-        let (mut rim_cells, mut rim) = (0_usize, 0.0);
+        let mut rim = Rim::default();
         for i in low[0]..=high[0] {
             for start in (low[1]..=high[1]).step_by(PIECE) {
                 let piece = start..(start + PIECE).min(high[1] + 1);
                 if self.has_no_rim(i, &piece) {
                     continue;
                 }
-                for j in piece {
-                    let p = self.pressure[i * n2 + j];
-                    if p != 0.0 && self.has_free_neighbour(i, j) {
-                        (rim_cells, rim) = (rim_cells + 1, rim + p);
-                    }
+                for j in piece.filter(|j| self.pressure[i * n2 + j] != 0.0) {
+                    self.add_cell([i, j], &mut rim);
                 }
             }
         }
-        (rim_cells, rim)
+        rim
+    }
+
+    /// Adds a cell in contact, if it is on the rim.
+    fn add_cell(&self, cell: [usize; 2], rim: &mut Rim) {
+        let p = self.pressure[cell[0] * self.grid.cells()[1] + cell[1]];
+        let from = cell.map(|index| index as isize);
+        let (mut on_rim, mut unknown) = (false, false);
+        for side in SIDES {
+            let away = |k: isize| [from[0] + k * side[0], from[1] + k * side[1]];
+            let to = away(1);
+            if self.pressure_at(to) != 0.0 {
+                continue;
+            }
+            on_rim = true;
+            rim.sides += 1;
+            let inwards = self.pressure_at(away(-1));
+            rim.narrow_sides += usize::from(inwards == 0.0 || self.pressure_at(away(-2)) == 0.0);
+            let end = self.end(from, to);
+            rim.place += match end {
+                End::OfShape => 0.0,
+                End::Unknown => PLACE_UNKNOWN,
+                End::Line(_) => PLACE_OF_ONE,
+                End::LineAndParabola(line, parabola) => PLACE_OF_TWO + PLACE_OF_DIFFERENCE * (parabola - line).abs(),
+            };
+            match end {
+                End::OfShape => self.add_edge(cell, side, rim),
+                _ if inwards <= p => rim.rising = rim.rising.max(p),
+                _ => {}
+            }
+            unknown |= matches!(end, End::Unknown);
+        }
+        rim.cells += usize::from(on_rim);
+        if on_rim {
+            rim.pressure += p;
+            rim.highest = rim.highest.max(p);
+        }
+        if unknown {
+            rim.unknown_pressure += p;
+        }
+    }
+
+    /// Adds the straight piece of the edge of the shape that begins at a cell, if one does.
+    fn add_edge(&self, cell: [usize; 2], side: [isize; 2], rim: &mut Rim) {
+        let along = if side[0] == 0 { 0 } else { 1 };
+        let pressure = |index: usize| {
+            let mut at = cell.map(|index| index as isize);
+            at[along] = index as isize;
+            let ends = matches!(self.end(at, [at[0] + side[0], at[1] + side[1]]), End::OfShape);
+            if ends { self.pressure_at(at) } else { 0.0 }
+        };
+        if cell[along] > 0 && pressure(cell[along] - 1) != 0.0 {
+            return;
+        }
+        let edge = (cell[along]..self.grid.cells()[along]).map(pressure).take_while(|&p| p != 0.0);
+        let (length, force) = edge.fold((0.0, 0.0), |(length, force), p| (length + 1.0, force + p));
+        rim.shape_lengths += length * length;
+        rim.shape_pressures += force * force;
     }
 
     /// Whether the cells of a piece of a row are all without pressure, or in contact together with all their neighbours: most
@@ -120,17 +312,6 @@ impl Pressed<'_> {
         let beside = piece.start - 1..piece.end + 1;
         let all_free = self.pressure[i * n2..][piece.clone()].iter().fold(true, |free, p| free & (*p == 0.0));
         all_free || !(any_free(i, beside) | any_free(i - 1, piece.clone()) | any_free(i + 1, piece.clone()))
-    }
-
-    fn has_free_neighbour(&self, i: usize, j: usize) -> bool {
-        let [n1, n2] = self.grid.cells();
-        if i > 0 && i + 1 < n1 && j > 0 && j + 1 < n2 {
-            let k = i * n2 + j;
-            return [k - n2, k - 1, k + 1, k + n2].into_iter().any(|neighbour| self.pressure[neighbour] == 0.0);
-        }
-        let (i, j) = (i as isize, j as isize);
-        let neighbours = [[i - 1, j], [i + 1, j], [i, j - 1], [i, j + 1]];
-        neighbours.into_iter().any(|cell| self.pressure_at(cell) == 0.0)
     }
 }
 
@@ -161,15 +342,17 @@ mod tests {
             let gap = vec![0.0; grid.len()];
             let periodic = [below(2) == 1, below(2) == 1];
             let pressed = Pressed { grid: &grid, first: None, periodic, pressure: &pressure, gap: &gap, extent: None };
-            let mut expected = (0, 0.0);
+            let mut expected = (0, 0.0, 0);
             for k in (0..grid.len()).filter(|&k| pressure[k] != 0.0) {
                 let [i, j] = [k / cells[1], k % cells[1]].map(|index| index as isize);
                 let neighbours = [[i - 1, j], [i + 1, j], [i, j - 1], [i, j + 1]];
-                if neighbours.into_iter().any(|cell| pressed.pressure_at(cell) == 0.0) {
-                    expected = (expected.0 + 1, expected.1 + pressure[k]);
+                let free = neighbours.into_iter().filter(|&cell| pressed.pressure_at(cell) == 0.0).count();
+                if free > 0 {
+                    expected = (expected.0 + 1, expected.1 + pressure[k], expected.2 + free);
                 }
             }
-            assert_eq!(pressed.rim([0, 0], [cells[0] - 1, cells[1] - 1]), expected, "{cells:?} {periodic:?}");
+            let rim = pressed.rim([0, 0], [cells[0] - 1, cells[1] - 1]);
+            assert_eq!((rim.cells, rim.pressure, rim.sides), expected, "{cells:?} {periodic:?}");
         }
     }
 }

@@ -65,8 +65,8 @@ pub(super) struct State {
     pub(super) force: f64,
     pub(super) radius: f64,
     pub(super) pressure: f64,
-    /// Second-order error of the greatest pressure, estimated from the rim.
-    pub(super) rim: f64,
+    /// Error of the greatest pressure, estimated from its neighbours; `None` if they do not resolve it.
+    pub(super) peak: Option<f64>,
     /// First-order share of the error of the mesh, estimated from the rim: that of singular edges.
     pub(super) singular: f64,
     /// Whether the contact is enough cells wide for radius and pressure to be resolved.
@@ -91,7 +91,6 @@ impl Run {
 
     fn add(&mut self, contact: &ViscoelasticContact, report: &StepReport) {
         let mesh = contact.mesh_error().unwrap_or_default();
-        let (rim, singular) = mesh.map_or((0.0, 0.0), |error| (error.max_pressure - error.singular, error.singular));
         self.convolutions += report.convolution_equivalents();
         self.steps.push((report.dt, contact.load()));
         self.states.push(State {
@@ -100,8 +99,8 @@ impl Run {
             force: report.force,
             radius: (contact.contact_area() / std::f64::consts::PI).sqrt(),
             pressure: contact.max_pressure(),
-            rim,
-            singular,
+            peak: mesh.and_then(|error| error.max_pressure),
+            singular: mesh.map_or(0.0, |error| error.singular),
             resolved: !report.warnings.contains(Warning::FewCells),
         });
         let reach = contact.reach_of_contact();

@@ -2,6 +2,7 @@
 
 use crate::Grid;
 use crate::error::{Error, Result};
+use crate::load::Load;
 use crate::plan::Accuracy;
 use crate::plan::coarse::{Extent, Run, Scene, State, difference, greatest, relative};
 use crate::plan::law::{Convergence, ORDERS};
@@ -22,13 +23,16 @@ const MAX_ZOOMS: usize = 12;
 const GROWTH: f64 = 1.2;
 const MAX_GROWTHS: u32 = 5;
 /// Differences of a greatest pressure of second order are three times the error on the finer mesh; up to this many times the
-/// estimate from the rim they count as such.
-const MAX_DIFFERENCE_OVER_RIM: f64 = 4.0;
+/// estimate from the peak's neighbours they count as such.
+const MAX_DIFFERENCE_OVER_PEAK: f64 = 4.0;
 /// Bound of the power of the number of cells across with which the convolutions of a run grow.
 const MAX_WORK_ORDER: f64 = 0.4;
 /// A greatest pressure that depends on the steps on a coarse mesh does so more on a finer one, whose cells a growing edge
 /// crosses faster: beyond this share of what was asked it is not promised.
 const MAX_PEAK_TIME_SHARE: f64 = 0.2;
+/// Fewest cells of an elastic contact whose greatest pressure bounds others, and what that may be off by.
+const BOUNDING_CELLS: usize = 12;
+const BOUNDING_MARGIN: f64 = 1.25;
 /// The least that a finer mesh may find the width of the contact to be, of what a coarse one found.
 const MIN_NARROWING: f64 = 0.25;
 /// Ratio of the domain to the rectangle of the contact.
@@ -113,8 +117,6 @@ struct Meshes {
     pressure_over_time: Vec<f64>,
     radius: Vec<f64>,
     finest: Run,
-    /// Whether the contact was resolved on the mesh before when the pressure was greatest.
-    peak_resolved: bool,
     /// Cells along the longer side.
     side: usize,
     /// Power of the cells across with which the convolutions grow.
@@ -131,7 +133,6 @@ impl Meshes {
             pressure_over_time: Vec::new(),
             radius: Vec::new(),
             finest: base,
-            peak_resolved: false,
             side: 0,
             growth: 0.0,
         };
@@ -154,7 +155,6 @@ impl Meshes {
         let (coarse, fine) = (&self.finest.states, &finer.states);
         let over = |of: fn(&State) -> f64, all: bool| difference(coarse, fine, of, all);
         let [before, now] = [coarse, fine].map(|states| greatest(states, |state| state.pressure));
-        self.peak_resolved = coarse.iter().any(|state| state.pressure == before && state.resolved);
         self.main.push(over(|state| state.approach, true).max(over(|state| state.force, true)));
         self.pressure.push(relative((before - now).abs(), now));
         self.pressure_over_time.push(over(|state| state.pressure, false));
@@ -188,19 +188,49 @@ impl Meshes {
         Convergence { error: convolutions, order: -self.growth, across: self.across, converges: true }
     }
 
-    /// The greatest pressure of the run. Differences of a single number may be small or large by chance: where they agree
-    /// with the estimate from the rim, the pressure is as smooth as in an elastic contact. A small contact must be resolved
-    /// before its pressure can be said not to converge.
+    /// The greatest pressure of the run, which converges only if the finest mesh resolves its peak. Differences of a single
+    /// number may be small or large by chance: where they agree with the estimate from the peak's neighbours, the pressure is as
+    /// smooth as in an elastic contact.
     fn pressure(&self) -> Convergence {
-        let states = &self.finest.states;
-        let highest = greatest(states, |state| state.pressure);
-        let rim = states.iter().find(|state| state.pressure == highest).map_or(0.0, |state| state.rim);
         let law = Convergence::smooth(&self.pressure, self.across);
-        if self.pressure.last().is_some_and(|&last| last <= MAX_DIFFERENCE_OVER_RIM * rim) {
-            let error = Convergence::second_order(&self.pressure).max(rim);
+        let Some(peak) = self.highest().and_then(|state| state.peak) else {
+            return Convergence { converges: false, ..law };
+        };
+        if self.pressure.last().is_some_and(|&last| last <= MAX_DIFFERENCE_OVER_PEAK * peak) {
+            let error = Convergence::second_order(&self.pressure).max(peak);
             return Convergence { error, order: ORDERS[1], converges: true, ..law };
         }
-        Convergence { converges: law.converges || !self.peak_resolved, ..law }
+        law
+    }
+
+    /// Whether the pressure was no greater while the contact was too small to be resolved, as under a ramp on a body that
+    /// creeps fast: bodies that do not creep bear the greatest pressure under the same loads.
+    fn bounds_small_contacts(&self, scene: &Scene<'_>, extent: &Extent) -> Result<bool> {
+        let Run { states, steps, .. } = &self.finest;
+        let Some(highest) = self.highest() else { return Ok(false) };
+        let small = |state: &State| !state.resolved || state.radius == 0.0;
+        let starts = std::iter::once(true).chain(states.iter().map(small));
+        let ends =
+            starts.zip(states).zip(steps).filter(|((start, state), _)| *start && !small(state) && state.time > 0.0);
+        let normal = |load: &Load| match *load {
+            Load::Approach { approach, .. } => (false, approach),
+            Load::Force { normal, .. } => (true, normal),
+        };
+        for by_force in [true, false] {
+            let loads = ends.clone().map(|(_, (_, load))| load).filter(|load| normal(load).0 == by_force);
+            let Some(&load) = loads.max_by(|a, b| normal(a).1.total_cmp(&normal(b).1)) else { continue };
+            let mut elastic = scene.builder(grid_with(extent, self.across)?).build()?;
+            let resolved = elastic.step(0.0, load).is_ok() && elastic.contact_cells() >= BOUNDING_CELLS;
+            if !resolved || BOUNDING_MARGIN * elastic.max_pressure() > highest.pressure {
+                return Ok(false);
+            }
+        }
+        Ok(true)
+    }
+
+    /// The state with the greatest pressure.
+    fn highest(&self) -> Option<&State> {
+        self.finest.states.iter().max_by(|a, b| a.pressure.total_cmp(&b.pressure))
     }
 }
 
@@ -214,8 +244,10 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
     let punch = scene.has_edge(&first);
     let steps = Steps::find(scene, &first)?;
     let scene = &Scene { tolerance: steps.tolerance, ..*scene };
-    let zoomed = match scene.before_growth(&steps.run) {
-        Some(until) => Some(small_contact(scene, until, extent)?),
+    let zoomed = match scene.before_growth(&steps.run).map(|until| small_contact(scene, until, extent)) {
+        Some(Err(error @ Error::OutOfMemory { .. })) => return Err(error),
+        // the run itself does not need that part of it on a domain of its own
+        Some(law) => Some(law.unwrap_or(Convergence::NONE)),
         None => None,
     };
     let base = scene.repeat(grid_with(extent, LEAST_ACROSS)?, &steps.run.steps)?;
@@ -235,7 +267,12 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
         None => found,
     };
     let needed = |meshes: &Meshes| unzoomed(found(meshes)).across_for(scene.accuracy, area);
-    Ok(found(&Meshes::refine(scene, extent, base, needed)?))
+    let meshes = Meshes::refine(scene, extent, base, needed)?;
+    let mut found = found(&meshes);
+    if zoomed.is_none() && found.pressure.converges && !meshes.bounds_small_contacts(scene, extent)? {
+        found.pressure = Convergence::NONE;
+    }
+    Ok(found)
 }
 
 /// The greatest pressure of a run in which the contact grows much afterwards: of the run to `until`, on a domain of its
@@ -244,21 +281,32 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Conver
     let (mut until, mut zooms) = (until, 0);
     let (part, extent, base) = loop {
         let part = Scene { until, ..*scene };
-        let extent = Extent::of(&part)?;
-        let base = part.follow(grid_with(&extent, LEAST_ACROSS)?)?;
+        let (extent, base) =
+            Extent::of(&part)?.held(|extent| Ok((*extent, part.follow(grid_with(extent, LEAST_ACROSS)?)?)))?;
         zooms += 1;
         match part.before_growth(&base).filter(|_| zooms < MAX_ZOOMS) {
             Some(earlier) => until = earlier,
             None => break (part, extent, base),
         }
     };
-    let meshes = extent.held(|extent| {
+    let (meshes, bounded) = extent.held(|extent| {
         let base = part.repeat(grid_with(extent, LEAST_ACROSS)?, &base.steps)?;
-        Meshes::refine(&part, extent, base, |meshes| {
+        let meshes = Meshes::refine(&part, extent, base, |meshes| {
             let pressure = meshes.pressure();
-            if pressure.converges { pressure.across_for(scene.accuracy.space()) } else { 0.0 }
-        })
+            if pressure.converges {
+                pressure.across_for(scene.accuracy.space())
+            } else if meshes.highest().is_some_and(|state| state.resolved) {
+                0.0
+            } else {
+                f64::INFINITY
+            }
+        })?;
+        let bounded = meshes.bounds_small_contacts(&part, extent)?;
+        Ok((meshes, bounded))
     })?;
+    if !bounded {
+        return Ok(Convergence::NONE);
+    }
     let larger = [0, 1].map(|axis| whole.width[axis] / extent.width[axis]);
     let across = meshes.across * larger[0].max(larger[1]);
     Ok(Convergence { across, ..meshes.pressure() })

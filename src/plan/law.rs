@@ -18,6 +18,9 @@ pub(super) struct Convergence {
 }
 
 impl Convergence {
+    /// Of a quantity that does not converge.
+    pub(super) const NONE: Convergence = Convergence { error: 1.0, order: 1.0, across: 1.0, converges: false };
+
     /// Of smooth quantities, from the differences between successive meshes, the finest with `across` cells.
     pub(super) fn smooth(differences: &[f64], across: f64) -> Convergence {
         let (error, order, converges) = match *differences {

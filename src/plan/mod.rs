@@ -15,7 +15,8 @@ use crate::geometry::Geometry;
 use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
 use crate::plan::coarse::{Extent, Scene};
-use crate::plan::convergence::{DOMAIN_TO_CONTACT, converge, grid_with};
+use crate::plan::convergence::{DOMAIN_TO_CONTACT, Found, converge, grid_with};
+use crate::plan::law::Convergence;
 use crate::rheology::{Material, TemperatureHistory};
 
 /// A scene planned for an accuracy: the extent of the contact, the cells and steps needed, and their cost.
@@ -30,7 +31,7 @@ use crate::rheology::{Material, TemperatureHistory};
 /// # What is promised
 /// For twice the accuracy at most, relative to the greatest value of the run:
 /// * approach and force at all times,
-/// * the greatest pressure of the run, if it converges ([`Plan::pressure_converges`]),
+/// * the greatest pressure of the run, if it converges and the coarse runs resolve its peak ([`Plan::pressure_converges`]),
 /// * with [`Plan::with_area`], the contact radius wherever the contact is at least 8 cells across.
 ///
 /// The plan says what it does not promise: [`Plan::mesh_error`] estimates the error of the area,
@@ -75,8 +76,6 @@ pub struct Plan {
     time_error: Option<f64>,
     convolutions: f64,
     error: MeshError,
-    /// Whether the greatest pressure of the run converges with mesh and steps.
-    pressure_converges: bool,
     /// Greatest error of mesh and steps of the greatest pressure at any time.
     pressure_over_time: f64,
     bytes: u64,
@@ -92,7 +91,7 @@ impl Plan {
     ///
     /// # Errors
     /// If the time is not finite and positive, a part is invalid, no domain holds the contact, the coarse runs fail, or
-    /// the target needs more than 8192 cells along a side.
+    /// approach and force need more than 8192 cells along a side.
     pub fn new(
         geometry: &dyn Geometry,
         material: &Material,
@@ -166,10 +165,17 @@ impl Plan {
         let tolerance = accuracy.step_tolerance();
         let scene = Scene { geometry, material, temperature, history, until, whole: until, accuracy, tolerance };
         let extent = Extent::of(&scene)?;
-        let found = extent.held(|extent| converge(&scene, extent, area))?;
+        let mut found = extent.held(|extent| converge(&scene, extent, area))?;
         let extent = Extent { reach: found.reach, ..extent };
-        let across = found.across_for(accuracy, area).max(LEAST_ACROSS);
-        let sides = [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * extent.reach[axis] / extent.width[axis]);
+        let needed = |found: &Found| {
+            let across = found.across_for(accuracy, area).max(LEAST_ACROSS);
+            (across, [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * extent.reach[axis] / extent.width[axis]))
+        };
+        let (mut across, mut sides) = needed(&found);
+        if sides[0].max(sides[1]) > MOST_CELLS as f64 {
+            found.pressure = Convergence::NONE;
+            (across, sides) = needed(&found);
+        }
         let wanted = sides[0].max(sides[1]);
         if wanted.is_nan() || wanted > MOST_CELLS as f64 {
             let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
@@ -177,9 +183,10 @@ impl Plan {
         }
         let grid = grid_with(&extent, across)?;
         let across = across * grid.cells()[0] as f64 / sides[0];
+        let converges = found.pressure_converges(accuracy);
         let error = MeshError {
             approach: found.main.at(across).max(found.singular.at(across)),
-            max_pressure: found.pressure.at(across),
+            max_pressure: converges.then(|| found.pressure.at(across)),
             area: 2.0 * found.radius.at(across),
             singular: found.singular.at(across),
         };
@@ -196,7 +203,6 @@ impl Plan {
             time_error: found.steps.error.map(|error| error.main),
             convolutions: found.work.at(across),
             error,
-            pressure_converges: found.pressure_converges(accuracy),
             pressure_over_time: found.pressure_over_time.at(across)
                 + found.steps.error.map_or(0.0, |error| error.pressure_over_time),
             bytes: memory.total() + slope,
@@ -250,10 +256,12 @@ impl Plan {
         self.time_error
     }
 
-    /// Whether the greatest pressure of the run converges with mesh and steps. If not, as under the edges of punches and the
-    /// tips of cones, where it is infinite, and under moving edges of bodies that creep fast, it is not promised.
+    /// Whether the greatest pressure of the run is promised. It is not where it does not converge with mesh and steps, as under
+    /// the edges of punches and the tips of cones, where it is infinite, and under moving edges of bodies that creep fast; where
+    /// it may have been greater while the contact was too small for the coarse runs, as under ramps on bodies that creep fast;
+    /// and where it would need more than 8192 cells along a side.
     pub fn pressure_converges(&self) -> bool {
-        self.pressure_converges
+        self.error.max_pressure.is_some()
     }
 
     /// Expected greatest error of mesh and steps, over all times, of the greatest pressure at that time, relative to the
@@ -264,7 +272,7 @@ impl Plan {
     }
 
     /// Expected errors of the mesh, relative to the greatest values of the run: of approach and force and of the contact area
-    /// at all times, and of the greatest pressure of the run.
+    /// at all times, and of the greatest pressure of the run, if it converges.
     pub fn mesh_error(&self) -> MeshError {
         self.error
     }
@@ -276,18 +284,13 @@ impl std::fmt::Display for Plan {
         write!(
             f,
             "for {:.0e}: {n1} × {n2} cells on {l1:.3e} m × {l2:.3e} m, about {} steps, {:.0} convolutions, {:.1} MB; errors of the \
-             mesh: approach {:.1e}, peak pressure {:.1e}, area {:.1e}",
+             mesh: {}",
             self.accuracy.target(),
             self.steps,
             self.convolutions,
             self.bytes as f64 * 1e-6,
-            self.error.approach,
-            self.error.max_pressure,
-            self.error.area
+            self.error
         )?;
-        if !self.pressure_converges {
-            write!(f, "; the peak pressure does not converge")?;
-        }
         match self.time_error {
             None => write!(f, "; the error in time is unknown"),
             Some(error) if error > self.accuracy.target() => {

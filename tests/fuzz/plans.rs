@@ -22,8 +22,8 @@ fn plan(source: &mut Source) -> Verdict {
     });
     judged(made, |plan| {
         let (error, [reach1, reach2]) = (plan.mesh_error(), plan.reach());
-        let numbers = [reach1, reach2, plan.convolutions(), error.approach, error.max_pressure, error.area];
-        finite("plan", numbers.into_iter().chain([error.singular]))?;
+        let numbers = [reach1, reach2, plan.convolutions(), error.approach, error.area];
+        finite("plan", numbers.into_iter().chain([error.singular]).chain(error.max_pressure))?;
         let text = plan.to_string();
         if text.contains("NaN") || text.contains("inf") || plan.grid().len() == 0 || plan.bytes() == 0 {
             return Err(format!("a plan of nothing: {text}"));

@@ -103,7 +103,7 @@ pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Sou
         finite("moment of a body", body.moment)?;
     }
     if let Some(space) = contact.mesh_error().unwrap() {
-        known("error of the mesh", [space.approach, space.max_pressure, space.area, space.singular])?;
+        known("error of the mesh", [space.approach, space.area, space.singular].into_iter().chain(space.max_pressure))?;
     }
     known("pressures", [contact.mean_pressure(), contact.max_pressure()])?;
     if let Ok(patches) = contact.patches() {

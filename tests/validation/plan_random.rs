@@ -297,7 +297,7 @@ fn deliver(scene: &Scene, target: f64, area: bool) -> Result<Option<Outcome>, Er
         error.approach / target,
         0.5 * error.area / target,
         plan.pressure_error_at_all_times() / target,
-        error.max_pressure / target,
+        error.max_pressure.unwrap_or(f64::NAN) / target,
         if plan.pressure_converges() { "" } else { " (not)" },
         plan.steps(),
         plan.convolutions(),

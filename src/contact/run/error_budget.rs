@@ -43,10 +43,11 @@ pub struct ErrorBudget {
     /// point, and the greatest pressure, may be off by. It is largest where a body meets cells faster than the steps resolve,
     /// which hardly moves the body. `None` before the first step.
     pub pressure: Option<f64>,
-    /// Errors due to the mesh, of the present state; `None` without contact, and where [ranks](crate::ranks) share out the rows.
+    /// Errors due to the mesh, of the present state; `None` without contact, of a contact that the cells do not resolve, and where
+    /// [ranks](crate::ranks) share out the rows.
     pub mesh: Option<MeshError>,
-    /// The greatest errors due to the mesh of all states of the run, each of them relative to its own state: largest where few
-    /// cells are in contact. `None` if none was estimated.
+    /// The greatest errors due to the mesh of all states of the run that have an estimate, each of them relative to its own
+    /// state: largest where few cells are in contact. `None` if no state has one.
     pub max_mesh: Option<MeshError>,
     /// Greatest residual of the contact problems, of the displacement.
     pub solver: f64,
