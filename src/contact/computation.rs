@@ -1,10 +1,10 @@
 //! A state on its region, with what computes there.
 
-use crate::contact::footprint::{Computed, Footprint};
+use crate::contact::builder::memory::{Computed, Footprint};
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
-use crate::contact::trial::Trial;
+use crate::contact::step::trial::Trial;
 use crate::contact::window::carry::carried;
 use crate::contact::window::region::Region;
 use crate::contact::window::window::Window;

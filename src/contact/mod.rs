@@ -2,10 +2,22 @@
 //!
 //! A contact has five owners: the scene never changes; the indenter is replaced whole when it moves; the state is what a
 //! step changes; the window computes on the region of the state, and follows from the three above; the trial is the step
-//! being tried. State, window and trial form a
-//! computation.
+//! being tried. State, window and trial form a computation.
+//!
+//! | question | folder |
+//! |---|---|
+//! | how is a contact made from what a user gives? | `builder` |
+//! | what is the gap before deformation, and where may loads act? | `indenter` |
+//! | what does a step change, and what was it before, or within, the last one? | `state` |
+//! | which part of the grid is computed? | `window` |
+//! | what is one step? | `step` |
+//! | how does a run follow a load history? | `run` |
+//! | what if the indenter moves? | `moving` |
+//! | what does a user read? | `read` |
+//! | how does a run go on after an interruption? | `checkpoint` |
+//! | what does a contact do for ranks? | `distributed` |
 
-// the documentation shows methods in the order of these: what drives a contact, then what it tells
+// the documentation shows methods in the order of these: what drives a contact, then what is read from it
 mod builder;
 
 mod step;
@@ -14,54 +26,34 @@ mod run;
 
 mod moving;
 
-mod accessors;
+mod read;
 
-mod observations;
+mod state;
 
-mod within_step;
-
-mod snapshot;
-
-mod brought;
-mod build;
 #[cfg(feature = "checkpoint")]
 mod checkpoint;
 mod computation;
-mod extrapolation;
-mod footprint;
-mod hull;
+mod distributed;
 mod indenter;
-mod own_rows;
-mod report;
-mod request;
 mod scene;
-mod set_geometry;
 mod settings;
-mod shared_area;
-mod shared_gap;
-mod state;
-mod time_rule;
-mod times;
-mod trial;
-mod view;
-mod viscoelastic;
-mod warning;
+mod stepper;
 mod window;
 
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
 #[cfg(any(feature = "npy", feature = "vtk"))]
-pub(crate) use brought::Brought;
+pub(crate) use distributed::gathered_block::Brought;
 pub use builder::Builder;
-pub use footprint::Memory;
+pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
 pub use moving::steady::{SteadyMotion, TowardSteady};
-pub use report::{BodyState, StepReport};
+pub use read::report::{BodyState, StepReport};
 pub use run::error_budget::ErrorBudget;
 pub use run::follow::Follow;
 pub use run::stepping::Stepping;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
-pub use snapshot::Snapshot;
-pub use viscoelastic::ViscoelasticContact;
-pub use warning::{Warning, Warnings};
+pub use state::snapshot::Snapshot;
+pub use stepper::ViscoelasticContact;
+pub use read::warning::{Warning, Warnings};
 pub(crate) use window::extent::Extent;

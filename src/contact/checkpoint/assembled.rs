@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::contact::indenter::Indenter;
 use crate::contact::state::{Equilibrium, State};
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 use crate::hereditary::CommonCells;

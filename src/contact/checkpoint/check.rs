@@ -4,8 +4,8 @@
 use crate::contact::run::progress::Progress;
 use crate::contact::scene::Scene;
 use crate::contact::state::{Clock, Equilibrium, State};
-use crate::contact::time_rule::windowed;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::builder::time_rule::windowed;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::CheckpointError;
 

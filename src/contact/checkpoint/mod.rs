@@ -14,7 +14,7 @@ use std::path::Path;
 use crate::contact::computation::Computation;
 use crate::contact::run::progress::Progress;
 use crate::contact::state::State;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
 use crate::ranks::caught;

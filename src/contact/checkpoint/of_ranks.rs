@@ -18,7 +18,7 @@ use super::fingerprint::Fingerprint;
 use super::format::{self, Kind, Whole};
 use crate::contact::run::progress::Progress;
 use crate::contact::state::State;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::{CheckpointError, Result};
 use crate::file::{check_regular, replace};

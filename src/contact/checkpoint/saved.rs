@@ -10,7 +10,7 @@ use super::check::{check, check_run};
 use super::fingerprint::Fingerprint;
 use crate::contact::run::progress::Progress;
 use crate::contact::state::State;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::CheckpointError;
 
 /// A state, and the fingerprint of its scene; borrowed from a contact or read from a file.

@@ -1,6 +1,6 @@
 //! The force that moves an indenter along the surface.
 
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 
 impl ViscoelasticContact {
     /// The force \[N\] along x1 and x2 that moves `shape` along the surface without friction: ∬ p ∇h, less the tilt times the

@@ -1,8 +1,8 @@
 //! Steps in which the indenter moves over the bodies, and the grid with it.
 
-use crate::contact::report::StepReport;
+use crate::contact::read::report::StepReport;
 use crate::contact::settings::Frame;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result, non_negative};
 use crate::load::Load;
 

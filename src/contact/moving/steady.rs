@@ -1,8 +1,8 @@
 //! Moving on until nothing changes any more.
 
-use crate::contact::report::StepReport;
+use crate::contact::read::report::StepReport;
 use crate::contact::settings::Frame;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result, count_within, finite, within};
 use crate::load::Load;
 

@@ -1,13 +1,13 @@
 //! Steps as long as their error allows.
 
 use crate::contact::computation::Computation;
-use crate::contact::report::StepReport;
+use crate::contact::read::report::StepReport;
 use crate::contact::run::follow::Follow;
 use crate::contact::run::step_control::StepControl;
 use crate::contact::settings::Settings;
 use crate::contact::state::State;
 use crate::contact::step::error_in_time::error_in_time;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::events;
 

@@ -1,7 +1,7 @@
 //! Drives a contact along a load history.
 
 use crate::ascending::Ascending;
-use crate::contact::report::StepReport;
+use crate::contact::read::report::StepReport;
 use crate::contact::run::error_budget::ErrorBudget;
 use crate::contact::run::held::{Held, HeldHistory};
 #[cfg(feature = "checkpoint")]
@@ -10,7 +10,7 @@ use crate::contact::run::progress::Progress;
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::stepping::Stepping;
 use crate::contact::step::error_in_time::Outlook;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, LoadError, Result, finite, positive, within};
 use crate::load::{Load, LoadHistory};
 use crate::ranks::caught;

@@ -1,7 +1,7 @@
 //! A step that was computed becomes the state.
 
 use crate::contact::computation::Computation;
-use crate::contact::request::Step;
+use crate::contact::step::request::Step;
 use crate::solver::RigidMotion;
 
 impl Computation {

@@ -3,7 +3,7 @@
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Edge, TimeRule};
 use crate::contact::state::State;
-use crate::contact::warning::{Warning, Warnings};
+use crate::contact::read::warning::{Warning, Warnings};
 use crate::contact::window::extent::Extent;
 use crate::rheology::is_known;
 

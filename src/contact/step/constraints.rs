@@ -1,7 +1,7 @@
 //! What the loads of a step ask of the bodies: which motions they leave free, and which they prescribe.
 
 use crate::Grid;
-use crate::contact::request::Step;
+use crate::contact::step::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::window::region::Region;

@@ -1,7 +1,7 @@
 //! The estimated error in time of a step that was tried.
 
 use crate::contact::computation::Computation;
-use crate::contact::request::Step;
+use crate::contact::step::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::step::first_step::first_step_error;
 use crate::contact::window::growth::motion_tried;

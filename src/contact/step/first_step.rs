@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::contact::computation::Computation;
-use crate::contact::request::Step;
+use crate::contact::step::request::Step;
 use crate::contact::scene::Scene;
 use crate::sum::greatest;
 

@@ -2,10 +2,10 @@
 
 use std::ops::Range;
 
-use crate::contact::request::Step;
+use crate::contact::step::request::Step;
 use crate::contact::state::State;
 use crate::contact::step::initial_guess::{begin, extrapolate};
-use crate::contact::trial::Trial;
+use crate::contact::step::trial::Trial;
 use crate::contact::window::window::Window;
 use crate::error::Result;
 use crate::geometry::Gap;

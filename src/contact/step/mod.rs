@@ -24,15 +24,17 @@ mod first_step;
 mod gap;
 mod initial_guess;
 mod jump;
+pub(in crate::contact) mod request;
+pub(in crate::contact) mod trial;
 
 use std::sync::Arc;
 
 use crate::contact::computation::Computation;
-use crate::contact::report::StepReport;
-use crate::contact::request::Step;
+use crate::contact::read::report::StepReport;
+use crate::contact::step::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::growth::outgrown;
 use crate::contact::window::placement::region_for;
 use crate::contact::window::region::Region;

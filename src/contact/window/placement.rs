@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use crate::contact::indenter::Indenter;
-use crate::contact::request::Step;
+use crate::contact::step::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::window::extent::Extent;

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result};
 
 /// The state of a contact in memory, made by [`ViscoelasticContact::snapshot`]: what steps change, without kernel and work

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::contact::state::State;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{RanksError, Result, count_within, exact_length};
 use crate::observe::Axis;
 #[cfg(any(feature = "npy", feature = "vtk"))]
@@ -59,7 +59,7 @@ impl ViscoelasticContact {
     }
 
     /// The values of a field along a line of cells, of all ranks.
-    pub(super) fn line_of(&self, field: &[f64], along: Axis, line: usize) -> Vec<f64> {
+    pub(in crate::contact) fn line_of(&self, field: &[f64], along: Axis, line: usize) -> Vec<f64> {
         let ([n1, n2], rows) = (self.grid().cells(), self.computation.state.region.rows());
         if !rows.are_shared() {
             let cell = |k: usize| if along == Axis::X1 { k * n2 + line } else { line * n2 + k };
@@ -85,7 +85,7 @@ impl ViscoelasticContact {
     }
 
     /// The computed rows of a rank, as rows of the whole grid.
-    pub(super) fn rows_of(&self, rank: usize) -> Range<usize> {
+    pub(in crate::contact) fn rows_of(&self, rank: usize) -> Range<usize> {
         let region = &self.computation.state.region;
         let rows = region.rows();
         let (first, of) = (region.computed_rows().start - rows.own().start, rows.of(rank));
@@ -93,14 +93,14 @@ impl ViscoelasticContact {
     }
 
     /// Some shared rows, and their images where rows are folded.
-    pub(super) fn with_images(&self, rows: Range<usize>) -> [Range<usize>; 2] {
+    pub(in crate::contact) fn with_images(&self, rows: Range<usize>) -> [Range<usize>; 2] {
         let (region, n1) = (&self.computation.state.region, self.grid().cells()[0]);
         let images = if region.is_shared() && region.folded()[0] { n1 - rows.end..n1 - rows.start } else { 0..0 };
         [rows, images]
     }
 
     /// Σ of what each rank has `found` in the rows at its `places`, in the order of the rows. A call of all ranks.
-    pub(super) fn sum_in_order<const K: usize>(
+    pub(in crate::contact) fn sum_in_order<const K: usize>(
         &self,
         found: impl Iterator<Item = [f64; K]>,
         places: impl Fn(usize) -> [Range<usize>; 2],
@@ -125,7 +125,7 @@ impl ViscoelasticContact {
 
     /// Σ over all rows of the whole grid, in their order, of what `of_row` finds in the pressure of a row, given its number. A
     /// call of all ranks.
-    pub(super) fn sum_of_rows<const K: usize>(&self, of_row: impl Fn(usize, &[f64]) -> [f64; K]) -> [f64; K] {
+    pub(in crate::contact) fn sum_of_rows<const K: usize>(&self, of_row: impl Fn(usize, &[f64]) -> [f64; K]) -> [f64; K] {
         let ([n1, n2], own, pressure) = (self.grid().cells(), self.rows(), self.pressure());
         let row = |i: usize| &pressure[(i - own.start) * n2..][..n2];
         let computed = |i: usize| if own.contains(&i) { i } else { n1 - 1 - i };

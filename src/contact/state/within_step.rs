@@ -1,7 +1,7 @@
 //! The state within the last step.
 
 use crate::contact::run::follow::Follow;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Result, within};
 use crate::hereditary::TimeError;
 use crate::load::{Load, Tilt};

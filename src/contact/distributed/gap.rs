@@ -4,7 +4,7 @@
 use std::hash::{DefaultHasher, Hasher};
 
 use crate::Grid;
-use crate::contact::hull::Hull;
+use crate::contact::indenter::hull::Hull;
 use crate::contact::indenter::Indenter;
 use crate::contact::window::region::Region;
 use crate::error::{Error, Result};
@@ -12,7 +12,7 @@ use crate::geometry::Gap;
 use crate::ranks::Rows;
 
 /// The gap of a single body on own rows of the whole grid.
-pub(super) struct SharedGap<'a> {
+pub(in crate::contact) struct SharedGap<'a> {
     rows: Rows,
     heights: &'a [f64],
     /// The lowest gap of all rows \[m\].
@@ -21,7 +21,7 @@ pub(super) struct SharedGap<'a> {
 
 impl SharedGap<'_> {
     /// Checks the gap on own rows, and finds the lowest of all. A call of all ranks, which get the same error.
-    pub(super) fn new<'a>(heights: &'a [f64], grid: &Grid, rows: &Rows) -> Result<SharedGap<'a>> {
+    pub(in crate::contact) fn new<'a>(heights: &'a [f64], grid: &Grid, rows: &Rows) -> Result<SharedGap<'a>> {
         let n2 = grid.cells()[1];
         let invalid = heights.iter().position(|h| h.is_nan() || *h == f64::NEG_INFINITY);
         let own = invalid.map_or([f64::INFINITY, 0.0], |k| [(rows.own().start * n2 + k) as f64, heights[k]]);
@@ -39,7 +39,7 @@ impl SharedGap<'_> {
 
     /// Axes of an even number of cells about whose middle the gap is even. Rows whose mirror image another rank has are compared
     /// by 64 bits of a hash. A call of all ranks.
-    pub(super) fn even_axes(&self) -> [bool; 2] {
+    pub(in crate::contact) fn even_axes(&self) -> [bool; 2] {
         let SharedGap { rows, heights, datum } = self;
         let [n1, n2] = rows.cells();
         let mirrored = |row: &[f64]| (0..n2 / 2).all(|j| row[j] - datum == row[n2 - 1 - j] - datum);
@@ -64,7 +64,7 @@ impl SharedGap<'_> {
     }
 
     /// The indenter on a region of own rows, which may be others where the region is folded. A call of all ranks.
-    pub(super) fn on(&self, region: &Region, grid: &Grid, even: [bool; 2]) -> Indenter {
+    pub(in crate::contact) fn on(&self, region: &Region, grid: &Grid, even: [bool; 2]) -> Indenter {
         let ([n1, n2], [_, m2], to) = (grid.cells(), region.cells(), region.rows());
         let mut above: Vec<f64> = self.heights.iter().map(|h| h - self.datum).collect();
         if to.cells() != self.rows.cells() {

@@ -1,10 +1,13 @@
 //! The rigid bodies that press on the creeping one: their gap, and what follows from it.
 
+pub(in crate::contact) mod hull;
+pub(in crate::contact) mod replacement;
+
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::Grid;
-use crate::contact::hull::Hull;
+use crate::contact::indenter::hull::Hull;
 #[cfg(feature = "checkpoint")]
 use crate::contact::window::region::Region;
 use crate::error::Result;

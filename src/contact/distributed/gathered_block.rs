@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::RanksError;
 use crate::ranks::exchange_numbers;
 

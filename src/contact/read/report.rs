@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::contact::warning::Warnings;
+use crate::contact::read::warning::Warnings;
 use crate::rounded::{TIME, rounded};
 
 /// The outcome and the cost of one step.

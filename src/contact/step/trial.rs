@@ -7,20 +7,20 @@ use crate::solver::{Freedom, Solution};
 #[derive(Debug, Clone)]
 pub(crate) struct Trial {
     /// A guess, then the solution.
-    pub(super) solution: Solution,
+    pub(in crate::contact) solution: Solution,
     /// The gap before any pressure and free motion.
-    pub(super) gap: Vec<f64>,
+    pub(in crate::contact) gap: Vec<f64>,
     /// What the loads leave free of each body.
-    pub(super) free: Vec<Freedom>,
+    pub(in crate::contact) free: Vec<Freedom>,
     /// How many times the last step the guess reaches ahead.
-    pub(super) reach: f64,
+    pub(in crate::contact) reach: f64,
     /// Cells that are likely to be in contact, and whether that is known.
-    pub(super) likely: Vec<bool>,
-    pub(super) foreseen: bool,
+    pub(in crate::contact) likely: Vec<bool>,
+    pub(in crate::contact) foreseen: bool,
 }
 
 impl Trial {
-    pub(super) fn new(cells: usize, bodies: usize) -> Trial {
+    pub(in crate::contact) fn new(cells: usize, bodies: usize) -> Trial {
         let nothing_free = Freedom { translation: false, tilt: [false; 2], point: [0.0; 2], total: 0.0 };
         Trial {
             solution: Solution::zero(cells, bodies),

@@ -6,14 +6,14 @@ use crate::contact::builder::{Builder, OwnGap};
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::built::Built;
 use crate::contact::computation::Computation;
-use crate::contact::footprint::{Computed, Footprint, Memory, symmetry_of};
+use crate::contact::builder::memory::{Computed, Footprint, Memory, symmetry_of};
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Frame, Settings, Solver};
-use crate::contact::shared_gap::SharedGap;
+use crate::contact::distributed::gap::SharedGap;
 use crate::contact::state::State;
-use crate::contact::time_rule::{history_by, windowed};
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::builder::time_rule::{history_by, windowed};
+use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::{Error, KernelError, RanksError, Result, count_within};
 use crate::geometry::Gap;

@@ -86,28 +86,28 @@ impl fmt::Display for Memory {
 }
 
 /// What the memory of a contact depends on, besides the cells that are computed.
-pub(super) struct Footprint<'a> {
+pub(in crate::contact) struct Footprint<'a> {
     /// Cells of the whole grid.
-    pub(super) all: usize,
-    pub(super) bodies: usize,
-    pub(super) settings: &'a Settings,
-    pub(super) kernel: &'a InfluenceKernel,
+    pub(in crate::contact) all: usize,
+    pub(in crate::contact) bodies: usize,
+    pub(in crate::contact) settings: &'a Settings,
+    pub(in crate::contact) kernel: &'a InfluenceKernel,
     /// The rule that the bodies remember by.
-    pub(super) history: &'a hereditary::History,
+    pub(in crate::contact) history: &'a hereditary::History,
 }
 
 /// Cells that a contact is computed on.
-pub(super) struct Computed {
-    pub(super) cells: [usize; 2],
-    pub(super) folded: [bool; 2],
+pub(in crate::contact) struct Computed {
+    pub(in crate::contact) cells: [usize; 2],
+    pub(in crate::contact) folded: [bool; 2],
     /// Whether the cells and their mirror images are the whole grid.
-    pub(super) covers: bool,
+    pub(in crate::contact) covers: bool,
     /// The rows of all ranks that share them out, of which the cells are own ones.
-    pub(super) shared: Option<Rows>,
+    pub(in crate::contact) shared: Option<Rows>,
 }
 
 impl Computed {
-    pub(super) fn on(region: &Region) -> Computed {
+    pub(in crate::contact) fn on(region: &Region) -> Computed {
         // a rank without rows has about as little as one row takes
         let cells = region.cells().map(|count| count.max(1));
         let shared = region.is_shared().then(|| region.rows());
@@ -117,7 +117,7 @@ impl Computed {
 
 impl Footprint<'_> {
     /// Bytes of a contact that is computed on these cells.
-    pub(super) fn on(&self, computed: &Computed) -> Memory {
+    pub(in crate::contact) fn on(&self, computed: &Computed) -> Memory {
         let &Computed { cells, folded, covers, ref shared } = computed;
         let count = cells[0].saturating_mul(cells[1]);
         let (all, n, bodies) = (self.all as u128, count as u128, self.bodies as u128);
@@ -154,7 +154,7 @@ impl Footprint<'_> {
     }
 
     /// Rejects more cells than solvers can number, and more memory than there is, `besides` included \[bytes\].
-    pub(super) fn check(&self, computed: &Computed, besides: u64) -> Result<()> {
+    pub(in crate::contact) fn check(&self, computed: &Computed, besides: u64) -> Result<()> {
         let memory = self.on(computed);
         let cells = memory.computed_cells;
         let allowed = "4294967295 at most: take fewer cells, or let symmetry and window of the Settings compute fewer";
@@ -163,7 +163,7 @@ impl Footprint<'_> {
     }
 
     /// The most bytes that the contact can take while the axes `folded` stay so.
-    pub(super) fn most(&self, cells: [usize; 2], folded: [bool; 2], windowed: bool) -> Memory {
+    pub(in crate::contact) fn most(&self, cells: [usize; 2], folded: [bool; 2], windowed: bool) -> Memory {
         let cells = [0, 1].map(|axis| if folded[axis] { cells[axis] / 2 } else { cells[axis] });
         let whole = self.on(&Computed { cells, folded, covers: true, shared: None });
         if !windowed {
@@ -177,7 +177,7 @@ impl Footprint<'_> {
 }
 
 /// Axes about whose middle the gap of all bodies together is even, bitwise.
-pub(super) fn symmetry_of(gaps: &[&Vec<f64>], cells: [usize; 2]) -> [bool; 2] {
+pub(in crate::contact) fn symmetry_of(gaps: &[&Vec<f64>], cells: [usize; 2]) -> [bool; 2] {
     // the lowest body, and the first of several as low
     let lowest = |k: usize| {
         let own = gaps.iter().map(|gap| gap[k]).enumerate();

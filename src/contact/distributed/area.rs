@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use crate::contact::state::State;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::observe::area::{Pressed, REACH};
 use crate::ranks::{Ranks, depart, exchange_numbers};
 
@@ -16,7 +16,7 @@ const NOTHING: f64 = -1.0;
 impl ViscoelasticContact {
     /// The contact area \[m²\]: each rank finds the covered part of its rows of squares, and those of all are added in the
     /// order of the rows.
-    pub(super) fn shared_area(&self) -> f64 {
+    pub(in crate::contact) fn shared_area(&self) -> f64 {
         let State { region, current, .. } = &self.computation.state;
         let (rows, [n1, n2]) = (region.rows(), self.grid().cells());
         let Some(group) = rows.group() else { return 0.0 };

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::contact::indenter::Indenter;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::geometry::{Gap, Geometry, evaluate};
 

@@ -15,19 +15,19 @@ const TEMPERATURES: i32 = 64;
 
 /// The times over which the series of a material is fitted.
 #[derive(Debug, Clone)]
-pub(super) struct Times {
+pub(in crate::contact) struct Times {
     range: RangeInclusive<f64>,
     /// Whether they were taken from a run, which fails where the material is not known.
     of_run: bool,
 }
 
 impl Times {
-    pub(super) fn new(range: RangeInclusive<f64>) -> Times {
+    pub(in crate::contact) fn new(range: RangeInclusive<f64>) -> Times {
         Times { range, of_run: false }
     }
 
     /// Those of a run along `history` to the time `until`.
-    pub(super) fn of_run(history: &dyn LoadHistory, until: f64) -> Times {
+    pub(in crate::contact) fn of_run(history: &dyn LoadHistory, until: f64) -> Times {
         let (mut shortest, mut corner) = (until, 0.0);
         for _ in 0..MAX_CORNERS {
             match history.next_breakpoint(corner) {
@@ -42,7 +42,7 @@ impl Times {
     }
 
     /// The material with a series over these times, where it has no exact one.
-    pub(super) fn fit(
+    pub(in crate::contact) fn fit(
         &self,
         material: &Material,
         temperature: Option<&TemperatureHistory>,

@@ -5,11 +5,11 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::contact::report::BodyState;
+use crate::contact::read::report::BodyState;
 use crate::contact::scene::Scene;
 use crate::contact::settings::Settings;
 use crate::contact::state::State;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::{Result, exact_length};
 use crate::kernel::InfluenceKernel;

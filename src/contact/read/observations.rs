@@ -2,7 +2,7 @@
 
 use crate::contact::settings::Solver;
 use crate::contact::state::State;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Convergence, Error, Result, finite};
 use crate::memory;
 use crate::observe::area::Pressed;

@@ -8,12 +8,12 @@ use crate::rheology::Material;
 
 /// Whether only a part of the grid is computed. Elsewhere than on a half-space nothing is known of the displacement outside
 /// a window.
-pub(super) fn windowed(settings: &Settings, history: &History, kernel: &InfluenceKernel) -> bool {
+pub(in crate::contact) fn windowed(settings: &Settings, history: &History, kernel: &InfluenceKernel) -> bool {
     settings.window && history.has_far_field() && kernel.is_half_space()
 }
 
 /// The history of bodies of `material` by the time rule of the settings, on no cells yet.
-pub(super) fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> Result<History> {
+pub(in crate::contact) fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> Result<History> {
     let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
     match settings.time_rule {
         TimeRule::Exponential | TimeRule::ExponentialLinear => {

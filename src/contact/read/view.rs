@@ -18,14 +18,14 @@ pub(crate) struct View {
 }
 
 impl View {
-    pub(super) fn new(state: &State) -> View {
+    pub(in crate::contact) fn new(state: &State) -> View {
         let mut view = View { pressure: Vec::new(), region: state.region.clone(), displacement: OnceLock::new() };
         view.refresh(state);
         view
     }
 
     /// Follows the state.
-    pub(super) fn refresh(&mut self, state: &State) {
+    pub(in crate::contact) fn refresh(&mut self, state: &State) {
         self.displacement.take();
         if self.region != state.region {
             self.region = state.region.clone();
@@ -40,11 +40,11 @@ impl View {
         }
     }
 
-    pub(super) fn pressure<'a>(&'a self, state: &'a State) -> &'a [f64] {
+    pub(in crate::contact) fn pressure<'a>(&'a self, state: &'a State) -> &'a [f64] {
         if state.region.is_shown() { &state.current.solution.pressure } else { &self.pressure }
     }
 
-    pub(super) fn displacement<'a>(&'a self, scene: &Scene, state: &'a State) -> &'a [f64] {
+    pub(in crate::contact) fn displacement<'a>(&'a self, scene: &Scene, state: &'a State) -> &'a [f64] {
         let own = state.history.displacement();
         if state.region.is_shown() {
             return own;
@@ -54,13 +54,13 @@ impl View {
     }
 
     /// Whether the displacement has been computed, or needs not be.
-    pub(super) fn has_displacement(&self, state: &State) -> bool {
+    pub(in crate::contact) fn has_displacement(&self, state: &State) -> bool {
         state.region.is_shown() || state.region.is_shared() || self.displacement.get().is_some()
     }
 }
 
 /// A field on the cells that are shown from one of a region. Elsewhere it is the convolution of a source, or zero if there is none.
-pub(super) fn on_the_whole_grid<'a>(
+pub(in crate::contact) fn on_the_whole_grid<'a>(
     scene: &Scene,
     region: &Region,
     own: &'a [f64],

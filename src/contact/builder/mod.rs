@@ -1,12 +1,17 @@
 //! The parts that a contact is built from.
 
+pub(in crate::contact) mod build;
+pub(in crate::contact) mod fit_range;
+pub(in crate::contact) mod memory;
+pub(in crate::contact) mod time_rule;
+
 use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 use crate::Grid;
 use crate::contact::settings::Settings;
-use crate::contact::times::Times;
-use crate::contact::viscoelastic::ViscoelasticContact;
+use crate::contact::builder::fit_range::Times;
+use crate::contact::stepper::ViscoelasticContact;
 use crate::error::Result;
 use crate::geometry::{Geometry, evaluate};
 use crate::kernel::InfluenceKernel;

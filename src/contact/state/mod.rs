@@ -1,8 +1,12 @@
 //! What a step changes.
 
+pub(in crate::contact) mod extrapolation;
+pub(in crate::contact) mod snapshot;
+pub(in crate::contact) mod within_step;
+
 use std::sync::Arc;
 
-use crate::contact::extrapolation::Extrapolation;
+use crate::contact::state::extrapolation::Extrapolation;
 use crate::contact::indenter::Indenter;
 use crate::contact::window::region::Region;
 use crate::hereditary::{History, Interpolant, Interval};

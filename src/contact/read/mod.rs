@@ -1,0 +1,7 @@
+//! What a user reads of a contact: fields, numbers, observations, reports and warnings.
+
+pub(in crate::contact) mod accessors;
+pub(in crate::contact) mod observations;
+pub(in crate::contact) mod report;
+pub(in crate::contact) mod view;
+pub(in crate::contact) mod warning;
