@@ -6,6 +6,7 @@ mod follow;
 mod honest;
 mod protocols;
 mod protocols_run;
+mod returns;
 mod temperature;
 mod time_rules;
 mod uncached;
