@@ -24,6 +24,8 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) least: [f64; 2],
     /// The gap of the undeformed bodies.
     pub(crate) gap: &'a [f64],
+    /// Whether a free body was pressed by nothing before the step.
+    pub(crate) from_rest: bool,
     /// How bodies may come back to a surface that recovers.
     pub(crate) coming_back: ComingBack,
     /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
@@ -86,13 +88,18 @@ const EDGE: f64 = 3.0;
 const LASTING: f64 = 1.3;
 /// Errors that last count relative to this part of the greatest displacement at least.
 const LASTING_PART: f64 = 0.5;
-/// An error of the size of the tolerance that earlier steps have left makes a step count so many times more: in contact, ...
-const LASTING_WEIGHT: f64 = 2.0;
-/// ... and of a surface to come back to, up to so many tolerances.
+/// Errors that earlier steps have left count where they exceed this part of the tolerance; a tolerance beyond it makes a step count
+/// so many times more.
+const TOLERATED: f64 = 0.8;
+const LASTING_WEIGHT: f64 = 5.0;
+/// The same for a surface to come back to, whose defects are of one sign while it recovers: they count so many times as much, and
+/// those of earlier steps up to a few tolerances.
+const RECOVERING: f64 = 3.0;
 const SURFACE_WEIGHT: f64 = 1.0;
 const MOST_OF_SURFACE: f64 = 3.0;
-/// Defects of such a surface are of one sign while it recovers.
-const RECOVERING: f64 = 3.0;
+/// Bodies that nothing pressed before meet all their cells within a step, and their kinks agree: most of that error is one of the
+/// pressure alone.
+const FROM_REST: f64 = 0.1;
 
 impl History {
     /// The estimated error of the step tried; 0 where too few steps before it are known.
@@ -130,6 +137,7 @@ impl History {
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
         let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface] } =
             sums.defect(rule, measure.resolution);
+        let kinks = if measure.from_rest { FROM_REST * kinks } else { kinks };
         let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
         // bodies apart have no force that could be wrong, but a surface
         let [u_matters, v_matters] = if pressed { measure.matters } else { [true, false] };
@@ -141,7 +149,7 @@ impl History {
             (false, _) => 0.0,
         };
         let growth = (1.0 + measure.agreement * (measure.amplification - 1.0))
-            * (1.0 + LASTING_WEIGHT * lasting / measure.tolerance);
+            * (1.0 + LASTING_WEIGHT * (lasting / measure.tolerance - TOLERATED).max(0.0));
         let of_u = rule.compliance() * (edge * kinks).max(growth * smooth);
         let of_v = (EDGE * kinks).max(smooth);
         let error_of_u = if u_matters { relative(of_u, scales[0]) } else { 0.0 };

@@ -11,14 +11,20 @@ use crate::solver::RigidMotion;
 use crate::sum::greatest as greatest_of;
 
 impl Computation {
+    /// Whether a free body was pressed by nothing before the step tried.
+    fn was_at_rest(&self, body: usize) -> bool {
+        let Computation { state, trial, .. } = self;
+        let released = matches!(state.loads[body], Load::Force { normal: 0.0, .. }) || state.current.contact_cells == 0;
+        released && trial.free[body].translation
+    }
+
     /// By how much the body above a cell advances in the step tried. A body that nothing pressed `rests_at` such an approach, from
     /// the datum of the gap; NaN if that is not known.
     fn advance(&self, step: &Step<'_>, rests_at: Option<f64>, k: usize) -> f64 {
         let Computation { state, window, trial } = self;
         let body = window.gap(&step.indenter).owner(k);
-        let released = matches!(state.loads[body], Load::Force { normal: 0.0, .. }) || state.current.contact_cells == 0;
         let end = motion_tried(&state.region, trial, step, body);
-        if released && trial.free[body].translation {
+        if self.was_at_rest(body) {
             return rests_at.map_or(f64::NAN, |start| end.at(state.region.center(k)) - start);
         }
         let start = state.current.motions[body];
@@ -119,7 +125,8 @@ pub(in crate::contact) fn error_in_time(
     let forces = trial.free.iter().filter(|freedom| freedom.translation).count();
     let matters = [forces > 0, forces < trial.free.len()];
     let gap = &tried.window.gap(&step.indenter).above;
-    let rests_at = (trial.free.len() == 1 && trial.free[0].translation).then(|| first_touch(tried, gap));
+    let from_rest = trial.free.len() == 1 && tried.was_at_rest(0);
+    let rests_at = from_rest.then(|| first_touch(tried, gap));
     let advance = |k: usize| tried.advance(step, rests_at, k);
     let potential = &trial.solution.potential;
     let advance = &advance;
@@ -132,6 +139,7 @@ pub(in crate::contact) fn error_in_time(
         greatest,
         least,
         gap,
+        from_rest,
         coming_back,
         lasting,
         tolerance,
