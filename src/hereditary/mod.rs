@@ -45,5 +45,5 @@ pub(crate) use history::{History, HistoryInputs};
 pub(crate) use interval::Interval;
 pub(crate) use lasting_error::LastingError;
 pub(crate) use remembered_field::RememberedField;
-pub(crate) use time_error::{ComingBack, ErrorMeasure, TimeError};
+pub(crate) use time_error::{ErrorMeasure, TimeError};
 pub(crate) use transfer::Transfer;

@@ -26,8 +26,10 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) gap: &'a [f64],
     /// Whether a free body was pressed by nothing before the step.
     pub(crate) from_rest: bool,
-    /// How bodies may come back to a surface that recovers.
-    pub(crate) coming_back: ComingBack,
+    /// The depth below first touch to which bodies may come back, to a surface that recovers; 0 if they do not.
+    pub(crate) coming_back: f64,
+    /// What v answers to a unit of u soon after bodies meet.
+    pub(crate) stiffness: f64,
     /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
     pub(crate) lasting: [f64; 2],
     pub(crate) tolerance: f64,
@@ -43,15 +45,6 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) resolution: f64,
     /// In steps shorter than this, a body with an immediate dashpot hardly moves.
     pub(crate) beginning: f64,
-}
-
-/// How bodies may come back to a surface that recovers.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct ComingBack {
-    /// The depth below first touch that they may reach; 0 if they do not come back.
-    pub(crate) depth: f64,
-    /// 1/C of the time that it takes: what v is wrong by where the surface that they meet is wrong by 1.
-    pub(crate) stiffness: f64,
 }
 
 /// What is known of the error in time of a step.
@@ -154,7 +147,12 @@ impl History {
         let of_v = (EDGE * kinks).max(smooth);
         let error_of_u = if u_matters { relative(of_u, scales[0]) } else { 0.0 };
         let error_of_v = if v_matters { relative(of_v, scales[1]) } else { 0.0 };
-        let stiffness = if measure.matters[1] { measure.coming_back.stiffness } else { 0.0 };
+        // a body without elastic response answers in any short time with as great a force as one likes
+        let stiffness = match (measure.matters[1], rule.has_dashpot()) {
+            (false, _) => 0.0,
+            (true, false) => measure.stiffness,
+            (true, true) => measure.stiffness.min(1.0 / rule.compliance()),
+        };
         let on_return = relative(stiffness * outside, whole[1]);
         let left = (on_return / measure.tolerance).min(MOST_OF_SURFACE);
         let error_on_return =
@@ -186,7 +184,7 @@ impl History {
                 let pressure = [tried[k], now[k], before[k]];
                 let (w, [touches, touched, had_touched]) = (weight.of(pressure), pressure.map(|p| p > 0.0));
                 let leaves = !touches && (touched || had_touched);
-                let depth = (measure.coming_back.depth - measure.gap[k]).max(0.0);
+                let depth = (measure.coming_back - measure.gap[k]).max(0.0);
                 sums.depth += depth;
                 if w == 0.0 && !touches && !leaves && depth == 0.0 {
                     continue;

@@ -5,7 +5,6 @@ use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::window::placement::resting_depth;
 use crate::error::{Error, Result, within};
-use crate::hereditary::ComingBack;
 use crate::load::{Load, LoadHistory};
 
 /// Loads and displacements below this part of the greatest of the run are measured relative to that part.
@@ -68,7 +67,7 @@ impl RunScale {
         });
         let mut times: Vec<f64> = equal.chain(corners.take(BREAKPOINTS)).collect();
         times.sort_by(f64::total_cmp);
-        scale.returns = Returns::new(scene, history, touch, &times)?;
+        scale.returns = Returns::new(history, touch, &times)?;
         for time in times.into_iter().chain(decades) {
             for load in [LoadHistory::before, LoadHistory::at] {
                 let load = load(history, time).validated_at(time)?;
@@ -131,16 +130,13 @@ impl RunScale {
         }
     }
 
-    /// How the bodies may come back after `now` to a surface that recovers from them. Under a given force, that they may, but not
-    /// how fast.
-    pub(super) fn coming_back(&self, scene: &Scene, load: &Load, [age, now]: [f64; 2]) -> ComingBack {
-        if let Load::Force { .. } = load {
-            return ComingBack { depth: self.expected(scene, load, age)[0], stiffness: 0.0 };
+    /// The depth below first touch to which the bodies may come back after `now`, when they have been pressed for so long; 0 if
+    /// they do not.
+    pub(super) fn coming_back(&self, scene: &Scene, load: &Load, [age, now]: [f64; 2]) -> f64 {
+        match load {
+            Load::Force { .. } => self.expected(scene, load, age)[0],
+            Load::Approach { .. } => self.returns.depth_after(now),
         }
-        let Some([depth, time]) = self.returns.after(now) else { return ComingBack::default() };
-        let compliance = scene.material.contact_compliance(time.min(scene.material.known_until()));
-        // a body without elastic response cannot be met in a jump
-        ComingBack { depth, stiffness: if compliance > 0.0 { 1.0 / compliance } else { 0.0 } }
     }
 
     /// The time between `now` and `stop` at which a prescribed approach first brings together undisturbed bodies that are

@@ -6,7 +6,7 @@ use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::error_in_time::Outlook;
 use crate::error::Result;
-use crate::hereditary::{ComingBack, ExponentialRule, LastingError, TimeError};
+use crate::hereditary::{ExponentialRule, LastingError, TimeError};
 use crate::load::{Load, LoadHistory, Tilt};
 
 /// Chooses steps whose error stays below the tolerance: that of the displacement within the step
@@ -174,10 +174,7 @@ impl StepControl {
         let shortest = self.drift.as_ref().map_or(f64::INFINITY, Drift::shortest_time);
         Outlook {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
-            coming_back: self
-                .scale
-                .as_ref()
-                .map_or(ComingBack::default(), |scale| scale.coming_back(scene, load, [age, now])),
+            coming_back: self.scale.as_ref().map_or(0.0, |scale| scale.coming_back(scene, load, [age, now])),
             lasting: self
                 .lasting
                 .as_ref()

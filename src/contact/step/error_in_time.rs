@@ -5,7 +5,7 @@ use crate::contact::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::step::first_step::first_step_error;
 use crate::contact::window::growth::motion_tried;
-use crate::hereditary::{ComingBack, ErrorMeasure, TimeError};
+use crate::hereditary::{ErrorMeasure, TimeError};
 use crate::load::Load;
 use crate::solver::RigidMotion;
 use crate::sum::greatest as greatest_of;
@@ -43,13 +43,16 @@ fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
 /// A direct sum assigns an increment to one end of its step: on average it answers it half a step too early or too late.
 const SHARE_OF_DIRECT_SUM: f64 = 0.5;
 
+/// A body that comes back to a surface meets it with the modulus of this time, in times that matter.
+const SHORTEST_TOUCH: f64 = 10.0;
+
 /// What a run knows besides the step.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::contact) struct Outlook {
     /// Mean displacement and v that are to be expected of the greatest loads.
     pub(in crate::contact) expected: [f64; 2],
-    /// How the bodies may come back to a surface that recovers.
-    pub(in crate::contact) coming_back: ComingBack,
+    /// The depth below first touch to which the bodies may come back; 0 if they do not.
+    pub(in crate::contact) coming_back: f64,
     /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
     pub(in crate::contact) lasting: [f64; 2],
     pub(in crate::contact) tolerance: f64,
@@ -69,7 +72,7 @@ impl Default for Outlook {
     fn default() -> Outlook {
         Outlook {
             expected: [0.0; 2],
-            coming_back: ComingBack::default(),
+            coming_back: 0.0,
             lasting: [0.0; 2],
             tolerance: 1.0,
             agreement: 1.0,
@@ -141,6 +144,7 @@ pub(in crate::contact) fn error_in_time(
         gap,
         from_rest,
         coming_back,
+        stiffness: if resolution > 0.0 { 1.0 / compliance(SHORTEST_TOUCH * resolution) } else { 0.0 },
         lasting,
         tolerance,
         advance,
