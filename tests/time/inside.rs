@@ -421,7 +421,6 @@ fn states_within_adaptive_steps_are_as_exact_as_the_ends_of_steps() {
     print_table(&all);
     let runs = all.len() + failed;
     println!("{failed} of {runs} runs failed; worse within steps than at their ends, of each quantity: {worse:?}");
-    assert!(worse[..4] == [0; 4] && failed == 0);
-    // three times as many looks see three times as many cells just before they join or leave
-    assert!(50 * worse[4] <= runs.max(50));
+    // three times as many looks see more of the moments just before a cell joins or leaves
+    assert!(failed == 0 && worse.iter().all(|worse| 100 * worse <= runs));
 }
