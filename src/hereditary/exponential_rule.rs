@@ -180,6 +180,28 @@ impl ExponentialRule {
         (self.tried.dt > 0.0 && lacking > 1).then(|| (lacking, self.tried.defects[lacking - 2]))
     }
 
+    /// η/Δ of the step predicted last.
+    pub(super) fn viscous(&self) -> f64 {
+        if self.has_dashpot() { self.relaxation.viscosity() / self.tried.dt } else { 0.0 }
+    }
+
+    /// Of each relaxation time, in the step predicted last: the part of q_i that is left of it, its answer to a unit of u that is
+    /// linear on the step, and its share in a defect of v.
+    pub(super) fn responses(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let dt = self.tried.dt;
+        let past = if self.known > 0 { self.spans[0] / dt } else { 0.0 };
+        let terms = self.relaxation.terms();
+        let moments = move |&(modulus, tau): &(f64, f64)| moments_of(dt / tau, past).map(|moment| modulus * moment);
+        let missing = self.missing().map(|(degree, _)| degree - 1);
+        let whole = missing.map_or(f64::INFINITY, |k| {
+            slopes_of(past)[k] * self.viscous() + terms.iter().map(|term| moments(term)[k]).sum::<f64>()
+        });
+        terms.iter().zip(&self.tried.branches).map(move |(term, weights)| {
+            let moments = moments(term);
+            [weights[0], moments[0], moments[missing.unwrap_or(0)] / whole]
+        })
+    }
+
     /// What v lacks at a cell whose u, going on as before, was met by a body within the step: from then on u has changed more, as
     /// fast as by `jump` in a whole step, to be off by `bend` in the end. With θ = bend/jump the share of the step after the
     /// meeting, v answers by Σ E_i (1 − e^(−θ z_i))/z_i jump, and by η jump/Δ.

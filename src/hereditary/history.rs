@@ -1,6 +1,6 @@
 //! State of the hereditary integral, for every time rule.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 #[cfg(feature = "checkpoint")]
 use crate::hereditary::common_cells::CommonCells;
 use crate::hereditary::direct_sum::{DirectSum, Weighting};
@@ -393,10 +393,4 @@ impl History {
             && self.far.is_some() == (window && self.has_far_field())
             && self.far.as_ref().is_none_or(|far| far.fits(branches, kept, count))
     }
-}
-
-/// The error of a jump that bodies without elastic response cannot follow.
-pub(crate) fn no_elastic_response(time: f64) -> Error {
-    let what = "a jump of the load that changes the pressure (ramp the load over a short time instead)";
-    Error::NoElasticResponse { time, what }
 }

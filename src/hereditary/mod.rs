@@ -23,9 +23,11 @@
 #[cfg(feature = "checkpoint")]
 mod common_cells;
 mod direct_sum;
+mod error_weight;
 mod exponential_rule;
 mod history;
 mod interval;
+mod lasting_error;
 mod moments;
 mod moving_frame;
 mod past;
@@ -39,8 +41,9 @@ mod transfer;
 pub(crate) use common_cells::CommonCells;
 pub(crate) use direct_sum::Weighting;
 pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
-pub(crate) use history::{History, HistoryInputs, no_elastic_response};
+pub(crate) use history::{History, HistoryInputs};
 pub(crate) use interval::Interval;
+pub(crate) use lasting_error::LastingError;
 pub(crate) use remembered_field::RememberedField;
 pub(crate) use time_error::{ErrorMeasure, TimeError};
 pub(crate) use transfer::Transfer;

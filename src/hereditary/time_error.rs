@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::hereditary::error_weight::Weight;
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::history::History;
 use crate::ranks::Rows;
@@ -18,8 +19,20 @@ pub(crate) struct ErrorMeasure<'a> {
     /// Which errors matter: that of the displacement where a force is given, and that of v where a motion is, which leaves the
     /// displacement in contact no error.
     pub(crate) matters: [bool; 2],
-    /// The least means over the contact of displacement and v that errors are taken relative to.
+    /// The greatest means over the contact of displacement and v, and the least that errors are taken relative to.
+    pub(crate) greatest: [f64; 2],
     pub(crate) least: [f64; 2],
+    /// The gap of the undeformed bodies.
+    pub(crate) gap: &'a [f64],
+    /// Whether a free body was pressed by nothing before the step.
+    pub(crate) from_rest: bool,
+    /// The depth below first touch to which bodies may come back, to a surface that recovers; 0 if they do not.
+    pub(crate) coming_back: f64,
+    /// What v answers to a unit of u soon after bodies meet.
+    pub(crate) stiffness: f64,
+    /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
+    pub(crate) lasting: [f64; 2],
+    pub(crate) tolerance: f64,
     /// By how much the rigid body above a cell advances in the step.
     pub(crate) advance: &'a (dyn Fn(usize) -> f64 + Sync),
     /// C(age)/C(Δ), by which an error in u grows in the end if those of the next steps are like it: a step answers a defect of v
@@ -47,6 +60,10 @@ pub(crate) struct TimeError {
     pub(crate) sizes: [f64; 2],
     /// Mean defect of v, and mean of its absolute value.
     pub(crate) defect: [f64; 2],
+    /// Mean defect of v of the surface that bodies may come back to.
+    pub(crate) surface: f64,
+    /// What earlier steps have left, relative as the error of this one.
+    pub(crate) lasting: f64,
 }
 
 /// Share of the defect of a step that is left once the next has put it right, and of one that is not put right.
@@ -62,6 +79,20 @@ const LEFT: f64 = 2.0;
 const EDGE: f64 = 3.0;
 /// The kinks of cells that joined stay in the past, and those of one step and the next do not cancel.
 const LASTING: f64 = 1.3;
+/// Errors that last count relative to this part of the greatest displacement at least.
+const LASTING_PART: f64 = 0.5;
+/// Errors that earlier steps have left count where they exceed this part of the tolerance; a tolerance beyond it makes a step count
+/// so many times more.
+const TOLERATED: f64 = 0.8;
+const LASTING_WEIGHT: f64 = 5.0;
+/// The same for a surface to come back to, whose defects are of one sign while it recovers: they count so many times as much, and
+/// those of earlier steps up to a few tolerances.
+const RECOVERING: f64 = 3.0;
+const SURFACE_WEIGHT: f64 = 1.0;
+const MOST_OF_SURFACE: f64 = 3.0;
+/// Bodies that nothing pressed before meet all their cells within a step, and their kinks agree: most of that error is one of the
+/// pressure alone.
+const FROM_REST: f64 = 0.1;
 
 impl History {
     /// The estimated error of the step tried; 0 where too few steps before it are known.
@@ -97,21 +128,45 @@ impl History {
         }
         let sizes = sums.sizes.map(|size| size / sums.weight);
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
-        let Defect { signed, smooth, kinks, greatest } = sums.defect(rule, measure.resolution);
+        let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface] } =
+            sums.defect(rule, measure.resolution);
+        let kinks = if measure.from_rest { FROM_REST * kinks } else { kinks };
         let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
-        let growth = 1.0 + measure.agreement * (measure.amplification - 1.0);
-        let of_u = rule.compliance() * (edge * kinks).max(growth * smooth);
-        let of_v = (EDGE * kinks).max(smooth);
         // bodies apart have no force that could be wrong, but a surface
         let [u_matters, v_matters] = if pressed { measure.matters } else { [true, false] };
+        let whole = [scales[0].max(LASTING_PART * measure.greatest[0]), scales[1].max(measure.greatest[1])];
+        let [in_contact, outside] = measure.lasting;
+        let lasting = match (measure.matters[0], pressed) {
+            (true, true) => relative(in_contact, whole[0]),
+            (true, false) => relative(outside, whole[0]),
+            (false, _) => 0.0,
+        };
+        let growth = (1.0 + measure.agreement * (measure.amplification - 1.0))
+            * (1.0 + LASTING_WEIGHT * (lasting / measure.tolerance - TOLERATED).max(0.0));
+        let of_u = rule.compliance() * (edge * kinks).max(growth * smooth);
+        let of_v = (EDGE * kinks).max(smooth);
         let error_of_u = if u_matters { relative(of_u, scales[0]) } else { 0.0 };
         let error_of_v = if v_matters { relative(of_v, scales[1]) } else { 0.0 };
+        // a body without elastic response answers in any short time with as great a force as one likes
+        let stiffness = match (measure.matters[1], rule.has_dashpot()) {
+            (false, _) => 0.0,
+            (true, false) => measure.stiffness,
+            (true, true) => measure.stiffness.min(1.0 / rule.compliance()),
+        };
+        let on_return = relative(stiffness * outside, whole[1]);
+        let left = (on_return / measure.tolerance).min(MOST_OF_SURFACE);
+        let error_on_return =
+            RECOVERING * relative(stiffness * rule.compliance() * of_surface, whole[1]) * (1.0 + SURFACE_WEIGHT * left);
+        let error = error_of_u.max(error_of_v);
         TimeError {
-            relative: error_of_u.max(error_of_v),
-            by_kinks: if error_of_u > error_of_v { edge * kinks > growth * smooth } else { EDGE * kinks > smooth },
+            relative: error.max(error_on_return),
+            by_kinks: error >= error_on_return
+                && if error_of_u > error_of_v { edge * kinks > growth * smooth } else { EDGE * kinks > smooth },
             greatest: relative(greatest, scales[1]),
             sizes: if pressed { sizes } else { [0.0; 2] },
             defect: [signed, smooth],
+            surface,
+            lasting: lasting.max(on_return),
         }
     }
 
@@ -129,7 +184,9 @@ impl History {
                 let pressure = [tried[k], now[k], before[k]];
                 let (w, [touches, touched, had_touched]) = (weight.of(pressure), pressure.map(|p| p > 0.0));
                 let leaves = !touches && (touched || had_touched);
-                if w == 0.0 && !touches && !leaves {
+                let depth = (measure.coming_back - measure.gap[k]).max(0.0);
+                sums.depth += depth;
+                if w == 0.0 && !touches && !leaves && depth == 0.0 {
                     continue;
                 }
                 sums.weight += w;
@@ -148,6 +205,10 @@ impl History {
                 // the rounding of u is no error in time
                 let size = (last.abs() - ROUNDING * u.abs()).max(0.0);
                 (sums.signed, sums.absolute) = (sums.signed + w * size.copysign(last), sums.absolute + w * size);
+                if !touches {
+                    let surface = depth * size;
+                    sums.surface = [sums.surface[0] + surface.copysign(last), sums.surface[1] + surface];
+                }
                 if touches {
                     sums.steepest = sums.steepest.max(size);
                 } else if leaves {
@@ -184,6 +245,9 @@ struct Sums {
     kinks: f64,
     squares: f64,
     sharpest: f64,
+    /// Of the depths to which bodies may come back, and, of cells out of contact, of these times d and |d|.
+    depth: f64,
+    surface: [f64; 2],
 }
 
 /// Mean defects of v.
@@ -195,19 +259,64 @@ struct Defect {
     kinks: f64,
     /// The greatest of a cell.
     greatest: f64,
+    /// Of a surface that bodies may come back to, and of its absolute value.
+    surface: [f64; 2],
 }
 
 impl Sums {
-    fn numbers(self) -> [f64; 11] {
-        let Sums { weight, sizes, signed, absolute, steepest, left, touching, kinks, squares, sharpest } = self;
-        let [size, other] = sizes;
-        [weight, size, other, signed, absolute, steepest, left, touching as f64, kinks, squares, sharpest]
+    fn numbers(self) -> [f64; 14] {
+        let Sums {
+            weight,
+            sizes,
+            signed,
+            absolute,
+            steepest,
+            left,
+            touching,
+            kinks,
+            squares,
+            sharpest,
+            depth,
+            surface,
+        } = self;
+        let ([size, other], [of_surface, absolute_of_surface]) = (sizes, surface);
+        [
+            weight,
+            size,
+            other,
+            signed,
+            absolute,
+            steepest,
+            left,
+            touching as f64,
+            kinks,
+            squares,
+            sharpest,
+            depth,
+            of_surface,
+            absolute_of_surface,
+        ]
     }
 
-    fn of(numbers: [f64; 11]) -> Sums {
-        let [weight, size, other, signed, absolute, steepest, left, touching, kinks, squares, sharpest] = numbers;
-        let (sizes, touching) = ([size, other], touching as usize);
-        Sums { weight, sizes, signed, absolute, steepest, left, touching, kinks, squares, sharpest }
+    fn of(numbers: [f64; 14]) -> Sums {
+        let [
+            weight,
+            size,
+            other,
+            signed,
+            absolute,
+            steepest,
+            left,
+            touching,
+            kinks,
+            squares,
+            sharpest,
+            depth,
+            of_surface,
+            absolute_of_surface,
+        ] = numbers;
+        let (sizes, touching, surface) = ([size, other], touching as usize, [of_surface, absolute_of_surface]);
+        Sums { weight, sizes, signed, absolute, steepest, left, touching, kinks, squares, sharpest, depth, surface }
     }
 
     fn merge(self, other: Sums) -> Sums {
@@ -222,6 +331,8 @@ impl Sums {
             kinks: self.kinks + other.kinks,
             squares: self.squares + other.squares,
             sharpest: self.sharpest.max(other.sharpest),
+            depth: self.depth + other.depth,
+            surface: [0, 1].map(|which| self.surface[which] + other.surface[which]),
         }
     }
 
@@ -241,49 +352,7 @@ impl Sums {
             smooth: scale * (self.absolute / self.weight).max(left),
             kinks: kinks / self.touching.max(1) as f64,
             greatest: self.sharpest.max(scale * self.steepest),
+            surface: self.surface.map(|sum| if sum == 0.0 { 0.0 } else { scale * sum / self.depth }),
         }
     }
-}
-
-/// The weight of a cell in a mean.
-#[derive(Clone, Copy, PartialEq)]
-enum Weight {
-    Pressure,
-    /// The least pressure of the last steps: cells that join a dashpot have a finite pressure at once, and a kink.
-    LeastPressure,
-    /// Of bodies that parted in this step.
-    PressureBefore,
-    /// Of bodies apart: the surface recovers everywhere alike.
-    Even,
-}
-
-impl Weight {
-    fn new(rows: &Rows, pressure: [&[f64]; 3], dashpot: bool) -> Weight {
-        let [tried, now, _] = pressure;
-        let [pressed, was_pressed] = [tried, now].map(|pressure| rows.any(pressure.iter().any(|&p| p > 0.0)));
-        let inside = || rows.any((0..tried.len()).any(|k| least(pressure.map(|p| p[k])) > 0.0));
-        match (pressed, was_pressed) {
-            (true, true) if dashpot && inside() => Weight::LeastPressure,
-            (true, _) => Weight::Pressure,
-            (false, true) => Weight::PressureBefore,
-            (false, false) => Weight::Even,
-        }
-    }
-
-    fn of(self, pressure: [f64; 3]) -> f64 {
-        match self {
-            Weight::Pressure => pressure[0],
-            Weight::LeastPressure => least(pressure),
-            Weight::PressureBefore => pressure[1],
-            Weight::Even => 1.0,
-        }
-    }
-
-    fn is_of_a_contact(self) -> bool {
-        matches!(self, Weight::Pressure | Weight::LeastPressure)
-    }
-}
-
-fn least([tried, now, before]: [f64; 3]) -> f64 {
-    tried.min(now).min(before)
 }

@@ -16,6 +16,7 @@ pub mod protocol;
 pub mod quadratic;
 pub mod random_bodies;
 pub mod random_histories;
+pub mod random_returns;
 pub mod random_scenes;
 #[cfg(feature = "laws")]
 pub mod related;

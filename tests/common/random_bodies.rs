@@ -35,7 +35,7 @@ impl Body {
 }
 
 /// Terms of (weight, time), the weights adding up to 1, the times over so many decades from `first`.
-fn terms(draws: &mut Draws, count: usize, first: f64, decades: f64) -> Vec<(f64, f64)> {
+pub(super) fn terms(draws: &mut Draws, count: usize, first: f64, decades: f64) -> Vec<(f64, f64)> {
     let weights: Vec<f64> = (0..count).map(|_| draws.power_of_ten(-1.0, 1.0)).collect();
     let sum: f64 = weights.iter().sum();
     let time = |k: usize, off: f64| first * 10f64.powf(decades * (k as f64 + off) / count as f64);

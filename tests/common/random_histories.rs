@@ -35,6 +35,11 @@ impl Control {
         Box::new(PiecewiseLinear::new(&rows).unwrap())
     }
 
+    /// The history through these times and parts.
+    pub(super) fn tabled(&self, name: String, rows: &[(f64, f64)]) -> RandomHistory {
+        RandomHistory { name, history: self.table(rows), corners: corners_of(rows) }
+    }
+
     fn function(&self, part: impl Fn(f64) -> f64 + Send + Sync + 'static, corners: &[f64]) -> Box<dyn LoadHistory> {
         let control = *self;
         Box::new(FnHistory::new(move |t| control.load(part(t))).with_breakpoints(corners).unwrap())
@@ -60,11 +65,7 @@ fn corners_of(rows: &[(f64, f64)]) -> Vec<f64> {
 /// A history over `until` seconds; `jumps` says whether it may jump.
 pub fn random_history(draws: &mut Draws, control: Control, until: f64, jumps: bool) -> RandomHistory {
     let apart = if control.is_approach() { -draws.between(0.1, 0.5) } else { 0.0 };
-    let tabled = |name: String, rows: Vec<(f64, f64)>| RandomHistory {
-        name,
-        history: control.table(&rows),
-        corners: corners_of(&rows),
-    };
+    let tabled = |name: String, rows: Vec<(f64, f64)>| control.tabled(name, &rows);
     match draws.below(10) {
         0 if jumps => tabled("held".into(), vec![(0.0, 1.0), (until, 1.0)]),
         0 | 1 => {

@@ -9,6 +9,7 @@ use viscocontact::prelude::*;
 use super::draws::Draws;
 use super::random_bodies::{Body, random_body};
 use super::random_histories::{Control, RandomHistory, random_history};
+use super::random_returns::{returning_body, returning_history};
 
 pub struct RandomScene {
     pub name: String,
@@ -48,31 +49,34 @@ fn random_shape(draws: &mut Draws, reach: f64) -> (&'static str, Box<dyn Geometr
     }
 }
 
+fn random_grid(draws: &mut Draws) -> Grid {
+    Grid::new([12 + draws.below(5), 12 + draws.below(3)], [LENGTH, 0.95 * LENGTH]).unwrap()
+}
+
+fn random_reach(draws: &mut Draws) -> f64 {
+    0.5 * LENGTH * draws.between(0.5, 0.75)
+}
+
+/// A rough sphere, as [`random_shape`].
+fn rough_sphere(draws: &mut Draws, grid: &Grid, reach: f64) -> (&'static str, Box<dyn Geometry>, f64) {
+    let depth = reach * reach / RADIUS;
+    let height = Roughness::RmsHeight(depth * draws.between(0.01, 0.1));
+    let spec = RoughSpec::new(LENGTH, LENGTH / 4.0, height).with_seed(draws.below(1000) as u64);
+    let rough = Rough::new(grid, spec).unwrap();
+    ("rough sphere", Box::new(Sum::new(Sphere::new(RADIUS).unwrap(), rough)), depth)
+}
+
 impl RandomScene {
     /// The scene of this number in the series of this seed.
     pub fn new(seed: u64, number: u64) -> RandomScene {
         let mut draws = Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number));
         let body = random_body(&mut draws);
-        let grid = Grid::new([12 + draws.below(5), 12 + draws.below(3)], [LENGTH, 0.95 * LENGTH]).unwrap();
-        let reach = 0.5 * LENGTH * draws.between(0.5, 0.75);
+        let grid = random_grid(&mut draws);
+        let reach = random_reach(&mut draws);
         let (shape, geometry, depth) = random_shape(&mut draws, reach);
-        let kernel = Arc::new(InfluenceKernel::half_space(&grid).unwrap());
-        let mut scene = RandomScene {
-            name: String::new(),
-            body,
-            history: RandomHistory {
-                name: String::new(),
-                history: Box::new(FnHistory::new(|_| Load::force(0.0))),
-                corners: vec![],
-            },
-            control: Control::Force(0.0),
-            stops: Vec::new(),
-            geometry,
-            grid,
-            kernel,
-        };
-        let (touch, stiffness) = scene.elastic_force(depth);
-        let force = stiffness / scene.body.material.contact_compliance(scene.body.until);
+        let kernel = InfluenceKernel::half_space(&grid).unwrap();
+        let mut scene = RandomScene::unloaded(body, geometry, grid, kernel);
+        let (touch, force) = scene.answers(depth);
         scene.control = match draws.below(10) {
             0..4 => Control::Approach { touch, depth },
             4 => {
@@ -89,22 +93,75 @@ impl RandomScene {
         });
         scene.stops = stops.collect();
         scene.stops.push(until);
-        let by = match scene.control {
+        scene.called(seed, number, shape)
+    }
+
+    /// A scene whose load goes back and returns, of this number in the series of this seed.
+    pub fn returning(seed: u64, number: u64) -> RandomScene {
+        let mut draws = Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number).wrapping_add(1 << 40));
+        let body = returning_body(&mut draws);
+        let grid = random_grid(&mut draws);
+        let reach = random_reach(&mut draws);
+        let (shape, geometry, depth) = match draws.below(6) {
+            0 => rough_sphere(&mut draws, &grid, reach),
+            _ => random_shape(&mut draws, reach),
+        };
+        let layer =
+            draws.chance(0.2).then(|| Layer::bonded_to_rigid(reach * draws.power_of_ten(-0.3, 1.0), 0.5).unwrap());
+        let kernel = match layer {
+            Some(layer) => InfluenceKernel::layer(&grid, layer).unwrap(),
+            None => InfluenceKernel::half_space(&grid).unwrap(),
+        };
+        let mut scene = RandomScene::unloaded(body, geometry, grid, kernel);
+        let (touch, force) = scene.answers(depth);
+        scene.control = if draws.chance(0.5) { Control::Approach { touch, depth } } else { Control::Force(force) };
+        let until = scene.body.until;
+        scene.history = returning_history(&mut draws, scene.control, until);
+        scene.stops = (0..8).map(|_| until * draws.between(0.0, 1.0)).chain([until]).collect();
+        let shape = if layer.is_some() { format!("{shape} on a layer") } else { shape.into() };
+        scene.called(seed, number, &shape)
+    }
+
+    fn unloaded(body: Body, geometry: Box<dyn Geometry>, grid: Grid, kernel: InfluenceKernel) -> RandomScene {
+        RandomScene {
+            name: String::new(),
+            body,
+            history: RandomHistory {
+                name: String::new(),
+                history: Box::new(FnHistory::new(|_| Load::force(0.0))),
+                corners: vec![],
+            },
+            control: Control::Force(0.0),
+            stops: Vec::new(),
+            geometry,
+            grid,
+            kernel: Arc::new(kernel),
+        }
+    }
+
+    /// The approach of first touch, and the force that presses the bodies deeper by `depth` in the end.
+    fn answers(&self, depth: f64) -> (f64, f64) {
+        let (touch, stiffness) = self.elastic_force(depth);
+        (touch, stiffness / self.body.material.contact_compliance(self.body.until))
+    }
+
+    fn called(mut self, seed: u64, number: u64, shape: &str) -> RandomScene {
+        let by = match self.control {
             Control::Force(_) => "force",
             Control::EccentricForce(..) => "eccentric force",
             Control::Approach { .. } => "approach",
         };
-        let (body, history) = (&scene.body, &scene.history);
-        scene.name = format!(
+        let (body, history) = (&self.body, &self.history);
+        self.name = format!(
             "{seed}:{number} {} (creep {:.1e}, {:.0e} s of {:.0e} s), {shape} {:?}, {by}, {}",
             body.name,
             body.creep_ratio(),
-            until,
+            body.until,
             body.shortest_time(),
-            scene.grid.cells(),
+            self.grid.cells(),
             history.name
         );
-        scene
+        self
     }
 
     /// The approach of first touch, and the force on an elastic body of compliance 1/Pa pressed deeper by `depth`.

@@ -19,7 +19,8 @@ pub struct Watched {
     pub steps: u64,
     pub rejected: u64,
     pub equivalents: f64,
-    /// What the budget says of the pressure.
+    /// What the budget says of the approach or force, and of the pressure.
+    pub time_budget: f64,
     pub pressure_budget: f64,
 }
 
@@ -116,6 +117,7 @@ pub fn watch(
         }
     }
     seen.rejected = run.rejected_steps();
-    seen.pressure_budget = run.error_budget().pressure.unwrap_or(0.0);
+    let budget = run.error_budget();
+    (seen.time_budget, seen.pressure_budget) = (budget.time.unwrap_or(0.0), budget.pressure.unwrap_or(0.0));
     Ok(seen)
 }

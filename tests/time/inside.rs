@@ -392,7 +392,7 @@ fn states_within_adaptive_steps_are_as_exact_as_the_ends_of_steps() {
     let (scenes, seed) = (from_environment("INSIDE_SCENES", 12), from_environment("INSIDE_SEED", 1));
     let first = from_environment("INSIDE_FIRST", 0);
     let lines = from_environment("INSIDE_LINES", 0) > 0;
-    let (mut all, mut worse, mut failed) = (Vec::new(), 0, 0);
+    let (mut all, mut worse, mut failed) = (Vec::new(), [0; 5], 0);
     for number in first..first + scenes {
         let inside = Inside::new(seed, number);
         for tolerance in [1e-3, 1e-4] {
@@ -412,11 +412,15 @@ fn states_within_adaptive_steps_are_as_exact_as_the_ends_of_steps() {
             if lines || within.iter().any(|&error| error > 2.0) {
                 println!("{within:.2?}, ends {ends:.2?} {name}");
             }
-            worse += usize::from(within.iter().zip(ends).any(|(within, end)| *within > f64::max(2.0, 1.2 * end)));
+            for (worse, (within, end)) in worse.iter_mut().zip(within.into_iter().zip(ends)) {
+                *worse += usize::from(within > f64::max(2.0, 1.5 * end));
+            }
             all.push(errors);
         }
     }
     print_table(&all);
-    println!("{failed} runs failed, {worse} are worse within steps than at their ends");
-    assert!(worse == 0 && 20 * failed <= scenes as usize);
+    let runs = all.len() + failed;
+    println!("{failed} of {runs} runs failed; worse within steps than at their ends, of each quantity: {worse:?}");
+    // three times as many looks see more of the moments just before a cell joins or leaves
+    assert!(failed == 0 && worse.iter().all(|worse| 100 * worse <= runs));
 }

@@ -7,6 +7,7 @@ mod honest;
 mod inside;
 mod protocols;
 mod protocols_run;
+mod returns;
 mod temperature;
 mod time_rules;
 mod uncached;

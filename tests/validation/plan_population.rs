@@ -178,7 +178,12 @@ fn truth(scene: &Scene, times: &[f64]) -> (Vec<f64>, Option<f64>) {
 }
 
 /// True errors over what was asked: of approach or force, and of the greatest pressure if that is promised.
-fn deliver(scene: &Scene) -> Result<Option<([Option<f64>; 2], String)>, Error> {
+struct Outcome {
+    over: [Option<f64>; 2],
+    note: String,
+}
+
+fn deliver(scene: &Scene) -> Result<Outcome, Error> {
     let Scene { material, history, until, accuracy, .. } = scene;
     let started = Instant::now();
     let geometry = scene.shape.geometry();
@@ -187,7 +192,7 @@ fn deliver(scene: &Scene) -> Result<Option<([Option<f64>; 2], String)>, Error> {
     let limit = from_environment("PLANS_CELLS", 150) as usize;
     let note = format!("{plan}; planned in {planning:.2} s");
     if plan.grid().len() > limit * limit {
-        return Ok(Some(([None; 2], note)));
+        return Ok(Outcome { over: [None; 2], note });
     }
     let mut contact = plan.builder().build()?;
     let mut run = contact.follow(&**history, plan.stepping(), *until);
@@ -210,7 +215,8 @@ fn deliver(scene: &Scene) -> Result<Option<([Option<f64>; 2], String)>, Error> {
     let pressure = peak.map(|peak| (highest / peak - 1.0).abs() / accuracy.target());
     let promised = pressure.filter(|_| plan.pressure_converges());
     let shown = pressure.map_or("-".into(), |over| format!("{over:.2}"));
-    Ok(Some(([Some(worst / asked), promised], format!("main {:.2}, pressure {shown}; {note}", worst / asked))))
+    let note = format!("main {:.2}, pressure {shown}; {note}", worst / asked);
+    Ok(Outcome { over: [Some(worst / asked), promised], note })
 }
 
 #[test]
@@ -222,8 +228,7 @@ fn no_plan_is_refused_and_none_breaks_its_promise() {
         let scene = scene(seed, number);
         match deliver(&scene) {
             Err(error) => failed.push(format!("{}: {error}", scene.name)),
-            Ok(None) => {}
-            Ok(Some((over, note))) => {
+            Ok(Outcome { over, note }) => {
                 println!("{}: {note}", scene.name);
                 delivered += usize::from(over[0].is_some());
                 promised += usize::from(over[1].is_some());

@@ -36,8 +36,8 @@ impl ViscoelasticContact {
     /// as at the tip of a cone, under the edge of a punch or at a rim of high pressure that creep leaves. The area: from how
     /// well the pressure shows where contact ends.
     ///
-    /// The true errors of 500 random scenes of all shapes, elastic and creeping, are at most three times the figures
-    /// (docs/accuracy.md). A shape that the cells do not resolve is beyond them.
+    /// The true errors of random scenes of all shapes, elastic and creeping, are at most three times the figures, but for one
+    /// of 3300 scenes (docs/accuracy.md). A shape that the cells do not resolve is beyond them.
     ///
     /// `None` without contact, in full contact of periodic bodies, which has no rim, and of contacts that the cells do not
     /// resolve: less than about five cells across, or gaps between periodic ones.

@@ -59,7 +59,7 @@ impl Follow<'_> {
             let computed = attempt.computation(computation);
             let age = step.interval.reduced - computed.state.clock.undisturbed_until;
             let end = scene.reduced_time(&computation.state.clock, corner.min(self.until))?;
-            let outlook = control.outlook(scene, &loads[0], [age, end]);
+            let outlook = control.outlook(scene, &loads[0], [time, age, end]);
             let mut error = error_in_time(scene, computed, &step, outlook);
             // how bodies moved that stayed apart makes no difference
             if !parted || computed.state.region.is_positive_anywhere(&computed.trial.solution.pressure) {
@@ -68,7 +68,8 @@ impl Follow<'_> {
             let by_kinks = error.by_kinks && error.relative > control.tolerance;
             let order = if by_kinks { ORDER_OF_KINKS } else { order };
             if control.judge(step.interval.dt, error.relative, order, dashpot) {
-                control.include(step.interval.dt, error.defect);
+                let is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
+                control.include(computed.state.history.exponential_rule(), step.interval.dt, &error, is_given);
                 control.accept(step.interval.reduced, loads[0], [reduced, step.interval.dt], time == corner, order);
                 let mut report = self.contact.accept(attempt, step, error);
                 if time == corner {
@@ -76,8 +77,8 @@ impl Follow<'_> {
                 }
                 report.convolutions += wasted[0];
                 report.preconditioner_applications += wasted[1];
-                let mesh = self.contact.mesh_error().unwrap_or_default();
-                self.progress.include([error.relative, error.greatest, report.residual], mesh);
+                let errors = [error.relative.max(error.lasting), error.greatest, report.residual];
+                self.progress.include(errors, self.contact.mesh_error().unwrap_or_default());
                 return Ok(report);
             }
             events::rejected(time, dt, error.relative, control.tolerance);

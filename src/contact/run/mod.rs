@@ -6,6 +6,7 @@ pub(in crate::contact) mod error_budget;
 pub(in crate::contact) mod follow;
 mod held;
 pub(in crate::contact) mod progress;
+mod returns;
 mod run_scale;
 mod step_control;
 pub(in crate::contact) mod stepping;

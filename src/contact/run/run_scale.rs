@@ -1,5 +1,6 @@
 //! The size of the loads and displacements of a run.
 
+use crate::contact::run::returns::Returns;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::window::placement::resting_depth;
@@ -22,7 +23,7 @@ const LEAST: f64 = 1e-290;
 /// What is small in a run: the greatest loads of its history, and the displacement that they are likely to cause. Near nothing,
 /// at first touch, when bodies part, or under a load that starts like a power of time, errors relative to the state itself
 /// would never become small.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct RunScale {
     /// Approach at first touch.
@@ -34,6 +35,7 @@ pub(super) struct RunScale {
     stress: f64,
     /// The depth at which the greatest force is likely to come to rest in the end, over the compliance then.
     depth_over_compliance: f64,
+    returns: Returns,
 }
 
 impl RunScale {
@@ -47,7 +49,14 @@ impl RunScale {
             Ok::<_, Error>(scene.material.contact_compliance(age.min(scene.material.known_until())))
         };
         let compliance = compliance_at(until)?;
-        let mut scale = RunScale { touch, force: 0.0, depth: 0.0, stress: 0.0, depth_over_compliance: 0.0 };
+        let mut scale = RunScale {
+            touch,
+            force: 0.0,
+            depth: 0.0,
+            stress: 0.0,
+            depth_over_compliance: 0.0,
+            returns: Returns::default(),
+        };
         let equal = (0..=EQUAL_PARTS).map(|k| now + span * f64::from(k) / f64::from(EQUAL_PARTS));
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
@@ -56,7 +65,10 @@ impl RunScale {
             corner = history.next_breakpoint(corner).filter(|&next| next > corner && next <= until)?;
             Some(corner)
         });
-        for time in equal.chain(decades).chain(corners.take(BREAKPOINTS)) {
+        let mut times: Vec<f64> = equal.chain(corners.take(BREAKPOINTS)).collect();
+        times.sort_by(f64::total_cmp);
+        scale.returns = Returns::new(history, touch, &times)?;
+        for time in times.into_iter().chain(decades) {
             for load in [LoadHistory::before, LoadHistory::at] {
                 let load = load(history, time).validated_at(time)?;
                 scale.include(&load);
@@ -79,7 +91,7 @@ impl RunScale {
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
         let sizes = [self.force, self.depth, self.stress, self.depth_over_compliance];
-        !self.touch.is_nan() && sizes.iter().all(|&size| size >= 0.0)
+        !self.touch.is_nan() && self.returns.fits() && sizes.iter().all(|&size| size >= 0.0)
     }
 
     /// Takes account of a load that acts.
@@ -115,6 +127,15 @@ impl RunScale {
             }
             Load::Force { .. } => [0.0; 2],
             Load::Approach { .. } => [self.depth, self.stress],
+        }
+    }
+
+    /// The depth below first touch to which the bodies may come back after `now`, when they have been pressed for so long; 0 if
+    /// they do not.
+    pub(super) fn coming_back(&self, scene: &Scene, load: &Load, [age, now]: [f64; 2]) -> f64 {
+        match load {
+            Load::Force { .. } => self.expected(scene, load, age)[0],
+            Load::Approach { .. } => self.returns.depth_after(now),
         }
     }
 

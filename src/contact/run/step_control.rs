@@ -6,6 +6,7 @@ use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::error_in_time::Outlook;
 use crate::error::Result;
+use crate::hereditary::{ExponentialRule, LastingError, TimeError};
 use crate::load::{Load, LoadHistory, Tilt};
 
 /// Chooses steps whose error stays below the tolerance: that of the displacement within the step
@@ -25,6 +26,8 @@ pub(super) struct StepControl {
     corner: Option<(f64, f64)>,
     scale: Option<RunScale>,
     drift: Option<Drift>,
+    /// The mean errors of u that the steps so far have left, in contact and outside.
+    lasting: Option<[LastingError; 2]>,
     /// Steps accepted, and the time of the last jump or corner.
     steps: u64,
     since: f64,
@@ -68,6 +71,7 @@ impl StepControl {
             corner: None,
             scale: None,
             drift: None,
+            lasting: None,
             steps: 0,
             since: 0.0,
             rejected: 0,
@@ -81,6 +85,7 @@ impl StepControl {
             && self.nodes.windows(2).all(|pair| pair[0].0 > pair[1].0)
             && self.nodes.iter().all(|(time, load)| time.is_finite() && load.validate().is_ok())
             && self.drift.as_ref().is_none_or(Drift::fits)
+            && self.lasting.iter().flatten().all(LastingError::fits)
             && self.scale.as_ref().is_none_or(RunScale::fits)
     }
 
@@ -146,10 +151,14 @@ impl StepControl {
         Ok(())
     }
 
-    /// Takes account of the defect of an accepted step.
-    pub(super) fn include(&mut self, dt: f64, defect: [f64; 2]) {
+    /// Takes account of the defects of a step that is to be accepted; `is_given` tells whether a motion is.
+    pub(super) fn include(&mut self, rule: Option<&ExponentialRule>, dt: f64, error: &TimeError, is_given: bool) {
         self.steps += 1;
-        self.drift.iter_mut().for_each(|drift| drift.include(dt, defect));
+        self.drift.iter_mut().for_each(|drift| drift.include(dt, error.defect));
+        let Some(rule) = rule else { return };
+        let [contact, surface] = self.lasting.get_or_insert_with(|| [(); 2].map(|()| LastingError::none(rule)));
+        contact.include(rule, error.defect[0], is_given);
+        surface.include(rule, error.surface, false);
     }
 
     /// The time before `stop` at which the bodies first touch, as far as the load alone tells.
@@ -158,13 +167,19 @@ impl StepControl {
         scale.map_or(f64::INFINITY, |scale| scale.first_touch(history, state.clock.time, stop))
     }
 
-    /// What is known of the run at a step under `load`, at the end of which the bodies have been pressed for `age`, before a
+    /// What is known of the run at a step under `load` that ends `now`, when the bodies have been pressed for `age`, before a
     /// corner or the end of the run at `stop`.
-    pub(super) fn outlook(&self, scene: &Scene, load: &Load, [age, stop]: [f64; 2]) -> Outlook {
+    pub(super) fn outlook(&self, scene: &Scene, load: &Load, [now, age, stop]: [f64; 3]) -> Outlook {
         let span = stop - self.since;
         let shortest = self.drift.as_ref().map_or(f64::INFINITY, Drift::shortest_time);
         Outlook {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
+            coming_back: self.scale.as_ref().map_or(0.0, |scale| scale.coming_back(scene, load, [age, now])),
+            lasting: self
+                .lasting
+                .as_ref()
+                .map_or([0.0; 2], |errors| errors.each_ref().map(LastingError::of_displacement)),
+            tolerance: self.tolerance,
             agreement: self.drift.as_ref().map_or(1.0, Drift::agreement),
             steps: self.steps as f64 + 1.0,
             resolution: SHORTEST * self.tolerance * span,

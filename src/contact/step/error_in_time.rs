@@ -8,33 +8,54 @@ use crate::contact::window::growth::motion_tried;
 use crate::hereditary::{ErrorMeasure, TimeError};
 use crate::load::Load;
 use crate::solver::RigidMotion;
-use crate::sum::greatest;
+use crate::sum::greatest as greatest_of;
 
 impl Computation {
-    /// By how much the body above a cell advances in the step tried; NaN if it lay nowhere in particular, since nothing pressed
-    /// it.
-    pub(super) fn advance(&self, step: &Step<'_>, k: usize) -> f64 {
+    /// Whether a free body was pressed by nothing before the step tried.
+    fn was_at_rest(&self, body: usize) -> bool {
+        let Computation { state, trial, .. } = self;
+        let released = matches!(state.loads[body], Load::Force { normal: 0.0, .. }) || state.current.contact_cells == 0;
+        released && trial.free[body].translation
+    }
+
+    /// By how much the body above a cell advances in the step tried. A body that nothing pressed `rests_at` such an approach, from
+    /// the datum of the gap; NaN if that is not known.
+    fn advance(&self, step: &Step<'_>, rests_at: Option<f64>, k: usize) -> f64 {
         let Computation { state, window, trial } = self;
         let body = window.gap(&step.indenter).owner(k);
-        let released = matches!(state.loads[body], Load::Force { normal: 0.0, .. }) || state.current.contact_cells == 0;
-        if released && trial.free[body].translation {
-            return f64::NAN;
+        let end = motion_tried(&state.region, trial, step, body);
+        if self.was_at_rest(body) {
+            return rests_at.map_or(f64::NAN, |start| end.at(state.region.center(k)) - start);
         }
-        let (start, end) = (state.current.motions[body], motion_tried(&state.region, trial, step, body));
+        let start = state.current.motions[body];
         let approach = step.indenter.gap().datum + end.approach - start.approach;
         let tilt = [0, 1].map(|axis| end.tilt[axis] - start.tilt[axis]);
         RigidMotion { approach, tilt }.at(state.region.center(k))
     }
 }
 
+/// The approach at which a body would touch the surface at the start of a step, from the datum of its gap.
+fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
+    let surface = gap.iter().zip(tried.state.history.displacement()).map(|(gap, u)| gap + u);
+    tried.state.region.rows().least(surface.fold(f64::INFINITY, f64::min))
+}
+
 /// A direct sum assigns an increment to one end of its step: on average it answers it half a step too early or too late.
 const SHARE_OF_DIRECT_SUM: f64 = 0.5;
+
+/// A body that comes back to a surface meets it with the modulus of this time, in times that matter.
+const SHORTEST_TOUCH: f64 = 10.0;
 
 /// What a run knows besides the step.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::contact) struct Outlook {
     /// Mean displacement and v that are to be expected of the greatest loads.
     pub(in crate::contact) expected: [f64; 2],
+    /// The depth below first touch to which the bodies may come back; 0 if they do not.
+    pub(in crate::contact) coming_back: f64,
+    /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
+    pub(in crate::contact) lasting: [f64; 2],
+    pub(in crate::contact) tolerance: f64,
     /// How far the defects of the run agree in sign, 0 … 1.
     pub(in crate::contact) agreement: f64,
     /// Steps so far, this one included.
@@ -49,8 +70,17 @@ pub(in crate::contact) struct Outlook {
 
 impl Default for Outlook {
     fn default() -> Outlook {
-        let (agreement, steps) = (1.0, f64::INFINITY);
-        Outlook { expected: [0.0; 2], agreement, steps, resolution: 0.0, beginning: 0.0, is_given: true }
+        Outlook {
+            expected: [0.0; 2],
+            coming_back: 0.0,
+            lasting: [0.0; 2],
+            tolerance: 1.0,
+            agreement: 1.0,
+            steps: f64::INFINITY,
+            resolution: 0.0,
+            beginning: 0.0,
+            is_given: true,
+        }
     }
 }
 
@@ -65,18 +95,20 @@ pub(in crate::contact) fn error_in_time(
     step: &Step<'_>,
     outlook: Outlook,
 ) -> TimeError {
-    let Outlook { expected, agreement, steps, resolution, beginning, is_given } = outlook;
+    let Outlook { expected, coming_back, lasting, tolerance, agreement, steps, resolution, beginning, is_given } =
+        outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();
     }
-    let least = [0, 1].map(|which| SMALL[which] * expected[which].max(state.greatest[which]));
+    let greatest = [0, 1].map(|which| expected[which].max(state.greatest[which]));
+    let least = [0, 1].map(|which| SMALL[which] * greatest[which]);
     let compliance = |t: f64| scene.material.contact_compliance(t);
     let (pressure, before) = (&trial.solution.pressure, &state.current.solution);
     if !scene.settings.time_rule.needs_series() {
         let (mut change, mut size, mut sum) = (0.0, 0.0, 0.0);
         // products of great pressures and displacements would overflow; no ranks share out direct sums
-        let most = greatest(pressure);
+        let most = greatest_of(pressure);
         let fields =
             pressure.iter().zip(state.history.trial()).zip(trial.solution.potential.iter().zip(&before.potential));
         for ((&p, &u), (&v, &old)) in fields.filter(|((p, _), _)| **p > 0.0) {
@@ -95,7 +127,10 @@ pub(in crate::contact) fn error_in_time(
     let pressure = [&pressure[..], &before.pressure, &state.previous.solution.pressure];
     let forces = trial.free.iter().filter(|freedom| freedom.translation).count();
     let matters = [forces > 0, forces < trial.free.len()];
-    let advance = |k: usize| tried.advance(step, k);
+    let gap = &tried.window.gap(&step.indenter).above;
+    let from_rest = trial.free.len() == 1 && tried.was_at_rest(0);
+    let rests_at = from_rest.then(|| first_touch(tried, gap));
+    let advance = |k: usize| tried.advance(step, rests_at, k);
     let potential = &trial.solution.potential;
     let advance = &advance;
     let rows = &state.region.rows();
@@ -104,7 +139,14 @@ pub(in crate::contact) fn error_in_time(
         pressure,
         potential,
         matters,
+        greatest,
         least,
+        gap,
+        from_rest,
+        coming_back,
+        stiffness: if resolution > 0.0 { 1.0 / compliance(SHORTEST_TOUCH * resolution) } else { 0.0 },
+        lasting,
+        tolerance,
         advance,
         amplification,
         agreement,

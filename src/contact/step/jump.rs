@@ -7,9 +7,8 @@ use crate::contact::state::State;
 use crate::contact::step::initial_guess::{begin, extrapolate};
 use crate::contact::step::trial::Trial;
 use crate::contact::window::window::Window;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geometry::Gap;
-use crate::hereditary::no_elastic_response;
 use crate::solver::PENETRATION_SLACK;
 
 /// Rounding of the gap of a cell, relative to the numbers that it is the sum of.
@@ -36,7 +35,8 @@ pub(super) fn jump_without_response(
     } else if greatest(false) <= step.tolerance {
         trial.solution.release();
     } else {
-        return Err(no_elastic_response(step.interval.time));
+        let what = "a jump of the load that changes the pressure (ramp the load over a short time instead)";
+        return Err(Error::NoElasticResponse { time: step.interval.time, what });
     }
     Ok(())
 }

@@ -138,9 +138,7 @@ fn units_are_read_however_they_follow_the_symbol() {
         let spaced = [" ", "_", " in ", ": ", " = ", " | ", ", "].map(|between| format!("{symbol}{between}{unit}"));
         let enclosed = [["[", "]"], [" [", "]"], [" (", ")"], ["/(", ")"], [" / (", ")"], [" {", "}"]];
         let enclosed = enclosed.map(|[open, close]| format!("{symbol}{open}{unit}{close}"));
-        // braces within braces are none of them
-        let nested = unit.contains('{');
-        spaced.into_iter().chain(enclosed).filter(move |heading| !nested || !heading.ends_with('}'))
+        spaced.into_iter().chain(enclosed)
     };
     let (mut read, mut refused) = (0, 0);
     for (symbols, kinds, dynamic, first) in [

@@ -116,7 +116,15 @@ pub(super) fn readings(text: &str) -> Vec<Unit> {
 fn enclosed(text: &str) -> &str {
     let pairs = [['(', ')'], ['[', ']'], ['{', '}']];
     let inside = pairs.iter().find_map(|[open, close]| text.trim().strip_prefix(*open)?.strip_suffix(*close));
-    inside.filter(|inside| !inside.contains(['(', '[', '{'])).unwrap_or(text)
+    // of (a)/(b), the brackets at the ends are no pair
+    let paired = |inside: &&str| {
+        let mut depth = 0;
+        inside.chars().all(|c| {
+            depth += i32::from("([{".contains(c)) - i32::from(")]}".contains(c));
+            depth >= 0
+        })
+    };
+    inside.filter(paired).unwrap_or(text)
 }
 
 /// The power of ten before a unit, and the unit.

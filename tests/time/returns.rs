@@ -1,0 +1,91 @@
+//! Whether runs keep to their tolerance where loads go back and return: the surface that recovers outside the contact is met
+//! again, and the errors of many steps add up.
+//!
+//! The forge runs 300 scenes. By hand: `RETURNS_SCENES=1000 RETURNS_SEED=1 cargo test --release --test suite time::returns -- --nocapture`;
+//! `RETURNS_FIRST=17` begins with that number, `RETURNS_STEPS=300000` knows more of the truth.
+
+use crate::common::environment::from_environment;
+use crate::common::random_scenes::RandomScene;
+use crate::common::truth::Truth;
+use crate::common::watched_runs::watch;
+use viscocontact::prelude::*;
+
+const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];
+/// What 99 % of the errors are at most, over these tolerances, and all of them.
+const BOUNDS: [f64; 4] = [2.0, 2.0, 2.5, 3.5];
+const MOST: f64 = 6.0;
+/// A run of so many contact problems does not end.
+const MOST_PROBLEMS: u64 = 50_000;
+/// So many times more given steps know the truth where a run seems to err by too much.
+const MORE_STEPS: u64 = 16;
+
+/// Ascending, what a quantile is read from.
+#[derive(Default)]
+struct Ratios(Vec<(f64, String)>);
+
+impl Ratios {
+    fn quantile(&self, part: f64) -> f64 {
+        let last = self.0.len().saturating_sub(1) as f64;
+        self.0.get((part * last).round() as usize).map_or(f64::NAN, |ratio| ratio.0)
+    }
+
+    fn print(&mut self, what: &str) {
+        self.0.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let [median, high, higher, most] = [0.5, 0.9, 0.99, 1.0].map(|part| self.quantile(part));
+        println!("{what:<24} {:>5} judged: {median:.2} {high:.2} {higher:.2} {most:.2}", self.0.len());
+        self.0.iter().rev().take(3).for_each(|(ratio, scene)| println!("    {ratio:.2} {scene}"));
+    }
+}
+
+/// True errors are at most twice the tolerance in 99 % of random scenes at 1e-2 and 1e-3, somewhat more below, and in 98 % at most twice
+/// what the budget states in as many: of approach or force, and of the greatest pressure.
+#[test]
+fn errors_are_honest_on_random_returns() {
+    let [scenes, seed, first, most_steps] =
+        [("RETURNS_SCENES", 16), ("RETURNS_SEED", 2), ("RETURNS_FIRST", 0), ("RETURNS_STEPS", 20_000)]
+            .map(|(name, default)| from_environment(name, default));
+    // at most tolerances whose truth takes few steps, unless more are asked for
+    let tolerances = if scenes > 16 { &TOLERANCES[..] } else { &TOLERANCES[..3] };
+    let mut of_tolerance: Vec<Ratios> = tolerances.iter().map(|_| Ratios::default()).collect();
+    let [mut of_budget, mut of_pressure] = [Ratios::default(), Ratios::default()];
+    let (mut problems, mut unjudged) = (0, 0);
+    for number in first..first + scenes {
+        let scene = RandomScene::returning(seed, number);
+        let mut truth = Truth::of(&scene, 0.1 * tolerances[tolerances.len() - 1], most_steps).unwrap();
+        for (&tolerance, ratios) in tolerances.iter().zip(&mut of_tolerance) {
+            let mut contact = scene.contact(Settings::default().tolerance);
+            let stepping = Stepping::adaptive(tolerance);
+            let run = watch(&scene, &mut contact, scene.load(), stepping, &scene.stops, MOST_PROBLEMS)
+                .unwrap_or_else(|stopped| panic!("{} at {tolerance:e}: {stopped}", scene.name));
+            problems += run.problems();
+            if truth.errors(&run)[0] > 2.0 * tolerance && truth.uncertainty[0] > 0.1 * tolerance {
+                truth = Truth::of(&scene, 1e-6, MORE_STEPS * most_steps).unwrap_or(truth);
+            }
+            let (errors, name) = (truth.errors(&run), format!("at {tolerance:e}: {}", scene.name));
+            let known = |k: usize| truth.uncertainty[k] <= 0.1 * tolerance.max(errors[k]);
+            unjudged += u64::from(!known(0));
+            if known(0) {
+                ratios.0.push((errors[0] / tolerance, name.clone()));
+                // an error far below the tolerance is no news
+                of_budget.0.push((errors[0] / run.time_budget.max(0.3 * tolerance), name.clone()));
+            }
+            if known(1) {
+                of_pressure.0.push((errors[1] / run.pressure_budget.max(tolerance), name));
+            }
+        }
+    }
+    println!(
+        "seed {seed}, scenes {first} to {}: {problems} contact problems, {unjudged} of unknown truth",
+        first + scenes
+    );
+    for (tolerance, ratios) in tolerances.iter().zip(&mut of_tolerance) {
+        ratios.print(&format!("over {tolerance:.0e}"));
+    }
+    of_budget.print("over the budget");
+    of_pressure.print("pressure over its budget");
+    for ((tolerance, ratios), bound) in tolerances.iter().zip(&of_tolerance).zip(BOUNDS) {
+        assert!(ratios.quantile(0.99) <= bound && ratios.quantile(1.0) < MOST, "at {tolerance:e}");
+    }
+    assert!(of_budget.quantile(0.98) <= 2.0);
+    assert!(of_pressure.quantile(0.98) <= 2.0);
+}
