@@ -42,18 +42,18 @@ mod window;
 
 #[cfg(feature = "checkpoint")]
 pub use crate::error::CheckpointError;
-#[cfg(any(feature = "npy", feature = "vtk"))]
-pub(crate) use distributed::gathered_block::Brought;
 pub use builder::Builder;
 pub use builder::memory::Memory;
+#[cfg(any(feature = "npy", feature = "vtk"))]
+pub(crate) use distributed::gathered_block::Brought;
 pub use moving::along_path::TravelReport;
 pub use moving::steady::{SteadyMotion, TowardSteady};
 pub use read::report::{BodyState, StepReport};
+pub use read::warning::{Warning, Warnings};
 pub use run::error_budget::ErrorBudget;
 pub use run::follow::Follow;
 pub use run::stepping::Stepping;
 pub use settings::{Edge, Frame, Settings, Solver, TimeRule};
 pub use state::snapshot::Snapshot;
 pub use stepper::ViscoelasticContact;
-pub use read::warning::{Warning, Warnings};
 pub(crate) use window::extent::Extent;

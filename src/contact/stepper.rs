@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use crate::contact::computation::Computation;
 use crate::contact::moving::spare::Spare;
+use crate::contact::read::view::View;
 use crate::contact::run::progress::Progress;
 use crate::contact::scene::Scene;
-use crate::contact::read::view::View;
 
 /// A rigid indenter pressed onto a creeping half-space: the pressure between them, the area they touch
 /// on, and how both change with time.

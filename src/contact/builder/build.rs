@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
+use crate::contact::builder::memory::{Computed, Footprint, Memory, symmetry_of};
+use crate::contact::builder::time_rule::{history_by, windowed};
 use crate::contact::builder::{Builder, OwnGap};
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::built::Built;
 use crate::contact::computation::Computation;
-use crate::contact::builder::memory::{Computed, Footprint, Memory, symmetry_of};
+use crate::contact::distributed::gap::SharedGap;
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Frame, Settings, Solver};
-use crate::contact::distributed::gap::SharedGap;
 use crate::contact::state::State;
-use crate::contact::builder::time_rule::{history_by, windowed};
 use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::{Error, KernelError, RanksError, Result, count_within};

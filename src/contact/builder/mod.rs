@@ -9,8 +9,8 @@ use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;
 
 use crate::Grid;
-use crate::contact::settings::Settings;
 use crate::contact::builder::fit_range::Times;
+use crate::contact::settings::Settings;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::Result;
 use crate::geometry::{Geometry, evaluate};

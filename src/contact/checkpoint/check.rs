@@ -1,10 +1,10 @@
 //! Whether a contact can go on from a state: a file may have a right checksum and be written by another program all the
 //! same.
 
+use crate::contact::builder::time_rule::windowed;
 use crate::contact::run::progress::Progress;
 use crate::contact::scene::Scene;
 use crate::contact::state::{Clock, Equilibrium, State};
-use crate::contact::builder::time_rule::windowed;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::CheckpointError;

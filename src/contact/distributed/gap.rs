@@ -4,8 +4,8 @@
 use std::hash::{DefaultHasher, Hasher};
 
 use crate::Grid;
-use crate::contact::indenter::hull::Hull;
 use crate::contact::indenter::Indenter;
+use crate::contact::indenter::hull::Hull;
 use crate::contact::window::region::Region;
 use crate::error::{Error, Result};
 use crate::geometry::Gap;

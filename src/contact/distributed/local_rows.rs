@@ -125,7 +125,10 @@ impl ViscoelasticContact {
 
     /// Σ over all rows of the whole grid, in their order, of what `of_row` finds in the pressure of a row, given its number. A
     /// call of all ranks.
-    pub(in crate::contact) fn sum_of_rows<const K: usize>(&self, of_row: impl Fn(usize, &[f64]) -> [f64; K]) -> [f64; K] {
+    pub(in crate::contact) fn sum_of_rows<const K: usize>(
+        &self,
+        of_row: impl Fn(usize, &[f64]) -> [f64; K],
+    ) -> [f64; K] {
         let ([n1, n2], own, pressure) = (self.grid().cells(), self.rows(), self.pressure());
         let row = |i: usize| &pressure[(i - own.start) * n2..][..n2];
         let computed = |i: usize| if own.contains(&i) { i } else { n1 - 1 - i };

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use crate::contact::read::report::StepReport;
-use crate::contact::step::request::Step;
 use crate::contact::settings::Frame;
 use crate::contact::state::State;
+use crate::contact::step::request::Step;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result, non_negative};
 use crate::load::Load;

@@ -6,8 +6,8 @@ pub(in crate::contact) mod within_step;
 
 use std::sync::Arc;
 
-use crate::contact::state::extrapolation::Extrapolation;
 use crate::contact::indenter::Indenter;
+use crate::contact::state::extrapolation::Extrapolation;
 use crate::contact::window::region::Region;
 use crate::hereditary::{History, Interpolant, Interval};
 use crate::load::Load;

@@ -1,9 +1,9 @@
 //! Whether the end of a step may be accepted.
 
-use crate::contact::step::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Edge, Solver};
 use crate::contact::state::State;
+use crate::contact::step::request::Step;
 use crate::contact::step::trial::Trial;
 use crate::contact::window::window::Window;
 use crate::error::{Convergence, Error, Result};

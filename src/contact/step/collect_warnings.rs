@@ -1,9 +1,9 @@
 //! The warnings of a step.
 
+use crate::contact::read::warning::{Warning, Warnings};
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Edge, TimeRule};
 use crate::contact::state::State;
-use crate::contact::read::warning::{Warning, Warnings};
 use crate::contact::window::extent::Extent;
 use crate::rheology::is_known;
 

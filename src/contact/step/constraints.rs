@@ -1,9 +1,9 @@
 //! What the loads of a step ask of the bodies: which motions they leave free, and which they prescribe.
 
 use crate::Grid;
-use crate::contact::step::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
+use crate::contact::step::request::Step;
 use crate::contact::window::region::Region;
 use crate::error::{Error, Result};
 use crate::load::{Load, Tilt};

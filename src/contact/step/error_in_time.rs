@@ -1,9 +1,9 @@
 //! The estimated error in time of a step that was tried.
 
 use crate::contact::computation::Computation;
-use crate::contact::step::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::step::first_step::first_step_error;
+use crate::contact::step::request::Step;
 use crate::contact::window::growth::motion_tried;
 use crate::hereditary::{ErrorMeasure, TimeError};
 use crate::load::Load;

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::contact::computation::Computation;
-use crate::contact::step::request::Step;
 use crate::contact::scene::Scene;
+use crate::contact::step::request::Step;
 use crate::sum::greatest;
 
 /// The mean of the compliance over a step is the sum of trapezia between so many times, each 1/√2 of the one before.

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::contact::state::extrapolation::MAX_REACH;
-use crate::contact::step::request::Step;
 use crate::contact::state::{Equilibrium, State};
+use crate::contact::step::request::Step;
 use crate::contact::step::trial::Trial;
 use crate::contact::window::window::Window;
 use crate::kernel::for_each_band;

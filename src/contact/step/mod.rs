@@ -31,9 +31,9 @@ use std::sync::Arc;
 
 use crate::contact::computation::Computation;
 use crate::contact::read::report::StepReport;
-use crate::contact::step::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
+use crate::contact::step::request::Step;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::growth::outgrown;
 use crate::contact::window::placement::region_for;

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use crate::Grid;
-use crate::contact::step::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
+use crate::contact::step::request::Step;
 use crate::contact::step::trial::Trial;
 use crate::contact::window::extent::Extent;
 use crate::contact::window::region::Region;

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 
 use crate::contact::indenter::Indenter;
-use crate::contact::step::request::Step;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
+use crate::contact::step::request::Step;
 use crate::contact::window::extent::Extent;
 use crate::contact::window::growth::{cells_below, region_holding};
 use crate::contact::window::region::Region;
