@@ -93,7 +93,7 @@ pub(crate) struct LocalKernel {
     /// The own rows.
     grid: Grid,
     rows: Rows,
-    /// The grid that the kernel was made for, the periods of which are those of its waves.
+    /// The grid that the kernel was made for. Its lengths are the periods of the waves.
     whole: Grid,
     operator: Arc<SpectralOperator>,
     influence: Influence,

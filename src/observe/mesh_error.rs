@@ -15,7 +15,7 @@ use crate::sum::{most, sum};
 pub struct MeshError {
     /// Of the approach, or of the force where the approach is given.
     pub approach: f64,
-    /// Of the greatest pressure. `None` where the pressure near its greatest value does not look like that of a smooth
+    /// Of the greatest pressure. `None` where the pressure near its greatest value does not look like a smooth
     /// peak: it does not converge there (the tip of a cone, the edge of a punch), or the cells do not resolve it.
     pub max_pressure: Option<f64>,
     /// Of the contact area.
@@ -110,7 +110,7 @@ struct Rim {
     pressure: f64,
     /// Sum of the pressures of cells with a side where the end of contact is unknown.
     unknown_pressure: f64,
-    /// Sides, and those of pieces one or two cells wide.
+    /// Number of sides, and number of the sides of pieces one or two cells wide.
     sides: usize,
     narrow_sides: usize,
     /// Sum of the errors of the place where contact ends, in cells.
@@ -119,7 +119,7 @@ struct Rim {
     /// squared.
     shape_lengths: f64,
     shape_pressures: f64,
-    /// Greatest pressure, and that of a cell from which the pressure does not rise inwards.
+    /// Greatest pressure, and greatest pressure of the cells from which it does not rise inwards.
     highest: f64,
     rising: f64,
 }

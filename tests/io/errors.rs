@@ -353,7 +353,7 @@ fn a_program_that_returns_an_error_says_what_to_do() {
     }
 }
 
-/// The fields of an error, for those who look for them, are those of its pattern.
+/// The alternate form prints the fields of an error, as its pattern names them.
 #[test]
 fn an_error_prints_its_fields_when_asked() {
     let edge = Error::ContactAtEdge { time: 0.5, cells: 12 };

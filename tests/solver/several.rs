@@ -1,4 +1,4 @@
-//! Several bodies, some free to tilt, some held, some let go, on elastic and creeping bodies: warm steps solve what a fresh
+//! Several bodies, some free to tilt, some held, some released, on elastic and creeping bodies: warm steps solve what a fresh
 //! contact solves. `SEVERAL_SCENES` (30) scenes of six steps, from `SEVERAL_FIRST` (2360) on: of these, the 2378th once left
 //! the fall-back without a gain.
 

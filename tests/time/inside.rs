@@ -116,7 +116,7 @@ fn a_state_within_a_given_step_is_a_shorter_step() {
             for (which, quantity) in QUANTITIES.iter().enumerate() {
                 assert!(off[which] <= 1e-4 * greatest[which], "{name}, step {k}: {quantity} {off:?} of {greatest:?}");
             }
-            // it goes on like any other contact
+            // it can be stepped like any other contact
             let mut further = within.clone();
             further.step_each(report.time - time, &loads).unwrap();
             assert!(further.within_step(report.time).is_ok());
@@ -124,7 +124,7 @@ fn a_state_within_a_given_step_is_a_shorter_step() {
     }
 }
 
-/// After a jump nothing before the step tells how it goes on: half of a long step is a step of half its length, not half of what
+/// After a jump no earlier step predicts the next: half of a long step is a step of half its length, not half of what
 /// happens in it. The ends are the states themselves, and other times are refused.
 #[test]
 fn half_of_a_long_relaxation_is_not_half_of_its_end() {
@@ -334,7 +334,7 @@ struct Run {
     pressure: f64,
 }
 
-/// Greatest error of each quantity, relative to the greatest of the run, in tolerances, those of pressures in what the budget says
+/// Greatest error of each quantity, relative to the greatest of the run, in tolerances; errors of pressures over what the budget states
 /// of them: within the steps of a run, and at their ends.
 fn errors(inside: &Inside, tolerance: f64) -> Result<[[f64; 5]; 2], Box<dyn std::error::Error>> {
     let in_turn;

@@ -33,7 +33,7 @@ impl Returns {
         self.0.iter().all(|&(_, depth)| depth >= 0.0)
     }
 
-    /// The greatest depth of those that end at `now` or later; 0 if there are none.
+    /// The greatest depth of all rises that end at `now` or later; 0 if there are none.
     pub(super) fn depth_after(&self, now: f64) -> f64 {
         self.0.iter().filter(|(end, _)| *end >= now).fold(0.0, |deepest, &(_, depth)| deepest.max(depth))
     }

@@ -1,4 +1,4 @@
-//! How far the creep of a series fitted to measurements may be from that of the body.
+//! How far the creep of a series fitted to measurements may be from the creep of the body.
 //!
 //! Three causes add up. The samples scatter: tables drawn at random from the series, with the same scatter, are fitted
 //! anew. The samples do not determine the curve between them: the series of least squares fits them as well as the
@@ -29,7 +29,7 @@ const KNOWN: f64 = 0.05;
 /// An interval of the creep compliance of a table.
 #[derive(Debug, Clone)]
 pub(crate) struct Uncertainty {
-    /// Times \[s\], ascending, and the logarithm of the bound of J over that of the fit and of its reciprocal.
+    /// Times \[s\], ascending, and the logarithm of the factor by which J may differ from the fit, either way.
     pub(crate) interval: Vec<(f64, f64)>,
     /// The time from which creep does not depend on relaxation before the first sample.
     pub(crate) known_from: f64,
@@ -126,7 +126,7 @@ impl Measured {
     }
 }
 
-/// The 97.5 % quantile of Student's distribution over that of the normal one, within 3 %.
+/// The 97.5 % quantile of Student's distribution over the same quantile of the normal one, within 3 %.
 fn student(freedoms: f64) -> f64 {
     1.0 + 1.3 / freedoms + 4.0 / freedoms.powi(3)
 }
