@@ -97,11 +97,11 @@ pub(crate) struct Weights {
 /// e^(−700) is near the smallest normal number: what decays further counts as zero.
 const MAX_EXPONENT: f64 = 700.0;
 /// A step that is longer than so many times the one before is not continued from it by a quadratic, ...
-const MAX_GROWTH: f64 = 4.0;
+const LONGEST_CONTINUED: f64 = 4.0;
 /// ... nor one of a body with an immediate dashpot, whose errors grow beyond 1 + √2.
-const MAX_GROWTH_OF_DASHPOT: f64 = 2.41;
+const LONGEST_CONTINUED_OF_DASHPOT: f64 = 2.41;
 /// Steps whose lengths are farther apart than this factor say nothing about each other: its square must be a number.
-const MAX_RATIO: f64 = 1e150;
+const FARTHEST_APART: f64 = 1e150;
 /// A step that is shorter than this part of the one before was cut short by something that happened: the step before is not
 /// told about it.
 const MIN_CORRECTING: f64 = 0.5;
@@ -287,7 +287,7 @@ impl ExponentialRule {
         if self.remembers() && self.kept < wanted {
             (self.kept, self.known) = (wanted, self.known.min(self.kept));
         }
-        let growth = if self.has_dashpot() { MAX_GROWTH_OF_DASHPOT } else { MAX_GROWTH };
+        let growth = if self.has_dashpot() { LONGEST_CONTINUED_OF_DASHPOT } else { LONGEST_CONTINUED };
         let degree = if dt > growth * self.spans[0] { 1 } else { wanted };
         let corrected = interpolant != Interpolant::Linear;
         self.weigh_as(dt, degree, [corrected && dt >= MIN_CORRECTING * self.spans[0], corrected]);
@@ -307,7 +307,7 @@ impl ExponentialRule {
 
     fn weigh_as(&mut self, dt: f64, degree: usize, corrects: [bool; 2]) {
         let jump = dt == 0.0;
-        let apart = self.known > 0 && !(1.0 / MAX_RATIO..=MAX_RATIO).contains(&(self.spans[0] / dt));
+        let apart = self.known > 0 && !(1.0 / FARTHEST_APART..=FARTHEST_APART).contains(&(self.spans[0] / dt));
         let known = if jump || apart { 0 } else { self.known };
         let degree = degree.min(known + 1);
         let lacking = if corrects[0] && known + 1 >= self.lacking { self.lacking } else { 0 };
