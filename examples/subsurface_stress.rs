@@ -17,7 +17,8 @@ use std::path::PathBuf;
 
 use clap::Parser;
 use indicatif::ProgressBar;
-use viscocontact::observe::{Axis, Stress, StressHistory, StressPeak, StressSection};
+use viscocontact::contact::StressHistory;
+use viscocontact::observe::{Axis, Stress, StressPeak, StressSection};
 use viscocontact::plot::{COLORS, Chart, Legend, Map, Picture, Quantity, Scale, Style};
 use viscocontact::prelude::*;
 

@@ -164,6 +164,7 @@ mod ascending;
 pub mod contact;
 mod error;
 mod events;
+mod extent;
 #[cfg(any(feature = "checkpoint", feature = "csv", feature = "npy", feature = "plot", feature = "vtk"))]
 mod file;
 pub mod geometry;
@@ -181,6 +182,7 @@ mod memory;
 pub mod motion;
 pub mod observe;
 pub mod output;
+mod parallel;
 #[cfg(doc)]
 pub mod paper {
     #![doc = include_str!("../docs/paper.md")]

@@ -71,9 +71,9 @@ pub enum MaterialError {
 
     /// Poisson's ratio of a body changes while it creeps ([`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk)),
     /// so that the stress below its surface depends on the pressures of the past, which a contact does not keep.
-    /// Give the pressures of the past to a [`StressHistory`](crate::observe::StressHistory) while the contact is stepped.
+    /// Give the pressures of the past to a [`StressHistory`](crate::contact::StressHistory) while the contact is stepped.
     #[error(
-        "Poisson's ratio of body {body} changes as it creeps (elastic bulk): the stress below its surface depends on pressures of the past, which the contact does not keep; follow the run with observe::StressHistory"
+        "Poisson's ratio of body {body} changes as it creeps (elastic bulk): the stress below its surface depends on pressures of the past, which the contact does not keep; follow the run with contact::StressHistory"
     )]
     ChangingPoisson {
         /// 0 for the body of [`Builder::material`](crate::contact::Builder::material), 1 for the counter body.

@@ -5,7 +5,7 @@ use std::ops::Range;
 #[cfg(feature = "checkpoint")]
 use crate::hereditary::common_cells::CommonCells;
 use crate::hereditary::exponential_rule::{ExponentialRule, Weights};
-use crate::kernel::{BAND_CELLS, join, lanes, middle};
+use crate::parallel::{BAND_CELLS, join, lanes, middle};
 
 /// The past of a field that follows the exponential rule: q_i for each relaxation time, and its differences over the last
 /// steps.

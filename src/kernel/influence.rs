@@ -227,18 +227,18 @@ impl Influence {
         }
     }
 
-    /// Whether a pressure raises the surface somewhere: beside it on a bulging layer, or beyond the datum.
+    /// Whether a pressure raises the surface somewhere, as beside the load on a layer that bulges, or to keep the mean.
     pub(super) fn raises(&self, grid: &Grid) -> bool {
         let cells = grid.cells();
         let beside = |along: [usize; 2]| self.coefficient(grid, along) < 0.0;
         match self {
-            Influence::HalfSpace(_) => false,
+            Influence::HalfSpace(_) | Influence::Strip { .. } => false,
             Influence::Coefficients { values, .. } => values.iter().any(|&value| value < 0.0),
             // the same in all directions
             Influence::Layer { .. } | Influence::LayerLine { .. } => {
                 (0..cells[0]).any(|i| beside([i, 0])) || (0..cells[1]).any(|j| beside([0, j]))
             }
-            Influence::Strip { periodic, .. } | Influence::LayerStrip { periodic, .. } => {
+            Influence::LayerStrip { periodic, .. } => {
                 let across = |i: usize, j: usize| if *periodic == 0 { [j, i] } else { [i, j] };
                 (0..cells[1 - periodic]).any(|i| beside(across(i, 0)) || beside(across(i, cells[*periodic] / 2)))
             }

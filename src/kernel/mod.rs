@@ -19,7 +19,6 @@
 mod constructors;
 mod even_spectrum;
 mod influence;
-mod lanes;
 mod layer;
 mod layered;
 mod layout;
@@ -30,10 +29,9 @@ mod strip;
 mod transform;
 
 pub(crate) use influence::HalfSpace;
-pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, in_pool, join, lanes, middle};
 pub use layer::Layer;
 pub(crate) use layout::{fast_length, images};
-pub(crate) use transform::{SpectralOperator, TransformWorkspace, rows_in_a_tile};
+pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
 use std::fmt;
 use std::sync::{Arc, OnceLock};

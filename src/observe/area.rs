@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::Grid;
-use crate::contact::Extent;
+use crate::extent::Extent;
 
 /// Weights of the two estimates of where the contact ends between a cell in contact and one that is not: the straight
 /// line through p² of the last two cells, which the coarse pressure of the last one pulls inwards, and the parabola

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::contact::Extent;
+use crate::extent::Extent;
 use crate::observe::area::{End, Pressed};
 use crate::sum::{most, sum};
 

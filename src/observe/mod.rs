@@ -26,7 +26,7 @@ pub use distribution::Distribution;
 pub use mesh_error::MeshError;
 pub use patches::{Patch, Patches};
 pub use profile::{Axis, LineProfile};
-pub use stress::{Stress, StressHistory, StressPeak, StressSection, StressVolume, SubsurfaceStress};
+pub use stress::{Stress, StressPeak, StressSection, StressVolume, SubsurfaceStress};
 
 /// A sphere pressed on an elastic half-space, for the tests of most observations.
 #[cfg(test)]

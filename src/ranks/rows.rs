@@ -5,7 +5,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::{RanksError, Result};
-use crate::kernel::{BAND_CELLS, join, lanes, rows_in_a_tile};
+use crate::parallel::{BAND_CELLS, join, lanes, rows_in_a_tile};
 use crate::ranks::Ranks;
 use crate::sum;
 

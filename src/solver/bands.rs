@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::kernel::{join, lanes};
+use crate::parallel::{join, lanes};
 use crate::ranks::Rows;
 
 /// Lanes in which maxima are taken.

@@ -6,6 +6,7 @@ mod checkpoint;
 mod diagnosis;
 mod documents;
 mod errors;
+mod house;
 mod interface;
 mod invalid_loads;
 #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]

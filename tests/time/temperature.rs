@@ -1,7 +1,7 @@
 //! Does a temperature that changes do what the reduced time says?
 
 use approx::{assert_abs_diff_eq, relative_eq};
-use viscocontact::observe::StressHistory;
+use viscocontact::contact::StressHistory;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 

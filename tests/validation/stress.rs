@@ -7,7 +7,8 @@ use super::rolling::{FINE, roll, scene};
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use viscocontact::KernelError;
 use viscocontact::analytic::Hertz;
-use viscocontact::observe::{Axis, Stress, StressHistory, SubsurfaceStress};
+use viscocontact::contact::StressHistory;
+use viscocontact::observe::{Axis, Stress, SubsurfaceStress};
 use viscocontact::prelude::*;
 use viscocontact::rheology::MaterialError;
 

@@ -4,7 +4,7 @@ use crate::contact::read::warning::{Warning, Warnings};
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Edge, TimeRule};
 use crate::contact::state::State;
-use crate::contact::window::extent::Extent;
+use crate::extent::Extent;
 use crate::rheology::is_known;
 
 /// Contact this near to an edge is near it \[cells\].

@@ -5,7 +5,7 @@ use crate::contact::step::trial::Trial;
 use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 use crate::hereditary::History;
-use crate::kernel::for_each_band;
+use crate::parallel::for_each_band;
 use crate::solver::{Freedom, RigidMotion};
 
 /// The rigid bodies over the region of a step.

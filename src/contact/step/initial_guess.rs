@@ -7,7 +7,7 @@ use crate::contact::state::{Equilibrium, State};
 use crate::contact::step::request::Step;
 use crate::contact::step::trial::Trial;
 use crate::contact::window::window::Window;
-use crate::kernel::for_each_band;
+use crate::parallel::for_each_band;
 use crate::ranks::Rows;
 use crate::solver::{Counts, Freedom, RigidMotion};
 

@@ -1,7 +1,7 @@
 //! Fields on a region, on the whole grid, and on other regions.
 
-use crate::contact::window::extent::Extent;
 use crate::contact::window::region::Region;
+use crate::extent::Extent;
 use crate::geometry::Gap;
 
 impl Region {

@@ -7,9 +7,9 @@ use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::request::Step;
 use crate::contact::step::trial::Trial;
-use crate::contact::window::extent::Extent;
 use crate::contact::window::region::Region;
 use crate::contact::window::window::Window;
+use crate::extent::Extent;
 use crate::geometry::Gap;
 use crate::solver::RigidMotion;
 

@@ -1,7 +1,6 @@
 //! The part of the grid that is computed: which one, with what, and how a state gets to a larger one.
 
 pub(crate) mod carry;
-pub(crate) mod extent;
 mod fields;
 pub(crate) mod growth;
 pub(crate) mod placement;

@@ -6,10 +6,10 @@ use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::request::Step;
-use crate::contact::window::extent::Extent;
 use crate::contact::window::growth::{cells_below, region_holding};
 use crate::contact::window::region::Region;
 use crate::error::{RanksError, Result};
+use crate::extent::Extent;
 use crate::load::{Load, Tilt};
 use crate::solver::RigidMotion;
 

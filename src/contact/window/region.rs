@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use crate::Grid;
-use crate::contact::window::extent::Extent;
+use crate::extent::Extent;
 use crate::geometry::Gap;
 use crate::kernel::images;
 use crate::ranks::Rows;

@@ -4,8 +4,8 @@ use num_complex::Complex64;
 
 use super::workspace::CACHE_LINE;
 use super::{AREA, Shares, TILE};
-use crate::kernel::lanes::lanes;
 use crate::kernel::layout::Layout;
+use crate::parallel::lanes;
 
 const REAL: u128 = size_of::<f64>() as u128;
 const COMPLEX: u128 = size_of::<Complex64>() as u128;

@@ -19,23 +19,17 @@ mod workspace;
 
 use std::fmt;
 
-use super::lanes::for_each_share;
 use super::layout::Layout;
 use super::lines::Line;
+use crate::parallel::{TILE, for_each_share, rows_in_a_tile};
 use column::Column;
 pub(crate) use shares::Shares;
 use tasks::{Columns, ColumnsInPlace, RowsForward, RowsInverse, multiply_apart};
 use workspace::Lane;
 pub(crate) use workspace::TransformWorkspace;
 
-/// Side of a tile: 8 complex numbers fill two cache lines.
-const TILE: usize = 8;
+/// Complex numbers in a tile.
 const AREA: usize = TILE * TILE;
-
-/// Rows of the cells that a tile holds: two in each of its own where rows are folded.
-pub(crate) fn rows_in_a_tile(folded: [bool; 2]) -> usize {
-    if folded[1] { 2 * TILE } else { TILE }
-}
 
 /// A linear operator on fields, diagonal in wave-number space with a real even spectrum.
 #[derive(Clone)]

@@ -11,9 +11,10 @@ use num_complex::Complex64;
 
 use super::column::{Column, ColumnWorkspace};
 use super::tasks::{ColumnsInPlace, RowsForward};
-use super::{AREA, SpectralOperator, TILE, TransformWorkspace, rows_in_a_tile};
-use crate::kernel::lanes::for_each_share;
+use super::{AREA, SpectralOperator, TransformWorkspace};
 use crate::kernel::layout::Layout;
+use crate::parallel::for_each_share;
+use crate::parallel::{TILE, rows_in_a_tile};
 use crate::ranks::{Ranks, Rows, depart, exchange_numbers, part};
 
 /// Who has which tiles of rows, and which panels of columns.

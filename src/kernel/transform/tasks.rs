@@ -3,9 +3,10 @@
 use num_complex::Complex64;
 
 use super::workspace::Lane;
-use super::{AREA, SpectralOperator, TILE};
-use crate::kernel::lanes::Task;
+use super::{AREA, SpectralOperator};
 use crate::kernel::lines::{separate, unite};
+use crate::parallel::TILE;
+use crate::parallel::Task;
 
 /// Transforms rows of `input` into tiles.
 pub(super) struct RowsForward<'a> {

@@ -2,7 +2,8 @@
 
 use num_complex::Complex64;
 
-use super::{AREA, SpectralOperator, TILE};
+use super::{AREA, SpectralOperator};
+use crate::parallel::TILE;
 
 impl SpectralOperator {
     /// Copies the columns of a panel of tiles, which begin at `from`, one after the other into `block`. Columns of

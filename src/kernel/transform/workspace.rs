@@ -6,8 +6,8 @@ use num_complex::Complex64;
 
 use super::column::ColumnWorkspace;
 use super::{SpectralOperator, TILE};
-use crate::kernel::lanes::lanes;
 use crate::kernel::layout::Layout;
+use crate::parallel::lanes;
 
 /// Buffers of a [`SpectralOperator`]: made once, used by every application.
 #[derive(Clone)]

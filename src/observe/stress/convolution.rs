@@ -5,7 +5,7 @@ use std::sync::Arc;
 use num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 
-use crate::kernel::{join, lanes};
+use crate::parallel::{join, lanes};
 
 /// Transforms of rectangles of complex numbers, row-major.
 #[derive(Clone)]

@@ -2,7 +2,6 @@
 
 mod convolution;
 mod greatest;
-mod history;
 mod line;
 mod plane;
 mod rectangle;
@@ -11,7 +10,6 @@ mod tensor;
 mod waves;
 
 pub use greatest::StressPeak;
-pub use history::StressHistory;
 pub use section::{StressSection, StressVolume};
 pub use tensor::Stress;
 
@@ -43,7 +41,7 @@ const FARTHEST: f64 = 1e40;
 /// known on the whole surface: the pressure now, and nothing beside the contact. Creep, and any history, act only by way of
 /// that pressure. Where ν changes as the body creeps ([`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk)),
 /// the stress is A p + B r, linear in 1 − 2ν: A p is that of ν = ½, and r = ∫ (1 − 2ν)(t − s) dp(s) remembers; see
-/// [`StressHistory`].
+/// [`StressHistory`](crate::contact::StressHistory).
 ///
 /// **Which bodies.** A half-space loaded on the cells of the grid: closed forms of a rectangle, convolved on a padded grid.
 /// Line contacts: plane strain, σ22 (along the line) = ν (σ11 + σ33). Periodic bodies: closed forms of each wave; below the
@@ -109,7 +107,7 @@ impl SubsurfaceStress {
     }
 
     /// The stress in a body whose Poisson's ratio changes as it creeps: `reduced` is r = ∫ (1 − 2ν)(t − s) dp(s) \[Pa\], as
-    /// [`StressHistory`] computes it for an elastic bulk.
+    /// [`StressHistory`](crate::contact::StressHistory) computes it for an elastic bulk.
     ///
     /// # Errors
     /// As [`SubsurfaceStress::new`], and of periodic bodies, whose lateral stress below the mean pressure is not linear in

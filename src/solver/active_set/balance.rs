@@ -1,7 +1,8 @@
 //! Balance of force and moments on the active set.
 
 use super::{ActiveSet, MAX_MOVED_SHARE, Shape};
-use crate::kernel::{Workspace, for_each_band};
+use crate::kernel::Workspace;
+use crate::parallel::for_each_band;
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::outcome::ResidualSums;
 use crate::solver::problem::{Problem, Solution};

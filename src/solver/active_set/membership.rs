@@ -3,7 +3,8 @@
 use std::ops::Range;
 
 use super::{ActiveSet, LEAVE_OVER_RMS, Search, Shape};
-use crate::kernel::{Workspace, for_each_band};
+use crate::kernel::Workspace;
+use crate::parallel::for_each_band;
 use crate::solver::cold_start::cold_start;
 use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{ResidualSums, Stop};

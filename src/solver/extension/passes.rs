@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::kernel::Task;
+use crate::parallel::Task;
 use crate::solver::extension::TRUST;
 use crate::solver::extension::neighbours::Ghosts;
 

@@ -1,6 +1,6 @@
 //! The stress in bodies whose Poisson's ratio changes as they creep.
 
-use crate::contact::Frame;
+use crate::contact::settings::Frame;
 use crate::error::{Error, MaterialError, Result, within};
 use crate::observe::SubsurfaceStress;
 use crate::rheology::Compressibility;
@@ -21,7 +21,7 @@ use crate::{Grid, ViscoelasticContact, memory};
 /// pays one field per retardation time and one pass over them per step.
 ///
 /// ```
-/// use viscocontact::{observe::StressHistory, prelude::*};
+/// use viscocontact::{contact::StressHistory, prelude::*};
 ///
 /// let polymer = Material::elastic_bulk(Zener::new(1.0e9, 2.0e8, 5.0e7)?, 3.0e9)?;
 /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 2.0e-3)?)

@@ -1,0 +1,122 @@
+//! Do the folders of the crate depend on each other in one direction only?
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The modules at the top of `src`: each may use the modules above it, none below it. docs/design.md says what they hold.
+const ORDER: [&str; 29] = [
+    "extent",
+    "guide",
+    "linalg",
+    "parallel",
+    "quadrature",
+    "rounded",
+    "setters",
+    "sum",
+    "error",
+    "events",
+    "ascending",
+    "file",
+    "grid",
+    "memory",
+    "ranks",
+    "geometry",
+    "motion",
+    "kernel",
+    "load",
+    "rheology",
+    "hereditary",
+    "solver",
+    "analytic",
+    "observe",
+    "contact",
+    "laws",
+    "output",
+    "plan",
+    "plot",
+];
+
+fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files(&path, found);
+        } else if path.extension().is_some_and(|ending| ending == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// The code of a file without comments and items of tests.
+fn code(path: &Path) -> String {
+    let text = fs::read_to_string(path).unwrap();
+    let mut code = String::new();
+    let mut lines = text.lines();
+    while let Some(line) = lines.next() {
+        if line == "#[cfg(test)]" {
+            // the item ends with its brace, or on its only line
+            let declaration = lines.next().unwrap_or_default();
+            if !declaration.ends_with(';') {
+                lines.by_ref().take_while(|line| *line != "}").for_each(drop);
+            }
+        } else {
+            code += line.split("//").next().unwrap_or_default();
+            code.push('\n');
+        }
+    }
+    code
+}
+
+/// Names that follow `crate::`, alone or in braces.
+fn names(code: &str) -> Vec<String> {
+    let word = |text: &str| text.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let mut names = Vec::new();
+    for after in code.split("crate::").skip(1) {
+        match after.strip_prefix('{') {
+            Some(list) => names.extend(list.split('}').next().unwrap_or_default().split(',').map(word)),
+            None => names.push(word(after)),
+        }
+    }
+    names
+}
+
+#[test]
+fn modules_use_only_those_above_them() {
+    let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("../src");
+    let library = fs::read_to_string(source.join("lib.rs")).unwrap();
+    let modules: Vec<&str> = library
+        .lines()
+        .filter_map(|line| line.trim_start_matches("pub ").strip_prefix("mod ")?.strip_suffix(';'))
+        .collect();
+    assert!(modules.iter().all(|module| ORDER.contains(module)), "a module is missing in the order: {modules:?}");
+    // what the crate shows at its root belongs to a module, too
+    let owner = |name: &str| -> Option<usize> {
+        let shown = library
+            .lines()
+            .filter_map(|line| line.strip_prefix("pub use "))
+            .find(|shown| shown.split(|c: char| !c.is_alphanumeric()).any(|word| word == name));
+        let module = shown.map_or(name, |shown| shown.split("::").next().unwrap_or(name));
+        ORDER.iter().position(|own| *own == module)
+    };
+    let mut all = Vec::new();
+    files(&source, &mut all);
+    assert!(all.len() > 250);
+    let (mut wrong, mut arrows) = (Vec::new(), 0);
+    for path in &all {
+        let inside = path.strip_prefix(&source).unwrap();
+        if inside == Path::new("lib.rs") || inside.to_string_lossy().contains("tests") {
+            continue;
+        }
+        let module = inside.iter().next().unwrap().to_string_lossy().trim_end_matches(".rs").to_owned();
+        let own = ORDER.iter().position(|name| *name == module).unwrap_or_else(|| panic!("{module} is no module"));
+        for name in names(&code(path)).into_iter().filter(|name| !name.is_empty()) {
+            let Some(used) = owner(&name) else { continue };
+            arrows += usize::from(used != own);
+            if used > own {
+                wrong.push(format!("{} uses {name}", inside.display()));
+            }
+        }
+    }
+    assert!(arrows > 500, "only {arrows} uses were found");
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
