@@ -86,7 +86,7 @@ const LASTING_PART: f64 = 0.5;
 const TOLERATED: f64 = 0.8;
 const LASTING_WEIGHT: f64 = 5.0;
 /// The same for a surface to come back to, whose defects are of one sign while it recovers: they count so many times as much, and
-/// those of earlier steps up to a few tolerances.
+/// the defects of earlier steps up to a few tolerances.
 const RECOVERING: f64 = 3.0;
 const SURFACE_WEIGHT: f64 = 1.0;
 const MOST_OF_SURFACE: f64 = 3.0;

@@ -3,7 +3,6 @@
 use crate::contact::run::follow::Follow;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Result, within};
-use crate::hereditary::TimeError;
 use crate::load::{Load, Tilt};
 
 impl ViscoelasticContact {
@@ -69,7 +68,7 @@ impl ViscoelasticContact {
             let mut step = contact.request(time, time - from, &loads, tolerance)?;
             step.interval.interpolant = state.start.interpolant;
             let attempt = contact.attempt(&step)?;
-            contact.adopt(attempt, step, TimeError::default().sizes);
+            contact.adopt(attempt, step, [0.0; 2]);
         }
         Ok(contact)
     }
