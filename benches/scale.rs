@@ -7,7 +7,7 @@
 mod many_cells;
 
 use many_cells::run;
-use viscocontact::ranks::Threads;
+use viscocontact::parallel::Threads;
 
 fn main() -> viscocontact::Result<()> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -182,7 +182,7 @@ mod memory;
 pub mod motion;
 pub mod observe;
 pub mod output;
-mod parallel;
+pub mod parallel;
 #[cfg(doc)]
 pub mod paper {
     #![doc = include_str!("../docs/paper.md")]
@@ -193,7 +193,6 @@ pub mod plan;
 #[cfg(feature = "plot")]
 pub mod plot;
 mod quadrature;
-pub mod ranks;
 pub mod rheology;
 mod rounded;
 mod solver;

@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
 use viscocontact::num_complex::Complex64;
+use viscocontact::parallel::{Ranks, RanksError};
 use viscocontact::prelude::*;
-use viscocontact::ranks::{Ranks, RanksError};
 
 /// Ranks whose messages are counted and timed.
 #[derive(Debug)]

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use viscocontact::output::{Field, Metadata, NpzSeries, VtkSeries};
 use viscocontact::prelude::*;
-use viscocontact::ranks::{Ranks, RanksError};
+use viscocontact::parallel::{Ranks, RanksError};
 use viscocontact_mpi::Mpi;
 
 type Failure = Box<dyn std::error::Error>;

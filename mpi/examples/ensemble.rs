@@ -8,7 +8,7 @@ mod sweep;
 use std::path::PathBuf;
 
 use sweep::{cases, print, table};
-use viscocontact::ranks::Ranks;
+use viscocontact::parallel::Ranks;
 use viscocontact_mpi::Mpi;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

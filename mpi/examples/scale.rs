@@ -6,7 +6,7 @@
 #[path = "../../benches/support/many_cells.rs"]
 mod many_cells;
 
-use viscocontact::ranks::Ranks;
+use viscocontact::parallel::Ranks;
 use viscocontact_mpi::Mpi;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

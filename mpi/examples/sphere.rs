@@ -5,7 +5,7 @@
 use std::time::Instant;
 
 use viscocontact::prelude::*;
-use viscocontact::ranks::Ranks;
+use viscocontact::parallel::Ranks;
 use viscocontact_mpi::Mpi;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -9,7 +9,7 @@ use mpi::environment::{Universe, initialize_with_threading};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
 use num_complex::Complex64;
-use viscocontact::ranks::{Ranks, RanksError};
+use viscocontact::parallel::{Ranks, RanksError};
 
 use crate::chunks::{Chunks, MOST};
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::error::{Error, Result, count_within, finite, length, non_negative, positive};
 use crate::hereditary::{ExponentialRule, Interpolant, RememberedField};
 use crate::memory;
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 use crate::rheology::{Material, is_known};
 
 /// The profile g(x) on a one-dimensional foundation that is equivalent to an axisymmetric indenter f(r):

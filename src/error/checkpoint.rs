@@ -73,7 +73,7 @@ pub enum CheckpointError {
         built: String,
     },
 
-    /// It was saved by several [ranks](crate::ranks), and one of the files with their rows is missing or damaged. The cause is
+    /// It was saved by several [ranks](crate::parallel), and one of the files with their rows is missing or damaged. The cause is
     /// the [`source`](std::error::Error::source) of the error.
     #[error("{}, a file with rows, cannot be used", .file.display())]
     Rows {

@@ -1,4 +1,4 @@
-/// What is wrong where a contact is shared out over several [ranks](crate::ranks).
+/// What is wrong where a contact is shared out over several [ranks](crate::parallel).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RanksError {

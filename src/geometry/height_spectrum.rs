@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 
-use crate::ranks::{Rows, depart, part};
+use crate::parallel::{Rows, depart, part};
 
 /// Fourier coefficients of a real field on `cells` points: amplitudes of exp(2πi (k1 i/n1 + k2 j/n2)), normalised so
 /// that the sum of all waves is the field. Only those with k2 ≥ 0 are stored; the others are their conjugates.

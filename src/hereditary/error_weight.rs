@@ -1,6 +1,6 @@
 //! By what the error of a step is weighted.
 
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 
 /// The weight of a cell in a mean.
 #[derive(Clone, Copy, PartialEq)]

@@ -4,7 +4,7 @@
 use crate::hereditary::common_cells::CommonCells;
 use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
 use crate::hereditary::past::Past;
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 use crate::sum::greatest;
 
 /// What lies below zero by less than this part of the greatest value is rounding.

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::hereditary::error_weight::Weight;
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::history::History;
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 
 /// What the error in time of a step is measured by, besides the displacement.
 #[derive(Clone, Copy)]

@@ -39,7 +39,7 @@ use std::sync::{Arc, OnceLock};
 use crate::Grid;
 use crate::error::{Error, KernelError, Result, exact_length, finite};
 use crate::memory;
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 use influence::Influence;
 use layout::{Ends, Layout};
 use transform::Shares;

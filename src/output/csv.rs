@@ -48,7 +48,7 @@ fn number(value: f64) -> String {
 /// `moment 1 [N m]`, `moment 2 [N m]`, `contact area [m2]`, `contact cells`, `mean pressure [Pa]`,
 /// `max pressure [Pa]`, cost and accuracy of the step as in [`StepReport`] (`time error` is
 /// empty where nothing was estimated), and additional columns of your choice.
-/// Where [ranks](crate::ranks) share out the contact, all of them make and write the history, and rank 0 has the file.
+/// Where [ranks](crate::parallel) share out the contact, all of them make and write the history, and rank 0 has the file.
 /// Numbers have enough digits to be read back bitwise. In Python: `pandas.read_csv(path, comment="#")`.
 ///
 /// ```

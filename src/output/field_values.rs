@@ -10,7 +10,7 @@ use crate::contact::Brought;
 use crate::error::{RanksError, Result};
 use crate::file::replace;
 use crate::output::Field;
-use crate::ranks::caught;
+use crate::parallel::caught;
 
 /// Cells that ranks bring at a time, or one row or some columns where they have more.
 const PIECE_CELLS: usize = 1 << 16;
@@ -157,7 +157,7 @@ mod tests {
 
     use super::*;
     use crate::error::Error;
-    use crate::ranks::Threads;
+    use crate::parallel::Threads;
     use crate::{Grid, geometry::Sphere, load::Load, rheology::Elastic, rheology::Material};
 
     /// A medium that is full at any place: the same error on all ranks, none waits, and the next file is written.

@@ -20,7 +20,7 @@
 //! [`Error::NotAFile`](crate::Error::NotAFile). While a file is being written, the process ID and `.part` are appended
 //! to its name; a process that is killed leaves it under that name.
 //!
-//! Where [ranks](crate::ranks) share out a contact, writing it is a call of all of them. Rank 0 writes, the same bytes that one
+//! Where [ranks](crate::parallel) share out a contact, writing it is a call of all of them. Rank 0 writes, the same bytes that one
 //! process writes, and the rows of the others come to it some at a time: no rank holds a whole field, and no other rank needs
 //! the disk. An error is one of all ranks. A series is created by each of them: so the folder must be one that all see, or be
 //! new to each.

@@ -35,7 +35,7 @@ pub fn write_npy(path: impl AsRef<Path>, grid: &Grid, values: &[f64]) -> Result<
     replace(path.as_ref(), |out| array(out, &grid.cells(), values))
 }
 
-/// Writes a field of the contact as an NPY file, like [`write_npy`]: a call of all [ranks](crate::ranks) that share out the
+/// Writes a field of the contact as an NPY file, like [`write_npy`]: a call of all [ranks](crate::parallel) that share out the
 /// contact, of which rank 0 writes, and none holds the whole. An existing file is replaced.
 ///
 /// Needs the feature `npy`.

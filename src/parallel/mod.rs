@@ -1,7 +1,74 @@
-//! Work on fields, shared between threads: below everything that computes.
+//! One contact on several ranks: processes, or threads that play processes, each of which has some rows of the grid.
+//!
+//! A contact that outgrows a machine is shared out over several. The program is started once on each of them, makes the same
+//! calls there, and adds one line to its scene, [`Builder::ranks`](crate::contact::Builder::ranks):
+//!
+//! ```
+//! use viscocontact::prelude::*;
+//! use viscocontact::parallel::Threads;
+//!
+//! let forces = Threads::run(3, |ranks| {
+//!     let mut contact = ViscoelasticContact::builder(Grid::square(64, 4.0e-3)?)
+//!         .ranks(ranks)
+//!         .geometry(&Sphere::new(10.0e-3)?)
+//!         .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+//!         .build()?;
+//!     contact.step(0.0, Load::force(1.0))?;
+//!     contact.step(0.5, Load::force(1.0))?; // every rank gets the same report
+//!     Ok::<_, Error>(contact.force())
+//! })?;
+//! for force in forces {
+//!     assert!((force? - 1.0).abs() < 1e-12);
+//! }
+//! # Ok::<(), Error>(())
+//! ```
+//!
+//! The answer does not depend on the number of ranks, bit by bit: sums are taken over bands of whole rows, and the bands are
+//! added in the same order on every rank. A [`StepReport`](crate::contact::StepReport) is the same on all ranks; fields are
+//! those of [own rows](crate::ViscoelasticContact::rows), and [`gathered`](crate::ViscoelasticContact::gathered) brings
+//! them to one rank. Rows are given out in bands of about 8192 cells: more ranks than bands are possible, and have
+//! nothing to do.
+//!
+//! Every call that computes is a call of all ranks, in the same order and with the same arguments: steps, runs, and
+//! observations that look at all cells ([`moment`](crate::ViscoelasticContact::moment),
+//! [`max_pressure`](crate::ViscoelasticContact::max_pressure), [`contact_area`](crate::ViscoelasticContact::contact_area),
+//! [`lateral_force`](crate::ViscoelasticContact::lateral_force), [`profile`](crate::ViscoelasticContact::profile)), files and
+//! checkpoints. What a rank knows by itself may be asked by one
+//! alone: time, force, approach, tilt, contact cells, own rows.
+//!
+//! | covered | refused, by [`RanksError::NotShared`] |
+//! |---|---|
+//! | half-spaces, bodies periodic along one axis or both, lines, layers | several rigid bodies |
+//! | symmetry: half or a quarter of the grid | loads that break a symmetry that was found (set [`Settings::symmetry`](crate::contact::Settings::symmetry) to false) |
+//! | force and approach, tilts, runs in steps given or chosen by their error | indenters that move or change, [`Frame::Indenter`](crate::contact::Frame::Indenter) |
+//! | series of relaxation times | direct sums, [`Solver::PolonskyKeer`](crate::contact::Solver::PolonskyKeer) |
+//! | snapshots in memory; checkpoints, which any number of ranks resumes | checkpoints of a window of the grid ([`Settings::window`](crate::contact::Settings::window)), or of indenters that have moved |
+//! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses, [`mesh_error`](crate::ViscoelasticContact::mesh_error) |
+//!
+//! Files are written by rank 0, with the same bytes as those of one process; the rows of the others come to it some at a time. A
+//! checkpoint is a file with what all have in common, and beside it one for each rank with its rows, on a file system that all
+//! ranks see: `ViscoelasticContact::save`.
+//!
+//! No rank needs memory for the whole grid: [`Builder::ranks`](crate::contact::Builder::ranks), given before the geometry, has
+//! each evaluate it on own rows, random surfaces are made by [`Rough::shared`](crate::geometry::Rough::shared), coefficients of
+//! the kernel are computed by rows and kept by columns. [`Builder::memory`](crate::contact::Builder::memory) tells the bytes
+//! of a rank. Clones and snapshots are of the same ranks.
+//!
+//! [`Settings::window`](crate::contact::Settings::window) is passed over: the whole grid is computed, as far as symmetry
+//! does not leave less.
 
+mod exchange;
 mod lanes;
+mod ranks;
+mod rows;
+mod threads;
 mod tile;
 
+pub(crate) use exchange::exchange_numbers;
 pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, in_pool, join, lanes, middle};
+pub(crate) use rows::{Rows, caught, depart, part};
 pub(crate) use tile::{TILE, rows_in_a_tile};
+
+pub use crate::error::RanksError;
+pub use ranks::Ranks;
+pub use threads::Threads;

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
+use crate::parallel::Rows;
 use crate::parallel::{join, lanes};
-use crate::ranks::Rows;
 
 /// Lanes in which maxima are taken.
 pub(crate) const LANES: usize = 8;

@@ -3,7 +3,7 @@
 //! Each pass works on pieces of [`Runs`], along which the motion of a body is affine, and does everything that needs the
 //! same fields at once. Sums are taken for each body: Σ B f of its modes B from Σ f and Σ j f of every piece.
 
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 use crate::solver::bands::{Bands, Found};
 use crate::solver::problem::Problem;
 use crate::solver::rigid_motion::{Line, ModeCoefficients};

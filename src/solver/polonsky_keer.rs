@@ -1,7 +1,7 @@
 //! The reference solver of the source paper.
 
 use crate::kernel::Workspace;
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{Outcome, ResidualSums, Stop};

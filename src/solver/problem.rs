@@ -1,7 +1,7 @@
 //! The contact problem of one step, and its solution.
 
 use crate::kernel::{LocalKernel, Workspace};
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 use crate::solver::rigid_motion::{Freedom, Line, ModeCoefficients, Modes};
 use crate::solver::runs::Cut;
 use crate::solver::trace::Trace;

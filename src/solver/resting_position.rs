@@ -1,7 +1,7 @@
 //! Where a body comes to rest on the undeformed surface.
 
 use crate::linalg;
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 use crate::solver::rigid_motion::{ModeCoefficients, Modes};
 
 /// Pivots after which the search ends: its result is a guess, and any motion serves as one.

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use crate::Grid;
 use crate::linalg;
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 
 /// The motions ω + α1 ξ1 + α2 ξ2 that a load leaves free to one body, ξ = x − e measured from the point e
 /// at which the load acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0 (Eq. 4 and

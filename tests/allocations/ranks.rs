@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use stats_alloc::Region;
+use viscocontact::parallel::{Ranks, Threads};
 use viscocontact::prelude::*;
-use viscocontact::ranks::{Ranks, Threads};
 
 use crate::ALLOCATOR;
 

@@ -4,7 +4,7 @@ use std::fmt;
 use std::sync::Arc;
 
 use viscocontact::num_complex::Complex64;
-use viscocontact::ranks::{Ranks, RanksError};
+use viscocontact::parallel::{Ranks, RanksError};
 
 /// What is asked of a rank.
 pub enum Call {

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use viscocontact::output::{CsvHistory, Field, Metadata, NpzSeries, VtkSeries, write_field_npy};
+use viscocontact::parallel::{RanksError, Threads};
 use viscocontact::prelude::*;
-use viscocontact::ranks::{RanksError, Threads};
 
 /// A folder of this name and process, which is not there yet.
 fn folder(name: &str) -> PathBuf {

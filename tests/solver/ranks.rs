@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use viscocontact::geometry::Sum;
+use viscocontact::parallel::{Ranks, Threads};
 use viscocontact::prelude::*;
-use viscocontact::ranks::{Ranks, Threads};
 
 /// What is compared: reports as they print, to the last bit, and fields of the whole grid.
 #[derive(Debug, PartialEq)]

@@ -7,8 +7,8 @@ use std::sync::Arc;
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
 use viscocontact::geometry::Sum;
+use viscocontact::parallel::{Ranks, Threads};
 use viscocontact::prelude::*;
-use viscocontact::ranks::{Ranks, Threads};
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
 /// So many steps of a run show whether ranks stay together.

@@ -8,8 +8,8 @@ use std::time::Duration;
 use crate::common::watched_ranks::{Call, WatchedRanks};
 use viscocontact::num_complex::Complex64;
 use viscocontact::observe::Axis;
+use viscocontact::parallel::{Ranks, RanksError, Threads};
 use viscocontact::prelude::*;
-use viscocontact::ranks::{Ranks, RanksError, Threads};
 
 fn sphere(cells: usize, ranks: Arc<dyn Ranks>) -> Result<ViscoelasticContact, Error> {
     ViscoelasticContact::builder(Grid::square(cells, 4.0e-3)?)

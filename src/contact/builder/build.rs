@@ -19,7 +19,7 @@ use crate::error::{Error, KernelError, RanksError, Result, count_within};
 use crate::geometry::Gap;
 use crate::hereditary;
 use crate::kernel::InfluenceKernel;
-use crate::ranks::{Ranks, Rows, caught};
+use crate::parallel::{Ranks, Rows, caught};
 use crate::rheology::Material;
 
 impl Builder {
@@ -144,7 +144,7 @@ impl Builder {
     /// takes. Where there is not even memory for the gap, it counts as asymmetric.
     ///
     /// A series of the material over [`Builder::times`] is fitted for it, in a tenth of a second. Threads are those of the
-    /// pool in which it is called. Of a contact that [ranks](crate::ranks) share out it is that of own rows, and a call of all
+    /// pool in which it is called. Of a contact that [ranks](crate::parallel) share out it is that of own rows, and a call of all
     /// of them.
     ///
     /// ```

@@ -10,7 +10,7 @@ use crate::error::{Result, count_within};
 use crate::hereditary;
 use crate::kernel::InfluenceKernel;
 use crate::memory;
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 use crate::solver::{Bands, Extension};
 
 /// Bytes that a contact takes, made by [`Builder::memory`](crate::contact::Builder::memory) before it is built.

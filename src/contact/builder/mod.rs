@@ -16,7 +16,7 @@ use crate::error::Result;
 use crate::geometry::{Geometry, evaluate};
 use crate::kernel::InfluenceKernel;
 use crate::load::LoadHistory;
-use crate::ranks::{Ranks, Rows};
+use crate::parallel::{Ranks, Rows};
 use crate::rheology::{Material, TemperatureHistory};
 
 /// The parts of a [`ViscoelasticContact`]; see [`ViscoelasticContact::builder`].
@@ -164,7 +164,7 @@ impl Builder {
         self
     }
 
-    /// The [ranks](crate::ranks) that share out the rows of the contact, each of which builds it from the same parts. Without
+    /// The [ranks](crate::parallel) that share out the rows of the contact, each of which builds it from the same parts. Without
     /// it, this process computes all of it.
     ///
     /// Geometries that follow it are evaluated on own rows alone; those before it are on the whole grid, 8 bytes a cell.

@@ -6,12 +6,12 @@ use std::time::Duration;
 use crate::contact::run::follow::Follow;
 use crate::contact::run::progress::Autosave;
 use crate::error::Result;
-use crate::ranks::caught;
+use crate::parallel::caught;
 
 impl Follow<'_> {
     /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end: no more is lost with
     /// the process. A contact that is built alike and resumes from the file ([`ViscoelasticContact::resume`]) goes on
-    /// with the next run of the same stepping as if nothing had happened, bitwise. Where [ranks](crate::ranks) share out the
+    /// with the next run of the same stepping as if nothing had happened, bitwise. Where [ranks](crate::parallel) share out the
     /// contact, all of them save when the time has passed on one.
     ///
     /// Needs the feature `checkpoint`.

@@ -165,7 +165,7 @@ impl Creep {
 mod tests {
     use super::*;
     use crate::Grid;
-    use crate::ranks::{Rows, Threads};
+    use crate::parallel::{Rows, Threads};
 
     /// What ranks find of a gap, each on own rows, is what one process finds of the whole, folded or not.
     #[test]

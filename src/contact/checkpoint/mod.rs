@@ -17,7 +17,7 @@ use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
-use crate::ranks::caught;
+use crate::parallel::caught;
 use format::{Kind, Whole};
 use of_ranks::Common;
 use saved::Saved;
@@ -58,7 +58,7 @@ impl ViscoelasticContact {
     /// Contacts may save to one path at once: the file is always that of one of them, the last to finish in the end. Where the path
     /// is a link, the file that it leads to is replaced.
     ///
-    /// Where [ranks](crate::ranks) share out the contact, it is a call of all of them. Each writes its rows to a file of its own
+    /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them. Each writes its rows to a file of its own
     /// beside `path`, whose name goes on with a mark of the save and a number; all must see the folder. Then the file at `path`,
     /// which leads to those, is replaced, and those of the save before are removed. Whenever ranks are lost, it leads to all
     /// files of one save. What they had begun to write is left, and removed with the save after the next; so only one group may
@@ -99,8 +99,8 @@ impl ViscoelasticContact {
     /// ([`Error::Checkpoint`]); the contact is then as it was. If ranks saved it, and one of their files is missing, damaged or of
     /// another save ([`CheckpointError::Rows`]).
     ///
-    /// Where [ranks](crate::ranks) share out the contact, each reads what holds its rows, one file at a time; all must be
-    /// able to go on ([`RanksError::Failed`](crate::ranks::RanksError::Failed)). They can not from a window of the grid
+    /// Where [ranks](crate::parallel) share out the contact, each reads what holds its rows, one file at a time; all must be
+    /// able to go on ([`RanksError::Failed`](crate::parallel::RanksError::Failed)). They can not from a window of the grid
     /// ([`Settings::window`](crate::contact::Settings::window)), nor from where an indenter has moved
     /// ([`CheckpointError::OtherScene`]).
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {

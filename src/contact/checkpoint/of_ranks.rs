@@ -22,7 +22,7 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::{CheckpointError, Result};
 use crate::file::{check_regular, replace};
-use crate::ranks::{Ranks, Rows};
+use crate::parallel::{Ranks, Rows};
 
 /// What the ranks have in common.
 #[derive(Serialize, Deserialize)]

@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::observe::area::{Pressed, REACH};
-use crate::ranks::{Ranks, depart, exchange_numbers};
+use crate::parallel::{Ranks, depart, exchange_numbers};
 
 /// Rows that are looked at together.
 const PIECE: usize = 64;

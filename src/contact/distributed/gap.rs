@@ -9,7 +9,7 @@ use crate::contact::indenter::hull::Hull;
 use crate::contact::window::region::Region;
 use crate::error::{Error, Result};
 use crate::geometry::Gap;
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 
 /// The gap of a single body on own rows of the whole grid.
 pub(in crate::contact) struct SharedGap<'a> {

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::RanksError;
-use crate::ranks::exchange_numbers;
+use crate::parallel::exchange_numbers;
 
 /// A rectangle of cells of the whole grid.
 #[derive(Debug)]

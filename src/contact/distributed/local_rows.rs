@@ -7,8 +7,8 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{RanksError, Result, count_within, exact_length};
 use crate::observe::Axis;
 #[cfg(any(feature = "npy", feature = "vtk"))]
-use crate::ranks::Rows;
-use crate::ranks::caught;
+use crate::parallel::Rows;
+use crate::parallel::caught;
 
 impl ViscoelasticContact {
     /// The rows (indices along x1) that [`pressure`](ViscoelasticContact::pressure) and all other fields hold: all of the
@@ -19,12 +19,12 @@ impl ViscoelasticContact {
     }
 
     /// Brings a field of own rows, such as [`pressure`](ViscoelasticContact::pressure), to the rank `to`: one value per cell
-    /// of the whole grid there, `None` on all others. A call of all [ranks](crate::ranks). Without ranks there is only
+    /// of the whole grid there, `None` on all others. A call of all [ranks](crate::parallel). Without ranks there is only
     /// rank 0, and the field is the whole.
     ///
     /// ```
     /// use viscocontact::prelude::*;
-    /// use viscocontact::ranks::Threads;
+    /// use viscocontact::parallel::Threads;
     ///
     /// let peaks = Threads::run(2, |ranks| {
     ///     let mut contact = ViscoelasticContact::builder(Grid::square(256, 4.0e-3)?)

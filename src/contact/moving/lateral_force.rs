@@ -17,7 +17,7 @@ impl ViscoelasticContact {
     /// with waves of 8 cells 2e-5. Where the rise is not finite, beside the rim of a face, there is no slope: what a rim
     /// carries is in [`TravelReport::power`](crate::contact::TravelReport) alone. NaN where the shape's gap is.
     ///
-    /// A call of all [ranks](crate::ranks) that share out the contact.
+    /// A call of all [ranks](crate::parallel) that share out the contact.
     ///
     /// ```
     /// use viscocontact::prelude::*;

@@ -8,7 +8,7 @@ use crate::memory;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
 use crate::observe::{Asymmetry, Axis, Distribution, LineProfile, Patches};
-use crate::ranks::caught;
+use crate::parallel::caught;
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
 
 impl ViscoelasticContact {
@@ -20,7 +20,7 @@ impl ViscoelasticContact {
     /// cell. Measured on spheres: 2e-3 of the area at 64² cells and 5e-4 at 256², where counting cells
     /// ([`ViscoelasticContact::contact_cells`]) errs by 1.5e-2 and 4e-3. Where contact grows by creep, the cells that it has
     /// reached last are stiffer than those before them, and the root is approached within them only: then it errs by up to a
-    /// few per cent at 128² cells. A call of all [ranks](crate::ranks) that share out the rows.
+    /// few per cent at 128² cells. A call of all [ranks](crate::parallel) that share out the rows.
     pub fn contact_area(&self) -> f64 {
         let State { region, .. } = &self.computation.state;
         if self.contact_cells() == 0 {
@@ -59,7 +59,7 @@ impl ViscoelasticContact {
     /// ```
     ///
     /// # Errors
-    /// If [ranks](crate::ranks) share out the rows.
+    /// If [ranks](crate::parallel) share out the rows.
     pub fn mesh_error(&self) -> Result<Option<MeshError>> {
         self.not_shared("the error due to the mesh")?;
         Ok(self.pressed().mesh_error(self.contact_cells()))
@@ -177,7 +177,7 @@ impl ViscoelasticContact {
     /// # Errors
     /// If `at` lies outside the grid, or there is no memory for the gap.
     ///
-    /// A call of all [ranks](crate::ranks) that share out the contact, each of which gets the whole profile.
+    /// A call of all [ranks](crate::parallel) that share out the contact, each of which gets the whole profile.
     pub fn profile(&self, along: Axis, at: f64) -> Result<LineProfile> {
         LineProfile::new(self.grid(), along, at, |line| {
             let gap = self.gap()?;

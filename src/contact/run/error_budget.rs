@@ -45,7 +45,7 @@ pub struct ErrorBudget {
     /// which hardly moves the body. `None` before the first step.
     pub pressure: Option<f64>,
     /// Errors due to the mesh, of the present state; `None` without contact, of a contact that the cells do not resolve, and where
-    /// [ranks](crate::ranks) share out the rows.
+    /// [ranks](crate::parallel) share out the rows.
     pub mesh: Option<MeshError>,
     /// The greatest errors due to the mesh of all states of the run that have an estimate, each of them relative to its own
     /// state: largest where few cells are in contact. `None` if no state has one.

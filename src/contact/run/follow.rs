@@ -13,7 +13,7 @@ use crate::contact::step::error_in_time::Outlook;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, LoadError, Result, finite, positive, within};
 use crate::load::{Load, LoadHistory};
-use crate::ranks::caught;
+use crate::parallel::caught;
 
 /// Two times closer than this fraction of a step are the same time.
 const SAME_TIME: f64 = 1e-6;

@@ -7,8 +7,8 @@ use crate::contact::state::{Equilibrium, State};
 use crate::contact::step::request::Step;
 use crate::contact::step::trial::Trial;
 use crate::contact::window::window::Window;
+use crate::parallel::Rows;
 use crate::parallel::for_each_band;
-use crate::ranks::Rows;
 use crate::solver::{Counts, Freedom, RigidMotion};
 
 /// A guess is extrapolated only if it carries the force to within this factor: what is left after a cancellation is noise.

@@ -6,7 +6,7 @@ use crate::Grid;
 use crate::extent::Extent;
 use crate::geometry::Gap;
 use crate::kernel::images;
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 use crate::solver::{Freedom, Modes};
 
 /// A rectangle of cells; where the scene is symmetric, half or a quarter of it. Elsewhere fields are mirror images, or there

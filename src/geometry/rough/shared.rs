@@ -7,12 +7,12 @@ use crate::Grid;
 use crate::error::{Error, MapError, Result};
 use crate::geometry::Geometry;
 use crate::memory;
-use crate::ranks::{Ranks, Rows, caught, part};
+use crate::parallel::{Ranks, Rows, caught, part};
 
 /// Distances from a cell centre below this, in cells, are rounding errors.
 const ROUNDING: f64 = 1e-6;
 
-/// A [`Rough`] surface of which each of several [ranks](crate::ranks) has its rows, and none the whole; made by
+/// A [`Rough`] surface of which each of several [ranks](crate::parallel) has its rows, and none the whole; made by
 /// [`Rough::shared`].
 ///
 /// As a [`Geometry`] it is known at the cell centres of own rows. Elsewhere it is NaN, which a contact refuses: shift or turn
@@ -33,7 +33,7 @@ impl Rough {
     ///
     /// ```
     /// use viscocontact::prelude::*;
-    /// use viscocontact::ranks::Threads;
+    /// use viscocontact::parallel::Threads;
     ///
     /// let areas = Threads::run(2, |ranks| {
     ///     let grid = Grid::square(256, 1.0e-3)?;

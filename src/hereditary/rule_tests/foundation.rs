@@ -1,7 +1,7 @@
 //! A sphere on a one-dimensional foundation, with any interpolant.
 
 use crate::hereditary::{ExponentialRule, Interpolant, RememberedField};
-use crate::ranks::Rows;
+use crate::parallel::Rows;
 use crate::rheology::CreepSpectrum;
 
 /// What a step is given.

@@ -14,8 +14,8 @@ use super::tasks::{ColumnsInPlace, RowsForward};
 use super::{AREA, SpectralOperator, TransformWorkspace};
 use crate::kernel::layout::Layout;
 use crate::parallel::for_each_share;
+use crate::parallel::{Ranks, Rows, depart, exchange_numbers, part};
 use crate::parallel::{TILE, rows_in_a_tile};
-use crate::ranks::{Ranks, Rows, depart, exchange_numbers, part};
 
 /// Who has which tiles of rows, and which panels of columns.
 #[derive(Debug, Clone)]

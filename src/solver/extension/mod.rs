@@ -8,8 +8,8 @@ mod tests;
 
 use std::ops;
 
+use crate::parallel::Rows;
 use crate::parallel::{Task, for_each_share, lanes};
-use crate::ranks::Rows;
 pub(crate) use crate::solver::extension::neighbours::{Ghosts, Neighbours};
 use crate::solver::extension::passes::{Blocks, Known, Pull, Push, Restrict, RowBuffers, Spread, Values, weight};
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use num_complex::Complex64;
 
-use crate::ranks::{Ranks, Rows, depart};
+use crate::parallel::{Ranks, Rows, depart};
 use crate::solver::extension::passes::{NOTHING_KNOWN, weight};
 
 /// The row before the own ones of a level, and the one behind them, where another rank has these.

@@ -10,8 +10,8 @@ use std::time::Duration;
 use crate::common::watched_ranks::WatchedRanks;
 use approx::assert_abs_diff_eq;
 use viscocontact::contact::CheckpointError;
+use viscocontact::parallel::{RanksError, Threads};
 use viscocontact::prelude::*;
-use viscocontact::ranks::{RanksError, Threads};
 
 /// An empty folder of this name and process.
 fn folder(name: &str) -> PathBuf {

@@ -5,8 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::error::{RanksError, Result};
+use crate::parallel::Ranks;
 use crate::parallel::{BAND_CELLS, join, lanes, rows_in_a_tile};
-use crate::ranks::Ranks;
 use crate::sum;
 
 /// The computed rows of a grid, cut into bands, and those of them that this process has: all, unless ranks share them out.

@@ -64,7 +64,7 @@ impl Rows {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ranks::Threads;
+    use crate::parallel::Threads;
 
     #[test]
     fn rows_move_to_those_who_have_them() {
