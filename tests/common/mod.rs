@@ -1,5 +1,6 @@
 //! Scenes and references that tests and benches share; those under `examples/support/scenes` examples as well.
 
+pub mod any_scene;
 pub mod bodies;
 pub mod draws;
 pub mod environment;

@@ -1,0 +1,48 @@
+//! Prints a hash of the states of random scenes, a line each: where two trees compute the same bits, they print the same lines.
+//!
+//! `cargo run --all-features -p viscocontact-tests --bin bits -- 100 > before.txt`, for 100 scenes of each kind.
+
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use viscocontact::prelude::*;
+use viscocontact_scenes::any_scene::AnyScene;
+use viscocontact_scenes::random_scenes::RandomScene;
+
+fn hash(numbers: impl IntoIterator<Item = u64>) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    numbers.into_iter().for_each(|number| number.hash(&mut hasher));
+    hasher.finish()
+}
+
+/// A scene of any kernel, on the whole grid or in a window.
+fn of_any_kernel(seed: u64, window: bool) -> String {
+    let mut scene = AnyScene::new(seed);
+    scene.settings = scene.settings.with_window(window);
+    match scene.course(None) {
+        Ok(course) => {
+            let fields = course.fields.iter().flatten();
+            format!("{} steps {:016x}", course.reports.len(), hash(course.numbers.iter().chain(fields).copied()))
+        }
+        Err(error) => format!("{error}"),
+    }
+}
+
+/// A scene whose steps are chosen by their error.
+fn adaptive(scene: &RandomScene) -> String {
+    let mut contact = scene.contact(1e-10);
+    let run = contact.follow(scene.load(), Stepping::adaptive(1e-3), scene.body.until);
+    let report = run.take(200).last();
+    let pressure = contact.pressure().iter().chain(contact.displacement()).map(|value| value.to_bits());
+    format!("{} problems {:016x} {}", contact.time(), hash(pressure), report.is_some_and(|report| report.is_ok()))
+}
+
+fn main() {
+    let count: u64 = std::env::args().nth(1).map_or(24, |count| count.parse().expect("a number of scenes"));
+    for seed in 0..count {
+        for window in [false, true] {
+            println!("any kernel {seed} window {window}: {}", of_any_kernel(seed, window));
+        }
+        println!("adaptive {seed}: {}", adaptive(&RandomScene::new(1, seed)));
+        println!("returning {seed}: {}", adaptive(&RandomScene::returning(1, seed)));
+    }
+}

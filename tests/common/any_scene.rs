@@ -1,0 +1,249 @@
+//! Scenes of every kernel drawn at random: shapes that come down along curves and are pulled off again, tilts, changing
+//! temperature, steps given or chosen by their error, fewer bands of rows than ranks and more.
+
+use std::sync::Arc;
+
+use viscocontact::geometry::Sum;
+use viscocontact::parallel::Ranks;
+use viscocontact::prelude::*;
+use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
+
+use super::draws::Draws;
+
+/// So many steps of a run show whether ranks stay together.
+const MOST_STEPS: usize = 40;
+const LENGTH: f64 = 4.0e-3;
+const RADIUS: f64 = 10.0e-3;
+const MODULUS: f64 = 1.0e6;
+
+/// What is compared: reports as they print, to the last bit, and fields of the whole grid.
+#[derive(Debug, PartialEq)]
+pub struct Course {
+    pub reports: Vec<String>,
+    pub error: Option<String>,
+    pub numbers: Vec<u64>,
+    pub fields: [Vec<u64>; 2],
+}
+
+pub struct AnyScene {
+    pub name: String,
+    grid: Grid,
+    kernel: Arc<InfluenceKernel>,
+    shape: Box<dyn Geometry>,
+    material: Material,
+    temperature: Option<TemperatureHistory>,
+    pub settings: Settings,
+    history: Box<dyn LoadHistory>,
+    stepping: Stepping,
+    pub size: usize,
+    on_own_rows: bool,
+}
+
+/// Cells of a line or a plane: of one band of rows, or of several.
+fn cells(draws: &mut Draws, line: bool) -> [usize; 2] {
+    let several = draws.chance(0.3);
+    match (line, several) {
+        (true, false) => [16 + draws.below(300), 1],
+        (true, true) => [8193 + draws.below(17_000), 1],
+        (false, false) => [4 + draws.below(40), 4 + draws.below(40)],
+        // more than 256 columns: a band has 16 rows
+        (false, true) => [17 + draws.below(60), 257 + draws.below(40)],
+    }
+}
+
+fn layer(draws: &mut Draws) -> Layer {
+    let (thickness, poisson) = (draws.power_of_ten(-4.0, -2.5), draws.between(0.2, 0.45));
+    match draws.below(3) {
+        0 => Layer::bonded_to_rigid(thickness, poisson),
+        1 => Layer::frictionless_on_rigid(thickness, poisson),
+        _ => Layer::bonded_to_half_space(thickness, poisson, draws.power_of_ten(-1.0, 1.0), 0.3),
+    }
+    .unwrap()
+}
+
+/// A kernel of one of twelve kinds, and Poisson's ratio of its body.
+fn random_kernel(draws: &mut Draws, kind: u64) -> (Grid, InfluenceKernel, f64) {
+    let layer = layer(draws);
+    let line = matches!(kind, 4 | 9);
+    let [n1, n2] = cells(draws, line);
+    let grid = Grid::new([n1, n2], [LENGTH, if line { 1.0 } else { LENGTH * draws.between(0.6, 1.0) }]).unwrap();
+    let axis = (kind % 2) as usize;
+    let datum = if layer.compliance(0.0).is_finite() { None } else { Some(1.0) };
+    let kernel = match kind {
+        0 => InfluenceKernel::half_space(&grid),
+        1 => InfluenceKernel::periodic(&grid),
+        2 | 3 => InfluenceKernel::periodic_along(&grid, axis, 1.0),
+        4 => InfluenceKernel::line(&grid, 1.0),
+        5 => InfluenceKernel::layer(&grid, layer),
+        6 => InfluenceKernel::layer_periodic(&grid, layer),
+        7 | 8 => InfluenceKernel::layer_periodic_along(&grid, layer, axis, datum),
+        9 => InfluenceKernel::layer_line(&grid, layer, datum),
+        10 => {
+            let reach = LENGTH / n1.max(n2) as f64;
+            InfluenceKernel::from_coefficients(&grid, move |i, j| reach * (-f64::hypot(i as f64, j as f64)).exp())
+        }
+        _ => InfluenceKernel::from_spectrum(
+            &grid,
+            |q1, q2| if q1 == 0.0 && q2 == 0.0 { 0.0 } else { 2.0 / q1.hypot(q2) },
+        ),
+    };
+    let poisson = if (5..=9).contains(&kind) { layer.poisson_ratio() } else { 0.5 };
+    // cells may be too coarse for the layer
+    kernel.map(|kernel| (grid, kernel, poisson)).unwrap_or_else(|_| random_kernel(draws, kind))
+}
+
+fn material(draws: &mut Draws, poisson: f64) -> Material {
+    let time = draws.power_of_ten(-2.0, 1.0);
+    let terms: Vec<_> = (0..3).map(|k| (draws.power_of_ten(-1.0, 1.0) / MODULUS, time * 10f64.powi(k))).collect();
+    // what creeps by much in the end is not known for longer than a part of some runs
+    let times = [0.003, 0.01, 0.1, 1.0].map(|part| part * draws.between(0.5, 4.0));
+    let rheology: Box<dyn Rheology> = match draws.below(6) {
+        0 => Box::new(Elastic::new(MODULUS).unwrap()),
+        1 => Box::new(Maxwell::new(MODULUS, MODULUS * time).unwrap()),
+        2 => Box::new(Zener::new(MODULUS, MODULUS, MODULUS * time).unwrap()),
+        3 => Box::new(KelvinVoigt::new(MODULUS, MODULUS * time).unwrap()),
+        4 => Box::new(GeneralizedKelvin::new(1.0 / MODULUS, 0.0, &terms).unwrap()),
+        _ => Box::new(TabulatedCreep::new(&times, &[1.0e-6, 1.2e-6, 1.5e-6, 1.8e-6]).unwrap()),
+    };
+    Material::constant_poisson(rheology, poisson).unwrap()
+}
+
+fn shape(draws: &mut Draws, [length1, length2]: [f64; 2], line: bool) -> Box<dyn Geometry> {
+    let off =
+        [0.1 * draws.between(-1.0, 1.0) * length1, if line { 0.0 } else { 0.1 * draws.between(-1.0, 1.0) * length2 }];
+    let off = if draws.chance(0.5) { off } else { [0.0; 2] };
+    if line {
+        return Box::new(Shifted::new(Cylinder::new(RADIUS).unwrap(), off).unwrap());
+    }
+    let sphere = Sphere::new(RADIUS).unwrap();
+    match draws.below(6) {
+        0 => Box::new(Shifted::new(sphere, off).unwrap()),
+        1 => Box::new(Shifted::new(Ellipsoid::new(RADIUS, 0.4 * RADIUS).unwrap(), off).unwrap()),
+        2 => Box::new(Shifted::new(FlatPunch::rectangular([0.5 * length1, 0.4 * length2]).unwrap(), off).unwrap()),
+        3 => Box::new(Shifted::new(Cone::new(0.1).unwrap(), off).unwrap()),
+        4 => Box::new(Sum::new(sphere, Wavy::new(2.0e-6, length1 / 3.0).unwrap())),
+        // a ridge along x2, which touches in the rows of few ranks
+        _ => Box::new(FnGeometry::new(move |x1, x2| 50.0 * (x1 - 2.0 * off[0]).powi(2) + 2.0 * x2 * x2)),
+    }
+}
+
+/// A load over a second: bodies that come down along a curve, or are pressed by a force, and part again; some are pressed by a
+/// force first, and held then; some are pressed beside their middle.
+fn history(draws: &mut Draws, lengths: [f64; 2], tilts: [bool; 2], line: bool) -> Box<dyn LoadHistory> {
+    let (depth, power, start) = (draws.power_of_ten(-5.0, -4.2), draws.between(1.0, 3.0), draws.between(0.0, 0.8));
+    let force = if line { 50.0 } else { 0.05 } * draws.power_of_ten(-1.0, 0.5);
+    let at = [0, 1].map(|axis| if tilts[axis] { 0.04 * draws.between(-1.0, 1.0) * lengths[axis] } else { 0.0 });
+    let rise = move |t: f64| (t.powf(power) - start) / (1.0 - start);
+    match draws.below(6) {
+        0 | 1 => Box::new(FnHistory::new(move |t| Load::approach(depth * rise(t)))),
+        2 => Box::new(FnHistory::new(move |t| Load::approach(depth * (1.0 - start - (3.0 * t - 1.0).powi(2))))),
+        3 => Box::new(FnHistory::new(move |t| Load::force(force * (6.0 * t).sin().max(0.0) * t))),
+        4 => {
+            let held =
+                move |t: f64| if t < 0.4 { Load::force(force * (0.2 + t)) } else { Load::approach(depth * (1.2 - t)) };
+            Box::new(FnHistory::new(held).with_breakpoints(&[0.4]).unwrap())
+        }
+        _ if tilts == [false; 2] => Box::new(StepLoad::new(Load::force(force)).unwrap()),
+        _ => Box::new(FnHistory::new(move |t| {
+            let tilt = [0, 1].map(|axis| if tilts[axis] { Tilt::Free { at: at[axis] } } else { Tilt::Fixed(0.0) });
+            Load::Force { normal: force * (0.1 + t), tilt }
+        })),
+    }
+}
+
+impl AnyScene {
+    /// The scene of a seed.
+    pub fn new(seed: u64) -> AnyScene {
+        let draws = &mut Draws::new(seed);
+        let (grid, kernel, poisson) = random_kernel(draws, seed % 12);
+        let (line, lengths) = (grid.cells()[1] == 1, grid.lengths());
+        let (shape, material) = (shape(draws, lengths, line), material(draws, poisson));
+        let periodic = kernel.periodic_axes();
+        let symmetry = draws.chance(0.5);
+        let tilts = [0, 1].map(|axis| !periodic[axis] && !symmetry && draws.chance(0.5));
+        let history = history(draws, lengths, tilts, line);
+        let temperature = draws.chance(0.3).then(|| {
+            let law = TimeTemperature::wlf(10.0, 60.0, 300.0).unwrap();
+            let (from, by) = (draws.between(290.0, 310.0), draws.between(-8.0, 8.0));
+            if draws.chance(0.5) {
+                TemperatureHistory::table(law, &[(0.0, from), (0.6, from + by), (1.0, from)])
+            } else {
+                TemperatureHistory::function(law, move |t| from + by * t * t, &[])
+            }
+            .unwrap()
+        });
+        let stepping = if draws.chance(0.75) {
+            Stepping::adaptive(draws.power_of_ten(-3.0, -1.3))
+        } else {
+            Stepping::fixed(draws.between(0.05, 0.2))
+        };
+        // one process computes the whole grid, too
+        let settings = Settings::default().with_window(false).with_symmetry(symmetry).with_edge(Edge::Allow);
+        let (size, on_own_rows) = (1 + draws.below(7), draws.chance(0.5));
+        let name = format!("seed {seed}: {:?} cells, {kernel}, {material:?}, {stepping:?}, {size} ranks", grid.cells());
+        let kernel = Arc::new(kernel);
+        AnyScene { name, grid, kernel, shape, material, temperature, settings, history, stepping, size, on_own_rows }
+    }
+
+    /// Runs the scene in one process, or as one of `ranks`.
+    pub fn course(&self, ranks: Option<Arc<dyn Ranks>>) -> Result<Course, Error> {
+        let mut builder = ViscoelasticContact::builder(self.grid.clone());
+        if let (Some(ranks), true) = (&ranks, self.on_own_rows) {
+            builder = builder.ranks(Arc::clone(ranks));
+        }
+        builder = builder.geometry(&self.shape).material(self.material.clone()).kernel(Arc::clone(&self.kernel));
+        builder = builder.settings(self.settings);
+        if let Some(temperature) = &self.temperature {
+            builder = builder.temperature(temperature.clone());
+        }
+        if let (Some(ranks), false) = (ranks, self.on_own_rows) {
+            builder = builder.ranks(ranks);
+        }
+        let mut contact = builder.build()?;
+        let mut run = contact.follow(&self.history, self.stepping, 1.0);
+        let (mut reports, mut error, mut length) = (Vec::new(), None, 0.0);
+        while reports.len() < MOST_STEPS {
+            match run.next_step() {
+                Ok(Some(report)) => {
+                    length = report.dt;
+                    reports.push(format!("{report:?}"));
+                }
+                Ok(None) => break,
+                Err(failed) => {
+                    error = Some(failed.to_string());
+                    break;
+                }
+            }
+        }
+        let (budget, rejected) = (run.error_budget(), run.rejected_steps());
+        drop(run);
+        let bits = |field: Vec<f64>| field.into_iter().map(f64::to_bits).collect::<Vec<_>>();
+        let whole = |field: &[f64]| Ok::<_, Error>(bits(contact.gathered(field, 0)?.unwrap_or_default()));
+        let ([moment1, moment2], [tilt1, tilt2]) = (contact.moment(), contact.tilt());
+        let [force1, force2] = contact.lateral_force(&self.shape);
+        // after a step that failed, the state before it is not kept
+        let inside = contact.time() - if error.is_none() { 0.4 * length } else { 0.0 };
+        let last = contact.within_step(inside)?;
+        let numbers = vec![
+            contact.force(),
+            contact.approach(),
+            contact.max_pressure(),
+            contact.contact_area(),
+            contact.stiffness_over_modulus().unwrap_or(-1.0),
+            moment1,
+            moment2,
+            tilt1,
+            tilt2,
+            force1,
+            force2,
+            last.force(),
+            last.approach(),
+            budget.time.unwrap_or(-1.0),
+            budget.pressure.unwrap_or(-1.0),
+            budget.solver,
+            rejected as f64,
+        ];
+        let fields = [whole(contact.pressure())?, whole(contact.displacement())?];
+        Ok(Course { reports, error, numbers: bits(numbers), fields })
+    }
+}
