@@ -30,10 +30,18 @@ fn of_any_kernel(seed: u64, window: bool) -> String {
 /// A scene whose steps are chosen by their error.
 fn adaptive(scene: &RandomScene) -> String {
     let mut contact = scene.contact(1e-10);
-    let run = contact.follow(scene.load(), Stepping::adaptive(1e-3), scene.body.until);
-    let report = run.take(200).last();
-    let pressure = contact.pressure().iter().chain(contact.displacement()).map(|value| value.to_bits());
-    format!("{} problems {:016x} {}", contact.time(), hash(pressure), report.is_some_and(|report| report.is_ok()))
+    let mut run = contact.follow(scene.load(), Stepping::adaptive(1e-3), scene.body.until);
+    let mut steps = 0;
+    let end = loop {
+        match run.next_step() {
+            Ok(Some(_)) if steps < 200 => steps += 1,
+            Ok(_) => break "ends".to_string(),
+            Err(error) => break error.to_string(),
+        }
+    };
+    let fields = contact.pressure().iter().chain(contact.displacement());
+    let numbers = fields.chain([&contact.time(), &contact.approach()]).map(|value| value.to_bits()).collect::<Vec<_>>();
+    format!("{steps} steps {:016x} {end}", hash(numbers))
 }
 
 fn main() {
