@@ -65,7 +65,7 @@ impl Grid {
         Grid { cells, spacing: self.spacing, start }
     }
 
-    /// The centred grid of cells known to be valid, as those of another grid are.
+    /// A centred grid of cells that are already checked, such as cells of another grid.
     pub(crate) fn of_spacing(cells: [usize; 2], spacing: [f64; 2]) -> Grid {
         Grid { cells, spacing, start: cells.map(|count| 1 - count as i64) }
     }

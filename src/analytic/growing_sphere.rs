@@ -130,7 +130,7 @@ impl GrowingSphere {
             .relaxation
             .terms()
             .iter()
-            // the quotient of a modulus and a time may overflow, that of the integral and the time is a depth
+            // a modulus over a time may overflow; the integral over the time is a depth
             .map(|&(e, tau)| e * (self.integrate(entry, t, tau, &|s| depth(s) * ((s - t) / tau).exp()) / tau))
             .sum();
         2.0 / (PI * self.radius) * (glassy * depth(t) - relaxed)

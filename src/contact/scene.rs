@@ -34,7 +34,7 @@ impl Scene {
         HistoryInputs { material: &self.material, history_limit: self.settings.history_limit, least_side }
     }
 
-    /// The reduced time at a `time` not before that of the clock.
+    /// The reduced time at a `time` not before the clock's.
     pub(super) fn reduced_time(&self, clock: &Clock, time: f64) -> Result<f64> {
         match &self.temperature {
             None => Ok(time),
@@ -50,7 +50,7 @@ impl Scene {
         }
     }
 
-    /// About the time that passes after that of the clock while the reduced time grows by `reduced`, at most `most`.
+    /// About the time that passes after the clock's while the reduced time grows by `reduced`, at most `most`.
     pub(super) fn length_of(&self, clock: &Clock, reduced: f64, most: f64) -> Result<f64> {
         match &self.temperature {
             None => Ok(reduced.min(most)),

@@ -36,7 +36,7 @@ pub enum KernelError {
         allowed: &'static str,
     },
 
-    /// The material of a contact on a [`Layer`](crate::Layer) is not that of the layer. Kernel and material must have
+    /// The material of a contact on a [`Layer`](crate::Layer) differs from the layer's. Kernel and material must have
     /// the same Poisson's ratio at all times; a layer on a creeping body, or against one, is not modelled.
     #[error("the layer was made for a Poisson's ratio of {layer} at all times, and {what}")]
     LayerMaterial {

@@ -192,7 +192,7 @@ pub enum Error {
         what: &'static str,
     },
 
-    /// An approach exceeds that of full contact on a surface whose mean displacement is fixed
+    /// An approach exceeds the approach of full contact on a surface whose mean displacement is fixed
     /// ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)): no pressure closes the gap further.
     #[error(
         "at t = {time} s the approach {approach:e} m is not below {greatest:e} m, that of full contact, which no pressure can exceed on a periodic body: prescribe the force", time = rounded(*.time, TIME))]
@@ -275,7 +275,7 @@ pub enum Error {
         kind: &'static str,
     },
 
-    /// The extension of a file is not that of a format that can be written.
+    /// The extension of a file does not belong to a format that can be written.
     #[error("{path}: the extension must be .{}", .allowed.join(" or ."))]
     Extension {
         /// The file.

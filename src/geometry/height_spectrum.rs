@@ -132,7 +132,7 @@ impl HeightSpectrum {
         self.amplitudes[wave.index]
     }
 
-    /// Sets the amplitude of a wave, and that of its conjugate if it is stored.
+    /// Sets the amplitude of a wave, and of its conjugate if that is stored.
     pub(super) fn set(&mut self, number: [i64; 2], amplitude: Complex64) {
         let n1 = self.cells[0] as i64;
         let index = |k1: i64| ((number[1] - self.columns.start as i64) * n1 + k1.rem_euclid(n1)) as usize;

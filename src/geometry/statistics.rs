@@ -8,7 +8,7 @@ use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
 
 /// Statistics of a surface over its known points.
 ///
-/// Slopes and curvatures of a periodic map without missing points are those of its Fourier series. Those of other maps
+/// Slopes and curvatures of a periodic map without missing points follow from its Fourier series. On other maps they
 /// are central differences over two cells, wherever all the points needed are known; they underestimate the slope of
 /// waves a few cells long.
 ///
@@ -302,7 +302,7 @@ mod tests {
 
     #[test]
     fn random_heights_are_gaussian() {
-        // Many short waves: the fourth moment of their sum is that of a normal distribution.
+        // Many short waves: the fourth moment of their sum is the moment of a normal distribution.
         let statistics = SurfaceStatistics::of(&rough(512, 0.3, 5)).unwrap();
         assert!(statistics.skewness.abs() < 0.2 && (statistics.kurtosis - 3.0).abs() < 0.3, "{statistics:?}");
         let distribution = rough(512, 0.3, 5).height_distribution(41).unwrap();

@@ -48,7 +48,7 @@ impl DirectSum {
         DirectSum { image, ..DirectSum::new(self.weighting) }
     }
 
-    /// Whether the increments are those of p.
+    /// Whether the stored increments are increments of p.
     fn is_uncached(&self) -> bool {
         self.weighting == Weighting::EndUncached
     }
@@ -128,7 +128,7 @@ impl DirectSum {
         self.increments.pop();
     }
 
-    /// Whether its weighting is that of another, and every increment has so many cells.
+    /// Whether `other` has the same weighting, and every increment has so many cells.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &DirectSum, cells: usize) -> bool {
         self.weighting == other.weighting && self.increments.iter().all(|(_, increment)| increment.len() == cells)

@@ -38,7 +38,7 @@ pub(crate) enum Interpolant {
 /// are in docs/design.md.
 ///
 /// Fields keep their differences undivided, d₁ = u − u_before and so on, which have the unit of u whatever the length of the
-/// steps: d_k of a step is d_(k−1) less ρ_(k−1) times that of the step before.
+/// steps: d_k of a step is d_(k−1) less ρ_(k−1) times the d_(k−1) of the previous step.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ExponentialRule {

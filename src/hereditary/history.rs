@@ -31,7 +31,7 @@ pub(crate) struct History {
 enum Rule {
     /// By its own past.
     Exponential(ExponentialRule),
-    /// By that of what it is the convolution of.
+    /// By the jump of the field that was convolved.
     MovingFrame(ExponentialRule, Box<MovingFrame>),
     DirectSum(DirectSum),
 }

@@ -5,7 +5,7 @@
 //!
 //! u = u_old + c K p,
 //!
-//! with one number c, the compliance of the step, and one field u_old. The contact problem of the step is then that of
+//! with one number c, the compliance of the step, and one field u_old. The contact problem of the step is then the problem of
 //! an elastic body. [`History`] is the one interface to this: a step predicts c and u_old, responds to a pressure, and is
 //! committed when it is accepted. Three rules are behind it:
 //!

@@ -45,7 +45,7 @@ pub(super) fn slopes(past: f64) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// ∫ e^(−z (1 − s)) N′(s) ds over 0 … 1, by Gauss–Legendre on panels that shrink towards the end; for small z that of
+    /// ∫ e^(−z (1 − s)) N′(s) ds over 0 … 1, by Gauss–Legendre on panels that shrink towards the end; for small z the integral of
     /// e^… − 1, besides the `change` N(1) − N(0), which would cancel.
     fn quadrature(z: f64, change: f64, slope: impl Fn(f64) -> f64) -> f64 {
         // five points, exact for degree 9
@@ -90,7 +90,7 @@ mod tests {
         }
     }
 
-    /// Both forms meet where one takes over, and the limits are those of no time and of very long ones.
+    /// Both forms meet where one takes over, and the limits are right at zero time and at very long times.
     #[test]
     fn moments_have_their_limits() {
         let (below, above) = (moments(1.0 - 1e-12, 0.8), moments(1.0, 0.8));

@@ -119,7 +119,7 @@ impl MovingFrame {
     }
 }
 
-/// Replaces the value of each cell `[i, j]` by that of `[i, j] + by`, which along periodic axes comes round, and is else zero
+/// Replaces the value of each cell `[i, j]` by the value of `[i, j] + by`, which along periodic axes comes round, and is else zero
 /// beyond the ends.
 fn shift(field: &mut [f64], [n1, n2]: [usize; 2], by: [isize; 2], periodic: [bool; 2]) {
     let line = |line: &mut [f64], by: isize, unit: usize, periodic: bool| {

@@ -10,13 +10,13 @@ use crate::parallel::Rows;
 /// What the error in time of a step is measured by, besides the displacement.
 #[derive(Clone, Copy)]
 pub(crate) struct ErrorMeasure<'a> {
-    /// What joins the rows of the fields with those of other ranks.
+    /// Rows of the fields, with the reductions over all ranks.
     pub(crate) rows: &'a Rows,
     /// Pressure at the end of the step tried, at its start, and at the start of the step before.
     pub(crate) pressure: [&'a [f64]; 3],
     /// v = K p at the end of the step tried.
     pub(crate) potential: &'a [f64],
-    /// Which errors matter: that of the displacement where a force is given, and that of v where a motion is, which leaves the
+    /// Which errors matter: the error of the displacement where a force is given, the error of v where a motion is, which leaves the
     /// displacement in contact no error.
     pub(crate) matters: [bool; 2],
     /// The greatest means over the contact of displacement and v, and the least that errors are taken relative to.
@@ -35,8 +35,8 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) tolerance: f64,
     /// By how much the rigid body above a cell advances in the step.
     pub(crate) advance: &'a (dyn Fn(usize) -> f64 + Sync),
-    /// C(age)/C(Δ), by which an error in u grows in the end if those of the next steps are like it: a step answers a defect of v
-    /// with the compliance of a step, all steps together with that of their age.
+    /// C(age)/C(Δ), by which an error in u grows in the end if the next steps err alike: a step answers a defect of v
+    /// with the compliance of a step, all steps together with the compliance of their age.
     pub(crate) amplification: f64,
     /// How far the defects so far agree in sign, 0 … 1.
     pub(crate) agreement: f64,
@@ -77,7 +77,7 @@ const LEFT: f64 = 2.0;
 /// A force, and an immediate dashpot, answer a cell at the edge of the contact more than others: a rigid body presses hardest
 /// there.
 const EDGE: f64 = 3.0;
-/// The kinks of cells that joined stay in the past, and those of one step and the next do not cancel.
+/// The kinks of cells that joined stay in the past, and the kinks of successive steps do not cancel.
 const LASTING: f64 = 1.3;
 /// Errors that last count relative to this part of the greatest displacement at least.
 const LASTING_PART: f64 = 0.5;
@@ -102,7 +102,7 @@ impl History {
     ///
     /// λ Γ_k Σ p |d_k| / Σ p, where λ is the share that is left once the next step has put this one right,
     ///
-    /// weighted by the pressure: the greatest error over all cells is that of the kink of u at a moving edge, which carries no
+    /// weighted by the pressure: the greatest error over all cells is the error of the kink of u at a moving edge, which carries no
     /// force. Cells that have just left, and have no weight, count by the greatest of them. Those that joined in this step count
     /// with what v lacks by the kink of u when the body met them. Relative to v, this is the error of a force under given motion.
     /// Under a given force, the error of u is c times it, or more if the defects of many steps add up.
@@ -236,7 +236,7 @@ struct Sums {
     /// Of w d and w |d|, where d is the last difference; cells that join do not count.
     signed: f64,
     absolute: f64,
-    /// The greatest |d| of cells in contact, and of those that left it.
+    /// The greatest |d| of cells in contact, and of cells that left it.
     steepest: f64,
     left: f64,
     /// Cells in contact.
@@ -340,7 +340,7 @@ impl Sums {
         let scale = match rule.missing() {
             Some((_, missing)) if rule.corrects() && rule.has_dashpot() => CORRECTED_OF_DASHPOT * missing,
             Some((_, missing)) if rule.corrects() => CORRECTED * missing,
-            // the greatest of |s (s − Δ)| is Δ²/4, that of the error of u
+            // the greatest of |s (s − Δ)| is Δ²/4, as in the error of u
             Some(_) => NOT_CORRECTED * 0.25 / rule.tried.span / rule.compliance(),
             None => 0.0,
         };

@@ -53,7 +53,7 @@ impl InfluenceKernel {
     /// wave q of the pressure (Trans. ASME J. Appl. Mech. 6, 1939).
     ///
     /// The mean displacement of an endless surface is undetermined; it is the datum, and zero: the approach is measured
-    /// from a rigid plane at the mean of the undeformed surface. It cannot exceed that of full contact. Without
+    /// from a rigid plane at the mean of the undeformed surface. It cannot exceed the approach of full contact. Without
     /// padding, a convolution costs a third of the half-space's. On a grid of N × 1 cells this is the periodic contact
     /// in plane strain.
     ///
@@ -126,7 +126,7 @@ impl InfluenceKernel {
     /// point, and mirrored when the load is.
     ///
     /// # Errors
-    /// If a coefficient is not finite, or beyond ±1e100 m, or differs from those of its mirror images, or if K is not
+    /// If a coefficient is not finite, or beyond ±1e100 m, or differs from the coefficients of its mirror images, or if K is not
     /// positive definite: unless its spectrum is positive, its least eigenvalue is estimated by the Lanczos method,
     /// which detects any far below zero. If there is not enough memory for coefficients and spectrum.
     pub fn from_coefficients(grid: &Grid, coefficient: impl Fn(isize, isize) -> f64) -> Result<InfluenceKernel> {
@@ -196,7 +196,7 @@ impl InfluenceKernel {
     /// ```
     ///
     /// # Errors
-    /// If the compliance of a wave is not positive, that of the mean is negative, or either is more than 1e100 m; if
+    /// If the compliance of a wave is not positive, the compliance of the mean is negative, or either is more than 1e100 m; if
     /// there is not enough memory for them.
     pub fn from_spectrum(grid: &Grid, compliance: impl Fn(f64, f64) -> f64) -> Result<InfluenceKernel> {
         let [half1, half2] = grid.cells().map(|cells| cells / 2);

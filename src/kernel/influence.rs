@@ -136,7 +136,7 @@ impl Influence {
     ///
     /// The compliance of a half-space for the wave q is 2/|q| (Westergaard 1939), whatever its boundaries. Its
     /// approximate inverse is |q|/2, except for the mean, whose stiffness is that against a uniform pressure; layers
-    /// have that of their own waves. Other bodies are inverted wave by wave, on the grid taken as periodic (G.
+    /// have the compliance of their own waves. Other bodies are inverted wave by wave, on the grid taken as periodic (G.
     /// Strang, Stud. Appl. Math. 74, 1986).
     pub(super) fn inverse(&self, grid: &Grid, cells: [usize; 2], folded: [bool; 2]) -> (Layout, Symbol) {
         let ends = self.ends();
@@ -208,7 +208,7 @@ impl Influence {
         }
     }
 
-    /// The greatest compliance of a wave, if that of the mean is zero.
+    /// The greatest compliance of a wave, if the mean has none.
     pub(super) fn softest_wave_if_mean_is_held(&self, grid: &Grid) -> Option<f64> {
         match self {
             // the longest wave: 2/q = L/π

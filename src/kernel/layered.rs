@@ -102,7 +102,7 @@ impl InfluenceKernel {
 
     /// A [`Layer`] that is periodic along `axis` (0 is x1, 1 is x2), the grid being one period, and loaded on the grid only
     /// along the other, as [`InfluenceKernel::periodic_along`]: for each wave κ along the axis the coefficients of cells
-    /// across it, those of the half-space and what the layer adds. Approach and `datum` are those of
+    /// across it: the half-space's, and the layer's addition to them. Approach and `datum` are as in
     /// [`InfluenceKernel::layer_line`], which this is where the pressure is uniform along the axis.
     ///
     /// Cost: a table of integrals for each wave longer than a third of the thickness, when the kernel is made. With 256 cells

@@ -5,7 +5,7 @@
 //! | whole | Σ x_n e^(−2πi kn/P), 0 ≤ k < P | a complex transform of length P |
 //! | folded | Σ x_n cos(π k(2n+1)/2L), 0 ≤ k < L | a complex transform of length L (Makhoul, IEEE Trans. ASSP 28, 1980) |
 //!
-//! A folded line is half of a line that is even about its beginning; its coefficients are those of the whole line, of
+//! A folded line is half of a line that is even about its beginning; its coefficients equal the coefficients of the whole line, of
 //! period 2L. Lines shorter than their transform are padded with zeros.
 
 use std::f64::consts::PI;
@@ -218,7 +218,7 @@ fn pairs<T>(buffer: &mut [T]) -> impl Iterator<Item = (&mut T, &mut T)> {
     rising.iter_mut().zip(falling.iter_mut().rev())
 }
 
-/// Splits the transform of a complex line of length P into those of its real and imaginary part: the coefficients k, as
+/// Splits the transform of a complex line of length P into the transforms of its real and imaginary part: the coefficients k, as
 /// many as `first` and `second` hold, but none at or beyond the end of `k`.
 #[inline(always)]
 pub(crate) fn separate(both: &[Complex64], k: Range<usize>, first: &mut [Complex64], second: &mut [Complex64]) {

@@ -44,7 +44,7 @@ use influence::Influence;
 use layout::{Ends, Layout};
 use transform::Shares;
 
-/// Memory that making an operator takes, relative to that of the operator: its spectrum, and the transform that yields
+/// Memory that making an operator takes, relative to the memory of the operator: its spectrum, and the transform that yields
 /// it.
 const MEMORY_WHILE_MADE: u128 = 3;
 
@@ -199,7 +199,7 @@ impl InfluenceKernel {
         Ok(self.operator([false; 2]))
     }
 
-    /// Bytes of the kernel on `cells`, operator and workspace, and those of the approximate inverse. An operator that
+    /// Bytes of the kernel on `cells`, operator and workspace, and bytes of the approximate inverse. An operator that
     /// exists already counts zero.
     pub(crate) fn bytes_on(&self, cells: [usize; 2], folded: [bool; 2]) -> [u128; 2] {
         let (layout, whole) = (Layout { cells, ..self.layout(folded) }, self.layout(folded));
@@ -209,7 +209,7 @@ impl InfluenceKernel {
         [operator + layout.workspace_bytes(), inverse.operator_bytes() + inverse.workspace_bytes_beside(&layout)]
     }
 
-    /// The same of the own ones of rows that ranks share out.
+    /// Like `bytes_on`, for the local rows of this rank.
     pub(crate) fn own_bytes(&self, rows: &Rows, folded: [bool; 2]) -> [u128; 2] {
         let layout = Layout { cells: rows.cells(), ..self.layout(folded) };
         let inverse = layout.wrapped();
@@ -248,7 +248,7 @@ impl InfluenceKernel {
         self.on_rows(part, folded, &Rows::all(part.cells()))
     }
 
-    /// The same, where the part is the own ones of the `rows`.
+    /// Like [`InfluenceKernel::on`], where `part` is the local rows of `rows`.
     pub(crate) fn on_rows(&self, part: &Grid, folded: [bool; 2], rows: &Rows) -> LocalKernel {
         let layout = Layout { cells: rows.cells(), ..self.layout(folded) };
         let operator = if let Some(shares) = Shares::new(&layout, rows) {
@@ -276,7 +276,7 @@ impl InfluenceKernel {
         *self.on_itself.get_or_init(|| self.influence.coefficient(&self.grid, [0; 2]))
     }
 
-    /// Fingerprint of the kernel among those of the same kind.
+    /// Fingerprint of the kernel among kernels of the same kind.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn mark(&self) -> Vec<f64> {
         let mut mark = vec![self.self_influence()];
@@ -291,7 +291,7 @@ impl InfluenceKernel {
         self.influence.ends().map(|end| end == Ends::Periodic)
     }
 
-    /// The layer, if the body is one: its Poisson's ratio must be that of the material.
+    /// The layer, if the body is one: its Poisson's ratio must equal the material's.
     pub(crate) fn layer_of(&self) -> Option<&Layer> {
         self.influence.layer()
     }
@@ -324,17 +324,17 @@ impl LocalKernel {
         &self.grid
     }
 
-    /// Which rows these are, and what joins them with those of other ranks.
+    /// The local rows, with the reductions over all ranks.
     pub(crate) fn rows(&self) -> &Rows {
         &self.rows
     }
 
-    /// The greatest compliance of a wave \[m\], if that of the mean is zero.
+    /// The greatest compliance of a wave \[m\], if the mean has none.
     pub(crate) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
         self.softest
     }
 
-    /// Whether the mean displacement is fixed: then the approach cannot exceed that of full contact.
+    /// Whether the mean displacement is fixed: then the approach cannot exceed the approach of full contact.
     pub(crate) fn mean_is_held(&self) -> bool {
         self.softest.is_some()
     }
@@ -358,7 +358,7 @@ impl LocalKernel {
         }
     }
 
-    /// Buffers for the [`inverse`](LocalKernel::inverse), beside those of [`LocalKernel::workspace`].
+    /// Buffers for the [`inverse`](LocalKernel::inverse), beside the buffers of [`LocalKernel::workspace`].
     pub(crate) fn inverse_workspace(&self, inverse: &SpectralOperator) -> TransformWorkspace {
         inverse.workspace_beside(&self.operator)
     }

@@ -31,7 +31,7 @@ const SMOOTH_SHARE: f64 = 2.3;
 /// Errors of the approach over (share of the rim)·√(rim cells/2 cells), of smooth edges and of singular ones.
 const SMOOTH: f64 = 0.05;
 const SINGULAR: f64 = 0.13;
-/// Pressure of the rim over that of the mean cell, above which the edge counts as singular: 1.8 and more under punches.
+/// Pressure of the rim over the mean pressure of a cell, above which the edge counts as singular: 1.8 and more under punches.
 const RISING: f64 = 1.4;
 /// Error of the approach over (share of the cells where the end of contact is unknown)·(rim cells/2 cells).
 const UNKNOWN: f64 = 0.1;
@@ -182,7 +182,7 @@ impl Pressed<'_> {
         &self.pressure[i * self.grid.cells()[1]..][columns]
     }
 
-    /// The error of the greatest pressure: of each peak from the curvature of the pressure there, the largest of those that may
+    /// The error of the greatest pressure: of each peak from the curvature of the pressure there, the largest among the peaks that may
     /// be the greatest on a finer mesh. `None` if one of them is not resolved.
     fn peak_error(&self, low: [usize; 2], high: [usize; 2], highest: f64) -> Option<f64> {
         let least = OTHER_PEAKS * highest;

@@ -10,7 +10,7 @@
 //! | How high is the stress below the surface, and where? | [`stress`](crate::ViscoelasticContact::stress) |
 //!
 //! Each is a pure function of grid, pressure and gap; the methods apply it to the fields of a contact and change
-//! nothing. Each visits the cells once; those that need displacement or gap cost as much as
+//! nothing. Each visits the cells once; observations that need displacement or gap cost as much as
 //! [`displacement`](crate::ViscoelasticContact::displacement). The stress costs what [`SubsurfaceStress`] says.
 
 pub(crate) mod area;

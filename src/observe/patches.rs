@@ -113,7 +113,7 @@ impl FloodFill<'_> {
         let grid = self.grid;
         let (n2, lengths) = (grid.cells()[1], grid.lengths());
         let (mut cells, mut sum, mut greatest, mut winds) = (0, 0.0, 0.0_f64, [false; 2]);
-        // sums of the coordinates on the grid, and of those of the unwrapped patch
+        // sums of the coordinates on the grid, and on the unwrapped patch
         let (mut on_grid, mut unwrapped) = ([0.0; 2], [0.0; 2]);
         self.labels[first] = label;
         let mut waiting = vec![first];

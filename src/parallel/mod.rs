@@ -25,7 +25,7 @@
 //!
 //! The answer does not depend on the number of ranks, bit by bit: sums are taken over bands of whole rows, and the bands are
 //! added in the same order on every rank. A [`StepReport`](crate::contact::StepReport) is the same on all ranks; fields are
-//! those of [own rows](crate::ViscoelasticContact::rows), and [`gathered`](crate::ViscoelasticContact::gathered) brings
+//! fields of the [local rows](crate::ViscoelasticContact::rows), and [`gathered`](crate::ViscoelasticContact::gathered) brings
 //! them to one rank. Rows are given out in bands of about 8192 cells: more ranks than bands are possible, and have
 //! nothing to do.
 //!
@@ -45,7 +45,7 @@
 //! | snapshots in memory; checkpoints, which any number of ranks resumes | checkpoints of a window of the grid ([`Settings::window`](crate::contact::Settings::window)), or of indenters that have moved |
 //! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses, [`mesh_error`](crate::ViscoelasticContact::mesh_error) |
 //!
-//! Files are written by rank 0, with the same bytes as those of one process; the rows of the others come to it some at a time. A
+//! Files are written by rank 0, with the same bytes as in one process; the other ranks send it their rows a piece at a time. A
 //! checkpoint is a file with what all have in common, and beside it one for each rank with its rows, on a file system that all
 //! ranks see: `ViscoelasticContact::save`.
 //!

@@ -9,7 +9,7 @@ use crate::parallel::Ranks;
 use crate::parallel::{BAND_CELLS, join, lanes, rows_in_a_tile};
 use crate::sum;
 
-/// The computed rows of a grid, cut into bands, and those of them that this process has: all, unless ranks share them out.
+/// The computed rows of a grid, cut into bands. This process holds all of them, or some if ranks share them out.
 ///
 /// Bands are whole tiles of the transforms, folded or not (the preconditioner mirrors axes that end), about [`BAND_CELLS`]
 /// cells, or one tile where that is more. A sum is taken in each band, and over the bands by halves: so it does not depend on
@@ -94,7 +94,7 @@ impl Rows {
         self.cells[0] * self.cells[1]
     }
 
-    /// The own ones.
+    /// The local rows.
     pub(crate) fn own(&self) -> Range<usize> {
         self.own.clone()
     }
@@ -192,7 +192,7 @@ impl Rows {
         if self.shared.is_none() { own } else { self.join([own as f64], |[a], [b]| [a + b])[0] as usize }
     }
 
-    /// Gathers own numbers, `count(rank)` of each rank, and reads those of all.
+    /// Gathers `count(rank)` numbers of each rank, and passes the numbers of all ranks to `read`.
     pub(crate) fn gather<R>(
         &self,
         own: impl Iterator<Item = f64>,
@@ -212,7 +212,7 @@ impl Rows {
     pub(crate) fn agree<T>(&self, own: Result<T>) -> Result<T> {
         let Some(shared) = &self.shared else { return own };
         let message = own.as_ref().err().map_or(String::new(), |error| format!("{error:?}"));
-        // those of 53 bits are kept
+        // 53 bits survive as an f64
         let mark = message.bytes().fold(0_u64, |mark, byte| (mark * 31 + u64::from(byte)) % (1 << 53));
         let found = shared.gather(
             [message.len() as f64, mark as f64].into_iter(),

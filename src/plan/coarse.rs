@@ -67,7 +67,7 @@ pub(super) struct State {
     pub(super) pressure: f64,
     /// Error of the greatest pressure, estimated from its neighbours; `None` if they do not resolve it.
     pub(super) peak: Option<f64>,
-    /// First-order share of the error of the mesh, estimated from the rim: that of singular edges.
+    /// First-order share of the error of the mesh, estimated from the rim: the share of singular edges.
     pub(super) singular: f64,
     /// Whether the contact is enough cells wide for radius and pressure to be resolved.
     pub(super) resolved: bool,

@@ -35,7 +35,7 @@ use crate::rheology::{Material, TemperatureHistory};
 /// * with [`Plan::with_area`], the contact radius wherever the contact is at least 8 cells across.
 ///
 /// The plan says what it does not promise: [`Plan::mesh_error`] estimates the error of the area,
-/// [`Plan::pressure_error_at_all_times`] that of the greatest pressure at each time, which steps and cells resolve less well
+/// [`Plan::pressure_error_at_all_times`] the error of the greatest pressure at each time, which steps and cells resolve less well
 /// at growing edges, and [`Plan::time_error`] the error in time, which stays above the accuracy if shorter steps do not
 /// lower it. A scene that differs from the coarse runs only in what they cannot see, such as roughness finer than their
 /// cells or loads shorter than their steps, is beyond it. A contact far from the origin takes many cells that nothing

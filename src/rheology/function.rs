@@ -9,7 +9,7 @@ use crate::rheology::Rheology;
 /// * as an exponential series, the default: fitted over the times of the scene
 ///   ([`Builder::times`](crate::contact::Builder::times)) within
 ///   [`Settings::series_tolerance`](crate::contact::Settings); the error is reported by
-///   [`ViscoelasticContact::material`](crate::ViscoelasticContact::material). The order in time is that of the
+///   [`ViscoelasticContact::material`](crate::ViscoelasticContact::material). The order in time equals the order of the
 ///   default [`TimeRule`](crate::contact::TimeRule); memory and work per step do not grow.
 /// * exactly, by a direct sum over all past steps: [`TimeRule::Backward`](crate::contact::TimeRule::Backward). First
 ///   order in time; one field of 8 bytes per cell for each past step, up to

@@ -69,7 +69,7 @@ fn merged(terms: &[(f64, f64)]) -> Vec<(f64, f64)> {
 /// A relative contribution to the function below this is rounding.
 const ROUNDING: f64 = 0.5 * f64::EPSILON;
 
-/// The terms without those that are rounding relative to the constant, the slope, or a stronger term of a higher or
+/// The terms, except terms that are rounding relative to the constant, the slope, or a stronger term of a higher or
 /// lower pole. If the pole of such a term is at a zero of the others, the zeros on its two sides coincide in `f64`, and
 /// the division of the strength between them would be arbitrary.
 fn significant(terms: &[(f64, f64)], constant: f64, slope: f64) -> Vec<(f64, f64)> {

@@ -98,7 +98,7 @@ impl TimeTemperature {
     }
 }
 
-/// A rheology at another temperature than that of its measurement; made by [`TimeTemperature::at`].
+/// A rheology at another temperature than in its measurement; made by [`TimeTemperature::at`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct AtTemperature<R> {
     rheology: R,

@@ -70,7 +70,7 @@ const JOIN_OVER_DEEPEST: f64 = 0.2;
 
 impl ResidualSums {
     /// Writes the residual of a state with this `penetration` outside the contact to `solution` and its trace; `rounding` is
-    /// that of c K p of the guess.
+    /// the rounding of c K p of the guess.
     pub(crate) fn note(&mut self, problem: &Problem<'_>, penetration: f64, rounding: f64, solution: &mut Solution) {
         self.cancellation = problem.rounding(&solution.pressure) + rounding;
         solution.residual = self.relative_residual(penetration);

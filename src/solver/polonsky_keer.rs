@@ -83,7 +83,7 @@ impl PolonskyKeer {
         Ok(())
     }
 
-    /// Cells in contact are those that carry pressure.
+    /// Cells in contact carry pressure.
     fn find_contact(&mut self, problem: &Problem<'_>, solution: &Solution) {
         self.set.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
         self.set.update(problem);

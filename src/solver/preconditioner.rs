@@ -54,7 +54,7 @@ impl Preconditioner {
         self.extension.gather(field, &set.member, Range::Ebbing);
     }
 
-    /// field ← Eᵀ field: what other cells hold is brought to the cells of A around, whose sum becomes that of all.
+    /// field ← Eᵀ field: the values of other cells are moved to the cells of A around them, whose sum becomes the sum over all cells.
     pub(crate) fn gather(&mut self, field: &mut [f64], set: &ContactSet) {
         self.fit(set);
         self.extension.gather(field, &set.member, Range::Endless);

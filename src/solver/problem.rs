@@ -34,7 +34,7 @@ pub(crate) struct Solution {
     pub(crate) pressure: Vec<f64>,
     /// v = K p \[Pa·m\], updated together with `pressure`.
     pub(crate) potential: Vec<f64>,
-    /// The free part of the motion of each body; on entry that of the last step.
+    /// The free part of the motion of each body; on entry the motion of the last step.
     pub(crate) motions: Vec<ModeCoefficients>,
     pub(crate) counts: Counts,
     /// The residual on return, relative to rms (c v) in contact.
@@ -69,7 +69,7 @@ impl<'a> Problem<'a> {
         if self.bodies[body].tilts() { self.modes(body).line(k) } else { Line::UPRIGHT }
     }
 
-    /// The own rows, and what joins them with those of other ranks.
+    /// The local rows, with the reductions over all ranks.
     pub(crate) fn rows(&self) -> &'a Rows {
         self.kernel.rows()
     }

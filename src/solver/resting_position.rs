@@ -82,7 +82,7 @@ impl RestingPosition {
                 break;
             }
             let column = entering.column;
-            // the first weight to reach zero, as that of the new column grows, leaves the basis
+            // the first weight to reach zero, while the weight of the new column grows, leaves the basis
             let (Some(weights), Some(change)) = (solve_primal(&basis, modes.load()), solve_primal(&basis, column))
             else {
                 break;

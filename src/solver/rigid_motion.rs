@@ -79,7 +79,7 @@ const BALANCE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
 pub(crate) struct Modes<'a> {
     grid: &'a Grid,
     freedom: Freedom,
-    /// Unit lengths of the tilts, half those of the grid.
+    /// Unit lengths of the tilts, half the lengths of the grid.
     scale: [f64; 2],
 }
 
@@ -99,7 +99,7 @@ pub(crate) struct Gram {
 }
 
 impl<'a> Modes<'a> {
-    /// On the own ones of the `rows` of a grid.
+    /// On the local rows of a grid.
     pub(crate) fn new(grid: &'a Grid, rows: &Rows, freedom: Freedom) -> Modes<'a> {
         let scale = [0, 1].map(|axis| 0.5 * (grid.spacing()[axis] * rows.cells()[axis] as f64));
         Modes { grid, freedom, scale }
@@ -113,7 +113,7 @@ impl<'a> Modes<'a> {
         self.freedom.translation
     }
 
-    /// The values of the free modes on cell `k`, zero for those that are not free.
+    /// The values of the free modes on cell `k`, zero for modes that are not free.
     pub(crate) fn at(&self, k: usize) -> [f64; 3] {
         let Freedom { translation, tilt, point, .. } = self.freedom;
         let n2 = self.grid.cells()[1];
@@ -219,7 +219,7 @@ impl<'a> Modes<'a> {
             let gram = Gram { entries: [0, 3, 6].map(|n| [found[n], found[n + 1], found[n + 2]]) };
             (gram, [0, 1, 2].map(|m| found[9 + m] - wanted[m]), found[12] - dot(wanted, y))
         };
-        // in these units a moment is at most that of the whole force at the end of the grid
+        // in these units a moment is at most the moment of the whole force at the end of the grid
         let size = rows.sum_of(|band| pieces(band).flatten().map(|k| base(k).abs()).sum()).max(wanted[0].abs());
         if size == 0.0 {
             return Some(ModeCoefficients::default());

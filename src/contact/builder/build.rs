@@ -30,7 +30,7 @@ impl Builder {
     /// out of range, the kernel was made for another grid or cannot be made for its cells
     /// ([`InfluenceKernel::half_space`]), or the rectangle rule was chosen for a rheology without elastic response.
     ///
-    /// If the kernel is that of a layer, and the material has another Poisson's ratio, or one that is not constant, or a
+    /// If the kernel belongs to a layer, and the material has another Poisson's ratio, or one that is not constant, or a
     /// counter body deforms ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)).
     ///
     /// If a rheology without an exact series is given no [`Builder::times`] ([`MaterialError::NoExponentialSeries`](crate::rheology::MaterialError::NoExponentialSeries)), no series is
@@ -139,12 +139,12 @@ impl Builder {
     }
 
     /// The memory that the contact will take; no field is allocated to find out. The cells that are computed follow from the
-    /// symmetry of the gap ([`Settings::symmetry`](crate::contact::Settings::symmetry)); with [`Settings::window`](crate::contact::Settings::window) the figure is that of the largest window. A
+    /// symmetry of the gap ([`Settings::symmetry`](crate::contact::Settings::symmetry)); with [`Settings::window`](crate::contact::Settings::window) the figure holds for the largest window. A
     /// load that breaks the symmetry makes the contact compute the mirror images too: set symmetry to false for what that
     /// takes. Where there is not even memory for the gap, it counts as asymmetric.
     ///
-    /// A series of the material over [`Builder::times`] is fitted for it, in a tenth of a second. Threads are those of the
-    /// pool in which it is called. Of a contact that [ranks](crate::parallel) share out it is that of own rows, and a call of all
+    /// A series of the material over [`Builder::times`] is fitted for it, in a tenth of a second. Threads belong to the
+    /// pool in which it is called. Of a contact that [ranks](crate::parallel) share out it counts the local rows, and is a call of all
     /// of them.
     ///
     /// ```

@@ -53,7 +53,7 @@ pub struct Memory {
     /// Bytes of the work space of the kernel, and of its spectrum, unless another contact with the same kernel has made
     /// that already.
     pub kernel: u64,
-    /// Bytes that each further step adds: those of direct sums, up to [`Settings::history_limit`].
+    /// Bytes that each further step adds: fields of direct sums, up to [`Settings::history_limit`].
     pub each_step: u64,
 }
 
@@ -102,7 +102,7 @@ pub(in crate::contact) struct Computed {
     pub(in crate::contact) folded: [bool; 2],
     /// Whether the cells and their mirror images are the whole grid.
     pub(in crate::contact) covers: bool,
-    /// The rows of all ranks that share them out, of which the cells are own ones.
+    /// The rows of all ranks that share them out; the cells are the local ones.
     pub(in crate::contact) shared: Option<Rows>,
 }
 
@@ -209,7 +209,7 @@ mod tests {
             let whole = Computed { cells, folded: [false; 2], covers: true, shared: None };
             let refused = footprint.check(&whole, 0).unwrap_err();
             assert!(matches!(refused, Error::CountOutOfRange { value, .. } if value == all), "{refused}");
-            // a small part of them may be, whose memory is that of gap and pressure
+            // a small part of them may be, in the memory of gap and pressure
             let part = Computed { cells: [64, 1], folded: [false; 2], covers: false, shared: None };
             assert!((16 * all as u64..16 * all as u64 + 100_000).contains(&footprint.on(&part).total()));
         }

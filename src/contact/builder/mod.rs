@@ -86,7 +86,7 @@ impl Builder {
     }
 
     /// The material of the other body, the one with the shape: elastic or creeping too. Both surfaces then
-    /// deform: u is the sum of their displacements, and C(t) that of their compliances.
+    /// deform: u is the sum of their displacements, and C(t) the sum of their compliances.
     pub fn counter_body(mut self, material: Material) -> Builder {
         self.counter_body = Some(material);
         self
@@ -143,7 +143,7 @@ impl Builder {
 
     /// A temperature that changes: all material then creeps in reduced time, ξ = ∫ dt/a_T(T(t)), with its times at the reference
     /// temperature of the law. Those of [`Builder::times`] and [`Error::BeyondMaterial`](crate::Error::BeyondMaterial) are
-    /// reduced times; those of [`Builder::times_of`] are taken from the run. A scene without one costs nothing more.
+    /// reduced times; [`Builder::times_of`] takes them from the run. A scene without one costs nothing more.
     ///
     /// A step fails where the temperature is outside the range of the law.
     pub fn temperature(mut self, history: TemperatureHistory) -> Builder {

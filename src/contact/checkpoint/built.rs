@@ -101,7 +101,7 @@ impl Owners {
 
     /// Those of a single body.
     fn of_one_body(cells: usize) -> Owners {
-        // the checksum of as many zeros, from those of powers of two of them
+        // the checksum of as many zeros, from the checksums of powers of two
         let (mut hasher, mut zeros) = (Hasher::new(), Hasher::new());
         zeros.update(&0_u16.to_le_bytes());
         for bit in 0..usize::BITS - cells.leading_zeros() {

@@ -28,7 +28,7 @@ pub(super) fn check_run(clock: &Clock, run: Option<&Progress>, scene: &Scene) ->
     Ok(())
 }
 
-/// Rejects fields that do not fit: those of a whole contact, or of `rows` of it.
+/// Rejects fields that do not fit a whole contact, or its `rows`.
 pub(super) fn check(
     state: &State,
     contact: &ViscoelasticContact,

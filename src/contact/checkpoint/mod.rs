@@ -55,12 +55,12 @@ impl ViscoelasticContact {
     /// # Ok::<(), Error>(())
     /// ```
     ///
-    /// Contacts may save to one path at once: the file is always that of one of them, the last to finish in the end. Where the path
+    /// Contacts may save to one path at once: the file always belongs to one of them, in the end to the last to finish. Where the path
     /// is a link, the file that it leads to is replaced.
     ///
     /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them. Each writes its rows to a file of its own
     /// beside `path`, whose name goes on with a mark of the save and a number; all must see the folder. Then the file at `path`,
-    /// which leads to those, is replaced, and those of the save before are removed. Whenever ranks are lost, it leads to all
+    /// which names them, is replaced, and the files of the previous save are removed. Whenever ranks are lost, it leads to all
     /// files of one save. What they had begun to write is left, and removed with the save after the next; so only one group may
     /// save to a path at a time. Any number of ranks can resume from it, one process too, and any number of ranks from the file
     /// of one process.

@@ -14,7 +14,7 @@ const PIECE: usize = 64;
 const NOTHING: f64 = -1.0;
 
 impl ViscoelasticContact {
-    /// The contact area \[m²\]: each rank finds the covered part of its rows of squares, and those of all are added in the
+    /// The contact area \[m²\]: each rank finds the covered part of its rows of squares, and the parts of all ranks are added in the
     /// order of the rows.
     pub(in crate::contact) fn shared_area(&self) -> f64 {
         let State { region, current, .. } = &self.computation.state;
@@ -77,7 +77,7 @@ impl ViscoelasticContact {
         }
     }
 
-    /// Rows of other ranks that are so near to own ones that they matter.
+    /// Halo: rows of other ranks that are near enough to the local rows to matter.
     fn rows_beside(&self, group: &dyn Ranks) -> BTreeMap<usize, Vec<f64>> {
         let reach = 1 + REACH as isize;
         let wanted = |rank: usize| {

@@ -25,7 +25,7 @@ pub(crate) struct Indenter {
     even: OnceLock<[bool; 2]>,
     /// Where loads may act on each body; found when one is first free to tilt.
     hulls: Vec<OnceLock<Hull>>,
-    /// Whether the gap is that of the rows of a rank, all else being known.
+    /// Whether the gap is known on the rows of a rank only.
     on_own_rows: bool,
 }
 

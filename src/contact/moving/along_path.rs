@@ -27,7 +27,7 @@ pub struct TravelReport {
     /// [`ViscoelasticContact::lateral_force`](crate::ViscoelasticContact::lateral_force).
     pub lateral_force: [f64; 2],
     /// The mean power over the step that the motion along the surface feeds into the bodies \[W\]: the work of the pressure
-    /// there, less that of force and moments. Lateral force times velocity, except that it includes the rim of a face. 0
+    /// there, less the work of force and moments. Lateral force times velocity, except that it includes the rim of a face. 0
     /// for a jump.
     pub power: f64,
 }

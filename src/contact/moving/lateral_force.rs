@@ -4,7 +4,7 @@ use crate::contact::stepper::ViscoelasticContact;
 
 impl ViscoelasticContact {
     /// The force \[N\] along x1 and x2 that moves `shape` along the surface without friction: ∬ p ∇h, less the tilt times the
-    /// normal force. `shape` is that of the (first) indenter where it is now, or the part of it that moves; of several rigid
+    /// normal force. `shape` is the shape of the (first) indenter where it is now, or the part of it that moves; of several rigid
     /// bodies, the pressure under the others does not count.
     ///
     /// It vanishes on elastic bodies, and in any even contact. Multiplied by the velocity of the indenter, it is the power that

@@ -15,7 +15,7 @@ impl ViscoelasticContact {
     /// Area of contact \[m²\].
     ///
     /// Near the edge of a smooth contact the pressure rises with the root of the distance, so that p² extrapolates to the
-    /// edge, to a part of a cell; the area is that of the polygons through these points. Where the pressure does not
+    /// edge, to a part of a cell; the area is the area of the polygons through these points. Where the pressure does not
     /// fall towards the edge, or there is nothing to touch beyond it, as at the rim of a punch, the contact ends with the
     /// cell. Measured on spheres: 2e-3 of the area at 64² cells and 5e-4 at 256², where counting cells
     /// ([`ViscoelasticContact::contact_cells`]) errs by 1.5e-2 and 4e-3. Where contact grows by creep, the cells that it has

@@ -155,7 +155,7 @@ impl StressHistory {
 }
 
 impl ViscoelasticContact {
-    /// The stress below the surface of the creeping body, that of [`Builder::material`](crate::contact::Builder::material),
+    /// The stress below the surface of the creeping body, the one of [`Builder::material`](crate::contact::Builder::material),
     /// under the pressure now.
     ///
     /// # Errors
@@ -165,7 +165,7 @@ impl ViscoelasticContact {
         self.stress_of(0)
     }
 
-    /// The stress below the surface of the other body, that of
+    /// The stress below the surface of the other body, the one of
     /// [`Builder::counter_body`](crate::contact::Builder::counter_body), x3 being the depth below its surface.
     ///
     /// # Errors

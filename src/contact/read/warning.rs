@@ -29,7 +29,7 @@ pub enum Warning {
     /// [`StepReport::fallback_iterations`](crate::contact::StepReport::fallback_iterations). The result is
     /// as accurate as any; if this happens often, take smaller steps or a larger tolerance.
     FallBack,
-    /// The table of the material leaves its creep uncertain, or does not look like that of a linear body: see
+    /// The table of the material leaves its creep uncertain, or does not look like the creep of a linear body: see
     /// [`FitReport::warning`](crate::rheology::FitReport::warning) of each of the
     /// [`Material::fit_reports`](crate::rheology::Material::fit_reports).
     UncertainMaterial,
@@ -122,7 +122,7 @@ impl Warnings {
         Warning::ALL.into_iter().filter(move |&warning| self.contains(warning))
     }
 
-    /// The union of two sets: the warnings of a run, from those of its steps.
+    /// The union of two sets: the warnings of a run, from the warnings of its steps.
     #[must_use]
     pub fn union(self, other: Warnings) -> Warnings {
         Warnings { bits: self.bits | other.bits }

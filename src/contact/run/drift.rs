@@ -3,7 +3,7 @@
 use crate::rheology::CreepSpectrum;
 
 /// Whether the defects of v of the steps so far add up. Under a given force a defect of v makes the bodies creep as a force would:
-/// defects of one sign leave an error in u that grows with the compliance of the bodies' age, those of changing sign cancel.
+/// defects of one sign leave an error in u that grows with the compliance of the bodies' age; defects of changing sign cancel.
 ///
 /// The response to the defects, and to their absolute values, by the same series: the ratio of both is how far they agree.
 #[derive(Debug, Clone)]

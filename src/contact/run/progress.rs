@@ -37,7 +37,7 @@ impl Progress {
         Progress { start: now, now, steps: 0, dt, control, scale: None, worst: None, mesh: None }
     }
 
-    /// Whether it is that of a run that begins like this one.
+    /// Whether it belongs to a run that begins like this one.
     pub(super) fn continues(&self, begun: &Progress) -> bool {
         let tolerance = |progress: &Progress| progress.control.as_ref().map(|control| control.tolerance);
         self.now == begun.now && self.dt == begun.dt && tolerance(self) == tolerance(begun)

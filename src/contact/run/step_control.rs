@@ -9,8 +9,8 @@ use crate::error::Result;
 use crate::hereditary::{ExponentialRule, LastingError, TimeError};
 use crate::load::{Load, LoadHistory, Tilt};
 
-/// Chooses steps whose error stays below the tolerance: that of the displacement within the step
-/// ([`History::time_error`](crate::hereditary::History::time_error)), and that of the load, which is taken to be the polynomial
+/// Chooses steps whose error stays below the tolerance: the error of the displacement within the step
+/// ([`History::time_error`](crate::hereditary::History::time_error)), and the error of the load, which is taken to be the polynomial
 /// through its values at the last three nodes and the end of the step.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]

@@ -23,9 +23,9 @@ impl Stepping {
         Stepping::Fixed { dt }
     }
 
-    /// Steps whose error in time is estimated to be at most `tolerance`, in \[1e-9, 0.1\]: that of the approach where a force
-    /// is given, that of the force where the approach is. It is relative to displacement or force, where these are large, and
-    /// else to the greatest of the run, of which small loads, and those that begin from nothing, are a part. Errors of the
+    /// Steps whose error in time is estimated to be at most `tolerance`, in \[1e-9, 0.1\]: the error of the approach where a force
+    /// is given, of the force where the approach is. It is relative to displacement or force, where these are large, and
+    /// else to the greatest of the run, of which small loads, and loads that begin from nothing, are a part. Errors of the
     /// pressure at a point may be larger, see [`ErrorBudget::pressure`](crate::contact::ErrorBudget::pressure). The solver is
     /// not asked for more than suits: [`Settings::tolerance`](crate::contact::Settings::tolerance) or 0.03 of `tolerance`,
     /// whichever is greater.

@@ -9,7 +9,7 @@ pub(crate) const MAX_REACH: f64 = 2.0;
 /// per step.
 const STEPS_BETWEEN_REFRESHES: usize = 62;
 
-/// K p is computed afresh, too, when the force has fallen by this factor: the rounding was that of the larger force.
+/// K p is computed afresh, too, when the force has fallen by this factor: the rounding came from the larger force.
 const FALL_BETWEEN_REFRESHES: f64 = 8.0;
 
 /// And when steps that grow have multiplied the rounding by this: a guess that reaches a times the last step ahead

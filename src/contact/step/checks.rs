@@ -75,7 +75,7 @@ pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Ste
     if !force.is_finite() {
         return overflow("the force");
     }
-    // no moment is greater than that of the whole force at the end of the longer side
+    // no moment is greater than the moment of the whole force at the end of the longer side
     let arm = scene.grid.lengths().into_iter().fold(0.0, f64::max);
     if !(arm * pressures.max(force)).is_finite() {
         return overflow("the moment of the force");

@@ -64,7 +64,7 @@ pub(in crate::contact) struct Outlook {
     pub(in crate::contact) resolution: f64,
     /// ... nor does anything that happens on a body without elastic response in so short a time, in which it hardly moves.
     pub(in crate::contact) beginning: f64,
-    /// Whether the length of the step is given: that of a first step after a jump or a corner is not chosen by its error then.
+    /// Whether the length of the step is given: the first step after a jump or a corner is then not chosen by its error.
     pub(in crate::contact) is_given: bool,
 }
 

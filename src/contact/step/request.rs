@@ -21,7 +21,7 @@ pub(in crate::contact) struct Step<'a> {
 }
 
 impl Step<'_> {
-    /// Whether the initial gap differs from that of the last step.
+    /// Whether the initial gap differs from the gap of the last step.
     pub(in crate::contact) fn has_new_indenter(&self, state: &State) -> bool {
         state.indenter_is_new || self.indenter.id() != state.indenter.id()
     }

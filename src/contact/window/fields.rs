@@ -26,7 +26,7 @@ impl Region {
 
     /// The part of a gap that belongs to the region; `None` if that is all of it.
     pub(crate) fn cut_gap(&self, gap: &Gap) -> Option<Gap> {
-        // of shared rows the gap is that of own ones
+        // on ranks the gap is given on local rows
         (!self.is_whole() && !self.is_shared()).then(|| Gap {
             datum: gap.datum,
             above: self.cut(&gap.above),

@@ -13,7 +13,7 @@ use crate::extent::Extent;
 use crate::geometry::Gap;
 use crate::solver::RigidMotion;
 
-/// Cells that a region holds beyond those that contact may reach, so that it need not grow every step.
+/// Cells that a region holds beyond the reach of contact, so that it need not grow every step.
 const MARGIN: f64 = 0.1;
 /// A region that would be larger than this part of the grid is all of it.
 pub(in crate::contact) const MAX_WINDOW_FRACTION: f64 = 0.7;

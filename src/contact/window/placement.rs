@@ -16,7 +16,7 @@ use crate::solver::RigidMotion;
 /// Bisections for the approach at first contact, an estimate.
 const HALVINGS: usize = 24;
 
-/// The region that a step has to begin on, unless it is that of the state: symmetric where the region is folded, and with
+/// The region that a step has to begin on, unless the state has it already: symmetric where the region is folded, and with
 /// the first contact within it. Told with it is whether it was chosen for a contact.
 ///
 /// # Errors
@@ -67,7 +67,7 @@ fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Regi
     touched.map(|touched| region_holding(&scene.grid, region.folded(), lowest.with(touched)))
 }
 
-/// A depth at which a body pressed by `normal` about comes to rest, above the datum: twice that of the level at which the
+/// A depth at which a body pressed by `normal` about comes to rest, above the datum: twice the depth of the level at which the
 /// gap has risen by a²/2R, see the cold start of the solver.
 fn depth(scene: &Scene, step: &Step<'_>, body: usize, normal: f64) -> f64 {
     let [lowest, rest] = level(

@@ -23,7 +23,7 @@ pub(crate) struct Region {
     pub(super) first: [usize; 2],
     /// Axes along which every field is even about the middle: only the upper half is computed.
     pub(super) folded: [bool; 2],
-    /// The rows of all ranks where they are shared out, and its cells are those of own ones.
+    /// The rows of all ranks where they are shared out; then its cells are the local ones.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     shared: Option<Rows>,
 }
@@ -40,7 +40,7 @@ impl Region {
         Region::new(grid, folded, first, [0, 1].map(|axis| all[axis] - first[axis]))
     }
 
-    /// All of `grid`, as [`Region::whole`], its rows shared out between the ranks that share out those of the grid.
+    /// All of `grid`, as [`Region::whole`], its rows shared out between the ranks of the grid.
     pub(crate) fn shared(grid: &Grid, folded: [bool; 2], rows: &Rows) -> Region {
         let Region { first: [start, first], grid: part, .. } = Region::whole(grid, folded);
         let [n1, n2] = part.cells();
@@ -123,7 +123,7 @@ impl Region {
         &self.grid
     }
 
-    /// Its rows, and what joins them with those of other ranks.
+    /// Its rows, with the reductions over all ranks.
     pub(crate) fn rows(&self) -> Rows {
         self.shared.clone().unwrap_or_else(|| Rows::all(self.cells()))
     }
@@ -137,7 +137,7 @@ impl Region {
         Modes::new(&self.grid, &self.rows(), freedom)
     }
 
-    /// The rows of the whole grid that fields are shown on: all, or, where they are shared out, own ones.
+    /// The rows of the whole grid that public fields cover: all, or the local rows of this rank.
     pub(crate) fn shown_rows(&self) -> Range<usize> {
         if self.is_shared() { self.computed_rows() } else { 0..self.whole.cells()[0] }
     }
@@ -179,7 +179,7 @@ impl Region {
         self.len() == self.shown_len()
     }
 
-    /// Whether it and its images are the whole grid, together with those of other ranks.
+    /// Whether the region of all ranks, with its mirror images, is the whole grid.
     pub(crate) fn covers(&self) -> bool {
         self.is_shared() || self.images() * self.len() == self.whole.len()
     }

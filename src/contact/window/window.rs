@@ -88,7 +88,7 @@ impl Window {
         (&self.kernel, &mut self.work)
     }
 
-    /// The row of a field before the own ones, if another rank has it.
+    /// The halo row of a field before the local rows, if another rank has it.
     pub(crate) fn row_before(&mut self, field: &[f64]) -> Option<&[f64]> {
         let (neighbours, ghosts) = self.beside.as_mut()?;
         let [rows, columns] = self.kernel.grid().cells();

@@ -59,7 +59,7 @@ impl HeightMap {
         let mut map = HeightMap::on(grid, memory::collect("a map on another grid", grid.len(), heights)?);
         map.require_known()?;
         map.center = HeightMap::middle_of(grid);
-        // If the old map has no missing points, those of the new one lie outside the old.
+        // If the old map has no missing points, missing points of the new one lie outside the old.
         map.masked = self.masked || self.missing == 0;
         let (old, new) = (self.lengths(), map.lengths());
         map.periodic = self.periodic && (0..2).all(|axis| (new[axis] / old[axis] - 1.0).abs() < 1e-9);

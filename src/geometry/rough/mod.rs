@@ -241,7 +241,7 @@ mod tests {
             - fine.initial_gap(-159.5 / 320.0, -159.5 / 320.0);
         for (k, here) in a.into_iter().enumerate() {
             let (i, j) = (k / 32, k % 32);
-            // After the shift, the centre of a coarse cell is that of a fine cell.
+            // After the shift, the centre of a coarse cell is the centre of a fine cell.
             let at = b[(10 * i + 5) * 320 + (10 * j + 4)];
             assert!((here - at - datum).abs() < 1e-12, "{} and {}", here, at + datum);
         }
@@ -283,7 +283,7 @@ mod tests {
         assert_eq!(refused(RoughSpec { roughness: Roughness::RmsSlope(0.0), ..SPEC }), "rms slope");
         let lay = Anisotropy { ratio: 0.5, direction: 0.0 };
         assert_eq!(refused(RoughSpec { anisotropy: lay, ..SPEC }), "ratio of the anisotropy");
-        // With a period of 1 no wavelength lies between 1/√2 and 1, except those that the spectrum excludes.
+        // With a period of 1 no wavelength lies between 1/√2 and 1, except wavelengths that the spectrum excludes.
         let between = RoughSpec { longest: 0.99, roll_off: 0.99, shortest: 0.72, ..SPEC };
         assert_eq!(refused(between), "shortest wavelength");
         for period in [[0.5, 1.0], [1.01, 1.0], [f64::NAN, 1.0]] {

@@ -29,7 +29,7 @@ use crate::error::{Result, finite, positive, within};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct RoughSpec {
-    /// Hurst exponent H, in (0, 1] (default: 0.8, that of many fractured, blasted and worn surfaces).
+    /// Hurst exponent H, in (0, 1] (default: 0.8, as of many fractured, blasted and worn surfaces).
     pub hurst: f64,
     /// Longest wavelength \[m\].
     pub longest: f64,

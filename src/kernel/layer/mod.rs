@@ -15,7 +15,7 @@ use wave::Response;
 
 use crate::error::{Error, KernelError, Result, length, within};
 
-/// Shear modulus of a layer over that of its base.
+/// Ratio of the shear moduli of a layer and its base.
 const SHEAR_RATIOS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 /// Compliance in the mean, over the thickness, below which a layer yields mostly by being squeezed out.
 const SQUEEZED: f64 = 0.02;
@@ -24,7 +24,7 @@ const SAME_POISSON: f64 = 1e-9;
 
 /// A layer of finite thickness on a base: a rubber sheet on steel, a gel on glass, a coating.
 ///
-/// Its thickness h and Poisson's ratio ν, and what holds it below. C(t) is that of the layer's material; the layer's
+/// Its thickness h and Poisson's ratio ν, and what holds it below. C(t) belongs to the layer's material; the layer's
 /// [`InfluenceKernel`](crate::InfluenceKernel) K holds the rest: a wave of pressure q displaces the surface by C
 /// (2/q) L(qh), where L = 1 is a half-space ([`Layer::compliance`]).
 ///
@@ -40,11 +40,11 @@ const SAME_POISSON: f64 = 1e-9;
 /// [`layer_line`](crate::InfluenceKernel::layer_line) in plane strain.
 ///
 /// On a rigid base the surface far from a load is at rest, and the approach of the indenter is measured from there,
-/// in line contact too. The mean is that of a layer compressed everywhere and free to go nowhere: its oedometric
+/// in line contact too. The mean belongs to a layer compressed everywhere, with no free side: its oedometric
 /// compliance, zero for an incompressible one.
 ///
 /// Layer and base creep by one function C(t): the base is rigid, or creeps as the layer does. A creeping layer on an
-/// elastic base is not of this form and not modelled. The layer's ν must be that of the material, and constant: the
+/// elastic base is not of this form and not modelled. The layer's ν must equal the material's, and constant: the
 /// contact is refused ([`KernelError::LayerMaterial`](crate::KernelError::LayerMaterial)) with another one, with
 /// [`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk), and with a counter body that deforms.
 ///
@@ -101,7 +101,7 @@ impl Layer {
     }
 
     /// A layer bonded to a half-space of another stiffness: `thickness` \[m\], Poisson's ratio `nu`, the shear
-    /// modulus of the layer over that of the base, G₁/G₂ at all times, and Poisson's ratio of the base `base_nu`.
+    /// modulus of the layer over the modulus of the base, G₁/G₂ at all times, and Poisson's ratio of the base `base_nu`.
     ///
     /// # Errors
     /// As [`Layer::bonded_to_rigid`]; if `shear_ratio` is not in \[1e-6, 1e6\], or `base_nu` is outside (−1, ½].
@@ -134,7 +134,7 @@ impl Layer {
     /// use viscocontact::Layer;
     ///
     /// let sheet = Layer::bonded_to_rigid(1.0e-3, 0.3)?;
-    /// // waves shorter than the thickness are those of a half-space, 2/q
+    /// // waves shorter than the thickness meet a half-space, 2/q
     /// assert!((sheet.compliance(2.0e4) - 1.0e-4).abs() < 1e-14);
     /// // and a uniform pressure compresses the sheet
     /// assert!((sheet.compliance(0.0) - 1.0e-3 * 0.4 / 0.49).abs() < 1e-18);
@@ -204,7 +204,7 @@ impl Layer {
         Remainder::of_wave(self.response(), self.thickness, last, kappa)
     }
 
-    /// Rejects a material whose Poisson's ratio is not that of the layer: `nu` for each body of a contact, none where
+    /// Rejects a material whose Poisson's ratio differs from the layer's: `nu` for each body of a contact, none where
     /// it is not constant.
     pub(crate) fn check_material(&self, bodies: &[Option<f64>]) -> Result<()> {
         let refused = |what| Err(Error::from(KernelError::LayerMaterial { layer: self.poisson, what }));

@@ -3,7 +3,7 @@
 //!
 //! Pieces follow f where it varies faster, and the half-waves of w where those are shorter. Of many half-waves only
 //! the first are integrated: the integrals over them alternate in sign, and of such a series repeated means of the
-//! partial sums converge as fast as those of its terms' differences vanish (Euler's transformation).
+//! partial sums converge as fast as the differences of its terms vanish (Euler's transformation).
 
 use std::f64::consts::PI;
 

@@ -1,6 +1,6 @@
 //! What a layer adds to the influence coefficients of a half-space.
 //!
-//! Of the compliance (2/q) L(qh), the half-space has (2/q), in Love's closed form or that of a line. The rest is
+//! Of the compliance (2/q) L(qh), the half-space has (2/q), in closed form: Love's, or a line's. The rest is
 //! smooth on the scale h: a point load adds, at the distance r,
 //!
 //! g(r) = (1/π) ∫ (L(qh) − 1) J0(qr) dq = G(r/h)/(πh),   G(ρ) = ∫ (L(t) − 1) J0(ρt) dt,

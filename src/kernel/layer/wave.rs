@@ -20,7 +20,7 @@
 //! with α = 2μ² k₂ + μ (k₁ − 1)(k₂ − 1) + 2 k₁, β = a μ (1 + k₂), γ = 4μ² k₂ + μ (k₁ − 3)(k₂ − 1) + 2 (k₁ − 1): nothing
 //! cancels in D, and in N only as far as γ may be negative, which is less than β makes up for.
 
-/// Beyond this t the response is that of a half-space, and e^(−2t) is zero.
+/// Beyond this t the layer responds like a half-space, and e^(−2t) is zero.
 const DEEP: f64 = 380.0;
 /// Below this t the hyperbolic functions less the first terms of their series are summed term by term.
 const SHALLOW: f64 = 0.75;
@@ -103,7 +103,7 @@ impl Response {
         }
     }
 
-    /// L(0): that of a base that is a half-space, relative to the layer; zero on a rigid base.
+    /// L(0): the compliance of a base that is a half-space, relative to the layer; zero on a rigid base.
     pub(super) fn longest(&self) -> f64 {
         self.at(0.0)
     }

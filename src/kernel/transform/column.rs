@@ -1,4 +1,4 @@
-//! The transform of a single column, that of a line contact: it needs no tiles and no rows.
+//! The transform of a single column, as of a line contact: it needs no tiles and no rows.
 
 use std::sync::Arc;
 
@@ -8,7 +8,7 @@ use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use super::SpectralOperator;
 use crate::kernel::lines::Line;
 
-/// The transform: a real one of half the work, or, of a folded column, that of folded lines.
+/// The transform: a real one of half the work, or, of a folded column, the transform of folded lines.
 #[derive(Clone)]
 pub(super) enum Column {
     Real(Arc<dyn RealToComplex<f64>>, Arc<dyn ComplexToReal<f64>>),

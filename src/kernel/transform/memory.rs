@@ -92,13 +92,13 @@ impl Shares {
         layout.operator_bytes_of(self.columns(layout).len())
     }
 
-    /// Bytes of its buffers: those of one thread, and what is sent and received.
+    /// Bytes of its buffers: buffers of one thread, and of sent and received numbers.
     pub(crate) fn workspace_bytes(&self, layout: &Layout) -> u128 {
         let whole = if layout.is_single_column() { REAL * layout.cells[0] as u128 } else { 0 };
         whole + layout.workspace_bytes_of(1, 2 * self.most() as u128)
     }
 
-    /// The same beside those of another operator, which lends what suffices.
+    /// Bytes of buffers beside another operator, whose buffers are borrowed where they suffice.
     pub(crate) fn workspace_bytes_beside(&self, layout: &Layout, lender: &Shares) -> u128 {
         let lends = !layout.is_single_column() && lender.most() >= self.most();
         self.workspace_bytes(layout) - if lends { COMPLEX * 2 * self.most() as u128 } else { 0 }

@@ -42,7 +42,7 @@ pub(crate) struct SpectralOperator {
     spectrum: Vec<f64>,
     /// The transform of a single column, which has no tiles.
     column: Option<Column>,
-    /// Who has which tiles of rows and panels of columns, if ranks share them out; `spectrum` is that of own columns.
+    /// Who has which tiles of rows and panels of columns, if ranks share them out; `spectrum` holds the local columns.
     shares: Option<Shares>,
 }
 
@@ -228,7 +228,7 @@ mod tests {
         (0..cells[0] * cells[1]).map(|k| ((k * k + 3) as f64).sin()).collect()
     }
 
-    /// Σ over all cells, and the images of those of folded axes, of `coefficient` at their distance.
+    /// Σ over all cells, and their mirror images along folded axes, of `coefficient` at their distance.
     fn sum(
         Layout { cells, folded, .. }: Layout,
         input: &[f64],

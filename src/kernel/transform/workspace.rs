@@ -14,10 +14,10 @@ use crate::parallel::lanes;
 pub(crate) struct TransformWorkspace {
     /// The layout that it was made for.
     pub(crate) layout: Layout,
-    /// Coefficients of the rows, in tiles: those of 8 rows side by side. A folded row holds the (real) coefficients of
+    /// Coefficients of the rows, in tiles: the coefficients of 8 rows side by side. A folded row holds the (real) coefficients of
     /// two.
     pub(super) tiles: Vec<Complex64>,
-    /// The same after the columns, those of 8 columns below each other; empty for a single thread, which works in
+    /// Coefficients after the columns, 8 columns below each other; empty for a single thread, which works in
     /// place, but for a rank what it sends or receives.
     pub(super) result: Vec<Complex64>,
     pub(super) lanes: Vec<Lane>,

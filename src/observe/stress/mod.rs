@@ -33,14 +33,14 @@ const FARTHEST: f64 = 1e40;
 /// The stress below the surface of a half-space under a pressure: on planes, on sections, at points, and where it is
 /// greatest. See [`ViscoelasticContact::stress`](crate::ViscoelasticContact::stress).
 ///
-/// x3 is the depth below the surface, x1 and x2 are those of the grid; tension is positive, σ33 at the surface is minus the
+/// x3 is the depth below the surface, x1 and x2 are the coordinates of the grid; tension is positive, σ33 at the surface is minus the
 /// pressure.
 ///
 /// **Which pressure.** Equations of equilibrium and compatibility contain no modulus but Poisson's ratio ν. While this is
 /// constant, the stress in a linear viscoelastic half-space is that in an elastic one under the tractions of the moment,
 /// known on the whole surface: the pressure now, and nothing beside the contact. Creep, and any history, act only by way of
 /// that pressure. Where ν changes as the body creeps ([`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk)),
-/// the stress is A p + B r, linear in 1 − 2ν: A p is that of ν = ½, and r = ∫ (1 − 2ν)(t − s) dp(s) remembers; see
+/// the stress is A p + B r, linear in 1 − 2ν: A p is the stress at ν = ½, and r = ∫ (1 − 2ν)(t − s) dp(s) remembers; see
 /// [`StressHistory`](crate::contact::StressHistory).
 ///
 /// **Which bodies.** A half-space loaded on the cells of the grid: closed forms of a rectangle, convolved on a padded grid.

@@ -22,7 +22,7 @@
 //! ```
 //!
 //! and the same with ξ and η exchanged. ρ − 1 = (ξ² + η²)/(ρ + 1); no other term cancels, whatever the signs of ξ and η: the
-//! forms with ln(ρ + x) that do are those of the displacement and of shear loads. χ_xx is the difference of two arc tangents,
+//! forms with ln(ρ + x) that do belong to the displacement and to shear loads. χ_xx is the difference of two arc tangents,
 //! joined so that no branch is left.
 //!
 //! For a strip, |η| → ∞ on both sides: plane strain (K. L. Johnson, Contact Mechanics, 1985, section 2.5).

@@ -46,8 +46,8 @@ impl Wave {
     }
 }
 
-/// The factors of the stress below a wave at a depth, for a unit pressure: those of σ13 and σ23 are of its slopes over q1 and
-/// q2, that of σ12 of both slopes.
+/// The factors of the stress below a wave at a depth, for a unit pressure: the factors of σ13 and σ23 multiply its slopes over q1 and
+/// q2, the factor of σ12 both slopes.
 pub(super) fn below_wave([q1, q2]: [f64; 2], z: f64, [all, by_ratio]: Weights) -> Stress {
     let q = q1.hypot(q2);
     if q == 0.0 {

@@ -108,7 +108,7 @@ impl Search {
         smoothest
     }
 
-    /// A smooth spectrum: second differences relative to the data at the same time, so that those of a power law vanish.
+    /// A smooth spectrum: second differences relative to the data at the same time, so that a power law has none.
     fn regularised(&self, samples: &[Sample], weight: f64) -> FittedSeries {
         let decades = (self.times[1] / self.times[0]).log10();
         let times = self.grid(SMOOTH_DENSITY.min(SMOOTH_TIMES / decades));

@@ -114,7 +114,7 @@ impl FitReport {
         FitReport { wrong_way, interval, warning, ..self }
     }
 
-    /// Whether misfits resemble those of their neighbours.
+    /// Whether neighbouring misfits resemble each other.
     fn is_systematic(&self) -> bool {
         let neighbours = self.samples.windows(2).filter(|pair| pair[0].function == pair[1].function);
         let (changes, pairs) = neighbours

@@ -23,7 +23,7 @@ impl Isotherm {
     /// Creep `compliances` \[1/Pa\] at `times` \[s\], measured at `temperature` \[K\].
     ///
     /// # Errors
-    /// If the temperature is not finite and positive, the slices differ in length, or the data are not those of a creep
+    /// If the temperature is not finite and positive, the slices differ in length, or the data are not a creep
     /// test ([`TabulatedCreep::new`]).
     pub fn creep(temperature: f64, times: &[f64], compliances: &[f64]) -> Result<Isotherm> {
         Isotherm::new(temperature, CREEP, times, &[compliances])

@@ -116,7 +116,7 @@ impl ActiveSet {
             ResidualSums { greatest_gap: self.set.greatest_gap, cells: self.set.count(), ..ResidualSums::default() };
         let (mut square, mut penetration, mut turned) = (0.0, 0.0_f64, 0.0_f64);
         for (body, found) in self.passes.survey(problem, &self.set.runs, a, motions, fields).iter().enumerate() {
-            // The fit is that of a change of the last motion: what the cells at hand do not determine remains as it was.
+            // The fit determines a change of the last motion: what the cells at hand do not determine remains as it was.
             let fit = self.set.fit(problem, body, &found.sums);
             motions[body] = motions[body].plus(-1.0, fit);
             let tilts = problem.bodies[body].tilts();

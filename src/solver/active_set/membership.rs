@@ -77,7 +77,7 @@ impl ActiveSet {
         problem.rows().any(self.set.runs.outside(solution.pressure.len()).any(pressed))
     }
 
-    /// Takes cells into A that penetrate deeper than `least`, but for those that are about to leave: they would bring a
+    /// Takes cells into A that penetrate deeper than `least`, except cells that are about to leave: they would bring a
     /// negative pressure with them, and change the force.
     pub(super) fn add_penetrating_cells(&mut self, problem: &Problem<'_>, least: f64, solution: &Solution) {
         let c = problem.compliance;

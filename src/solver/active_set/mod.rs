@@ -58,7 +58,7 @@ pub(crate) struct ActiveSet {
     /// The active set A.
     set: ContactSet,
     passes: Passes,
-    /// Rounding of c K p of the guess: where an approach is given, the pressure may fall far below that of the guess.
+    /// Rounding of c K p of the guess: where an approach is given, the pressure may fall far below the pressure of the guess.
     guess_rounding: f64,
     changes: PendingChanges,
     /// Whether the last step was cut short: cells that joined together may have held each other off, and the deepest one joins

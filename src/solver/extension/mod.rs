@@ -34,11 +34,11 @@ const TRUST: f64 = 1.5;
 /// their number.
 ///
 /// Where ranks share out the cells, their bands are whole rows of blocks of 16 × 16 cells. Blocks of 2 × 2, 4 × 4 and 8 × 8 are
-/// those of own rows, to which a row of a neighbour is added where a pass needs it. Larger ones, a 256th as many numbers as
+/// they hold the local rows, and a halo row where a pass needs it. Larger ones, a 256th as many numbers as
 /// there are cells, are gathered, and every rank computes all of them.
 #[derive(Debug, Clone)]
 pub(crate) struct Extension {
-    /// The cells, and which of their rows are own ones.
+    /// The cells, and which of their rows are local.
     rows: Rows,
     periodic: [bool; 2],
     levels: Vec<Level>,
@@ -50,7 +50,7 @@ pub(crate) struct Extension {
     local: usize,
     /// Own blocks of the first level that is gathered.
     own: Vec<f64>,
-    /// The rows beside the own ones of the cells.
+    /// The halo rows of the cells.
     ghosts: Ghosts,
     neighbours: Option<Neighbours>,
     /// Where E ebbs, the level of the blocks from which it does, and what remains.
@@ -146,7 +146,7 @@ impl Extension {
         16 * blocks + threads as u128 * RowBuffers::bytes(cells[1])
     }
 
-    /// Makes E that of the set of members.
+    /// Builds E for the set of members.
     pub(crate) fn fit(&mut self, member: &[bool]) {
         // the values are Σ w here, the sums of a field of ones
         self.push(Values::Members(member), |level| {
@@ -235,7 +235,7 @@ impl Extension {
         let Extension { rows, levels, share, buffers, local, neighbours, .. } = self;
         let Some(coarsest) = levels.last_mut() else { return };
         coarsest.value[0] *= *share;
-        // what remains of a level, and the rows beside those that are kept
+        // what remains of a level, and the halo rows of the levels that are kept
         let mut finish = |level: &mut Level, l: usize| {
             fade(ebb, l, &mut level.value);
             if let (true, Some(neighbours)) = (smooth && l < *local, neighbours.as_mut()) {

@@ -8,7 +8,7 @@ use num_complex::Complex64;
 use crate::parallel::{Ranks, Rows, depart};
 use crate::solver::extension::passes::{NOTHING_KNOWN, weight};
 
-/// The row before the own ones of a level, and the one behind them, where another rank has these.
+/// Halo rows of a level: the row before the local rows and the row after them, where another rank has these.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Ghosts {
     /// The rank that has each.
@@ -22,7 +22,7 @@ pub(crate) struct Ghosts {
 }
 
 impl Ghosts {
-    /// Of a level of so many rows and columns, of which each rank has those that `of` tells.
+    /// Of a level of so many rows and columns; `of` gives the rows of each rank.
     pub(crate) fn beside(
         rows: &Rows,
         of: impl Fn(usize) -> Range<usize>,
@@ -49,7 +49,7 @@ impl Ghosts {
         }
     }
 
-    /// The values of the row before the own ones, if another rank has it.
+    /// The values of the row before the local rows, if another rank has it.
     pub(crate) fn before(&self) -> Option<&[f64]> {
         self.partners[0].map(|_| &self.values[0][..])
     }
@@ -94,7 +94,7 @@ impl Neighbours {
         }
     }
 
-    /// Fills the rows beside the own ones, `columns` long; `write` gives the first own row, and the last.
+    /// Fills the halo rows, `columns` long; `write` gives the first local row, and the last.
     pub(crate) fn fetch(&mut self, ghosts: &mut Ghosts, columns: usize, own: usize, write: impl Fn(usize, &mut [f64])) {
         let Neighbours { group, row, send, received, counts } = self;
         let (row, length) = (&mut row[..columns], columns.div_ceil(2));

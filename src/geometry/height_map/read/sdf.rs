@@ -1,6 +1,6 @@
 //! Surface data files of ISO 25178-71 and EUR 15178.
 //!
-//! The layout is that of ISO 25178-71:2012. Records and number types of older files follow K. J. Stout et al.,
+//! The layout follows ISO 25178-71:2012. Records and number types of older files follow K. J. Stout et al.,
 //! *The development of methods for the characterisation of roughness in three dimensions*, EUR 15178 EN (1993), as
 //! documented by NIST (<https://physics.nist.gov/VSC/Help/DataFormat/SDF_Format.jsp>) and NPL
 //! (<http://resource.npl.co.uk/softgauges/Help.htm>).
@@ -26,7 +26,7 @@ impl HeightMap {
     /// Missing points are `BAD` in text; in binary they are the least number of their type, or NaN. Binary files may
     /// have the number types 3 (single precision), 4, 5, 6 (8, 16, 32 bits, signed) and 7 (double precision), little
     /// endian. Unsigned types are not supported: sources disagree on how they mark a missing point. The first profile
-    /// is that of smallest x2. Dates, `Zresolution` and the trailer are ignored.
+    /// has the smallest x2. Dates, `Zresolution` and the trailer are ignored.
     ///
     /// ```
     /// use viscocontact::geometry::HeightMap;
