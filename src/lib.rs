@@ -57,7 +57,7 @@
 //!
 //! # Conventions
 //!
-//! * **Units**: SI throughout: m, Pa, N, s. The same scene in other units gives the same answer.
+//! * **Units**: SI throughout: m, Pa, N, s. The same scene in other units gives the same result.
 //! * **Signs**: pressure is positive in compression, displacement positive into the bodies, the gap positive when open;
 //!   the approach grows as the bodies are pressed together.
 //! * **Stress** below the surface ([`observe::Stress`]): tension positive, x3 the depth.
@@ -129,7 +129,7 @@
 //! `tracing`: events of the `tracing` crate: steps accepted, rejected and failed, regions moved, series fitted.
 //!
 //! `rayon` (on by default): grids of 2¹⁵ computed cells or more are shared between the threads of the pool in which the
-//! contact is built. The answer is bitwise independent of the number of threads.
+//! contact is built. The result is bitwise independent of the number of threads.
 //!
 //! # Limitations
 //!

@@ -6,7 +6,7 @@
 //! one piece, which is returned at once, before any field is filled. This detects every scene larger than the machine.
 //! It does not detect a scene that fits the machine but not beside the other processes on it, a limit of a container
 //! (cgroup), or any lack of memory where the system overcommits without bounds (`vm.overcommit_memory` = 1). Where
-//! memory is committed when it is granted (Windows, `vm.overcommit_memory` = 2, `ulimit -v`) the answer is exact.
+//! memory is committed when it is granted (Windows, `vm.overcommit_memory` = 2, `ulimit -v`) the check is exact.
 
 use std::hint::black_box;
 

@@ -59,7 +59,7 @@ pub(crate) fn moments(field: impl Iterator<Item = f64>, columns: usize) -> Vec<f
     sums.to_vec()
 }
 
-/// How many sums tell a field from others.
+/// Number of sums that identify a field.
 #[cfg(feature = "checkpoint")]
 pub(crate) const MOMENTS: usize = 5;
 

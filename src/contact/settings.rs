@@ -34,7 +34,7 @@ pub struct Settings {
     /// \[bytes\] (default: 2 GiB).
     pub history_limit: usize,
     /// Whether only half or a quarter of the cells is computed where gap and load are even in x1, x2, or both, bitwise, and
-    /// the number of cells along that axis is even (default: true). The answer is the same except for rounding.
+    /// the number of cells along that axis is even (default: true). The result is the same except for rounding.
     pub symmetry: bool,
     /// Whether only the rectangle in which the bodies can touch is computed, and the rest of the grid on demand (default:
     /// true). The rectangle grows with the contact; a step in which it grows allocates memory. With direct sums, and on bodies
@@ -82,7 +82,7 @@ pub enum Solver {
 pub enum TimeRule {
     /// Exponential integration of the relaxation form, stable for steps of any length, one field per relaxation time. Within
     /// a step the displacement is a polynomial of time through its last values, and each step puts right the one before,
-    /// which knew one value less. Steps of given length take it to be linear: third order. Steps chosen by their error
+    /// which had one value less. Steps of given length take it to be linear: third order. Steps chosen by their error
     /// ([`Stepping::adaptive`](crate::contact::Stepping::adaptive)), and all of a body without elastic response (as
     /// Kelvin–Voigt), take it to be quadratic: fourth order, second without elastic response. A kink of the displacement, as
     /// at cells that come into contact, is met with second order.

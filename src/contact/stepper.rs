@@ -47,7 +47,7 @@ pub struct ViscoelasticContact {
     pub(super) scene: Arc<Scene>,
     /// What steps change, and what computes them.
     pub(super) computation: Computation,
-    /// What users see of it on the whole grid.
+    /// Fields on the whole grid, as users read them.
     pub(super) view: View,
     /// How far the run had come that was saved and resumed, for the next to go on.
     pub(super) progress: Option<Box<Progress>>,

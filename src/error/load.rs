@@ -26,7 +26,7 @@ pub enum LoadError {
         given: &'static str,
     },
 
-    /// A load history returned a breakpoint that is not later than the time asked for
+    /// A load history returned a breakpoint that is not later than the requested time
     /// ([`LoadHistory::next_breakpoint`](crate::load::LoadHistory::next_breakpoint)).
     #[error("the load history returned {breakpoint} s as the first breakpoint after t = {after} s: it must be later")]
     InvalidBreakpoint {

@@ -63,7 +63,7 @@ pub enum MaterialError {
     /// No published material has this name.
     #[error("there is no published material named {name:?}; known are: {known}")]
     Unknown {
-        /// The name asked for.
+        /// The requested name.
         name: String,
         /// The known names.
         known: String,

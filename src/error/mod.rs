@@ -262,7 +262,7 @@ pub enum Error {
     #[error(transparent)]
     Output(#[from] OutputError),
 
-    /// A contact that [ranks](crate::parallel) share out was asked for what it cannot do, or a rank has left or failed.
+    /// A contact that [ranks](crate::parallel) share out refused a request, or a rank has left or failed.
     #[error(transparent)]
     Ranks(#[from] RanksError),
 

@@ -25,7 +25,7 @@ pub enum RanksError {
     /// A contact that is shared out cannot do this.
     #[error("{what} is not possible on rows that ranks share out: compute the contact in one process")]
     NotShared {
-        /// What was asked for.
+        /// The request.
         what: &'static str,
     },
 }

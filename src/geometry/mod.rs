@@ -82,7 +82,7 @@ pub trait Geometry: Debug + Send + Sync {
     fn initial_gap(&self, x1: f64, x2: f64) -> f64;
 
     /// Writes the gap at every cell centre of `grid` into `gap` \[m\], which has one value per cell. Where
-    /// [ranks](crate::parallel) share out a contact, `grid` holds some rows of the whole: ask [`Grid::center`] where they are.
+    /// [ranks](crate::parallel) share out a contact, `grid` holds some rows of the whole: [`Grid::center`] gives their positions.
     ///
     /// Override it if a whole field is cheaper than its points one by one.
     ///

@@ -109,7 +109,7 @@ impl DirectSum {
         Ok((newest, 0))
     }
 
-    /// The same past on other cells; `carry` says what each increment is there.
+    /// The same past on other cells; `carry` gives each increment there.
     pub(crate) fn carried(&self, carry: impl Fn(&[f64]) -> Vec<f64>) -> DirectSum {
         let increments = self.increments.iter().map(|(when, increment)| (*when, carry(increment))).collect();
         DirectSum { increments, ..DirectSum::new(self.weighting) }

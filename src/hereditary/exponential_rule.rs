@@ -11,7 +11,7 @@ pub(crate) enum Interpolant {
     #[default]
     Linear,
     /// Linear, with the step before raised to a quadratic by what this step adds to its nodes. Quadratic for bodies with an
-    /// immediate dashpot, which answer the slope at the end.
+    /// immediate dashpot, which respond to the slope at the end.
     CorrectedLinear,
     /// Quadratic through the last three nodes, with the step before raised to a cubic.
     CorrectedQuadratic,
@@ -24,7 +24,7 @@ pub(crate) enum Interpolant {
 ///
 /// u + D₁ s + D₂ s (s − Δ), with the divided differences D_k at the end of the step,
 ///
-/// and the step before, which knew one node less, is put right: it gets the next term of its own, with the D_k found now.
+/// and the step before, which had one node less, is corrected: it gets its next term, with the D_k found now.
 /// With z_i = Δ/τ_i, and the moments I_k of [`moments`], that gives one field q_i for each relaxation time
 ///
 /// q_i ← e^(−z_i) q_i + E_i Σ_k (I_k + e^(−z_i) I_k′ of the step before) D_k,
@@ -100,7 +100,7 @@ const MAX_EXPONENT: f64 = 700.0;
 const LONGEST_CONTINUED: f64 = 4.0;
 /// ... nor one of a body with an immediate dashpot, whose errors grow beyond 1 + √2.
 const LONGEST_CONTINUED_OF_DASHPOT: f64 = 2.41;
-/// Steps whose lengths are farther apart than this factor say nothing about each other: its square must be a number.
+/// Steps whose lengths are farther apart than this factor are not used to extrapolate each other: its square must be a number.
 const FARTHEST_APART: f64 = 1e150;
 /// A step that is shorter than this part of the one before was cut short by something that happened: the step before is not
 /// told about it.
@@ -173,7 +173,7 @@ impl ExponentialRule {
         self.tried.c
     }
 
-    /// The first degree that u lacks on the step predicted last, as far as the steps before it tell, and γ of that degree; none
+    /// The first degree that u lacks on the step predicted last, as far as the steps before it determine, and γ of that degree; none
     /// after a jump or a corner.
     pub(super) fn missing(&self) -> Option<(usize, f64)> {
         let lacking = (self.tried.degree + 1).min(self.known + 1);
@@ -185,7 +185,7 @@ impl ExponentialRule {
         if self.has_dashpot() { self.relaxation.viscosity() / self.tried.dt } else { 0.0 }
     }
 
-    /// Of each relaxation time, in the step predicted last: the part of q_i that is left of it, its answer to a unit of u that is
+    /// Of each relaxation time, in the step predicted last: the part of q_i that is left of it, its response to a unit of u that is
     /// linear on the step, and its share in a defect of v.
     pub(super) fn responses(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         let dt = self.tried.dt;
@@ -204,7 +204,7 @@ impl ExponentialRule {
 
     /// What v lacks at a cell whose u, going on as before, was met by a body within the step: from then on u has changed more, as
     /// fast as by `jump` in a whole step, to be off by `bend` in the end. With θ = bend/jump the share of the step after the
-    /// meeting, v answers by Σ E_i (1 − e^(−θ z_i))/z_i jump, and by η jump/Δ.
+    /// meeting, v responds by Σ E_i (1 − e^(−θ z_i))/z_i jump, and by η jump/Δ.
     pub(super) fn kink(&self, jump: f64, bend: f64) -> f64 {
         let share = bend / jump;
         if !(share > 0.0 && share < 1.0) {
@@ -221,7 +221,7 @@ impl ExponentialRule {
         self.tried.corrects[1]
     }
 
-    /// Where the steps before do not tell how u goes on ([`Self::missing`]): what the step predicted last makes of a unit of v
+    /// Where the steps before do not determine how u continues ([`Self::missing`]): the response of the step predicted last to a unit of v
     /// that acts at once from its start on an undisturbed body, and of one that grows from 0.
     pub(crate) fn first_step_responses(&self) -> Option<[f64; 2]> {
         let Weights { dt, c, branches, .. } = &self.tried;
@@ -274,7 +274,7 @@ impl ExponentialRule {
             && follows(self.at_start)
     }
 
-    /// The past says nothing about how u goes on, as after a corner of the load.
+    /// The past does not determine how u continues, as after a corner of the load.
     pub(crate) fn forget_slopes(&mut self) {
         (self.known, self.lacking) = (0, 0);
     }

@@ -12,7 +12,7 @@ use crate::hereditary::transfer::Transfer;
 use crate::kernel::{LocalKernel, Workspace};
 use crate::rheology::{CreepSpectrum, Material};
 
-/// The displacement of a contact and what the bodies remember of its past.
+/// The displacement of a contact and the memory of its past.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct History {
@@ -29,9 +29,9 @@ pub(crate) struct History {
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 enum Rule {
-    /// By its own past.
+    /// By the past of the displacement itself.
     Exponential(ExponentialRule),
-    /// By the jump of the field that was convolved.
+    /// By the past of the pressure, whose convolution is the displacement.
     MovingFrame(ExponentialRule, Box<MovingFrame>),
     DirectSum(DirectSum),
 }
@@ -154,7 +154,7 @@ impl History {
         self.rule.exponential()
     }
 
-    /// The past says nothing about how the displacement goes on, as after a corner of the load.
+    /// The past does not determine how the displacement continues, as after a corner of the load.
     pub(crate) fn forget_slopes(&mut self) {
         if let Rule::Exponential(own) | Rule::MovingFrame(own, _) = &mut self.rule {
             own.forget_slopes();
@@ -182,7 +182,7 @@ impl History {
         self.start_is_kept = false;
     }
 
-    /// Returns to the start of the last step, which must be kept; `touched` tells whether the step was taken into a direct sum.
+    /// Returns to the start of the last step, which must be kept; `touched` is true if the step was taken into a direct sum.
     pub(crate) fn roll_back(&mut self, touched: bool) {
         let History { rule, displacement, far, start_is_kept } = self;
         far.iter_mut().for_each(RememberedField::roll_back);
@@ -243,7 +243,7 @@ impl History {
         let History { rule, displacement, far, .. } = self;
         match rule {
             Rule::Exponential(own) => {
-                // u tells nothing by its sign where pressures raise the surface
+                // the sign of u is no criterion where pressures raise the surface
                 let least_side = if kernel.raises() { f64::INFINITY } else { inputs.least_side };
                 displacement.predict_non_negative(own, (step.dt, step.interpolant), least_side, kernel.rows());
                 far.iter_mut().for_each(|far| far.predict(own));
@@ -301,7 +301,7 @@ impl History {
     }
 
     /// u − u_old, by which a free displacement recedes in the step predicted last: calls `take` with it for each cell that is
-    /// `wanted`. Only the exponential rule knows it.
+    /// `wanted`. Only the exponential rule has it.
     pub(crate) fn recovery(&self, wanted: impl Fn(usize) -> bool, mut take: impl FnMut(usize, f64)) {
         let Rule::Exponential(own) = &self.rule else { return };
         let RememberedField { past, now, .. } = &self.displacement;
@@ -309,7 +309,7 @@ impl History {
         past.recovery(&own.tried, now.len(), wanted, |k, by_past| take(k, held * now[k] + by_past));
     }
 
-    /// Accepts the step predicted last, given p and v = K p, each at its start and at its end; `touched` tells whether
+    /// Accepts the step predicted last, given p and v = K p, each at its start and at its end; `touched` is true if
     /// anything has ever been displaced.
     pub(crate) fn commit(&mut self, step: Interval, pressed: [[&[f64]; 2]; 2], touched: bool) {
         let History { rule, displacement, far, .. } = self;

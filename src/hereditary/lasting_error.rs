@@ -4,7 +4,7 @@ use crate::hereditary::exponential_rule::ExponentialRule;
 
 /// The mean error of u that the defects of earlier steps have left, with the errors of the q_i that belong to it. Bodies being
 /// linear, an error follows the recursion of u itself, as in a cell to whose q_i each step adds its defect: the defect relaxes, and
-/// u keeps its answer until the bodies creep back.
+/// u keeps its response until the bodies creep back.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct LastingError {

@@ -36,7 +36,7 @@ pub(super) fn moments(z: f64, past: f64) -> [f64; 3] {
     }
 }
 
-/// The slopes N_k′ at the end of the step, over Δ^(k − 1): what an immediate dashpot answers.
+/// The slopes N_k′ at the end of the step, over Δ^(k − 1): the response of an immediate dashpot.
 pub(super) fn slopes(past: f64) -> [f64; 3] {
     [1.0, 1.0, 1.0 + past]
 }

@@ -103,7 +103,7 @@ impl MovingFrame {
         [displacement, &mut self.source, &mut self.remainder].into_iter().for_each(RememberedField::roll_back);
     }
 
-    /// The same past on other cells; `carry` says what a field is there.
+    /// The same past on other cells; `carry` gives a field there.
     pub(crate) fn carried(
         &mut self,
         rule: &ExponentialRule,

@@ -1,4 +1,4 @@
-//! What a field remembers of its past.
+//! The memory of a field's past.
 
 use std::ops::Range;
 
@@ -252,7 +252,7 @@ impl Part<'_> {
         join(true, || before.share(true, job), || after.share(true, job));
     }
 
-    /// See [`Past::predict`]; `waiting` tells whether the last step has yet to be taken in.
+    /// See [`Past::predict`]; `waiting` is true while the last step has yet to be added.
     fn predict(self, rule: &ExponentialRule, waiting: bool) {
         let (tried, committed) = (&rule.tried, &rule.committed);
         let mut steps = [[0.0; BLOCK]; 3];

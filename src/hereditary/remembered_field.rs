@@ -12,7 +12,7 @@ const DIP: f64 = -1e-9;
 /// So small a part of the side of a cell is what a convolution leaves of nothing.
 const NOISE: f64 = -1e-14;
 
-/// A field, and what it remembers of its past. The bodies being linear, whatever the displacement is a convolution of
+/// A field and the memory of its past. The bodies being linear, whatever the displacement is a convolution of
 /// follows the recursion of the displacement itself.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]

@@ -28,19 +28,19 @@ pub(crate) struct ErrorMeasure<'a> {
     pub(crate) from_rest: bool,
     /// The depth below first touch to which bodies may come back, to a surface that recovers; 0 if they do not.
     pub(crate) coming_back: f64,
-    /// What v answers to a unit of u soon after bodies meet.
+    /// The response of v to a unit of u soon after bodies meet.
     pub(crate) stiffness: f64,
     /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
     pub(crate) lasting: [f64; 2],
     pub(crate) tolerance: f64,
     /// By how much the rigid body above a cell advances in the step.
     pub(crate) advance: &'a (dyn Fn(usize) -> f64 + Sync),
-    /// C(age)/C(Δ), by which an error in u grows in the end if the next steps err alike: a step answers a defect of v
+    /// C(age)/C(Δ), by which an error in u grows in the end if the next steps err alike: a step responds to a defect of v
     /// with the compliance of a step, all steps together with the compliance of their age.
     pub(crate) amplification: f64,
     /// How far the defects so far agree in sign, 0 … 1.
     pub(crate) agreement: f64,
-    /// An immediate dashpot answers a body that meets a cell with a finite pressure at once, however short the step: that counts
+    /// An immediate dashpot presses on a body that meets a cell with a finite pressure at once, however short the step: that counts
     /// in steps longer than this.
     pub(crate) resolution: f64,
     /// In steps shorter than this, a body with an immediate dashpot hardly moves.
@@ -74,7 +74,7 @@ const NOT_CORRECTED: f64 = 0.25;
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// Defects of cells that leave the contact count twice.
 const LEFT: f64 = 2.0;
-/// A force, and an immediate dashpot, answer a cell at the edge of the contact more than others: a rigid body presses hardest
+/// A force, and an immediate dashpot, press cells at the edge of the contact more than others: a rigid body presses hardest
 /// there.
 const EDGE: f64 = 3.0;
 /// The kinks of cells that joined stay in the past, and the kinks of successive steps do not cancel.
@@ -114,7 +114,7 @@ impl History {
         }
         let weight = Weight::new(measure.rows, measure.pressure, rule.has_dashpot());
         let pressed = weight.is_of_a_contact();
-        // a contact that opened in a step of which nothing can be told: it has to be seen to open
+        // the contact opened in a step without an error estimate: shorten the step until the opening is resolved
         if weight == Weight::PressureBefore
             && rule.missing().is_none()
             && measure.resolution > 0.0
@@ -147,7 +147,7 @@ impl History {
         let of_v = (EDGE * kinks).max(smooth);
         let error_of_u = if u_matters { relative(of_u, scales[0]) } else { 0.0 };
         let error_of_v = if v_matters { relative(of_v, scales[1]) } else { 0.0 };
-        // a body without elastic response answers in any short time with as great a force as one likes
+        // without an elastic response the force is unbounded at short times
         let stiffness = match (measure.matters[1], rule.has_dashpot()) {
             (false, _) => 0.0,
             (true, false) => measure.stiffness,

@@ -53,7 +53,7 @@ const MEMORY_WHILE_MADE: u128 = 3;
 /// Spectra are computed when first needed, and kept: being real and even, a quarter of the padded one is enough, about
 /// 8 bytes per cell. Without memory for them, the call that needs them first fails with [`Error::OutOfMemory`]. A
 /// [`Workspace`] holds one complex spectrum per row, about 16 bytes per cell, and twice that if several threads share
-/// the work (feature `rayon`, grids of 2¹⁵ cells or more, as many threads as the pool has; the answer is bitwise the
+/// the work (feature `rayon`, grids of 2¹⁵ cells or more, as many threads as the pool has; the result is bitwise the
 /// same).
 ///
 /// ```

@@ -11,7 +11,7 @@
 //!
 //! Each is a pure function of grid, pressure and gap; the methods apply it to the fields of a contact and change
 //! nothing. Each visits the cells once; observations that need displacement or gap cost as much as
-//! [`displacement`](crate::ViscoelasticContact::displacement). The stress costs what [`SubsurfaceStress`] says.
+//! [`displacement`](crate::ViscoelasticContact::displacement). [`SubsurfaceStress`] states the cost of the stress.
 
 pub(crate) mod area;
 mod asymmetry;

@@ -14,7 +14,7 @@ use crate::output::appended::{CLOSING, OPENING, Offsets, write_numbers, write_te
 #[cfg(feature = "npy")]
 use crate::output::npz::Archive;
 
-/// What the metadata cannot tell of a stress otherwise.
+/// Metadata that only a stress has.
 const NOTE: &str = "Pa; tension is positive; x3 is the depth below the surface";
 
 /// Writes the stress in a volume as an NPZ archive of NumPy: `time` \[s\], the cell centres `x1` and `x2` and the depths `x3`

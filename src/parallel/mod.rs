@@ -23,7 +23,7 @@
 //! # Ok::<(), Error>(())
 //! ```
 //!
-//! The answer does not depend on the number of ranks, bit by bit: sums are taken over bands of whole rows, and the bands are
+//! The result does not depend on the number of ranks, bit by bit: sums are taken over bands of whole rows, and the bands are
 //! added in the same order on every rank. A [`StepReport`](crate::contact::StepReport) is the same on all ranks; fields are
 //! fields of the [local rows](crate::ViscoelasticContact::rows), and [`gathered`](crate::ViscoelasticContact::gathered) brings
 //! them to one rank. Rows are given out in bands of about 8192 cells: more ranks than bands are possible, and have
@@ -33,7 +33,7 @@
 //! observations that look at all cells ([`moment`](crate::ViscoelasticContact::moment),
 //! [`max_pressure`](crate::ViscoelasticContact::max_pressure), [`contact_area`](crate::ViscoelasticContact::contact_area),
 //! [`lateral_force`](crate::ViscoelasticContact::lateral_force), [`profile`](crate::ViscoelasticContact::profile)), files and
-//! checkpoints. What a rank knows by itself may be asked by one
+//! checkpoints. What a rank has by itself may be read by one
 //! alone: time, force, approach, tilt, contact cells, own rows.
 //!
 //! | covered | refused, by [`RanksError::NotShared`] |
@@ -51,7 +51,7 @@
 //!
 //! No rank needs memory for the whole grid: [`Builder::ranks`](crate::contact::Builder::ranks), given before the geometry, has
 //! each evaluate it on own rows, random surfaces are made by [`Rough::shared`](crate::geometry::Rough::shared), coefficients of
-//! the kernel are computed by rows and kept by columns. [`Builder::memory`](crate::contact::Builder::memory) tells the bytes
+//! the kernel are computed by rows and kept by columns. [`Builder::memory`](crate::contact::Builder::memory) returns the bytes
 //! of a rank. Clones and snapshots are of the same ranks.
 //!
 //! [`Settings::window`](crate::contact::Settings::window) is passed over: the whole grid is computed, as far as symmetry

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 
 use crate::error::RanksError;
 
-/// An engine that runs several ranks at once. Two calls are asked of it, both of all ranks together.
+/// An engine that runs several ranks at once. It provides two calls, each a call of all ranks together.
 ///
 /// [`Threads`](super::Threads) is one; another, over MPI, is the crate `viscocontact-mpi`.
 ///

@@ -28,7 +28,7 @@ const MAX_DIFFERENCE_OVER_PEAK: f64 = 4.0;
 /// Bound of the power of the number of cells across with which the convolutions of a run grow.
 const MAX_WORK_ORDER: f64 = 0.4;
 /// A greatest pressure that depends on the steps on a coarse mesh does so more on a finer one, whose cells a growing edge
-/// crosses faster: beyond this share of what was asked it is not promised.
+/// crosses faster: beyond this share of the requested accuracy it is not promised.
 const MAX_PEAK_TIME_SHARE: f64 = 0.2;
 /// Fewest cells of an elastic contact whose greatest pressure bounds others, and what that may be off by.
 const BOUNDING_CELLS: usize = 12;
@@ -234,7 +234,7 @@ impl Meshes {
     }
 }
 
-/// Finds the steps and how approach, force, radius and greatest pressure converge with the mesh; `area` tells whether the
+/// Finds the steps and how approach, force, radius and greatest pressure converge with the mesh; `area` is true if the
 /// radius has to be resolved.
 pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result<Found> {
     let mut first = grid_with(extent, STEPS_ACROSS)?;
@@ -261,7 +261,7 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
         work: meshes.work(),
         steps: steps.clone(),
     };
-    // a pressure on a domain of its own asks nothing of these meshes
+    // a pressure with a domain of its own sets no demand on these meshes
     let unzoomed = |found: Found| match zoomed {
         Some(law) => Found { pressure: Convergence { converges: false, ..law }, ..found },
         None => found,

@@ -26,7 +26,7 @@ use crate::rheology::{Material, TemperatureHistory};
 /// across the contact further. The difference from a run with shorter steps shows the error in time; where it is more
 /// than its share, the steps are shortened. Where the pressure is greatest while the contact is small, as under a force
 /// held on a body that creeps much, that part of the run gets coarse runs on a domain of its own. The domain reaches from
-/// the origin as far as the contact does; cells are as long along each axis as the shape of the contact asks for.
+/// the origin as far as the contact does; the cells have the aspect ratio of the contact.
 ///
 /// # What is promised
 /// For twice the accuracy at most, relative to the greatest value of the run:
@@ -34,10 +34,10 @@ use crate::rheology::{Material, TemperatureHistory};
 /// * the greatest pressure of the run, if it converges and the coarse runs resolve its peak ([`Plan::pressure_converges`]),
 /// * with [`Plan::with_area`], the contact radius wherever the contact is at least 8 cells across.
 ///
-/// The plan says what it does not promise: [`Plan::mesh_error`] estimates the error of the area,
+/// The plan estimates what it does not promise: [`Plan::mesh_error`] estimates the error of the area,
 /// [`Plan::pressure_error_at_all_times`] the error of the greatest pressure at each time, which steps and cells resolve less well
 /// at growing edges, and [`Plan::time_error`] the error in time, which stays above the accuracy if shorter steps do not
-/// lower it. A scene that differs from the coarse runs only in what they cannot see, such as roughness finer than their
+/// lower it. A scene that differs from the coarse runs only in what they do not resolve, such as roughness finer than their
 /// cells or loads shorter than their steps, is beyond it. A contact far from the origin takes many cells that nothing
 /// touches: shift the shape ([`Shifted`](crate::geometry::Shifted)) and the points of the load.
 ///
@@ -71,7 +71,7 @@ pub struct Plan {
     /// Half sides of the rectangle that contains the contact at all times.
     reach: [f64; 2],
     steps: usize,
-    /// Tolerance of the steps, and the error in time that it was seen to leave.
+    /// Tolerance of the steps, and the measured error in time that it leaves.
     tolerance: f64,
     time_error: Option<f64>,
     convolutions: f64,

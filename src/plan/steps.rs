@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::plan::Accuracy;
 use crate::plan::coarse::{LEAST_TOLERANCE, Run, Scene, State, difference, greatest, relative};
 
-/// The error in time may take this share of what was asked, both errors together the second, and the error of the mesh at least
+/// The error in time may take this share of the requested accuracy, both errors together the second, and the error of the mesh at least
 /// the third.
 const MAX_TIME_SHARE: f64 = 0.6;
 const BOTH_SHARES: f64 = 0.9;

@@ -20,7 +20,7 @@ pub(crate) struct ContactSet {
     pub(crate) version: u64,
 }
 
-/// What the set says of one body.
+/// The part of the set that belongs to one body.
 #[derive(Debug, Clone, Default)]
 struct BodyContact {
     /// Number of cells.

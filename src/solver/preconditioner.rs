@@ -7,7 +7,7 @@ use crate::solver::contact_set::ContactSet;
 use crate::solver::extension::{Ebb, Extension, Range};
 
 /// What remains of the continued residual where the distance from the contact exceeds the thickness of a layer on a rigid
-/// base. There M acts as K⁻¹ of a bed of springs, which asks for no continuation, or of an incompressible layer, −∇⁻², whose
+/// base. There M acts as K⁻¹ of a bed of springs, which needs no extension, or of an incompressible layer, −∇⁻², whose
 /// pressure falls to zero at the edge: then the residual continues with the opposite sign. A fifth of that suits both.
 const BEYOND_LAYER: f64 = -0.2;
 
@@ -77,7 +77,7 @@ impl Preconditioner {
     }
 }
 
-/// How far a residual is continued. What lies on a half-space answers waves longer than it is thick as the half-space does.
+/// Range of the extension of the residual. For wavelengths beyond its thickness a layer on a half-space responds like the half-space.
 fn ebb(kernel: &LocalKernel) -> Option<Ebb> {
     let layer = kernel.layer()?;
     let remains = BEYOND_LAYER + (1.0 - BEYOND_LAYER) * layer.longest_over_half_space();

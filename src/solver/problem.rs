@@ -8,7 +8,7 @@ use crate::solver::trace::Trace;
 use crate::sum::greatest;
 
 /// Find p ≥ 0 and the free motions of the bodies with h = c K p + gap − motion ≥ 0, p h = 0, and the balance
-/// of force and moments that each freedom asks for (Eq. 2 and Eq. 3 of the paper).
+/// of force and moments that each freedom needs (Eq. 2 and Eq. 3 of the paper).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Problem<'a> {
     pub(crate) kernel: &'a LocalKernel,
@@ -22,11 +22,11 @@ pub(crate) struct Problem<'a> {
     pub(crate) bodies: &'a [Freedom],
     /// The body that each cell belongs to; `None` where there is one.
     pub(crate) owner: Option<&'a [u16]>,
-    /// Cells that are likely to be in contact, where the steps before tell.
+    /// Cells that are likely to be in contact, if earlier steps allow a prediction.
     pub(crate) likely: Option<&'a [bool]>,
 }
 
-/// A guess on entry, the answer on return.
+/// A guess on entry, the solution on return.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Solution {

@@ -31,7 +31,7 @@ use crate::solver::{Bands, Extension};
 /// bodies. Transforms need tables of their own length, which counts in line contacts: 144 bytes per cell.
 ///
 /// Counted allocations agree to 5 % and a few kB (`tests/allocations`). Not included: 8 bytes per computed cell from the first
-/// adaptive step of a body with elastic response that remembers (16 with a window, 24 with
+/// adaptive step of a body with elastic response and memory (16 with a window, 24 with
 /// [`Frame::Indenter`](crate::contact::Frame::Indenter)); the displacement where not all cells are
 /// computed, made on first use, with a kernel for the whole grid; 8 bytes per computed cell from the first load that tilts,
 /// or presses several bodies; [snapshots](crate::contact::Snapshot); the old state during a step that moves to a larger
@@ -92,7 +92,7 @@ pub(in crate::contact) struct Footprint<'a> {
     pub(in crate::contact) bodies: usize,
     pub(in crate::contact) settings: &'a Settings,
     pub(in crate::contact) kernel: &'a InfluenceKernel,
-    /// The rule that the bodies remember by.
+    /// The time rule of the history.
     pub(in crate::contact) history: &'a hereditary::History,
 }
 

@@ -23,7 +23,7 @@ pub(crate) struct Built {
     /// Sums over the gap.
     pub(super) shape: Vec<f64>,
     pub(super) owners: Owners,
-    /// Found when it is first asked for: it may take many evaluations.
+    /// Computed at the first call: it may take many evaluations.
     creep: OnceLock<Creep>,
 }
 

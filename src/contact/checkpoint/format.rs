@@ -117,7 +117,7 @@ pub(super) struct Whole {
 }
 
 impl Whole {
-    /// Opens a file of this format, and reads it once to see whether it is as it was written.
+    /// Opens a file of this format, and checks its checksum.
     pub(super) fn open(path: &Path) -> Result<Whole, CheckpointError> {
         let mut file = File::open(path).map_err(unreadable)?;
         let found = file.metadata().map_err(unreadable)?.len();

@@ -59,7 +59,7 @@ impl ViscoelasticContact {
     /// is a link, the file that it leads to is replaced.
     ///
     /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them. Each writes its rows to a file of its own
-    /// beside `path`, whose name goes on with a mark of the save and a number; all must see the folder. Then the file at `path`,
+    /// beside `path`, whose name continues with a mark of the save and a number; the folder must be common to all. Then the file at `path`,
     /// which names them, is replaced, and the files of the previous save are removed. Whenever ranks are lost, it leads to all
     /// files of one save. What they had begun to write is left, and removed with the save after the next; so only one group may
     /// save to a path at a time. Any number of ranks can resume from it, one process too, and any number of ranks from the file
@@ -88,7 +88,7 @@ impl ViscoelasticContact {
     /// memory), not in the rest. Where an indenter has moved, it is where it was.
     ///
     /// Scenes are compared by sums over gap and influence, the rigid body that each cell belongs to, and materials by their series, or by their compliance at eight times a decade
-    /// where they have none: of closures that agree there, nothing can tell. A run along a history that saved it
+    /// where they have none: closures that agree there cannot be told apart. A run along a history that saved it
     /// ([`Follow::autosave_to`](crate::contact::Follow::autosave_to)) goes on where it was with the next
     /// [`ViscoelasticContact::follow`].
     ///

@@ -1,4 +1,4 @@
-//! The checkpoint of several ranks: a file that says what they have in common, and beside it one for each with its rows.
+//! The checkpoint of several ranks: a file with what they have in common, and beside it one for each with its rows.
 //!
 //! Files with rows have names of their own save. The common file names them; it is replaced when they are complete on the
 //! medium, and the files of the previous save are removed after that. So whenever ranks are cut off, the common file leads to all

@@ -33,7 +33,7 @@ pub struct TravelReport {
 }
 
 impl ViscoelasticContact {
-    /// A step at whose end the indenter is where `travel` says: the bodies stay where they are. The time is the contact's own:
+    /// A step at whose end the indenter is where `travel` places it: the bodies stay where they are. The time is the contact's own:
     /// at its start the indenter should be at the path's position there.
     ///
     /// The sharper the shape, the shorter the steps: an indenter should not move by more than a part of the contact's

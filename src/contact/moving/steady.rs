@@ -113,7 +113,7 @@ impl ViscoelasticContact {
 }
 
 impl TowardSteady<'_> {
-    /// Makes one step, or says that the motion is steady.
+    /// Makes one step, or returns that the motion is steady.
     ///
     /// # Errors
     /// As [`ViscoelasticContact::step_over`], or if the load does not keep the bodies in touch, or the motion is not steady after ten times the length of the grid.

@@ -6,7 +6,7 @@ use crate::observe::SubsurfaceStress;
 use crate::rheology::Compressibility;
 use crate::{Grid, ViscoelasticContact, memory};
 
-/// What the stress below the surface remembers of a run, in a body with an elastic bulk.
+/// The memory of the stress below the surface of a body with an elastic bulk.
 ///
 /// Boussinesq's stress is linear in 1 − 2ν, so that by the correspondence principle the stress is A p + B r with
 /// r(t) = ∫ (1 − 2ν)(t − s) dp(s) in place of (1 − 2ν) p. For an elastic bulk of modulus B the operator of 1 − 2ν is
@@ -17,7 +17,7 @@ use crate::{Grid, ViscoelasticContact, memory};
 /// ```
 ///
 /// exactly, and r takes one field per retardation time of K. Within a step the pressure is taken as linear, for which r is
-/// exact: second order in the step. A contact does not compute r, since its displacements do not need it; who asks for it
+/// exact: second order in the step. A contact does not compute r, since its displacements do not need it; who needs it
 /// pays one field per retardation time and one pass over them per step.
 ///
 /// ```

@@ -13,7 +13,7 @@ pub(crate) struct View {
     pressure: Vec<f64>,
     /// The region that the pressure is of: elsewhere it is zero.
     region: Region,
-    /// Computed when it is first asked for.
+    /// Computed at the first call.
     displacement: OnceLock<Vec<f64>>,
 }
 

@@ -87,7 +87,7 @@ impl Follow<'_> {
     }
 }
 
-/// The order of the error of a step in its length, and whether an immediate dashpot answers it.
+/// The order of the error of a step in its length, and whether an immediate dashpot resists it.
 fn order_of(state: &State, settings: &Settings) -> (u32, bool) {
     match state.history.exponential_rule() {
         Some(rule) => (rule.order(settings.adaptive_interpolant()), rule.has_dashpot()),

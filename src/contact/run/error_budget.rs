@@ -34,10 +34,10 @@ pub struct ErrorBudget {
     /// which make no such error; `None` before the first step.
     ///
     /// Of steps chosen by their error it is what they were chosen by, or the error that all steps together have left, as far as a
-    /// mean over the contact tells, where that is greater. Steps of given length are estimated by the same, and the
+    /// mean over the contact gives, where that is greater. Steps of given length are estimated by the same, and the
     /// first after a jump or a corner of a force from the material alone. Measured on a sphere and six bodies
     /// (`tests/time/fixed_steps.rs`), the true error is 0.5 to 1.5 times the estimate for forces that jump or grow linearly.
-    /// It is up to 4.5 times where a force begins like a power of time, whose course in the first step nothing tells, and down
+    /// It is up to 4.5 times where a force begins like a power of time, whose course in the first step is unknown, and down
     /// to 0.05 times under a given motion of bodies that begin to touch, whose first cells are met in part.
     pub time: Option<f64>,
     /// Greatest error in time estimated for a step in a single cell, relative to the mean in contact: what the pressure at a

@@ -78,7 +78,7 @@ pub struct Follow<'a> {
 }
 
 impl ViscoelasticContact {
-    /// Follows a load history to the time `until` \[s\], step by step as `stepping` says.
+    /// Follows a load history to the time `until` \[s\], in steps chosen by `stepping`.
     pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Follow<'a> {
         Follow::new(Held::Borrowed(self), HeldHistory::Borrowed(history), stepping, until)
     }
@@ -145,7 +145,7 @@ impl<'a> Follow<'a> {
     ///
     /// # Errors
     /// If the end is not finite or lies before the contact's time, the fixed step is not finite and positive or too short to
-    /// change the time, the tolerance is out of range or asks for steps too short to change the time, the history returns an
+    /// change the time, the tolerance is out of range or needs steps too short to change the time, the history returns an
     /// invalid load at any time that is evaluated ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); a run looks
     /// over the whole history when it begins, for the greatest loads, and adaptive steps look between their ends, and ahead),
     /// or a step fails. The contact is then as it was after the last good step,
@@ -260,7 +260,7 @@ impl<'a> Follow<'a> {
         Ok(if stop <= end + same { stop } else { end })
     }
 
-    /// What is known of the error of the answer so far.
+    /// Estimates of the error of the run so far.
     pub fn error_budget(&self) -> ErrorBudget {
         self.progress.error_budget(self.contact.mesh_error().unwrap_or_default())
     }

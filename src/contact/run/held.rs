@@ -32,7 +32,7 @@ impl DerefMut for Held<'_> {
     }
 }
 
-/// A history that a run borrows or owns. The owned one borrows nothing, so that a run that is not used any more lets go of its
+/// A history that a run borrows or owns. The owned one borrows nothing, so that a run that is not used any more releases its
 /// contact before it is dropped.
 #[derive(Debug)]
 pub(in crate::contact) enum HeldHistory<'a> {

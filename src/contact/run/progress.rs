@@ -9,7 +9,7 @@ use crate::contact::run::step_control::StepControl;
 use crate::contact::run::stepping::Stepping;
 use crate::observe::MeshError;
 
-/// How far a run has come, and what it knows of the steps to come.
+/// How far a run has come, and its data on the steps to come.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Progress {

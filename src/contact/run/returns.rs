@@ -10,7 +10,7 @@ use crate::load::{Load, LoadHistory};
 pub(super) struct Returns(Vec<(f64, f64)>);
 
 impl Returns {
-    /// Of a history, as far as its loads at these ascending times tell; first touch is at the approach `touch`.
+    /// Of a history, as far as its loads at these ascending times show; first touch is at the approach `touch`.
     pub(super) fn new(history: &dyn LoadHistory, touch: f64, times: &[f64]) -> Result<Returns> {
         let (mut returns, mut receded, mut last) = (Returns::default(), false, None);
         for &time in times {

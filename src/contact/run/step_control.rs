@@ -35,7 +35,7 @@ pub(super) struct StepControl {
     pub(super) rejected: u64,
 }
 
-/// Bounds of the change of the step length; beyond 1 + √2 an immediate dashpot is answered by steps of lower order.
+/// Bounds of the change of the step length; beyond 1 + √2 an immediate dashpot needs steps of lower order.
 const MAX_GROWTH: f64 = 3.0;
 const MAX_GROWTH_OF_DASHPOT: f64 = 2.4;
 const MAX_SHRINKAGE: f64 = 0.2;
@@ -151,7 +151,7 @@ impl StepControl {
         Ok(())
     }
 
-    /// Takes account of the defects of a step that is to be accepted; `is_given` tells whether a motion is.
+    /// Takes account of the defects of a step that is to be accepted; `is_given` is true if a motion is given.
     pub(super) fn include(&mut self, rule: Option<&ExponentialRule>, dt: f64, error: &TimeError, is_given: bool) {
         self.steps += 1;
         self.drift.iter_mut().for_each(|drift| drift.include(dt, error.defect));
@@ -161,7 +161,7 @@ impl StepControl {
         surface.include(rule, error.surface, false);
     }
 
-    /// The time before `stop` at which the bodies first touch, as far as the load alone tells.
+    /// The time before `stop` at which the bodies first touch, as far as the load alone determines it.
     pub(super) fn first_touch(&self, state: &State, history: &dyn LoadHistory, stop: f64) -> f64 {
         let scale = self.scale.as_ref().filter(|_| state.is_undisturbed());
         scale.map_or(f64::INFINITY, |scale| scale.first_touch(history, state.clock.time, stop))
@@ -205,10 +205,10 @@ impl StepControl {
     }
 
     /// The length of the first step after a jump or a corner: the longest over which the creep is linear to within the
-    /// tolerance. After a corner, what creeps is the answer to the load's departure from how it went before.
+    /// tolerance. After a corner, the bodies creep under the load's departure from its course before.
     fn first(&self, scene: &Scene, state: &State, history: &dyn LoadHistory, left: f64) -> Result<f64> {
         let (now, jumped) = (state.clock.time, state.clock.last_dt == 0.0);
-        // a paraboloid answers with the power 2/3 of force and compliance
+        // the approach of a paraboloid grows with the power 2/3 of force and compliance
         let compliance = |t: f64| scene.material.contact_compliance(t).powf(2.0 / 3.0);
         let glassy = compliance(0.0);
         if glassy == 0.0 {

@@ -27,7 +27,7 @@ impl Stepping {
     /// is given, of the force where the approach is. It is relative to displacement or force, where these are large, and
     /// else to the greatest of the run, of which small loads, and loads that begin from nothing, are a part. Errors of the
     /// pressure at a point may be larger, see [`ErrorBudget::pressure`](crate::contact::ErrorBudget::pressure). The solver is
-    /// not asked for more than suits: [`Settings::tolerance`](crate::contact::Settings::tolerance) or 0.03 of `tolerance`,
+    /// not solved more exactly than suits: [`Settings::tolerance`](crate::contact::Settings::tolerance) or 0.03 of `tolerance`,
     /// whichever is greater.
     pub fn adaptive(tolerance: f64) -> Stepping {
         Stepping::Adaptive { tolerance }

@@ -20,7 +20,7 @@ const GROWTH_BETWEEN_REFRESHES: f64 = 1e3;
 #[derive(Debug, Clone, Copy)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Extrapolation {
-    /// Length of the last step, 0 where it says nothing about the next.
+    /// Length of the last step, 0 where the next must not extrapolate from it.
     last_dt: f64,
     /// Steps that are still to compute K p afresh.
     due: usize,
@@ -49,7 +49,7 @@ impl Extrapolation {
         self.due > 0
     }
 
-    /// The last step says nothing about the next.
+    /// The next step must not extrapolate from the last.
     pub(crate) fn interrupt(&mut self) {
         self.last_dt = 0.0;
     }

@@ -54,7 +54,7 @@ pub(crate) struct Clock {
 }
 
 impl Clock {
-    /// After a step; `touched` tells whether anything has ever been displaced.
+    /// After a step; `touched` is true if anything has ever been displaced.
     pub(super) fn accept(&mut self, step: Interval, touched: bool) {
         (self.time, self.last_length) = (step.time, step.length);
         (self.reduced_time, self.last_dt) = (step.reduced, step.dt);

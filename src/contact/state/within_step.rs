@@ -10,7 +10,7 @@ impl ViscoelasticContact {
     /// which a step ends.
     ///
     /// It is the contact at the start of the step, advanced by a shorter step of the same rule: its state is as exact as one at
-    /// the end of a step. This contact stays as it is. The load is taken to be linear between the ends of the step; a run knows
+    /// the end of a step. This contact stays as it is. The load is taken to be linear between the ends of the step; a run has
     /// the loads in between, and [`Follow::within_step`] takes them from there.
     ///
     /// This costs a copy of the contact and a contact problem. Where ranks share out the contact, all of them call it.

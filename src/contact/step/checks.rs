@@ -13,7 +13,7 @@ use crate::rheology::is_known;
 use crate::solver::{Counts, Outcome, Solution};
 
 /// Rejects a step whose loading time is longer than the material is known for, if the bodies are `touched`: what
-/// was never touched has nothing to remember.
+/// was never touched has no history.
 pub(super) fn material_is_known(scene: &Scene, state: &State, step: &Step<'_>, touched: bool) -> Result<()> {
     let Interval { time, reduced, .. } = step.interval;
     let (age, known_until) = (reduced - state.clock.undisturbed_until, scene.material.known_until());

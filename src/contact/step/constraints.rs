@@ -1,4 +1,4 @@
-//! What the loads of a step ask of the bodies: which motions they leave free, and which they prescribe.
+//! The constraints of a step's loads: which motions they leave free, and which they prescribe.
 
 use crate::Grid;
 use crate::contact::scene::Scene;

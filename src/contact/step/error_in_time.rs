@@ -40,13 +40,13 @@ fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
     tried.state.region.rows().least(surface.fold(f64::INFINITY, f64::min))
 }
 
-/// A direct sum assigns an increment to one end of its step: on average it answers it half a step too early or too late.
+/// A direct sum assigns an increment to one end of its step: on average the response is half a step too early or too late.
 const SHARE_OF_DIRECT_SUM: f64 = 0.5;
 
 /// A body that comes back to a surface meets it with the modulus of this time, in times that matter.
 const SHORTEST_TOUCH: f64 = 10.0;
 
-/// What a run knows besides the step.
+/// Data of a run besides the step.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::contact) struct Outlook {
     /// Mean displacement and v that are to be expected of the greatest loads.

@@ -1,4 +1,4 @@
-//! The error in time of a step that no step before it tells about.
+//! The error in time of a step without steps before it to compare with.
 
 use std::ops::Range;
 
@@ -9,12 +9,12 @@ use crate::sum::greatest;
 
 /// The mean of the compliance over a step is the sum of trapezia between so many times, each 1/√2 of the one before.
 const TIMES: i32 = 60;
-/// A paraboloid under a given force answers with this power of the compliance; a punch with the first.
+/// The approach of a paraboloid under a given force is this power of the compliance; of a punch, the first.
 const POWER: f64 = 2.0 / 3.0;
 
 /// The error of the displacement, relative to its mean in contact, of the first step after a jump or a corner of the load.
 ///
-/// To a v that jumps by V₀ at the start of the step, and changes by V₁ on it, undisturbed bodies answer with C(Δ) V₀ + C̄ V₁,
+/// To a v that jumps by V₀ at the start of the step, and changes by V₁ on it, undisturbed bodies respond with C(Δ) V₀ + C̄ V₁,
 /// where C̄ is the mean of C over the step, and the rule with responses of its own. Means over the contact, weighted by the
 /// pressure. The creep of what pressed the bodies before is taken to be followed.
 pub(super) fn first_step_error(scene: &Scene, tried: &Computation, step: &Step<'_>, least: f64) -> f64 {

@@ -18,10 +18,10 @@ const MAX_FORCE_RATIO: f64 = 1.5;
 /// guide: the last pressure is scaled by what is left.
 const MAX_SHARE_LEFT: f64 = 0.5;
 
-/// Least distance, in cells, by which the edge of the contact must be expected to move for the next contact to be foreseen.
+/// Least distance, in cells, by which the edge of the contact must be expected to move for the next contact to be predicted.
 const MIN_EDGE_SPEED: f64 = 0.5;
 
-/// Least share of the cells in contact, now and in the next step, that must stay in contact: the law of the edge says nothing of
+/// Least share of the cells in contact, now and in the next step, that must stay in contact: the law of the edge does not cover
 /// the cells far from it.
 const MIN_SHARE_STAYING: f64 = 0.5;
 
@@ -50,7 +50,7 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
     }
     let positive = |p: f64| if p > 0.0 { p } else { 0.0 };
     let guessed = rows.sum_of_pairs(&now.pressure, &before.pressure, |p, before| positive(p + reach * (p - before)));
-    // a single force says what the guess must carry; else it should not stray far from the last state
+    // a single force fixes the load of the guess; else the guess should not stray far from the last state
     let wanted = match trial.free[..] {
         [only] if only.translation => only.total,
         _ => state.current.sum,
@@ -60,7 +60,7 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
         reach = 0.0;
     }
     trial.reach = reach;
-    // full contact of bodies whose mean is held does not tell how hard a given approach presses
+    // full contact of bodies whose mean is held does not fix the force of a given approach
     let full = state.region.covers() && state.current.contact_cells == state.region.images() * rows.len();
     if held && full && window.kernel().mean_is_held() {
         return trial.solution.release();

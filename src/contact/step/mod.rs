@@ -70,7 +70,7 @@ impl ViscoelasticContact {
     ///
     /// # Errors
     /// If `dt` or a force is negative, a number not finite, a force acts where it would topple the body, `dt` = 0 and the body
-    /// has no elastic response for the pressure that the load asks for, contact reaches the edge of the grid (unless
+    /// has no elastic response for the pressure that the load needs, contact reaches the edge of the grid (unless
     /// [`Edge::Allow`](crate::contact::Edge::Allow)), the solver does not converge, a creep closure returns an impossible
     /// value, the material is not known for so long a time, a direct sum has filled its memory, there is none for the cells
     /// that the contact reaches ([`Error::OutOfMemory`]), or there are several rigid bodies. The contact is then exactly as it
@@ -269,7 +269,7 @@ impl Computation {
         let touched = state.is_undisturbed() && state.region.is_positive_anywhere(pressure);
         material_is_known(scene, state, step, touched)?;
 
-        // what the bodies will remember
+        // the history of the bodies
         let (integrated, before) = (state.history.integrates_displacement(), &state.current.solution.pressure);
         let bodies = RigidBodies { region: &state.region, initial: window.gap(&step.indenter), prescribed };
         state.history.respond(c, [pressure, &trial.solution.potential], |now, u| {

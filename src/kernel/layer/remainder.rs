@@ -11,7 +11,7 @@
 //!
 //! ξ = x/h, to −(2/π) ln(|x|/2h): from ∫ (1 − e^(−2t))/t cos(ξt) dt = ½ ln(1 + 4/ξ²). Where L(0) = 0, on a rigid base,
 //! both together vanish far away, as e^(−1.19ξ) or sooner. Elsewhere −(2/π) L(0) ln ξ remains, and the user's datum
-//! says where the surface stays. A wave of wave number κ along a line load adds
+//! is the datum of the surface. A wave of wave number κ along a line load adds
 //!
 //! w(x) = (2/π) ∫ (L(τ) − 1)/τ cos(ξt) dt,   τ = √(t² + κ²h²),
 //!

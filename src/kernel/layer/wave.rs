@@ -1,4 +1,4 @@
-//! How a layer answers a wave of pressure.
+//! The response of a layer to a wave of pressure.
 //!
 //! A pressure cos qx displaces the surface of the layer by C (2/q) L(t) cos qx, t = qh. In plane strain, with Airy's
 //! function φ = f(z) cos qx, f = (A + B z) e^(−qz) + (C + D z) e^(qz), the surface gives f(0) = 1/q², f′(0) = 0, and
@@ -108,7 +108,7 @@ impl Response {
         self.at(0.0)
     }
 
-    /// The least t at which L changes its course: soft bases answer waves much longer than the layer is thick.
+    /// The least t at which L changes its course: soft bases dominate for waves much longer than the layer is thick.
     pub(super) fn least_scale(&self) -> f64 {
         match self {
             Response::Bonded(own) if own.cosh > 0.0 => (own.constant / own.cosh).min(1.0),

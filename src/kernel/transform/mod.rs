@@ -8,7 +8,7 @@
 //! * An axis about which all fields are even is folded: half of the cells, cosine transforms.
 //! * Between rows and columns the coefficients are stored in tiles of 8 × 8, so that both passes access contiguous
 //!   memory; a column is transformed, multiplied and transformed back while it is in cache.
-//! * Rows and columns are independent of each other: threads share them, and the answer is bitwise the same.
+//! * Rows and columns are independent of each other: threads share them, and the result is bitwise the same.
 
 mod column;
 mod memory;
@@ -53,7 +53,7 @@ impl SpectralOperator {
         SpectralOperator::new(layout, None, symbol)
     }
 
-    /// The same where ranks share out the rows; `symbol` is asked for own columns k2 alone.
+    /// The same where ranks share out the rows; `symbol` is called for local columns k2 alone.
     pub(crate) fn shared(layout: Layout, shares: Shares, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator {
         SpectralOperator::new(layout, Some(shares), symbol)
     }
@@ -212,7 +212,7 @@ mod tests {
     use crate::kernel::layout::Ends;
 
     impl SpectralOperator {
-        /// Convolution with the even kernel whose coefficient at distance (i, j) is `coefficient(i, j)`; asked for
+        /// Convolution with the even kernel whose coefficient at distance (i, j) is `coefficient(i, j)`; called for
         /// distances below the number of cells (twice that along a folded axis), taken as zero beyond.
         pub(crate) fn from_coefficients(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> SpectralOperator {
             let spectrum = EvenSpectrum::of(layout, None, coefficient);

@@ -55,7 +55,7 @@ const FARTHEST: f64 = 1e40;
 /// further one: (1 + qz) e^(−qz)/π for the wave q = 2π/side.
 ///
 /// Cost: a plane takes one closed form per cell, three forward and three inverse complex transforms of the padded grid, on as
-/// many threads as the pool has (feature `rayon`, with the same answer); a section at most as many closed forms per depth, and
+/// many threads as the pool has (feature `rayon`, with the same result); a section at most as many closed forms per depth, and
 /// an eighth of the transforms; a point one closed form per loaded cell.
 ///
 /// ```

@@ -76,7 +76,7 @@ impl ActiveSet {
             if without_gain > MAX_ITERATIONS_WITHOUT_GAIN {
                 return Outcome::Stagnated;
             }
-            // the set that was foreseen is not judged before it carries pressure
+            // do not test the predicted set at iteration 0: it has no pressure yet
             let foreseen = problem.likely.is_some() && solution.counts.iterations == 0;
             // small pressures that leave are all that is left to do
             let solved = solution.residual <= stop.tolerance && self.changes.any();

@@ -30,7 +30,7 @@ const TRUST: f64 = 1.5;
 ///
 /// Axes that are not periodic are mirrored at their ends, which is what they are on the parts that symmetry leaves of a grid.
 ///
-/// Every row of a level is computed from finished rows of another one: threads share the rows, and the answer does not depend on
+/// Every row of a level is computed from finished rows of another one: threads share the rows, and the result does not depend on
 /// their number.
 ///
 /// Where ranks share out the cells, their bands are whole rows of blocks of 16 × 16 cells. Blocks of 2 × 2, 4 × 4 and 8 × 8 are
