@@ -1,7 +1,42 @@
 //! Sums in lanes: additions are independent of each other, and rounding errors grow more slowly with the number of
 //! values.
 
+/// A struct of sums and maxima over cells, each with a name, that bands and ranks reduce as an array of numbers.
+///
+/// `named_sums!(Found { force: +, deepest: max })` declares `Found` with the constructor `of` from numbers, the method `numbers`, and
+/// `joined`, which adds the one and takes the greater of the other. All begin at zero.
+macro_rules! named_sums {
+    ($(#[$of:meta])* $name:ident [$count:literal] { $($(#[$doc:meta])* $field:ident: $join:tt,)* }) => {
+        $(#[$of])*
+        #[derive(Default)]
+        struct $name { $($(#[$doc])* $field: f64,)* }
+
+        impl $name {
+            fn of([$($field),*]: [f64; $count]) -> $name {
+                $name { $($field),* }
+            }
+
+            fn numbers(self) -> [f64; $count] {
+                [$(self.$field),*]
+            }
+
+            fn joined(a: [f64; $count], b: [f64; $count]) -> [f64; $count] {
+                let (a, b) = ($name::of(a), $name::of(b));
+                [$(named_sums!(@ $join a.$field, b.$field)),*]
+            }
+        }
+    };
+    (@ + $a:expr, $b:expr) => { $a + $b };
+    (@ max $a:expr, $b:expr) => { f64::max($a, $b) };
+}
+pub(crate) use named_sums;
+
 const LANES: usize = 8;
+
+/// The sum of two bands' sums, number by number.
+pub(crate) fn add<const K: usize>(a: [f64; K], b: [f64; K]) -> [f64; K] {
+    std::array::from_fn(|n| a[n] + b[n])
+}
 
 /// Σ values.
 pub(crate) fn sum(values: &[f64]) -> f64 {

@@ -6,6 +6,7 @@ use crate::hereditary::error_weight::Weight;
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::history::History;
 use crate::parallel::Rows;
+use crate::sum::named_sums;
 
 /// What the error in time of a step is measured by, besides the displacement.
 #[derive(Clone, Copy)]
@@ -126,7 +127,7 @@ impl History {
         if sums.weight == 0.0 {
             return TimeError::default();
         }
-        let sizes = sums.sizes.map(|size| size / sums.weight);
+        let sizes = [sums.of_u, sums.of_v].map(|size| size / sums.weight);
         let scales = [0, 1].map(|which| sizes[which].max(measure.least[which]));
         let Defect { signed, smooth, kinks, greatest, surface: [surface, of_surface] } =
             sums.defect(rule, measure.resolution);
@@ -190,8 +191,8 @@ impl History {
                     continue;
                 }
                 sums.weight += w;
-                sums.sizes = [sums.sizes[0] + w * u.abs(), sums.sizes[1] + w * v.abs()];
-                sums.touching += usize::from(touches);
+                (sums.of_u, sums.of_v) = (sums.of_u + w * u.abs(), sums.of_v + w * v.abs());
+                sums.touching += f64::from(u8::from(touches));
                 let going_on = if lacking > 0 { to_first * first[k] } else { 0.0 };
                 let bend = (u - u_before) - going_on;
                 if touches && !touched {
@@ -207,7 +208,8 @@ impl History {
                 (sums.signed, sums.absolute) = (sums.signed + w * size.copysign(last), sums.absolute + w * size);
                 if !touches {
                     let surface = depth * size;
-                    sums.surface = [sums.surface[0] + surface.copysign(last), sums.surface[1] + surface];
+                    sums.surface += surface.copysign(last);
+                    sums.absolute_surface += surface;
                 }
                 if touches {
                     sums.steepest = sums.steepest.max(size);
@@ -217,7 +219,7 @@ impl History {
             }
             sums.numbers()
         };
-        Sums::of(measure.rows.merge(part, |a, b| Sums::of(a).merge(Sums::of(b)).numbers()))
+        Sums::of(measure.rows.merge(part, Sums::joined))
     }
 }
 
@@ -227,27 +229,37 @@ fn relative(part: f64, whole: f64) -> f64 {
     if ratio.is_nan() { f64::INFINITY } else { ratio }
 }
 
-/// Sums over the cells, with their weights w.
-#[derive(Default)]
-struct Sums {
-    weight: f64,
-    /// Of w |u| and w |v|.
-    sizes: [f64; 2],
-    /// Of w d and w |d|, where d is the last difference; cells that join do not count.
-    signed: f64,
-    absolute: f64,
-    /// The greatest |d| of cells in contact, and of cells that left it.
-    steepest: f64,
-    left: f64,
-    /// Cells in contact.
-    touching: usize,
-    /// Of what v lacks by kinks, of the squares of the most that it can lack, and the greatest of either.
-    kinks: f64,
-    squares: f64,
-    sharpest: f64,
-    /// Of the depths to which bodies may come back, and, of cells out of contact, of these times d and |d|.
-    depth: f64,
-    surface: [f64; 2],
+named_sums! {
+    /// Sums over the cells, with their weights w.
+    Sums[14] {
+        weight: +,
+        /// Σ w |u|.
+        of_u: +,
+        /// Σ w |v|.
+        of_v: +,
+        /// Σ w d, where d is the last difference; cells that join do not count.
+        signed: +,
+        /// Σ w |d|.
+        absolute: +,
+        /// The greatest |d| of cells in contact.
+        steepest: max,
+        /// The greatest |d| of cells that left the contact.
+        left: max,
+        /// Number of cells in contact.
+        touching: +,
+        /// Sum of what v lacks by kinks.
+        kinks: +,
+        /// Sum of the squares of the most that v can lack by each kink.
+        squares: +,
+        /// The greatest of either.
+        sharpest: max,
+        /// Sum of the depths to which bodies may come back.
+        depth: +,
+        /// Sum, over cells out of contact, of these depths times d.
+        surface: +,
+        /// Sum, over cells out of contact, of these depths times |d|.
+        absolute_surface: +,
+    }
 }
 
 /// Mean defects of v.
@@ -264,78 +276,6 @@ struct Defect {
 }
 
 impl Sums {
-    fn numbers(self) -> [f64; 14] {
-        let Sums {
-            weight,
-            sizes,
-            signed,
-            absolute,
-            steepest,
-            left,
-            touching,
-            kinks,
-            squares,
-            sharpest,
-            depth,
-            surface,
-        } = self;
-        let ([size, other], [of_surface, absolute_of_surface]) = (sizes, surface);
-        [
-            weight,
-            size,
-            other,
-            signed,
-            absolute,
-            steepest,
-            left,
-            touching as f64,
-            kinks,
-            squares,
-            sharpest,
-            depth,
-            of_surface,
-            absolute_of_surface,
-        ]
-    }
-
-    fn of(numbers: [f64; 14]) -> Sums {
-        let [
-            weight,
-            size,
-            other,
-            signed,
-            absolute,
-            steepest,
-            left,
-            touching,
-            kinks,
-            squares,
-            sharpest,
-            depth,
-            of_surface,
-            absolute_of_surface,
-        ] = numbers;
-        let (sizes, touching, surface) = ([size, other], touching as usize, [of_surface, absolute_of_surface]);
-        Sums { weight, sizes, signed, absolute, steepest, left, touching, kinks, squares, sharpest, depth, surface }
-    }
-
-    fn merge(self, other: Sums) -> Sums {
-        Sums {
-            weight: self.weight + other.weight,
-            sizes: [0, 1].map(|which| self.sizes[which] + other.sizes[which]),
-            signed: self.signed + other.signed,
-            absolute: self.absolute + other.absolute,
-            steepest: self.steepest.max(other.steepest),
-            left: self.left.max(other.left),
-            touching: self.touching + other.touching,
-            kinks: self.kinks + other.kinks,
-            squares: self.squares + other.squares,
-            sharpest: self.sharpest.max(other.sharpest),
-            depth: self.depth + other.depth,
-            surface: [0, 1].map(|which| self.surface[which] + other.surface[which]),
-        }
-    }
-
     fn defect(&self, rule: &ExponentialRule, resolution: f64) -> Defect {
         let scale = match rule.missing() {
             Some((_, missing)) if rule.corrects() && rule.has_dashpot() => CORRECTED_OF_DASHPOT * missing,
@@ -350,9 +290,10 @@ impl Sums {
         Defect {
             signed: scale * self.signed / self.weight,
             smooth: scale * (self.absolute / self.weight).max(left),
-            kinks: kinks / self.touching.max(1) as f64,
+            kinks: kinks / self.touching.max(1.0),
             greatest: self.sharpest.max(scale * self.steepest),
-            surface: self.surface.map(|sum| if sum == 0.0 { 0.0 } else { scale * sum / self.depth }),
+            surface: [self.surface, self.absolute_surface]
+                .map(|sum| if sum == 0.0 { 0.0 } else { scale * sum / self.depth }),
         }
     }
 }

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::solver::problem::Problem;
 use crate::solver::rigid_motion::{Gram, ModeCoefficients};
 use crate::solver::runs::Runs;
-use crate::sum::{greatest, sum};
+use crate::sum::{self, greatest, sum};
 
 /// The cells in contact under all bodies.
 #[derive(Debug, Clone)]
@@ -80,7 +80,7 @@ impl ContactSet {
             }
             std::array::from_fn::<f64, 9, _>(|n| gram.entries[n / 3][n % 3])
         };
-        let found = problem.rows().merge(within, |a, b| std::array::from_fn(|n| a[n] + b[n]));
+        let found = problem.rows().merge(within, sum::add);
         Gram { entries: [0, 3, 6].map(|n| [found[n], found[n + 1], found[n + 2]]) }
     }
 

@@ -6,6 +6,7 @@ use std::ops::Range;
 use crate::Grid;
 use crate::linalg;
 use crate::parallel::Rows;
+use crate::sum;
 
 /// The motions ω + α1 ξ1 + α2 ξ2 that a load leaves free to one body, ξ = x − e measured from the point e
 /// at which the load acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0 (Eq. 4 and
@@ -215,7 +216,7 @@ impl<'a> Modes<'a> {
             [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], sums[0], sums[1], sums[2], value]
         };
         let evaluate = |y: [f64; 3]| {
-            let found = rows.merge(|band| within(y, band), |a, b| std::array::from_fn(|n| a[n] + b[n]));
+            let found = rows.merge(|band| within(y, band), sum::add);
             let gram = Gram { entries: [0, 3, 6].map(|n| [found[n], found[n + 1], found[n + 2]]) };
             (gram, [0, 1, 2].map(|m| found[9 + m] - wanted[m]), found[12] - dot(wanted, y))
         };

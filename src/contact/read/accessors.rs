@@ -17,6 +17,7 @@ use crate::load::Load;
 use crate::memory;
 use crate::rheology::{Material, TemperatureHistory};
 use crate::solver::RigidMotion;
+use crate::sum;
 
 impl ViscoelasticContact {
     /// Time \[s\], 0 at first.
@@ -183,7 +184,7 @@ impl ViscoelasticContact {
             }
             sums
         };
-        let [force, moment1, moment2, cells] = region.rows().merge(part, |a, b| std::array::from_fn(|n| a[n] + b[n]));
+        let [force, moment1, moment2, cells] = region.rows().merge(part, sum::add);
         let area = grid.cell_area() * region.images() as f64;
         // mirror images are in balance
         let moment = |axis: usize, sum: f64| if region.folded()[axis] { 0.0 } else { sum * area };

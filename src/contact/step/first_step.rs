@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::contact::computation::Computation;
 use crate::contact::scene::Scene;
 use crate::contact::step::request::Step;
-use crate::sum::greatest;
+use crate::sum::{self, greatest};
 
 /// The mean of the compliance over a step is the sum of trapezia between so many times, each 1/√2 of the one before.
 const TIMES: i32 = 60;
@@ -39,7 +39,7 @@ pub(super) fn first_step_error(scene: &Scene, tried: &Computation, step: &Step<'
         }
         [sum, size, jump, change]
     };
-    let [sum, size, jump, change] = rows.merge(part, |a, b| std::array::from_fn(|n| a[n] + b[n]));
+    let [sum, size, jump, change] = rows.merge(part, sum::add);
     let compliance = |t: f64| scene.material.contact_compliance(t);
     let time = |k: i32| dt * 2f64.powf(-0.5 * f64::from(k));
     let (mut mean, mut later) = (0.0, compliance(dt));

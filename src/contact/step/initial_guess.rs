@@ -10,6 +10,7 @@ use crate::contact::window::window::Window;
 use crate::parallel::Rows;
 use crate::parallel::for_each_band;
 use crate::solver::{Counts, Freedom, RigidMotion};
+use crate::sum;
 
 /// A guess is extrapolated only if it carries the force to within this factor: what is left after a cancellation is noise.
 const MAX_FORCE_RATIO: f64 = 1.5;
@@ -133,7 +134,7 @@ fn foresee_contact(state: &State, window: &mut Window, trial: &mut Trial, step: 
         }
         counts.map(|count: usize| count as f64)
     };
-    let [touching, likely, staying] = rows.merge(count, |a, b| [0, 1, 2].map(|n| a[n] + b[n]));
+    let [touching, likely, staying] = rows.merge(count, sum::add);
     staying >= MIN_SHARE_STAYING * touching.max(likely)
 }
 
@@ -158,7 +159,7 @@ fn edge_speed(rows: &Rows, now: &Equilibrium, before: &Equilibrium, beyond: Opti
         }
         [band.filter(|&k| touches(k) != touched(k)).count(), across, down].map(|count| count as f64)
     };
-    let [moved, across, down] = rows.merge(part, |a, b| [0, 1, 2].map(|n| a[n] + b[n]));
+    let [moved, across, down] = rows.merge(part, sum::add);
     moved / across.max(down).max(1.0)
 }
 
@@ -178,7 +179,7 @@ fn share_left(state: &State, trial: &Trial, c: f64) -> Option<f64> {
         }
         [overlap, square]
     };
-    let [overlap, square] = rows.merge(part, |a, b| [a[0] + b[0], a[1] + b[1]]);
+    let [overlap, square] = rows.merge(part, sum::add);
     let share = overlap / square;
     (share < MAX_SHARE_LEFT).then_some(share.max(0.0))
 }
@@ -200,8 +201,7 @@ fn best_reach(state: &State, gap: &[f64], c: f64, wanted: f64) -> Option<f64> {
         }
         sums
     };
-    let add = |a: [f64; 7], b: [f64; 7]| std::array::from_fn(|n| a[n] + b[n]);
-    let [p, dp, gap_p, gap_dp, pv, pdv, dpdv] = state.region.rows().merge(part, add);
+    let [p, dp, gap_p, gap_dp, pv, pdv, dpdv] = state.region.rows().merge(part, sum::add);
     let (sums, gaps, energies) = ([p, dp], [gap_p, gap_dp], [pv, pdv, dpdv]);
     // the direction is p₀ − p₁ less so much of p₀ that it carries no force
     let (scale, share) = (wanted / sums[0], sums[1] / sums[0]);

@@ -10,6 +10,7 @@ use crate::contact::window::window::Window;
 use crate::error::{Error, Result};
 use crate::geometry::Gap;
 use crate::solver::PENETRATION_SLACK;
+use crate::sum::named_sums;
 
 /// Rounding of the gap of a cell, relative to the numbers that it is the sum of.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
@@ -50,42 +51,61 @@ fn residual(state: &State, initial: &Gap, trial: &Trial, step: &Step<'_>, body: 
     let prescribed = step.prescribed(body).approach.abs() + initial.datum.abs();
     let own = |&k: &usize| initial.owner(k) == body && initial.above[k].is_finite();
     let part = |band: Range<usize>| {
-        let (mut cells, mut square, mut displacement, mut penetration) = (0.0, 0.0, 0.0, 0.0_f64);
-        let (mut pressures, mut balance) = (0.0, [0.0; 3]);
+        let mut sums = Misfit::default();
         for k in band.filter(own) {
             let p = if pressed { state.current.solution.pressure[k] } else { 0.0 };
             let (u, moved) = (state.history.trial()[k], modes.displacement(motion, k));
             let h = trial.gap[k] - moved;
             if !h.is_finite() {
-                penetration = f64::INFINITY;
+                sums.penetration = f64::INFINITY;
                 continue;
             }
             let rounding = ROUNDING * (prescribed + initial.above[k] + u.abs() + trial.gap[k].abs() + moved.abs());
             if p > 0.0 {
-                let (distance, mode) = ((h.abs() - rounding).max(0.0), modes.at(k));
-                (cells, square, displacement) = (cells + 1.0, square + distance * distance, displacement + u * u);
-                pressures += p;
-                (0..3).for_each(|m| balance[m] += p * mode[m]);
+                let (distance, [mode0, mode1, mode2]) = ((h.abs() - rounding).max(0.0), modes.at(k));
+                sums.cells += 1.0;
+                sums.distance += distance * distance;
+                sums.displacement += u * u;
+                sums.pressure += p;
+                sums.mode0 += p * mode0;
+                sums.mode1 += p * mode1;
+                sums.mode2 += p * mode2;
             } else if !released {
-                penetration = penetration.max(-h - rounding);
+                sums.penetration = sums.penetration.max(-h - rounding);
             }
         }
-        [cells, square, displacement, pressures, balance[0], balance[1], balance[2], penetration]
+        sums.numbers()
     };
-    let found = state
-        .region
-        .rows()
-        .merge(part, |a, b| std::array::from_fn(|n| if n == 7 { a[n].max(b[n]) } else { a[n] + b[n] }));
-    let [cells, square, displacement, pressures, _, _, _, penetration] = found;
-    let balance = &found[4..7];
+    let sums = Misfit::of(state.region.rows().merge(part, Misfit::joined));
+    let (penetration, balance) = (sums.penetration, [sums.mode0, sums.mode1, sums.mode2]);
     if penetration == f64::INFINITY {
         return penetration;
     }
-    let force = pressures.max(freedom.total);
+    let force = sums.pressure.max(freedom.total);
     let imbalance = (0..3).map(|m| (balance[m] - modes.load()[m] * freedom.total).abs() / force);
-    let root_mean = |sum: f64| (sum / f64::max(cells, 1.0)).sqrt();
-    let distance = root_mean(square).max(penetration / PENETRATION_SLACK) / root_mean(displacement);
+    let root_mean = |sum: f64| (sum / f64::max(sums.cells, 1.0)).sqrt();
+    let distance = root_mean(sums.distance).max(penetration / PENETRATION_SLACK) / root_mean(sums.displacement);
     // nothing over nothing is nothing, but numbers that left their range satisfy no load
-    let parts = imbalance.filter(|_| force > 0.0).chain([distance].into_iter().filter(|_| square + penetration > 0.0));
+    let parts =
+        imbalance.filter(|_| force > 0.0).chain([distance].into_iter().filter(|_| sums.distance + penetration > 0.0));
     parts.fold(0.0, |most, part| if part.is_nan() { f64::INFINITY } else { part.max(most) })
+}
+
+named_sums! {
+    /// Sums over the cells of a body: how far the last state is from a solution of the step.
+    Misfit[8] {
+        /// Cells in contact.
+        cells: +,
+        /// Σ h² over these.
+        distance: +,
+        /// Σ u² over these.
+        displacement: +,
+        /// Σ p, and Σ p B for each mode B of the motion.
+        pressure: +,
+        mode0: +,
+        mode1: +,
+        mode2: +,
+        /// The deepest penetration of the others.
+        penetration: max,
+    }
 }
