@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use crate::parallel::Rows;
-use crate::parallel::{join, lanes};
+use crate::parallel::{Rows, join, lanes};
+use crate::sum;
 
 /// Lanes in which maxima are taken.
 pub(crate) const LANES: usize = 8;
@@ -11,38 +11,90 @@ pub(crate) const LANES: usize = 8;
 /// Rigid bodies of a contact that ranks share out.
 const MOST_SHARED_BODIES: usize = 1;
 
-/// Sums and maximum of a pass over the cells of one body.
+/// Sums of a pass over the cells in contact under one body, with the modes B of its motion; a pass finds some of them.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BandSums {
+    /// Σ B r, of the residual r or of the preconditioned residual z.
+    pub(crate) residual_modes: [f64; 3],
+    /// Σ B d.
+    pub(crate) direction_modes: [f64; 3],
+    /// Σ B K d.
+    pub(crate) image_modes: [f64; 3],
+    /// Σ r².
+    pub(crate) residual_square: f64,
+    /// Σ (c v)².
+    pub(crate) displacement_square: f64,
+    /// Σ p² of negative pressures.
+    pub(crate) negative_square: f64,
+    /// Σ r d.
+    pub(crate) residual_direction: f64,
+    /// Σ z K d.
+    pub(crate) residual_image: f64,
+    /// Σ d K d.
+    pub(crate) direction_image: f64,
+}
+
+impl BandSums {
+    const COUNT: usize = 15;
+    const ZERO: BandSums = BandSums::of([0.0; BandSums::COUNT]);
+
+    const fn of(numbers: [f64; BandSums::COUNT]) -> BandSums {
+        let [r0, r1, r2, d0, d1, d2, i0, i1, i2, rr, vv, pp, rd, zi, di] = numbers;
+        BandSums {
+            residual_modes: [r0, r1, r2],
+            direction_modes: [d0, d1, d2],
+            image_modes: [i0, i1, i2],
+            residual_square: rr,
+            displacement_square: vv,
+            negative_square: pp,
+            residual_direction: rd,
+            residual_image: zi,
+            direction_image: di,
+        }
+    }
+
+    fn numbers(&self) -> [f64; BandSums::COUNT] {
+        let ([r0, r1, r2], [d0, d1, d2], [i0, i1, i2]) = (self.residual_modes, self.direction_modes, self.image_modes);
+        let [rr, vv, pp] = [self.residual_square, self.displacement_square, self.negative_square];
+        let [rd, zi, di] = [self.residual_direction, self.residual_image, self.direction_image];
+        [r0, r1, r2, d0, d1, d2, i0, i1, i2, rr, vv, pp, rd, zi, di]
+    }
+}
+
+/// Sums and maxima of a pass over the cells of one body.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Found {
-    pub(crate) sums: [f64; 10],
+    pub(crate) sums: BandSums,
+    /// The deepest penetration of cells outside the contact, in lanes.
     greatest: [f64; LANES],
-    /// The greatest of other values, taken one piece at a time.
+    /// The greatest residual of cells in contact.
     pub(crate) peak: f64,
 }
 
 impl Found {
-    const NOTHING: Found = Found { sums: [0.0; 10], greatest: [f64::NEG_INFINITY; LANES], peak: f64::NEG_INFINITY };
+    const NOTHING: Found =
+        Found { sums: BandSums::ZERO, greatest: [f64::NEG_INFINITY; LANES], peak: f64::NEG_INFINITY };
 
-    /// Numbers that it consists of, once the lanes are joined.
-    const NUMBERS: usize = 12;
+    /// Count of the numbers that ranks exchange: the sums and both maxima.
+    const NUMBERS: usize = BandSums::COUNT + 2;
 
     fn numbers(&self) -> [f64; Found::NUMBERS] {
         let mut numbers = [self.peak; Found::NUMBERS];
-        numbers[..10].copy_from_slice(&self.sums);
-        numbers[10] = self.greatest();
+        numbers[..BandSums::COUNT].copy_from_slice(&self.sums.numbers());
+        numbers[BandSums::COUNT] = self.greatest();
         numbers
     }
 
     fn of(numbers: &[f64; Found::NUMBERS]) -> Found {
-        let mut found = Found { peak: numbers[11], ..Found::NOTHING };
-        found.sums.copy_from_slice(&numbers[..10]);
-        found.greatest[0] = numbers[10];
+        let sums = BandSums::of(std::array::from_fn(|n| numbers[n]));
+        let mut found = Found { sums, peak: numbers[BandSums::COUNT + 1], ..Found::NOTHING };
+        found.greatest[0] = numbers[BandSums::COUNT];
         found
     }
 
-    /// Adds what is found in the next band.
+    /// Adds the findings of the next band.
     fn join(&mut self, next: &Found) {
-        self.sums.iter_mut().zip(next.sums).for_each(|(sum, part)| *sum += part);
+        self.sums = BandSums::of(sum::add(self.sums.numbers(), next.sums.numbers()));
         self.peak = self.peak.max(next.peak);
         self.greatest.iter_mut().zip(next.greatest).for_each(|(most, found)| *most = most.max(found));
     }

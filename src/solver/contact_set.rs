@@ -148,9 +148,9 @@ impl ContactSet {
 
     /// The motion of a body that fits a field best on its cells in contact, from Σ B f over them; zero for what they do not
     /// determine.
-    pub(crate) fn fit(&self, problem: &Problem<'_>, body: usize, sums: &[f64]) -> ModeCoefficients {
+    pub(crate) fn fit(&self, problem: &Problem<'_>, body: usize, sums: [f64; 3]) -> ModeCoefficients {
         let BodyContact { cells, ref gram, .. } = self.bodies[body];
-        problem.modes(body).fit(gram, cells, [sums[0], sums[1], sums[2]])
+        problem.modes(body).fit(gram, cells, sums)
     }
 
     /// Takes in all cells that a body may touch.
@@ -215,7 +215,7 @@ mod tests {
                 assert!((displacement - modes.displacement(motion, k)).abs() < 1e-14);
                 (0..3).for_each(|m| sums[m] += modes.at(k)[m] * displacement);
             }
-            let fit = set.fit(&problem, body, &sums);
+            let fit = set.fit(&problem, body, sums);
             assert!((0..3).all(|m| (fit.0[m] - motion.0[m]).abs() < 1e-12), "{body}: {fit:?}");
 
             let p = |k: usize| pressure[k];

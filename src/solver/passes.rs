@@ -72,11 +72,11 @@ impl Passes {
                     add(p, a, &direction[cells]);
                 }
                 fill_residual(motion, r, c, v, h);
-                add_modes(&mut found.sums[..3], &line, r);
+                add_modes(&mut found.sums.residual_modes, &line, r);
                 found.peak = found.peak.max(most(r));
-                found.sums[3] += sum_of_pairs(r, r, |r, _| r * r);
-                found.sums[4] += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
-                found.sums[5] += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
+                found.sums.residual_square += sum_of_pairs(r, r, |r, _| r * r);
+                found.sums.displacement_square += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
+                found.sums.negative_square += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
             });
         })
     }
@@ -119,11 +119,12 @@ impl Passes {
                 }
                 let motion = problem.line(body, cells.start).of(motions[body]);
                 fill_residual(motion, z, c, &potential[cells.clone()], &problem.gap[cells]);
-                found[body].sums[0] += sum_of_pairs(z, z, |z, _| z * z);
+                found[body].sums.residual_square += sum_of_pairs(z, z, |z, _| z * z);
                 found[body].peak = found[body].peak.max(most(z));
             });
         });
-        let of = |[square, deepest]: [f64; 2], found: &Found| [square + found.sums[0], deepest.max(found.peak)];
+        let of =
+            |[square, deepest]: [f64; 2], found: &Found| [square + found.sums.residual_square, deepest.max(found.peak)];
         found.iter().fold([0.0; 2], of)
     }
 
@@ -141,10 +142,10 @@ impl Passes {
             for Piece { cells, body } in runs.inside(&band, cut) {
                 let (sums, line) = (&mut found[body].sums, problem.line(body, cells.start));
                 let (z, kd, d) = (&z[cells.clone()], &image[cells.clone()], &direction[cells]);
-                add_modes(&mut sums[..3], &line, z);
-                add_modes(&mut sums[3..6], &line, kd);
-                add_modes(&mut sums[6..9], &line, d);
-                sums[9] += sum_of_pairs(z, kd, |z, kd| z * kd);
+                add_modes(&mut sums.residual_modes, &line, z);
+                add_modes(&mut sums.image_modes, &line, kd);
+                add_modes(&mut sums.direction_modes, &line, d);
+                sums.residual_image += sum_of_pairs(z, kd, |z, kd| z * kd);
             }
         })
     }
@@ -221,10 +222,10 @@ impl Passes {
                 let (d, kd, r) = (&direction[cells.clone()], &image[cells.clone()], &mut residual[..cells.len()]);
                 fill_residual(line.of(motions[body]), r, c, &potential[cells.clone()], &problem.gap[cells]);
                 if problem.bodies[body].tilts() {
-                    add_modes(&mut sums[..3], &line, kd);
+                    add_modes(&mut sums.image_modes, &line, kd);
                 }
-                sums[3] += sum_of_pairs(r, d, |r, d| r * d);
-                sums[4] += sum_of_pairs(d, kd, |d, kd| d * kd);
+                sums.residual_direction += sum_of_pairs(r, d, |r, d| r * d);
+                sums.direction_image += sum_of_pairs(d, kd, |d, kd| d * kd);
             }
         })
     }
@@ -245,7 +246,7 @@ pub(crate) fn add(x: &mut [f64], a: f64, y: &[f64]) {
 
 /// Adds Σ B f over a piece.
 #[inline]
-fn add_modes(sums: &mut [f64], line: &Line, f: &[f64]) {
+fn add_modes(sums: &mut [f64; 3], line: &Line, f: &[f64]) {
     if line.upright {
         sums[0] += sum(f);
         return;
@@ -341,10 +342,10 @@ mod tests {
         }
         let r: Vec<f64> = (0..n).map(|k| at(k) - (c * v[k] + gap[k])).collect();
         for (body, found) in found.iter().enumerate() {
-            (0..3).for_each(|m| near(found.sums[m], inside(body, &|k| modes(k)[m] * r[k])));
-            near(found.sums[3], inside(body, &|k| r[k] * r[k]));
-            near(found.sums[4], inside(body, &|k| c * v[k] * c * v[k]));
-            near(found.sums[5], inside(body, &|k| p[k].min(0.0).powi(2)));
+            (0..3).for_each(|m| near(found.sums.residual_modes[m], inside(body, &|k| modes(k)[m] * r[k])));
+            near(found.sums.residual_square, inside(body, &|k| r[k] * r[k]));
+            near(found.sums.displacement_square, inside(body, &|k| c * v[k] * c * v[k]));
+            near(found.sums.negative_square, inside(body, &|k| p[k].min(0.0).powi(2)));
             let own = (0..n).filter(|&k| set.member[k] && problem.owner(k) == body);
             assert_eq!(found.peak, own.map(|k| r[k]).fold(f64::NEG_INFINITY, f64::max));
         }
@@ -359,17 +360,17 @@ mod tests {
         let z = field(2.2);
         for (body, found) in passes.overlaps(&problem, runs, &z, &kd, &d).iter().enumerate() {
             for m in 0..3 {
-                near(found.sums[m], inside(body, &|k| modes(k)[m] * z[k]));
-                near(found.sums[3 + m], inside(body, &|k| modes(k)[m] * kd[k]));
-                near(found.sums[6 + m], inside(body, &|k| modes(k)[m] * d[k]));
+                near(found.sums.residual_modes[m], inside(body, &|k| modes(k)[m] * z[k]));
+                near(found.sums.image_modes[m], inside(body, &|k| modes(k)[m] * kd[k]));
+                near(found.sums.direction_modes[m], inside(body, &|k| modes(k)[m] * d[k]));
             }
-            near(found.sums[9], inside(body, &|k| z[k] * kd[k]));
+            near(found.sums.residual_image, inside(body, &|k| z[k] * kd[k]));
         }
         for (body, found) in passes.slope_and_curvature(&problem, runs, &motions, [&v, &d, &kd]).iter().enumerate() {
             let tilts = if bodies[body].tilts() { 1.0 } else { 0.0 };
-            (0..3).for_each(|m| near(found.sums[m], tilts * inside(body, &|k| modes(k)[m] * kd[k])));
-            near(found.sums[3], inside(body, &|k| r[k] * d[k]));
-            near(found.sums[4], inside(body, &|k| d[k] * kd[k]));
+            (0..3).for_each(|m| near(found.sums.image_modes[m], tilts * inside(body, &|k| modes(k)[m] * kd[k])));
+            near(found.sums.residual_direction, inside(body, &|k| r[k] * d[k]));
+            near(found.sums.direction_image, inside(body, &|k| d[k] * kd[k]));
         }
         let mut turned = d.clone();
         passes.redirect(&problem, runs, [2.0, 0.5], &motions, &z, &mut turned);

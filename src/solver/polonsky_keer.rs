@@ -8,7 +8,7 @@ use crate::solver::outcome::{Outcome, ResidualSums, Stop};
 use crate::solver::passes::{Fields, Passes};
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::resting_position::RestingPosition;
-use crate::solver::rigid_motion::{Freedom, ModeCoefficients, Modes};
+use crate::solver::rigid_motion::{Freedom, ModeCoefficients, Modes, dot};
 
 /// Relative difference between the pressures and the force that still counts as balanced.
 const FORCE_TOLERANCE: f64 = 1e-9;
@@ -97,9 +97,9 @@ impl PolonskyKeer {
         let fields = Fields { direction: &self.direction, image: &self.image, pressure, potential };
         let mut state = ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() };
         for (body, found) in self.passes.survey(problem, &set.runs, 0.0, motions, fields).iter().enumerate() {
-            motions[body] = motions[body].plus(-1.0, set.fit(problem, body, &found.sums));
-            state.displacement += found.sums[4];
-            state.negative += found.sums[5];
+            motions[body] = motions[body].plus(-1.0, set.fit(problem, body, found.sums.residual_modes));
+            state.displacement += found.sums.displacement_square;
+            state.negative += found.sums.negative_square;
         }
         [state.square, state.deepest] =
             self.passes.residual(problem, &set.runs, motions, potential, &mut self.residual);
@@ -124,12 +124,12 @@ impl PolonskyKeer {
         for found in
             passes.slope_and_curvature(problem, &set.runs, &solution.motions, [&solution.potential, direction, image])
         {
-            numerator -= found.sums[3];
-            denominator += found.sums[4];
+            numerator -= found.sums.residual_direction;
+            denominator += found.sums.direction_image;
         }
         for (body, found) in passes.overlaps(problem, &set.runs, residual, image, direction).iter().enumerate() {
-            let fit = set.fit(problem, body, &found.sums[3..6]);
-            denominator -= (0..3).map(|m| fit.0[m] * found.sums[6 + m]).sum::<f64>();
+            let fit = set.fit(problem, body, found.sums.image_modes);
+            denominator -= dot(fit.0, found.sums.direction_modes);
         }
         if denominator > 0.0 {
             return numerator / (problem.compliance * denominator);

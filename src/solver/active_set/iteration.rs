@@ -5,7 +5,7 @@ use crate::kernel::Workspace;
 use crate::solver::outcome::{Outcome, ResidualSums, Stop};
 use crate::solver::passes::{Fields, add};
 use crate::solver::problem::{Problem, Solution};
-use crate::solver::rigid_motion::ModeCoefficients;
+use crate::solver::rigid_motion::{ModeCoefficients, dot};
 
 /// Σ (r − mean)² is computed afresh, not from Σ r², where less than this fraction of Σ r² is left.
 const MIN_CENTRED_FRACTION: f64 = 1e-6;
@@ -117,16 +117,16 @@ impl ActiveSet {
         let (mut square, mut penetration, mut turned) = (0.0, 0.0_f64, 0.0_f64);
         for (body, found) in self.passes.survey(problem, &self.set.runs, a, motions, fields).iter().enumerate() {
             // The fit determines a change of the last motion: what the cells at hand do not determine remains as it was.
-            let fit = self.set.fit(problem, body, &found.sums);
+            let fit = self.set.fit(problem, body, found.sums.residual_modes);
             motions[body] = motions[body].plus(-1.0, fit);
             let tilts = problem.bodies[body].tilts();
             // of a body that tilts, no cell moves more than this
             let moved = if tilts { fit.0.iter().map(|y| y.abs()).sum() } else { -fit.0[0] };
-            let (all, fitted) = (found.sums[3], (0..3).map(|m| fit.0[m] * found.sums[m]).sum::<f64>());
+            let (all, fitted) = (found.sums.residual_square, dot(fit.0, found.sums.residual_modes));
             square += all;
             state.square += all - fitted;
-            state.displacement += found.sums[4];
-            state.negative += found.sums[5];
+            state.displacement += found.sums.displacement_square;
+            state.negative += found.sums.negative_square;
             state.deepest = state.deepest.max(found.peak + moved);
             if tilts {
                 turned = turned.max(moved);
@@ -179,15 +179,15 @@ impl ActiveSet {
         let mut overlap = 0.0;
         let found = self.passes.overlaps(problem, runs, z, image, direction);
         for (body, found) in found.iter().enumerate() {
-            let fit = self.set.fit(problem, body, &found.sums[..3]);
+            let fit = self.set.fit(problem, body, found.sums.residual_modes);
             shifts[body] = ModeCoefficients::default().plus(-1.0, fit);
-            overlap += found.sums[9] - (0..3).map(|m| fit.0[m] * found.sums[3 + m]).sum::<f64>();
+            overlap += found.sums.residual_image - dot(fit.0, found.sums.image_modes);
         }
         let beta = conjugate(*energy, overlap, pending);
         // without a last direction, d holds values of an earlier solve
         if beta != 0.0 {
             for (body, found) in found.iter().enumerate() {
-                shifts[body] = shifts[body].plus(-beta, self.set.fit(problem, body, &found.sums[6..9]));
+                shifts[body] = shifts[body].plus(-beta, self.set.fit(problem, body, found.sums.direction_modes));
             }
         }
         let scale = if pending { length } else { 1.0 };
@@ -266,8 +266,9 @@ impl ActiveSet {
         let mut sums = [0.0; 2];
         for (body, found) in found.iter().enumerate() {
             let tilts = problem.bodies[body].tilts();
-            image_motions[body] = if tilts { self.set.fit(problem, body, &found.sums) } else { Default::default() };
-            sums = [sums[0] + found.sums[3], sums[1] + found.sums[4]];
+            image_motions[body] =
+                if tilts { self.set.fit(problem, body, found.sums.image_modes) } else { Default::default() };
+            sums = [sums[0] + found.sums.residual_direction, sums[1] + found.sums.direction_image];
         }
         sums
     }
