@@ -176,7 +176,7 @@ impl AxisymmetricContact {
         }
         let step = (dt, Interpolant::CorrectedLinear);
         let rows = Rows::all([self.profile.len(), 1]);
-        self.displacement.predict_non_negative(&mut self.rule, step, self.width, &rows);
+        self.displacement.predict_non_negative(&mut self.rule, step, self.width, &rows, || true);
         let c = self.rule.compliance();
         if c == 0.0 && dt == 0.0 {
             return Err(Error::NoElasticResponse { time, what: "a jump of the foundation (ramp the load instead)" });

@@ -244,8 +244,9 @@ impl History {
         match rule {
             Rule::Exponential(own) => {
                 // the sign of u is no criterion where pressures raise the surface
-                let least_side = if kernel.raises() { f64::INFINITY } else { inputs.least_side };
-                displacement.predict_non_negative(own, (step.dt, step.interpolant), least_side, kernel.rows());
+                let sign_counts = || !kernel.raises();
+                let step = (step.dt, step.interpolant);
+                displacement.predict_non_negative(own, step, inputs.least_side, kernel.rows(), sign_counts);
                 far.iter_mut().for_each(|far| far.predict(own));
                 Ok((own.compliance(), 0))
             }
@@ -264,7 +265,8 @@ impl History {
                     kernel.apply(source, trial, work);
                     trial.iter_mut().zip(remainder).for_each(|(u_old, &e)| *u_old += e);
                     convolutions += 1;
-                    if kernel.raises() || !own.has_less() || !displacement.dips(own, inputs.least_side, kernel.rows()) {
+                    let dips = own.has_less() && displacement.dips(own, inputs.least_side, kernel.rows());
+                    if !dips || kernel.raises() {
                         return Ok((own.compliance(), convolutions));
                     }
                     own.weigh_less();

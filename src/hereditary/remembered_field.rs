@@ -53,17 +53,18 @@ impl RememberedField {
     }
 
     /// Finds the weights of a step and predicts its end. No pressure has pulled the surface up yet: where the field would fall
-    /// below zero, the polynomial does not suit the step, and one of less degree is taken. Cells are so wide as `side` \[m\].
+    /// below zero, a polynomial of lower degree is taken, where `sign_counts`. `side` \[m\] is the width of a cell.
     pub(crate) fn predict_non_negative(
         &mut self,
         rule: &mut ExponentialRule,
         (dt, interpolant): (f64, Interpolant),
         side: f64,
         rows: &Rows,
+        sign_counts: impl Fn() -> bool,
     ) {
         rule.weigh(dt, interpolant);
         self.predict(rule);
-        while rule.has_less() && self.dips(rule, side, rows) {
+        while rule.has_less() && self.dips(rule, side, rows) && sign_counts() {
             rule.weigh_less();
             self.predict(rule);
         }

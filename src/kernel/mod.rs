@@ -78,7 +78,8 @@ pub struct InfluenceKernel {
     operators: [OnceLock<Arc<SpectralOperator>>; 4],
     /// The influence of a cell on itself, once it is needed.
     on_itself: OnceLock<f64>,
-    raises: OnceLock<bool>,
+    /// Whether a pressure raises the surface somewhere, once it is needed; common to all parts.
+    raises: Arc<OnceLock<bool>>,
 }
 
 /// Buffers of [`InfluenceKernel::convolve`], made by [`InfluenceKernel::workspace`].
@@ -98,7 +99,7 @@ pub(crate) struct LocalKernel {
     folded: [bool; 2],
     self_influence: f64,
     softest: Option<f64>,
-    raises: bool,
+    raises: Arc<OnceLock<bool>>,
 }
 
 impl InfluenceKernel {
@@ -267,7 +268,7 @@ impl InfluenceKernel {
             folded,
             self_influence: self.self_influence(),
             softest: self.influence.softest_wave_if_mean_is_held(&self.grid),
-            raises: *self.raises.get_or_init(|| self.influence.raises(&self.grid)),
+            raises: Arc::clone(&self.raises),
         }
     }
 
@@ -340,8 +341,10 @@ impl LocalKernel {
     }
 
     /// Whether a pressure raises the surface somewhere, so that displacements may be negative.
+    ///
+    /// Costs a line of coefficients, more where each is a sum over waves: computed at the first call.
     pub(crate) fn raises(&self) -> bool {
-        self.raises
+        *self.raises.get_or_init(|| self.influence.raises(&self.whole))
     }
 
     /// The layer, if the body is one.
