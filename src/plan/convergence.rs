@@ -4,9 +4,9 @@ use crate::Grid;
 use crate::error::{Error, Result};
 use crate::load::Load;
 use crate::plan::Accuracy;
-use crate::plan::coarse::{Extent, Run, Scene, State, difference, greatest, relative};
-use crate::plan::law::{Convergence, ORDERS};
+use crate::plan::convergence_fit::{Convergence, ORDERS};
 use crate::plan::steps::Steps;
+use crate::plan::trial_runs::{Extent, Run, Scene, State, difference, greatest, relative};
 
 /// Cells across the widest contact on the coarsest mesh, and on the finest that a plan computes.
 const LEAST_ACROSS: f64 = 16.0;

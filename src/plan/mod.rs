@@ -1,10 +1,10 @@
 //! Mesh, domain and steps for a given accuracy.
 
 mod accuracy;
-mod coarse;
 mod convergence;
-mod law;
+mod convergence_fit;
 mod steps;
+mod trial_runs;
 
 pub use accuracy::Accuracy;
 
@@ -14,9 +14,9 @@ use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
-use crate::plan::coarse::{Extent, Scene};
 use crate::plan::convergence::{DOMAIN_TO_CONTACT, Found, converge, grid_with};
-use crate::plan::law::Convergence;
+use crate::plan::convergence_fit::Convergence;
+use crate::plan::trial_runs::{Extent, Scene};
 use crate::rheology::{Material, TemperatureHistory};
 
 /// A scene planned for an accuracy: the extent of the contact, the cells and steps needed, and their cost.

@@ -3,7 +3,7 @@
 use crate::Grid;
 use crate::error::{Error, Result};
 use crate::plan::Accuracy;
-use crate::plan::coarse::{LEAST_TOLERANCE, Run, Scene, State, difference, greatest, relative};
+use crate::plan::trial_runs::{LEAST_TOLERANCE, Run, Scene, State, difference, greatest, relative};
 
 /// The error in time may take this share of what was asked, both errors together the second, and that of the mesh at least
 /// the third.

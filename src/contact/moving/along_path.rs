@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
+use crate::Grid;
+use crate::contact::indenter::Indenter;
 use crate::contact::read::report::StepReport;
 use crate::contact::settings::Frame;
 use crate::contact::state::State;
 use crate::contact::step::request::Step;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result, non_negative};
+use crate::geometry::Gap;
 use crate::load::Load;
 use crate::memory;
 use crate::motion::Travel;
@@ -52,16 +55,16 @@ impl ViscoelasticContact {
         }
         non_negative("time step", dt)?;
         let from = travel.position(self.time())?;
-        if self.spare.is_empty() {
+        if self.indenter_buffer.is_empty() {
             memory::check("the gap of a moving indenter", 16 * self.grid().len() as u128)?;
         }
-        let indenter = self.spare.fill(&self.scene.grid, travel, self.time() + dt)?;
+        let indenter = self.indenter_buffer.fill(&self.scene.grid, travel, self.time() + dt)?;
         let before = (self.force(), self.moment(), self.computation.state.current.motions[0]);
         let left = Arc::clone(&self.computation.state.indenter);
         let loads = [load];
         let step = Step { indenter, ..self.request(self.time() + dt, dt, &loads, self.settings().tolerance)? };
         let step = self.take(step)?;
-        self.spare.indenter = Some(left);
+        self.indenter_buffer.indenter = Some(left);
         let position = travel.position(step.time)?;
         let lateral_force = self.lateral_force(&travel.shape_at(step.time)?);
         let power = if dt > 0.0 { self.work_along(before) / dt } else { 0.0 };
@@ -83,5 +86,37 @@ impl ViscoelasticContact {
         }];
         let pressed = (0..3).map(|k| 0.5 * (ends[0][k] + ends[1][k]) * (end[k] - start[k]));
         work * self.grid().cell_area() * region.images() as f64 - pressed.sum::<f64>()
+    }
+}
+
+/// The indenter of the step before the last, and the fields that a new one is made in: a step along a path allocates
+/// nothing, unless a snapshot still holds it, or the load leaves the indenter free to tilt.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct IndenterBuffer {
+    indenter: Option<Arc<Indenter>>,
+    heights: Vec<f64>,
+    track: Vec<f64>,
+}
+
+impl IndenterBuffer {
+    /// Whether no step along a path has been taken.
+    fn is_empty(&self) -> bool {
+        self.heights.is_empty()
+    }
+
+    /// The indenter at time `t` of its path.
+    ///
+    /// # Errors
+    /// If its gap is none.
+    fn fill(&mut self, grid: &Grid, travel: &Travel, t: f64) -> Result<Arc<Indenter>> {
+        self.heights.resize(grid.len(), f64::INFINITY);
+        travel.fill_gap(t, grid, &mut self.heights, &mut self.track)?;
+        if let Some(mut unused) = self.indenter.take()
+            && let Some(indenter) = Arc::get_mut(&mut unused)
+        {
+            indenter.refill(&mut self.heights, grid)?;
+            return Ok(unused);
+        }
+        Ok(Arc::new(Indenter::new(Gap::new(vec![self.heights.clone()], grid)?, 1)))
     }
 }

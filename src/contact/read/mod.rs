@@ -4,5 +4,3 @@ pub(in crate::contact) mod accessors;
 pub(in crate::contact) mod observations;
 pub(in crate::contact) mod report;
 pub(in crate::contact) mod stress;
-pub(in crate::contact) mod view;
-pub(in crate::contact) mod warning;

@@ -3,18 +3,28 @@
 use crate::contact::computation::Computation;
 use crate::contact::read::report::StepReport;
 use crate::contact::run::follow::Follow;
-use crate::contact::run::step_control::StepControl;
+use crate::contact::run::step_control::{NODES, StepControl};
+use crate::contact::scene::Scene;
 use crate::contact::settings::Settings;
 use crate::contact::state::State;
 use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::events;
+use crate::load::{Load, LoadHistory, Tilt};
 
 /// A step that the solver cannot do is tried again so many times, shorter.
 const MAX_SOLVER_RETRIES: u32 = 5;
 /// The order, in the length of a step, of the error due to cells that join in it: a shorter step ends sooner after they do.
 const ORDER_OF_KINKS: u32 = 2;
+/// The first step after a jump is chosen from the material alone: this many lengths per decade are tried, ...
+const LENGTHS_PER_DECADE: i32 = 4;
+/// ... over this many decades below the time that is left.
+const DECADES: i32 = 40;
+/// A body without elastic response has no shortest time: its first step is this fraction of the time left.
+const FIRST_FRACTION: f64 = 1e-6;
+/// Where loads are looked at within a step: unevenly, so that no oscillation hits a zero at all of them.
+const SHARES: [f64; 5] = [0.153, 0.381, 0.5, 0.677, 0.891];
 
 impl Follow<'_> {
     /// One step as long as its error allows.
@@ -84,6 +94,102 @@ impl Follow<'_> {
             events::rejected(time, dt, error.relative, control.tolerance);
             add_work(&mut wasted, computed);
         }
+    }
+}
+
+impl StepControl {
+    /// The length to try next, at most `left`, and the same in reduced time.
+    pub(super) fn length(
+        &self,
+        scene: &Scene,
+        state: &State,
+        history: &dyn LoadHistory,
+        left: f64,
+    ) -> Result<[f64; 2]> {
+        let clock = &state.clock;
+        if let Some(next) = self.next {
+            return Ok([scene.length_of(clock, next, left)?, next]);
+        }
+        let first = self.first(scene, state, history, left)?.min(left);
+        Ok([first, scene.reduced_length([clock.time, clock.time + first], first)?])
+    }
+
+    /// The length of the first step after a jump or a corner: the longest over which the creep is linear to within the
+    /// tolerance. After a corner, what creeps is the answer to the load's departure from how it went before.
+    fn first(&self, scene: &Scene, state: &State, history: &dyn LoadHistory, left: f64) -> Result<f64> {
+        let (now, jumped) = (state.clock.time, state.clock.last_dt == 0.0);
+        // a paraboloid answers with the power 2/3 of force and compliance
+        let compliance = |t: f64| scene.material.contact_compliance(t).powf(2.0 / 3.0);
+        let glassy = compliance(0.0);
+        if glassy == 0.0 {
+            return Ok(FIRST_FRACTION * left);
+        }
+        let magnitude = |load: &Load| self.scale.as_ref().map_or(0.0, |scale| scale.magnitude(load));
+        let held = magnitude(&state.loads[0]);
+        let (longest, slope) = match self.corner {
+            Some((before, slope)) if !jumped => (scene.length_of(&state.clock, before, left)?, slope),
+            _ => (left, 0.0),
+        };
+        for k in 0..=LENGTHS_PER_DECADE * DECADES {
+            let dt = longest * 10f64.powf(-f64::from(k) / f64::from(LENGTHS_PER_DECADE));
+            let reduced = scene.reduced_length([now, now + dt], dt)?;
+            let creep = compliance(reduced);
+            let deviation = if jumped {
+                (compliance(0.5 * reduced) - 0.5 * (glassy + creep)) / creep
+            } else {
+                let load = history.before(now + dt).validated_at(now + dt)?;
+                let change = (magnitude(&load) - held - slope * reduced).abs();
+                let scale =
+                    self.scale.as_ref().map_or(0.0, |scale| scale.of_load(&state.loads[0], &load)).max(held + change);
+                0.125 * (creep - glassy) / creep * change / scale.max(f64::MIN_POSITIVE)
+            };
+            if deviation.abs() <= self.tolerance
+                && self.watch(history, [now, now + dt], |time| scene.reduced_time(&state.clock, time))?
+                    <= self.tolerance
+            {
+                return Ok(dt);
+            }
+        }
+        Ok(longest * 10f64.powi(-DECADES))
+    }
+
+    /// Whether a body whose approach is given comes no nearer between now and `time` than at these ends.
+    pub(super) fn stays_away(&self, history: &dyn LoadHistory, now: f64, time: f64) -> bool {
+        let approach = |load: Load| match load {
+            Load::Approach { approach, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)] } => approach,
+            _ => f64::NAN,
+        };
+        let nearest = approach(history.at(now)).max(approach(history.before(time)));
+        let mut away = !nearest.is_nan();
+        for share in SHARES {
+            away &= approach(history.at(now + share * (time - now))) <= nearest;
+        }
+        away
+    }
+
+    /// How far the load strays between now and `time` from the polynomial through its last nodes and that at `time`, relative
+    /// to itself or to a fraction of the greatest of the run. Rejects invalid loads of the history.
+    pub(super) fn watch(
+        &self,
+        history: &dyn LoadHistory,
+        [now, time]: [f64; 2],
+        reduced: impl Fn(f64) -> Result<f64>,
+    ) -> Result<f64> {
+        let end = history.before(time).validated_at(time)?;
+        let mut nodes = [(reduced(time)?, end); NODES + 1];
+        let known = self.nodes.len().min(NODES);
+        nodes[1..=known].copy_from_slice(&self.nodes[..known]);
+        let nodes = &nodes[..=known];
+        let start = nodes[known.min(1)].1;
+        let scale = self.scale.as_ref().map_or(0.0, |scale| scale.of_load(&start, &end));
+        let mut most = 0.0_f64;
+        for share in SHARES {
+            let between = now + share * (time - now);
+            let load = history.at(between).validated_at(between)?;
+            let like = load.is_like(&start) && load.is_like(&end);
+            most = most.max(if like { load.deviation(reduced(between)?, nodes, scale) } else { f64::INFINITY });
+        }
+        Ok(most)
     }
 }
 

@@ -2,13 +2,11 @@
 
 use crate::ascending::Ascending;
 use crate::contact::read::report::StepReport;
-use crate::contact::run::error_budget::ErrorBudget;
-use crate::contact::run::held::{Held, HeldHistory};
 #[cfg(feature = "checkpoint")]
 use crate::contact::run::progress::Autosave;
-use crate::contact::run::progress::Progress;
+use crate::contact::run::progress::{ErrorBudget, Progress, Stepping};
 use crate::contact::run::run_scale::RunScale;
-use crate::contact::run::stepping::Stepping;
+use crate::contact::run::{OwnedOrBorrowed, RunContact, RunHistory};
 use crate::contact::step::error_in_time::Outlook;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, LoadError, Result, finite, positive, within};
@@ -63,8 +61,8 @@ const SAME_TIME: f64 = 1e-6;
 #[derive(Debug)]
 #[must_use = "a run takes no step until next_step is called"]
 pub struct Follow<'a> {
-    pub(in crate::contact) contact: Held<'a>,
-    pub(in crate::contact) history: HeldHistory<'a>,
+    pub(in crate::contact) contact: RunContact<'a>,
+    pub(in crate::contact) history: RunHistory<'a>,
     stepping: Stepping,
     pub(super) until: f64,
     pub(in crate::contact) progress: Progress,
@@ -80,7 +78,7 @@ pub struct Follow<'a> {
 impl ViscoelasticContact {
     /// Follows a load history to the time `until` \[s\], step by step as `stepping` says.
     pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Follow<'a> {
-        Follow::new(Held::Borrowed(self), HeldHistory::Borrowed(history), stepping, until)
+        Follow::new(OwnedOrBorrowed::Borrowed(self), OwnedOrBorrowed::Borrowed(history), stepping, until)
     }
 
     /// [`ViscoelasticContact::follow`] in a run that owns the contact and its history, and so can be stored or sent to another
@@ -105,12 +103,12 @@ impl ViscoelasticContact {
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     pub fn into_follow(self, history: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Follow<'static> {
-        Follow::new(Held::Owned(Box::new(self)), HeldHistory::Owned(Box::new(history)), stepping, until)
+        Follow::new(OwnedOrBorrowed::Owned(Box::new(self)), OwnedOrBorrowed::Owned(Box::new(history)), stepping, until)
     }
 }
 
 impl<'a> Follow<'a> {
-    fn new(mut contact: Held<'a>, history: HeldHistory<'a>, stepping: Stepping, until: f64) -> Follow<'a> {
+    fn new(mut contact: RunContact<'a>, history: RunHistory<'a>, stepping: Stepping, until: f64) -> Follow<'a> {
         let begun = Progress::begin(contact.time(), stepping);
         // a run that was saved goes on, if this is the one
         let saved = contact.progress.take().filter(|saved| until >= begun.now && saved.continues(&begun));
@@ -278,8 +276,8 @@ impl<'a> Follow<'a> {
     /// The contact as the last step left it: a clone where the run borrows it.
     pub fn into_contact(self) -> ViscoelasticContact {
         match self.contact {
-            Held::Borrowed(contact) => contact.clone(),
-            Held::Owned(contact) => *contact,
+            OwnedOrBorrowed::Borrowed(contact) => contact.clone(),
+            OwnedOrBorrowed::Owned(contact) => *contact,
         }
     }
 }

@@ -1,13 +1,13 @@
 //! The length of steps chosen by an estimate of their error.
 
-use crate::contact::run::drift::Drift;
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::error_in_time::Outlook;
 use crate::error::Result;
 use crate::hereditary::{ExponentialRule, LastingError, TimeError};
-use crate::load::{Load, LoadHistory, Tilt};
+use crate::load::{Load, LoadHistory};
+use crate::rheology::CreepSpectrum;
 
 /// Chooses steps whose error stays below the tolerance: that of the displacement within the step
 /// ([`History::time_error`](crate::hereditary::History::time_error)), and that of the load, which is taken to be the polynomial
@@ -17,15 +17,15 @@ use crate::load::{Load, LoadHistory, Tilt};
 pub(super) struct StepControl {
     pub(super) tolerance: f64,
     /// Length of the next step, as all lengths and times here in reduced time; `None` where earlier steps do not suggest one.
-    next: Option<f64>,
+    pub(super) next: Option<f64>,
     /// Error over tolerance of the last step accepted.
     last: f64,
     /// Times and loads of the last nodes since the last jump or corner, the newest first.
-    nodes: Vec<(f64, Load)>,
+    pub(super) nodes: Vec<(f64, Load)>,
     /// Length of the last step before a corner, and what the load would change by in a (reduced) second had it gone on straight.
-    corner: Option<(f64, f64)>,
-    scale: Option<RunScale>,
-    drift: Option<Drift>,
+    pub(super) corner: Option<(f64, f64)>,
+    pub(super) scale: Option<RunScale>,
+    defects: Option<DefectAccumulation>,
     /// The mean errors of u that the steps so far have left, in contact and outside.
     lasting: Option<[LastingError; 2]>,
     /// Steps accepted, and the time of the last jump or corner.
@@ -47,18 +47,10 @@ const INTEGRAL: f64 = 0.7;
 const PROPORTIONAL: f64 = 0.2;
 /// Error of the solver relative to that in time.
 const SOLVER_SHARE: f64 = 0.03;
-/// The first step after a jump is chosen from the material alone: this many lengths per decade are tried, ...
-const LENGTHS_PER_DECADE: i32 = 4;
-/// ... over this many decades below the time that is left.
-const DECADES: i32 = 40;
-/// A body without elastic response has no shortest time: its first step is this fraction of the time left.
-const FIRST_FRACTION: f64 = 1e-6;
 /// Events shorter than this part of the time between corners, times the tolerance, do not matter.
 const SHORTEST: f64 = 0.03;
-/// Where loads are looked at within a step: unevenly, so that no oscillation hits a zero at all of them.
-const SHARES: [f64; 5] = [0.153, 0.381, 0.5, 0.677, 0.891];
 /// Nodes that a quadratic and its correction go through, besides the end of the step.
-const NODES: usize = 3;
+pub(super) const NODES: usize = 3;
 
 impl StepControl {
     pub(super) fn new(tolerance: f64) -> StepControl {
@@ -70,7 +62,7 @@ impl StepControl {
             nodes,
             corner: None,
             scale: None,
-            drift: None,
+            defects: None,
             lasting: None,
             steps: 0,
             since: 0.0,
@@ -84,7 +76,7 @@ impl StepControl {
         self.nodes.len() <= NODES
             && self.nodes.windows(2).all(|pair| pair[0].0 > pair[1].0)
             && self.nodes.iter().all(|(time, load)| time.is_finite() && load.validate().is_ok())
-            && self.drift.as_ref().is_none_or(Drift::fits)
+            && self.defects.as_ref().is_none_or(DefectAccumulation::fits)
             && self.lasting.iter().flatten().all(LastingError::fits)
             && self.scale.as_ref().is_none_or(RunScale::fits)
     }
@@ -145,8 +137,8 @@ impl StepControl {
             self.scale = Some(RunScale::new(scene, state, history, until)?);
         }
         self.scale.iter_mut().for_each(|scale| scale.include(&state.loads[0]));
-        if self.drift.is_none() {
-            self.drift = scene.material.contact_spectrum()?.map(|creep| Drift::new(&creep));
+        if self.defects.is_none() {
+            self.defects = scene.material.contact_spectrum()?.map(|creep| DefectAccumulation::new(&creep));
         }
         Ok(())
     }
@@ -154,7 +146,7 @@ impl StepControl {
     /// Takes account of the defects of a step that is to be accepted; `is_given` tells whether a motion is.
     pub(super) fn include(&mut self, rule: Option<&ExponentialRule>, dt: f64, error: &TimeError, is_given: bool) {
         self.steps += 1;
-        self.drift.iter_mut().for_each(|drift| drift.include(dt, error.defect));
+        self.defects.iter_mut().for_each(|defects| defects.include(dt, error.defect));
         let Some(rule) = rule else { return };
         let [contact, surface] = self.lasting.get_or_insert_with(|| [(); 2].map(|()| LastingError::none(rule)));
         contact.include(rule, error.defect[0], is_given);
@@ -171,7 +163,7 @@ impl StepControl {
     /// corner or the end of the run at `stop`.
     pub(super) fn outlook(&self, scene: &Scene, load: &Load, [now, age, stop]: [f64; 3]) -> Outlook {
         let span = stop - self.since;
-        let shortest = self.drift.as_ref().map_or(f64::INFINITY, Drift::shortest_time);
+        let shortest = self.defects.as_ref().map_or(f64::INFINITY, DefectAccumulation::shortest_time);
         Outlook {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
             coming_back: self.scale.as_ref().map_or(0.0, |scale| scale.coming_back(scene, load, [age, now])),
@@ -180,106 +172,12 @@ impl StepControl {
                 .as_ref()
                 .map_or([0.0; 2], |errors| errors.each_ref().map(LastingError::of_displacement)),
             tolerance: self.tolerance,
-            agreement: self.drift.as_ref().map_or(1.0, Drift::agreement),
+            agreement: self.defects.as_ref().map_or(1.0, DefectAccumulation::agreement),
             steps: self.steps as f64 + 1.0,
             resolution: SHORTEST * self.tolerance * span,
             beginning: SHORTEST * self.tolerance * span.min(shortest),
             is_given: false,
         }
-    }
-
-    /// The length to try next, at most `left`, and the same in reduced time.
-    pub(super) fn length(
-        &self,
-        scene: &Scene,
-        state: &State,
-        history: &dyn LoadHistory,
-        left: f64,
-    ) -> Result<[f64; 2]> {
-        let clock = &state.clock;
-        if let Some(next) = self.next {
-            return Ok([scene.length_of(clock, next, left)?, next]);
-        }
-        let first = self.first(scene, state, history, left)?.min(left);
-        Ok([first, scene.reduced_length([clock.time, clock.time + first], first)?])
-    }
-
-    /// The length of the first step after a jump or a corner: the longest over which the creep is linear to within the
-    /// tolerance. After a corner, what creeps is the answer to the load's departure from how it went before.
-    fn first(&self, scene: &Scene, state: &State, history: &dyn LoadHistory, left: f64) -> Result<f64> {
-        let (now, jumped) = (state.clock.time, state.clock.last_dt == 0.0);
-        // a paraboloid answers with the power 2/3 of force and compliance
-        let compliance = |t: f64| scene.material.contact_compliance(t).powf(2.0 / 3.0);
-        let glassy = compliance(0.0);
-        if glassy == 0.0 {
-            return Ok(FIRST_FRACTION * left);
-        }
-        let magnitude = |load: &Load| self.scale.as_ref().map_or(0.0, |scale| scale.magnitude(load));
-        let held = magnitude(&state.loads[0]);
-        let (longest, slope) = match self.corner {
-            Some((before, slope)) if !jumped => (scene.length_of(&state.clock, before, left)?, slope),
-            _ => (left, 0.0),
-        };
-        for k in 0..=LENGTHS_PER_DECADE * DECADES {
-            let dt = longest * 10f64.powf(-f64::from(k) / f64::from(LENGTHS_PER_DECADE));
-            let reduced = scene.reduced_length([now, now + dt], dt)?;
-            let creep = compliance(reduced);
-            let deviation = if jumped {
-                (compliance(0.5 * reduced) - 0.5 * (glassy + creep)) / creep
-            } else {
-                let load = history.before(now + dt).validated_at(now + dt)?;
-                let change = (magnitude(&load) - held - slope * reduced).abs();
-                let scale =
-                    self.scale.as_ref().map_or(0.0, |scale| scale.of_load(&state.loads[0], &load)).max(held + change);
-                0.125 * (creep - glassy) / creep * change / scale.max(f64::MIN_POSITIVE)
-            };
-            if deviation.abs() <= self.tolerance
-                && self.watch(history, [now, now + dt], |time| scene.reduced_time(&state.clock, time))?
-                    <= self.tolerance
-            {
-                return Ok(dt);
-            }
-        }
-        Ok(longest * 10f64.powi(-DECADES))
-    }
-
-    /// Whether a body whose approach is given comes no nearer between now and `time` than at these ends.
-    pub(super) fn stays_away(&self, history: &dyn LoadHistory, now: f64, time: f64) -> bool {
-        let approach = |load: Load| match load {
-            Load::Approach { approach, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)] } => approach,
-            _ => f64::NAN,
-        };
-        let nearest = approach(history.at(now)).max(approach(history.before(time)));
-        let mut away = !nearest.is_nan();
-        for share in SHARES {
-            away &= approach(history.at(now + share * (time - now))) <= nearest;
-        }
-        away
-    }
-
-    /// How far the load strays between now and `time` from the polynomial through its last nodes and that at `time`, relative
-    /// to itself or to a fraction of the greatest of the run. Rejects invalid loads of the history.
-    pub(super) fn watch(
-        &self,
-        history: &dyn LoadHistory,
-        [now, time]: [f64; 2],
-        reduced: impl Fn(f64) -> Result<f64>,
-    ) -> Result<f64> {
-        let end = history.before(time).validated_at(time)?;
-        let mut nodes = [(reduced(time)?, end); NODES + 1];
-        let known = self.nodes.len().min(NODES);
-        nodes[1..=known].copy_from_slice(&self.nodes[..known]);
-        let nodes = &nodes[..=known];
-        let start = nodes[known.min(1)].1;
-        let scale = self.scale.as_ref().map_or(0.0, |scale| scale.of_load(&start, &end));
-        let mut most = 0.0_f64;
-        for share in SHARES {
-            let between = now + share * (time - now);
-            let load = history.at(between).validated_at(between)?;
-            let like = load.is_like(&start) && load.is_like(&end);
-            most = most.max(if like { load.deviation(reduced(between)?, nodes, scale) } else { f64::INFINITY });
-        }
-        Ok(most)
     }
 
     /// Chooses the length of the next step after one of length `dt` with the given error, which grows with such an `order` of
@@ -300,5 +198,57 @@ impl StepControl {
             self.rejected += 1;
         }
         accepted
+    }
+}
+
+/// Whether the defects of v of the steps so far add up. Under a given force a defect of v makes the bodies creep as a force would:
+/// defects of one sign leave an error in u that grows with the compliance of the bodies' age, those of changing sign cancel.
+///
+/// The response to the defects, and to their absolute values, by the same series: the ratio of both is how far they agree.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+struct DefectAccumulation {
+    fluidity: f64,
+    flow: [f64; 2],
+    /// Compliance, retardation time and what has crept, of each term.
+    terms: Vec<(f64, f64, [f64; 2])>,
+}
+
+impl DefectAccumulation {
+    fn new(creep: &CreepSpectrum) -> DefectAccumulation {
+        let terms = creep.terms().iter().map(|&(c, lambda)| (c, lambda, [0.0; 2])).collect();
+        DefectAccumulation { fluidity: creep.fluidity(), flow: [0.0; 2], terms }
+    }
+
+    /// Whether a run can be continued with it: a file may hold anything.
+    #[cfg(feature = "checkpoint")]
+    fn fits(&self) -> bool {
+        let known = |values: [f64; 2]| values.iter().all(|value| value.is_finite());
+        known(self.flow)
+            && self.fluidity >= 0.0
+            && self.terms.iter().all(|&(c, lambda, crept)| c >= 0.0 && lambda > 0.0 && known(crept))
+    }
+
+    /// The shortest retardation time; infinite if there is none.
+    fn shortest_time(&self) -> f64 {
+        self.terms.iter().map(|&(_, lambda, _)| lambda).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Takes account of a step of length `dt` with such a mean defect of v, and mean of its absolute value.
+    fn include(&mut self, dt: f64, defect: [f64; 2]) {
+        for which in [0, 1] {
+            self.flow[which] += self.fluidity * dt * defect[which];
+            for (c, lambda, crept) in &mut self.terms {
+                let decay = (-dt / *lambda).exp();
+                crept[which] = decay * crept[which] + *c * (1.0 - decay) * defect[which];
+            }
+        }
+    }
+
+    /// How far the defects so far agree: 1 if they are all of one sign, 0 if they cancel.
+    fn agreement(&self) -> f64 {
+        let [signed, absolute] =
+            [0, 1].map(|which| self.flow[which] + self.terms.iter().map(|term| term.2[which]).sum::<f64>());
+        if absolute > 0.0 { (signed / absolute).abs().min(1.0) } else { 1.0 }
     }
 }
