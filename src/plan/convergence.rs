@@ -3,10 +3,9 @@
 use crate::Grid;
 use crate::error::{Error, Result};
 use crate::load::Load;
-use crate::plan::Accuracy;
-use crate::plan::convergence_fit::{Convergence, ORDERS};
-use crate::plan::steps::Steps;
-use crate::plan::trial_runs::{Extent, Run, Scene, State, difference, greatest, relative};
+use crate::plan::convergence_fit::{Convergence, MeshConvergence, ORDERS};
+use crate::plan::steps::{Differences, Steps, relative};
+use crate::plan::trial_runs::{Extent, Run, Scene, State, greatest};
 
 /// Cells across the widest contact on the coarsest mesh, and on the finest that a plan computes.
 const LEAST_ACROSS: f64 = 16.0;
@@ -27,9 +26,6 @@ const MAX_GROWTHS: u32 = 5;
 const MAX_DIFFERENCE_OVER_PEAK: f64 = 4.0;
 /// Bound of the power of the number of cells across with which the convolutions of a run grow.
 const MAX_WORK_ORDER: f64 = 0.4;
-/// A greatest pressure that depends on the steps on a coarse mesh does so more on a finer one, whose cells a growing edge
-/// crosses faster: beyond this share of what was asked it is not promised.
-const MAX_PEAK_TIME_SHARE: f64 = 0.2;
 /// Fewest cells of an elastic contact whose greatest pressure bounds others, and what that may be off by.
 const BOUNDING_CELLS: usize = 12;
 const BOUNDING_MARGIN: f64 = 1.25;
@@ -37,41 +33,6 @@ const BOUNDING_MARGIN: f64 = 1.25;
 const MIN_NARROWING: f64 = 0.25;
 /// Ratio of the domain to the rectangle of the contact.
 pub(super) const DOMAIN_TO_CONTACT: f64 = 1.12;
-
-/// What the coarse runs found. Cells are those across the widest contact of the whole run.
-pub(super) struct Found {
-    /// Half sides of the rectangle about the origin that contained the contact.
-    pub(super) reach: [f64; 2],
-    /// Of approach and force.
-    pub(super) main: Convergence,
-    /// First-order part of that: singular edges.
-    pub(super) singular: Convergence,
-    /// Of the greatest pressure of the run.
-    pub(super) pressure: Convergence,
-    /// Of the greatest pressure at any time.
-    pub(super) pressure_over_time: Convergence,
-    /// Of the contact radius at any time.
-    pub(super) radius: Convergence,
-    pub(super) steps: Steps,
-    /// Convolution equivalents of the run, which grow with the cells.
-    pub(super) work: Convergence,
-}
-
-impl Found {
-    /// Cells across for the accuracy.
-    pub(super) fn across_for(&self, accuracy: Accuracy, area: bool) -> f64 {
-        let left = self.steps.left_for_mesh(accuracy);
-        let main = self.main.across_for(left).max(self.singular.across_for(left));
-        let others = [Some(self.pressure).filter(|law| law.converges), Some(self.radius).filter(|_| area)];
-        others.into_iter().flatten().map(|law| law.across_for(accuracy.space())).fold(main, f64::max)
-    }
-
-    /// Whether the greatest pressure of the run converges with the mesh and does not depend on the steps.
-    pub(super) fn pressure_converges(&self, accuracy: Accuracy) -> bool {
-        self.pressure.converges
-            && self.steps.error.is_none_or(|error| error.pressure <= MAX_PEAK_TIME_SHARE * accuracy.target())
-    }
-}
 
 /// The grid with so many cells across the widest contact.
 pub(super) fn grid_with(extent: &Extent, across: f64) -> Result<Grid> {
@@ -111,11 +72,8 @@ impl Extent {
 /// Runs on successive meshes, each twice as fine as the last.
 struct Meshes {
     across: f64,
-    /// Greatest differences between each mesh and the one before, relative to the greatest values of the run.
-    main: Vec<f64>,
-    pressure: Vec<f64>,
-    pressure_over_time: Vec<f64>,
-    radius: Vec<f64>,
+    /// Differences between each mesh and the one before.
+    differences: Vec<Differences>,
     finest: Run,
     /// Cells along the longer side.
     side: usize,
@@ -126,19 +84,10 @@ struct Meshes {
 impl Meshes {
     /// Refines until the mesh that is `needed` is within reach.
     fn refine(scene: &Scene<'_>, extent: &Extent, base: Run, needed: impl Fn(&Meshes) -> f64) -> Result<Meshes> {
-        let mut meshes = Meshes {
-            across: LEAST_ACROSS,
-            main: Vec::new(),
-            pressure: Vec::new(),
-            pressure_over_time: Vec::new(),
-            radius: Vec::new(),
-            finest: base,
-            side: 0,
-            growth: 0.0,
-        };
+        let mut meshes = Meshes { across: LEAST_ACROSS, differences: Vec::new(), finest: base, side: 0, growth: 0.0 };
         loop {
             meshes.halve(scene, extent)?;
-            let reach = if meshes.main.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
+            let reach = if meshes.differences.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
             let last = meshes.across >= MOST_ACROSS || 2 * meshes.side > MOST_CELLS;
             if last || needed(&meshes) <= reach * meshes.across {
                 return Ok(meshes);
@@ -152,23 +101,22 @@ impl Meshes {
         let [n1, n2] = grid.cells();
         self.side = n1.max(n2);
         let finer = scene.repeat(grid, &self.finest.steps)?;
-        let (coarse, fine) = (&self.finest.states, &finer.states);
-        let over = |of: fn(&State) -> f64, all: bool| difference(coarse, fine, of, all);
-        let [before, now] = [coarse, fine].map(|states| greatest(states, |state| state.pressure));
-        self.main.push(over(|state| state.approach, true).max(over(|state| state.force, true)));
-        self.pressure.push(relative((before - now).abs(), now));
-        self.pressure_over_time.push(over(|state| state.pressure, false));
-        self.radius.push(over(|state| state.radius, false));
+        self.differences.push(Differences::between(&self.finest.states, &finer.states));
         let growth = relative(finer.convolutions, self.finest.convolutions);
         self.growth = growth.max(1.0).log2().min(MAX_WORK_ORDER);
         self.finest = finer;
         Ok(())
     }
 
+    /// The differences of one quantity, from the coarsest mesh to the finest.
+    fn each(&self, of: impl Fn(&Differences) -> f64) -> Vec<f64> {
+        self.differences.iter().map(of).collect()
+    }
+
     /// Approach and force; with a rim of cells on a face that ends, by fractions of a cell.
     fn main(&self, punch: bool) -> Convergence {
         let law = if punch { Convergence::by_cells } else { Convergence::smooth };
-        law(&self.main, self.across)
+        law(&self.each(|differences| differences.main), self.across)
     }
 
     /// The first-order part, estimated from the rim. Creep raises the pressure towards a growing rim too: at edges of the
@@ -192,12 +140,13 @@ impl Meshes {
     /// number may be small or large by chance: where they agree with the estimate from the peak's neighbours, the pressure is as
     /// smooth as in an elastic contact.
     fn pressure(&self) -> Convergence {
-        let law = Convergence::smooth(&self.pressure, self.across);
+        let pressure = self.each(|differences| differences.pressure);
+        let law = Convergence::smooth(&pressure, self.across);
         let Some(peak) = self.highest().and_then(|state| state.peak) else {
             return Convergence { converges: false, ..law };
         };
-        if self.pressure.last().is_some_and(|&last| last <= MAX_DIFFERENCE_OVER_PEAK * peak) {
-            let error = Convergence::second_order(&self.pressure).max(peak);
+        if pressure.last().is_some_and(|&last| last <= MAX_DIFFERENCE_OVER_PEAK * peak) {
+            let error = Convergence::second_order(&pressure).max(peak);
             return Convergence { error, order: ORDERS[1], converges: true, ..law };
         }
         law
@@ -236,7 +185,7 @@ impl Meshes {
 
 /// Finds the steps and how approach, force, radius and greatest pressure converge with the mesh; `area` tells whether the
 /// radius has to be resolved.
-pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result<Found> {
+pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result<MeshConvergence> {
     let mut first = grid_with(extent, STEPS_ACROSS)?;
     if first.cells().into_iter().any(|cells| cells > MOST_CELLS) {
         first = grid_with(extent, LEAST_ACROSS)?;
@@ -251,19 +200,22 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
         None => None,
     };
     let base = scene.repeat(grid_with(extent, LEAST_ACROSS)?, &steps.run.steps)?;
-    let found = |meshes: &Meshes| Found {
+    let found = |meshes: &Meshes| MeshConvergence {
         reach: [0, 1].map(|axis| extent.reach[axis].max(meshes.finest.extent.reach[axis])),
         main: meshes.main(punch),
         singular: meshes.singular(punch),
         pressure: zoomed.unwrap_or_else(|| meshes.pressure()),
-        pressure_over_time: Convergence::smooth(&meshes.pressure_over_time, meshes.across),
-        radius: Convergence::by_cells(&meshes.radius, meshes.across),
+        pressure_over_time: Convergence::smooth(
+            &meshes.each(|differences| differences.pressure_over_time),
+            meshes.across,
+        ),
+        radius: Convergence::by_cells(&meshes.each(|differences| differences.radius), meshes.across),
         work: meshes.work(),
         steps: steps.clone(),
     };
     // a pressure on a domain of its own asks nothing of these meshes
-    let unzoomed = |found: Found| match zoomed {
-        Some(law) => Found { pressure: Convergence { converges: false, ..law }, ..found },
+    let unzoomed = |found: MeshConvergence| match zoomed {
+        Some(law) => MeshConvergence { pressure: Convergence { converges: false, ..law }, ..found },
         None => found,
     };
     let needed = |meshes: &Meshes| unzoomed(found(meshes)).across_for(scene.accuracy, area);

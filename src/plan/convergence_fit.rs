@@ -1,10 +1,16 @@
 //! Errors of the mesh as powers of the cell width.
 
+use crate::plan::Accuracy;
+use crate::plan::steps::Steps;
+
 /// Orders of convergence that are believed; below the first the quantity counts as not converging.
 pub(super) const ORDERS: [f64; 2] = [0.7, 2.0];
 /// Errors that are fractions of a cell have either sign on two meshes: the greatest difference is that much more than the
 /// error on the finer one.
 const DIFFERENCE_OVER_ERROR: f64 = 1.25;
+/// A greatest pressure that depends on the steps on a coarse mesh does so more on a finer one, whose cells a growing edge
+/// crosses faster: beyond this share of what was asked it is not promised.
+const MAX_PEAK_TIME_SHARE: f64 = 0.2;
 
 /// The error of a quantity, relative to the greatest value of the run, as a power of the number of cells across.
 #[derive(Debug, Clone, Copy)]
@@ -62,5 +68,40 @@ impl Convergence {
     /// Cells across for a given error.
     pub(super) fn across_for(&self, target: f64) -> f64 {
         self.across * (self.error / target).powf(1.0 / self.order)
+    }
+}
+
+/// What the coarse runs found. Cells are those across the widest contact of the whole run.
+pub(super) struct MeshConvergence {
+    /// Half sides of the rectangle about the origin that contained the contact.
+    pub(super) reach: [f64; 2],
+    /// Of approach and force.
+    pub(super) main: Convergence,
+    /// First-order part of that: singular edges.
+    pub(super) singular: Convergence,
+    /// Of the greatest pressure of the run.
+    pub(super) pressure: Convergence,
+    /// Of the greatest pressure at any time.
+    pub(super) pressure_over_time: Convergence,
+    /// Of the contact radius at any time.
+    pub(super) radius: Convergence,
+    pub(super) steps: Steps,
+    /// Convolution equivalents of the run, which grow with the cells.
+    pub(super) work: Convergence,
+}
+
+impl MeshConvergence {
+    /// Cells across for the accuracy.
+    pub(super) fn across_for(&self, accuracy: Accuracy, area: bool) -> f64 {
+        let left = self.steps.left_for_mesh(accuracy);
+        let main = self.main.across_for(left).max(self.singular.across_for(left));
+        let others = [Some(self.pressure).filter(|law| law.converges), Some(self.radius).filter(|_| area)];
+        others.into_iter().flatten().map(|law| law.across_for(accuracy.space())).fold(main, f64::max)
+    }
+
+    /// Whether the greatest pressure of the run converges with the mesh and does not depend on the steps.
+    pub(super) fn pressure_converges(&self, accuracy: Accuracy) -> bool {
+        self.pressure.converges
+            && self.steps.error.is_none_or(|error| error.pressure <= MAX_PEAK_TIME_SHARE * accuracy.target())
     }
 }

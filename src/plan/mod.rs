@@ -14,8 +14,8 @@ use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
-use crate::plan::convergence::{DOMAIN_TO_CONTACT, Found, converge, grid_with};
-use crate::plan::convergence_fit::Convergence;
+use crate::plan::convergence::{DOMAIN_TO_CONTACT, converge, grid_with};
+use crate::plan::convergence_fit::{Convergence, MeshConvergence};
 use crate::plan::trial_runs::{Extent, Scene};
 use crate::rheology::{Material, TemperatureHistory};
 
@@ -167,7 +167,7 @@ impl Plan {
         let extent = Extent::of(&scene)?;
         let mut found = extent.held(|extent| converge(&scene, extent, area))?;
         let extent = Extent { reach: found.reach, ..extent };
-        let needed = |found: &Found| {
+        let needed = |found: &MeshConvergence| {
             let across = found.across_for(accuracy, area).max(LEAST_ACROSS);
             (across, [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * extent.reach[axis] / extent.width[axis]))
         };

@@ -1,9 +1,9 @@
-//! The steps of a run, and the error in time that they leave.
+//! The steps of a trial run and their error in time, from the differences between runs.
 
 use crate::Grid;
 use crate::error::{Error, Result};
 use crate::plan::Accuracy;
-use crate::plan::trial_runs::{LEAST_TOLERANCE, Run, Scene, State, difference, greatest, relative};
+use crate::plan::trial_runs::{LEAST_TOLERANCE, Run, Scene, State, greatest};
 
 /// The error in time may take this share of what was asked, both errors together the second, and that of the mesh at least
 /// the third.
@@ -16,24 +16,13 @@ const MAX_STEP_TRIES: u32 = 3;
 const MAX_SHORTENING: f64 = 0.2;
 const MIN_GAIN: f64 = 0.8;
 
-/// Errors in time, relative to the greatest values of the run.
-#[derive(Clone, Copy)]
-pub(super) struct TimeError {
-    /// Of approach or force.
-    pub(super) main: f64,
-    /// Of the greatest pressure of the run.
-    pub(super) pressure: f64,
-    /// Of the greatest pressure at any time.
-    pub(super) pressure_over_time: f64,
-}
-
 /// The steps of a run, and the error in time that they leave.
 #[derive(Clone)]
 pub(super) struct Steps {
     pub(super) tolerance: f64,
     pub(super) run: Run,
     /// `None` where steps short enough to compare with do not exist.
-    pub(super) error: Option<TimeError>,
+    pub(super) error: Option<Differences>,
 }
 
 impl Steps {
@@ -70,15 +59,46 @@ impl Steps {
 
     fn with_tolerance(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
         let run = scene.follow(grid.clone())?;
-        let error = scene.with_shorter_steps(&run, grid.clone())?.map(|finer| {
-            let over = |of: fn(&State) -> f64, all: bool| difference(&run.states, &finer, of, all);
-            let [highest, finest] = [&run.states, &finer].map(|states| greatest(states, |state| state.pressure));
-            TimeError {
-                main: over(|state| state.approach, true).max(over(|state| state.force, true)),
-                pressure: relative((highest - finest).abs(), finest),
-                pressure_over_time: over(|state| state.pressure, false),
-            }
-        });
+        let finer = scene.with_shorter_steps(&run, grid.clone())?;
+        let error = finer.map(|finer| Differences::between(&run.states, &finer));
         Ok(Steps { tolerance: scene.tolerance, run, error })
     }
+}
+
+/// Differences between two runs of the same steps or times, relative to the greatest values of the finer run.
+#[derive(Clone, Copy)]
+pub(super) struct Differences {
+    /// Of approach or force at any time.
+    pub(super) main: f64,
+    /// Of the greatest pressure of the run.
+    pub(super) pressure: f64,
+    /// Of the greatest pressure at any time at which the coarse run resolves the contact.
+    pub(super) pressure_over_time: f64,
+    /// Of the contact radius at these times.
+    pub(super) radius: f64,
+}
+
+impl Differences {
+    pub(super) fn between(coarse: &[State], fine: &[State]) -> Differences {
+        let over = |of: fn(&State) -> f64, all: bool| difference(coarse, fine, of, all);
+        let [before, now] = [coarse, fine].map(|states| greatest(states, |state| state.pressure));
+        Differences {
+            main: over(|state| state.approach, true).max(over(|state| state.force, true)),
+            pressure: relative((before - now).abs(), now),
+            pressure_over_time: over(|state| state.pressure, false),
+            radius: over(|state| state.radius, false),
+        }
+    }
+}
+
+/// The greatest difference between the states of two runs at the same times, relative to the greatest value; of all states
+/// or of those resolved in the first.
+fn difference(coarse: &[State], fine: &[State], of: impl Fn(&State) -> f64, all: bool) -> f64 {
+    let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
+    let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
+    relative(most, greatest(fine, of))
+}
+
+pub(super) fn relative(value: f64, scale: f64) -> f64 {
+    if scale > 0.0 { value / scale } else { 0.0 }
 }

@@ -271,18 +271,6 @@ fn advance(contact: &mut ViscoelasticContact, dt: f64, load: Load, halvings: u32
     }
 }
 
-/// The greatest difference between the states of two runs at the same times, relative to the greatest value; of all states
-/// or of those resolved in the first.
-pub(super) fn difference(coarse: &[State], fine: &[State], of: impl Fn(&State) -> f64, all: bool) -> f64 {
-    let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
-    let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
-    relative(most, greatest(fine, of))
-}
-
-pub(super) fn relative(value: f64, scale: f64) -> f64 {
-    if scale > 0.0 { value / scale } else { 0.0 }
-}
-
 pub(super) fn greatest(states: &[State], of: impl Fn(&State) -> f64) -> f64 {
     states.iter().map(|state| of(state).abs()).fold(0.0, f64::max)
 }

@@ -3,6 +3,7 @@
 use crate::contact::computation::Computation;
 use crate::contact::read::report::StepReport;
 use crate::contact::run::follow::Follow;
+use crate::contact::run::progress::StepErrors;
 use crate::contact::run::step_control::{NODES, StepControl};
 use crate::contact::scene::Scene;
 use crate::contact::settings::Settings;
@@ -87,7 +88,8 @@ impl Follow<'_> {
                 }
                 report.convolutions += wasted[0];
                 report.preconditioner_applications += wasted[1];
-                let errors = [error.relative.max(error.lasting), error.greatest, report.residual];
+                let time = error.relative.max(error.lasting);
+                let errors = StepErrors { time, pressure: error.greatest, residual: report.residual };
                 self.progress.include(errors, self.contact.mesh_error().unwrap_or_default());
                 return Ok(report);
             }

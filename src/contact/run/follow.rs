@@ -4,7 +4,7 @@ use crate::ascending::Ascending;
 use crate::contact::read::report::StepReport;
 #[cfg(feature = "checkpoint")]
 use crate::contact::run::progress::Autosave;
-use crate::contact::run::progress::{ErrorBudget, Progress, Stepping};
+use crate::contact::run::progress::{ErrorBudget, Progress, StepErrors, Stepping};
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::{OwnedOrBorrowed, RunContact, RunHistory};
 use crate::contact::step::error_in_time::Outlook;
@@ -227,7 +227,8 @@ impl<'a> Follow<'a> {
             let outlook = Outlook { expected, ..Outlook::default() };
             let (report, error) = self.contact.take_expecting(step, outlook)?;
             let mesh = self.contact.mesh_error().unwrap_or_default();
-            self.progress.include([error.relative, error.greatest, report.residual], mesh);
+            let errors = StepErrors { time: error.relative, pressure: error.greatest, residual: report.residual };
+            self.progress.include(errors, mesh);
             Ok(report)
         })
     }

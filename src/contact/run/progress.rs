@@ -42,6 +42,28 @@ impl Stepping {
     }
 }
 
+/// The errors of a step, or the greatest ones of several steps.
+#[derive(Debug, Clone, Copy)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+pub(super) struct StepErrors {
+    /// Estimated error in time, relative.
+    pub(super) time: f64,
+    /// Estimated error in time of the pressure of a single cell, relative to the mean in contact.
+    pub(super) pressure: f64,
+    /// Residual of the contact problem.
+    pub(super) residual: f64,
+}
+
+impl StepErrors {
+    fn max(self, other: StepErrors) -> StepErrors {
+        StepErrors {
+            time: self.time.max(other.time),
+            pressure: self.pressure.max(other.pressure),
+            residual: self.residual.max(other.residual),
+        }
+    }
+}
+
 /// How far a run has come, and what it knows of the steps to come.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
@@ -56,7 +78,7 @@ pub(crate) struct Progress {
     /// The sizes of a run by equal steps.
     pub(super) scale: Option<RunScale>,
     /// Greatest estimated errors in time of a step, in all and in a cell, and greatest residual; `None` before the first step.
-    worst: Option<[f64; 3]>,
+    worst: Option<StepErrors>,
     /// Greatest estimated errors due to the mesh, of the states in contact.
     mesh: Option<MeshError>,
 }
@@ -93,9 +115,8 @@ impl Progress {
     }
 
     /// Takes account of the errors of a step, and of the mesh at its end.
-    pub(super) fn include(&mut self, errors: [f64; 3], mesh: Option<MeshError>) {
-        self.worst =
-            self.worst.map_or(Some(errors), |worst| Some([0, 1, 2].map(|which| worst[which].max(errors[which]))));
+    pub(super) fn include(&mut self, errors: StepErrors, mesh: Option<MeshError>) {
+        self.worst = Some(self.worst.map_or(errors, |worst| worst.max(errors)));
         self.mesh = match (self.mesh, mesh) {
             (Some(worst), Some(mesh)) => Some(worst.max(mesh)),
             (worst, mesh) => worst.or(mesh),
@@ -104,8 +125,13 @@ impl Progress {
 
     /// What is known of the errors so far, with those due to the `mesh` now.
     pub(super) fn error_budget(&self, mesh: Option<MeshError>) -> ErrorBudget {
-        let [time, pressure] = [0, 1].map(|which| self.worst.map(|worst| worst[which]));
-        ErrorBudget { time, pressure, mesh, max_mesh: self.mesh, solver: self.worst.map_or(0.0, |worst| worst[2]) }
+        ErrorBudget {
+            time: self.worst.map(|worst| worst.time),
+            pressure: self.worst.map(|worst| worst.pressure),
+            mesh,
+            max_mesh: self.mesh,
+            solver: self.worst.map_or(0.0, |worst| worst.residual),
+        }
     }
 }
 

@@ -210,13 +210,24 @@ impl StepControl {
 struct DefectAccumulation {
     fluidity: f64,
     flow: [f64; 2],
-    /// Compliance, retardation time and what has crept, of each term.
-    terms: Vec<(f64, f64, [f64; 2])>,
+    terms: Vec<CreepTerm>,
+}
+
+/// One term of the creep spectrum.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+struct CreepTerm {
+    compliance: f64,
+    /// Retardation time.
+    time: f64,
+    /// Response to the defects, and to their absolute values.
+    crept: [f64; 2],
 }
 
 impl DefectAccumulation {
     fn new(creep: &CreepSpectrum) -> DefectAccumulation {
-        let terms = creep.terms().iter().map(|&(c, lambda)| (c, lambda, [0.0; 2])).collect();
+        let terms =
+            creep.terms().iter().map(|&(compliance, time)| CreepTerm { compliance, time, crept: [0.0; 2] }).collect();
         DefectAccumulation { fluidity: creep.fluidity(), flow: [0.0; 2], terms }
     }
 
@@ -226,21 +237,21 @@ impl DefectAccumulation {
         let known = |values: [f64; 2]| values.iter().all(|value| value.is_finite());
         known(self.flow)
             && self.fluidity >= 0.0
-            && self.terms.iter().all(|&(c, lambda, crept)| c >= 0.0 && lambda > 0.0 && known(crept))
+            && self.terms.iter().all(|term| term.compliance >= 0.0 && term.time > 0.0 && known(term.crept))
     }
 
     /// The shortest retardation time; infinite if there is none.
     fn shortest_time(&self) -> f64 {
-        self.terms.iter().map(|&(_, lambda, _)| lambda).fold(f64::INFINITY, f64::min)
+        self.terms.iter().map(|term| term.time).fold(f64::INFINITY, f64::min)
     }
 
     /// Takes account of a step of length `dt` with such a mean defect of v, and mean of its absolute value.
     fn include(&mut self, dt: f64, defect: [f64; 2]) {
         for which in [0, 1] {
             self.flow[which] += self.fluidity * dt * defect[which];
-            for (c, lambda, crept) in &mut self.terms {
-                let decay = (-dt / *lambda).exp();
-                crept[which] = decay * crept[which] + *c * (1.0 - decay) * defect[which];
+            for CreepTerm { compliance, time, crept } in &mut self.terms {
+                let decay = (-dt / *time).exp();
+                crept[which] = decay * crept[which] + *compliance * (1.0 - decay) * defect[which];
             }
         }
     }
@@ -248,7 +259,7 @@ impl DefectAccumulation {
     /// How far the defects so far agree: 1 if they are all of one sign, 0 if they cancel.
     fn agreement(&self) -> f64 {
         let [signed, absolute] =
-            [0, 1].map(|which| self.flow[which] + self.terms.iter().map(|term| term.2[which]).sum::<f64>());
+            [0, 1].map(|which| self.flow[which] + self.terms.iter().map(|term| term.crept[which]).sum::<f64>());
         if absolute > 0.0 { (signed / absolute).abs().min(1.0) } else { 1.0 }
     }
 }
