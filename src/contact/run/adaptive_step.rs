@@ -14,21 +14,25 @@ use crate::error::{Error, Result};
 use crate::events;
 use crate::load::{Load, LoadHistory, Tilt};
 
-/// A step that the solver cannot do is tried again so many times, shorter.
+/// Number of shorter attempts after the solver has failed to converge.
 const MAX_SOLVER_RETRIES: u32 = 5;
-/// The order, in the length of a step, of the error due to cells that join in it: a shorter step ends sooner after they do.
+/// Order in the step length of the error due to cells that join the contact within the step: a shorter step ends sooner
+/// after they join.
 const ORDER_OF_KINKS: u32 = 2;
-/// The first step after a jump is chosen from the material alone: this many lengths per decade are tried, ...
+/// Lengths per decade tried for the first step after a jump, which is chosen from the material alone, ...
 const LENGTHS_PER_DECADE: i32 = 4;
-/// ... over this many decades below the time that is left.
+/// ... and decades tried below the remaining time.
 const DECADES: i32 = 40;
-/// A body without elastic response has no shortest time: its first step is this fraction of the time left.
+/// First step of a body without elastic response, as a fraction of the remaining time: such a body has no shortest
+/// time.
 const FIRST_FRACTION: f64 = 1e-6;
-/// Where loads are looked at within a step: unevenly, so that no oscillation hits a zero at all of them.
+/// Positions within a step at which the load is evaluated. They are uneven, so that no oscillation is zero at all of
+/// them.
 const SHARES: [f64; 5] = [0.153, 0.381, 0.5, 0.677, 0.891];
 
 impl Follow<'_> {
-    /// One step as long as its error allows.
+    /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step,
+    /// judges its error, and accepts it or tries a shorter one.
     pub(super) fn adaptive_step(&mut self, control: &mut StepControl, corner: f64) -> Result<StepReport> {
         let ViscoelasticContact { scene, computation, .. } = &*self.contact;
         let now = self.contact.time();
@@ -42,7 +46,7 @@ impl Follow<'_> {
             let [wanted, reduced] = control.length(scene, &computation.state, &*self.history, self.until - now)?;
             let (order, dashpot) = order_of(&computation.state, &scene.settings);
             let (time, dt) = towards(now, stop, wanted);
-            // near the resolution of the time, a shortened step may round to the same end for ever
+            // near the resolution of the time, a shortened step may round to the same end again and again
             if time <= now || time >= tried {
                 return Err(Error::StepTooShort { time: now, dt, tolerance: control.tolerance });
             }
@@ -72,7 +76,7 @@ impl Follow<'_> {
             let end = scene.reduced_time(&computation.state.clock, corner.min(self.until))?;
             let outlook = control.outlook(scene, &loads[0], [time, age, end]);
             let mut error = error_in_time(scene, computed, &step, outlook);
-            // how bodies moved that stayed apart makes no difference
+            // the path of bodies that stay apart does not matter
             if !parted || computed.state.region.is_positive_anywhere(&computed.trial.solution.pressure) {
                 error.relative = error.relative.max(straying);
             }
@@ -100,7 +104,7 @@ impl Follow<'_> {
 }
 
 impl StepControl {
-    /// The length to try next, at most `left`, and the same in reduced time.
+    /// Proposed length of the next step, at most `left`, and its length in reduced time.
     pub(super) fn length(
         &self,
         scene: &Scene,
@@ -117,10 +121,10 @@ impl StepControl {
     }
 
     /// The length of the first step after a jump or a corner: the longest over which the creep is linear to within the
-    /// tolerance. After a corner, what creeps is the answer to the load's departure from how it went before.
+    /// tolerance. After a corner, only the departure of the load from its previous slope makes the bodies creep.
     fn first(&self, scene: &Scene, state: &State, history: &dyn LoadHistory, left: f64) -> Result<f64> {
         let (now, jumped) = (state.clock.time, state.clock.last_dt == 0.0);
-        // a paraboloid answers with the power 2/3 of force and compliance
+        // the approach of a paraboloid is proportional to force and compliance to the power 2/3
         let compliance = |t: f64| scene.material.contact_compliance(t).powf(2.0 / 3.0);
         let glassy = compliance(0.0);
         if glassy == 0.0 {
@@ -155,7 +159,7 @@ impl StepControl {
         Ok(longest * 10f64.powi(-DECADES))
     }
 
-    /// Whether a body whose approach is given comes no nearer between now and `time` than at these ends.
+    /// Whether a body of given approach comes no nearer between `now` and `time` than at these two times.
     pub(super) fn stays_away(&self, history: &dyn LoadHistory, now: f64, time: f64) -> bool {
         let approach = |load: Load| match load {
             Load::Approach { approach, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)] } => approach,
@@ -169,8 +173,9 @@ impl StepControl {
         away
     }
 
-    /// How far the load strays between now and `time` from the polynomial through its last nodes and that at `time`, relative
-    /// to itself or to a fraction of the greatest of the run. Rejects invalid loads of the history.
+    /// Greatest deviation of the load between `now` and `time` from the polynomial through its last nodes and the load
+    /// at `time`, relative to the load or to a fraction of the greatest load of the run. Rejects invalid loads of the
+    /// history.
     pub(super) fn watch(
         &self,
         history: &dyn LoadHistory,
@@ -195,7 +200,7 @@ impl StepControl {
     }
 }
 
-/// The order of the error of a step in its length, and whether an immediate dashpot answers it.
+/// The order of the error of a step in its length, and whether the body responds by an immediate dashpot.
 fn order_of(state: &State, settings: &Settings) -> (u32, bool) {
     match state.history.exponential_rule() {
         Some(rule) => (rule.order(settings.adaptive_interpolant()), rule.has_dashpot()),
@@ -203,20 +208,20 @@ fn order_of(state: &State, settings: &Settings) -> (u32, bool) {
     }
 }
 
-/// Adds the convolutions and preconditioner applications of a step that was tried.
+/// Adds the convolutions and preconditioner applications of a rejected step.
 fn add_work(work: &mut [usize; 2], tried: &Computation) {
     let counts = tried.trial.solution.counts;
     *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
 }
 
-/// The end and the length of a step of about `wanted` towards `stop`: onto it if it is near, halfway if the rest
-/// would be a sliver.
+/// The end and the length of a step of about `wanted` towards `stop`: the step ends at `stop` if this is near, or
+/// halfway if the remainder would be much shorter than the step.
 fn towards(now: f64, stop: f64, wanted: f64) -> (f64, f64) {
     let left = stop - now;
     if wanted >= 0.99 * left {
         (stop, left)
     } else {
         let dt = if wanted > 0.5 * left { 0.5 * left } else { wanted };
-        (now + dt, now + dt - now) // the step that is really taken
+        (now + dt, now + dt - now) // the step length after rounding
     }
 }

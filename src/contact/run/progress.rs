@@ -8,17 +8,18 @@ use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::step_control::StepControl;
 use crate::observe::MeshError;
 
-/// How long the steps are.
+/// The rule for the length of steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Stepping {
-    /// Equal steps, counted from the time at which following starts; cut where the load has a corner.
+    /// Equal steps, counted from the start of the run. Steps are shortened to end at corners of the load.
     Fixed {
         /// Length of a step \[s\].
         dt: f64,
     },
-    /// Steps as long as the error in time allows; short after jumps and corners of the load, long when little happens.
+    /// Steps as long as the error in time allows: short after jumps and corners of the load, long while the state
+    /// changes slowly.
     Adaptive {
         /// Error in time of approach or force.
         tolerance: f64,
@@ -31,12 +32,11 @@ impl Stepping {
         Stepping::Fixed { dt }
     }
 
-    /// Steps whose error in time is estimated to be at most `tolerance`, in \[1e-9, 0.1\]: that of the approach where a force
-    /// is given, that of the force where the approach is. It is relative to displacement or force, where these are large, and
-    /// else to the greatest of the run, of which small loads, and those that begin from nothing, are a part. Errors of the
-    /// pressure at a point may be larger, see [`ErrorBudget::pressure`](crate::contact::ErrorBudget::pressure). The solver is
-    /// not asked for more than suits: [`Settings::tolerance`](crate::contact::Settings::tolerance) or 0.03 of `tolerance`,
-    /// whichever is greater.
+    /// Steps whose estimated error in time is at most `tolerance`, in \[1e-9, 0.1\]: the error of the approach under a
+    /// given force, the error of the force under a given approach. It is relative to the displacement or force; for
+    /// small values it is relative to a fraction of the greatest of the run. Errors of the pressure at a point may be
+    /// larger, see [`ErrorBudget::pressure`](crate::contact::ErrorBudget::pressure). The tolerance of the solver is
+    /// [`Settings::tolerance`](crate::contact::Settings::tolerance) or 0.03 of `tolerance`, whichever is greater.
     pub fn adaptive(tolerance: f64) -> Stepping {
         Stepping::Adaptive { tolerance }
     }
@@ -64,18 +64,18 @@ impl StepErrors {
     }
 }
 
-/// How far a run has come, and what it knows of the steps to come.
+/// How far a run has come, and the state of its step control.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Progress {
     pub(super) start: f64,
-    /// Time of the contact when this was true.
+    /// Time of the contact that belongs to this progress.
     pub(crate) now: f64,
-    /// Equal steps that were taken, and their length, 0 for steps chosen by their error.
+    /// Number of equal steps taken, and their length, 0 for adaptive steps.
     pub(super) steps: u64,
     dt: f64,
     pub(super) control: Option<StepControl>,
-    /// The sizes of a run by equal steps.
+    /// Greatest loads and displacements of a run by equal steps.
     pub(super) scale: Option<RunScale>,
     /// Greatest estimated errors in time of a step, in all and in a cell, and greatest residual; `None` before the first step.
     worst: Option<StepErrors>,
@@ -92,18 +92,18 @@ impl Progress {
         Progress { start: now, now, steps: 0, dt, control, scale: None, worst: None, mesh: None }
     }
 
-    /// Whether it is that of a run that begins like this one.
+    /// Whether a run of this progress began like `begun`.
     pub(super) fn continues(&self, begun: &Progress) -> bool {
         let tolerance = |progress: &Progress| progress.control.as_ref().map(|control| control.tolerance);
         self.now == begun.now && self.dt == begun.dt && tolerance(self) == tolerance(begun)
     }
 
-    /// The end of the fixed step that is under way.
+    /// The end of the next fixed step.
     pub(super) fn end_of_step(&self, dt: f64) -> f64 {
         self.start + (self.steps + 1) as f64 * dt
     }
 
-    /// Whether a run can be continued from it: a file may hold anything.
+    /// Whether a run can continue from these values; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self) -> bool {
         let scale_fits = self.scale.as_ref().is_none_or(RunScale::fits);
@@ -114,7 +114,7 @@ impl Progress {
             }
     }
 
-    /// Takes account of the errors of a step, and of the mesh at its end.
+    /// Includes the errors of a step, and the errors of the mesh at its end.
     pub(super) fn include(&mut self, errors: StepErrors, mesh: Option<MeshError>) {
         self.worst = Some(self.worst.map_or(errors, |worst| worst.max(errors)));
         self.mesh = match (self.mesh, mesh) {
@@ -123,7 +123,7 @@ impl Progress {
         };
     }
 
-    /// What is known of the errors so far, with those due to the `mesh` now.
+    /// The errors so far; `mesh` is the error due to the mesh of the present state.
     pub(super) fn error_budget(&self, mesh: Option<MeshError>) -> ErrorBudget {
         ErrorBudget {
             time: self.worst.map(|worst| worst.time),
@@ -135,8 +135,8 @@ impl Progress {
     }
 }
 
-/// Where the error of a run comes from, made by
-/// [`Follow::error_budget`](crate::contact::Follow::error_budget). All relative; `None` where nothing was estimated.
+/// Where the error of a run comes from, made by [`Follow::error_budget`](crate::contact::Follow::error_budget). All
+/// errors are relative; `None` where nothing was estimated.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -160,28 +160,29 @@ impl Progress {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ErrorBudget {
-    /// Greatest error in time estimated for a step: of the approach where a force is given, of the force where a motion is.
-    /// Relative to the displacement, or to v = K p; below a part of the greatest so far, to that part. 0 of elastic bodies,
-    /// which make no such error; `None` before the first step.
+    /// Greatest estimated error in time of a step: of the approach under a given force, of the force under a given
+    /// motion. It is relative to the displacement, or to v = K p, or to a fraction of the greatest so far, whichever is
+    /// greater. 0 for elastic bodies, which have no error in time; `None` before the first step.
     ///
-    /// Of steps chosen by their error it is what they were chosen by, or the error that all steps together have left, as far as a
-    /// mean over the contact tells, where that is greater. Steps of given length are estimated by the same, and the
-    /// first after a jump or a corner of a force from the material alone. Measured on a sphere and six bodies
-    /// (`tests/time/fixed_steps.rs`), the true error is 0.5 to 1.5 times the estimate for forces that jump or grow linearly.
-    /// It is up to 4.5 times where a force begins like a power of time, whose course in the first step nothing tells, and down
-    /// to 0.05 times under a given motion of bodies that begin to touch, whose first cells are met in part.
+    /// For adaptive steps it is the error that chose their length, or, if greater, the error left by all steps
+    /// together, estimated by a mean over the contact. The estimate of steps of given length is the same; for the first
+    /// step after a jump or a corner of a force it follows from the material alone. Measured on a sphere and six bodies
+    /// (`tests/time/fixed_steps.rs`), the true error is 0.5 to 1.5 times the estimate for forces that jump or grow
+    /// linearly. It is up to 4.5 times the estimate where a force begins like a power of time, since the estimate does
+    /// not include its course within the first step. It is down to 0.05 times under a given motion of bodies that begin
+    /// to touch, when the first cells touch in part.
     pub time: Option<f64>,
-    /// Greatest error in time estimated for a step in a single cell, relative to the mean in contact: what the pressure at a
-    /// point, and the greatest pressure, may be off by. It is largest where a body meets cells faster than the steps resolve,
-    /// which hardly moves the body. `None` before the first step.
+    /// Greatest estimated error in time of a step in a single cell, relative to the mean in contact. It bounds the
+    /// error of the pressure at a point, and of the greatest pressure. It is largest where a body meets cells faster
+    /// than the steps resolve, which hardly changes its approach. `None` before the first step.
     pub pressure: Option<f64>,
-    /// Errors due to the mesh, of the present state; `None` without contact, of a contact that the cells do not resolve, and where
-    /// [ranks](crate::parallel) share out the rows.
+    /// Errors due to the mesh in the present state; `None` without contact, for a contact that the cells do not
+    /// resolve, and where [ranks](crate::parallel) share out the rows.
     pub mesh: Option<MeshError>,
-    /// The greatest errors due to the mesh of all states of the run that have an estimate, each of them relative to its own
-    /// state: largest where few cells are in contact. `None` if no state has one.
+    /// Greatest errors due to the mesh over the states of the run, each relative to its state. They are largest where
+    /// few cells are in contact. `None` if no state has an estimate.
     pub max_mesh: Option<MeshError>,
-    /// Greatest residual of the contact problems, of the displacement.
+    /// Greatest residual of the contact problems, relative to the displacement.
     pub solver: f64,
 }
 
@@ -201,7 +202,7 @@ impl fmt::Display for ErrorBudget {
     }
 }
 
-/// Where a run is saved, how often, and when it was last.
+/// Where and how often a run is saved, and the time of the last save.
 #[cfg(feature = "checkpoint")]
 #[derive(Debug)]
 pub(in crate::contact) struct Autosave {

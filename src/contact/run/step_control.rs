@@ -9,33 +9,34 @@ use crate::hereditary::{ExponentialRule, LastingError, TimeError};
 use crate::load::{Load, LoadHistory};
 use crate::rheology::CreepSpectrum;
 
-/// Chooses steps whose error stays below the tolerance: that of the displacement within the step
-/// ([`History::time_error`](crate::hereditary::History::time_error)), and that of the load, which is taken to be the polynomial
+/// Chooses steps whose error stays below the tolerance. Two errors count: the error of the displacement within the step
+/// ([`History::time_error`](crate::hereditary::History::time_error)), and the deviation of the load from the polynomial
 /// through its values at the last three nodes and the end of the step.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct StepControl {
     pub(super) tolerance: f64,
-    /// Length of the next step, as all lengths and times here in reduced time; `None` where earlier steps do not suggest one.
+    /// Length of the next step, in reduced time like all lengths and times here; `None` where earlier steps suggest
+    /// none.
     pub(super) next: Option<f64>,
     /// Error over tolerance of the last step accepted.
     last: f64,
-    /// Times and loads of the last nodes since the last jump or corner, the newest first.
+    /// Times and loads of the last nodes since the last jump or corner, newest first.
     pub(super) nodes: Vec<(f64, Load)>,
-    /// Length of the last step before a corner, and what the load would change by in a (reduced) second had it gone on straight.
+    /// Length of the last step before a corner, and the slope of the load over it, per second of reduced time.
     pub(super) corner: Option<(f64, f64)>,
     pub(super) scale: Option<RunScale>,
     defects: Option<DefectAccumulation>,
-    /// The mean errors of u that the steps so far have left, in contact and outside.
+    /// Mean errors of u left by the steps so far, in contact and outside.
     lasting: Option<[LastingError; 2]>,
-    /// Steps accepted, and the time of the last jump or corner.
+    /// Number of accepted steps, and the time of the last jump or corner.
     steps: u64,
     since: f64,
-    /// Steps that were rejected.
+    /// Number of rejected steps.
     pub(super) rejected: u64,
 }
 
-/// Bounds of the change of the step length; beyond 1 + √2 an immediate dashpot is answered by steps of lower order.
+/// Bounds of the change of the step length. Beyond 1 + √2 the order of steps with an immediate dashpot is lower.
 const MAX_GROWTH: f64 = 3.0;
 const MAX_GROWTH_OF_DASHPOT: f64 = 2.4;
 const MAX_SHRINKAGE: f64 = 0.2;
@@ -47,9 +48,9 @@ const INTEGRAL: f64 = 0.7;
 const PROPORTIONAL: f64 = 0.2;
 /// Error of the solver relative to that in time.
 const SOLVER_SHARE: f64 = 0.03;
-/// Events shorter than this part of the time between corners, times the tolerance, do not matter.
+/// Events shorter than this fraction of the time between corners, times the tolerance, are not resolved.
 const SHORTEST: f64 = 0.03;
-/// Nodes that a quadratic and its correction go through, besides the end of the step.
+/// Nodes of the quadratic and its correction, besides the end of the step.
 pub(super) const NODES: usize = 3;
 
 impl StepControl {
@@ -70,7 +71,7 @@ impl StepControl {
         }
     }
 
-    /// Whether a run can be continued with it: a file may hold anything.
+    /// Whether a run can continue with these values; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
         self.nodes.len() <= NODES
@@ -81,13 +82,13 @@ impl StepControl {
             && self.scale.as_ref().is_none_or(RunScale::fits)
     }
 
-    /// At a jump of the load.
+    /// Starts anew at a jump of the load.
     pub(super) fn jump(&mut self) {
         (self.next, self.last, self.corner) = (None, 1.0, None);
         self.nodes.clear();
     }
 
-    /// At a corner of the load, which is the end of the last step.
+    /// Starts anew at a corner of the load at the end of the last step.
     fn corner(&mut self) {
         let slope = match self.nodes[..] {
             [(end, load), (start, before), ..] => {
@@ -101,7 +102,7 @@ impl StepControl {
         self.corner = slope;
     }
 
-    /// After a step of length `dt` to `load` at `time`, which was `wanted` longer but had to end at a stop, perhaps a corner.
+    /// Records an accepted step of length `dt` to `load` at `time`. Its length without stops and corners was `wanted`.
     pub(super) fn accept(&mut self, time: f64, load: Load, [wanted, dt]: [f64; 2], at_corner: bool, order: u32) {
         if self.nodes.first().is_some_and(|(_, last)| !last.is_like(&load)) {
             self.nodes.clear();
@@ -115,18 +116,18 @@ impl StepControl {
         }
     }
 
-    /// Shortens a step that the solver could not solve to a fifth.
+    /// Shortens a step to a fifth after the solver has failed to converge.
     pub(super) fn shorten(&mut self, dt: f64) {
         self.next = Some(MAX_SHRINKAGE * dt);
         self.rejected += 1;
     }
 
-    /// The tolerance of the solver that matches that in time.
+    /// Tolerance of the solver that suits the tolerance in time, at least `wanted`.
     pub(super) fn solver_tolerance(&self, wanted: f64) -> f64 {
         wanted.max(SOLVER_SHARE * self.tolerance)
     }
 
-    /// Prepares for a step from `state`: the sizes of the run are known, and the load there is a node.
+    /// Prepares a step from `state`: computes the scales of the run where needed, and makes the present load a node.
     pub(super) fn begin(&mut self, scene: &Scene, state: &State, history: &dyn LoadHistory, until: f64) -> Result<()> {
         let (now, reduced) = (state.clock.time, state.clock.reduced_time);
         if self.nodes.is_empty() {
@@ -143,7 +144,7 @@ impl StepControl {
         Ok(())
     }
 
-    /// Takes account of the defects of a step that is to be accepted; `is_given` tells whether a motion is.
+    /// Includes the defects of a step to be accepted; `is_given` states whether its motion is given.
     pub(super) fn include(&mut self, rule: Option<&ExponentialRule>, dt: f64, error: &TimeError, is_given: bool) {
         self.steps += 1;
         self.defects.iter_mut().for_each(|defects| defects.include(dt, error.defect));
@@ -153,14 +154,14 @@ impl StepControl {
         surface.include(rule, error.surface, false);
     }
 
-    /// The time before `stop` at which the bodies first touch, as far as the load alone tells.
+    /// The time before `stop` at which undisturbed bodies first touch under the load.
     pub(super) fn first_touch(&self, state: &State, history: &dyn LoadHistory, stop: f64) -> f64 {
         let scale = self.scale.as_ref().filter(|_| state.is_undisturbed());
         scale.map_or(f64::INFINITY, |scale| scale.first_touch(history, state.clock.time, stop))
     }
 
-    /// What is known of the run at a step under `load` that ends `now`, when the bodies have been pressed for `age`, before a
-    /// corner or the end of the run at `stop`.
+    /// Context of a step under `load` that ends `now`, when the bodies have been loaded for `age`, before a corner or
+    /// the end of the run at `stop`.
     pub(super) fn outlook(&self, scene: &Scene, load: &Load, [now, age, stop]: [f64; 3]) -> Outlook {
         let span = stop - self.since;
         let shortest = self.defects.as_ref().map_or(f64::INFINITY, DefectAccumulation::shortest_time);
@@ -180,8 +181,8 @@ impl StepControl {
         }
     }
 
-    /// Chooses the length of the next step after one of length `dt` with the given error, which grows with such an `order` of
-    /// the length; whether that is accepted.
+    /// Chooses the length of the next step after a step of length `dt` with the given error, which grows with the power
+    /// `order` of the length. Returns whether the step is accepted.
     pub(super) fn judge(&mut self, dt: f64, error: f64, order: u32, dashpot: bool) -> bool {
         let (ratio, order) = ((error / self.tolerance).max(1e-10), f64::from(order));
         let accepted = ratio <= 1.0;
@@ -201,10 +202,11 @@ impl StepControl {
     }
 }
 
-/// Whether the defects of v of the steps so far add up. Under a given force a defect of v makes the bodies creep as a force would:
-/// defects of one sign leave an error in u that grows with the compliance of the bodies' age, those of changing sign cancel.
+/// How far the defects of v of the steps so far add up. Under a given force a defect of v makes the bodies creep as a
+/// force does. Defects of one sign leave an error in u that grows with the compliance; defects of changing sign cancel.
 ///
-/// The response to the defects, and to their absolute values, by the same series: the ratio of both is how far they agree.
+/// Holds the creep response to the defects and to their absolute values. The ratio of the two responses measures the
+/// agreement of signs.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 struct DefectAccumulation {
@@ -231,7 +233,7 @@ impl DefectAccumulation {
         DefectAccumulation { fluidity: creep.fluidity(), flow: [0.0; 2], terms }
     }
 
-    /// Whether a run can be continued with it: a file may hold anything.
+    /// Whether a run can continue with these values; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     fn fits(&self) -> bool {
         let known = |values: [f64; 2]| values.iter().all(|value| value.is_finite());
@@ -245,7 +247,7 @@ impl DefectAccumulation {
         self.terms.iter().map(|term| term.time).fold(f64::INFINITY, f64::min)
     }
 
-    /// Takes account of a step of length `dt` with such a mean defect of v, and mean of its absolute value.
+    /// Includes a step of length `dt`; `defect` holds the mean defect of v and the mean of its absolute value.
     fn include(&mut self, dt: f64, defect: [f64; 2]) {
         for which in [0, 1] {
             self.flow[which] += self.fluidity * dt * defect[which];
@@ -256,7 +258,7 @@ impl DefectAccumulation {
         }
     }
 
-    /// How far the defects so far agree: 1 if they are all of one sign, 0 if they cancel.
+    /// Agreement of the signs of the defects so far: 1 if all have one sign, 0 if they cancel.
     fn agreement(&self) -> f64 {
         let [signed, absolute] =
             [0, 1].map(|which| self.flow[which] + self.terms.iter().map(|term| term.crept[which]).sum::<f64>());
