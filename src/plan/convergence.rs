@@ -12,24 +12,24 @@ const LEAST_ACROSS: f64 = 16.0;
 const MOST_ACROSS: f64 = 128.0;
 /// Cells across the widest contact where the steps are found.
 const STEPS_ACROSS: f64 = 32.0;
-/// Most cells along a side of a domain in which the contact is small, as far off the centre.
+/// Most cells along a side of a domain in which the contact is small, for example far off the centre.
 const MOST_CELLS: usize = 2048;
 /// A plan extrapolates to meshes at most this many times finer, unless `MOST_ACROSS` is reached.
 const MAX_EXTRAPOLATION: f64 = 3.0;
 /// Most domains for ever smaller contacts.
 const MAX_ZOOMS: usize = 12;
-/// On finer meshes the contact may reach the edge of the domain: that grows by this factor, so many times.
+/// Growth factor of a domain whose edge the contact reaches on a finer mesh, and the greatest number of growths.
 const GROWTH: f64 = 1.2;
 const MAX_GROWTHS: u32 = 5;
-/// Differences of a greatest pressure of second order are three times the error on the finer mesh; up to this many times the
-/// estimate from the peak's neighbours they count as such.
+/// Greatest difference of the greatest pressure that counts as second order, over the estimate from the neighbours of
+/// the peak. A difference of second order is three times the error on the finer mesh.
 const MAX_DIFFERENCE_OVER_PEAK: f64 = 4.0;
-/// Bound of the power of the number of cells across with which the convolutions of a run grow.
+/// Upper limit of the power of the number of cells across with which the convolutions of a run grow.
 const MAX_WORK_ORDER: f64 = 0.4;
-/// Fewest cells of an elastic contact whose greatest pressure bounds others, and what that may be off by.
+/// Fewest cells of an elastic contact whose greatest pressure serves as a bound, and the margin for its error.
 const BOUNDING_CELLS: usize = 12;
 const BOUNDING_MARGIN: f64 = 1.25;
-/// The least that a finer mesh may find the width of the contact to be, of what a coarse one found.
+/// Least width of the contact on a finer mesh, as a fraction of the width on a coarse one.
 const MIN_NARROWING: f64 = 0.25;
 /// Ratio of the domain to the rectangle of the contact.
 pub(super) const DOMAIN_TO_CONTACT: f64 = 1.12;
@@ -42,7 +42,8 @@ pub(super) fn grid_with(extent: &Extent, across: f64) -> Result<Grid> {
 }
 
 impl Extent {
-    /// Where the contact is, on a mesh that resolves it: one far off the middle is a few cells wide on a domain that holds both.
+    /// Extent of the contact on a mesh that resolves it: a contact far off the middle is only a few cells wide on the
+    /// coarsest mesh.
     pub(super) fn of(scene: &Scene<'_>) -> Result<Extent> {
         let extent = scene.extent()?;
         if [0, 1].iter().all(|&axis| extent.width[axis] > extent.reach[axis]) {
@@ -56,7 +57,7 @@ impl Extent {
         })
     }
 
-    /// Computes on domains that grow until they hold the contact.
+    /// Runs `compute` on domains that grow until they contain the contact.
     pub(super) fn held<T>(&self, compute: impl Fn(&Extent) -> Result<T>) -> Result<T> {
         let mut extent = *self;
         for _ in 0..MAX_GROWTHS {
@@ -82,7 +83,7 @@ struct Meshes {
 }
 
 impl Meshes {
-    /// Refines until the mesh that is `needed` is within reach.
+    /// Refines until the needed number of cells across is within the range of extrapolation.
     fn refine(scene: &Scene<'_>, extent: &Extent, base: Run, needed: impl Fn(&Meshes) -> f64) -> Result<Meshes> {
         let mut meshes = Meshes { across: LEAST_ACROSS, differences: Vec::new(), finest: base, side: 0, growth: 0.0 };
         loop {
@@ -113,14 +114,14 @@ impl Meshes {
         self.differences.iter().map(of).collect()
     }
 
-    /// Approach and force; with a rim of cells on a face that ends, by fractions of a cell.
+    /// Convergence of approach and force; for a punch, whose rim is resolved to a cell, by fractions of a cell.
     fn main(&self, punch: bool) -> Convergence {
         let law = if punch { Convergence::by_cells } else { Convergence::smooth };
         law(&self.each(|differences| differences.main), self.across)
     }
 
-    /// The first-order part, estimated from the rim. Creep raises the pressure towards a growing rim too: at edges of the
-    /// shape it is raised from the start.
+    /// First-order part of the error, estimated from the rim. Creep raises the pressure at a growing rim too, but at
+    /// edges of the shape the pressure is raised from the start.
     fn singular(&self, punch: bool) -> Convergence {
         let states = &self.finest.states;
         let deepest = greatest(states, |state| state.approach);
@@ -136,9 +137,9 @@ impl Meshes {
         Convergence { error: convolutions, order: -self.growth, across: self.across, converges: true }
     }
 
-    /// The greatest pressure of the run, which converges only if the finest mesh resolves its peak. Differences of a single
-    /// number may be small or large by chance: where they agree with the estimate from the peak's neighbours, the pressure is as
-    /// smooth as in an elastic contact.
+    /// Convergence of the greatest pressure of the run, which requires that the finest mesh resolves the peak.
+    /// Differences of a single number may be small or large by chance: where they agree with the estimate from the
+    /// neighbours of the peak, the pressure is as smooth as in an elastic contact.
     fn pressure(&self) -> Convergence {
         let pressure = self.each(|differences| differences.pressure);
         let law = Convergence::smooth(&pressure, self.across);
@@ -152,8 +153,8 @@ impl Meshes {
         law
     }
 
-    /// Whether the pressure was no greater while the contact was too small to be resolved, as under a ramp on a body that
-    /// creeps fast: bodies that do not creep bear the greatest pressure under the same loads.
+    /// Whether the pressure was no greater while the contact was too small to be resolved, as under a ramp on a body
+    /// that creeps fast. The pressure on elastic bodies under the same loads is an upper bound.
     fn bounds_small_contacts(&self, scene: &Scene<'_>, extent: &Extent) -> Result<bool> {
         let Run { states, steps, .. } = &self.finest;
         let Some(highest) = self.highest() else { return Ok(false) };
@@ -183,8 +184,8 @@ impl Meshes {
     }
 }
 
-/// Finds the steps and how approach, force, radius and greatest pressure converge with the mesh; `area` tells whether the
-/// radius has to be resolved.
+/// Finds the steps, and the convergence of approach, force, radius and greatest pressure with the mesh; `area` states
+/// whether the radius has to be resolved.
 pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result<MeshConvergence> {
     let mut first = grid_with(extent, STEPS_ACROSS)?;
     if first.cells().into_iter().any(|cells| cells > MOST_CELLS) {
@@ -195,7 +196,7 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
     let scene = &Scene { tolerance: steps.tolerance, ..*scene };
     let zoomed = match scene.before_growth(&steps.run).map(|until| small_contact(scene, until, extent)) {
         Some(Err(error @ Error::OutOfMemory { .. })) => return Err(error),
-        // the run itself does not need that part of it on a domain of its own
+        // the run succeeds without a separate domain for this part
         Some(law) => Some(law.unwrap_or(Convergence::NONE)),
         None => None,
     };
@@ -213,7 +214,7 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
         work: meshes.work(),
         steps: steps.clone(),
     };
-    // a pressure on a domain of its own asks nothing of these meshes
+    // a pressure on a separate domain does not determine the cells of these meshes
     let unzoomed = |found: MeshConvergence| match zoomed {
         Some(law) => MeshConvergence { pressure: Convergence { converges: false, ..law }, ..found },
         None => found,
@@ -227,8 +228,8 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
     Ok(found)
 }
 
-/// The greatest pressure of a run in which the contact grows much afterwards: of the run to `until`, on a domain of its
-/// own.
+/// Convergence of a greatest pressure that occurs before the contact grows much: from the run to `until` on a separate
+/// domain.
 fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Convergence> {
     let (mut until, mut zooms) = (until, 0);
     let (part, extent, base) = loop {
@@ -264,7 +265,7 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Conver
     Ok(Convergence { across, ..meshes.pressure() })
 }
 
-/// The next number of cells whose double has no prime factor above 5, for fast transforms.
+/// The next even number of cells without prime factors above 5, for fast transforms.
 fn smooth_size(least: usize) -> usize {
     let smooth = |mut n: usize| {
         for factor in [2, 3, 5] {

@@ -3,13 +3,13 @@
 use crate::plan::Accuracy;
 use crate::plan::steps::Steps;
 
-/// Orders of convergence that are believed; below the first the quantity counts as not converging.
+/// Range of accepted orders of convergence. Below the first the quantity counts as not converging.
 pub(super) const ORDERS: [f64; 2] = [0.7, 2.0];
-/// Errors that are fractions of a cell have either sign on two meshes: the greatest difference is that much more than the
-/// error on the finer one.
+/// Ratio of the greatest difference between two meshes to the error on the finer one, for errors that are fractions of
+/// a cell and have either sign.
 const DIFFERENCE_OVER_ERROR: f64 = 1.25;
-/// A greatest pressure that depends on the steps on a coarse mesh does so more on a finer one, whose cells a growing edge
-/// crosses faster: beyond this share of what was asked it is not promised.
+/// Greatest error in time of the greatest pressure, as a share of the accuracy. A greater error grows on finer meshes,
+/// whose cells a growing edge crosses faster: then the pressure is not promised.
 const MAX_PEAK_TIME_SHARE: f64 = 0.2;
 
 /// The error of a quantity, relative to the greatest value of the run, as a power of the number of cells across.
@@ -17,17 +17,17 @@ const MAX_PEAK_TIME_SHARE: f64 = 0.2;
 pub(super) struct Convergence {
     pub(super) error: f64,
     pub(super) order: f64,
-    /// Cells across the widest contact at which the error is that.
+    /// Cells across the widest contact at which the error is `error`.
     pub(super) across: f64,
     /// Whether the differences fall with the mesh.
     pub(super) converges: bool,
 }
 
 impl Convergence {
-    /// Of a quantity that does not converge.
+    /// The fit of a quantity that does not converge.
     pub(super) const NONE: Convergence = Convergence { error: 1.0, order: 1.0, across: 1.0, converges: false };
 
-    /// Of smooth quantities, from the differences between successive meshes, the finest with `across` cells.
+    /// Fit of a smooth quantity to the differences between successive meshes, the finest with `across` cells.
     pub(super) fn smooth(differences: &[f64], across: f64) -> Convergence {
         let (error, order, converges) = match *differences {
             [] => (1.0, 1.0, true),
@@ -42,7 +42,7 @@ impl Convergence {
         Convergence { error, order, across, converges }
     }
 
-    /// The error if the order is the highest.
+    /// The error on the finest mesh if the order is two.
     pub(super) fn second_order(differences: &[f64]) -> f64 {
         let finest = 2f64.powf(ORDERS[1]);
         let last = differences.last().copied().unwrap_or(1.0);
@@ -50,7 +50,7 @@ impl Convergence {
         last.max(before) / (finest - 1.0)
     }
 
-    /// Of quantities that err by a fraction of a cell.
+    /// Fit of a quantity that errs by a fraction of a cell.
     pub(super) fn by_cells(differences: &[f64], across: f64) -> Convergence {
         let last = match *differences {
             [] => 1.0,
@@ -60,24 +60,24 @@ impl Convergence {
         Convergence { error: last / DIFFERENCE_OVER_ERROR, order: 1.0, across, converges: true }
     }
 
-    /// The error with so many cells across.
+    /// The error with `across` cells across.
     pub(super) fn at(&self, across: f64) -> f64 {
         self.error * (self.across / across).powf(self.order)
     }
 
-    /// Cells across for a given error.
+    /// Cells across for the error `target`.
     pub(super) fn across_for(&self, target: f64) -> f64 {
         self.across * (self.error / target).powf(1.0 / self.order)
     }
 }
 
-/// What the coarse runs found. Cells are those across the widest contact of the whole run.
+/// Convergence of a run with the mesh. Cells are counted across the widest contact of the whole run.
 pub(super) struct MeshConvergence {
     /// Half sides of the rectangle about the origin that contained the contact.
     pub(super) reach: [f64; 2],
     /// Of approach and force.
     pub(super) main: Convergence,
-    /// First-order part of that: singular edges.
+    /// First-order part of this error, due to singular edges.
     pub(super) singular: Convergence,
     /// Of the greatest pressure of the run.
     pub(super) pressure: Convergence,
@@ -91,7 +91,7 @@ pub(super) struct MeshConvergence {
 }
 
 impl MeshConvergence {
-    /// Cells across for the accuracy.
+    /// Cells across that the accuracy requires.
     pub(super) fn across_for(&self, accuracy: Accuracy, area: bool) -> f64 {
         let left = self.steps.left_for_mesh(accuracy);
         let main = self.main.across_for(left).max(self.singular.across_for(left));

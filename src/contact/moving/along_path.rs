@@ -20,31 +20,32 @@ use crate::solver::RigidMotion;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct TravelReport {
-    /// The step itself.
+    /// Report of the step.
     pub step: StepReport,
-    /// Position of the shape at its end \[m\].
+    /// Position of the shape at the end of the step \[m\].
     pub position: [f64; 2],
-    /// Position of the shape at its start \[m\].
+    /// Position of the shape at the start of the step \[m\].
     pub from: [f64; 2],
-    /// The force that moves it \[N\], see
+    /// Lateral force that moves the shape \[N\], see
     /// [`ViscoelasticContact::lateral_force`](crate::ViscoelasticContact::lateral_force).
     pub lateral_force: [f64; 2],
-    /// The mean power over the step that the motion along the surface feeds into the bodies \[W\]: the work of the pressure
-    /// there, less that of force and moments. Lateral force times velocity, except that it includes the rim of a face. 0
-    /// for a jump.
+    /// Mean power over the step that the lateral motion feeds into the bodies \[W\]: the work of the pressure on the
+    /// surface, less the work of force and moments. It equals lateral force times velocity, but includes the rim of a
+    /// face. 0 for a jump.
     pub power: f64,
 }
 
 impl ViscoelasticContact {
-    /// A step at whose end the indenter is where `travel` says: the bodies stay where they are. The time is the contact's own:
-    /// at its start the indenter should be at the path's position there.
+    /// Takes a step at whose end the indenter is at the position of `travel`; the bodies do not move. Times of the path
+    /// are times of the contact: at the start of the step the indenter should be at the position of the path.
     ///
-    /// The sharper the shape, the shorter the steps: an indenter should not move by more than a part of the contact's
-    /// length in each. A step off the middle gives up the symmetry of the scene for good. With [`Settings::window`](crate::contact::Settings::window) what is computed grows with the track.
+    /// The indenter should move by a fraction of the contact length in each step, by less the sharper it is. After a
+    /// step off the middle the symmetry of the scene is no longer used. With
+    /// [`Settings::window`](crate::contact::Settings::window) the computed region grows with the track.
     ///
     /// # Errors
-    /// As [`ViscoelasticContact::step`], or if the path or a gap is not finite, there are several rigid bodies, or the grid is
-    /// fixed to the indenter. The contact, its indenter included, is then where it was.
+    /// As [`ViscoelasticContact::step`], or if the path or a gap is not finite, there are several rigid bodies, or the
+    /// grid is fixed to the indenter. The contact and its indenter are then unchanged.
     pub fn step_along(&mut self, travel: &Travel, dt: f64, load: Load) -> Result<TravelReport> {
         self.not_shared("a step along a path")?;
         if self.settings().frame != Frame::Bodies {
@@ -71,8 +72,8 @@ impl ViscoelasticContact {
         Ok(TravelReport { step, position, from, lateral_force, power })
     }
 
-    /// The work of the last step \[J\] that went along the surface: what the pressure did there, Σ p Δu, less the part of force
-    /// and moments.
+    /// Work of the lateral motion in the last step \[J\]: the work of the pressure, Σ p Δu, less the work of force and
+    /// moments.
     fn work_along(&self, (force, moment, motion): (f64, [f64; 2], RigidMotion)) -> f64 {
         let State { region, history, current, previous, .. } = &self.computation.state;
         let pressures = previous.solution.pressure.iter().zip(&current.solution.pressure);
@@ -89,8 +90,8 @@ impl ViscoelasticContact {
     }
 }
 
-/// The indenter of the step before the last, and the fields that a new one is made in: a step along a path allocates
-/// nothing, unless a snapshot still holds it, or the load leaves the indenter free to tilt.
+/// The indenter of the step before the last, and the fields in which the next one is made. A step along a path
+/// allocates nothing, unless a snapshot still holds this indenter, or the load leaves it free to tilt.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct IndenterBuffer {
     indenter: Option<Arc<Indenter>>,
@@ -104,10 +105,10 @@ impl IndenterBuffer {
         self.heights.is_empty()
     }
 
-    /// The indenter at time `t` of its path.
+    /// Returns the indenter at time `t` of its path.
     ///
     /// # Errors
-    /// If its gap is none.
+    /// If the gap is not a valid gap.
     fn fill(&mut self, grid: &Grid, travel: &Travel, t: f64) -> Result<Arc<Indenter>> {
         self.heights.resize(grid.len(), f64::INFINITY);
         travel.fill_gap(t, grid, &mut self.heights, &mut self.track)?;

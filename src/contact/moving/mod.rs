@@ -7,19 +7,20 @@ pub(in crate::contact) mod steady;
 use crate::contact::stepper::ViscoelasticContact;
 
 impl ViscoelasticContact {
-    /// The force \[N\] along x1 and x2 that moves `shape` along the surface without friction: ∬ p ∇h, less the tilt times the
-    /// normal force. `shape` is that of the (first) indenter where it is now, or the part of it that moves; of several rigid
-    /// bodies, the pressure under the others does not count.
+    /// The force \[N\] along x1 and x2 that moves `shape` along the surface without friction: ∬ p ∇h, less the tilt
+    /// times the normal force. `shape` is the shape of the (first) indenter at its present position, or its moving
+    /// part. Of several rigid bodies only the pressure under the first one counts.
     ///
-    /// It vanishes on elastic bodies, and in any even contact. Multiplied by the velocity of the indenter, it is the power that
-    /// the bodies dissipate or store: on a slope, p does the work p (∂u/∂t − dω/dt). Divided by the normal force, it is the
-    /// coefficient of hysteretic friction.
+    /// It vanishes on elastic bodies, and in any symmetric contact. Multiplied by the velocity of the indenter, it is
+    /// the power that the bodies dissipate or store: on a slope, p does the work p (∂u/∂t − dω/dt). Divided by the
+    /// normal force, it is the coefficient of hysteretic friction.
     ///
-    /// The pressure being constant on a cell, its slope is the rise of
-    /// [`Geometry::initial_gap`](crate::geometry::Geometry::initial_gap) from side to side. On interpolated maps it is as
-    /// accurate as the interpolation: on an elastic body a rough slider with waves of 2 cells shows 3e-4 of the normal force,
-    /// with waves of 8 cells 2e-5. Where the rise is not finite, beside the rim of a face, there is no slope: what a rim
-    /// carries is in [`TravelReport::power`](crate::contact::TravelReport) alone. NaN where the shape's gap is.
+    /// The pressure is constant on a cell. The slope of a cell is therefore the rise of
+    /// [`Geometry::initial_gap`](crate::geometry::Geometry::initial_gap) from side to side. On interpolated maps it is
+    /// as accurate as the interpolation: for a rough slider on an elastic body the error is 3e-4 of the normal force
+    /// with waves of 2 cells, 2e-5 with waves of 8 cells. Where the rise is not finite, beside the rim of a face, the
+    /// slope counts as zero: only [`TravelReport::power`](crate::contact::TravelReport) includes the force of a rim.
+    /// NaN where the gap of the shape is NaN.
     ///
     /// A call of all [ranks](crate::parallel) that share out the contact.
     ///

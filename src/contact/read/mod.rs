@@ -1,4 +1,4 @@
-//! What a user reads of a contact: fields, numbers, observations, reports and warnings.
+//! Results of a contact: fields, scalars, observations, stress, reports and warnings.
 
 pub(in crate::contact) mod accessors;
 pub(in crate::contact) mod observations;

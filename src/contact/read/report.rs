@@ -14,7 +14,7 @@ pub struct StepReport {
     pub force: f64,
     /// Rigid-body approach ω of the first body, at the origin \[m\].
     pub approach: f64,
-    /// Area of the cells in contact \[m²\], which costs nothing;
+    /// Total area of the cells in contact \[m²\];
     /// [`ViscoelasticContact::contact_area`](crate::ViscoelasticContact::contact_area) resolves fractions of a cell.
     pub area: f64,
     /// Cells in contact.
@@ -23,18 +23,18 @@ pub struct StepReport {
     pub tilt: [f64; 2],
     /// Length of the step \[s\]; 0 for a jump of the load.
     pub dt: f64,
-    /// Estimated error in time of the step, relative: of the approach under a given force, of the force under a given motion.
-    /// 0 in jumps, which take no time, and of elastic bodies; `None` where nothing was estimated: in steps over the bodies
-    /// ([`Frame::Indenter`](crate::contact::Frame::Indenter)), and where the estimate overflows. [`ErrorBudget::time`](crate::contact::ErrorBudget::time) says
-    /// how far it can be trusted.
+    /// Estimated error in time of the step, relative: of the approach under a given force, of the force under a given
+    /// motion. 0 in jumps, which take no time, and of elastic bodies; `None` where nothing was estimated: in steps over
+    /// the bodies ([`Frame::Indenter`](crate::contact::Frame::Indenter)), and where the estimate overflows.
+    /// [`ErrorBudget::time`](crate::contact::ErrorBudget::time) compares it with true errors.
     pub time_error: Option<f64>,
-    /// Reasons why the result may be less accurate than expected; mostly none.
+    /// Reasons why the result may be less accurate than expected.
     pub warnings: Warnings,
     /// Iterations of the solver.
     pub iterations: usize,
-    /// Those of them taken by the fall-back, which is slower and always descends.
+    /// Iterations by the fall-back solver, which is slower and always descends.
     pub fallback_iterations: usize,
-    /// Convolutions with the influence kernel on the cells that are computed: forward and inverse padded transforms.
+    /// Convolutions with the influence kernel on the computed cells: forward and inverse padded transforms.
     pub convolutions: usize,
     /// Applications of the preconditioner, each on an unpadded grid of a quarter of the size.
     pub preconditioner_applications: usize,
@@ -59,7 +59,7 @@ impl StepReport {
     }
 }
 
-/// A line for logs: the result of the step, its cost, and its warnings.
+/// One line for logs: the result of the step, its cost, and its warnings.
 ///
 /// ```
 /// use viscocontact::prelude::*;
@@ -75,7 +75,7 @@ impl StepReport {
 impl fmt::Display for StepReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let StepReport { time, force, approach, contact_cells, residual, .. } = *self;
-        // forces are met to rounding, times are sums of steps
+        // given forces are exact to rounding; times are sums of steps
         let (time, force) = (rounded(time, TIME), rounded(force, 5));
         write!(f, "t = {time} s: force {force} N, approach {approach:.4e} m, {contact_cells} cells in contact; ")?;
         write!(f, "{} convolutions, residual {residual:.1e}", self.convolution_equivalents())?;
@@ -108,15 +108,15 @@ pub struct BodyState {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[non_exhaustive]
 pub enum Warning {
-    /// Contact has come within two cells of an edge of the grid beyond which the bodies extend: with a little more load a step
-    /// fails with [`Error::ContactAtEdge`](crate::Error::ContactAtEdge). Enlarge the grid. Only with
+    /// Contact is within two cells of an edge of the grid beyond which the bodies extend. Under a slightly greater load
+    /// a step fails with [`Error::ContactAtEdge`](crate::Error::ContactAtEdge). Enlarge the grid. Only with
     /// [`Edge::Refuse`](crate::contact::Edge::Refuse).
     NearEdge,
     /// The contact is fewer than 8 cells across, or, unless it is a line, has fewer than 50. Refine the mesh;
     /// [`ViscoelasticContact::mesh_error`](crate::ViscoelasticContact::mesh_error) estimates the error from 5 on. A sphere's approach,
     /// greatest pressure and contact area err by up to 1.3 %, 4 % and 8 % with contacts of 4 cells across, by 0.5 %, 1.5 % and 2.5 % with 8.
     FewCells,
-    /// The loading time exceeds that over which the material was measured: a table is extrapolated beyond its data
+    /// The loading time exceeds the measured range of the material: a table is extrapolated beyond its data
     /// ([`TabulatedCreep::extrapolated`](crate::rheology::TabulatedCreep::extrapolated)).
     Extrapolated,
     /// The step is shorter than the times for which the material is known: creep within it counts as elastic.
@@ -128,16 +128,16 @@ pub enum Warning {
     /// they yield at once, C(Δ) > 2 C(0), which is Δ > τ on a Maxwell body; on fluids it diverges further on.
     Rings,
     /// The solver stagnated, and its slow fall-back took over for a while:
-    /// [`StepReport::fallback_iterations`](crate::contact::StepReport::fallback_iterations). The result is
-    /// as accurate as any; if this happens often, take smaller steps or a larger tolerance.
+    /// [`StepReport::fallback_iterations`](crate::contact::StepReport::fallback_iterations). The result meets the
+    /// tolerance. If this happens often, take smaller steps or a larger tolerance.
     FallBack,
-    /// The table of the material leaves its creep uncertain, or does not look like that of a linear body: see
+    /// The table of the material does not determine its creep well, or is inconsistent with a linear body: see
     /// [`FitReport::warning`](crate::rheology::FitReport::warning) of each of the
     /// [`Material::fit_reports`](crate::rheology::Material::fit_reports).
     UncertainMaterial,
-    /// The gap is a sum of numbers whose rounding exceeds [`Settings::tolerance`](crate::contact::Settings::tolerance) times
-    /// the displacement due to the pressure, as where next to no pressure is left on bodies that once were pressed much
-    /// harder: pressure and force are less certain than the residual suggests.
+    /// The gap is a sum of numbers whose rounding exceeds [`Settings::tolerance`](crate::contact::Settings::tolerance)
+    /// times the displacement due to the pressure, as where little pressure is left on bodies that were pressed much
+    /// harder before: the error of pressure and force exceeds the residual.
     Rounding,
 }
 
@@ -219,12 +219,12 @@ impl Warnings {
         self.bits & warning.bit() != 0
     }
 
-    /// Each of them, in the order of [`Warning`].
+    /// The warnings of the set, in the order of [`Warning`].
     pub fn iter(self) -> impl Iterator<Item = Warning> {
         Warning::ALL.into_iter().filter(move |&warning| self.contains(warning))
     }
 
-    /// The union of two sets: the warnings of a run, from those of its steps.
+    /// The union of two sets, such as the warnings of two steps.
     #[must_use]
     pub fn union(self, other: Warnings) -> Warnings {
         Warnings { bits: self.bits | other.bits }
