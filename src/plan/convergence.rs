@@ -34,7 +34,7 @@ const MIN_NARROWING: f64 = 0.25;
 /// Ratio of the domain to the rectangle of the contact.
 pub(super) const DOMAIN_TO_CONTACT: f64 = 1.12;
 
-/// The grid with so many cells across the widest contact.
+/// The grid with `across` cells across the widest contact.
 pub(super) fn grid_with(extent: &Extent, across: f64) -> Result<Grid> {
     let lengths = extent.reach.map(|half| 2.0 * DOMAIN_TO_CONTACT * half);
     let cells = [0, 1].map(|axis| smooth_size((across * lengths[axis] / extent.width[axis]).ceil() as usize));

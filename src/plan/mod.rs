@@ -41,7 +41,6 @@ use crate::rheology::{Material, TemperatureHistory};
 /// the shape ([`Shifted`](crate::geometry::Shifted)) and the points of the load.
 ///
 /// Planning takes as long as several runs on up to 128 cells across the contact.
-///
 /// The plan returns a builder, which can be changed before the contact is built; the plan does not include the changes.
 /// For a changing temperature use [`Plan::with_temperature`]; layers and other kernels are not planned.
 ///

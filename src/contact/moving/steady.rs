@@ -25,8 +25,8 @@ pub struct SteadyMotion {
     pub velocity: f64,
     /// Load on the indenter.
     pub load: Load,
-    /// Greatest change of the pressure while the indenter travels by the length of the contact: Σ |Δp| over Σ p, in (0,
-    /// 1) (default: 1e-3). The noise of the solver is about a hundred times
+    /// Greatest change of the pressure while the indenter travels by the length of the contact, in (0, 1) (default: 1e-3):
+    /// Σ |Δp| over Σ p. The noise of the solver is about a hundred times
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub tolerance: f64,
 }

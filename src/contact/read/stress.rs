@@ -122,14 +122,14 @@ impl StressHistory {
     pub fn stress(&self, contact: &ViscoelasticContact) -> Result<SubsurfaceStress> {
         self.check_grid(contact)?;
         let time = contact.reduced_time();
-        within("time of the contact", time, time == self.time, "that of the step recorded last")?;
+        within("time of the contact", time, time == self.time, "the time of the last recorded step")?;
         if contact.pressure() != self.pressure {
             // an unrecorded jump, in which no time passes
             let (field, value) = ("peak pressure of the contact", contact.max_pressure());
             return Err(Error::OutOfRange {
                 field,
                 value,
-                allowed: "that of the step recorded last: record every step",
+                allowed: "the peak of the last recorded step: record every step",
             });
         }
         let kernel = contact.kernel();

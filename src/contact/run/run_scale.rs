@@ -10,7 +10,7 @@ use crate::load::{Load, LoadHistory};
 const SMALL: f64 = 0.05;
 /// Number of equal parts of a history at whose ends it is evaluated before the run, ...
 const EQUAL_PARTS: i32 = 64;
-/// ... number of times per decade, over so many decades before its end, ...
+/// ... number of times per decade, and of decades before its end, ...
 const TIMES_PER_DECADE: i32 = 4;
 const DECADES: i32 = 12;
 /// ... and greatest number of breakpoints.
@@ -22,7 +22,7 @@ const LEAST: f64 = 1e-290;
 /// Scale of small values in a run: the greatest loads of its history, and an estimate of the displacement that they
 /// cause. At first touch, when bodies part, or under a load that starts like a power of time, errors relative to the
 /// state alone would never become small.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct RunScale {
     /// Approach at first touch.
@@ -48,14 +48,7 @@ impl RunScale {
             Ok::<_, Error>(scene.material.contact_compliance(age.min(scene.material.known_until())))
         };
         let compliance = compliance_at(until)?;
-        let mut scale = RunScale {
-            touch,
-            force: 0.0,
-            depth: 0.0,
-            stress: 0.0,
-            depth_over_compliance: 0.0,
-            returns: Returns::default(),
-        };
+        let mut scale = RunScale { touch, ..RunScale::default() };
         let equal = (0..=EQUAL_PARTS).map(|k| now + span * f64::from(k) / f64::from(EQUAL_PARTS));
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));

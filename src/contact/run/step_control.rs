@@ -12,7 +12,7 @@ use crate::rheology::CreepSpectrum;
 /// Chooses steps whose error stays below the tolerance. Two errors count: the error of the displacement within the step
 /// ([`History::time_error`](crate::hereditary::History::time_error)), and the deviation of the load from the polynomial
 /// through its values at the last three nodes and the end of the step.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct StepControl {
     pub(super) tolerance: f64,
@@ -55,20 +55,7 @@ pub(super) const NODES: usize = 3;
 
 impl StepControl {
     pub(super) fn new(tolerance: f64) -> StepControl {
-        let nodes = Vec::with_capacity(NODES + 1);
-        StepControl {
-            tolerance,
-            next: None,
-            last: 1.0,
-            nodes,
-            corner: None,
-            scale: None,
-            defects: None,
-            lasting: None,
-            steps: 0,
-            since: 0.0,
-            rejected: 0,
-        }
+        StepControl { tolerance, last: 1.0, nodes: Vec::with_capacity(NODES + 1), ..StepControl::default() }
     }
 
     /// Whether a run can continue with these values; a damaged file may hold any.
