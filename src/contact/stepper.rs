@@ -3,8 +3,8 @@
 use std::sync::Arc;
 
 use crate::contact::computation::Computation;
-use crate::contact::moving::spare::Spare;
-use crate::contact::read::view::View;
+use crate::contact::moving::along_path::IndenterBuffer;
+use crate::contact::read::accessors::View;
 use crate::contact::run::progress::Progress;
 use crate::contact::scene::Scene;
 
@@ -52,12 +52,18 @@ pub struct ViscoelasticContact {
     /// How far the run had come that was saved and resumed, for the next to go on.
     pub(super) progress: Option<Box<Progress>>,
     /// An indenter to refill in the next step along a path.
-    pub(super) spare: Spare,
+    pub(super) indenter_buffer: IndenterBuffer,
 }
 
 impl ViscoelasticContact {
     pub(super) fn new(scene: Scene, computation: Computation) -> ViscoelasticContact {
         let view = View::new(&computation.state);
-        ViscoelasticContact { scene: Arc::new(scene), computation, view, progress: None, spare: Spare::default() }
+        ViscoelasticContact {
+            scene: Arc::new(scene),
+            computation,
+            view,
+            progress: None,
+            indenter_buffer: IndenterBuffer::default(),
+        }
     }
 }

@@ -2,7 +2,7 @@ use crate::contact::{Settings, Stepping};
 use crate::error::{Result, within};
 
 /// The accuracy of a result: approach, force and, where it is finite, peak pressure, relative to their greatest values.
-/// It determines steps, solver and, through a [`Plan`](crate::plan::Plan), mesh and domain.
+/// It determines the tolerances of steps and solver and, through a [`Plan`](crate::plan::Plan), mesh and domain.
 ///
 /// ```
 /// use viscocontact::plan::Accuracy;
@@ -22,27 +22,27 @@ pub enum Accuracy {
     Standard,
     /// 1e-4: for reference solutions.
     Fine,
-    /// Any other target, in \[1e-6, 0.1\], made by [`Accuracy::target_of`]; a plan rejects others.
+    /// Any target in \[1e-6, 0.1\], made by [`Accuracy::target_of`]; a plan rejects targets outside.
     Custom(f64),
 }
 
-/// Shares of the error in time and of the mesh in the target, as measured (docs/accuracy.md).
+/// Shares of the target for the error in time and the error of the mesh, as measured (docs/accuracy.md).
 const TIME_SHARE: f64 = 0.36;
 const SPACE_SHARE: f64 = 0.8;
-/// Share of the residual of the solver, relative to the displacement: far below the other shares.
+/// Share of the target for the residual of the solver, relative to the displacement: far below the other shares.
 const SOLVER_SHARE: f64 = 0.01;
 
 impl Accuracy {
     /// Any target in \[1e-6, 0.1\].
     ///
     /// # Errors
-    /// If the target is outside.
+    /// If the target is outside this range.
     pub fn target_of(target: f64) -> Result<Accuracy> {
         within("accuracy", target, (1e-6..=0.1).contains(&target), "in [1e-6, 0.1]")?;
         Ok(Accuracy::Custom(target))
     }
 
-    /// The target: a relative error.
+    /// The target, a relative error.
     pub fn target(&self) -> f64 {
         match *self {
             Accuracy::Coarse => 1e-2,
@@ -62,13 +62,13 @@ impl Accuracy {
         (TIME_SHARE * self.target()).clamp(1e-9, 0.1)
     }
 
-    /// Settings for this accuracy; the others may be changed.
+    /// Settings with the tolerances of this accuracy; the other settings are default.
     pub fn settings(&self) -> Settings {
         let tolerance = (SOLVER_SHARE * self.target()).clamp(1e-12, 1e-3);
         Settings { tolerance, series_tolerance: (0.1 * self.target()).clamp(1e-7, 1e-2), ..Settings::default() }
     }
 
-    /// The error of the mesh for this accuracy.
+    /// Allowed error of the mesh for this accuracy.
     pub(crate) fn space(&self) -> f64 {
         SPACE_SHARE * self.target()
     }

@@ -3,77 +3,38 @@
 use crate::Grid;
 use crate::error::{Error, Result};
 use crate::load::Load;
-use crate::plan::Accuracy;
-use crate::plan::coarse::{Extent, Run, Scene, State, difference, greatest, relative};
-use crate::plan::law::{Convergence, ORDERS};
-use crate::plan::steps::Steps;
+use crate::plan::convergence_fit::{Convergence, MeshConvergence, ORDERS};
+use crate::plan::steps::{Differences, Steps, relative};
+use crate::plan::trial_runs::{Extent, Run, Scene, State, greatest};
 
 /// Cells across the widest contact on the coarsest mesh, and on the finest that a plan computes.
 const LEAST_ACROSS: f64 = 16.0;
 const MOST_ACROSS: f64 = 128.0;
 /// Cells across the widest contact where the steps are found.
 const STEPS_ACROSS: f64 = 32.0;
-/// Most cells along a side of a domain in which the contact is small, as far off the centre.
+/// Most cells along a side of a domain in which the contact is small, for example far off the centre.
 const MOST_CELLS: usize = 2048;
 /// A plan extrapolates to meshes at most this many times finer, unless `MOST_ACROSS` is reached.
 const MAX_EXTRAPOLATION: f64 = 3.0;
 /// Most domains for ever smaller contacts.
 const MAX_ZOOMS: usize = 12;
-/// On finer meshes the contact may reach the edge of the domain: that grows by this factor, so many times.
+/// Growth factor of a domain whose edge the contact reaches on a finer mesh, and the greatest number of growths.
 const GROWTH: f64 = 1.2;
 const MAX_GROWTHS: u32 = 5;
-/// Differences of a greatest pressure of second order are three times the error on the finer mesh; up to this many times the
-/// estimate from the peak's neighbours they count as such.
+/// Greatest difference of the greatest pressure that counts as second order, over the estimate from the neighbours of
+/// the peak. A difference of second order is three times the error on the finer mesh.
 const MAX_DIFFERENCE_OVER_PEAK: f64 = 4.0;
-/// Bound of the power of the number of cells across with which the convolutions of a run grow.
+/// Upper limit of the power of the number of cells across with which the convolutions of a run grow.
 const MAX_WORK_ORDER: f64 = 0.4;
-/// A greatest pressure that depends on the steps on a coarse mesh does so more on a finer one, whose cells a growing edge
-/// crosses faster: beyond this share of the requested accuracy it is not promised.
-const MAX_PEAK_TIME_SHARE: f64 = 0.2;
-/// Fewest cells of an elastic contact whose greatest pressure bounds others, and what that may be off by.
+/// Fewest cells of an elastic contact whose greatest pressure serves as a bound, and the margin for its error.
 const BOUNDING_CELLS: usize = 12;
 const BOUNDING_MARGIN: f64 = 1.25;
-/// The least that a finer mesh may find the width of the contact to be, of what a coarse one found.
+/// Least width of the contact on a finer mesh, as a fraction of the width on a coarse one.
 const MIN_NARROWING: f64 = 0.25;
 /// Ratio of the domain to the rectangle of the contact.
 pub(super) const DOMAIN_TO_CONTACT: f64 = 1.12;
 
-/// What the coarse runs found. Cells are those across the widest contact of the whole run.
-pub(super) struct Found {
-    /// Half sides of the rectangle about the origin that contained the contact.
-    pub(super) reach: [f64; 2],
-    /// Of approach and force.
-    pub(super) main: Convergence,
-    /// First-order part of that: singular edges.
-    pub(super) singular: Convergence,
-    /// Of the greatest pressure of the run.
-    pub(super) pressure: Convergence,
-    /// Of the greatest pressure at any time.
-    pub(super) pressure_over_time: Convergence,
-    /// Of the contact radius at any time.
-    pub(super) radius: Convergence,
-    pub(super) steps: Steps,
-    /// Convolution equivalents of the run, which grow with the cells.
-    pub(super) work: Convergence,
-}
-
-impl Found {
-    /// Cells across for the accuracy.
-    pub(super) fn across_for(&self, accuracy: Accuracy, area: bool) -> f64 {
-        let left = self.steps.left_for_mesh(accuracy);
-        let main = self.main.across_for(left).max(self.singular.across_for(left));
-        let others = [Some(self.pressure).filter(|law| law.converges), Some(self.radius).filter(|_| area)];
-        others.into_iter().flatten().map(|law| law.across_for(accuracy.space())).fold(main, f64::max)
-    }
-
-    /// Whether the greatest pressure of the run converges with the mesh and does not depend on the steps.
-    pub(super) fn pressure_converges(&self, accuracy: Accuracy) -> bool {
-        self.pressure.converges
-            && self.steps.error.is_none_or(|error| error.pressure <= MAX_PEAK_TIME_SHARE * accuracy.target())
-    }
-}
-
-/// The grid with so many cells across the widest contact.
+/// The grid with `across` cells across the widest contact.
 pub(super) fn grid_with(extent: &Extent, across: f64) -> Result<Grid> {
     let lengths = extent.reach.map(|half| 2.0 * DOMAIN_TO_CONTACT * half);
     let cells = [0, 1].map(|axis| smooth_size((across * lengths[axis] / extent.width[axis]).ceil() as usize));
@@ -81,7 +42,8 @@ pub(super) fn grid_with(extent: &Extent, across: f64) -> Result<Grid> {
 }
 
 impl Extent {
-    /// Where the contact is, on a mesh that resolves it: one far off the middle is a few cells wide on a domain that holds both.
+    /// Extent of the contact on a mesh that resolves it: a contact far off the middle is only a few cells wide on the
+    /// coarsest mesh.
     pub(super) fn of(scene: &Scene<'_>) -> Result<Extent> {
         let extent = scene.extent()?;
         if [0, 1].iter().all(|&axis| extent.width[axis] > extent.reach[axis]) {
@@ -95,7 +57,7 @@ impl Extent {
         })
     }
 
-    /// Computes on domains that grow until they hold the contact.
+    /// Runs `compute` on domains that grow until they contain the contact.
     pub(super) fn held<T>(&self, compute: impl Fn(&Extent) -> Result<T>) -> Result<T> {
         let mut extent = *self;
         for _ in 0..MAX_GROWTHS {
@@ -111,11 +73,8 @@ impl Extent {
 /// Runs on successive meshes, each twice as fine as the last.
 struct Meshes {
     across: f64,
-    /// Greatest differences between each mesh and the one before, relative to the greatest values of the run.
-    main: Vec<f64>,
-    pressure: Vec<f64>,
-    pressure_over_time: Vec<f64>,
-    radius: Vec<f64>,
+    /// Differences between each mesh and the one before.
+    differences: Vec<Differences>,
     finest: Run,
     /// Cells along the longer side.
     side: usize,
@@ -124,21 +83,12 @@ struct Meshes {
 }
 
 impl Meshes {
-    /// Refines until the mesh that is `needed` is within reach.
+    /// Refines until the needed number of cells across is within the range of extrapolation.
     fn refine(scene: &Scene<'_>, extent: &Extent, base: Run, needed: impl Fn(&Meshes) -> f64) -> Result<Meshes> {
-        let mut meshes = Meshes {
-            across: LEAST_ACROSS,
-            main: Vec::new(),
-            pressure: Vec::new(),
-            pressure_over_time: Vec::new(),
-            radius: Vec::new(),
-            finest: base,
-            side: 0,
-            growth: 0.0,
-        };
+        let mut meshes = Meshes { across: LEAST_ACROSS, differences: Vec::new(), finest: base, side: 0, growth: 0.0 };
         loop {
             meshes.halve(scene, extent)?;
-            let reach = if meshes.main.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
+            let reach = if meshes.differences.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
             let last = meshes.across >= MOST_ACROSS || 2 * meshes.side > MOST_CELLS;
             if last || needed(&meshes) <= reach * meshes.across {
                 return Ok(meshes);
@@ -152,27 +102,26 @@ impl Meshes {
         let [n1, n2] = grid.cells();
         self.side = n1.max(n2);
         let finer = scene.repeat(grid, &self.finest.steps)?;
-        let (coarse, fine) = (&self.finest.states, &finer.states);
-        let over = |of: fn(&State) -> f64, all: bool| difference(coarse, fine, of, all);
-        let [before, now] = [coarse, fine].map(|states| greatest(states, |state| state.pressure));
-        self.main.push(over(|state| state.approach, true).max(over(|state| state.force, true)));
-        self.pressure.push(relative((before - now).abs(), now));
-        self.pressure_over_time.push(over(|state| state.pressure, false));
-        self.radius.push(over(|state| state.radius, false));
+        self.differences.push(Differences::between(&self.finest.states, &finer.states));
         let growth = relative(finer.convolutions, self.finest.convolutions);
         self.growth = growth.max(1.0).log2().min(MAX_WORK_ORDER);
         self.finest = finer;
         Ok(())
     }
 
-    /// Approach and force; with a rim of cells on a face that ends, by fractions of a cell.
-    fn main(&self, punch: bool) -> Convergence {
-        let law = if punch { Convergence::by_cells } else { Convergence::smooth };
-        law(&self.main, self.across)
+    /// The differences of one quantity, from the coarsest mesh to the finest.
+    fn each(&self, of: impl Fn(&Differences) -> f64) -> Vec<f64> {
+        self.differences.iter().map(of).collect()
     }
 
-    /// The first-order part, estimated from the rim. Creep raises the pressure towards a growing rim too: at edges of the
-    /// shape it is raised from the start.
+    /// Convergence of approach and force; for a punch, whose rim is resolved to a cell, by fractions of a cell.
+    fn main(&self, punch: bool) -> Convergence {
+        let law = if punch { Convergence::by_cells } else { Convergence::smooth };
+        law(&self.each(|differences| differences.main), self.across)
+    }
+
+    /// First-order part of the error, estimated from the rim. Creep raises the pressure at a growing rim too, but at
+    /// edges of the shape the pressure is raised from the start.
     fn singular(&self, punch: bool) -> Convergence {
         let states = &self.finest.states;
         let deepest = greatest(states, |state| state.approach);
@@ -188,23 +137,24 @@ impl Meshes {
         Convergence { error: convolutions, order: -self.growth, across: self.across, converges: true }
     }
 
-    /// The greatest pressure of the run, which converges only if the finest mesh resolves its peak. Differences of a single
-    /// number may be small or large by chance: where they agree with the estimate from the peak's neighbours, the pressure is as
-    /// smooth as in an elastic contact.
+    /// Convergence of the greatest pressure of the run, which requires that the finest mesh resolves the peak.
+    /// Differences of a single number may be small or large by chance: where they agree with the estimate from the
+    /// neighbours of the peak, the pressure is as smooth as in an elastic contact.
     fn pressure(&self) -> Convergence {
-        let law = Convergence::smooth(&self.pressure, self.across);
+        let pressure = self.each(|differences| differences.pressure);
+        let law = Convergence::smooth(&pressure, self.across);
         let Some(peak) = self.highest().and_then(|state| state.peak) else {
             return Convergence { converges: false, ..law };
         };
-        if self.pressure.last().is_some_and(|&last| last <= MAX_DIFFERENCE_OVER_PEAK * peak) {
-            let error = Convergence::second_order(&self.pressure).max(peak);
+        if pressure.last().is_some_and(|&last| last <= MAX_DIFFERENCE_OVER_PEAK * peak) {
+            let error = Convergence::second_order(&pressure).max(peak);
             return Convergence { error, order: ORDERS[1], converges: true, ..law };
         }
         law
     }
 
-    /// Whether the pressure was no greater while the contact was too small to be resolved, as under a ramp on a body that
-    /// creeps fast: bodies that do not creep bear the greatest pressure under the same loads.
+    /// Whether the pressure was no greater while the contact was too small to be resolved, as under a ramp on a body
+    /// that creeps fast. The pressure on elastic bodies under the same loads is an upper bound.
     fn bounds_small_contacts(&self, scene: &Scene<'_>, extent: &Extent) -> Result<bool> {
         let Run { states, steps, .. } = &self.finest;
         let Some(highest) = self.highest() else { return Ok(false) };
@@ -234,9 +184,9 @@ impl Meshes {
     }
 }
 
-/// Finds the steps and how approach, force, radius and greatest pressure converge with the mesh; `area` is true if the
-/// radius has to be resolved.
-pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result<Found> {
+/// Finds the steps, and the convergence of approach, force, radius and greatest pressure with the mesh; `area` states
+/// whether the radius has to be resolved.
+pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result<MeshConvergence> {
     let mut first = grid_with(extent, STEPS_ACROSS)?;
     if first.cells().into_iter().any(|cells| cells > MOST_CELLS) {
         first = grid_with(extent, LEAST_ACROSS)?;
@@ -246,24 +196,27 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
     let scene = &Scene { tolerance: steps.tolerance, ..*scene };
     let zoomed = match scene.before_growth(&steps.run).map(|until| small_contact(scene, until, extent)) {
         Some(Err(error @ Error::OutOfMemory { .. })) => return Err(error),
-        // the run itself does not need that part of it on a domain of its own
+        // the run succeeds without a separate domain for this part
         Some(law) => Some(law.unwrap_or(Convergence::NONE)),
         None => None,
     };
     let base = scene.repeat(grid_with(extent, LEAST_ACROSS)?, &steps.run.steps)?;
-    let found = |meshes: &Meshes| Found {
+    let found = |meshes: &Meshes| MeshConvergence {
         reach: [0, 1].map(|axis| extent.reach[axis].max(meshes.finest.extent.reach[axis])),
         main: meshes.main(punch),
         singular: meshes.singular(punch),
         pressure: zoomed.unwrap_or_else(|| meshes.pressure()),
-        pressure_over_time: Convergence::smooth(&meshes.pressure_over_time, meshes.across),
-        radius: Convergence::by_cells(&meshes.radius, meshes.across),
+        pressure_over_time: Convergence::smooth(
+            &meshes.each(|differences| differences.pressure_over_time),
+            meshes.across,
+        ),
+        radius: Convergence::by_cells(&meshes.each(|differences| differences.radius), meshes.across),
         work: meshes.work(),
         steps: steps.clone(),
     };
-    // a pressure with a domain of its own sets no demand on these meshes
-    let unzoomed = |found: Found| match zoomed {
-        Some(law) => Found { pressure: Convergence { converges: false, ..law }, ..found },
+    // a pressure on a separate domain does not determine the cells of these meshes
+    let unzoomed = |found: MeshConvergence| match zoomed {
+        Some(law) => MeshConvergence { pressure: Convergence { converges: false, ..law }, ..found },
         None => found,
     };
     let needed = |meshes: &Meshes| unzoomed(found(meshes)).across_for(scene.accuracy, area);
@@ -275,8 +228,8 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
     Ok(found)
 }
 
-/// The greatest pressure of a run in which the contact grows much afterwards: of the run to `until`, on a domain of its
-/// own.
+/// Convergence of a greatest pressure that occurs before the contact grows much: from the run to `until` on a separate
+/// domain.
 fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Convergence> {
     let (mut until, mut zooms) = (until, 0);
     let (part, extent, base) = loop {
@@ -312,7 +265,7 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Conver
     Ok(Convergence { across, ..meshes.pressure() })
 }
 
-/// The next number of cells whose double has no prime factor above 5, for fast transforms.
+/// The next even number of cells without prime factors above 5, for fast transforms.
 fn smooth_size(least: usize) -> usize {
     let smooth = |mut n: usize| {
         for factor in [2, 3, 5] {

@@ -1,10 +1,10 @@
 //! Mesh, domain and steps for a given accuracy.
 
 mod accuracy;
-mod coarse;
 mod convergence;
-mod law;
+mod convergence_fit;
 mod steps;
+mod trial_runs;
 
 pub use accuracy::Accuracy;
 
@@ -14,37 +14,35 @@ use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
-use crate::plan::coarse::{Extent, Scene};
-use crate::plan::convergence::{DOMAIN_TO_CONTACT, Found, converge, grid_with};
-use crate::plan::law::Convergence;
+use crate::plan::convergence::{DOMAIN_TO_CONTACT, converge, grid_with};
+use crate::plan::convergence_fit::{Convergence, MeshConvergence};
+use crate::plan::trial_runs::{Extent, Scene};
 use crate::rheology::{Material, TemperatureHistory};
 
-/// A scene planned for an accuracy: the extent of the contact, the cells and steps needed, and their cost.
+/// A run planned for an accuracy: the extent of the contact, the required cells and steps, and their cost.
 ///
-/// The plan runs the scene on coarse meshes, on each with the same steps. The differences between successive meshes, each
-/// twice as fine as the last, show how fine the mesh must be: they are extrapolated at most threefold, beyond 128 cells
-/// across the contact further. The difference from a run with shorter steps shows the error in time; where it is more
-/// than its share, the steps are shortened. Where the pressure is greatest while the contact is small, as under a force
-/// held on a body that creeps much, that part of the run gets coarse runs on a domain of its own. The domain reaches from
-/// the origin as far as the contact does; the cells have the aspect ratio of the contact.
+/// The plan runs the scene on coarse meshes, on each with the same steps. The differences between successive meshes,
+/// each twice as fine as the last, give the required fineness of the mesh: they are extrapolated at most threefold, and
+/// further only beyond 128 cells across the contact. The difference from a run with shorter steps gives the error in
+/// time; where it exceeds its share, the steps are shortened. Where the pressure is greatest while the contact is
+/// small, as under a constant force on a body that creeps much, this part of the run gets coarse runs on a separate
+/// domain. The domain reaches from the origin as far as the contact does; the cells are elongated like the contact.
 ///
-/// # What is promised
-/// For twice the accuracy at most, relative to the greatest value of the run:
+/// # Promised accuracy Errors of at most twice the accuracy, relative to the greatest value of the run, of
 /// * approach and force at all times,
 /// * the greatest pressure of the run, if it converges and the coarse runs resolve its peak ([`Plan::pressure_converges`]),
 /// * with [`Plan::with_area`], the contact radius wherever the contact is at least 8 cells across.
 ///
-/// The plan estimates what it does not promise: [`Plan::mesh_error`] estimates the error of the area,
-/// [`Plan::pressure_error_at_all_times`] the error of the greatest pressure at each time, which steps and cells resolve less well
-/// at growing edges, and [`Plan::time_error`] the error in time, which stays above the accuracy if shorter steps do not
-/// lower it. A scene that differs from the coarse runs only in what they do not resolve, such as roughness finer than their
-/// cells or loads shorter than their steps, is beyond it. A contact far from the origin takes many cells that nothing
-/// touches: shift the shape ([`Shifted`](crate::geometry::Shifted)) and the points of the load.
+/// Other errors are estimated, not promised: [`Plan::mesh_error`] estimates the error of the area,
+/// [`Plan::pressure_error_at_all_times`] the error of the greatest pressure at each time, which steps and cells resolve
+/// less well at growing edges, and [`Plan::time_error`] the error in time, which exceeds the accuracy if shorter steps
+/// do not lower it. The plan does not include details that the coarse runs do not resolve, such as roughness finer than
+/// their cells or loads shorter than their steps. A contact far from the origin takes many cells without contact: shift
+/// the shape ([`Shifted`](crate::geometry::Shifted)) and the points of the load.
 ///
-/// Planning takes longer than a run on few cells: as long as some runs on up to 128 cells across the contact.
-///
-/// The plan returns a builder, which can be changed before the contact is built; what is changed is not planned for. A
-/// temperature that changes belongs into the plan ([`Plan::with_temperature`]); layers and other kernels are not planned.
+/// Planning takes as long as several runs on up to 128 cells across the contact.
+/// The plan returns a builder, which can be changed before the contact is built; the plan does not include the changes.
+/// For a changing temperature use [`Plan::with_temperature`]; layers and other kernels are not planned.
 ///
 /// ```
 /// use viscocontact::plan::{Accuracy, Plan};
@@ -71,7 +69,7 @@ pub struct Plan {
     /// Half sides of the rectangle that contains the contact at all times.
     reach: [f64; 2],
     steps: usize,
-    /// Tolerance of the steps, and the measured error in time that it leaves.
+    /// Tolerance of the steps, and their estimated error in time.
     tolerance: f64,
     time_error: Option<f64>,
     convolutions: f64,
@@ -81,7 +79,7 @@ pub struct Plan {
     bytes: u64,
 }
 
-/// Most cells along a side of a plan: more exceed a workstation.
+/// Most cells along a side of a plan: more exceed the memory of a workstation.
 const MOST_CELLS: usize = 1 << 13;
 /// Fewest cells across the widest contact: fewer do not resolve it.
 const LEAST_ACROSS: f64 = 14.0;
@@ -102,8 +100,8 @@ impl Plan {
         Plan::made(geometry, (material, None), history, until, accuracy, false)
     }
 
-    /// As [`Plan::new`], with a mesh on which the contact radius, √(area/π), is as accurate too, at all times at which the
-    /// contact is at least 8 cells across: under growing contacts it errs by a fraction of a cell.
+    /// As [`Plan::new`], with a mesh on which the contact radius, √(area/π), has this accuracy too, at all times at
+    /// which the contact is at least 8 cells across. The radius of a growing contact errs by a fraction of a cell.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -167,7 +165,7 @@ impl Plan {
         let extent = Extent::of(&scene)?;
         let mut found = extent.held(|extent| converge(&scene, extent, area))?;
         let extent = Extent { reach: found.reach, ..extent };
-        let needed = |found: &Found| {
+        let needed = |found: &MeshConvergence| {
             let across = found.across_for(accuracy, area).max(LEAST_ACROSS);
             (across, [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * extent.reach[axis] / extent.width[axis]))
         };
@@ -192,7 +190,7 @@ impl Plan {
         };
         let builder = scene.builder(grid.clone());
         let memory = builder.memory()?;
-        let slope = 8 * memory.computed_cells as u64; // the rate that adaptive steps store
+        let slope = 8 * memory.computed_cells as u64; // the rate stored by adaptive steps
         Ok(Plan {
             accuracy: scene.accuracy,
             builder,
@@ -209,7 +207,7 @@ impl Plan {
         })
     }
 
-    /// A builder with grid, geometry, material and settings, each of which can be replaced.
+    /// A builder with grid, geometry, material and settings; each can be replaced.
     pub fn builder(&self) -> Builder {
         self.builder.clone()
     }
@@ -251,15 +249,15 @@ impl Plan {
     }
 
     /// Expected error in time of approach and force, relative to their greatest values: the difference from a run with
-    /// shorter steps on a coarse mesh. `None` where these are too short for `f64`.
+    /// shorter steps on a coarse mesh. `None` where the shorter steps are too short for `f64`.
     pub fn time_error(&self) -> Option<f64> {
         self.time_error
     }
 
-    /// Whether the greatest pressure of the run is promised. It is not where it does not converge with mesh and steps, as under
-    /// the edges of punches and the tips of cones, where it is infinite, and under moving edges of bodies that creep fast; where
-    /// it may have been greater while the contact was too small for the coarse runs, as under ramps on bodies that creep fast;
-    /// and where it would need more than 8192 cells along a side.
+    /// Whether the greatest pressure of the run is promised. There are three exceptions: the pressure does not converge
+    /// with mesh and steps, as under the edges of punches and the tips of cones, where it is infinite, and under moving
+    /// edges of bodies that creep fast; it may have been greater while the contact was too small for the coarse runs,
+    /// as under ramps on bodies that creep fast; or it would require more than 8192 cells along a side.
     pub fn pressure_converges(&self) -> bool {
         self.error.max_pressure.is_some()
     }

@@ -1,50 +1,41 @@
-//! The steps of a run, and the error in time that they leave.
+//! The steps of a trial run and their error in time, from the differences between runs.
 
 use crate::Grid;
 use crate::error::{Error, Result};
 use crate::plan::Accuracy;
-use crate::plan::coarse::{LEAST_TOLERANCE, Run, Scene, State, difference, greatest, relative};
+use crate::plan::trial_runs::{LEAST_TOLERANCE, Run, Scene, State, greatest};
 
-/// The error in time may take this share of the requested accuracy, both errors together the second, and the error of the mesh at least
-/// the third.
+/// Shares of the accuracy: greatest of the error in time, of the errors in time and of the mesh together, and least of
+/// the error of the mesh.
 const MAX_TIME_SHARE: f64 = 0.6;
 const BOTH_SHARES: f64 = 0.9;
 const MIN_MESH_SHARE: f64 = 0.2;
-/// How often steps are shortened.
+/// Greatest number of times that steps are shortened.
 const MAX_STEP_TRIES: u32 = 3;
-/// The least factor of their tolerance at a time, and the most of the error that may remain for it to be of use.
+/// Least factor of the tolerance at a time, and the greatest part of the error that may remain for a shortening to be
+/// kept.
 const MAX_SHORTENING: f64 = 0.2;
 const MIN_GAIN: f64 = 0.8;
 
-/// Errors in time, relative to the greatest values of the run.
-#[derive(Clone, Copy)]
-pub(super) struct TimeError {
-    /// Of approach or force.
-    pub(super) main: f64,
-    /// Of the greatest pressure of the run.
-    pub(super) pressure: f64,
-    /// Of the greatest pressure at any time.
-    pub(super) pressure_over_time: f64,
-}
-
-/// The steps of a run, and the error in time that they leave.
+/// The steps of a trial run, and their error in time.
 #[derive(Clone)]
 pub(super) struct Steps {
     pub(super) tolerance: f64,
     pub(super) run: Run,
-    /// `None` where steps short enough to compare with do not exist.
-    pub(super) error: Option<TimeError>,
+    /// `None` where steps short enough for a comparison do not exist.
+    pub(super) error: Option<Differences>,
 }
 
 impl Steps {
-    /// The error of approach and force due to the mesh that the error in time leaves.
+    /// Allowed error of approach and force due to the mesh, given the error in time.
     pub(super) fn left_for_mesh(&self, accuracy: Accuracy) -> f64 {
         let target = accuracy.target();
         let left = BOTH_SHARES * target - self.error.map_or(0.0, |error| error.main);
         left.clamp(MIN_MESH_SHARE * target, accuracy.space())
     }
 
-    /// Shortens the steps while the error of approach, force or greatest pressure is more than its share and falls with them.
+    /// Shortens the steps while the error of approach, force or greatest pressure exceeds its share and falls with the
+    /// steps.
     pub(super) fn find(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
         let target = scene.accuracy.target();
         let mut steps = Steps::with_tolerance(scene, grid)?;
@@ -63,22 +54,54 @@ impl Steps {
         Ok(steps)
     }
 
-    /// The greater error of approach or force and of the greatest pressure of the run, 0 where they are unknown.
+    /// The greater of the errors of approach or force and of the greatest pressure of the run; 0 where nothing was
+    /// estimated.
     fn worst(&self) -> f64 {
         self.error.map_or(0.0, |error| error.main.max(error.pressure))
     }
 
     fn with_tolerance(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
         let run = scene.follow(grid.clone())?;
-        let error = scene.with_shorter_steps(&run, grid.clone())?.map(|finer| {
-            let over = |of: fn(&State) -> f64, all: bool| difference(&run.states, &finer, of, all);
-            let [highest, finest] = [&run.states, &finer].map(|states| greatest(states, |state| state.pressure));
-            TimeError {
-                main: over(|state| state.approach, true).max(over(|state| state.force, true)),
-                pressure: relative((highest - finest).abs(), finest),
-                pressure_over_time: over(|state| state.pressure, false),
-            }
-        });
+        let finer = scene.with_shorter_steps(&run, grid.clone())?;
+        let error = finer.map(|finer| Differences::between(&run.states, &finer));
         Ok(Steps { tolerance: scene.tolerance, run, error })
     }
+}
+
+/// Differences between two runs of the same steps or times, relative to the greatest values of the finer run.
+#[derive(Clone, Copy)]
+pub(super) struct Differences {
+    /// Of approach or force at any time.
+    pub(super) main: f64,
+    /// Of the greatest pressure of the run.
+    pub(super) pressure: f64,
+    /// Of the greatest pressure at any time at which the coarse run resolves the contact.
+    pub(super) pressure_over_time: f64,
+    /// Of the contact radius at these times.
+    pub(super) radius: f64,
+}
+
+impl Differences {
+    pub(super) fn between(coarse: &[State], fine: &[State]) -> Differences {
+        let over = |of: fn(&State) -> f64, all: bool| difference(coarse, fine, of, all);
+        let [before, now] = [coarse, fine].map(|states| greatest(states, |state| state.pressure));
+        Differences {
+            main: over(|state| state.approach, true).max(over(|state| state.force, true)),
+            pressure: relative((before - now).abs(), now),
+            pressure_over_time: over(|state| state.pressure, false),
+            radius: over(|state| state.radius, false),
+        }
+    }
+}
+
+/// The greatest difference between the states of two runs at the same times, relative to the greatest value: over all
+/// states, or over the states that `coarse` resolves.
+fn difference(coarse: &[State], fine: &[State], of: impl Fn(&State) -> f64, all: bool) -> f64 {
+    let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
+    let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
+    relative(most, greatest(fine, of))
+}
+
+pub(super) fn relative(value: f64, scale: f64) -> f64 {
+    if scale > 0.0 { value / scale } else { 0.0 }
 }

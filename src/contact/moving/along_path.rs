@@ -2,12 +2,15 @@
 
 use std::sync::Arc;
 
+use crate::Grid;
+use crate::contact::indenter::Indenter;
 use crate::contact::read::report::StepReport;
 use crate::contact::settings::Frame;
 use crate::contact::state::State;
 use crate::contact::step::request::Step;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result, non_negative};
+use crate::geometry::Gap;
 use crate::load::Load;
 use crate::memory;
 use crate::motion::Travel;
@@ -17,31 +20,32 @@ use crate::solver::RigidMotion;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct TravelReport {
-    /// The step itself.
+    /// Report of the step.
     pub step: StepReport,
-    /// Position of the shape at its end \[m\].
+    /// Position of the shape at the end of the step \[m\].
     pub position: [f64; 2],
-    /// Position of the shape at its start \[m\].
+    /// Position of the shape at the start of the step \[m\].
     pub from: [f64; 2],
-    /// The force that moves it \[N\], see
+    /// Lateral force that moves the shape \[N\], see
     /// [`ViscoelasticContact::lateral_force`](crate::ViscoelasticContact::lateral_force).
     pub lateral_force: [f64; 2],
-    /// The mean power over the step that the motion along the surface feeds into the bodies \[W\]: the work of the pressure
-    /// there, less the work of force and moments. Lateral force times velocity, except that it includes the rim of a face. 0
-    /// for a jump.
+    /// Mean power over the step that the lateral motion feeds into the bodies \[W\]: the work of the pressure on the
+    /// surface, less the work of force and moments. It equals lateral force times velocity, but includes the rim of a
+    /// face. 0 for a jump.
     pub power: f64,
 }
 
 impl ViscoelasticContact {
-    /// A step at whose end the indenter is where `travel` places it: the bodies stay where they are. The time is the contact's own:
-    /// at its start the indenter should be at the path's position there.
+    /// Takes a step at whose end the indenter is at the position of `travel`; the bodies do not move. Times of the path
+    /// are times of the contact: at the start of the step the indenter should be at the position of the path.
     ///
-    /// The sharper the shape, the shorter the steps: an indenter should not move by more than a part of the contact's
-    /// length in each. A step off the middle gives up the symmetry of the scene for good. With [`Settings::window`](crate::contact::Settings::window) what is computed grows with the track.
+    /// The indenter should move by a fraction of the contact length in each step, by less the sharper it is. After a
+    /// step off the middle the symmetry of the scene is no longer used. With
+    /// [`Settings::window`](crate::contact::Settings::window) the computed region grows with the track.
     ///
     /// # Errors
-    /// As [`ViscoelasticContact::step`], or if the path or a gap is not finite, there are several rigid bodies, or the grid is
-    /// fixed to the indenter. The contact, its indenter included, is then where it was.
+    /// As [`ViscoelasticContact::step`], or if the path or a gap is not finite, there are several rigid bodies, or the
+    /// grid is fixed to the indenter. The contact and its indenter are then unchanged.
     pub fn step_along(&mut self, travel: &Travel, dt: f64, load: Load) -> Result<TravelReport> {
         self.not_shared("a step along a path")?;
         if self.settings().frame != Frame::Bodies {
@@ -52,24 +56,24 @@ impl ViscoelasticContact {
         }
         non_negative("time step", dt)?;
         let from = travel.position(self.time())?;
-        if self.spare.is_empty() {
+        if self.indenter_buffer.is_empty() {
             memory::check("the gap of a moving indenter", 16 * self.grid().len() as u128)?;
         }
-        let indenter = self.spare.fill(&self.scene.grid, travel, self.time() + dt)?;
+        let indenter = self.indenter_buffer.fill(&self.scene.grid, travel, self.time() + dt)?;
         let before = (self.force(), self.moment(), self.computation.state.current.motions[0]);
         let left = Arc::clone(&self.computation.state.indenter);
         let loads = [load];
         let step = Step { indenter, ..self.request(self.time() + dt, dt, &loads, self.settings().tolerance)? };
         let step = self.take(step)?;
-        self.spare.indenter = Some(left);
+        self.indenter_buffer.indenter = Some(left);
         let position = travel.position(step.time)?;
         let lateral_force = self.lateral_force(&travel.shape_at(step.time)?);
         let power = if dt > 0.0 { self.work_along(before) / dt } else { 0.0 };
         Ok(TravelReport { step, position, from, lateral_force, power })
     }
 
-    /// The work of the last step \[J\] that went along the surface: what the pressure did there, Σ p Δu, less the part of force
-    /// and moments.
+    /// Work of the lateral motion in the last step \[J\]: the work of the pressure, Σ p Δu, less the work of force and
+    /// moments.
     fn work_along(&self, (force, moment, motion): (f64, [f64; 2], RigidMotion)) -> f64 {
         let State { region, history, current, previous, .. } = &self.computation.state;
         let pressures = previous.solution.pressure.iter().zip(&current.solution.pressure);
@@ -83,5 +87,37 @@ impl ViscoelasticContact {
         }];
         let pressed = (0..3).map(|k| 0.5 * (ends[0][k] + ends[1][k]) * (end[k] - start[k]));
         work * self.grid().cell_area() * region.images() as f64 - pressed.sum::<f64>()
+    }
+}
+
+/// The indenter of the step before the last, and the fields in which the next one is made. A step along a path
+/// allocates nothing, unless a snapshot still holds this indenter, or the load leaves it free to tilt.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct IndenterBuffer {
+    indenter: Option<Arc<Indenter>>,
+    heights: Vec<f64>,
+    track: Vec<f64>,
+}
+
+impl IndenterBuffer {
+    /// Whether no step along a path has been taken.
+    fn is_empty(&self) -> bool {
+        self.heights.is_empty()
+    }
+
+    /// Returns the indenter at time `t` of its path.
+    ///
+    /// # Errors
+    /// If the gap is not a valid gap.
+    fn fill(&mut self, grid: &Grid, travel: &Travel, t: f64) -> Result<Arc<Indenter>> {
+        self.heights.resize(grid.len(), f64::INFINITY);
+        travel.fill_gap(t, grid, &mut self.heights, &mut self.track)?;
+        if let Some(mut unused) = self.indenter.take()
+            && let Some(indenter) = Arc::get_mut(&mut unused)
+        {
+            indenter.refill(&mut self.heights, grid)?;
+            return Ok(unused);
+        }
+        Ok(Arc::new(Indenter::new(Gap::new(vec![self.heights.clone()], grid)?, 1)))
     }
 }

@@ -7,17 +7,19 @@ use crate::error::{Error, Result, non_negative};
 use crate::load::Load;
 
 impl ViscoelasticContact {
-    /// A step in which the indenter, and the grid with it, moves over the bodies by whole cells along x1 and x2: the material
-    /// under the cell `[i, j] + cells` moves under `[i, j]`. At a velocity v along x1, one cell per step takes dt = Δ1/v.
+    /// Takes a step in which the indenter and the grid move over the bodies by whole cells along x1 and x2: the
+    /// material under the cell `[i, j] + cells` moves under `[i, j]`. At a velocity v along x1, one cell per step takes
+    /// dt = Δ1/v.
     ///
-    /// Undisturbed material enters across one edge of the grid; where the bodies are periodic, it comes round. The past of
-    /// what leaves across the other edge is forgotten: the grid should be long enough behind the contact for the bodies to
-    /// recover, or for the remaining displacement to be far away. Needs [`Frame::Indenter`].
+    /// Undisturbed material enters across one edge of the grid; on periodic bodies, material that leaves at one edge
+    /// enters at the other. Otherwise the history of material that leaves is dropped: the grid should be long enough
+    /// behind the contact for the bodies to recover, or for the remaining displacement to be far away. Needs
+    /// [`Frame::Indenter`].
     ///
     /// ```
     /// use viscocontact::prelude::*;
     ///
-    /// // a sphere slides at 50 mm/s; the contact leans forward, and it takes a force to keep it going
+    /// // a sphere slides at 50 mm/s; the contact leans forward, so that the motion takes a force
     /// let (grid, shape) = (Grid::new([96, 48], [8.0e-3, 4.0e-3])?, Shifted::new(Sphere::new(10.0e-3)?, [2.0e-3, 0.0])?);
     /// let mut contact = ViscoelasticContact::builder(grid.clone())
     ///     .geometry(&shape)
@@ -39,7 +41,7 @@ impl ViscoelasticContact {
         self.step_each_over(cells, dt, &[load])
     }
 
-    /// [`ViscoelasticContact::step_over`] with a load for each rigid body, all of which move alike.
+    /// [`ViscoelasticContact::step_over`] with a load for each rigid body; all bodies move by the same cells.
     ///
     /// # Errors
     /// As [`ViscoelasticContact::step_over`], or if there is not one load per body.

@@ -1,4 +1,4 @@
-//! Moving on until nothing changes any more.
+//! Motion over the bodies to the steady state.
 
 use crate::contact::read::report::StepReport;
 use crate::contact::settings::Frame;
@@ -6,14 +6,16 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result, count_within, finite, within};
 use crate::load::Load;
 
-/// The contact is this many steps long, or more, in the longest strides.
+/// Least number of the longest strides per contact length.
 const STEPS_PER_CONTACT_LENGTH: usize = 8;
-/// Lengths of the contact that each shorter stride is kept for: the past that the contact feels is then made of it.
+/// Contact lengths travelled with each shorter stride. The history that acts on the contact then consists of steps of
+/// this stride.
 const CONTACT_LENGTHS_PER_STRIDE: usize = 2;
-/// Lengths of the grid after which a motion that is still not steady is given up.
+/// Grid lengths after which a motion that is not yet steady fails.
 const MAX_GRID_LENGTHS: usize = 10;
 
-/// A steady motion of the indenter over the bodies, and how steady the contact shall be, made by [`SteadyMotion::new`].
+/// A steady motion of the indenter over the bodies, and the tolerance of the steady state; made by
+/// [`SteadyMotion::new`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct SteadyMotion {
@@ -21,10 +23,10 @@ pub struct SteadyMotion {
     pub axis: usize,
     /// Velocity of the indenter over the bodies \[m/s\], of either sign.
     pub velocity: f64,
-    /// The load that it carries.
+    /// Load on the indenter.
     pub load: Load,
-    /// What the pressure may change by while the indenter travels by the length of the contact: Σ |Δp| over Σ p,
-    /// in (0, 1) (default: 1e-3); the solver's own noise is about a hundred times
+    /// Greatest change of the pressure while the indenter travels by the length of the contact, in (0, 1) (default: 1e-3):
+    /// Σ |Δp| over Σ p. The noise of the solver is about a hundred times
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance).
     pub tolerance: f64,
 }
@@ -47,14 +49,14 @@ pub struct TowardSteady<'a> {
     motion: SteadyMotion,
     /// Cells per step.
     stride: usize,
-    /// Cells still to go with it.
+    /// Cells still to travel with this stride.
     left: usize,
     /// Cells travelled so far.
     travelled: usize,
-    /// The pressure one length of contact ago.
+    /// Pressure one contact length ago.
     before: Vec<f64>,
     change: f64,
-    /// Whether a step was made in place, for the indenter to touch.
+    /// Whether a step in place was taken for the indenter to touch.
     tried_to_touch: bool,
     arrived: bool,
 }
@@ -63,9 +65,9 @@ impl ViscoelasticContact {
     /// Moves the indenter steadily over the bodies, by steps of whole cells, until the pressure no longer changes. Needs
     /// [`Frame::Indenter`](crate::contact::Frame::Indenter).
     ///
-    /// Long strides come first, an eighth of the contact's length each, until the bodies have passed the whole grid; then shorter
-    /// ones, down to a cell, and these until the motion is steady: what happened before is forgotten step by step,
-    /// and costs little.
+    /// Long strides come first, an eighth of the contact length each, until the bodies have passed the whole grid.
+    /// Shorter strides follow, down to one cell, until the motion is steady. The early strides are cheap, and their
+    /// error decays.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -113,7 +115,7 @@ impl ViscoelasticContact {
 }
 
 impl TowardSteady<'_> {
-    /// Makes one step, or returns that the motion is steady.
+    /// Takes one step and returns its report, or `None` if the motion is steady.
     ///
     /// # Errors
     /// As [`ViscoelasticContact::step_over`], or if the load does not keep the bodies in touch, or the motion is not steady after ten times the length of the grid.
@@ -157,17 +159,17 @@ impl TowardSteady<'_> {
         self.contact
     }
 
-    /// What the pressure has changed by over the last length of contact, Σ |Δp| over Σ p; infinite before that is known.
+    /// Change of the pressure over the last contact length, Σ |Δp| over Σ p; infinite before the first full length.
     pub fn change(&self) -> f64 {
         self.change
     }
 
-    /// How far the indenter has travelled \[m\].
+    /// Distance travelled by the indenter \[m\].
     pub fn distance(&self) -> f64 {
         self.travelled as f64 * self.contact.grid().spacing()[self.motion.axis]
     }
 
-    /// Sets the stride of the steps to come, and how long it is kept; false if the motion is steady.
+    /// Sets the next stride and the cells to travel with it; false if the motion is steady.
     fn next_stride(&mut self) -> Result<bool> {
         let (axis, grid) = (self.motion.axis, self.contact.grid());
         let (cells, contact) = (grid.cells()[axis], self.length_of_contact());
@@ -194,7 +196,7 @@ impl TowardSteady<'_> {
         Ok(true)
     }
 
-    /// Cells from end to end of the contact, along the axis of the motion.
+    /// Cells between the ends of the contact along the axis of the motion.
     fn length_of_contact(&self) -> usize {
         let n2 = self.contact.grid().cells()[1];
         let touched = self.contact.pressure().iter().enumerate().filter(|(_, p)| **p > 0.0);
@@ -204,7 +206,7 @@ impl TowardSteady<'_> {
     }
 }
 
-/// The largest power of two of which a contact has enough.
+/// The largest power of two of which a contact is [`STEPS_PER_CONTACT_LENGTH`] long.
 fn longest_stride(contact: usize) -> usize {
     1 << (contact / STEPS_PER_CONTACT_LENGTH).max(1).ilog2()
 }

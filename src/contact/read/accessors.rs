@@ -1,8 +1,9 @@
-//! Read-only accessors.
+//! Read-only accessors, and the fields of a contact on the whole grid, or on the local rows of a rank.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
 use crate::contact::read::report::BodyState;
@@ -20,18 +21,18 @@ use crate::solver::RigidMotion;
 use crate::sum;
 
 impl ViscoelasticContact {
-    /// Time \[s\], 0 at first.
+    /// Time \[s\], initially 0.
     pub fn time(&self) -> f64 {
         self.computation.state.clock.time
     }
 
-    /// The reduced time \[s\], as it passes for the material: ∫ dt/a_T(T(t)) with a history of the temperature
+    /// The reduced time \[s\] of the material: ∫ dt/a_T(T(t)) with a history of the temperature
     /// ([`Builder::temperature`](crate::contact::Builder::temperature)), else the time.
     pub fn reduced_time(&self) -> f64 {
         self.computation.state.clock.reduced_time
     }
 
-    /// The history of the temperature, if it was given one.
+    /// The history of the temperature, if the contact has one.
     pub fn temperature(&self) -> Option<&TemperatureHistory> {
         self.scene.temperature.as_ref()
     }
@@ -41,13 +42,13 @@ impl ViscoelasticContact {
         &self.scene.grid
     }
 
-    /// The settings it was built with.
+    /// The settings of the contact.
     pub fn settings(&self) -> &Settings {
         &self.scene.settings
     }
 
-    /// The material of the bodies. Where a rheology has no exact exponential series, this is the one that was fitted in its
-    /// place over [`Builder::times`](crate::contact::Builder::times); [`Material::fit_reports`] reports how well.
+    /// The material of the bodies. For a rheology without exact exponential series it contains the series fitted over
+    /// [`Builder::times`](crate::contact::Builder::times); [`Material::fit_reports`] gives the error of the fit.
     pub fn material(&self) -> &Material {
         &self.scene.material
     }
@@ -62,13 +63,14 @@ impl ViscoelasticContact {
         self.computation.state.loads[0]
     }
 
-    /// Contact pressure \[Pa\], one value per cell, ≥ 0 (Eq. 2 of the [paper](crate::paper)); of own [rows](ViscoelasticContact::rows) where ranks share them out.
+    /// Contact pressure \[Pa\], one value per cell, ≥ 0 (Eq. 2 of the [paper](crate::paper)); on the local
+    /// [rows](ViscoelasticContact::rows) where ranks share them out.
     pub fn pressure(&self) -> &[f64] {
         self.view.pressure(&self.computation.state)
     }
 
-    /// Composite normal surface displacement, positive into the bodies \[m\], one value per cell (Eq. 10 of the [paper](crate::paper)); of own
-    /// [rows](ViscoelasticContact::rows) where ranks share them out.
+    /// Composite normal surface displacement, positive into the bodies \[m\], one value per cell (Eq. 10 of the
+    /// [paper](crate::paper)); on the local [rows](ViscoelasticContact::rows) where ranks share them out.
     ///
     /// With [`Settings::window`] the first call after a step costs a convolution on the whole grid, and memory for its
     /// result.
@@ -76,12 +78,12 @@ impl ViscoelasticContact {
         self.view.displacement(&self.scene, &self.computation.state)
     }
 
-    /// Writes the gap between the deformed bodies, Eq. 1 of the [paper](crate::paper), into `out` \[m\]: zero in contact
-    /// to within the tolerance, +∞ where there is nothing to touch.
+    /// Writes the gap between the deformed bodies, Eq. 1 of the [paper](crate::paper), into `out` \[m\]: zero in
+    /// contact to within the tolerance, +∞ where the indenter has no surface.
     ///
     /// # Errors
-    /// If `out` does not hold one value per cell, or there is no memory for the displacement, where not all of it is
-    /// computed.
+    /// If `out` does not hold one value per cell, or there is no memory for the displacement on the whole grid, where
+    /// only a region is computed.
     pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
         let (Scene { grid, kernel, .. }, state) = (&*self.scene, &self.computation.state);
         exact_length("gap", out.len(), state.region.shown_len())?;
@@ -104,7 +106,7 @@ impl ViscoelasticContact {
         Ok(())
     }
 
-    /// The gap on the computed cells of own rows.
+    /// The gap on the computed cells of the local rows.
     fn own_gap(&self) -> Vec<f64> {
         let State { region, indenter, current, history, .. } = &self.computation.state;
         let (gap, RigidMotion { approach, tilt }) = (indenter.gap(), current.motions[0]);
@@ -113,8 +115,8 @@ impl ViscoelasticContact {
         cells.map(|(k, (above, u))| above + u - lowered.at(region.center(k))).collect()
     }
 
-    /// Rigid-body approach ω of the (first) body, at the origin of the grid \[m\]. Without load, the approach
-    /// at which it just touches.
+    /// Rigid-body approach ω of the (first) body, at the origin of the grid \[m\]. Without load, the approach at first
+    /// touch.
     pub fn approach(&self) -> f64 {
         self.computation.state.current.motions[0].approach
     }
@@ -124,7 +126,7 @@ impl ViscoelasticContact {
         self.computation.state.current.motions[0].tilt
     }
 
-    /// Normal force Σ p ΔA on all bodies together \[N\], Eq. 4 of the [paper](crate::paper).
+    /// Total normal force Σ p ΔA on all bodies \[N\], Eq. 4 of the [paper](crate::paper).
     pub fn force(&self) -> f64 {
         let state = &self.computation.state;
         state.force_of(&state.current)
@@ -140,7 +142,7 @@ impl ViscoelasticContact {
         self.computation.state.current.contact_cells
     }
 
-    /// How far the cells in contact reach from the origin along x1 and x2, outer sides included \[m\].
+    /// Greatest distance of the outer sides of cells in contact from the origin, along x1 and x2 \[m\].
     pub(crate) fn reach_of_contact(&self) -> [f64; 2] {
         let n2 = self.scene.grid.cells()[1];
         let half = self.scene.grid.spacing().map(|side| 0.5 * side);
@@ -156,8 +158,7 @@ impl ViscoelasticContact {
         self.scene.bodies
     }
 
-    /// The state of one rigid body, in the order in which the builder was given them; `None` if there are
-    /// not as many.
+    /// The state of the rigid body of this index, in the order of the builder; `None` if there are fewer bodies.
     pub fn body(&self, body: usize) -> Option<BodyState> {
         let State { indenter, current, .. } = &self.computation.state;
         let RigidMotion { approach, tilt } = *current.motions.get(body)?;
@@ -186,7 +187,7 @@ impl ViscoelasticContact {
         };
         let [force, moment1, moment2, cells] = region.rows().merge(part, sum::add);
         let area = grid.cell_area() * region.images() as f64;
-        // mirror images are in balance
+        // the moments of mirror images cancel
         let moment = |axis: usize, sum: f64| if region.folded()[axis] { 0.0 } else { sum * area };
         (force * area, [moment(0, moment1), moment(1, moment2)], region.images() * cells as usize)
     }
@@ -204,4 +205,80 @@ impl fmt::Debug for ViscoelasticContact {
             .field("contact_cells", &state.current.contact_cells)
             .finish_non_exhaustive()
     }
+}
+
+/// Pressure and displacement on the whole grid, where only a region is computed; on the local rows, where ranks share
+/// them out.
+#[derive(Debug, Clone)]
+pub(crate) struct View {
+    pressure: Vec<f64>,
+    /// The region of the pressure; elsewhere it is zero.
+    region: Region,
+    /// Computed at the first call.
+    displacement: OnceLock<Vec<f64>>,
+}
+
+impl View {
+    pub(in crate::contact) fn new(state: &State) -> View {
+        let mut view = View { pressure: Vec::new(), region: state.region.clone(), displacement: OnceLock::new() };
+        view.refresh(state);
+        view
+    }
+
+    /// Updates the fields to `state`.
+    pub(in crate::contact) fn refresh(&mut self, state: &State) {
+        self.displacement.take();
+        if self.region != state.region {
+            self.region = state.region.clone();
+            // clears values of the previous region
+            self.pressure.fill(0.0);
+        }
+        if state.region.is_shown() {
+            self.pressure = Vec::new();
+        } else {
+            self.pressure.resize(state.region.shown_len(), 0.0);
+            state.region.show(&state.current.solution.pressure, &mut self.pressure);
+        }
+    }
+
+    pub(in crate::contact) fn pressure<'a>(&'a self, state: &'a State) -> &'a [f64] {
+        if state.region.is_shown() { &state.current.solution.pressure } else { &self.pressure }
+    }
+
+    pub(in crate::contact) fn displacement<'a>(&'a self, scene: &Scene, state: &'a State) -> &'a [f64] {
+        let own = state.history.displacement();
+        if state.region.is_shown() {
+            return own;
+        }
+        let whole = || on_the_whole_grid(scene, &state.region, own, state.history.far_source()).into_owned();
+        self.displacement.get_or_init(whole)
+    }
+
+    /// Whether the displacement needs no further computation.
+    pub(in crate::contact) fn has_displacement(&self, state: &State) -> bool {
+        state.region.is_shown() || state.region.is_shared() || self.displacement.get().is_some()
+    }
+}
+
+/// Extends a field of a region to the whole grid. Outside the region the field is the convolution of `source`, or zero
+/// without a source.
+pub(in crate::contact) fn on_the_whole_grid<'a>(
+    scene: &Scene,
+    region: &Region,
+    own: &'a [f64],
+    source: Option<&[f64]>,
+) -> Cow<'a, [f64]> {
+    if region.is_shown() {
+        return Cow::Borrowed(own);
+    }
+    let mut whole = vec![0.0; region.shown_len()];
+    if let Some(source) = source {
+        let all = Region::whole(&scene.grid, region.folded());
+        let kernel = scene.kernel.on(all.grid(), all.folded());
+        let mut far = vec![0.0; all.len()];
+        kernel.apply(&region.carry(source, &all, |_| 0.0), &mut far, &mut kernel.workspace());
+        all.spread(&far, &mut whole);
+    }
+    region.show(own, &mut whole);
+    Cow::Owned(whole)
 }

@@ -1,8 +1,6 @@
-//! What a user reads of a contact: fields, numbers, observations, reports and warnings.
+//! Results of a contact: fields, scalars, observations, stress, reports and warnings.
 
 pub(in crate::contact) mod accessors;
 pub(in crate::contact) mod observations;
 pub(in crate::contact) mod report;
 pub(in crate::contact) mod stress;
-pub(in crate::contact) mod view;
-pub(in crate::contact) mod warning;

@@ -1,4 +1,4 @@
-//! Observations of a contact: pure functions of its fields, applied to them.
+//! Observations of a contact: functions of `observe` applied to its fields.
 
 use crate::contact::settings::Solver;
 use crate::contact::state::State;
@@ -14,13 +14,13 @@ use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
 impl ViscoelasticContact {
     /// Area of contact \[m²\].
     ///
-    /// Near the edge of a smooth contact the pressure rises with the root of the distance, so that p² extrapolates to the
-    /// edge, to a part of a cell; the area is the area of the polygons through these points. Where the pressure does not
-    /// fall towards the edge, or there is nothing to touch beyond it, as at the rim of a punch, the contact ends with the
-    /// cell. Measured on spheres: 2e-3 of the area at 64² cells and 5e-4 at 256², where counting cells
-    /// ([`ViscoelasticContact::contact_cells`]) errs by 1.5e-2 and 4e-3. Where contact grows by creep, the cells that it has
-    /// reached last are stiffer than those before them, and the root is approached within them only: then it errs by up to a
-    /// few per cent at 128² cells. A call of all [ranks](crate::parallel) that share out the rows.
+    /// Near the edge of a smooth contact the pressure rises with the root of the distance, so that p² extrapolates to
+    /// the edge within a fraction of a cell. The area is the area of the polygons through these points. Where the
+    /// pressure does not fall towards the edge, or the indenter has no surface beyond it, as at the rim of a punch, the
+    /// contact ends with the cell. Measured on spheres: 2e-3 of the area at 64² cells and 5e-4 at 256², where counting
+    /// cells ([`ViscoelasticContact::contact_cells`]) errs by 1.5e-2 and 4e-3. Where contact grows by creep, the newest
+    /// cells are stiffer than older ones, and the pressure follows the root only within them: then the area errs by up
+    /// to a few per cent at 128² cells. A call of all [ranks](crate::parallel) that share out the rows.
     pub fn contact_area(&self) -> f64 {
         let State { region, .. } = &self.computation.state;
         if self.contact_cells() == 0 {
@@ -29,18 +29,19 @@ impl ViscoelasticContact {
         if region.is_shared() { self.shared_area() } else { self.pressed().area() }
     }
 
-    /// Estimates what the mesh costs in accuracy, from the pressure alone. The approach: from how many cells are on the rim
-    /// among all, δ, and from the share s of the force that they carry; s √δ is of second order in the cell width where the
-    /// pressure falls to zero at the edge, and of first order where it is singular there or a shape ends between cells. The
-    /// greatest pressure: from its fall to the neighbours of the peak; no figure where this is not the fall from a smooth peak,
-    /// as at the tip of a cone, under the edge of a punch or at a rim of high pressure that creep leaves. The area: from how
-    /// well the pressure shows where contact ends.
+    /// Estimates the error due to the mesh, from the pressure alone. The approach: from how many cells are on the rim
+    /// among all, δ, and from the share s of the force that they carry; s √δ is of second order in the cell width where
+    /// the pressure falls to zero at the edge, and of first order where it is singular there or a shape ends between
+    /// cells. The greatest pressure: from its fall to the neighbours of the peak; no figure where this is not the fall
+    /// from a smooth peak, as at the tip of a cone, under the edge of a punch or at a rim of high pressure that creep
+    /// leaves. The area: from how sharply the pressure determines the edge.
     ///
-    /// The true errors of random scenes of all shapes, elastic and creeping, are at most three times the figures, but for one
-    /// of 3300 scenes (docs/accuracy.md). A shape that the cells do not resolve is beyond them.
+    /// The true errors of random scenes of all shapes, elastic and creeping, are at most three times the estimates in
+    /// all but one of 3300 scenes (docs/accuracy.md). The estimates do not hold for a shape that the cells do not
+    /// resolve.
     ///
-    /// `None` without contact, in full contact of periodic bodies, which has no rim, and of contacts that the cells do not
-    /// resolve: less than about five cells across, or gaps between periodic ones.
+    /// `None` without contact, in full contact of periodic bodies, which has no rim, and for contacts that the cells do
+    /// not resolve: less than about five cells across, or gaps between periodic ones.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -65,13 +66,13 @@ impl ViscoelasticContact {
         Ok(self.pressed().mesh_error(self.contact_cells()))
     }
 
-    /// Normal stiffness of the contact over the contact modulus \[m\]: dW/dω = E* times this while the contact area stays as
-    /// it is; with 1/C(0) it is the response to a jump, with 1/C(t) that to a step held for t. 2a for a circle of radius a.
-    /// On one area bodies of all materials have it, and the electrical and thermal conductance of the contact are proportional to
-    /// it (J. R. Barber, Proc. R. Soc. A 459, 2003).
+    /// Normal stiffness of the contact over the contact modulus \[m\]: dW/dω = E* times this while the contact area
+    /// stays as it is; with 1/C(0) it is the response to a jump, with 1/C(t) that to a step held for t. 2a for a circle
+    /// of radius a. It depends on the area alone, not on the material; the electrical and thermal conductance of the
+    /// contact are proportional to it (J. R. Barber, Proc. R. Soc. A 459, 2003).
     ///
-    /// Zero without contact; infinite on periodic bodies in full contact, whose mean displacement is held. Costs about ten
-    /// convolutions and as many preconditioners, and memory for them.
+    /// Zero without contact; infinite on periodic bodies in full contact, whose mean displacement is fixed. Costs about
+    /// ten convolutions, ten preconditioner applications, and memory for them.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -86,7 +87,7 @@ impl ViscoelasticContact {
     /// ```
     ///
     /// # Errors
-    /// If the iteration for it does not converge.
+    /// If the iteration does not converge.
     pub fn stiffness_over_modulus(&self) -> Result<f64> {
         let State { clock, region, current, .. } = &self.computation.state;
         let kernel = self.computation.window.kernel();
@@ -131,8 +132,8 @@ impl ViscoelasticContact {
     }
 
     /// The distribution of the gap \[m\] over all cells where the initial gap is finite, in `bins` between 0 and the
-    /// greatest gap. [`Distribution::share_at_zero`] is the share in contact, cells that touch without pressure
-    /// included.
+    /// greatest gap. [`Distribution::share_at_zero`] is the share in contact, including cells that touch without
+    /// pressure.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -197,9 +198,9 @@ impl ViscoelasticContact {
         Patches::new(self.grid(), self.pressure(), self.kernel().periodic_axes())
     }
 
-    /// Position of the contact relative to the point `about` \[m\], such as the lowest point of a roller; `None`
-    /// without contact. Several patches count as one contact. Where the bodies are periodic, each cell counts at its
-    /// periodic image nearest to the point, and the centre of pressure may lie beyond the grid.
+    /// Position and skewness of the contact relative to the point `about` \[m\], such as the lowest point of a roller;
+    /// `None` without contact. Several patches count as one contact. Where the bodies are periodic, each cell counts at
+    /// its periodic image nearest to the point, and the centre of pressure may lie beyond the grid.
     ///
     /// ```
     /// use viscocontact::prelude::*;

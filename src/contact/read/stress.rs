@@ -6,7 +6,7 @@ use crate::observe::SubsurfaceStress;
 use crate::rheology::Compressibility;
 use crate::{Grid, ViscoelasticContact, memory};
 
-/// The memory of the stress below the surface of a body with an elastic bulk.
+/// History of the stress below the surface during a run, in a body with an elastic bulk.
 ///
 /// Boussinesq's stress is linear in 1 − 2ν, so that by the correspondence principle the stress is A p + B r with
 /// r(t) = ∫ (1 − 2ν)(t − s) dp(s) in place of (1 − 2ν) p. For an elastic bulk of modulus B the operator of 1 − 2ν is
@@ -16,9 +16,9 @@ use crate::{Grid, ViscoelasticContact, memory};
 /// (1 − 2ν)(t) = 3 − 9B K(t) = r_∞ + Σ r_k e^(−t/λ_k)
 /// ```
 ///
-/// exactly, and r takes one field per retardation time of K. Within a step the pressure is taken as linear, for which r is
-/// exact: second order in the step. A contact does not compute r, since its displacements do not need it; who needs it
-/// pays one field per retardation time and one pass over them per step.
+/// exactly, and r takes one field per retardation time of K. Within a step the pressure is taken as linear, for which r
+/// is exact: second order in the step. A contact does not compute r, since its displacements do not depend on it. A
+/// history costs one field per retardation time and one pass over these fields per step.
 ///
 /// ```
 /// use viscocontact::{contact::StressHistory, prelude::*};
@@ -51,8 +51,8 @@ pub struct StressHistory {
 }
 
 impl StressHistory {
-    /// The history of the body of [`Builder::material`](crate::contact::Builder::material), which must be undisturbed: made
-    /// before the first load.
+    /// Begins the history of the body of [`Builder::material`](crate::contact::Builder::material), which must be
+    /// undisturbed: call it before the first load.
     ///
     /// # Errors
     /// If the bodies are pressed already, the grid follows the indenter ([`Frame::Indenter`]), so that the bodies move under
@@ -61,7 +61,7 @@ impl StressHistory {
         StressHistory::of_body(contact, 0)
     }
 
-    /// [`StressHistory::new`] of the body of [`Builder::counter_body`](crate::contact::Builder::counter_body).
+    /// Like [`StressHistory::new`], for the body of [`Builder::counter_body`](crate::contact::Builder::counter_body).
     ///
     /// # Errors
     /// As [`StressHistory::new`], and if there is no such body.
@@ -115,21 +115,21 @@ impl StressHistory {
         Ok(())
     }
 
-    /// The stress at the end of the step recorded last.
+    /// The stress at the end of the last recorded step.
     ///
     /// # Errors
-    /// As [`SubsurfaceStress::with_changing_poisson`], and if the contact has gone on since.
+    /// As [`SubsurfaceStress::with_changing_poisson`], and if the contact has taken another step since.
     pub fn stress(&self, contact: &ViscoelasticContact) -> Result<SubsurfaceStress> {
         self.check_grid(contact)?;
         let time = contact.reduced_time();
-        within("time of the contact", time, time == self.time, "that of the step recorded last")?;
+        within("time of the contact", time, time == self.time, "the time of the last recorded step")?;
         if contact.pressure() != self.pressure {
-            // a jump, in which no time passes
+            // an unrecorded jump, in which no time passes
             let (field, value) = ("peak pressure of the contact", contact.max_pressure());
             return Err(Error::OutOfRange {
                 field,
                 value,
-                allowed: "that of the step recorded last: record every step",
+                allowed: "the peak of the last recorded step: record every step",
             });
         }
         let kernel = contact.kernel();
@@ -155,8 +155,8 @@ impl StressHistory {
 }
 
 impl ViscoelasticContact {
-    /// The stress below the surface of the creeping body, the one of [`Builder::material`](crate::contact::Builder::material),
-    /// under the pressure now.
+    /// The stress below the surface of the body of [`Builder::material`](crate::contact::Builder::material) under the
+    /// present pressure.
     ///
     /// # Errors
     /// If Poisson's ratio changes as the body creeps
@@ -165,8 +165,8 @@ impl ViscoelasticContact {
         self.stress_of(0)
     }
 
-    /// The stress below the surface of the other body, the one of
-    /// [`Builder::counter_body`](crate::contact::Builder::counter_body), x3 being the depth below its surface.
+    /// The stress below the surface of the body of [`Builder::counter_body`](crate::contact::Builder::counter_body); x3
+    /// is the depth below its surface.
     ///
     /// # Errors
     /// If there is no such body, and as [`ViscoelasticContact::stress`].

@@ -3,21 +3,36 @@
 use crate::contact::computation::Computation;
 use crate::contact::read::report::StepReport;
 use crate::contact::run::follow::Follow;
-use crate::contact::run::step_control::StepControl;
+use crate::contact::run::progress::StepErrors;
+use crate::contact::run::step_control::{NODES, StepControl};
+use crate::contact::scene::Scene;
 use crate::contact::settings::Settings;
 use crate::contact::state::State;
 use crate::contact::step::error_in_time::error_in_time;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result};
 use crate::events;
+use crate::load::{Load, LoadHistory, Tilt};
 
-/// A step that the solver cannot do is tried again so many times, shorter.
+/// Number of shorter attempts after the solver has failed to converge.
 const MAX_SOLVER_RETRIES: u32 = 5;
-/// The order, in the length of a step, of the error due to cells that join in it: a shorter step ends sooner after they do.
+/// Order in the step length of the error due to cells that join the contact within the step: a shorter step ends sooner
+/// after they join.
 const ORDER_OF_KINKS: u32 = 2;
+/// Lengths per decade tried for the first step after a jump, which is chosen from the material alone, ...
+const LENGTHS_PER_DECADE: i32 = 4;
+/// ... and decades tried below the remaining time.
+const DECADES: i32 = 40;
+/// First step of a body without elastic response, as a fraction of the remaining time: such a body has no shortest
+/// time.
+const FIRST_FRACTION: f64 = 1e-6;
+/// Positions within a step at which the load is evaluated. They are uneven, so that no oscillation is zero at all of
+/// them.
+const SHARES: [f64; 5] = [0.153, 0.381, 0.5, 0.677, 0.891];
 
 impl Follow<'_> {
-    /// One step as long as its error allows.
+    /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step,
+    /// judges its error, and accepts it or tries a shorter one.
     pub(super) fn adaptive_step(&mut self, control: &mut StepControl, corner: f64) -> Result<StepReport> {
         let ViscoelasticContact { scene, computation, .. } = &*self.contact;
         let now = self.contact.time();
@@ -31,7 +46,7 @@ impl Follow<'_> {
             let [wanted, reduced] = control.length(scene, &computation.state, &*self.history, self.until - now)?;
             let (order, dashpot) = order_of(&computation.state, &scene.settings);
             let (time, dt) = towards(now, stop, wanted);
-            // near the resolution of the time, a shortened step may round to the same end for ever
+            // near the resolution of the time, a shortened step may round to the same end again and again
             if time <= now || time >= tried {
                 return Err(Error::StepTooShort { time: now, dt, tolerance: control.tolerance });
             }
@@ -61,7 +76,7 @@ impl Follow<'_> {
             let end = scene.reduced_time(&computation.state.clock, corner.min(self.until))?;
             let outlook = control.outlook(scene, &loads[0], [time, age, end]);
             let mut error = error_in_time(scene, computed, &step, outlook);
-            // how bodies moved that stayed apart makes no difference
+            // the path of bodies that stay apart does not matter
             if !parted || computed.state.region.is_positive_anywhere(&computed.trial.solution.pressure) {
                 error.relative = error.relative.max(straying);
             }
@@ -77,7 +92,8 @@ impl Follow<'_> {
                 }
                 report.convolutions += wasted[0];
                 report.preconditioner_applications += wasted[1];
-                let errors = [error.relative.max(error.lasting), error.greatest, report.residual];
+                let time = error.relative.max(error.lasting);
+                let errors = StepErrors { time, pressure: error.greatest, residual: report.residual };
                 self.progress.include(errors, self.contact.mesh_error().unwrap_or_default());
                 return Ok(report);
             }
@@ -87,7 +103,104 @@ impl Follow<'_> {
     }
 }
 
-/// The order of the error of a step in its length, and whether an immediate dashpot resists it.
+impl StepControl {
+    /// Proposed length of the next step, at most `left`, and its length in reduced time.
+    pub(super) fn length(
+        &self,
+        scene: &Scene,
+        state: &State,
+        history: &dyn LoadHistory,
+        left: f64,
+    ) -> Result<[f64; 2]> {
+        let clock = &state.clock;
+        if let Some(next) = self.next {
+            return Ok([scene.length_of(clock, next, left)?, next]);
+        }
+        let first = self.first(scene, state, history, left)?.min(left);
+        Ok([first, scene.reduced_length([clock.time, clock.time + first], first)?])
+    }
+
+    /// The length of the first step after a jump or a corner: the longest over which the creep is linear to within the
+    /// tolerance. After a corner, only the departure of the load from its previous slope makes the bodies creep.
+    fn first(&self, scene: &Scene, state: &State, history: &dyn LoadHistory, left: f64) -> Result<f64> {
+        let (now, jumped) = (state.clock.time, state.clock.last_dt == 0.0);
+        // the approach of a paraboloid is proportional to force and compliance to the power 2/3
+        let compliance = |t: f64| scene.material.contact_compliance(t).powf(2.0 / 3.0);
+        let glassy = compliance(0.0);
+        if glassy == 0.0 {
+            return Ok(FIRST_FRACTION * left);
+        }
+        let magnitude = |load: &Load| self.scale.as_ref().map_or(0.0, |scale| scale.magnitude(load));
+        let held = magnitude(&state.loads[0]);
+        let (longest, slope) = match self.corner {
+            Some((before, slope)) if !jumped => (scene.length_of(&state.clock, before, left)?, slope),
+            _ => (left, 0.0),
+        };
+        for k in 0..=LENGTHS_PER_DECADE * DECADES {
+            let dt = longest * 10f64.powf(-f64::from(k) / f64::from(LENGTHS_PER_DECADE));
+            let reduced = scene.reduced_length([now, now + dt], dt)?;
+            let creep = compliance(reduced);
+            let deviation = if jumped {
+                (compliance(0.5 * reduced) - 0.5 * (glassy + creep)) / creep
+            } else {
+                let load = history.before(now + dt).validated_at(now + dt)?;
+                let change = (magnitude(&load) - held - slope * reduced).abs();
+                let scale =
+                    self.scale.as_ref().map_or(0.0, |scale| scale.of_load(&state.loads[0], &load)).max(held + change);
+                0.125 * (creep - glassy) / creep * change / scale.max(f64::MIN_POSITIVE)
+            };
+            if deviation.abs() <= self.tolerance
+                && self.watch(history, [now, now + dt], |time| scene.reduced_time(&state.clock, time))?
+                    <= self.tolerance
+            {
+                return Ok(dt);
+            }
+        }
+        Ok(longest * 10f64.powi(-DECADES))
+    }
+
+    /// Whether a body of given approach comes no nearer between `now` and `time` than at these two times.
+    pub(super) fn stays_away(&self, history: &dyn LoadHistory, now: f64, time: f64) -> bool {
+        let approach = |load: Load| match load {
+            Load::Approach { approach, tilt: [Tilt::Fixed(0.0), Tilt::Fixed(0.0)] } => approach,
+            _ => f64::NAN,
+        };
+        let nearest = approach(history.at(now)).max(approach(history.before(time)));
+        let mut away = !nearest.is_nan();
+        for share in SHARES {
+            away &= approach(history.at(now + share * (time - now))) <= nearest;
+        }
+        away
+    }
+
+    /// Greatest deviation of the load between `now` and `time` from the polynomial through its last nodes and the load
+    /// at `time`, relative to the load or to a fraction of the greatest load of the run. Rejects invalid loads of the
+    /// history.
+    pub(super) fn watch(
+        &self,
+        history: &dyn LoadHistory,
+        [now, time]: [f64; 2],
+        reduced: impl Fn(f64) -> Result<f64>,
+    ) -> Result<f64> {
+        let end = history.before(time).validated_at(time)?;
+        let mut nodes = [(reduced(time)?, end); NODES + 1];
+        let known = self.nodes.len().min(NODES);
+        nodes[1..=known].copy_from_slice(&self.nodes[..known]);
+        let nodes = &nodes[..=known];
+        let start = nodes[known.min(1)].1;
+        let scale = self.scale.as_ref().map_or(0.0, |scale| scale.of_load(&start, &end));
+        let mut most = 0.0_f64;
+        for share in SHARES {
+            let between = now + share * (time - now);
+            let load = history.at(between).validated_at(between)?;
+            let like = load.is_like(&start) && load.is_like(&end);
+            most = most.max(if like { load.deviation(reduced(between)?, nodes, scale) } else { f64::INFINITY });
+        }
+        Ok(most)
+    }
+}
+
+/// The order of the error of a step in its length, and whether the body responds by an immediate dashpot.
 fn order_of(state: &State, settings: &Settings) -> (u32, bool) {
     match state.history.exponential_rule() {
         Some(rule) => (rule.order(settings.adaptive_interpolant()), rule.has_dashpot()),
@@ -95,20 +208,20 @@ fn order_of(state: &State, settings: &Settings) -> (u32, bool) {
     }
 }
 
-/// Adds the convolutions and preconditioner applications of a step that was tried.
+/// Adds the convolutions and preconditioner applications of a rejected step.
 fn add_work(work: &mut [usize; 2], tried: &Computation) {
     let counts = tried.trial.solution.counts;
     *work = [work[0] + counts.convolutions, work[1] + counts.preconditioner_applications];
 }
 
-/// The end and the length of a step of about `wanted` towards `stop`: onto it if it is near, halfway if the rest
-/// would be a sliver.
+/// The end and the length of a step of about `wanted` towards `stop`: the step ends at `stop` if this is near, or
+/// halfway if the remainder would be much shorter than the step.
 fn towards(now: f64, stop: f64, wanted: f64) -> (f64, f64) {
     let left = stop - now;
     if wanted >= 0.99 * left {
         (stop, left)
     } else {
         let dt = if wanted > 0.5 * left { 0.5 * left } else { wanted };
-        (now + dt, now + dt - now) // the step that is really taken
+        (now + dt, now + dt - now) // the step length after rounding
     }
 }

@@ -2,13 +2,11 @@
 
 use crate::ascending::Ascending;
 use crate::contact::read::report::StepReport;
-use crate::contact::run::error_budget::ErrorBudget;
-use crate::contact::run::held::{Held, HeldHistory};
 #[cfg(feature = "checkpoint")]
 use crate::contact::run::progress::Autosave;
-use crate::contact::run::progress::Progress;
+use crate::contact::run::progress::{ErrorBudget, Progress, StepErrors, Stepping};
 use crate::contact::run::run_scale::RunScale;
-use crate::contact::run::stepping::Stepping;
+use crate::contact::run::{OwnedOrBorrowed, RunContact, RunHistory};
 use crate::contact::step::error_in_time::Outlook;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, LoadError, Result, finite, positive, within};
@@ -40,8 +38,8 @@ const SAME_TIME: f64 = 1e-6;
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 ///
-/// With [`Stepping::adaptive`] the steps follow what happens, here over nine decades of time; the state in between
-/// is there for the asking, [`Follow::within_step`]:
+/// With [`Stepping::adaptive`] the step length follows the creep, here over nine decades of time.
+/// [`Follow::within_step`] gives the state between the ends of a step:
 ///
 /// ```
 /// # use viscocontact::prelude::*;
@@ -63,16 +61,16 @@ const SAME_TIME: f64 = 1e-6;
 #[derive(Debug)]
 #[must_use = "a run takes no step until next_step is called"]
 pub struct Follow<'a> {
-    pub(in crate::contact) contact: Held<'a>,
-    pub(in crate::contact) history: HeldHistory<'a>,
+    pub(in crate::contact) contact: RunContact<'a>,
+    pub(in crate::contact) history: RunHistory<'a>,
     stepping: Stepping,
     pub(super) until: f64,
     pub(in crate::contact) progress: Progress,
-    /// Times to end steps on, ascending.
+    /// Times at which steps end, ascending.
     stops: Ascending,
     #[cfg(feature = "checkpoint")]
     pub(in crate::contact) autosave: Option<Autosave>,
-    /// The report of a step after which the file could not be written.
+    /// Report of a step after which the file could not be written.
     #[cfg(feature = "checkpoint")]
     unreported: Option<Option<StepReport>>,
 }
@@ -80,11 +78,11 @@ pub struct Follow<'a> {
 impl ViscoelasticContact {
     /// Follows a load history to the time `until` \[s\], in steps chosen by `stepping`.
     pub fn follow<'a>(&'a mut self, history: &'a dyn LoadHistory, stepping: Stepping, until: f64) -> Follow<'a> {
-        Follow::new(Held::Borrowed(self), HeldHistory::Borrowed(history), stepping, until)
+        Follow::new(OwnedOrBorrowed::Borrowed(self), OwnedOrBorrowed::Borrowed(history), stepping, until)
     }
 
-    /// [`ViscoelasticContact::follow`] in a run that owns the contact and its history, and so can be stored or sent to another
-    /// thread.
+    /// Like [`ViscoelasticContact::follow`], for a run that owns the contact and its history. Such a run can be stored
+    /// or sent to another thread.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -105,14 +103,14 @@ impl ViscoelasticContact {
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     pub fn into_follow(self, history: impl LoadHistory + 'static, stepping: Stepping, until: f64) -> Follow<'static> {
-        Follow::new(Held::Owned(Box::new(self)), HeldHistory::Owned(Box::new(history)), stepping, until)
+        Follow::new(OwnedOrBorrowed::Owned(Box::new(self)), OwnedOrBorrowed::Owned(Box::new(history)), stepping, until)
     }
 }
 
 impl<'a> Follow<'a> {
-    fn new(mut contact: Held<'a>, history: HeldHistory<'a>, stepping: Stepping, until: f64) -> Follow<'a> {
+    fn new(mut contact: RunContact<'a>, history: RunHistory<'a>, stepping: Stepping, until: f64) -> Follow<'a> {
         let begun = Progress::begin(contact.time(), stepping);
-        // a run that was saved goes on, if this is the one
+        // continues a saved run that began like this one
         let saved = contact.progress.take().filter(|saved| until >= begun.now && saved.continues(&begun));
         Follow {
             contact,
@@ -128,7 +126,8 @@ impl<'a> Follow<'a> {
         }
     }
 
-    /// Lets steps end exactly on these `times` \[s\] too, in any order; those before the contact's time have no effect.
+    /// Makes steps end exactly at these `times` \[s\] too, given in any order. Times before the time of the contact
+    /// have no effect.
     ///
     /// # Errors
     /// If a time is not finite.
@@ -137,22 +136,22 @@ impl<'a> Follow<'a> {
         Ok(self)
     }
 
-    /// Takes the next step and reports it; `None` when the end is reached.
+    /// Takes the next step and returns its report, or `None` at the end of the run.
     ///
-    /// At the start, and wherever the history jumps or changes its kind, a step of length zero brings in the new load;
-    /// [`ViscoelasticContact::step`] states which jumps a body without elastic response can follow. Corners and jumps of the
-    /// history are met exactly.
+    /// At the start, and wherever the history jumps or changes its kind, a step of length zero applies the new load.
+    /// [`ViscoelasticContact::step`] states which jumps a body without elastic response can follow. Steps end exactly
+    /// at corners and jumps of the history.
     ///
     /// # Errors
-    /// If the end is not finite or lies before the contact's time, the fixed step is not finite and positive or too short to
-    /// change the time, the tolerance is out of range or needs steps too short to change the time, the history returns an
-    /// invalid load at any time that is evaluated ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); a run looks
-    /// over the whole history when it begins, for the greatest loads, and adaptive steps look between their ends, and ahead),
-    /// or a step fails. The contact is then as it was after the last good step,
-    /// and the call may be repeated.
+    /// If the end is not finite or lies before the contact's time, the fixed step is not finite and positive or too
+    /// short to change the time, the tolerance is out of range or requires steps too short to change the time, the
+    /// history returns an invalid load at any time that is evaluated
+    /// ([`LoadError::OutOfRange`](crate::load::LoadError::OutOfRange); a run evaluates the whole history when it
+    /// begins, for the greatest loads, and adaptive steps evaluate it between their ends and ahead), or a step fails.
+    /// The contact then keeps its state after the last successful step, and the call may be repeated.
     ///
-    /// If the file of `Follow::autosave_to` cannot be written: the step is then taken all the same, and the next call tries
-    /// to write again, and reports it.
+    /// If the file of `Follow::autosave_to` cannot be written. The step is then taken nevertheless; the next call
+    /// writes the file and returns the report of the step.
     pub fn next_step(&mut self) -> Result<Option<StepReport>> {
         #[cfg(feature = "checkpoint")]
         {
@@ -213,7 +212,7 @@ impl<'a> Follow<'a> {
         Ok(Some(report))
     }
 
-    /// One step of given end, as a step of the contact.
+    /// Takes one step of given end and length.
     fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StepReport> {
         let tolerance = self.solver_tolerance();
         let loads = [load];
@@ -229,7 +228,8 @@ impl<'a> Follow<'a> {
             let outlook = Outlook { expected, ..Outlook::default() };
             let (report, error) = self.contact.take_expecting(step, outlook)?;
             let mesh = self.contact.mesh_error().unwrap_or_default();
-            self.progress.include([error.relative, error.greatest, report.residual], mesh);
+            let errors = StepErrors { time: error.relative, pressure: error.greatest, residual: report.residual };
+            self.progress.include(errors, mesh);
             Ok(report)
         })
     }
@@ -244,7 +244,7 @@ impl<'a> Follow<'a> {
         self.stops.after(now).unwrap_or(f64::INFINITY)
     }
 
-    /// The end of the next equal step, unless a corner or the end of the run comes first.
+    /// The end of the next equal step, or an earlier corner, stop or end of the run.
     fn next_time(&mut self, now: f64, dt: f64, corner: f64) -> Result<f64> {
         let (same, progress) = (SAME_TIME * dt, &mut self.progress);
         while progress.end_of_step(dt) <= now + same {
@@ -260,26 +260,26 @@ impl<'a> Follow<'a> {
         Ok(if stop <= end + same { stop } else { end })
     }
 
-    /// Estimates of the error of the run so far.
+    /// The errors of the run so far, by their source.
     pub fn error_budget(&self) -> ErrorBudget {
         self.progress.error_budget(self.contact.mesh_error().unwrap_or_default())
     }
 
-    /// Steps that were tried and found too long, with [`Stepping::adaptive`].
+    /// Number of steps rejected for their error, with [`Stepping::adaptive`].
     pub fn rejected_steps(&self) -> u64 {
         self.progress.control.as_ref().map_or(0, |control| control.rejected)
     }
 
-    /// The contact as the last step left it.
+    /// The contact after the last step.
     pub fn contact(&self) -> &ViscoelasticContact {
         &self.contact
     }
 
-    /// The contact as the last step left it: a clone where the run borrows it.
+    /// The contact after the last step; a clone if the run borrows it.
     pub fn into_contact(self) -> ViscoelasticContact {
         match self.contact {
-            Held::Borrowed(contact) => contact.clone(),
-            Held::Owned(contact) => *contact,
+            OwnedOrBorrowed::Borrowed(contact) => contact.clone(),
+            OwnedOrBorrowed::Owned(contact) => *contact,
         }
     }
 }

@@ -1,45 +1,44 @@
 //! The size of the loads and displacements of a run.
 
-use crate::contact::run::returns::Returns;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::window::placement::resting_depth;
 use crate::error::{Error, Result, within};
 use crate::load::{Load, LoadHistory};
 
-/// Loads and displacements below this part of the greatest of the run are measured relative to that part.
+/// Errors of smaller loads and displacements are relative to this fraction of the greatest of the run.
 const SMALL: f64 = 0.05;
-/// A history is looked at before the run: at so many equal parts of it, ...
+/// Number of equal parts of a history at whose ends it is evaluated before the run, ...
 const EQUAL_PARTS: i32 = 64;
-/// ... at so many times per decade, over so many decades before its end, ...
+/// ... number of times per decade, and of decades before its end, ...
 const TIMES_PER_DECADE: i32 = 4;
 const DECADES: i32 = 12;
-/// ... and at so many of its breakpoints.
+/// ... and greatest number of breakpoints.
 const BREAKPOINTS: usize = 1000;
-/// Least of the greatest force \[N\] and depth \[m\] of a run: fractions of smaller ones are rounded away, so that no step is
-/// short enough for their changes.
+/// Lower limit of the greatest force \[N\] and depth \[m\] of a run. Fractions of smaller values underflow, so that no
+/// step would be short enough.
 const LEAST: f64 = 1e-290;
 
-/// What is small in a run: the greatest loads of its history, and the displacement that they are likely to cause. Near nothing,
-/// at first touch, when bodies part, or under a load that starts like a power of time, errors relative to the state itself
-/// would never become small.
-#[derive(Debug, Clone)]
+/// Scale of small values in a run: the greatest loads of its history, and an estimate of the displacement that they
+/// cause. At first touch, when bodies part, or under a load that starts like a power of time, errors relative to the
+/// state alone would never become small.
+#[derive(Debug, Clone, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct RunScale {
     /// Approach at first touch.
     touch: f64,
-    /// The greatest force.
+    /// Greatest force.
     force: f64,
-    /// The greatest depth below first touch that is prescribed, and the greatest v that it is likely to take to get there.
+    /// Greatest prescribed depth below first touch, and an estimate of the greatest v that it requires.
     depth: f64,
     stress: f64,
-    /// The depth at which the greatest force is likely to come to rest in the end, over the compliance then.
+    /// Estimated final depth under the greatest force, divided by the final compliance.
     depth_over_compliance: f64,
     returns: Returns,
 }
 
 impl RunScale {
-    /// Of a run from the state along a history to the time `until`. Rejects invalid loads of the history.
+    /// The scale of a run from `state` along a history to the time `until`. Rejects invalid loads of the history.
     pub(super) fn new(scene: &Scene, state: &State, history: &dyn LoadHistory, until: f64) -> Result<RunScale> {
         let touch = state.indenter.first_touch()[0].approach;
         let now = state.clock.time;
@@ -49,14 +48,7 @@ impl RunScale {
             Ok::<_, Error>(scene.material.contact_compliance(age.min(scene.material.known_until())))
         };
         let compliance = compliance_at(until)?;
-        let mut scale = RunScale {
-            touch,
-            force: 0.0,
-            depth: 0.0,
-            stress: 0.0,
-            depth_over_compliance: 0.0,
-            returns: Returns::default(),
-        };
+        let mut scale = RunScale { touch, ..RunScale::default() };
         let equal = (0..=EQUAL_PARTS).map(|k| now + span * f64::from(k) / f64::from(EQUAL_PARTS));
         let decades = (1..=TIMES_PER_DECADE * DECADES)
             .map(|k| now + span * 10f64.powf(-f64::from(k) / f64::from(TIMES_PER_DECADE)));
@@ -87,14 +79,14 @@ impl RunScale {
         Ok(scale)
     }
 
-    /// Whether a run can be continued with it: a file may hold anything.
+    /// Whether a run can continue with these values; a damaged file may hold any.
     #[cfg(feature = "checkpoint")]
     pub(super) fn fits(&self) -> bool {
         let sizes = [self.force, self.depth, self.stress, self.depth_over_compliance];
         !self.touch.is_nan() && self.returns.fits() && sizes.iter().all(|&size| size >= 0.0)
     }
 
-    /// Takes account of a load that acts.
+    /// Includes a load that acts.
     pub(super) fn include(&mut self, load: &Load) {
         let magnitude = self.magnitude(load);
         match load {
@@ -103,8 +95,8 @@ impl RunScale {
         }
     }
 
-    /// The force, or the depth below first touch that is prescribed. How far apart bodies are is no measure of how far they
-    /// are pressed: then it is 0.
+    /// The force, or the prescribed depth below first touch. 0 while the bodies are apart: the gap is no scale for the
+    /// load.
     pub(super) fn magnitude(&self, load: &Load) -> f64 {
         match load {
             Load::Force { normal, .. } => *normal,
@@ -112,14 +104,13 @@ impl RunScale {
         }
     }
 
-    /// What deviations of loads between these two are taken relative to.
+    /// The scale of deviations of loads between `start` and `end`.
     pub(super) fn of_load(&self, start: &Load, end: &Load) -> f64 {
         let greatest = if let Load::Force { .. } = end { self.force } else { self.depth };
         self.magnitude(start).max(self.magnitude(end)).max(SMALL * greatest)
     }
 
-    /// The displacement and v that the greatest load of the kind of `load` is likely to cause in bodies that have been pressed
-    /// for so long.
+    /// Estimated displacement and v under the greatest load of the kind of `load`, in bodies loaded for the time `age`.
     pub(super) fn expected(&self, scene: &Scene, load: &Load, age: f64) -> [f64; 2] {
         match load {
             Load::Force { .. } if self.depth_over_compliance > 0.0 => {
@@ -130,8 +121,8 @@ impl RunScale {
         }
     }
 
-    /// The depth below first touch to which the bodies may come back after `now`, when they have been pressed for so long; 0 if
-    /// they do not.
+    /// The depth below first touch to which the bodies may return after `now`, when they have been loaded for the time
+    /// `age`; 0 if they do not return.
     pub(super) fn coming_back(&self, scene: &Scene, load: &Load, [age, now]: [f64; 2]) -> f64 {
         match load {
             Load::Force { .. } => self.expected(scene, load, age)[0],
@@ -139,8 +130,8 @@ impl RunScale {
         }
     }
 
-    /// The time between `now` and `stop` at which a prescribed approach first brings together undisturbed bodies that are
-    /// apart: from then on the displacement grows, as after a corner. Infinite if there is none.
+    /// The time between `now` and `stop` at which a prescribed approach first brings undisturbed bodies into contact.
+    /// The displacement grows from this time on, as after a corner. Infinite if there is none.
     pub(super) fn first_touch(&self, history: &dyn LoadHistory, now: f64, stop: f64) -> f64 {
         let apart = |time: f64| match history.at(time) {
             Load::Approach { approach, .. } => approach < self.touch,
@@ -159,5 +150,41 @@ impl RunScale {
             }
             if apart(middle) { before = middle } else { after = middle }
         }
+    }
+}
+
+/// Ends of the rises of a prescribed approach after it has receded, and their depths below first touch. At such a rise
+/// a body meets a surface that is still recovering.
+#[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+struct Returns(Vec<(f64, f64)>);
+
+impl Returns {
+    /// The returns of a history, from its loads at these ascending times; first touch is at the approach `touch`.
+    fn new(history: &dyn LoadHistory, touch: f64, times: &[f64]) -> Result<Returns> {
+        let (mut returns, mut receded, mut last) = (Returns::default(), false, None);
+        for &time in times {
+            for load in [LoadHistory::before, LoadHistory::at] {
+                let Load::Approach { approach, .. } = load(history, time).validated_at(time)? else { continue };
+                if let Some(before) = last.replace(approach) {
+                    receded |= approach < before;
+                    if receded && approach > before.max(touch) {
+                        returns.0.push((time, approach - touch));
+                    }
+                }
+            }
+        }
+        Ok(returns)
+    }
+
+    /// Whether a run can continue with these values; a damaged file may hold any.
+    #[cfg(feature = "checkpoint")]
+    fn fits(&self) -> bool {
+        self.0.iter().all(|&(_, depth)| depth >= 0.0)
+    }
+
+    /// Greatest depth of the rises that end at `now` or later; 0 if there are none.
+    fn depth_after(&self, now: f64) -> f64 {
+        self.0.iter().filter(|(end, _)| *end >= now).fold(0.0, |deepest, &(_, depth)| deepest.max(depth))
     }
 }

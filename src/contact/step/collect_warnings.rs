@@ -1,6 +1,6 @@
 //! The warnings of a step.
 
-use crate::contact::read::warning::{Warning, Warnings};
+use crate::contact::read::report::{Warning, Warnings};
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Edge, TimeRule};
 use crate::contact::state::State;

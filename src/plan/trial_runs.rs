@@ -14,14 +14,14 @@ const DOMAIN_CELLS: usize = 24;
 const MAX_DOMAINS: usize = 60;
 /// A domain is accepted if the contact spans a fraction of it in this range.
 const CONTACT_FRACTION: [f64; 2] = [0.45, 0.92];
-/// A step that the solver cannot do is halved so many times.
+/// Greatest number of halvings of a step in which the solver does not converge.
 const MAX_HALVINGS: u32 = 5;
 
-/// A greatest pressure in a contact smaller than this fraction of the largest gets a domain of its own, which holds the
-/// contact until it has grown to the second fraction.
+/// A greatest pressure in a contact smaller than the first fraction of the largest contact gets a separate domain,
+/// which contains the contact until it has grown to the second fraction.
 const SMALL_CONTACT: [f64; 2] = [1.0 / 3.0, 0.4];
 
-/// Ratio of the tolerances of two runs whose difference is taken for the error in time of the first, and the smallest
+/// Ratio of the tolerances of two runs whose difference estimates the error in time of the first, and the smallest
 /// tolerance of a run.
 const SHORTER: f64 = 0.125;
 pub(super) const LEAST_TOLERANCE: f64 = 1e-9;
@@ -41,7 +41,7 @@ pub(super) struct Scene<'a> {
     pub(super) tolerance: f64,
 }
 
-/// Where the contact is during a run, in the middle between cells.
+/// Extent of the contact during a run.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Extent {
     /// Half sides of the rectangle about the origin that contained the contact.
@@ -51,7 +51,7 @@ pub(super) struct Extent {
 }
 
 impl Extent {
-    /// Reaches of so much more.
+    /// The extent with its reach enlarged by `factor`.
     pub(super) fn enlarged(&self, factor: f64) -> Extent {
         Extent { reach: self.reach.map(|half| factor * half), ..*self }
     }
@@ -67,7 +67,7 @@ pub(super) struct State {
     pub(super) pressure: f64,
     /// Error of the greatest pressure, estimated from its neighbours; `None` if they do not resolve it.
     pub(super) peak: Option<f64>,
-    /// First-order share of the error of the mesh, estimated from the rim: the share of singular edges.
+    /// First-order share of the error of the mesh, due to singular edges and estimated from the rim.
     pub(super) singular: f64,
     /// Whether the contact is enough cells wide for radius and pressure to be resolved.
     pub(super) resolved: bool,
@@ -129,7 +129,7 @@ impl Scene<'_> {
         }
     }
 
-    /// Runs on domains until the contact fills one well; returns where the contact was.
+    /// Runs on domains of several sizes until the contact fills one well; returns the extent of the contact.
     pub(super) fn extent(&self) -> Result<Extent> {
         let mut lengths = [self.first_length()?; 2];
         for _ in 0..MAX_DOMAINS {
@@ -155,7 +155,7 @@ impl Scene<'_> {
         self.follow_over(grid, self.tolerance, &[])
     }
 
-    /// The run with another tolerance of the steps, some of which end on given times.
+    /// The run with another tolerance of the steps, and steps that end at the given times.
     fn follow_over(&self, grid: Grid, tolerance: f64, times: &[f64]) -> Result<Run> {
         let mut contact = self.builder(grid).build()?;
         let mut follow = contact.follow(self.history, Stepping::adaptive(tolerance), self.until).stop_at(times)?;
@@ -166,12 +166,12 @@ impl Scene<'_> {
         Ok(run)
     }
 
-    /// The states of a run from one with shorter steps on the same mesh. `None` if these are too short for `f64`
-    /// or the solver cannot do them.
+    /// The states at the times of `run` from a run with shorter steps on the same mesh. `None` if the steps are too
+    /// short for `f64` or the solver does not converge.
     pub(super) fn with_shorter_steps(&self, run: &Run, grid: Grid) -> Result<Option<Vec<State>>> {
         let times: Vec<f64> = run.states.iter().map(|state| state.time).collect();
         let tolerance = (SHORTER * self.tolerance).max(LEAST_TOLERANCE);
-        // No step of the run remains: its control may have been blind to what happens within one.
+        // splits every step of the run, since its control may have missed an event within a step
         let middles = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
         let stops: Vec<f64> = times.iter().copied().chain(middles).collect();
         match self.follow_over(grid, tolerance, &stops) {
@@ -205,15 +205,15 @@ impl Scene<'_> {
         Ok(run)
     }
 
-    /// Whether there is nothing to touch in a part of the domain: the face of a punch ends.
+    /// Whether the shape has no surface in a part of the domain: the face of a punch ends.
     pub(super) fn has_edge(&self, grid: &Grid) -> bool {
         let [n1, n2] = grid.cells();
         let mut cells = (0..n1 * n2).map(|k| grid.center(k / n2, k % n2));
         cells.any(|[x1, x2]| self.geometry.initial_gap(x1, x2) == f64::INFINITY)
     }
 
-    /// Where the pressure is greatest in a contact that is small compared with what it becomes: the time until which it
-    /// stays small.
+    /// The time until which the contact stays small, if the pressure is greatest in a contact much smaller than the
+    /// later one.
     pub(super) fn before_growth(&self, run: &Run) -> Option<f64> {
         let largest = greatest(&run.states, |state| state.radius);
         let highest = greatest(&run.states, |state| state.pressure);
@@ -228,8 +228,8 @@ impl Scene<'_> {
         (until < self.until).then_some(until)
     }
 
-    /// Initial length of the domain: a contact of half width L/4 is indented by the gap there, under a force of about
-    /// E* L times that gap.
+    /// Initial length L of the domain: a contact of half width L/4 is indented by the gap at its edge, under a force of
+    /// about E* L times this gap.
     fn first_length(&self) -> Result<f64> {
         let (mut force, mut approach) = (0.0_f64, 0.0_f64);
         for k in 0..=64 {
@@ -259,7 +259,7 @@ impl Scene<'_> {
     }
 }
 
-/// One step, in halves where the solver cannot do it at once.
+/// Takes one step, in halves if the solver does not converge.
 fn advance(contact: &mut ViscoelasticContact, dt: f64, load: Load, halvings: u32) -> Result<StepReport> {
     let before = contact.load();
     match contact.step(dt, load) {
@@ -269,18 +269,6 @@ fn advance(contact: &mut ViscoelasticContact, dt: f64, load: Load, halvings: u32
         }
         other => other,
     }
-}
-
-/// The greatest difference between the states of two runs at the same times, relative to the greatest value; of all states
-/// or of those resolved in the first.
-pub(super) fn difference(coarse: &[State], fine: &[State], of: impl Fn(&State) -> f64, all: bool) -> f64 {
-    let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
-    let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
-    relative(most, greatest(fine, of))
-}
-
-pub(super) fn relative(value: f64, scale: f64) -> f64 {
-    if scale > 0.0 { value / scale } else { 0.0 }
 }
 
 pub(super) fn greatest(states: &[State], of: impl Fn(&State) -> f64) -> f64 {
