@@ -73,7 +73,7 @@
 //!   from the mean of the surface; in line contacts from the surface at a distance given with the kernel; on a layer on a
 //!   rigid base from its undeformed surface, in all of these.
 //! * **Heights** of maps and rough surfaces are positive outward; the gap is the greatest height minus each height.
-//! * **Motion**: displacements are those of the creeping bodies. A positive velocity moves the indenter over them along
+//! * **Motion**: displacements belong to the creeping bodies. A positive velocity moves the indenter over them along
 //!   x1 or x2; the lateral force is the force that moves it.
 //! * **Time**: bodies are undisturbed before t = 0. A step of length 0 is a jump of the load.
 //!

@@ -192,7 +192,7 @@ pub enum Error {
         what: &'static str,
     },
 
-    /// An approach exceeds that of full contact on a surface whose mean displacement is fixed
+    /// An approach exceeds the approach of full contact on a surface whose mean displacement is fixed
     /// ([`InfluenceKernel::periodic`](crate::InfluenceKernel::periodic)): no pressure closes the gap further.
     #[error(
         "at t = {time} s the approach {approach:e} m is not below {greatest:e} m, that of full contact, which no pressure can exceed on a periodic body: prescribe the force", time = rounded(*.time, TIME))]
@@ -217,7 +217,7 @@ pub enum Error {
         what: &'static str,
     },
 
-    /// A rheology or a material is not allowed, or lacks what is needed.
+    /// A rheology or a material is not allowed, or lacks a property that is needed.
     #[error(transparent)]
     Material(#[from] MaterialError),
 
@@ -262,7 +262,7 @@ pub enum Error {
     #[error(transparent)]
     Output(#[from] OutputError),
 
-    /// A contact that [ranks](crate::parallel) share out was asked for what it cannot do, or a rank has left or failed.
+    /// A contact that [ranks](crate::parallel) share out does not support the call, or a rank has left or failed.
     #[error(transparent)]
     Ranks(#[from] RanksError),
 
@@ -275,7 +275,7 @@ pub enum Error {
         kind: &'static str,
     },
 
-    /// The extension of a file is not that of a format that can be written.
+    /// The extension of a file names no format that can be written.
     #[error("{path}: the extension must be .{}", .allowed.join(" or ."))]
     Extension {
         /// The file.

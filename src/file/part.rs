@@ -12,7 +12,7 @@ use crate::error::Result;
 /// Distinguishes the files that this process is writing.
 static NUMBER: AtomicU64 = AtomicU64::new(0);
 
-/// A file that is being written. Its name is that of the final file, followed by the process number and `.part`, so
+/// A file that is being written. Its name is the name of the final file, followed by the process number and `.part`, so
 /// that no two writers share it.
 #[derive(Debug)]
 pub(crate) struct Part {

@@ -122,7 +122,7 @@ impl CsvHistory {
         let file = contact.by_one_rank(|| {
             let mut file = Appending::new(open(&path)?);
             if let Err(error) = file.append(head.as_bytes()) {
-                let _ = fs::remove_file(&path); // the error to report is that of the write
+                let _ = fs::remove_file(&path); // report the error of the write instead
                 return Err(failed(&path, error));
             }
             Ok(file)

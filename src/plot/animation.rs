@@ -96,10 +96,10 @@ impl Animation {
         self.add_picture(&map.draw()?)
     }
 
-    /// Adds any picture. Its colours are mapped to the nearest of 256: those of maps and curves, and greys.
+    /// Adds any picture. Its colours are mapped to the nearest of 256: the colours of maps and curves, and greys.
     ///
     /// # Errors
-    /// If its size differs from that of the first, or the file cannot be written; then nothing of it is in the file.
+    /// If its size differs from the first picture's, or the file cannot be written. The file then contains nothing of it.
     pub fn add_picture(&mut self, picture: &Picture) -> Result<()> {
         let size = picture.size();
         let path = &self.path;

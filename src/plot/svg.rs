@@ -11,7 +11,7 @@ use crate::plot::Color;
 use crate::plot::canvas::png_file;
 use crate::plot::shape::{Anchor, FINE, Point, Shape, Target, failed, fill};
 
-/// The font of the pixels, then those that most systems have.
+/// The font of the pixels, then fonts that most systems have.
 const FONTS: &str = "'Ubuntu Light', Ubuntu, Arial, Helvetica, 'Liberation Sans', sans-serif";
 
 /// The SVG document of pictures that begin at given distances from the left edge.
