@@ -1,4 +1,4 @@
-//! Events for `tracing`, with the feature of that name; nothing without it.
+//! Events for `tracing`, with the feature `tracing`; without it they do nothing.
 
 #[cfg(feature = "tracing")]
 use tracing::{debug, warn};

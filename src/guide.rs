@@ -3,7 +3,7 @@
 //! | page | |
 //! |---|---|
 //! | [`tour`] | from a grid to a picture |
-//! | [`accuracy`] | mesh, steps, tolerance: what to choose, and how to know |
+//! | [`accuracy`] | mesh, steps, tolerance: what to choose, and how to check it |
 //! | [`own_models`] | your own rheology, shape and load |
 //! | [`coupling`] | a contact inside another integrator, with steps that are taken back |
 //!

@@ -1,4 +1,4 @@
-//! How an error prints that ends a program.
+//! `Debug` of the errors: the message and its causes.
 
 use std::error::Error as _;
 use std::fmt;

@@ -36,7 +36,7 @@ pub enum KernelError {
         allowed: &'static str,
     },
 
-    /// The material of a contact on a [`Layer`](crate::Layer) differs from the layer's. Kernel and material must have
+    /// The material of a contact on a [`Layer`](crate::Layer) is not the material of the layer. Kernel and material must have
     /// the same Poisson's ratio at all times; a layer on a creeping body, or against one, is not modelled.
     #[error("the layer was made for a Poisson's ratio of {layer} at all times, and {what}")]
     LayerMaterial {
@@ -68,9 +68,9 @@ pub enum KernelError {
         most: f64,
     },
 
-    /// The stress below the surface is known of half-spaces, of those periodic along both axes, and of line contacts only:
-    /// not of bodies that are given by the influence on their surface, nor of those periodic along one axis with more than
-    /// one cell along it.
+    /// The stress below the surface can be computed for half-spaces, half-spaces periodic along both axes, and line contacts.
+    /// It cannot be computed for a body given by the influence on its surface, nor for a body periodic along one axis with
+    /// more than one cell along it.
     #[error(
         "the stress below the surface is not known of this body ({body}): it must be a half-space, one periodic along both axes, or a line contact"
     )]

@@ -59,7 +59,7 @@ pub enum MapError {
         kind: Option<std::io::ErrorKind>,
     },
 
-    /// The extension of a file does not belong to a format that stores the side lengths of its map. Other formats are read
+    /// The extension of a file names no format that stores the side lengths of its map. Other formats are read
     /// by [`from_npy`](crate::geometry::HeightMap), [`from_text`](crate::geometry::HeightMap::from_text) and
     /// [`from_xyz`](crate::geometry::HeightMap::from_xyz), which take them as arguments.
     #[error(

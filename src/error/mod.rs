@@ -217,7 +217,7 @@ pub enum Error {
         what: &'static str,
     },
 
-    /// A rheology or a material is not allowed, or lacks what is needed.
+    /// A rheology or a material is not allowed, or lacks a property that is needed.
     #[error(transparent)]
     Material(#[from] MaterialError),
 
@@ -262,7 +262,7 @@ pub enum Error {
     #[error(transparent)]
     Output(#[from] OutputError),
 
-    /// A contact that [ranks](crate::parallel) share out refused a request, or a rank has left or failed.
+    /// A contact that [ranks](crate::parallel) share out does not support the call, or a rank has left or failed.
     #[error(transparent)]
     Ranks(#[from] RanksError),
 
@@ -275,7 +275,7 @@ pub enum Error {
         kind: &'static str,
     },
 
-    /// The extension of a file does not belong to a format that can be written.
+    /// The extension of a file names no format that can be written.
     #[error("{path}: the extension must be .{}", .allowed.join(" or ."))]
     Extension {
         /// The file.

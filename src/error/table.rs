@@ -99,7 +99,7 @@ pub enum TableError {
     },
 
     /// A compliance decreases, a relaxation modulus increases, or a storage modulus decreases with frequency, by more
-    /// than the scatter of the data explains: impossible for a passive body. Remove the outlier, or the data recorded
+    /// than the scatter of the data explains. No passive body responds so. Remove the outlier, or the data recorded
     /// after the specimen failed or slipped.
     #[error(
         "{table} table, {place}: {column} = {value:?} deviates by {:.2} % from the nearest monotone curve; the scatter of the data explains {:.2} %",
@@ -120,7 +120,7 @@ pub enum TableError {
         noise: f64,
     },
 
-    /// No series with positive coefficients fits the data: no body of springs and dashpots behaves so
+    /// No series with positive coefficients fits the data: they do not describe a body of springs and dashpots
     /// (tertiary creep, a step, moduli that contradict each other, wrong units), or too few for their steepness.
     #[error("the {table} table is not that of a linear body: the best series deviates by {:.0} % in the root mean square, and by {:.0} % at x = {x:e}", 100.0 * .rms, 100.0 * .worst)]
     Inconsistent {
@@ -143,7 +143,7 @@ pub enum TableError {
         heading: String,
     },
 
-    /// A heading names a unit other than the one in [`Units`](crate::rheology::Units), an unknown unit, or logarithms:
+    /// A heading names a unit other than [`Units`](crate::rheology::Units) gives, an unknown unit, or logarithms:
     /// correct the heading or the units.
     #[error(
         "line {line}, column {column}: the heading {heading:?} says {unit}, but Units::{field} = {given} means {expected}"

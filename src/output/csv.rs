@@ -76,7 +76,7 @@ pub struct CsvHistory {
 }
 
 impl CsvHistory {
-    /// A new file for the history of `contact`, with `additional` columns after the usual ones.
+    /// A new file for the history of `contact`, with `additional` columns after those of every history.
     ///
     /// # Errors
     /// If the file exists ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)) or cannot be written, or the name of a column is empty, already used, or contains `#`, a
@@ -122,7 +122,7 @@ impl CsvHistory {
         let file = contact.by_one_rank(|| {
             let mut file = Appending::new(open(&path)?);
             if let Err(error) = file.append(head.as_bytes()) {
-                let _ = fs::remove_file(&path); // report the error of the write, not of the removal
+                let _ = fs::remove_file(&path); // report the error of the write instead
                 return Err(failed(&path, error));
             }
             Ok(file)

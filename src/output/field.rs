@@ -44,8 +44,8 @@ impl Field {
         }
     }
 
-    /// The values in the current state of the contact, on the local rows where ranks share it out; `buffer` receives values that the
-    /// contact does not store.
+    /// Values in the current state of the contact, on the local rows where ranks share it out. `buffer` receives the values of
+    /// a field that the contact does not store.
     #[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
     pub(crate) fn values<'a>(self, contact: &'a ViscoelasticContact, buffer: &'a mut Vec<f64>) -> Result<&'a [f64]> {
         match self {

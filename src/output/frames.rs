@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::file::{check_regular, failed};
 use crate::output::{Field, Metadata};
 
-/// A folder of frames `frame_000000`, `frame_000001`, ... and what each of them contains.
+/// A folder of frames `frame_000000`, `frame_000001`, ... with the same fields and metadata in each.
 #[derive(Debug)]
 pub(super) struct Frames {
     pub(super) folder: PathBuf,

@@ -18,8 +18,8 @@ const UNITS: [(&str, &str); 7] = [
 const CONVENTIONS: &str = "pressure is positive in compression, displacement positive into the bodies, the gap \
                            positive when open and infinite where there is nothing to touch; one value per cell";
 
-/// The description of a run that is written into each of its files: your title and notes, and the contact's data on
-/// itself.
+/// The description of a run that is written into each of its files: your title and notes, and the
+/// parameters of the contact.
 ///
 /// ```
 /// use viscocontact::{output::Metadata, prelude::*};
@@ -46,7 +46,7 @@ impl Metadata {
         Metadata { title: title.into(), notes: Vec::new() }
     }
 
-    /// Adds a note on what the contact has no data on, such as the shape of the bodies, the specimen or the operator. A
+    /// Adds a note on facts that the contact does not hold, such as the shape of the bodies, the specimen or the operator. A
     /// note of the same key is replaced.
     #[must_use]
     pub fn note(mut self, key: impl Into<String>, value: impl Into<String>) -> Metadata {

@@ -71,7 +71,7 @@ pub(super) fn array(out: impl Write, shape: &[usize], values: &[f64]) -> io::Res
 /// Takes the next numbers of an array.
 pub(super) type Take<'a> = &'a mut dyn FnMut(&[f64]) -> io::Result<()>;
 
-/// Writes numbers in row-major order, which `give` gives some at a time.
+/// Writes numbers in row-major order, one piece per call that `give` makes.
 pub(super) fn array_of_pieces(
     out: impl Write,
     shape: &[usize],

@@ -124,7 +124,7 @@ impl<W: io::Write + io::Seek> Archive<W> {
         self.add_pieces(name, shape, |take| take(values))
     }
 
-    /// Adds an array whose values `give` gives some at a time.
+    /// Adds an array in row-major order, one piece per call that `give` makes.
     fn add_pieces(
         &mut self,
         name: &str,

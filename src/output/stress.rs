@@ -14,7 +14,7 @@ use crate::output::appended::{CLOSING, OPENING, Offsets, write_numbers, write_te
 #[cfg(feature = "npy")]
 use crate::output::npz::Archive;
 
-/// Metadata that only a stress has.
+/// Unit and conventions of the stress, a note of the metadata.
 const NOTE: &str = "Pa; tension is positive; x3 is the depth below the surface";
 
 /// Writes the stress in a volume as an NPZ archive of NumPy: `time` \[s\], the cell centres `x1` and `x2` and the depths `x3`
@@ -40,7 +40,7 @@ const NOTE: &str = "Pa; tension is positive; x3 is the depth below the surface";
 /// ```
 ///
 /// # Errors
-/// If the volume is below another grid than that of the contact, or the file cannot be written.
+/// If the volume lies below a grid other than the contact's, or the file cannot be written.
 #[cfg(feature = "npy")]
 pub fn write_stress_npz(
     path: impl AsRef<Path>,
@@ -75,7 +75,7 @@ pub fn write_stress_npz(
 #[cfg(feature = "npy")]
 type Quantity = fn(&Stress) -> f64;
 
-/// What an archive contains of the stress.
+/// Names and values of the arrays of stress in an archive.
 #[cfg(feature = "npy")]
 const QUANTITIES: [(&str, Quantity); 8] = [
     ("s11", |s| s.s11),
@@ -96,7 +96,7 @@ const QUANTITIES: [(&str, Quantity); 8] = [
 /// Needs the feature `vtk`.
 ///
 /// # Errors
-/// If the volume is below another grid than that of the contact, or the file cannot be written.
+/// If the volume lies below a grid other than the contact's, or the file cannot be written.
 #[cfg(feature = "vtk")]
 pub fn write_stress_vtk(
     path: impl AsRef<Path>,

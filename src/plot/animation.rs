@@ -99,7 +99,7 @@ impl Animation {
     /// Adds any picture. Its colours are mapped to the nearest of 256: the colours of maps and curves, and greys.
     ///
     /// # Errors
-    /// If its size differs from the size of the first, or the file cannot be written; then nothing of it is in the file.
+    /// If its size differs from the first picture's, or the file cannot be written. The file then contains nothing of it.
     pub fn add_picture(&mut self, picture: &Picture) -> Result<()> {
         let size = picture.size();
         let path = &self.path;

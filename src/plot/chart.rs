@@ -178,7 +178,7 @@ impl Chart {
         self.pieces(curve).map(|piece| piece.iter().map(|&(x, y)| frame.at(x, y)).collect()).collect()
     }
 
-    /// Points in pixels that a legend should not cover: the points of the curves and between them along lines.
+    /// Points in pixels that a legend should not cover: points of the curves, and points between them along lines.
     fn points(&self, frame: &Frame) -> Vec<[f64; 2]> {
         let of = |curve: &Curve| -> Vec<[f64; 2]> {
             let pieces = self.placed(curve, frame);

@@ -33,7 +33,7 @@ impl Picture {
         Ok(Picture { size, rgb, drawn: vec![(0, shapes)] })
     }
 
-    /// Pictures side by side from left to right; white below pictures that are lower than others.
+    /// Pictures side by side from left to right; white fills the space below the lower pictures.
     ///
     /// # Errors
     /// If there are none, or they are wider than 16384 pixels together.
