@@ -48,7 +48,7 @@ macro_rules! from_csv {
             /// its fields resembles a number. Headings with a unit (`t [min]`, `J (1/GPa)`, `E/MPa`) must agree with
             /// `units`; words that are not a known unit are ignored.
             ///
-            /// Values are separated by commas, semicolons, tabs or blanks; those that contain separators or line ends
+            /// Values are separated by commas, semicolons, tabs or blanks; values that contain separators or line ends
             /// are quoted. Numbers have an exponent with `e`, or `d` as in Fortran, and a decimal point; if commas are
             /// not the separator, all numbers may have decimal commas. Only lines that start with `#` and empty lines
             /// are skipped.
