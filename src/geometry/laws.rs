@@ -152,7 +152,7 @@ pub fn has_something_to_touch(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
     check("there is something to touch", grid, &gap, |_, _, _| nothing.then_some(0.0))
 }
 
-/// Repeated evaluations give bitwise the same values on every cell, whatever the field contained before.
+/// Repeated evaluations give bitwise equal values on every cell, independent of the previous content of the field.
 ///
 /// # Errors
 /// The first violation.

@@ -8,7 +8,7 @@
 //! | [`LoadHistory`](crate::load::LoadHistory) | [`load`] | [`strategies::histories`], [`strategies::loads`] |
 //! | a whole contact | | [`strategies::scenarios`] |
 //!
-//! The laws need no feature; the strategies are strategies of [`proptest`](mod@proptest). The models of the crate are tested
+//! The laws need no feature; the strategies implement [`proptest`](mod@proptest)'s trait. The models of the crate are tested
 //! with the same functions.
 //!
 //! ```

@@ -190,7 +190,7 @@ pub fn repeats_itself(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
 }
 
 /// Whether the load has its limit at the start of each interval from later times (`side` 1), or at its end from earlier
-/// ones (`side` −1): ever nearer, it must differ less.
+/// times (`side` −1): the difference must decrease with the distance in time.
 fn one_sided_limits(law: &'static str, history: &dyn LoadHistory, times: &[f64], side: f64) -> Verdict {
     let moments = moments(history, times);
     let scale = scales(history, &moments);

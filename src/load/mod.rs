@@ -193,12 +193,12 @@ impl Load {
         Ok(())
     }
 
-    /// Whether it prescribes and leaves free what another does.
+    /// Whether both loads prescribe the same quantities.
     pub(crate) fn is_like(&self, other: &Load) -> bool {
         self.kind() == other.kind()
     }
 
-    /// How far it is, at `time`, from the polynomial through loads of its kind at other times: force or approach relative to
+    /// Deviation at `time` from the polynomial through loads of the same kind at other times: force or approach relative to
     /// `scale`, tilts and points relative to their greatest value.
     pub(crate) fn deviation(&self, time: f64, nodes: &[(f64, Load)], scale: f64) -> f64 {
         let here = self.values();

@@ -1,7 +1,7 @@
 use crate::error::Result;
 use crate::load::{Load, LoadHistory};
 
-/// A constant load from t = 0 on, and none before.
+/// A constant load from t = 0 on, and no load before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StepLoad {
     load: Load,

@@ -9,8 +9,8 @@ use crate::rheology::Rheology;
 /// * as an exponential series, the default: fitted over the times of the scene
 ///   ([`Builder::times`](crate::contact::Builder::times)) within
 ///   [`Settings::series_tolerance`](crate::contact::Settings); the error is reported by
-///   [`ViscoelasticContact::material`](crate::ViscoelasticContact::material). The order in time equals the order of the
-///   default [`TimeRule`](crate::contact::TimeRule); memory and work per step do not grow.
+///   [`ViscoelasticContact::material`](crate::ViscoelasticContact::material). The default
+///   [`TimeRule`](crate::contact::TimeRule) sets the order in time; memory and work per step do not grow.
 /// * exactly, by a direct sum over all past steps: [`TimeRule::Backward`](crate::contact::TimeRule::Backward). First
 ///   order in time; one field of 8 bytes per cell for each past step, up to
 ///   [`Settings::history_limit`](crate::contact::Settings), all of them read at every step.

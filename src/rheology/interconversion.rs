@@ -13,8 +13,8 @@
 //! In σ = 1/s the reciprocal has the form of φ again, with poles at the times 1/z_k: one function
 //! converts both ways.
 
-/// Poles closer than this, relative to their position, are replaced by one at their mean, weighted by
-/// strength. That changes the function by a relative 1e-13 at most (the square of the distance, over
+/// Poles closer than this, relative to their position, are replaced by one pole at their mean, weighted by
+/// strength. The replacement changes the function by a relative 1e-13 at most (the square of the distance, over
 /// eight), while zeros in a narrower gap would be resolved to fewer than ten digits of its width.
 const SAME_POLE: f64 = 1e-6;
 
@@ -69,7 +69,7 @@ fn merged(terms: &[(f64, f64)]) -> Vec<(f64, f64)> {
 /// A relative contribution to the function below this is rounding.
 const ROUNDING: f64 = 0.5 * f64::EPSILON;
 
-/// The terms, except terms that are rounding relative to the constant, the slope, or a stronger term of a higher or
+/// The terms that exceed the rounding error of the constant, the slope, or a stronger term of a higher or
 /// lower pole. If the pole of such a term is at a zero of the others, the zeros on its two sides coincide in `f64`, and
 /// the division of the strength between them would be arbitrary.
 fn significant(terms: &[(f64, f64)], constant: f64, slope: f64) -> Vec<(f64, f64)> {

@@ -3,8 +3,8 @@ use crate::rheology::Rheology;
 
 /// Creep by a stretched exponential (Kohlrausch, Williams and Watts): J(t) = J_g + ΔJ [1 − e^(−(t/λ)^β)].
 ///
-/// Glassy polymers below their transition, amorphous solids, rubber near equilibrium. The stretched exponential is that
-/// of creep; for a *relaxation modulus* of this form fit its values:
+/// Glassy polymers below their transition, amorphous solids, rubber near equilibrium. The creep is a stretched
+/// exponential; for a *relaxation modulus* of this form fit its values:
 /// [`TabulatedRelaxation`](crate::rheology::TabulatedRelaxation).
 ///
 /// ```

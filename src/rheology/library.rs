@@ -56,7 +56,7 @@ impl Published {
         self.description
     }
 
-    /// Whether the series is one of shear or of tension.
+    /// Whether the series describes shear or tension.
     pub fn measured(&self) -> Measured {
         self.measured
     }
@@ -97,7 +97,7 @@ impl Published {
         self.remark
     }
 
-    /// Its behaviour in shear, with Poisson's ratio `nu` constant in time where the series is one of tension.
+    /// Its behaviour in shear, with Poisson's ratio `nu` constant in time where the series describes tension.
     ///
     /// # Errors
     /// If `nu` is outside (−1, ½].
@@ -123,7 +123,7 @@ pub fn all() -> &'static [Published] {
     &MATERIALS
 }
 
-/// The material of this name, whatever the case.
+/// The material of this name; upper and lower case are equal.
 ///
 /// # Errors
 /// If there is none; the error lists the known names.

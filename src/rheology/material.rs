@@ -4,7 +4,7 @@ use std::sync::Arc;
 use crate::error::{Error, MaterialError, Result, positive, within};
 use crate::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum, Rheology, is_known, may_follow};
 
-/// A rheology in shear and the behaviour in volume: together they give the contact creep compliance C(t),
+/// A rheology in shear and the bulk response: together they give the contact creep compliance C(t),
 /// with C = 1/E* = (1 − ν)/2G for an elastic body.
 ///
 /// | volume | C(t) |
@@ -121,8 +121,8 @@ impl Material {
         self.bodies.iter().map(|body| body.contact_compliance(t)).sum()
     }
 
-    /// Poisson's ratio of each body: one, or the two of [`Material::against`]; `None` of a body that creeps
-    /// with an elastic bulk, whose ratio rises.
+    /// Poisson's ratio of each body: one, or the two of [`Material::against`]; `None` for a body that creeps
+    /// with an elastic bulk: its ratio rises.
     ///
     /// ```
     /// use viscocontact::rheology::{Elastic, Material, Maxwell};
@@ -139,7 +139,7 @@ impl Material {
         })
     }
 
-    /// 1 − 2ν of a body, if there is that body.
+    /// 1 − 2ν of a body, `None` if that body is absent.
     pub(crate) fn compressibility(&self, body: usize) -> Option<Compressibility> {
         self.bodies.get(body).map(|body| match &body.volume {
             Volume::Proportional(factor) => Compressibility { last: 4.0 * factor - 1.0, terms: Vec::new() },
@@ -211,7 +211,7 @@ impl Material {
         Ok(())
     }
 
-    /// C at the loading time `age`, which must not be less than `younger`, that at the loading time `earlier` ≤ `age`.
+    /// C at the loading time `age`. It must not be less than `younger`, the compliance at the loading time `earlier` ≤ `age`.
     pub(crate) fn checked_compliance(&self, age: f64, (earlier, younger): (f64, f64)) -> Result<f64> {
         let value = self.contact_compliance(age);
         if may_follow(value, younger) {
@@ -238,7 +238,7 @@ fn no_series(what: &'static str, rheology: &dyn std::fmt::Debug) -> Error {
 }
 
 impl Compressibility {
-    /// That of a bulk modulus B, 3G/(3B + G) = 3 − 9B/(3B + G), `stiffened` being the creep to the relaxation modulus 3B + G.
+    /// 1 − 2ν of a body with bulk modulus B: 3G/(3B + G) = 3 − 9B/(3B + G), where `stiffened` is the creep of 3B + G.
     fn new(bulk_modulus: f64, stiffened: &CreepSpectrum) -> Compressibility {
         let factor = 9.0 * bulk_modulus;
         let terms: Vec<_> = stiffened.terms().iter().map(|&(share, time)| (factor * share, time)).collect();

@@ -8,7 +8,7 @@
 //! | [`Zener`] | 1/G + (1 − e^(−t/λ))/G_K, λ = η_K/G_K |
 //! | [`Burgers`] | 1/G + t/η + (1 − e^(−t/λ))/G_K |
 //! | [`GeneralizedKelvin`] | J_g + φ t + Σ J_k (1 − e^(−t/λ_k)) |
-//! | [`GeneralizedMaxwell`] | the creep of the relaxation modulus G_∞ + Σ G_k e^(−t/τ_k) |
+//! | [`GeneralizedMaxwell`] | creep of the relaxation modulus G_∞ + Σ G_k e^(−t/τ_k) |
 //! | [`PowerLaw`] | J₁ (t/t₁)^α |
 //! | [`FractionalMaxwell`] | 1/G + t^α/(V Γ(1 + α)); Findley's J₀ + m tⁿ |
 //! | [`FractionalZener`] | 1/G + [1 − E_α(−(t/λ)^α)]/G_K |
@@ -17,9 +17,9 @@
 //! | [`SlowCreep`] | J_g + c ln(1 + (t/λ)ⁿ) |
 //! | [`FnRheology`] | any closure |
 //! | [`TabulatedCreep`], [`TabulatedRelaxation`], [`TabulatedDynamic`] | fitted to measurements |
-//! | [`AtTemperature`] | another model, at another temperature; [`TemperatureHistory`]: one that changes |
+//! | [`AtTemperature`] | J of another model, at a constant temperature; [`TemperatureHistory`]: at a changing one |
 //!
-//! A [`Rheology`] describes shear; a [`Material`] adds what the volume does and yields the contact
+//! A [`Rheology`] describes shear; a [`Material`] adds the bulk response and gives the contact
 //! compliance C(t) of the surface. Published materials are in [`library`], the laws that every
 //! rheology obeys in [`laws`].
 //!
@@ -153,8 +153,8 @@ pub trait Rheology: Debug + Send + Sync {
     /// # Errors
     /// If the times are not in \[1e-90, 1e90\] and in order, a series must be fitted over more than 50 decades of them,
     /// the tolerance is outside \[1e-8, 0.1\], J is not a creep compliance there, or no series reaches the tolerance
-    /// ([`MaterialError::PoorFit`]): then no body of springs and dashpots creeps by J, or the tolerance is too
-    /// small (below 1e-6).
+    /// ([`MaterialError::PoorFit`]): no body of springs and dashpots has this J, or the tolerance is too small (below
+    /// 1e-6).
     fn series(&self, times: RangeInclusive<f64>, tolerance: f64) -> Result<CreepSeries> {
         CreepSeries::new(self, times, tolerance)
     }
@@ -173,7 +173,7 @@ fn may_follow(value: f64, earlier: f64) -> bool {
     value.is_finite() && value >= earlier * (1.0 - ROUNDING)
 }
 
-/// [`Rheology`] of a type that holds another rheology and behaves as that one.
+/// Implements [`Rheology`] for a wrapper by the rheology inside.
 macro_rules! forward_rheology {
     ($(<$generic:ident>)? $self:ident: $outer:ty => $inner:expr) => {
         impl $(<$generic: $crate::rheology::Rheology + ?Sized>)? $crate::rheology::Rheology for $outer {

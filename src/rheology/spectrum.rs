@@ -42,7 +42,7 @@ pub struct RelaxationSpectrum {
     terms: Vec<(f64, f64)>,
 }
 
-/// What a checkpoint keeps of a relaxation modulus. Files are compared with the scene before they are used.
+/// A relaxation modulus as a checkpoint stores it. A file is compared with the scene before it is used.
 #[cfg(feature = "checkpoint")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(remote = "RelaxationSpectrum")]

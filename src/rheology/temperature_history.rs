@@ -58,13 +58,15 @@ enum Course {
 /// Points of the quadrature over a piece; two halves must agree with it.
 const POINTS: usize = 12;
 const AGREEMENT: f64 = 1e-13;
-/// Most pieces of a quadrature, and the agreement that they must reach together if this is not enough.
+/// Upper limit of pieces computed in a quadrature, and the agreement required of their sum at this limit.
 const MAX_PIECES: usize = 1 << 14;
 const LEAST_AGREEMENT: f64 = 1e-5;
-/// Of a temperature with noise, so many pieces agree no better than this part of what their halves do: the rest is noise.
+/// Noise in the temperature limits the agreement: from `NOISY_PIECES` pieces on, the refinement ends when halving leaves
+/// more than the part `NOISE` of the difference.
 const NOISY_PIECES: usize = 512;
 const NOISE: f64 = 0.75;
-/// Lengths in t are found from lengths in ξ to this part, in so many trials: only their order matters.
+/// Relative tolerance, and upper limit of trials, for a length in t that belongs to a length in ξ. Only the order of
+/// magnitude matters.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 const MAX_TRIALS: usize = 100;
 
@@ -99,7 +101,7 @@ impl TemperatureHistory {
     }
 
     /// The temperature \[K\] by a closure of the time \[s\], smooth but for `corners` \[s\], in any order: adaptive steps end there.
-    /// What it returns is checked when it is used.
+    /// The returned temperatures are checked when they are used.
     ///
     /// # Errors
     /// If a corner is not finite.
@@ -117,7 +119,7 @@ impl TemperatureHistory {
         TemperatureHistory { law, course, rule: GaussLegendre::new(POINTS) }
     }
 
-    /// How times depend on temperature.
+    /// The time–temperature law.
     pub fn law(&self) -> &TimeTemperature {
         &self.law
     }
@@ -168,13 +170,13 @@ impl TemperatureHistory {
         }
     }
 
-    /// About the time that passes after `from` while the reduced time grows by `reduced`, at most `most`.
+    /// Approximate time after `from` in which the reduced time grows by `reduced`; at most `most`.
     pub(crate) fn length_of(&self, from: f64, reduced: f64, most: f64) -> Result<f64> {
         let rate = |time: f64| Ok::<_, Error>(1.0 / self.law.shift_factor(self.at(time))?);
         let (mut low, mut high) = (0.0, most);
         let mut length = (reduced / rate(from)?).min(most);
         for _ in 0..MAX_TRIALS {
-            // what lies beyond the range of the law is too far
+            // temperatures beyond the range of the law are too far
             let [grown, rate] = match (self.reduced_time(from, from + length), rate(from + length)) {
                 (Ok(grown), Ok(rate)) => [grown, rate],
                 _ => [f64::INFINITY, 0.0],

@@ -4,7 +4,7 @@ use crate::rheology::{CreepSpectrum, FitReport, Rheology};
 /// The gas constant \[J/(mol K)\] (exact since 2019).
 pub(crate) const GAS_CONSTANT: f64 = 8.314_462_618_153_24;
 
-/// The dependence of creep on temperature: at T all times are a_T times those at the reference temperature
+/// The dependence of creep on temperature: at T all times are a_T times the times at the reference temperature
 /// (thermorheologically simple bodies).
 ///
 /// ```
@@ -98,7 +98,7 @@ impl TimeTemperature {
     }
 }
 
-/// A rheology at another temperature than in its measurement; made by [`TimeTemperature::at`].
+/// A rheology at a temperature other than the one measured; made by [`TimeTemperature::at`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct AtTemperature<R> {
     rheology: R,

@@ -68,8 +68,8 @@ impl Scenario {
 /// Greatest contact radius relative to half the shorter side of the grid.
 const MAX_RADIUS: f64 = 0.35;
 
-/// Indenters whose contact radius is about `reach` \[m\] at most, under the force at which the radius of a sphere of radius
-/// `radius` \[m\] is `reach`.
+/// Indenters with a contact radius of at most about `reach` \[m\]. The force is the one under which a sphere of radius
+/// `radius` \[m\] has the contact radius `reach`.
 fn indenters(radius: f64, reach: f64) -> BoxedStrategy<AnyGeometry> {
     let share = 0.4..1.0_f64;
     Union::new([

@@ -1,6 +1,6 @@
 //! Material functions that are linear in the strengths of an exponential series.
 
-/// The material function that a sample is a value of; the abscissa x is a time or an angular frequency.
+/// The material function of a sample; the abscissa x is a time or an angular frequency.
 ///
 /// Each is constant · a + slope · b(x) + Σ c_k φ(x, λ_k), with the coefficients of a creep series (glassy
 /// compliance, fluidity, retarded compliances) or of a relaxation series (equilibrium modulus,
@@ -68,7 +68,7 @@ pub(crate) struct Sample {
     pub(crate) function: MaterialFunction,
     pub(crate) x: f64,
     pub(crate) value: f64,
-    /// Number of measurements of which it is the mean.
+    /// Number of measurements averaged in this value.
     pub(crate) weight: f64,
 }
 
@@ -91,7 +91,7 @@ pub(crate) struct FittedSeries {
 impl FittedSeries {
     pub(crate) fn value(&self, function: MaterialFunction, x: f64) -> f64 {
         let terms: f64 = self.terms.iter().map(|&(c, lambda)| c * function.term(x, lambda).0).sum();
-        // a slope of zero contributes nothing even where its function is infinite
+        // a zero slope contributes zero even where its function is infinite (0 · ∞ is NaN)
         let slope = if self.slope > 0.0 { self.slope * function.slope(x) } else { 0.0 };
         self.constant * function.constant() + slope + terms
     }

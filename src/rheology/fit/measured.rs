@@ -9,7 +9,7 @@ use super::basis::{FittedSeries, MaterialFunction, Sample};
 use super::polish::polish;
 use super::{LONG, Search};
 
-/// Misfits below this need no further term: no measurement is that accurate.
+/// Accuracy of the best measurements: misfits below this need no further term.
 pub(super) const FLOOR: f64 = 3e-5;
 /// Times per decade of the first fit.
 pub(super) const DENSITY: f64 = 6.0;
@@ -26,7 +26,7 @@ const SMOOTH_DENSITY: f64 = 4.0;
 const SMOOTH_TIMES: f64 = 48.0;
 /// Factor by which a smooth spectrum extends beyond the times of the search.
 const SMOOTH_BEYOND: f64 = 10.0;
-/// Weights of the curvature of a smooth spectrum: the first, the ratio of successive ones, and their number.
+/// Weights of the curvature of a smooth spectrum: the first weight, the ratio of successive weights, and their number.
 const WEIGHTS: (f64, f64, i32) = (1e3, 0.1, 16);
 /// A sparse series follows the curve of a smooth spectrum within this, or within this part of the noise, ...
 const FOLLOWS: f64 = 5e-4;
@@ -108,7 +108,8 @@ impl Search {
         smoothest
     }
 
-    /// A smooth spectrum: second differences relative to the data at the same time, so that a power law has none.
+    /// A smooth spectrum. Its curvature is the second difference relative to the data at the same time, which vanishes
+    /// for a power law.
     fn regularised(&self, samples: &[Sample], weight: f64) -> FittedSeries {
         let decades = (self.times[1] / self.times[0]).log10();
         let times = self.grid(SMOOTH_DENSITY.min(SMOOTH_TIMES / decades));

@@ -9,11 +9,11 @@ use super::nnls::solve;
 /// Greatest change of the logarithm of a parameter in one iteration.
 const MAX_CHANGE: f64 = 1.5;
 
-/// The first sample over the shortest time of a term of relaxation, of which nothing is left there.
+/// Ratio of the first sample's time to the relaxation time of a term that has fully decayed at that sample.
 const DECAYED: f64 = 30.0;
 
 /// Levenberg–Marquardt in the logarithms of strengths and times, which keeps both positive. The strength of a term of
-/// relaxation is its modulus at the first sample: that at t = 0 changes by orders of magnitude with the time. Ends after
+/// relaxation is its modulus at the first sample: the modulus at t = 0 changes by orders of magnitude with the time. Ends after
 /// `iterations`, when `done`, or when the squares no longer decrease.
 pub(crate) fn polish(
     start: &FittedSeries,

@@ -2,7 +2,7 @@ use std::fmt;
 
 use super::basis::{FittedSeries, MaterialFunction, Sample};
 
-/// One value that a series was fitted to.
+/// One given value and the value of the fitted series.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct FitSample {
@@ -114,7 +114,7 @@ impl FitReport {
         FitReport { wrong_way, interval, warning, ..self }
     }
 
-    /// Whether neighbouring misfits resemble each other.
+    /// Whether the misfits of neighbouring samples are correlated.
     fn is_systematic(&self) -> bool {
         let neighbours = self.samples.windows(2).filter(|pair| pair[0].function == pair[1].function);
         let (changes, pairs) = neighbours
@@ -168,8 +168,8 @@ impl FitReport {
         self.uncertainties().map(|(_, uncertainty)| uncertainty).fold(0.0, f64::max)
     }
 
-    /// Times \[s\] from the first measured one to the last, and the uncertainty ε of the creep compliance J there: at each of
-    /// them the compliance of the body is between J/(1 + ε) and J (1 + ε) for 95 % of tables whose errors are independent, and
+    /// Times \[s\] from the first measured one to the last, and the uncertainty ε of the creep compliance J there: at each
+    /// time the compliance of the body is between J/(1 + ε) and J (1 + ε) for 95 % of tables whose errors are independent, and
     /// a fixed part of each value. None for a function.
     ///
     /// The interval includes the creep of other series that fit the samples equally well. For relaxation moduli without a

@@ -1,9 +1,9 @@
-//! How far the creep of a series fitted to measurements may be from the creep of the body.
+//! Uncertainty of the creep compliance of a series fitted to measurements.
 //!
 //! Three causes add up. The samples scatter: tables drawn at random from the series, with the same scatter, are fitted
 //! anew. The samples do not determine the curve between them: the series of least squares fits them as well as the
 //! sparse one. Moduli measured after the load do not show the relaxation before the first of them: a term that has
-//! decayed at the first sample fits as well as none, and slows the creep.
+//! decayed at the first sample does not change the fit, but slows the creep.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -126,7 +126,7 @@ impl Measured {
     }
 }
 
-/// The 97.5 % quantile of Student's distribution over the same quantile of the normal one, within 3 %.
+/// Ratio of the 97.5 % quantiles of Student's and the normal distribution, within 3 %.
 fn student(freedoms: f64) -> f64 {
     1.0 + 1.3 / freedoms + 4.0 / freedoms.powi(3)
 }

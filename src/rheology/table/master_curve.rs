@@ -23,8 +23,8 @@ impl Isotherm {
     /// Creep `compliances` \[1/Pa\] at `times` \[s\], measured at `temperature` \[K\].
     ///
     /// # Errors
-    /// If the temperature is not finite and positive, the slices differ in length, or the data are not a creep
-    /// test ([`TabulatedCreep::new`]).
+    /// If the temperature is not finite and positive, the slices differ in length, or the data are no creep test
+    /// ([`TabulatedCreep::new`]).
     pub fn creep(temperature: f64, times: &[f64], compliances: &[f64]) -> Result<Isotherm> {
         Isotherm::new(temperature, CREEP, times, &[compliances])
     }
@@ -82,7 +82,7 @@ impl Isotherm {
 }
 
 /// Isotherms shifted along the axis of time (or frequency) until they form one curve at a reference
-/// temperature, which spans more decades than any of them (time–temperature superposition).
+/// temperature, which spans more decades than any isotherm (time–temperature superposition).
 ///
 /// The shift of each isotherm relative to its neighbour minimises the mean square difference of the logarithms of the
 /// values where the two overlap. There are no vertical shifts.
@@ -156,7 +156,7 @@ impl MasterCurve {
     }
 
     /// Temperature \[K\] and shift factor a_T of each isotherm, by temperature: at T all times are a_T times
-    /// those at the reference.
+    /// the times at the reference.
     pub fn shift_factors(&self) -> Vec<(f64, f64)> {
         let pairs = self.isotherms.iter().zip(&self.log_shifts);
         pairs.map(|(isotherm, shift)| (isotherm.temperature, shift.exp())).collect()

@@ -41,8 +41,7 @@ macro_rules! tabulated {
                 self.0.report()
             }
 
-            /// The same body, with its series extrapolated beyond the last time of the data, where nothing was
-            /// measured.
+            /// The same body, with its series extrapolated beyond the last measured time.
             #[must_use]
             pub fn extrapolated(self) -> $table {
                 $table(CreepSeries { known_until: f64::INFINITY, ..self.0 })
@@ -192,7 +191,7 @@ fn fitted(layout: Layout, rows: Vec<Row>) -> Result<CreepSeries> {
     let mut search = Search { constant: None, slope: layout == CREEP, times: [first / BEYOND, last * BEYOND] };
     let mut measured = search.measured(&averaged);
     if layout == RELAXATION && samples[0].x > 0.0 {
-        // what is left at the first time of terms that are shorter
+        // terms shorter than the first time have not fully decayed there
         let wider = Search { times: [first / BEYOND_FAST, last * BEYOND], ..search.clone() };
         let other = wider.measured(&averaged);
         if other.least_squares.squares(&averaged) + NOTICEABLE * other.noise.powi(2)

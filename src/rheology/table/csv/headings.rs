@@ -91,7 +91,7 @@ pub(super) fn check_units(
             }
             // G(s) is a function, and a last word need not be a unit
             let clear = right().next().is_some() || marked && text.chars().count() > 1;
-            // text in square brackets is a unit, known or not
+            // text in square brackets is a unit, even an unsupported one
             let square = heading.contains(&format!("[{text}")) && text.contains(char::is_alphabetic);
             if clear && !readings.is_empty() || square {
                 return refused(text);

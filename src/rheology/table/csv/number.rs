@@ -1,4 +1,4 @@
-//! Numbers in the notations of programs and people.
+//! Numbers with decimal points or commas, and with exponents `e` or `d`.
 
 use crate::error::TableError;
 
@@ -65,7 +65,7 @@ pub(super) fn plain(text: &str) -> bool {
     text.bytes().any(|byte| byte.is_ascii_digit()) && parse(text).is_some()
 }
 
-/// Whether a text is a number, resembles one, or marks a missing one, so that it is not a heading.
+/// Whether a text is no heading: it is a number, resembles a number, or marks a missing value.
 pub(super) fn resembles(text: &str) -> bool {
     const MISSING: [&str; 8] = ["na", "n/a", "null", "nil", "none", "-", "--", "?"];
     let begin = text.trim_start_matches(|c: char| !c.is_alphanumeric() && !"[(".contains(c));
@@ -148,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_may_be_one_number() {
+    fn two_fields_may_be_one_number_with_a_decimal_comma() {
         for row in ["1,5", "-10,25", "1,5e-9", " 1,5D3 "] {
             assert!(one_decimal(row), "{row}");
         }

@@ -46,7 +46,7 @@ pub(super) fn records(text: &str, separator: char) -> Vec<Record<'_>> {
     records
 }
 
-/// The field at the beginning of `text`, and what follows it: a separator, the end of the line or nothing.
+/// The field at the beginning of `text`, and the rest of the text: it begins with a separator or a line end, or is empty.
 fn field(text: &str, separator: char) -> (String, &str) {
     let blank = |c: char| c != separator && " \t".contains(c);
     if let Some(quoted) = text.trim_start_matches(blank).strip_prefix('"') {

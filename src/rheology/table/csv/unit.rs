@@ -14,7 +14,7 @@ pub(super) type Unit = (Kind, f64);
 
 pub(super) const TAU: f64 = std::f64::consts::TAU;
 
-/// Names of each unit, that used in errors first; its quantity and size.
+/// Names of each unit, with the name for errors first; its quantity and size.
 const UNITS: [(&[&str], Kind, f64); 26] = [
     (&["s", "sec", "secs", "second", "seconds"], Kind::Time, 1.0),
     (&["ms"], Kind::Time, 1e-3),
@@ -156,7 +156,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn units_are_known_in_every_notation() {
+    fn units_are_read_in_every_notation() {
         for (texts, unit) in [
             (&["s", "sec", "seconds", "SEC", "10^0 s"][..], (Kind::Time, 1.0)),
             (&["min", "Min", "minutes", "minute", "min."], (Kind::Time, 60.0)),
