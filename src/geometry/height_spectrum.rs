@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use realfft::RealFftPlanner;
 use rustfft::FftPlanner;
 
-use crate::parallel::{Rows, depart, part};
+use crate::parallel::{Rows, part, unwind_rank_loss};
 
 /// Fourier coefficients of a real field on `cells` points: amplitudes of exp(2πi (k1 i/n1 + k2 j/n2)), normalised so
 /// that the sum of all waves is the field. Only those with k2 ≥ 0 are stored; the others are their conjugates.
@@ -88,7 +88,7 @@ impl HeightSpectrum {
         let sent: Vec<usize> = ranks.clone().map(|rank| self.columns.len() * rows.of(rank).len()).collect();
         let counts: Vec<usize> = ranks.map(|rank| own * part(n2 / 2 + 1, rank, rows.ranks()).len()).collect();
         let mut received = vec![Complex64::ZERO; (n2 / 2 + 1) * own];
-        group.exchange(&send, &sent, &mut received, &counts).unwrap_or_else(|error| depart(error));
+        group.exchange(&send, &sent, &mut received, &counts).unwrap_or_else(|error| unwind_rank_loss(error));
         drop(send);
         self.rows(own, |i, k2| received[k2 * own + i])
     }

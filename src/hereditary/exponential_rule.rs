@@ -144,7 +144,7 @@ impl ExponentialRule {
     }
 
     /// Whether there is a past: an elastic body has none.
-    pub(crate) fn remembers(&self) -> bool {
+    pub(crate) fn has_memory(&self) -> bool {
         self.branches() > 0 || self.has_dashpot()
     }
 
@@ -165,7 +165,7 @@ impl ExponentialRule {
 
     /// How many differences steps of given length need.
     pub(super) fn least_kept(&self) -> usize {
-        if self.has_dashpot() { 2 } else { usize::from(self.remembers()) }
+        if self.has_dashpot() { 2 } else { usize::from(self.has_memory()) }
     }
 
     /// c of the step predicted last.
@@ -275,16 +275,16 @@ impl ExponentialRule {
     }
 
     /// The past does not determine how u continues, as after a corner of the load.
-    pub(crate) fn forget_slopes(&mut self) {
+    pub(crate) fn reset_differences(&mut self) {
         (self.known, self.lacking) = (0, 0);
     }
 
     /// Finds the weights of a step of length `dt`; its compliance is 0 in a jump of a body without elastic response.
-    pub(super) fn weigh(&mut self, dt: f64, interpolant: Interpolant) {
+    pub(super) fn compute_weights(&mut self, dt: f64, interpolant: Interpolant) {
         let quadratic = interpolant == Interpolant::CorrectedQuadratic
             || interpolant == Interpolant::CorrectedLinear && self.has_dashpot();
         let wanted = if quadratic { 2 } else { 1 };
-        if self.remembers() && self.kept < wanted {
+        if self.has_memory() && self.kept < wanted {
             (self.kept, self.known) = (wanted, self.known.min(self.kept));
         }
         let growth = if self.has_dashpot() { LONGEST_CONTINUED_OF_DASHPOT } else { LONGEST_CONTINUED };
@@ -299,7 +299,7 @@ impl ExponentialRule {
     }
 
     /// The weights of the same step with less degree: linear, then without what puts the step before right.
-    pub(super) fn weigh_less(&mut self) {
+    pub(super) fn reduce_order(&mut self) {
         let Weights { dt, degree, corrects: [corrects, corrected], .. } = self.tried;
         self.weigh_as(dt, 1, [corrects && degree > 1, corrected]);
         self.repeated += 1;
@@ -347,7 +347,7 @@ impl ExponentialRule {
         };
         let differences = [c * (gains[1] + gains[2]) * ratios[0], c * gains[2] * ratios[1]];
         // c Σ γ_k, written so that an elastic body keeps exactly nothing
-        let kept = if self.remembers() { 1.0 - c * self.equilibrium() } else { 0.0 };
+        let kept = if self.has_memory() { 1.0 - c * self.equilibrium() } else { 0.0 };
         let tried = &mut self.tried;
         (tried.dt, tried.degree, tried.c, tried.ratios) = (dt, degree, c, ratios);
         tried.past = [kept, differences[0], differences[1]];

@@ -155,9 +155,9 @@ impl History {
     }
 
     /// The past does not determine how the displacement continues, as after a corner of the load.
-    pub(crate) fn forget_slopes(&mut self) {
+    pub(crate) fn reset_differences(&mut self) {
         if let Rule::Exponential(own) | Rule::MovingFrame(own, _) = &mut self.rule {
-            own.forget_slopes();
+            own.reset_differences();
         }
     }
 
@@ -222,7 +222,7 @@ impl History {
 
     /// Whether the displacement itself is part of the past, rather than computed anew from v.
     pub(crate) fn integrates_displacement(&self) -> bool {
-        self.rule.exponential().is_some_and(ExponentialRule::remembers)
+        self.rule.exponential().is_some_and(ExponentialRule::has_memory)
     }
 
     /// Whether the surface in contact stays, from step to step, exactly on a body whose motion is prescribed.
@@ -251,9 +251,9 @@ impl History {
                 Ok((own.compliance(), 0))
             }
             Rule::MovingFrame(own, frame) => {
-                own.weigh(step.dt, step.interpolant);
-                displacement.settle(own);
-                if !own.remembers() {
+                own.compute_weights(step.dt, step.interpolant);
+                displacement.apply_pending_step(own);
+                if !own.has_memory() {
                     frame.predict(own, step.stride);
                     displacement.trial.fill(0.0);
                     return Ok((own.compliance(), 0));
@@ -265,11 +265,12 @@ impl History {
                     kernel.apply(source, trial, work);
                     trial.iter_mut().zip(remainder).for_each(|(u_old, &e)| *u_old += e);
                     convolutions += 1;
-                    let dips = own.has_less() && displacement.dips(own, inputs.least_side, kernel.rows());
-                    if !dips || kernel.raises() {
+                    let falls_below_zero =
+                        own.has_less() && displacement.falls_below_zero(own, inputs.least_side, kernel.rows());
+                    if !falls_below_zero || kernel.raises() {
                         return Ok((own.compliance(), convolutions));
                     }
-                    own.weigh_less();
+                    own.reduce_order();
                 }
             }
             Rule::DirectSum(own) => {
@@ -342,8 +343,8 @@ impl History {
         self.start_is_kept = false;
         let (count, History { rule, displacement, far, .. }) = (cells[0] * cells[1], self);
         if let Some(own) = rule.exponential() {
-            displacement.settle(own);
-            far.iter_mut().for_each(|far| far.settle(own));
+            displacement.apply_pending_step(own);
+            far.iter_mut().for_each(|far| far.apply_pending_step(own));
         }
         let rule = match rule {
             Rule::Exponential(own) => Rule::Exponential(own.clone()),

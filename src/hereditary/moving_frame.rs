@@ -112,7 +112,7 @@ impl MovingFrame {
     ) -> MovingFrame {
         let count = cells[0] * cells[1];
         let [source, remainder] = [&mut self.source, &mut self.remainder].map(|field| {
-            field.settle(rule);
+            field.apply_pending_step(rule);
             field.carried(count, None, |own, _| carry(own))
         });
         MovingFrame { cells, periodic: self.periodic, source, remainder, scratch: vec![0.0; count] }

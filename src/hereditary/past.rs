@@ -70,7 +70,7 @@ impl Past {
     }
 
     /// Takes in the step committed last, in which the field went from `before` to `field`.
-    pub(super) fn settle(&mut self, rule: &ExponentialRule, before: &[f64], field: &[f64]) {
+    pub(super) fn apply_pending_step(&mut self, rule: &ExponentialRule, before: &[f64], field: &[f64]) {
         if !std::mem::take(&mut self.waiting) {
             return;
         }

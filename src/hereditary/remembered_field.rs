@@ -62,17 +62,17 @@ impl RememberedField {
         rows: &Rows,
         sign_counts: impl Fn() -> bool,
     ) {
-        rule.weigh(dt, interpolant);
+        rule.compute_weights(dt, interpolant);
         self.predict(rule);
-        while rule.has_less() && self.dips(rule, side, rows) && sign_counts() {
-            rule.weigh_less();
+        while rule.has_less() && self.falls_below_zero(rule, side, rows) && sign_counts() {
+            rule.reduce_order();
             self.predict(rule);
         }
     }
 
     /// Whether the trial is negative somewhere, by more than the rounding of the greatest field so far, or of a convolution that
     /// leaves nothing.
-    pub(super) fn dips(&self, rule: &mut ExponentialRule, side: f64, rows: &Rows) -> bool {
+    pub(super) fn falls_below_zero(&self, rule: &mut ExponentialRule, side: f64, rows: &Rows) -> bool {
         rule.greatest = rule.greatest.max(rows.greatest(greatest(&self.now)));
         let least = (DIP * rule.greatest).min(NOISE * side);
         rows.any(self.trial.iter().any(|&value| value < least))
@@ -96,8 +96,8 @@ impl RememberedField {
     }
 
     /// Lets the past take in the last step, so that nothing depends on the field before it any more.
-    pub(super) fn settle(&mut self, rule: &ExponentialRule) {
-        self.past.settle(rule, &self.trial, &self.now);
+    pub(super) fn apply_pending_step(&mut self, rule: &ExponentialRule) {
+        self.past.apply_pending_step(rule, &self.trial, &self.now);
     }
 
     /// Copies another without reallocating.

@@ -108,7 +108,7 @@ impl History {
     /// with what v lacks by the kink of u when the body met them. Relative to v, this is the error of a force under given motion.
     /// Under a given force, the error of u is c times it, or more if the defects of many steps add up.
     pub(crate) fn time_error(&self, measure: ErrorMeasure<'_>) -> TimeError {
-        let Some(rule) = self.exponential_rule().filter(|rule| rule.remembers()) else { return TimeError::default() };
+        let Some(rule) = self.exponential_rule().filter(|rule| rule.has_memory()) else { return TimeError::default() };
         let dt = rule.tried.dt;
         if rule.has_dashpot() && dt <= measure.beginning {
             return TimeError::default();

@@ -10,7 +10,7 @@ use crate::contact::Brought;
 use crate::error::{RanksError, Result};
 use crate::file::replace;
 use crate::output::Field;
-use crate::parallel::caught;
+use crate::parallel::catch_rank_loss;
 
 /// Cells that ranks bring at a time, or one row or some columns where they have more.
 const PIECE_CELLS: usize = 1 << 16;
@@ -54,8 +54,8 @@ pub(super) fn write_fields(
     let rows = contact.shared_rows();
     let Some(group) = rows.group() else { return replace(path, |out| write(out, &mut values)) };
     // whether rank 0 could begin
-    let all_begin = |begun: bool| caught(&rows, || Ok(!rows.any(!begun)));
-    caught(&rows, || {
+    let all_begin = |begun: bool| catch_rank_loss(&rows, || Ok(!rows.any(!begun)));
+    catch_rank_loss(&rows, || {
         if group.rank() > 0 {
             if all_begin(true)? {
                 values.pass_over_the_rest();

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use num_complex::Complex64;
 
-use super::rows::depart;
+use super::rows::unwind_rank_loss;
 use super::{Ranks, Rows};
 use crate::error::RanksError;
 
@@ -57,7 +57,7 @@ impl Rows {
             }
         });
         exchange_numbers(&**group, pieces.collect(), |rank| common(self.of(rank), to.own()).len() * columns)
-            .unwrap_or_else(|error| depart(error))
+            .unwrap_or_else(|error| unwind_rank_loss(error))
     }
 }
 

@@ -47,7 +47,7 @@ struct Buffers {
 }
 
 /// With this a call ends that needs a rank that has left.
-pub(super) struct Departure(pub(super) RanksError);
+pub(super) struct RankLoss(pub(super) RanksError);
 
 impl Rows {
     /// All rows of a field of so many cells.
@@ -261,7 +261,7 @@ impl Shared {
         counts.clear();
         counts.extend((0..self.group.size()).map(count));
         all.resize(counts.iter().sum(), 0.0);
-        self.group.gather(own, counts, all).unwrap_or_else(|error| depart(error));
+        self.group.gather(own, counts, all).unwrap_or_else(|error| unwind_rank_loss(error));
         let found = read(all);
         self.put_back(buffers);
         found
@@ -271,7 +271,7 @@ impl Shared {
         let mut buffers = self.take();
         buffers.counts.clear();
         buffers.counts.extend((0..self.group.size()).map(count));
-        self.group.gather(own, &buffers.counts, all).unwrap_or_else(|error| depart(error));
+        self.group.gather(own, &buffers.counts, all).unwrap_or_else(|error| unwind_rank_loss(error));
         self.put_back(buffers);
     }
 
@@ -284,21 +284,21 @@ impl Shared {
     }
 }
 
-/// Ends the call at hand, up to where it is [`caught`]: sums have no error to return. In a program built with `panic = "abort"`
+/// Ends the call at hand, up to where it is [`catch_rank_loss`]: sums have no error to return. In a program built with `panic = "abort"`
 /// it ends the process.
-pub(crate) fn depart(error: RanksError) -> ! {
-    resume_unwind(Box::new(Departure(error)))
+pub(crate) fn unwind_rank_loss(error: RanksError) -> ! {
+    resume_unwind(Box::new(RankLoss(error)))
 }
 
 /// Runs what may need a rank that has left, which is then an error.
-pub(crate) fn caught<T>(rows: &Rows, job: impl FnOnce() -> Result<T>) -> Result<T> {
+pub(crate) fn catch_rank_loss<T>(rows: &Rows, job: impl FnOnce() -> Result<T>) -> Result<T> {
     if !rows.are_shared() {
         return job();
     }
     // what a step writes before it is accepted is never read
     match catch_unwind(AssertUnwindSafe(job)) {
         Ok(done) => done,
-        Err(panic) => match panic.downcast::<Departure>() {
+        Err(panic) => match panic.downcast::<RankLoss>() {
             Ok(departure) => Err(departure.0.into()),
             Err(panic) => resume_unwind(panic),
         },

@@ -7,7 +7,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use num_complex::Complex64;
 
 use super::Ranks;
-use super::rows::Departure;
+use super::rows::RankLoss;
 use crate::error::{RanksError, Result, count_within};
 
 /// Threads of one process that play ranks: for tests, and to try a program before it runs on several machines.
@@ -45,7 +45,7 @@ impl Threads {
         for ended in ended {
             match ended {
                 Ok(result) => done.push(result),
-                Err(panic) => match panic.downcast::<Departure>() {
+                Err(panic) => match panic.downcast::<RankLoss>() {
                     Ok(departure) => departed = departed.or(Some(departure.0)),
                     Err(panic) => panicked = panicked.or(Some(panic)),
                 },

@@ -17,7 +17,7 @@ use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
-use crate::parallel::caught;
+use crate::parallel::catch_rank_loss;
 use format::{Kind, Whole};
 use of_ranks::Common;
 use saved::Saved;
@@ -75,7 +75,7 @@ impl ViscoelasticContact {
     pub(super) fn save_with(&self, path: &Path, progress: Option<&Progress>) -> Result<()> {
         let rows = self.computation.state.region.rows();
         if let Some(group) = rows.group() {
-            return caught(&rows, || of_ranks::save(self, path, progress, (&rows, &**group)));
+            return catch_rank_loss(&rows, || of_ranks::save(self, path, progress, (&rows, &**group)));
         }
         let old = of_ranks::mark_at(path);
         replace(path, |out| format::write(out, Kind::Whole, &Saved::of(self, progress)).map(drop))?;
@@ -105,7 +105,7 @@ impl ViscoelasticContact {
     /// ([`CheckpointError::OtherScene`]).
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let (path, rows) = (path.as_ref(), self.computation.state.region.rows());
-        caught(&rows, || {
+        catch_rank_loss(&rows, || {
             let read = self.read(path).map_err(|source| Error::Checkpoint { path: path.to_owned(), source });
             let (mut state, progress, checksum) = rows.agree(read)?;
             // not one save on one rank and the next on another

@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::observe::area::{Pressed, REACH};
-use crate::parallel::{Ranks, depart, exchange_numbers};
+use crate::parallel::{Ranks, exchange_numbers, unwind_rank_loss};
 
 /// Rows that are looked at together.
 const PIECE: usize = 64;
@@ -96,7 +96,7 @@ impl ViscoelasticContact {
         });
         let rows = wanted(group.rank());
         let count = |rank: usize| n2 * rows.range(self.rows_of(rank)).count();
-        let received = exchange_numbers(group, pieces.collect(), count).unwrap_or_else(|error| depart(error));
+        let received = exchange_numbers(group, pieces.collect(), count).unwrap_or_else(|error| unwind_rank_loss(error));
         let fields = received.chunks_exact(n2).map(<[f64]>::to_vec).collect::<Vec<_>>();
         rows.into_iter().zip(fields).collect()
     }

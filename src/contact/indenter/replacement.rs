@@ -41,7 +41,7 @@ impl ViscoelasticContact {
         state.start.replaced.get_or_insert(before);
         state.indenter_is_new = true;
         state.extrapolation.interrupt();
-        state.history.forget_slopes();
+        state.history.reset_differences();
         Ok(())
     }
 }

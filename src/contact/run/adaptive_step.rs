@@ -88,7 +88,7 @@ impl Follow<'_> {
                 control.accept(step.interval.reduced, loads[0], [reduced, step.interval.dt], time == corner, order);
                 let mut report = self.contact.accept(attempt, step, error);
                 if time == corner {
-                    self.contact.computation.state.history.forget_slopes();
+                    self.contact.computation.state.history.reset_differences();
                 }
                 report.convolutions += wasted[0];
                 report.preconditioner_applications += wasted[1];

@@ -7,11 +7,11 @@ use crate::contact::run::progress::Autosave;
 use crate::contact::run::progress::{ErrorBudget, Progress, StepErrors, Stepping};
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::{OwnedOrBorrowed, RunContact, RunHistory};
-use crate::contact::step::error_in_time::Outlook;
+use crate::contact::step::error_in_time::StepContext;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, LoadError, Result, finite, positive, within};
 use crate::load::{Load, LoadHistory};
-use crate::parallel::caught;
+use crate::parallel::catch_rank_loss;
 
 /// Two times closer than this fraction of a step are the same time.
 const SAME_TIME: f64 = 1e-6;
@@ -198,7 +198,7 @@ impl<'a> Follow<'a> {
         let corner = corner.min(self.contact.scene.next_temperature_corner(now));
         if let Some(mut control) = self.progress.control.take() {
             let rows = self.contact.computation.state.region.rows();
-            let report = caught(&rows, || self.adaptive_step(&mut control, corner));
+            let report = catch_rank_loss(&rows, || self.adaptive_step(&mut control, corner));
             self.progress.control = Some(control);
             return report.map(Some);
         }
@@ -207,7 +207,7 @@ impl<'a> Follow<'a> {
         let load = self.history.before(time).validated_at(time)?;
         let report = self.step_to(time, time - now, load)?;
         if time == corner {
-            self.contact.computation.state.history.forget_slopes();
+            self.contact.computation.state.history.reset_differences();
         }
         Ok(Some(report))
     }
@@ -217,7 +217,7 @@ impl<'a> Follow<'a> {
         let tolerance = self.solver_tolerance();
         let loads = [load];
         let rows = self.contact.computation.state.region.rows();
-        caught(&rows, || {
+        catch_rank_loss(&rows, || {
             let step = self.contact.request(time, dt, &loads, tolerance)?;
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
             if self.progress.scale.is_none() {
@@ -225,7 +225,7 @@ impl<'a> Follow<'a> {
             }
             let age = step.interval.reduced - computation.state.clock.undisturbed_until;
             let expected = self.progress.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, &load, age));
-            let outlook = Outlook { expected, ..Outlook::default() };
+            let outlook = StepContext { expected, ..StepContext::default() };
             let (report, error) = self.contact.take_expecting(step, outlook)?;
             let mesh = self.contact.mesh_error().unwrap_or_default();
             let errors = StepErrors { time: error.relative, pressure: error.greatest, residual: report.residual };

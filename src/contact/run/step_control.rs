@@ -3,7 +3,7 @@
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
-use crate::contact::step::error_in_time::Outlook;
+use crate::contact::step::error_in_time::StepContext;
 use crate::error::Result;
 use crate::hereditary::{ExponentialRule, LastingError, TimeError};
 use crate::load::{Load, LoadHistory};
@@ -149,10 +149,10 @@ impl StepControl {
 
     /// Context of a step under `load` that ends `now`, when the bodies have been loaded for `age`, before a corner or
     /// the end of the run at `stop`.
-    pub(super) fn outlook(&self, scene: &Scene, load: &Load, [now, age, stop]: [f64; 3]) -> Outlook {
+    pub(super) fn outlook(&self, scene: &Scene, load: &Load, [now, age, stop]: [f64; 3]) -> StepContext {
         let span = stop - self.since;
         let shortest = self.defects.as_ref().map_or(f64::INFINITY, DefectAccumulation::shortest_time);
-        Outlook {
+        StepContext {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
             coming_back: self.scale.as_ref().map_or(0.0, |scale| scale.coming_back(scene, load, [age, now])),
             lasting: self

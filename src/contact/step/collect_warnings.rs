@@ -34,7 +34,7 @@ pub(super) fn collect_warnings(scene: &Scene, state: &State) -> Warnings {
         few |= !line && contact_cells < MIN_CELLS && !(periodic == [true; 2] && all_in_touch);
     }
     let (age, [from, until]) = (state.clock.age(), material.measured());
-    let remembers = !state.is_undisturbed();
+    let has_memory = !state.is_undisturbed();
     let uncertain = material.fit_reports().any(|report| report.warning().is_some());
     // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once
     let oscillates = matches!(scene.settings.time_rule, TimeRule::Rectangle | TimeRule::RectangleUncached)
@@ -42,11 +42,11 @@ pub(super) fn collect_warnings(scene: &Scene, state: &State) -> Warnings {
     Warnings::default()
         .with(Warning::NearEdge, near && scene.settings.edge == Edge::Refuse)
         .with(Warning::FewCells, few)
-        .with(Warning::Extrapolated, remembers && !is_known(age, until))
-        .with(Warning::FasterThanMaterial, remembers && dt > 0.0 && dt < from)
-        .with(Warning::NearEndOfMaterial, remembers && dt > 0.0 && !is_known(age + dt, material.known_until()))
+        .with(Warning::Extrapolated, has_memory && !is_known(age, until))
+        .with(Warning::FasterThanMaterial, has_memory && dt > 0.0 && dt < from)
+        .with(Warning::NearEndOfMaterial, has_memory && dt > 0.0 && !is_known(age + dt, material.known_until()))
         .with(Warning::Rings, oscillates)
         .with(Warning::FallBack, solution.counts.fallback_iterations > 0)
-        .with(Warning::UncertainMaterial, remembers && uncertain)
+        .with(Warning::UncertainMaterial, has_memory && uncertain)
         .with(Warning::Rounding, solution.rounding > scene.settings.tolerance)
 }

@@ -48,7 +48,7 @@ const SHORTEST_TOUCH: f64 = 10.0;
 
 /// Data of a run besides the step.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::contact) struct Outlook {
+pub(in crate::contact) struct StepContext {
     /// Mean displacement and v that are to be expected of the greatest loads.
     pub(in crate::contact) expected: [f64; 2],
     /// The depth below first touch to which the bodies may come back; 0 if they do not.
@@ -68,9 +68,9 @@ pub(in crate::contact) struct Outlook {
     pub(in crate::contact) is_given: bool,
 }
 
-impl Default for Outlook {
-    fn default() -> Outlook {
-        Outlook {
+impl Default for StepContext {
+    fn default() -> StepContext {
+        StepContext {
             expected: [0.0; 2],
             coming_back: 0.0,
             lasting: [0.0; 2],
@@ -93,9 +93,9 @@ pub(in crate::contact) fn error_in_time(
     scene: &Scene,
     tried: &Computation,
     step: &Step<'_>,
-    outlook: Outlook,
+    outlook: StepContext,
 ) -> TimeError {
-    let Outlook { expected, coming_back, lasting, tolerance, agreement, steps, resolution, beginning, is_given } =
+    let StepContext { expected, coming_back, lasting, tolerance, agreement, steps, resolution, beginning, is_given } =
         outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {

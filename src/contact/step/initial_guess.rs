@@ -83,7 +83,7 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
 /// gaps fall evenly until they touch, which is what the extrapolated pressure shows by itself.
 fn foresee_contact(state: &State, window: &mut Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
     let (now, before) = (&state.current, &state.previous);
-    let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.remembers());
+    let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.has_memory());
     let change = state.history.last_change();
     if now.contact_cells == 0 || before.contact_cells == 0 {
         return false;

@@ -42,13 +42,13 @@ use crate::error::{Error, Result, non_negative};
 use crate::events;
 use crate::hereditary::{Interval, TimeError};
 use crate::load::Load;
-use crate::parallel::caught;
+use crate::parallel::catch_rank_loss;
 use crate::parallel::in_pool;
 use crate::solver::Stop;
 use checks::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use collect_warnings::collect_warnings;
 use constraints::{Prescribed, find_free_motions, surface_follows_bodies, validate_loads};
-use error_in_time::{Outlook, error_in_time};
+use error_in_time::{StepContext, error_in_time};
 use gap::RigidBodies;
 use initial_guess::initial_guess;
 use jump::jump_without_response;
@@ -63,7 +63,7 @@ pub(in crate::contact) struct Attempt {
 }
 
 impl ViscoelasticContact {
-    /// Advances by `dt` \[s\] to a state that carries `load`, taking u to be linear in between. `dt` = 0 is a jump of the load:
+    /// Advances by `dt` \[s\] to a state that carries `load`. `dt` = 0 is a jump of the load:
     /// the bodies respond elastically. A body without elastic response (J(0) = 0) keeps its displacement in a jump; it can
     /// follow those after which nothing presses it, and those to a load that the pressure as it is satisfies to within
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance), such as the present approach in place of the force.
@@ -85,7 +85,7 @@ impl ViscoelasticContact {
     /// As [`ViscoelasticContact::step`], or if there is not one load per body.
     pub fn step_each(&mut self, dt: f64, loads: &[Load]) -> Result<StepReport> {
         let rows = self.computation.state.region.rows();
-        caught(&rows, || {
+        catch_rank_loss(&rows, || {
             let requested = non_negative("time step", dt)
                 .and_then(|dt| self.request(self.time() + dt, dt, loads, self.settings().tolerance));
             let requested = requested.and_then(|step| validate_loads(&self.scene, &step).map(|()| step));
@@ -113,14 +113,14 @@ impl ViscoelasticContact {
 
     /// Computes a step and accepts it.
     pub(in crate::contact) fn take(&mut self, step: Step<'_>) -> Result<StepReport> {
-        Ok(self.take_expecting(step, Outlook::default())?.0)
+        Ok(self.take_expecting(step, StepContext::default())?.0)
     }
 
     /// Computes a step and accepts it; its error is estimated with regard to the `outlook`.
     pub(in crate::contact) fn take_expecting(
         &mut self,
         step: Step<'_>,
-        outlook: Outlook,
+        outlook: StepContext,
     ) -> Result<(StepReport, TimeError)> {
         let attempt = self.attempt(&step)?;
         let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, outlook);
@@ -133,7 +133,7 @@ impl ViscoelasticContact {
         let (rows, from) = (region.rows(), region.cells());
         // ranks wait for each other, which they must not do on threads that all of them need
         let cells = if region.is_shared() { 0 } else { region.len() };
-        let tried = caught(&rows, || {
+        let tried = catch_rank_loss(&rows, || {
             rows.same(marks(step))?;
             in_pool(cells, || compute(&self.scene, &mut self.computation, &mut larger, step))
         });

@@ -19,7 +19,7 @@ impl Cell {
 
     /// v that moves the cell to `u` in a step, and what rounding of u makes of it.
     fn step(&mut self, dt: f64, u: f64, interpolant: Interpolant) -> [f64; 2] {
-        self.rule.weigh(dt, interpolant);
+        self.rule.compute_weights(dt, interpolant);
         self.field.predict(&self.rule);
         let c = self.rule.compliance();
         let v = (u - self.field.trial[0]) / c;
@@ -58,8 +58,8 @@ fn the_recursion_is_the_integral() {
             dt *= if random.next() < 0.7 { random.decades(0.4, 3.0) } else { random.decades(0.05, 20.0) };
             let jump = body.glassy() > 0.0 && random.next() < 0.1;
             if random.next() < 0.05 {
-                cell.rule.forget_slopes();
-                past.forget_slopes();
+                cell.rule.reset_differences();
+                past.reset_differences();
             }
             let (length, u) = (if jump { 0.0 } else { dt }, random.between(-1.0, 1.0));
             let [v, rounding] = cell.step(length, u, INTERPOLANTS[which]);

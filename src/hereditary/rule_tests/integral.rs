@@ -60,7 +60,7 @@ impl Past {
         Past { body: body.clone(), nodes: vec![start], known: 0 }
     }
 
-    pub fn forget_slopes(&mut self) {
+    pub fn reset_differences(&mut self) {
         self.known = 0;
         let last = self.nodes.len() - 1;
         self.nodes[last].open = false;

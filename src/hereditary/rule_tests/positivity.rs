@@ -11,7 +11,7 @@ fn predictions_that_rise_above_the_surface_are_rare_and_made_again() {
     for (interpolant, most) in
         [(Interpolant::Linear, 0.0), (Interpolant::CorrectedLinear, 0.5), (Interpolant::CorrectedQuadratic, 0.5)]
     {
-        let (mut steps, mut repeated, mut dips, mut lowest) = (0_u32, 0, 0, 0.0_f64);
+        let (mut steps, mut repeated, mut falls_below_zero, mut lowest) = (0_u32, 0, 0, 0.0_f64);
         for (name, body) in bodies() {
             let fastest = body.terms().first().map_or(1.0, |term| term.1);
             for _ in 0..20 {
@@ -28,7 +28,7 @@ fn predictions_that_rise_above_the_surface_are_rare_and_made_again() {
                     let greatest = now.iter().chain(trial).copied().fold(f64::MIN_POSITIVE, f64::max);
                     let least = now.iter().copied().fold(0.0, f64::min) / greatest;
                     if least < -1e-9 {
-                        dips += 1;
+                        falls_below_zero += 1;
                         println!("  {interpolant:?} {name} {least:.1e} dt {dt:.1e}");
                     }
                     lowest = lowest.min(least);
@@ -38,7 +38,9 @@ fn predictions_that_rise_above_the_surface_are_rare_and_made_again() {
             }
         }
         let share = repeated as f64 / f64::from(steps);
-        println!("{interpolant:?}: {repeated} of {steps} predictions made again, {dips} dips, least u {lowest:.1e}");
+        println!(
+            "{interpolant:?}: {repeated} of {steps} predictions made again, {falls_below_zero} falls_below_zero, least u {lowest:.1e}"
+        );
         assert!(share <= most && lowest > -1e-8, "{share} {lowest:e}");
     }
 }

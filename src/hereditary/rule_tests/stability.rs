@@ -25,7 +25,7 @@ impl Free {
     }
 
     fn step(&mut self, dt: f64) {
-        self.rule.weigh(dt, self.interpolant);
+        self.rule.compute_weights(dt, self.interpolant);
         self.field.predict(&self.rule);
         self.rule.commit();
         self.field.commit();
@@ -33,7 +33,7 @@ impl Free {
 
     /// Calls `change` with each part of the state: a field in which each cell holds what became of its beginning.
     fn parts(&mut self, mut change: impl FnMut(usize, f64, &mut [f64])) {
-        self.field.settle(&self.rule);
+        self.field.apply_pending_step(&self.rule);
         let (cells, branches) = (self.field.now.len(), self.rule.branches());
         change(0, 1.0, &mut self.field.now);
         let (mut part, modulus) = (0, self.modulus);

@@ -14,7 +14,7 @@ use super::tasks::{ColumnsInPlace, RowsForward};
 use super::{AREA, SpectralOperator, TransformWorkspace};
 use crate::kernel::layout::Layout;
 use crate::parallel::for_each_share;
-use crate::parallel::{Ranks, Rows, depart, exchange_numbers, part};
+use crate::parallel::{Ranks, Rows, exchange_numbers, part, unwind_rank_loss};
 use crate::parallel::{TILE, rows_in_a_tile};
 
 /// Who has which tiles of rows, and which panels of columns.
@@ -76,7 +76,8 @@ impl Shares {
             written.iter_mut().enumerate().for_each(|(rank, piece)| piece.extend_from_slice(&row[columns(rank)]));
         }
         let own = columns(self.group.rank()).len();
-        exchange_numbers(&*self.group, written, |rank| rows(rank).len() * own).unwrap_or_else(|error| depart(error))
+        exchange_numbers(&*self.group, written, |rank| rows(rank).len() * own)
+            .unwrap_or_else(|error| unwind_rank_loss(error))
     }
 
     /// Most complex values that this rank has at a time: of own rows, or of own columns.
@@ -162,5 +163,5 @@ fn exchange(
     (send, send_counts): (&[Complex64], &[usize]),
     (received, receive_counts): (&mut [Complex64], &[usize]),
 ) {
-    group.exchange(send, send_counts, received, receive_counts).unwrap_or_else(|error| depart(error));
+    group.exchange(send, send_counts, received, receive_counts).unwrap_or_else(|error| unwind_rank_loss(error));
 }

@@ -10,7 +10,7 @@ use std::ops;
 
 use crate::parallel::Rows;
 use crate::parallel::{Task, for_each_share, lanes};
-pub(crate) use crate::solver::extension::neighbours::{Ghosts, Neighbours};
+pub(crate) use crate::solver::extension::neighbours::{Ghosts, HaloExchange};
 use crate::solver::extension::passes::{Blocks, Known, Pull, Push, Restrict, RowBuffers, Spread, Values, weight};
 
 /// κ: how far the mean of a block of cells is trusted, of which only the share s is known, w = κ s/(1 + (κ − 1) s).
@@ -26,7 +26,7 @@ const TRUST: f64 = 1.5;
 /// Blocks hold the sums S = Σ w m over what they consist of, and the factor φ = κ/(4 + 4 (κ − 1) s), in which everything is
 /// linear: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
 ///
-/// An [`Ebb`] multiplies x of one level before the next finer one is made of it: near A everything remains, and far away little.
+/// An [`Attenuation`] multiplies x of one level before the next finer one is made of it: near A everything remains, and far away little.
 ///
 /// Axes that are not periodic are mirrored at their ends, which is what they are on the parts that symmetry leaves of a grid.
 ///
@@ -52,14 +52,14 @@ pub(crate) struct Extension {
     own: Vec<f64>,
     /// The halo rows of the cells.
     ghosts: Ghosts,
-    neighbours: Option<Neighbours>,
+    neighbours: Option<HaloExchange>,
     /// Where E ebbs, the level of the blocks from which it does, and what remains.
     ebb: Option<(usize, f64)>,
 }
 
 /// How far a field is continued, and what of it remains beyond.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Ebb {
+pub(crate) struct Attenuation {
     /// In cells.
     pub(crate) reach: f64,
     /// Negative for a change of sign.
@@ -69,8 +69,8 @@ pub(crate) struct Ebb {
 /// Which of two extensions: that which ebbs, or that which reproduces constants.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Range {
-    Ebbing,
-    Endless,
+    Attenuated,
+    Unbounded,
 }
 
 /// Blocks of cells.
@@ -98,7 +98,7 @@ impl Level {
 }
 
 impl Extension {
-    pub(crate) fn new(rows: &Rows, periodic: [bool; 2], ebb: Option<Ebb>) -> Extension {
+    pub(crate) fn new(rows: &Rows, periodic: [bool; 2], ebb: Option<Attenuation>) -> Extension {
         let cells = rows.cells();
         let local = if rows.are_shared() { MOST_LOCAL.min(sizes(cells).count().saturating_sub(1)) } else { 0 };
         let level = |(height, size): (usize, [usize; 2])| {
@@ -128,7 +128,7 @@ impl Extension {
             local,
             own: vec![0.0; own],
             ghosts: Ghosts::beside(rows, |rank| rows.of(rank), cells, periodic[0]),
-            neighbours: rows.group().map(|group| Neighbours::new(group, cells[1])),
+            neighbours: rows.group().map(|group| HaloExchange::new(group, cells[1])),
             rows: rows.clone(),
         }
     }
@@ -168,7 +168,7 @@ impl Extension {
 
     /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere. The endless one keeps the sum.
     pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool], range: Range) {
-        let ebb = self.ebb.filter(|_| range == Range::Ebbing);
+        let ebb = self.ebb.filter(|_| range == Range::Attenuated);
         let Extension { rows, periodic, levels, buffers, local, own, ghosts, neighbours, .. } = self;
         let columns = rows.cells()[1];
         if let Some(neighbours) = neighbours {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use num_complex::Complex64;
 
-use crate::parallel::{Ranks, Rows, depart};
+use crate::parallel::{Ranks, Rows, unwind_rank_loss};
 use crate::solver::extension::passes::{NOTHING_KNOWN, weight};
 
 /// Halo rows of a level: the row before the local rows and the row after them, where another rank has these.
@@ -72,7 +72,7 @@ impl Ghosts {
 
 /// Fetches rows from neighbours.
 #[derive(Debug, Clone)]
-pub(crate) struct Neighbours {
+pub(crate) struct HaloExchange {
     group: Arc<dyn Ranks>,
     row: Vec<f64>,
     send: Vec<Complex64>,
@@ -80,12 +80,12 @@ pub(crate) struct Neighbours {
     counts: Vec<usize>,
 }
 
-impl Neighbours {
+impl HaloExchange {
     /// For rows of at most so many columns.
-    pub(crate) fn new(group: &Arc<dyn Ranks>, columns: usize) -> Neighbours {
+    pub(crate) fn new(group: &Arc<dyn Ranks>, columns: usize) -> HaloExchange {
         let two_rows = vec![Complex64::default(); 2 * columns.div_ceil(2)];
         let counts = vec![0; group.size()];
-        Neighbours {
+        HaloExchange {
             group: Arc::clone(group),
             row: vec![0.0; columns],
             send: two_rows.clone(),
@@ -96,7 +96,7 @@ impl Neighbours {
 
     /// Fills the halo rows, `columns` long; `write` gives the first local row, and the last.
     pub(crate) fn fetch(&mut self, ghosts: &mut Ghosts, columns: usize, own: usize, write: impl Fn(usize, &mut [f64])) {
-        let Neighbours { group, row, send, received, counts } = self;
+        let HaloExchange { group, row, send, received, counts } = self;
         let (row, length) = (&mut row[..columns], columns.div_ceil(2));
         let asked_by = |rank: usize, which: usize| ghosts.partners[which] == Some(rank);
         let mut sent = 0;
@@ -112,7 +112,9 @@ impl Neighbours {
                 }
             }
         }
-        group.exchange(&send[..sent], counts, &mut received[..sent], counts).unwrap_or_else(|error| depart(error));
+        group
+            .exchange(&send[..sent], counts, &mut received[..sent], counts)
+            .unwrap_or_else(|error| unwind_rank_loss(error));
         let mut next = received.chunks_exact(length);
         for rank in 0..counts.len() {
             // of one that has both, its first row, which lies behind mine, comes first

@@ -86,11 +86,11 @@ fn check(cells: [usize; 2], periodic: [bool; 2], share: f64, seed: &mut u64) {
     for (k, (a, b)) in extended.iter().zip(&expected).enumerate() {
         assert!((a - b).abs() < 1e-14, "{cells:?} {periodic:?}: {a} instead of {b} at {k}");
     }
-    has_transpose(&mut extension, &member, &values, Range::Endless, seed);
+    has_transpose(&mut extension, &member, &values, Range::Unbounded, seed);
 
     // from blocks of two cells at least
     for (reach, level) in [(0.3, 0.0), (2.0, 0.0), (4.0, 1.0), (5.9, 1.0), (1e9, 28.0)] {
-        let mut extension = Extension::new(&Rows::all(cells), periodic, Some(Ebb { reach, remains: -0.3 }));
+        let mut extension = Extension::new(&Rows::all(cells), periodic, Some(Attenuation { reach, remains: -0.3 }));
         extension.fit(&member);
         let mut extended = values.clone();
         extension.extend(&mut extended, &member);
@@ -98,7 +98,7 @@ fn check(cells: [usize; 2], periodic: [bool; 2], share: f64, seed: &mut u64) {
         for (k, (a, b)) in extended.iter().zip(&expected).enumerate() {
             assert!((a - b).abs() < 1e-14, "{cells:?} {periodic:?}, {reach}: {a} instead of {b} at {k}");
         }
-        has_transpose(&mut extension, &member, &values, Range::Ebbing, seed);
+        has_transpose(&mut extension, &member, &values, Range::Attenuated, seed);
     }
 }
 
@@ -116,7 +116,7 @@ fn has_transpose(extension: &mut Extension, member: &[bool], values: &[f64], ran
     assert!(member.iter().zip(&gathered).all(|(&m, &x)| m || x == 0.0));
     // the endless one keeps the sum, whether or not the other one ebbs
     let mut kept = field.clone();
-    extension.gather(&mut kept, member, Range::Endless);
+    extension.gather(&mut kept, member, Range::Unbounded);
     let [before, after] = [field.iter().sum::<f64>(), kept.iter().sum()];
     assert!((before - after).abs() < 1e-12 * (1.0 + field.len() as f64).sqrt(), "{before} {after}");
 }
