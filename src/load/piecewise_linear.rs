@@ -44,7 +44,7 @@ impl PiecewiseLinear {
         Ok(PiecewiseLinear { table: table.to_vec() })
     }
 
-    /// Interpolates before entry `next`, the first entry later than the requested time.
+    /// Interpolates between entry `next` − 1 and entry `next`; constant beyond the ends of the table.
     fn around(&self, next: usize, t: f64) -> Load {
         match (next.checked_sub(1).map(|k| self.table[k]), self.table.get(next)) {
             (Some((start, from)), Some(&(end, ref to))) if end > start => from.towards(to, (t - start) / (end - start)),

@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use crate::contact::builder::memory::{Computed, Footprint, Memory, symmetry_of};
-use crate::contact::builder::time_rule::{history_by, windowed};
 use crate::contact::builder::{Builder, OwnGap};
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::built::Built;
@@ -11,13 +10,14 @@ use crate::contact::computation::Computation;
 use crate::contact::distributed::gap::SharedGap;
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
-use crate::contact::settings::{Frame, Settings, Solver};
+use crate::contact::settings::{Frame, Settings, Solver, TimeRule};
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::{Error, KernelError, RanksError, Result, count_within};
 use crate::geometry::Gap;
 use crate::hereditary;
+use crate::hereditary::{History, Weighting};
 use crate::kernel::InfluenceKernel;
 use crate::parallel::{Ranks, Rows, catch_rank_loss};
 use crate::rheology::Material;
@@ -253,5 +253,32 @@ impl Prepared {
         let state = State::at_rest(Arc::new(indenter), region, history);
         let computation = Computation::new(&scene, state);
         ViscoelasticContact::new(scene, computation)
+    }
+}
+
+/// Whether only a part of the grid is computed. Elsewhere than on a half-space nothing is known of the displacement outside
+/// a window.
+pub(in crate::contact) fn windowed(settings: &Settings, history: &History, kernel: &InfluenceKernel) -> bool {
+    settings.window && history.has_far_field() && kernel.is_half_space()
+}
+
+/// The history of bodies of `material` by the time rule of the settings, on no cells yet.
+pub(in crate::contact) fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> Result<History> {
+    let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
+    match settings.time_rule {
+        TimeRule::Exponential | TimeRule::ExponentialLinear => {
+            let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact"))?;
+            Ok(match settings.frame {
+                Frame::Bodies => History::exponential(&creep),
+                Frame::Indenter => History::moving_frame(&creep, periodic),
+            })
+        }
+        _ if settings.frame == Frame::Indenter => Err(Error::WrongFrame { what: "a direct sum" }),
+        TimeRule::Rectangle | TimeRule::RectangleUncached if glassy == 0.0 => {
+            Err(Error::NoElasticResponse { time: 0.0, what: "the rectangle rule" })
+        }
+        TimeRule::Rectangle => Ok(History::direct_sum(Weighting::End)),
+        TimeRule::RectangleUncached => Ok(History::direct_sum(Weighting::EndUncached)),
+        TimeRule::Backward => Ok(History::direct_sum(Weighting::Start)),
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::contact::indenter::even_axes;
 use crate::contact::settings::{Settings, Solver};
-use crate::contact::window::growth::MAX_WINDOW_FRACTION;
+use crate::contact::window::placement::MAX_WINDOW_FRACTION;
 use crate::contact::window::region::Region;
 use crate::error::{Result, count_within};
 use crate::hereditary;

@@ -3,7 +3,6 @@
 pub(in crate::contact) mod build;
 pub(in crate::contact) mod fit_range;
 pub(in crate::contact) mod memory;
-pub(in crate::contact) mod time_rule;
 
 use std::ops::{Range, RangeInclusive};
 use std::sync::Arc;

@@ -3,8 +3,6 @@
 mod assembled;
 pub(in crate::contact) mod autosave;
 pub(in crate::contact) mod built;
-mod check;
-mod fingerprint;
 mod format;
 mod of_ranks;
 mod saved;

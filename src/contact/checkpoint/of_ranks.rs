@@ -13,9 +13,9 @@ use std::time::{SystemTime, UNIX_EPOCH};
 use serde::{Deserialize, Serialize};
 
 use super::assembled::Assembled;
-use super::check::{check, check_run};
-use super::fingerprint::Fingerprint;
+use super::built::Fingerprint;
 use super::format::{self, Kind, Whole};
+use super::saved::{check, check_run};
 use crate::contact::run::progress::Progress;
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;

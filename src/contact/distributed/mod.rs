@@ -2,5 +2,4 @@
 
 pub(in crate::contact) mod area;
 pub(in crate::contact) mod gap;
-pub(in crate::contact) mod gathered_block;
 pub(in crate::contact) mod local_rows;

@@ -2,7 +2,6 @@
 
 pub(in crate::contact) mod extrapolation;
 pub(in crate::contact) mod snapshot;
-pub(in crate::contact) mod within_step;
 
 use std::sync::Arc;
 

@@ -1,12 +1,14 @@
-//! States kept in memory, for callers that try steps and take them back.
+//! Copies of a contact in memory: snapshots for callers that try steps and take them back, and the state within a step.
 
 use std::fmt;
 use std::sync::Arc;
 
+use crate::contact::run::follow::Follow;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, within};
+use crate::load::{Load, Tilt};
 
 /// The state of a contact in memory, made by [`ViscoelasticContact::snapshot`]: what steps change, without kernel and work
 /// space. About 48 bytes per computed cell and what the history takes ([`Memory`](crate::contact::Memory)); where a window is
@@ -82,5 +84,120 @@ impl ViscoelasticContact {
         self.view.refresh(&self.computation.state);
         self.progress = None;
         Ok(())
+    }
+}
+
+impl ViscoelasticContact {
+    /// The contact at a time within the last step, its ends included. So the times at which a user looks need not be those at
+    /// which a step ends.
+    ///
+    /// It is the contact at the start of the step, advanced by a shorter step of the same rule: its state is as exact as one at
+    /// the end of a step. This contact stays as it is. The load is taken to be linear between the ends of the step; a run has
+    /// the loads in between, and [`Follow::within_step`] takes them from there.
+    ///
+    /// This costs a copy of the contact and a contact problem. Where ranks share out the contact, all of them call it.
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+    ///     .build()?;
+    /// contact.step(0.0, Load::force(0.5))?;
+    /// contact.step(0.2, Load::force(0.5))?;
+    /// let middle = contact.within_step(0.1)?;
+    /// assert_eq!(middle.time(), 0.1);
+    /// assert!(middle.approach() < contact.approach());
+    /// assert!((middle.force() - 0.5).abs() < 1e-12);
+    /// assert!(contact.within_step(0.3).is_err()); // not there yet
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If the time does not lie within the last step, or the contact problem fails like one of
+    /// [`ViscoelasticContact::step`]. Only the end of the last step is left after a step that failed, one over the bodies
+    /// ([`ViscoelasticContact::step_over`]) or along a path ([`ViscoelasticContact::step_along`]).
+    pub fn within_step(&self, time: f64) -> Result<ViscoelasticContact> {
+        self.advanced_within_step(time, self.settings().tolerance, |start| {
+            let share = (time - start.time()) / (self.time() - start.time());
+            let ends = self.computation.state.loads.iter().enumerate();
+            Ok(ends.map(|(body, end)| start.load_like(body, end).towards(end, share)).collect())
+        })
+    }
+
+    /// The contact at a `time` within the last step, under the loads that are found for the contact at its start.
+    fn advanced_within_step(
+        &self,
+        time: f64,
+        tolerance: f64,
+        loads: impl FnOnce(&ViscoelasticContact) -> Result<Vec<Load>>,
+    ) -> Result<ViscoelasticContact> {
+        let state = &self.computation.state;
+        let from = if state.history.start_is_kept() { state.start.clock.time } else { state.clock.time };
+        // the start may come out a little off where it is found from the end
+        let inside = time >= from - 1e-12 * state.clock.last_length && time <= state.clock.time;
+        within("time within the last step", time, inside, "between its start and its end")?;
+        let mut contact = self.clone();
+        contact.progress = None;
+        if time == state.clock.time {
+            return Ok(contact);
+        }
+        contact.computation.state.roll_back();
+        contact.view.refresh(&contact.computation.state);
+        if time > from {
+            let loads = loads(&contact)?;
+            let mut step = contact.request(time, time - from, &loads, tolerance)?;
+            step.interval.interpolant = state.start.interpolant;
+            let attempt = contact.attempt(&step)?;
+            contact.adopt(attempt, step, [0.0; 2]);
+        }
+        Ok(contact)
+    }
+
+    /// The load of a body at present, as one of the kind of `other`.
+    fn load_like(&self, body: usize, other: &Load) -> Load {
+        let load = self.computation.state.loads[body];
+        let Some(now) = self.body(body).filter(|_| !load.is_like(other)) else { return load };
+        let tilt = [0, 1].map(|axis| match other.tilt()[axis] {
+            Tilt::Fixed(_) => Tilt::Fixed(now.tilt[axis]),
+            free => free,
+        });
+        match other {
+            Load::Force { .. } => Load::Force { normal: now.force, tilt },
+            Load::Approach { .. } => Load::Approach { approach: now.approach, tilt },
+        }
+    }
+}
+
+impl Follow<'_> {
+    /// The contact at a time within the last step of the run, its ends included, under the load of the history at that time:
+    /// as exact as the steps of the run. See [`ViscoelasticContact::within_step`].
+    ///
+    /// ```
+    /// use viscocontact::prelude::*;
+    ///
+    /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3)?)
+    ///     .geometry(&Sphere::new(10.0e-3)?)
+    ///     .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6)?))
+    ///     .build()?;
+    /// let ramp = Ramp::new(Load::approach(0.0), Load::approach(20.0e-6), 1.0)?;
+    /// let mut run = contact.follow(&ramp, Stepping::adaptive(1.0e-3), 100.0);
+    /// let mut forces = Vec::new(); // at 25 times a decade, however long the steps are
+    /// let mut times = (-50..=50).map(|k| 10f64.powf(0.04 * f64::from(k))).peekable();
+    /// while let Some(report) = run.next_step()? {
+    ///     while let Some(time) = times.next_if(|&time| time <= report.time) {
+    ///         forces.push((time, run.within_step(time)?.force()));
+    ///     }
+    /// }
+    /// assert_eq!(forces.len(), 101);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`ViscoelasticContact::within_step`], or if the load of the history at that time is invalid.
+    pub fn within_step(&self, time: f64) -> Result<ViscoelasticContact> {
+        let load = || Ok(vec![self.history.at(time).validated_at(time)?]);
+        self.contact.advanced_within_step(time, self.solver_tolerance(), |_| load())
     }
 }

@@ -1,7 +1,7 @@
 //! The gap of a step before any pressure, and the surface after it.
 
 use crate::contact::step::constraints::Prescribed;
-use crate::contact::step::trial::Trial;
+use crate::contact::step::request::Trial;
 use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 use crate::hereditary::History;

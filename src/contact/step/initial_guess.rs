@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::contact::state::extrapolation::MAX_REACH;
 use crate::contact::state::{Equilibrium, State};
 use crate::contact::step::request::Step;
-use crate::contact::step::trial::Trial;
+use crate::contact::step::request::Trial;
 use crate::contact::window::window::Window;
 use crate::parallel::Rows;
 use crate::parallel::for_each_band;

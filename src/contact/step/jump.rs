@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::contact::state::State;
 use crate::contact::step::initial_guess::{begin, extrapolate};
 use crate::contact::step::request::Step;
-use crate::contact::step::trial::Trial;
+use crate::contact::step::request::Trial;
 use crate::contact::window::window::Window;
 use crate::error::{Error, Result};
 use crate::geometry::Gap;

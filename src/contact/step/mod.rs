@@ -16,16 +16,12 @@
 //! undo.
 
 mod accept;
-mod checks;
-mod collect_warnings;
 mod constraints;
 pub(in crate::contact) mod error_in_time;
-mod first_step;
 mod gap;
 mod initial_guess;
 mod jump;
 pub(in crate::contact) mod request;
-pub(in crate::contact) mod trial;
 
 use std::sync::Arc;
 
@@ -35,7 +31,7 @@ use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::request::Step;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::contact::window::growth::outgrown;
+use crate::contact::window::placement::outgrown;
 use crate::contact::window::placement::region_for;
 use crate::contact::window::region::Region;
 use crate::error::{Error, Result, non_negative};
@@ -45,9 +41,9 @@ use crate::load::Load;
 use crate::parallel::catch_rank_loss;
 use crate::parallel::in_pool;
 use crate::solver::Stop;
-use checks::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
-use collect_warnings::collect_warnings;
+use accept::collect_warnings;
 use constraints::{Prescribed, find_free_motions, surface_follows_bodies, validate_loads};
+use constraints::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
 use error_in_time::{StepContext, error_in_time};
 use gap::RigidBodies;
 use initial_guess::initial_guess;

@@ -1,8 +1,6 @@
 //! The part of the grid that is computed: which one, with what, and how a state gets to a larger one.
 
-pub(crate) mod carry;
-mod fields;
-pub(crate) mod growth;
+pub(in crate::contact) mod fields;
 pub(crate) mod placement;
 pub(crate) mod region;
 #[expect(clippy::module_inception, reason = "the file is named after its type")]

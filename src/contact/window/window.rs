@@ -3,7 +3,7 @@
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
 use crate::contact::settings::Solver;
-use crate::contact::step::trial::Trial;
+use crate::contact::step::request::Trial;
 use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 use crate::kernel::{LocalKernel, Workspace};
