@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::Grid;
 #[cfg(feature = "checkpoint")]
-use crate::contact::checkpoint::built::Built;
+use crate::contact::checkpoint::scene_fingerprint::Built;
 use crate::contact::settings::Settings;
 use crate::contact::state::Clock;
 use crate::error::Result;

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use super::definiteness::least_eigenvalue;
 use super::influence::Influence;
 use super::layout::{Ends, Layout};
+use super::line_load::{Strip, wave_number};
 use super::love::Love;
-use super::positive::least_eigenvalue;
-use super::strip::{Strip, wave_number};
 use super::{InfluenceKernel, MEMORY_WHILE_MADE};
 use crate::Grid;
 use crate::error::{Error, KernelError, Result, within};

@@ -6,8 +6,8 @@ use super::InfluenceKernel;
 use super::constructors::{representable, strip};
 use super::influence::Influence;
 use super::layer::Layer;
+use super::line_load::{Strip, wave_number};
 use super::love::Love;
-use super::strip::{Strip, wave_number};
 use crate::Grid;
 use crate::error::{Error, KernelError, Result, within};
 

@@ -17,15 +17,15 @@
 //! factor of the transform.
 
 mod constructors;
+mod definiteness;
 mod even_spectrum;
 mod influence;
 mod layer;
 mod layered;
 mod layout;
+mod line_load;
 mod lines;
 mod love;
-mod positive;
-mod strip;
 mod transform;
 
 pub(crate) use influence::HalfSpace;

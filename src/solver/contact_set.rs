@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::solver::problem::Problem;
 use crate::solver::rigid_motion::{Gram, ModeCoefficients};
-use crate::solver::runs::Runs;
+use crate::solver::row_segments::RowSegments;
 use crate::sum::{self, greatest, sum};
 
 /// The cells in contact under all bodies.
@@ -12,7 +12,7 @@ use crate::sum::{self, greatest, sum};
 pub(crate) struct ContactSet {
     /// Whether a cell is in contact. After changes, [`ContactSet::update`] is due.
     pub(crate) member: Vec<bool>,
-    pub(crate) runs: Runs,
+    pub(crate) runs: RowSegments,
     bodies: Vec<BodyContact>,
     /// The greatest |gap| in contact.
     pub(crate) greatest_gap: f64,
@@ -35,7 +35,7 @@ impl ContactSet {
     pub(crate) fn new(cells: usize, bodies: usize) -> ContactSet {
         ContactSet {
             member: vec![false; cells],
-            runs: Runs::with_capacity(cells),
+            runs: RowSegments::with_capacity(cells),
             bodies: vec![BodyContact::default(); bodies],
             greatest_gap: 0.0,
             version: 0,

@@ -12,7 +12,7 @@ mod preconditioner;
 mod problem;
 mod resting_position;
 mod rigid_motion;
-mod runs;
+mod row_segments;
 mod stiffness;
 mod trace;
 

@@ -1,13 +1,13 @@
 //! The passes of the solvers over their fields.
 //!
-//! Each pass works on pieces of [`Runs`], along which the motion of a body is affine, and does everything that needs the
+//! Each pass works on pieces of [`RowSegments`], along which the motion of a body is affine, and does everything that needs the
 //! same fields at once. Sums are taken for each body: Σ B f of its modes B from Σ f and Σ j f of every piece.
 
 use crate::parallel::Rows;
 use crate::solver::bands::{Bands, Found};
 use crate::solver::problem::Problem;
 use crate::solver::rigid_motion::{Line, ModeCoefficients};
-use crate::solver::runs::{PIECE_CELLS, Piece, Runs};
+use crate::solver::row_segments::{PIECE_CELLS, Piece, RowSegments};
 use crate::sum::{most, sum, sum_of_pairs};
 
 /// The numbers of the cells of a piece.
@@ -44,7 +44,7 @@ impl Passes {
     pub(crate) fn survey(
         &mut self,
         problem: &Problem<'_>,
-        runs: &Runs,
+        runs: &RowSegments,
         a: f64,
         motions: &[ModeCoefficients],
         fields: Fields<'_>,
@@ -85,7 +85,7 @@ impl Passes {
     pub(crate) fn penetration(
         &mut self,
         problem: &Problem<'_>,
-        runs: &Runs,
+        runs: &RowSegments,
         motions: &[ModeCoefficients],
         potential: &[f64],
     ) -> f64 {
@@ -105,7 +105,7 @@ impl Passes {
     pub(crate) fn residual(
         &mut self,
         problem: &Problem<'_>,
-        runs: &Runs,
+        runs: &RowSegments,
         motions: &[ModeCoefficients],
         potential: &[f64],
         z: &mut [f64],
@@ -132,7 +132,7 @@ impl Passes {
     pub(crate) fn overlaps(
         &mut self,
         problem: &Problem<'_>,
-        runs: &Runs,
+        runs: &RowSegments,
         z: &[f64],
         image: &[f64],
         direction: &[f64],
@@ -154,7 +154,7 @@ impl Passes {
     pub(crate) fn redirect(
         &mut self,
         problem: &Problem<'_>,
-        runs: &Runs,
+        runs: &RowSegments,
         [scale, beta]: [f64; 2],
         motions: &[ModeCoefficients],
         z: &[f64],
@@ -183,7 +183,7 @@ impl Passes {
     pub(crate) fn correct(
         &mut self,
         problem: &Problem<'_>,
-        runs: &Runs,
+        runs: &RowSegments,
         motions: &[Option<ModeCoefficients>],
         whole: bool,
         [pressure, shape]: [&[f64]; 2],
@@ -210,7 +210,7 @@ impl Passes {
     pub(crate) fn slope_and_curvature(
         &mut self,
         problem: &Problem<'_>,
-        runs: &Runs,
+        runs: &RowSegments,
         motions: &[ModeCoefficients],
         [potential, direction, image]: [&[f64]; 3],
     ) -> &[Found] {

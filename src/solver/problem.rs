@@ -3,7 +3,7 @@
 use crate::kernel::{LocalKernel, Workspace};
 use crate::parallel::Rows;
 use crate::solver::rigid_motion::{Freedom, Line, ModeCoefficients, Modes};
-use crate::solver::runs::Cut;
+use crate::solver::row_segments::Cut;
 use crate::solver::trace::Trace;
 use crate::sum::greatest;
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::contact::builder::memory::{Computed, Footprint, Memory, symmetry_of};
 use crate::contact::builder::{Builder, OwnGap};
 #[cfg(feature = "checkpoint")]
-use crate::contact::checkpoint::built::Built;
+use crate::contact::checkpoint::scene_fingerprint::Built;
 use crate::contact::computation::Computation;
 use crate::contact::distributed::gap::SharedGap;
 use crate::contact::indenter::Indenter;

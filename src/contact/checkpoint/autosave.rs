@@ -1,4 +1,4 @@
-//! Runs along a load history that are saved on their way.
+//! RowSegments along a load history that are saved on their way.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -1,11 +1,11 @@
 //! Checkpoint and resume: the state of a contact in a file, and on from there.
 
-mod assembled;
 pub(in crate::contact) mod autosave;
-pub(in crate::contact) mod built;
+mod distributed;
 mod format;
-mod of_ranks;
+mod redistribution;
 mod saved;
+pub(in crate::contact) mod scene_fingerprint;
 
 use std::path::Path;
 
@@ -16,8 +16,8 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
 use crate::parallel::catch_rank_loss;
+use distributed::Common;
 use format::{Kind, Whole};
-use of_ranks::Common;
 use saved::Saved;
 
 impl ViscoelasticContact {
@@ -73,11 +73,11 @@ impl ViscoelasticContact {
     pub(super) fn save_with(&self, path: &Path, progress: Option<&Progress>) -> Result<()> {
         let rows = self.computation.state.region.rows();
         if let Some(group) = rows.group() {
-            return catch_rank_loss(&rows, || of_ranks::save(self, path, progress, (&rows, &**group)));
+            return catch_rank_loss(&rows, || distributed::save(self, path, progress, (&rows, &**group)));
         }
-        let old = of_ranks::mark_at(path);
+        let old = distributed::mark_at(path);
         replace(path, |out| format::write(out, Kind::Whole, &Saved::of(self, progress)).map(drop))?;
-        old.into_iter().for_each(|old| of_ranks::remove_until(path, old));
+        old.into_iter().for_each(|old| distributed::remove_until(path, old));
         Ok(())
     }
 

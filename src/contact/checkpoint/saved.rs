@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::assembled::Assembled;
-use super::built::{Built, Fingerprint, difference};
+use super::redistribution::Assembled;
+use super::scene_fingerprint::{Built, Fingerprint, difference};
 use crate::contact::builder::build::windowed;
 use crate::contact::run::progress::Progress;
 use crate::contact::scene::Scene;

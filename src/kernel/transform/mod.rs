@@ -11,8 +11,8 @@
 //! * Rows and columns are independent of each other: threads share them, and the result is bitwise the same.
 
 mod column;
+mod distributed_transform;
 mod memory;
-mod shares;
 mod tasks;
 mod tiles;
 mod workspace;
@@ -23,7 +23,7 @@ use super::layout::Layout;
 use super::lines::Line;
 use crate::parallel::{TILE, for_each_share, rows_in_a_tile};
 use column::Column;
-pub(crate) use shares::Shares;
+pub(crate) use distributed_transform::Shares;
 use tasks::{Columns, ColumnsInPlace, RowsForward, RowsInverse, multiply_apart};
 use workspace::Lane;
 pub(crate) use workspace::TransformWorkspace;

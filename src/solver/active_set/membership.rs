@@ -10,7 +10,7 @@ use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{ResidualSums, Stop};
 use crate::solver::passes::{NUMBERS, add};
 use crate::solver::problem::{Problem, Solution};
-use crate::solver::runs::Piece;
+use crate::solver::row_segments::Piece;
 
 impl ActiveSet {
     /// A = {p > 0}, or the cells that are likely to be in contact; other cells that carry pressure are to leave; the pressure

@@ -12,10 +12,10 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::{Deserialize, Serialize};
 
-use super::assembled::Assembled;
-use super::built::Fingerprint;
 use super::format::{self, Kind, Whole};
+use super::redistribution::Assembled;
 use super::saved::{check, check_run};
+use super::scene_fingerprint::Fingerprint;
 use crate::contact::run::progress::Progress;
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;

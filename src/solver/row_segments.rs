@@ -1,4 +1,4 @@
-//! Runs: cells in contact that follow each other in memory, and the pieces of rows in which passes visit them.
+//! RowSegments: cells in contact that follow each other in memory, and the pieces of rows in which passes visit them.
 
 use std::ops::Range;
 
@@ -27,13 +27,13 @@ pub(crate) struct Cut<'a> {
 
 /// The runs, each as its first cell and the one after its last.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Runs {
+pub(crate) struct RowSegments {
     runs: Vec<[u32; 2]>,
 }
 
-impl Runs {
-    pub(crate) fn with_capacity(cells: usize) -> Runs {
-        Runs { runs: Vec::with_capacity(cells.div_ceil(2)) }
+impl RowSegments {
+    pub(crate) fn with_capacity(cells: usize) -> RowSegments {
+        RowSegments { runs: Vec::with_capacity(cells.div_ceil(2)) }
     }
 
     /// Finds the runs of members of a set.
@@ -150,7 +150,7 @@ mod tests {
     fn runs_are_the_members() {
         for (cells, period, length) in [(1, 1, 1), (100, 7, 3), (96, 48, 40), (97, 97, 97), (64, 33, 32), (200, 1, 0)] {
             let member: Vec<bool> = (0..cells).map(|k| k % period < length).collect();
-            let mut runs = Runs::with_capacity(cells);
+            let mut runs = RowSegments::with_capacity(cells);
             runs.find(&member);
             let mut found = vec![false; cells];
             runs.cells().for_each(|k| found[k] = true);
@@ -166,7 +166,7 @@ mod tests {
         let member: Vec<bool> = (0..cells).map(|k| k % 1000 > 30 && k != 500).collect();
         let owner: Vec<u16> =
             (0..cells).map(|k| u16::from(k % 700 > 130) + u16::from(k % 9 == 4 && k > 3500)).collect();
-        let mut runs = Runs::with_capacity(cells);
+        let mut runs = RowSegments::with_capacity(cells);
         runs.find(&member);
         for (columns, owner) in
             [(usize::MAX, None), (300, None), (7, None), (300, Some(&owner)), (usize::MAX, Some(&owner))]
