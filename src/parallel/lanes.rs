@@ -13,7 +13,7 @@ pub(crate) trait Task {
     fn run(&self, k: usize, lane: &mut Self::Lane, share: &mut [Self::Item]);
 }
 
-/// RowSegments `task` on the shares of `data`, `length` values each, one lane per share: in parallel if there are several
+/// Runs `task` on the shares of `data`, `length` values each, one lane per share: in parallel if there are several
 /// lanes and the feature `rayon` is on.
 pub(crate) fn for_each_share<T: Task + Sync>(task: &T, lanes: &mut [T::Lane], data: &mut [T::Item], length: usize)
 where
@@ -61,7 +61,7 @@ impl<T: Task> WithSimd for Vectorised<'_, T> {
     }
 }
 
-/// RowSegments both closures, in parallel if they are `shared` and the feature `rayon` is on.
+/// Runs both closures, in parallel if they are `shared` and the feature `rayon` is on.
 pub(crate) fn join(shared: bool, first: impl FnOnce() + Send, second: impl FnOnce() + Send) {
     #[cfg(feature = "rayon")]
     if shared {
@@ -82,7 +82,7 @@ fn in_parallel(first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Sen
     rayon::join(first, second);
 }
 
-/// RowSegments `job`, which works on fields of so many cells, on a thread of the pool if threads share the work. A call from a thread
+/// Runs `job`, which works on fields of so many cells, on a thread of the pool if threads share the work. A call from a thread
 /// outside of the pool goes through its queue, which allocates a block for 63 calls: many loops go through it once.
 pub(crate) fn in_pool<T: Send>(cells: usize, job: impl FnOnce() -> T + Send) -> T {
     #[cfg(feature = "rayon")]

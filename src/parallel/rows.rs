@@ -290,7 +290,7 @@ pub(crate) fn unwind_rank_loss(error: RanksError) -> ! {
     resume_unwind(Box::new(RankLoss(error)))
 }
 
-/// RowSegments what may need a rank that has left, which is then an error.
+/// Runs `job`; the loss of a rank becomes `RanksError::Left`.
 pub(crate) fn catch_rank_loss<T>(rows: &Rows, job: impl FnOnce() -> Result<T>) -> Result<T> {
     if !rows.are_shared() {
         return job();

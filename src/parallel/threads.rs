@@ -20,7 +20,7 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// RowSegments `job` on `size` threads, each with its rank; returns what each of them returned, in their order.
+    /// Runs `job` on `size` threads, each with its rank; returns what each of them returned, in their order.
     ///
     /// A rank that is done, or panics, has left: calls in which others wait for it fail with [`RanksError::Left`]. When all
     /// have ended, a panic goes on in the caller.

@@ -57,7 +57,7 @@ impl Extent {
         })
     }
 
-    /// RowSegments `compute` on domains that grow until they contain the contact.
+    /// Runs `compute` on domains that grow until they contain the contact.
     pub(super) fn held<T>(&self, compute: impl Fn(&Extent) -> Result<T>) -> Result<T> {
         let mut extent = *self;
         for _ in 0..MAX_GROWTHS {
@@ -70,7 +70,7 @@ impl Extent {
     }
 }
 
-/// RowSegments on successive meshes, each twice as fine as the last.
+/// Runs on successive meshes, each twice as fine as the last.
 struct Meshes {
     across: f64,
     /// Differences between each mesh and the one before.

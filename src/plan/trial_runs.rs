@@ -129,7 +129,7 @@ impl Scene<'_> {
         }
     }
 
-    /// RowSegments on domains of several sizes until the contact fills one well; returns the extent of the contact.
+    /// Runs on domains of several sizes until the contact fills one well; returns the extent of the contact.
     pub(super) fn extent(&self) -> Result<Extent> {
         let mut lengths = [self.first_length()?; 2];
         for _ in 0..MAX_DOMAINS {

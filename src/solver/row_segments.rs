@@ -1,4 +1,4 @@
-//! RowSegments: cells in contact that follow each other in memory, and the pieces of rows in which passes visit them.
+//! Row segments: cells in contact that follow each other in memory, and the pieces of rows in which passes visit them.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! RowSegments along a load history that are saved on their way.
+//! Runs along a load history that are saved on their way.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;

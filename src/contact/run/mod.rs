@@ -1,4 +1,4 @@
-//! RowSegments along a load history.
+//! Runs along a load history.
 //!
 //! `follow` takes the next step: of given length, or as long as its error allows. An adaptive step is proposed, tried, judged
 //! by its error, and accepted or tried again shorter (`adaptive_step`); `step_control` holds the error, the past steps and the

@@ -276,7 +276,7 @@ fn blocks_of(rows: ops::Range<usize>, height: usize) -> ops::Range<usize> {
     if rows.is_empty() { 0..0 } else { rows.start >> height..rows.end.div_ceil(1 << height) }
 }
 
-/// RowSegments a pass from a level to the next one; where blocks of this height are to be `gathered`, on own rows.
+/// Runs a pass from a level to the next one; where blocks of this height are to be `gathered`, on own rows.
 fn raise<T: Task<Lane = RowBuffers, Item = f64> + Sync>(
     task: &T,
     rows: &Rows,
@@ -295,7 +295,7 @@ fn raise<T: Task<Lane = RowBuffers, Item = f64> + Sync>(
     rows.gather_rows(own, &mut level.value, |rank| columns * of(rank).len());
 }
 
-/// RowSegments a pass over rows of a level from the `first` on, each thread with some of them.
+/// Runs a pass over rows of a level from the `first` on, each thread with some of them.
 fn run<T: Task<Lane = RowBuffers, Item = f64> + Sync>(
     task: &T,
     buffers: &mut [RowBuffers],
