@@ -165,6 +165,7 @@ pub mod contact;
 mod error;
 mod events;
 mod extent;
+mod fft;
 #[cfg(any(feature = "checkpoint", feature = "csv", feature = "npy", feature = "plot", feature = "vtk"))]
 mod file;
 pub mod geometry;

@@ -4,17 +4,16 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 use num_complex::Complex64;
-use realfft::RealFftPlanner;
-use rustfft::FftPlanner;
 
+use crate::fft::{Lines, fourier_coefficients, real_rows};
 use crate::parallel::{Rows, part, unwind_rank_loss};
 
 /// Fourier coefficients of a real field on `cells` points: amplitudes of exp(2πi (k1 i/n1 + k2 j/n2)), normalised so
-/// that the sum of all waves is the field. Only those with k2 ≥ 0 are stored; the others are their conjugates.
+/// that the sum of all waves is the field. Coefficients of k2 ≥ 0 are stored; the others are their conjugates.
 #[derive(Debug, Clone)]
 pub(super) struct HeightSpectrum {
     cells: [usize; 2],
-    /// The k2 that are here: 0 to n2/2, or some of them where ranks share them out.
+    /// The stored k2: 0 to n2/2, or the k2 of this rank.
     columns: Range<usize>,
     /// For each k2 all k1, the negative ones after the positive.
     amplitudes: Vec<Complex64>,
@@ -37,84 +36,41 @@ impl HeightSpectrum {
         size_of::<Complex64>() as u128 * (cells[1] as u128 / 2 + 1) * cells[0] as u128
     }
 
-    /// All coefficients zero.
-    pub(super) fn zero(cells: [usize; 2]) -> HeightSpectrum {
-        HeightSpectrum::zero_of(cells, 0..cells[1] / 2 + 1)
-    }
-
-    /// All coefficients of these k2 zero.
-    pub(super) fn zero_of(cells: [usize; 2], columns: Range<usize>) -> HeightSpectrum {
+    /// Zeros for the k2 in `columns`.
+    pub(super) fn zero(cells: [usize; 2], columns: Range<usize>) -> HeightSpectrum {
         let amplitudes = vec![Complex64::ZERO; columns.len() * cells[0]];
         HeightSpectrum { cells, columns, amplitudes }
     }
 
     /// The coefficients of a field without missing values, one value per point.
     pub(super) fn of(cells: [usize; 2], field: &[f64]) -> HeightSpectrum {
-        let [n1, n2] = cells;
-        let along2 = RealFftPlanner::new().plan_fft_forward(n2);
-        let (mut input, mut output) = (along2.make_input_vec(), along2.make_output_vec());
-        let mut spectrum = HeightSpectrum::zero(cells);
-        for (i, row) in field.chunks_exact(n2).enumerate() {
-            input.copy_from_slice(row);
-            let done = along2.process(&mut input, &mut output);
-            debug_assert!(done.is_ok());
-            for (k2, value) in output.iter().enumerate() {
-                spectrum.amplitudes[k2 * n1 + i] = value / (n1 * n2) as f64;
-            }
-        }
-        FftPlanner::new().plan_fft_forward(n1).process(&mut spectrum.amplitudes);
-        spectrum
+        HeightSpectrum { cells, columns: 0..cells[1] / 2 + 1, amplitudes: fourier_coefficients(field, cells) }
     }
 
     /// The field, by the inverse transform.
     pub(super) fn heights(mut self) -> Vec<f64> {
-        let [n1, _] = self.cells;
-        self.transform_columns();
-        self.rows(n1, |i, k2| self.amplitudes[k2 * n1 + i])
+        let [n1, n2] = self.cells;
+        Lines::new(n1).inverse(&mut self.amplitudes);
+        real_rows(n1, n2, |i, k2| self.amplitudes[k2 * n1 + i])
     }
 
-    /// Own rows of the field, where ranks share out the k2. A call of all ranks.
-    pub(super) fn own_heights(mut self, rows: &Rows) -> Vec<f64> {
+    /// The local rows of the field, where each rank holds some k2. A call of all ranks.
+    pub(super) fn local_heights(mut self, rows: &Rows) -> Vec<f64> {
         let Some(group) = rows.group().cloned() else { return self.heights() };
         let ([n1, n2], own) = (self.cells, rows.own().len());
-        self.transform_columns();
-        let amplitudes = std::mem::take(&mut self.amplitudes);
+        Lines::new(n1).inverse(&mut self.amplitudes);
         let ranks = 0..rows.ranks();
-        let mut send = Vec::with_capacity(amplitudes.len());
+        let mut send = Vec::with_capacity(self.amplitudes.len());
         for rank in ranks.clone() {
-            amplitudes.chunks_exact(n1).for_each(|column| send.extend_from_slice(&column[rows.of(rank)]));
+            self.amplitudes.chunks_exact(n1).for_each(|column| send.extend_from_slice(&column[rows.of(rank)]));
         }
-        drop(amplitudes);
+        drop(self.amplitudes);
         let sent: Vec<usize> = ranks.clone().map(|rank| self.columns.len() * rows.of(rank).len()).collect();
         let counts: Vec<usize> = ranks.map(|rank| own * part(n2 / 2 + 1, rank, rows.ranks()).len()).collect();
         let mut received = vec![Complex64::ZERO; (n2 / 2 + 1) * own];
         group.exchange(&send, &sent, &mut received, &counts).unwrap_or_else(|error| unwind_rank_loss(error));
         drop(send);
-        self.rows(own, |i, k2| received[k2 * own + i])
-    }
-
-    fn transform_columns(&mut self) {
-        FftPlanner::new().plan_fft_inverse(self.cells[0]).process(&mut self.amplitudes);
-    }
-
-    /// `count` rows of the field, of their coefficients.
-    fn rows(&self, count: usize, coefficient: impl Fn(usize, usize) -> Complex64) -> Vec<f64> {
-        let n2 = self.cells[1];
-        let along2 = RealFftPlanner::new().plan_fft_inverse(n2);
-        let mut input = along2.make_input_vec();
-        let mut field = vec![0.0; count * n2];
-        for (i, row) in field.chunks_exact_mut(n2).enumerate() {
-            for (k2, value) in input.iter_mut().enumerate() {
-                *value = coefficient(i, k2);
-                if k2 == 0 || 2 * k2 == n2 {
-                    // Real except for rounding, which the transform would reject.
-                    value.im = 0.0;
-                }
-            }
-            let done = along2.process(&mut input, row);
-            debug_assert!(done.is_ok());
-        }
-        field
+        real_rows(own, n2, |i, k2| received[k2 * own + i])
     }
 
     /// All waves stored.
@@ -132,7 +88,7 @@ impl HeightSpectrum {
         self.amplitudes[wave.index]
     }
 
-    /// Sets the amplitude of a wave, and of its conjugate if that is stored.
+    /// Sets the amplitude of a wave, and of its conjugate if the conjugate is stored.
     pub(super) fn set(&mut self, number: [i64; 2], amplitude: Complex64) {
         let n1 = self.cells[0] as i64;
         let index = |k1: i64| ((number[1] - self.columns.start as i64) * n1 + k1.rem_euclid(n1)) as usize;
@@ -209,7 +165,7 @@ mod tests {
     #[test]
     fn a_real_amplitude_is_a_cosine() {
         for number in [[-2, 1], [2, 0]] {
-            let mut spectrum = HeightSpectrum::zero([6, 5]);
+            let mut spectrum = HeightSpectrum::zero([6, 5], 0..3);
             spectrum.set(number, Complex64::from(0.5));
             for (k, z) in spectrum.heights().iter().enumerate() {
                 let periods = number[0] as f64 * (k / 5) as f64 / 6.0 + number[1] as f64 * (k % 5) as f64 / 5.0;

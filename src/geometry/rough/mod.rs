@@ -127,7 +127,7 @@ impl Waves {
         let mut random = ChaCha8Rng::seed_from_u64(spec.seed);
         let mut sums = vec![[0.0; 2]; columns.len()];
         let first = columns.start as i64;
-        let mut spectrum = HeightSpectrum::zero_of(cells, columns);
+        let mut spectrum = HeightSpectrum::zero(cells, columns);
         for k1 in -highest[0]..=highest[0] {
             // The position in the random stream depends on the wave alone, so that it is the same on every mesh.
             random.set_stream(if k1 < 0 { -2 * k1 - 1 } else { 2 * k1 } as u64);

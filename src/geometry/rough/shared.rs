@@ -68,7 +68,7 @@ impl Rough {
                 .gather(sums.into_iter().flatten(), count, |all| scale(&spec, all.as_chunks::<2>().0))
                 .unwrap_or(Err(Error::Missing { part: "ranks" }))?;
             spectrum.scale(factor);
-            let heights = spectrum.own_heights(&rows);
+            let heights = spectrum.local_heights(&rows);
             let highest = rows.greatest(heights.iter().copied().fold(f64::NEG_INFINITY, f64::max));
             let invalid = heights.iter().position(|z| !z.is_finite());
             let own = invalid.map_or([f64::INFINITY, 0.0], |k| [(rows.own().start * n2 + k) as f64, heights[k]]);

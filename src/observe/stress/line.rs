@@ -7,7 +7,7 @@
 
 use num_complex::Complex64;
 
-use super::plane::{pairs_below_wave, set_pair, two};
+use super::plane::{SIGNS, pairs_below_wave, set_pair, two};
 use super::rectangle::corner;
 use super::waves::Wave;
 use super::{Source, Stress, SubsurfaceStress};
@@ -48,7 +48,7 @@ impl<'a> LineBelow<'a> {
         // waves that are summed across are transformed along the line alone, after a transform of both axes
         let count = if *body == HalfSpace::Periodic { transform.len() } else { transform.periods()[self.axis] };
         let norm = 1.0 / count as f64;
-        self.sums.iter_mut().for_each(|sum| transform.inverse_lines(self.axis, sum));
+        self.sums.iter_mut().for_each(|sum| transform.along[self.axis].inverse(sum));
         for k in 0..grid.cells()[self.axis] {
             let mut stress = Stress::default();
             (0..3).for_each(|pair| set_pair(&mut stress, pair, norm * self.sums[pair][k]));
@@ -76,15 +76,16 @@ impl<'a> LineBelow<'a> {
         for distance in 0..=line.max(cells[across] - 1 - line) {
             corners(distance as f64 + 0.5, &mut far);
             for (pair, sum) in sums.iter_mut().enumerate() {
+                let signs = two(SIGNS[axis], pair);
                 one.fill(Complex64::default());
                 for k in 0..cells[axis] {
                     let own = (far[k + 1] + -1.0 * far[k]) + -1.0 * (near[k + 1] + -1.0 * near[k]);
                     let value = two(own.components(), pair);
                     // the other way along the line
-                    one[(period - k) % period] = signed(value, pair, axis);
+                    one[(period - k) % period] = Complex64::new(signs.re * value.re, signs.im * value.im);
                     one[k] = value;
                 }
-                stress.transform.forward_lines(axis, one);
+                stress.transform.along[axis].forward(one);
                 if line >= distance {
                     let terms = one.iter().zip(of_line(line - distance));
                     sum.iter_mut().zip(terms).for_each(|(sum, (a, b))| *sum += a * b);
@@ -126,15 +127,6 @@ impl<'a> LineBelow<'a> {
     }
 }
 
-/// A pair of components where the coordinate along `axis` changes its sign.
-fn signed(value: Complex64, pair: usize, axis: usize) -> Complex64 {
-    match (pair, axis) {
-        (0, _) => value,
-        (2, 0) => Complex64::new(-value.re, value.im),
-        _ => Complex64::new(value.re, -value.im),
-    }
-}
-
 /// The transforms of the lines of a source along an axis.
 fn lines_of(stress: &SubsurfaceStress, axis: usize, source: &Source) -> Result<Vec<Complex64>> {
     let ([n1, n2], period) = (stress.grid.cells(), stress.transform.periods()[axis]);
@@ -145,6 +137,6 @@ fn lines_of(stress: &SubsurfaceStress, axis: usize, source: &Source) -> Result<V
             *value = Complex64::from(source.field[if axis == 0 { k * n2 + j } else { j * n2 + k }]);
         }
     }
-    stress.transform.forward_lines(axis, &mut lines);
+    stress.transform.along[axis].forward(&mut lines);
     Ok(lines)
 }

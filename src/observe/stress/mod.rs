@@ -1,6 +1,5 @@
 //! The stress below the surface of a half-space.
 
-mod convolution;
 mod greatest;
 mod line;
 mod plane;
@@ -16,10 +15,10 @@ pub use tensor::Stress;
 use num_complex::Complex64;
 
 use crate::error::{Error, KernelError, Result, exact_length, least_length, within};
+use crate::fft::Plane;
 use crate::kernel::{HalfSpace, fast_length};
 use crate::observe::profile::{Axis, line_through};
 use crate::{Grid, InfluenceKernel, memory};
-use convolution::Transform;
 use line::LineBelow;
 use rectangle::Weights;
 
@@ -80,7 +79,7 @@ pub struct SubsurfaceStress {
     grid: Grid,
     body: HalfSpace,
     sources: Vec<Source>,
-    transform: Transform,
+    transform: Plane,
     least_depth: f64,
 }
 
@@ -142,7 +141,7 @@ impl SubsurfaceStress {
         // spectra, three buffers, and the closed forms of each source
         let per_source = 16 * padded + 56 * grid.len() as u128;
         memory::check("the stress below the surface", fields.len() as u128 * per_source + 3 * 16 * padded)?;
-        let transform = Transform::new(periods);
+        let transform = Plane::new(periods);
         let mut work = vec![Complex64::default(); transform.len()];
         let source = |&(_, field, weights): &(_, &[f64], Weights)| {
             let mut spectrum = vec![Complex64::default(); transform.len()];

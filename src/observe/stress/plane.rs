@@ -2,11 +2,11 @@
 
 use num_complex::Complex64;
 
-use super::convolution::{Transform, share_lines};
 use super::rectangle::{Weights, corner, edge, exchanged};
 use super::waves::{Wave, below_wave};
 use super::{Source, Stress, SubsurfaceStress};
 use crate::Grid;
+use crate::fft::{Plane, for_each_line_share};
 use crate::kernel::HalfSpace;
 
 /// Signs of the components 11, 22, 33, 12, 13, 23 where x1 or x2 changes its sign.
@@ -14,7 +14,7 @@ pub(super) const SIGNS: [[f64; 6]; 2] = [[1.0, 1.0, 1.0, -1.0, -1.0, 1.0], [1.0,
 
 /// Buffers for planes.
 pub(super) struct Buffers {
-    transform: Transform,
+    transform: Plane,
     /// Two components of the sum over the sources, and of what one of them adds.
     sum: Vec<Complex64>,
     one: Vec<Complex64>,
@@ -60,7 +60,7 @@ impl Buffers {
                 } else {
                     spread(grid, self.transform.periods(), table, pair, &mut self.one);
                     self.transform.forward(&mut self.one, &mut self.work);
-                    share_lines(&mut self.sum, p2, &|first, sums| {
+                    for_each_line_share(&mut self.sum, p2, &|first, sums| {
                         let terms = self.one[first * p2..].iter().zip(&source.spectrum[first * p2..]);
                         sums.iter_mut().zip(terms).for_each(|(sum, (a, b))| *sum += a * b);
                     });
@@ -68,7 +68,7 @@ impl Buffers {
             }
             self.transform.inverse(&mut self.sum, &mut self.work);
             let norm = 1.0 / self.transform.len() as f64;
-            share_lines(plane, n2, &|first, stresses| {
+            for_each_line_share(plane, n2, &|first, stresses| {
                 let rows = self.sum[first * p2..].chunks_exact(p2);
                 for (row, stresses) in rows.zip(stresses.chunks_exact_mut(n2)) {
                     row.iter().zip(stresses).for_each(|(value, stress)| set_pair(stress, pair, norm * value));
@@ -101,7 +101,7 @@ fn spread(grid: &Grid, [p1, p2]: [usize; 2], table: &[Stress], pair: usize, out:
         back if back < cells[axis] => Some((back, true)),
         _ => None,
     };
-    share_lines(out, p2, &|first, rows| {
+    for_each_line_share(out, p2, &|first, rows| {
         for (row, out) in (first..).zip(rows.chunks_exact_mut(p2)) {
             out.fill(Complex64::default());
             let Some((i, up)) = distance(0, row, p1) else { continue };
@@ -124,7 +124,7 @@ fn tabulate_rectangle(grid: &Grid, depth: f64, weights: Weights, table: &mut [St
         out.clear();
         out.extend((0..=n2).map(|j| corner((i as f64 - 0.5) * d1, (j as f64 - 0.5) * d2, weights)));
     };
-    share_lines(table, n2, &|first, rows| {
+    for_each_line_share(table, n2, &|first, rows| {
         let (mut lower, mut upper) = (Vec::new(), Vec::new());
         row(first, &mut lower);
         for (i, out) in (first..).zip(rows.chunks_exact_mut(n2)) {
@@ -149,7 +149,7 @@ fn tabulate_strip(grid: &Grid, across: usize, depth: f64, weights: Weights, tabl
 /// Adds a pair of components below the waves of a source.
 fn add_waves(grid: &Grid, depth: f64, source: &Source, pair: usize, sum: &mut [Complex64]) {
     let ([n1, n2], [d1, d2]) = (grid.cells(), grid.spacing());
-    share_lines(sum, n2, &|begin, rows| {
+    for_each_line_share(sum, n2, &|begin, rows| {
         for (k1, row) in (begin..).zip(rows.chunks_exact_mut(n2)) {
             let first = Wave::new(k1, n1, d1);
             for (k2, sum) in row.iter_mut().enumerate() {

@@ -1,0 +1,174 @@
+//! Fourier transforms of planes, for surfaces and for the stress below them. The convolution of a contact has its own,
+//! [`kernel`](crate::kernel): it is shared by ranks, padded and folded.
+
+use std::sync::Arc;
+
+use num_complex::Complex64;
+use realfft::RealFftPlanner;
+use rustfft::{Fft, FftPlanner};
+
+use crate::parallel::{join, lanes};
+
+/// Complex transforms of lines of one length that lie one after the other.
+#[derive(Clone)]
+pub(crate) struct Lines {
+    forward: Arc<dyn Fft<f64>>,
+    inverse: Arc<dyn Fft<f64>>,
+}
+
+impl Lines {
+    pub(crate) fn new(length: usize) -> Lines {
+        let mut planner = FftPlanner::new();
+        Lines { forward: planner.plan_fft_forward(length), inverse: planner.plan_fft_inverse(length) }
+    }
+
+    /// Length of a line.
+    pub(crate) fn len(&self) -> usize {
+        self.forward.len()
+    }
+
+    /// Σ x_n e^(−2πi kn/N) of each line.
+    pub(crate) fn forward(&self, lines: &mut [Complex64]) {
+        self.process(&self.forward, lines);
+    }
+
+    /// The inverse of [`Lines::forward`], times the length.
+    pub(crate) fn inverse(&self, lines: &mut [Complex64]) {
+        self.process(&self.inverse, lines);
+    }
+
+    fn process(&self, plan: &Arc<dyn Fft<f64>>, lines: &mut [Complex64]) {
+        if self.len() > 1 {
+            for_each_line_share(lines, self.len(), &|_, share| plan.process(share));
+        }
+    }
+}
+
+/// Complex transforms of planes of one size, row-major.
+#[derive(Clone)]
+pub(crate) struct Plane {
+    /// Transforms along x1 and x2.
+    pub(crate) along: [Lines; 2],
+}
+
+impl std::fmt::Debug for Plane {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Plane").field("periods", &self.periods()).finish_non_exhaustive()
+    }
+}
+
+impl Plane {
+    pub(crate) fn new(periods: [usize; 2]) -> Plane {
+        Plane { along: periods.map(Lines::new) }
+    }
+
+    /// Lengths along x1 and x2.
+    pub(crate) fn periods(&self) -> [usize; 2] {
+        self.along.each_ref().map(Lines::len)
+    }
+
+    /// Number of values.
+    pub(crate) fn len(&self) -> usize {
+        self.periods().iter().product()
+    }
+
+    /// Transforms rows and columns in place; `work` has the same length.
+    pub(crate) fn forward(&self, values: &mut [Complex64], work: &mut [Complex64]) {
+        self.apply(Lines::forward, values, work);
+    }
+
+    /// The inverse of [`Plane::forward`], times [`Plane::len`].
+    pub(crate) fn inverse(&self, values: &mut [Complex64], work: &mut [Complex64]) {
+        self.apply(Lines::inverse, values, work);
+    }
+
+    fn apply(&self, transform: fn(&Lines, &mut [Complex64]), values: &mut [Complex64], work: &mut [Complex64]) {
+        let [p1, p2] = self.periods();
+        transform(&self.along[1], values);
+        if p1 > 1 {
+            transpose(values, work, [p1, p2]);
+            transform(&self.along[0], work);
+            transpose(work, values, [p2, p1]);
+        }
+    }
+}
+
+/// The Fourier coefficients of a real field on `cells` points, normalised so that the sum of all waves is the field: for
+/// each k2 from 0 to n2/2 all k1, the negative ones after the positive. The other k2 have the conjugate coefficients.
+pub(crate) fn fourier_coefficients(field: &[f64], [n1, n2]: [usize; 2]) -> Vec<Complex64> {
+    let along2 = RealFftPlanner::new().plan_fft_forward(n2);
+    let (mut input, mut output) = (along2.make_input_vec(), along2.make_output_vec());
+    let mut coefficients = vec![Complex64::ZERO; (n2 / 2 + 1) * n1];
+    for (i, row) in field.chunks_exact(n2).enumerate() {
+        input.copy_from_slice(row);
+        let done = along2.process(&mut input, &mut output);
+        debug_assert!(done.is_ok());
+        for (k2, value) in output.iter().enumerate() {
+            coefficients[k2 * n1 + i] = value / (n1 * n2) as f64;
+        }
+    }
+    Lines::new(n1).forward(&mut coefficients);
+    coefficients
+}
+
+/// Real rows of n2 values: `coefficient` returns the coefficient k2 of the row i.
+pub(crate) fn real_rows(rows: usize, n2: usize, coefficient: impl Fn(usize, usize) -> Complex64) -> Vec<f64> {
+    let along2 = RealFftPlanner::new().plan_fft_inverse(n2);
+    let mut input = along2.make_input_vec();
+    let mut field = vec![0.0; rows * n2];
+    for (i, row) in field.chunks_exact_mut(n2).enumerate() {
+        for (k2, value) in input.iter_mut().enumerate() {
+            *value = coefficient(i, k2);
+            if k2 == 0 || 2 * k2 == n2 {
+                // Real except for rounding, which the transform would reject.
+                value.im = 0.0;
+            }
+        }
+        let done = along2.process(&mut input, row);
+        debug_assert!(done.is_ok());
+    }
+    field
+}
+
+/// Calls `job` with shares of the lines of `values` and the index of the first line of each share. There are as many shares
+/// as threads for this number of values. The result of `job` for a line must not depend on other lines.
+pub(crate) fn for_each_line_share<T: Send>(values: &mut [T], length: usize, job: &(impl Fn(usize, &mut [T]) + Sync)) {
+    let shares = lanes(values.len());
+    halve(values, length, [0, shares], job);
+}
+
+fn halve<T: Send>(
+    values: &mut [T],
+    length: usize,
+    [first, shares]: [usize; 2],
+    job: &(dyn Fn(usize, &mut [T]) + Sync),
+) {
+    let middle = values.len() / length / 2;
+    if shares < 2 || middle == 0 {
+        return job(first, values);
+    }
+    let (before, after) = values.split_at_mut(middle * length);
+    join(
+        true,
+        || halve(before, length, [first, shares / 2], job),
+        || halve(after, length, [first + middle, shares - shares / 2], job),
+    );
+}
+
+/// Side of the blocks that are transposed at once: a block of either plane fits in the first cache.
+const BLOCK: usize = 16;
+
+fn transpose(from: &[Complex64], to: &mut [Complex64], [rows, columns]: [usize; 2]) {
+    for_each_line_share(to, rows, &|begin, share| {
+        let count = share.len() / rows;
+        for second in (0..count).step_by(BLOCK) {
+            for first in (0..rows).step_by(BLOCK) {
+                for j in second..(second + BLOCK).min(count) {
+                    for i in first..(first + BLOCK).min(rows) {
+                        share[j * rows + i] = from[i * columns + begin + j];
+                    }
+                }
+            }
+        }
+    });
+}
