@@ -1,5 +1,5 @@
-//! Fourier transforms of planes, for surfaces and for the stress below them. The convolution of a contact has its own,
-//! [`kernel`](crate::kernel): it is shared by ranks, padded and folded.
+//! Fourier transforms of planes, for surfaces and for the stress below them. The convolution of a contact has
+//! padded and folded transforms that ranks share, in [`kernel`](crate::kernel).
 
 use std::sync::Arc;
 

@@ -62,8 +62,8 @@ impl fmt::Debug for Profile {
 /// bodies also Greenwood, Int. J. Mech. Sci. 52, 2010).
 ///
 /// A row of independent elements, each with the relaxation modulus E(t) per unit length, is indented by
-/// the profile g(x). Force, approach and contact radius equal the three-dimensional ones, as
-/// long as that is a single circle; the pressure follows from the line load q by Abel's integral.
+/// the profile g(x). Force, approach and contact radius equal their three-dimensional values, as
+/// long as the contact is a single circle; the pressure follows from the line load q by Abel's integral.
 /// In time it advances by the exponential rule, third order in the step, second where elements come into
 /// contact again and for bodies without elastic response; in space it is second order in the width of the
 /// elements: choose both fine.

@@ -17,7 +17,8 @@ use crate::rheology::{CreepSpectrum, Material, RelaxationSpectrum};
 ///
 /// E being the relaxation modulus that belongs to the contact compliance C. For a step load
 /// a³ = (3/4) R W C(t); with the compliance of an incompressible Maxwell body, or of a Zener body with
-/// G = G_K, this is Table 1 of the source [paper](crate::paper), drawn in its Figures 4 and 5, and it holds for every other exponential series too.
+/// G = G_K, this is Table 1 of the source [paper](crate::paper), drawn in its Figures 4 and 5. It holds for every other
+/// exponential series too.
 ///
 /// ```
 /// use viscocontact::analytic::GrowingSphere;
@@ -40,7 +41,7 @@ pub struct GrowingSphere {
     rule: GaussLegendre,
 }
 
-/// Number of panels graded towards a singular end, each a tenth of the one before.
+/// Number of panels graded towards a singular end, each a tenth of the previous one.
 const GRADES: i32 = 12;
 /// Decay times after which an exponential kernel is negligible: e^(−45) < 3e-20.
 const MAX_DECAY_TIMES: f64 = 45.0;

@@ -58,9 +58,9 @@ impl HertzEllipse {
         let max_pressure = if force > 0.0 { 1.5 * force / (PI * a * b) } else { 0.0 };
         finite("semi-axis", a)?;
         finite("peak pressure", max_pressure)?;
-        finite("approach", max_pressure / modulus * b * k)?;
+        let approach = finite("approach", max_pressure / modulus * b * k)?;
         let semi_axes = if radii[0] >= radii[1] { [a, b] } else { [b, a] };
-        Ok(HertzEllipse { semi_axes, max_pressure, approach: max_pressure / modulus * b * k })
+        Ok(HertzEllipse { semi_axes, max_pressure, approach })
     }
 
     /// Semi-axes of the contact along x1 and x2 \[m\].

@@ -10,7 +10,7 @@
 //! | [`Wavy`] | A (1 − cos 2πx1/λ), or the sum of two such waves |
 //! | [`HeightMap`] | a measured surface |
 //! | [`Rough`] | a random self-affine surface |
-//! | [`SharedRough`] | the same, shared out between ranks |
+//! | [`SharedRough`] | a random self-affine surface distributed over ranks |
 //! | [`Sum`] | superposed shapes, such as roughness on a sphere |
 //! | [`Shifted`] | another shape, shifted in the plane |
 //! | [`Repeated`] | another shape, repeated periodically |
@@ -82,7 +82,7 @@ pub trait Geometry: Debug + Send + Sync {
     fn initial_gap(&self, x1: f64, x2: f64) -> f64;
 
     /// Writes the gap at every cell centre of `grid` into `gap` \[m\], which has one value per cell. Where
-    /// [ranks](crate::parallel) share out a contact, `grid` holds some rows of the whole: [`Grid::center`] gives their positions.
+    /// [ranks](crate::parallel) share a contact, `grid` holds the local rows: [`Grid::center`] gives their positions.
     ///
     /// Override it if a whole field is cheaper than its points one by one.
     ///
@@ -209,7 +209,7 @@ impl Gap {
         Ok(Gap { datum, above, owner })
     }
 
-    /// Swaps in the heights of a single body, checked, and leaves the old ones above their datum in `heights`.
+    /// Checks the heights of a single body and swaps them in; `heights` receives the old gap above its datum.
     pub(crate) fn exchange(&mut self, heights: &mut Vec<f64>, grid: &Grid) -> Result<()> {
         check(heights, grid)?;
         let datum = heights.iter().copied().fold(f64::INFINITY, f64::min);

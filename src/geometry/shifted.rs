@@ -28,7 +28,7 @@ impl Shifted {
         Shifted::of(Arc::new(shape), by)
     }
 
-    /// The same for a shared shape.
+    /// Like [`Shifted::new`], for a shared shape.
     pub(crate) fn of(shape: Arc<dyn Geometry>, by: [f64; 2]) -> Result<Shifted> {
         let by = [finite("shift along x1", by[0])?, finite("shift along x2", by[1])?];
         Ok(Shifted { shape, by })

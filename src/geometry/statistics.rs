@@ -40,7 +40,7 @@ pub struct SurfaceStatistics {
     pub rms_curvature: f64,
 }
 
-/// Mean squares of the derivatives: ∂z/∂x1, ∂z/∂x2 and the mean curvature.
+/// Mean squares of the derivatives ∂z/∂x1 and ∂z/∂x2 and of the mean curvature.
 type MeanSquares = [f64; 3];
 
 impl SurfaceStatistics {
@@ -60,10 +60,9 @@ impl SurfaceStatistics {
         positive("rms height", rms_height)?;
         // In units of the rms height, whose fourth power may underflow.
         let scaled = |power: i32| map.known().map(|z| ((z - mean) / rms_height).powi(power) / count).sum::<f64>();
-        let squares =
+        let [slope1, slope2, curvature] =
             if map.is_periodic() && map.missing() == 0 { spectral_derivatives(map) } else { central_differences(map) };
-        let rms_slopes =
-            [finite("rms slope along x1", squares[0].sqrt())?, finite("rms slope along x2", squares[1].sqrt())?];
+        let rms_slopes = [finite("rms slope along x1", slope1.sqrt())?, finite("rms slope along x2", slope2.sqrt())?];
         Ok(SurfaceStatistics {
             mean,
             rms_height,
@@ -71,7 +70,7 @@ impl SurfaceStatistics {
             kurtosis: finite("kurtosis of the heights", scaled(4))?,
             rms_slope: rms_slopes[0].hypot(rms_slopes[1]),
             rms_slopes,
-            rms_curvature: finite("rms curvature", squares[2].sqrt())?,
+            rms_curvature: finite("rms curvature", curvature.sqrt())?,
         })
     }
 }
@@ -275,7 +274,7 @@ mod tests {
             let (from, to) = (1.2 * TAU / 0.25, 0.9 * TAU * 32.0);
             let found = slope(&map.power_spectrum().unwrap(), from, to);
             assert!((found + 2.0 * (hurst + 1.0)).abs() < 0.15, "H = {hurst}: {found}");
-            // A part of it, which is not periodic.
+            // A cropped map is not periodic.
             let part = map.cropped([20, 30], [160, 160]).unwrap();
             let found = slope(&part.power_spectrum().unwrap(), from, to);
             assert!((found + 2.0 * (hurst + 1.0)).abs() < 0.3, "window, H = {hurst}: {found}");

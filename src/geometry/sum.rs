@@ -3,7 +3,7 @@ use std::sync::Arc;
 use crate::Grid;
 use crate::geometry::Geometry;
 
-/// Superposed shapes: the gap is the sum of theirs, and +∞ where one of them has nothing to touch.
+/// Superposed shapes: the gap is the sum of the gaps of the shapes, and +∞ where a shape has nothing to touch.
 ///
 /// ```
 /// use viscocontact::geometry::{Geometry, Sphere, Sum, Wavy};

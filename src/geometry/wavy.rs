@@ -46,7 +46,7 @@ impl Geometry for Wavy {
         // 1 − cos 2a = 2 sin² a avoids cancellation near the crest.
         let wave = |axis: usize, x: f64| {
             let periods = x / self.wavelength[axis];
-            // the number of periods overflows: the phase is lost, and any value of the wave is as good
+            // the number of periods overflows, and the phase is lost: any value of the wave serves
             let periods = if periods.is_finite() { periods } else { x % self.wavelength[axis] / self.wavelength[axis] };
             2.0 * self.amplitude[axis] * (PI * (periods - periods.round())).sin().powi(2)
         };

@@ -5,45 +5,45 @@ use std::ops::Range;
 use crate::Grid;
 use crate::extent::Extent;
 
-/// Weights of the two estimates of where the contact ends between a cell in contact and one that is not: the straight
-/// line through p² of the last two cells, which the coarse pressure of the last one pulls inwards, and the parabola
-/// through the three before the last, which overshoots. On a sphere their errors cancel with these.
+/// Weights of the two estimates of the end of contact between a cell in contact and a cell out of contact: the straight
+/// line through p² of the last two cells, which the coarse pressure of the last cell pulls inwards, and the parabola
+/// through the three cells before the last, which overshoots. On a sphere the errors cancel with these weights.
 const LAST_TWO: f64 = 0.6;
 const THREE_BEFORE: f64 = 0.4;
 
-/// The contact ends less than a cell beyond the centre of the last; estimates farther out than this are discarded.
+/// The contact ends less than a cell beyond the centre of the last cell; estimates farther out than this are discarded.
 const TOO_FAR: f64 = 1.3;
 
-/// Pressures that are mirror images of each other do not rise, whatever they are rounded to.
+/// Least ratio of a rise in pressure: mirrored pressures differ by rounding and do not count as a rise.
 const RISES: f64 = 1.0 + 1e-6;
 
-/// So many rows and columns beyond its corners the pressure decides on what is covered of a square.
+/// Rows and columns beyond the corners of a square whose pressure determines the covered part of the square.
 pub(crate) const REACH: usize = 3;
 
-/// Where contact ends between the centres of a cell in contact and of a neighbour that is not, in cells from the first.
+/// The end of contact between the centres of a cell in contact and of a neighbour out of contact, in cells from the first.
 pub(crate) enum End {
     /// At an edge of the shape, beyond which there is nothing to touch.
     OfShape,
-    /// Anywhere: the pressure has no root near the edge, as under a fast growing contact, where it ends within a cell.
+    /// Anywhere: p² has no zero near the edge, as under a fast growing contact, whose pressure drops to zero within a cell.
     Unknown,
     /// At the zero of the straight line through p² of the last two cells.
     Line(f64),
-    /// There, and at the zero of the parabola through p² of the three cells before the last.
+    /// At the zero of the line, and at the zero of the parabola through p² of the three cells before the last.
     LineAndParabola(f64, f64),
 }
 
-/// A pressure on a grid, or some rows of it, and where there is something to touch.
+/// A pressure on a grid or on some of its rows, and the gap.
 pub(crate) struct Pressed<'a> {
     pub(crate) grid: &'a Grid,
-    /// The row at which pressure and gap begin, where they are some rows: those beyond the grid are rows too, of the next
-    /// period or of nothing.
+    /// First row of pressure and gap if they hold some rows of the grid; `None` if they hold all. Rows beyond the grid belong
+    /// to the next period, or are empty.
     pub(crate) first: Option<isize>,
     /// Axes along which the bodies are periodic.
     pub(crate) periodic: [bool; 2],
     pub(crate) pressure: &'a [f64],
     /// The initial gap above its datum, +∞ where there is nothing to touch.
     pub(crate) gap: &'a [f64],
-    /// Where there is contact, if anywhere.
+    /// A rectangle of cells that contains the contact; `None` without contact.
     pub(crate) extent: Option<Extent>,
 }
 
@@ -63,7 +63,7 @@ impl Pressed<'_> {
         }
     }
 
-    /// How many cells are covered in a row of squares.
+    /// Covered area of a row of squares, in cells.
     pub(crate) fn covered_in_row(&self, i: usize) -> f64 {
         let (n, mut cells) = (self.grid.cells(), 0.0);
         if !self.squares(0).contains(&i) {
@@ -120,7 +120,7 @@ impl Pressed<'_> {
         0.5 * (sum + last[0] * start[1] - last[1] * start[0])
     }
 
-    /// How far contact reaches from the centre of a cell in contact towards its neighbour that is not, in cells.
+    /// Distance of the end of contact from the centre of a cell in contact towards its neighbour out of contact, in cells.
     fn reach(&self, from: [isize; 2], to: [isize; 2]) -> f64 {
         const TO_THE_RIM: f64 = 0.5;
         match self.end(from, to) {
@@ -130,7 +130,7 @@ impl Pressed<'_> {
         }
     }
 
-    /// Where contact ends between a cell in contact and its neighbour that is not.
+    /// Estimate of the end of contact between a cell in contact and its neighbour out of contact.
     pub(crate) fn end(&self, from: [isize; 2], to: [isize; 2]) -> End {
         if !self.touchable(to) {
             return End::OfShape;
@@ -157,7 +157,7 @@ impl Pressed<'_> {
         End::LineAndParabola(line, (zero - 1.0).clamp(0.0, 1.0))
     }
 
-    /// Pressure in a cell, around the period where there is one; zero beyond the grid.
+    /// Pressure in a cell, wrapped along periodic axes; zero beyond the grid.
     pub(crate) fn pressure_at(&self, cell: [isize; 2]) -> f64 {
         self.index(cell).map_or(0.0, |k| self.pressure[k])
     }

@@ -73,7 +73,7 @@ mod tests {
         }
         assert_abs_diff_eq!(found.skewness()[0], 0.2e-3 / a, epsilon = 0.05);
         assert!(found.skewness()[1].abs() < 1e-9);
-        // about a point beyond its edge, all of it lies on one side
+        // about a point beyond its edge the whole contact lies on one side
         let beyond = contact.asymmetry([1.1e-3, 0.0]).unwrap().unwrap();
         assert!(beyond.reach[0][1] < 0.0 && beyond.skewness()[0] < -1.0);
         assert!(contact.asymmetry([f64::NAN, 0.0]).is_err());

@@ -15,7 +15,7 @@ pub struct Distribution {
 }
 
 impl Distribution {
-    /// The distribution of `positive_values` out of `all` values, the others being zero.
+    /// The distribution of `all` values, of which `positive_values` are positive and the rest are zero.
     fn new(positive_values: impl Iterator<Item = f64> + Clone, all: usize, bins: usize) -> Result<Distribution> {
         count_within("bins", bins, (1..=MAX_BINS).contains(&bins), "in [1, 1000000]")?;
         let greatest = positive_values.clone().fold(0.0, f64::max);

@@ -31,56 +31,56 @@ const SMOOTH_SHARE: f64 = 2.3;
 /// Errors of the approach over (share of the rim)·√(rim cells/2 cells), of smooth edges and of singular ones.
 const SMOOTH: f64 = 0.05;
 const SINGULAR: f64 = 0.13;
-/// Pressure of the rim over the mean pressure of a cell, above which the edge counts as singular: 1.8 and more under punches.
+/// Mean pressure of the rim over the mean pressure, above which the edge counts as singular: 1.8 and more under punches.
 const RISING: f64 = 1.4;
 /// Error of the approach over (share of the cells where the end of contact is unknown)·(rim cells/2 cells).
 const UNKNOWN: f64 = 0.1;
-/// Errors of approach and area over the force and the area in the outermost cells of a shape, each straight piece of its
-/// edge taken for an independent error.
+/// Errors of approach and area over the force and the area in the outermost cells of a shape. Each straight piece of its
+/// edge counts as an independent error.
 const SHAPE_IN_APPROACH: f64 = 0.15;
 const SHAPE_IN_AREA: f64 = 0.45;
-/// Error of the place where contact ends, in cells: where it is unknown, where one estimate exists, and where two do, of which
-/// their difference adds the last.
+/// Error of the end of contact, in cells: where it is unknown, where there is one estimate, and where there are two. Two
+/// estimates add their difference times the last factor.
 const PLACE_UNKNOWN: f64 = 0.14;
 const PLACE_OF_ONE: f64 = 0.07;
 const PLACE_OF_TWO: f64 = 0.035;
 const PLACE_OF_DIFFERENCE: f64 = 0.28;
 
-/// Periodic bodies are the more sensitive the smaller the share of the cells is that do not touch, the approach by its square
-/// inverted, the area by this power of that.
+/// On periodic bodies errors grow as the share of cells out of contact falls: the error of the approach as the inverse
+/// square of the share, the error of the area as this power of the factor of the approach.
 const STIFFNESS_IN_AREA: f64 = 0.25;
 
-/// A contact is resolved if no more than this share of its cells is on the rim (about five cells across), less than this
-/// share of its sides belongs to pieces of one or two cells, and a periodic gap has so many cells for one of the rim.
+/// Limits of a resolved contact: greatest share of its cells on the rim (about five cells across), greatest share of its
+/// sides that belong to pieces one or two cells wide, and least number of cells of a periodic gap per cell of the rim.
 const MOST_RIM: f64 = 0.6;
 const MOST_NARROW: f64 = 0.5;
 const LEAST_GAP: f64 = 4.0 / 3.0;
 
-/// A peak is resolved if the pressure falls by no more than this share to the neighbours, along x1 and x2 together, and
-/// by at least so many times that to the second neighbours: 4 at smooth peaks, 3 where p = c − r^0.8, 1.5 at tips of cones.
+/// Limits of a resolved peak: greatest relative drop of the pressure to the neighbours, along x1 and x2 together, and least
+/// ratio of the drop to the second neighbours to it: 4 at smooth peaks, 3 where p = c − r^0.8, 1.5 at tips of cones.
 const MOST_DROP: f64 = 0.3;
 const LEAST_GROWTH: f64 = 3.0;
 const SMOOTH_GROWTH: f64 = 4.0;
 /// A smaller drop is rounding.
 const FLAT: f64 = 1e-12;
-/// Error of the peak: over the drop on the steeper sides, of wide peaks, and over the square of the mean drop, of narrow ones.
+/// Error of the peak over the drop on the steeper sides, for wide peaks, and over the square of the mean drop, for narrow peaks.
 const PEAK: f64 = 0.11;
 const NARROW_PEAK: f64 = 0.5;
 /// Other peaks of this share of the greatest pressure may exceed it on a finer mesh.
 const OTHER_PEAKS: f64 = 0.85;
-/// A pressure at the rim of more than these shares of the greatest may exceed it on a finer mesh: one that falls towards the
-/// rim, and one that does not.
+/// A pressure at the rim above these shares of the greatest pressure may exceed it on a finer mesh: for pressures that fall
+/// towards the rim, and for pressures that do not.
 const MOST_AT_RIM: f64 = 0.75;
 const MOST_RISING: f64 = 0.5;
-/// A state is believed to this many times its estimated error.
+/// Safety factor on the estimated error of a peak.
 const TRUSTED: f64 = 3.0;
 
-/// So many cells of a row are looked at together.
+/// Number of cells of a row that are tested together.
 const PIECE: usize = 16;
 const SIDES: [[isize; 2]; 4] = [[-1, 0], [0, -1], [0, 1], [1, 0]];
 
 impl MeshError {
-    /// The greater of each error; of the greatest pressure, the greater known one.
+    /// The maximum of each error; for the greatest pressure, of the known errors.
     pub(crate) fn max(self, other: MeshError) -> MeshError {
         let known = [self.max_pressure, other.max_pressure].into_iter().flatten();
         MeshError {
@@ -103,7 +103,7 @@ impl fmt::Display for MeshError {
     }
 }
 
-/// What the cells in contact that have a neighbour without pressure show, and their sides towards such neighbours.
+/// Sums over the rim: the cells in contact with a neighbour without pressure, and their sides towards such neighbours.
 #[derive(Debug, Default, Clone, Copy, PartialEq)]
 struct Rim {
     cells: usize,
@@ -113,10 +113,9 @@ struct Rim {
     /// Number of sides, and number of the sides of pieces one or two cells wide.
     sides: usize,
     narrow_sides: usize,
-    /// Sum of the errors of the place where contact ends, in cells.
+    /// Sum of the errors of the end of contact, in cells.
     place: f64,
-    /// Sums over the straight pieces of the edge of the shape: of their lengths squared, in cells, and of their pressures
-    /// squared.
+    /// Sums over the straight pieces of the edge of the shape: squared lengths, in cells, and squared sums of pressure.
     shape_lengths: f64,
     shape_pressures: f64,
     /// Greatest pressure, and greatest pressure of the cells from which it does not rise inwards.
@@ -127,7 +126,7 @@ struct Rim {
 /// Whether a cell has a greater pressure than its neighbours.
 enum Peak {
     None,
-    /// By which part of it the pressure falls to the neighbours.
+    /// `drop` is the relative fall of the pressure to the neighbours.
     Unresolved {
         drop: f64,
     },
@@ -137,8 +136,8 @@ enum Peak {
 }
 
 impl Pressed<'_> {
-    /// The errors due to the mesh of a contact of so many cells. `None` without a rim, and of contacts, or periodic gaps,
-    /// that the cells do not resolve.
+    /// The errors due to the mesh of a contact of `contact_cells` cells. `None` without a rim, and where the cells do not
+    /// resolve the contact or the periodic gap.
     pub(crate) fn mesh_error(&self, contact_cells: usize) -> Option<MeshError> {
         let Extent { low, high } = self.extent?;
         let rows = (low[0]..=high[0]).map(|i| self.columns(i, low[1]..high[1] + 1));
@@ -159,7 +158,7 @@ impl Pressed<'_> {
         }
         let (share, delta) = (rim.pressure / total, rim_cells / (2.0 * cells));
         let smooth = share.min(SMOOTH_SHARE * delta.powf(1.5)) * delta.sqrt();
-        // at a singular edge the pressure rises to the rim; creep raises it towards a growing rim, but lets it fall there
+        // at a singular edge the pressure rises up to the rim; creep raises it towards a growing rim, but it falls at the rim
         let rises = rim.pressure / rim_cells > RISING * total / cells;
         let stiffness = if bounded_gap { (all / (all - cells)).powi(2) } else { 1.0 };
         let singular = if rises { stiffness * SINGULAR * (share * delta.sqrt() - smooth) } else { 0.0 };
@@ -182,8 +181,8 @@ impl Pressed<'_> {
         &self.pressure[i * self.grid.cells()[1]..][columns]
     }
 
-    /// The error of the greatest pressure: of each peak from the curvature of the pressure there, the largest among the peaks that may
-    /// be the greatest on a finer mesh. `None` if one of them is not resolved.
+    /// The error of the greatest pressure: the largest error among the peaks that may be the greatest on a finer mesh, each
+    /// from the curvature of the pressure at the peak. `None` if one of these peaks is not resolved.
     fn peak_error(&self, low: [usize; 2], high: [usize; 2], highest: f64) -> Option<f64> {
         let least = OTHER_PEAKS * highest;
         let mut worst = 0.0_f64;
@@ -298,19 +297,18 @@ impl Pressed<'_> {
         rim.shape_pressures += force * force;
     }
 
-    /// Whether the cells of a piece of a row are all without pressure, or in contact together with all their neighbours: most
-    /// are, and a few comparisons at a time tell it. Pieces at the ends of the grid, which may go on at the other end, are not
-    /// told.
+    /// Whether the cells of a piece of a row are all without pressure, or all in contact together with their neighbours. This
+    /// is true of most pieces and takes few comparisons. False for pieces at the ends of the grid, whose neighbours may be at
+    /// the other end.
     fn has_no_rim(&self, i: usize, piece: &Range<usize>) -> bool {
         let [n1, n2] = self.grid.cells();
         if i == 0 || i + 1 == n1 || piece.start == 0 || piece.end == n2 {
             return false;
         }
-        let any_free = |i: usize, columns: Range<usize>| {
-            self.pressure[i * n2..][columns].iter().fold(false, |free, p| free | (*p == 0.0))
-        };
+        let any_free =
+            |i: usize, columns: Range<usize>| self.columns(i, columns).iter().fold(false, |free, p| free | (*p == 0.0));
         let beside = piece.start - 1..piece.end + 1;
-        let all_free = self.pressure[i * n2..][piece.clone()].iter().fold(true, |free, p| free & (*p == 0.0));
+        let all_free = self.columns(i, piece.clone()).iter().fold(true, |free, p| free & (*p == 0.0));
         all_free || !(any_free(i, beside) | any_free(i - 1, piece.clone()) | any_free(i + 1, piece.clone()))
     }
 }
@@ -322,7 +320,7 @@ mod tests {
 
     /// Patches of contact of all sizes, at the ends of the grid too, against the definition of the rim.
     #[test]
-    fn the_rim_is_what_has_a_neighbour_without_pressure() {
+    fn the_rim_is_the_cells_with_a_neighbour_without_pressure() {
         let mut state = 7_u64;
         let mut below = |n: usize| {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn corners_do_not_join_and_rings_are_one() {
+    fn cells_that_share_a_corner_are_apart_and_a_ring_is_one_patch() {
         let found = patches(&["11100", "10100", "11102", "00020"], [false; 2]);
         assert_eq!(found.labels(), [1, 1, 1, 0, 0, 1, 0, 1, 0, 0, 1, 1, 1, 0, 2, 0, 0, 0, 3, 0]);
         assert_eq!(found.count(), 3);

@@ -10,7 +10,7 @@ const TOLERANCE: f64 = 1e-10;
 
 impl HeightMap {
     /// The map with its missing heights filled by harmonic interpolation: each is the mean of its neighbours, as in a
-    /// stretched membrane, so that none exceeds the known heights around it.
+    /// stretched membrane, and lies within the range of the known heights around it.
     ///
     /// # Errors
     /// If no height is known, the iteration does not converge ([`MapError::NotFilled`]), or there is no memory for it:

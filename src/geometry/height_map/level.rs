@@ -1,10 +1,10 @@
-//! The form of a surface, taken out of its heights.
+//! The form of a surface, subtracted from its heights.
 
 use super::HeightMap;
 use crate::error::Result;
 use crate::linalg;
 
-/// What is taken out of a map as its form.
+/// The form that [`HeightMap::leveled`] subtracts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Form {
@@ -16,13 +16,13 @@ pub enum Form {
     Curvature,
 }
 
-/// Most functions that a form is made of.
+/// Number of functions of the largest form.
 const MOST: usize = 6;
-/// Part of the square of a function, independent of the other functions, that is rounding.
+/// Independent part of the square of a function below which the function is a combination of the others, to rounding.
 const DEPENDENT_FRACTION: f64 = 1e-10;
 
 impl Form {
-    /// How many of 1, x1, x2, x1², x1 x2 and x2² it is made of.
+    /// Number of functions, the first of 1, x1, x2, x1², x1 x2 and x2².
     fn terms(self) -> usize {
         match self {
             Form::Mean => 1,
@@ -33,14 +33,14 @@ impl Form {
 }
 
 impl HeightMap {
-    /// The map less the form that fits the known heights best, in the least squares.
+    /// The map less the form that fits the known heights best, by least squares.
     ///
     /// # Errors
-    /// If no height is known, or one comes to lie beyond ±1e300 m.
+    /// If no height is known, or a leveled height is beyond ±1e300 m.
     pub fn leveled(mut self, form: Form) -> Result<HeightMap> {
         self.require_known()?;
         let terms = form.terms();
-        // Once more for what rounding left, which counts where the form is far larger than the roughness.
+        // The second fit removes the rounding errors of the first, which count where the form is far larger than the roughness.
         for _ in 0..2 {
             let (mut matrix, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);
             for (k, &height) in self.heights.iter().enumerate().filter(|(_, height)| !height.is_nan()) {
@@ -52,7 +52,7 @@ impl HeightMap {
                     }
                 }
             }
-            // A function that the others make up already, as a slope across a single row of points, gets no share.
+            // A function that depends on the others, such as the slope across a single row of points, gets the factor 0.
             let factors = linalg::solve_normal_equations(&matrix, right, DEPENDENT_FRACTION);
             for k in 0..self.heights.len() {
                 self.heights[k] -= self.basis(k).iter().zip(&factors).map(|(b, f)| b * f).sum::<f64>();
@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_of_the_greatest_heights_is_a_number() {
+    fn leveling_the_greatest_heights_gives_finite_heights() {
         let steep = map_of([3, 3], |x1, x2| 2.9e300 * x1 + 1e299 * x2);
         for form in [Form::Mean, Form::Tilt, Form::Curvature] {
             assert!(greatest(&steep.clone().leveled(form).unwrap()) <= 1e300);
@@ -90,7 +90,7 @@ mod tests {
     }
 
     #[test]
-    fn forms_are_taken_out_whole() {
+    fn a_surface_of_a_form_levels_to_zero() {
         let hole = |x1: f64, x2: f64| if x1 > 0.3 && x2 > 0.1 { f64::NAN } else { 0.0 };
         let forms = [
             (Form::Mean, [7.0, 0.0, 0.0, 0.0, 0.0, 0.0]),
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_is_orthogonal_to_the_form() {
+    fn leveled_heights_are_orthogonal_to_the_form() {
         let map = map_of([10, 13], |x1, x2| waves(x1, x2) + 1e3 * x1 + 1e4);
         let left = map.leveled(Form::Curvature).unwrap();
         for term in 0..MOST {
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_and_few_points_serve() {
+    fn single_rows_and_few_points_are_leveled() {
         let row = map_of([9, 1], |x1, _| 3.0 + x1 + x1 * x1).leveled(Form::Curvature).unwrap();
         assert!(greatest(&row) < 1e-14);
         let few = map_of([3, 3], |x1, x2| if x1 == 0.0 && x2 > -0.2 { 4.0 + x2 } else { f64::NAN });

@@ -62,7 +62,7 @@ pub struct HeightMap {
     highest: f64,
     /// Number of missing heights.
     missing: usize,
-    /// Whether there is nothing to touch where heights are missing; otherwise they are undecided.
+    /// Whether there is nothing to touch at missing heights; otherwise they are undecided.
     masked: bool,
     center: [f64; 2],
     periodic: bool,
@@ -97,7 +97,7 @@ impl HeightMap {
         map.summarized()
     }
 
-    /// The map with the greatest height and the number of missing ones that follow from its heights.
+    /// The map with its greatest height and its number of missing heights recomputed.
     fn summarized(mut self) -> HeightMap {
         self.highest = self.heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         self.missing = self.heights.iter().filter(|h| h.is_nan()).count();
@@ -155,7 +155,7 @@ impl HeightMap {
     }
 
     /// Position of the first cell of `grid` in the map shifted by `by`: index of the nearest point, and the fraction of a cell
-    /// from there. It is counted from the origin, so that the fraction is the same to the last bit for all rows of a grid.
+    /// from there. The fraction is counted from the origin: it is the same to the last bit for all rows of a grid.
     fn offset(&self, grid: &Grid, by: [f64; 2], axis: usize) -> (f64, f64) {
         let (cells, half) = grid.offset_of_first(axis);
         let position = self.index(axis, half * grid.spacing()[axis] - by[axis]);

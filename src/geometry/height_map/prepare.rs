@@ -40,7 +40,7 @@ impl HeightMap {
         if along[0] != along[1] {
             self.heights.chunks_exact_mut(self.cells[1]).for_each(<[f64]>::reverse);
         }
-        // Reversing all points flips both axes; x1 alone is this after a flip along x2.
+        // Reversing all points flips both axes; after a flip along x2 it leaves a flip along x1.
         if along[0] {
             self.heights.reverse();
         }

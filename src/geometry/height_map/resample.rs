@@ -8,7 +8,7 @@ use crate::memory;
 /// An rms height below this, relative to the mean, is rounding.
 const FLAT: f64 = 1e-14;
 
-/// A map interpolated onto another grid, and the error of that.
+/// A map interpolated onto another grid, and the error of the interpolation.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Resampled {
@@ -18,8 +18,8 @@ pub struct Resampled {
     pub error: ResamplingError,
 }
 
-/// Error of resampling: the new map, interpolated back to the points of the old one, minus the old map. It shows what
-/// the new grid does not resolve.
+/// Error of resampling: the new map, interpolated back to the points of the old map, minus the old map. It contains the
+/// waves that the new grid does not resolve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct ResamplingError {
@@ -59,7 +59,7 @@ impl HeightMap {
         let mut map = HeightMap::on(grid, memory::collect("a map on another grid", grid.len(), heights)?);
         map.require_known()?;
         map.center = HeightMap::middle_of(grid);
-        // If the old map has no missing points, missing points of the new one lie outside the old.
+        // If the old map has no missing points, missing points of the new map lie outside the old map.
         map.masked = self.masked || self.missing == 0;
         let (old, new) = (self.lengths(), map.lengths());
         map.periodic = self.periodic && (0..2).all(|axis| (new[axis] / old[axis] - 1.0).abs() < 1e-9);
@@ -67,7 +67,7 @@ impl HeightMap {
         Ok(Resampled { map, error })
     }
 
-    /// The difference of `other` from this map at the points of this one.
+    /// The difference of `other` from this map at the points of this map.
     fn error_of(&self, other: &HeightMap) -> Result<ResamplingError> {
         let grid = self.grid();
         let pairs = || {
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn the_error_is_that_of_interpolating_back() {
+    fn the_error_is_the_difference_after_interpolating_back() {
         let map = map_of([64, 8], waves).periodic();
         let errors = [64, 32, 16, 8].map(|n| {
             let coarse = map.resampled(&Grid::new([n, 8], [1.0, 1.0]).unwrap()).unwrap();

@@ -16,7 +16,7 @@ fn cubic(t: f64) -> [f64; 4] {
     [0.5 * (2.0 * t2 - t3 - t), 0.5 * (3.0 * t3 - 5.0 * t2 + 2.0), 0.5 * (4.0 * t2 - 3.0 * t3 + t), 0.5 * (t3 - t2)]
 }
 
-/// Their derivatives.
+/// Derivatives of the weights of [`cubic`].
 fn cubic_slope(t: f64) -> [f64; 4] {
     let t2 = t * t;
     [
@@ -43,7 +43,7 @@ impl Stencil {
             let first = before.rem_euclid(n as f64) as usize + n - 1;
             return Stencil { index: [0, 1, 2, 3].map(|k| (first + k) % n), weight: weights, slope: slopes };
         }
-        // Linear extrapolation: a point d beyond the end is (1 + d) times the last minus d times the one before.
+        // Linear extrapolation: a point d beyond the end is (1 + d) times the last minus d times the last but one.
         let (before, last) = (before as isize, n as isize - 1);
         let window = (before - 1).clamp(0, (last - 3).max(0));
         let mut stencil =
@@ -73,7 +73,7 @@ impl HeightMap {
         if index.is_finite() || !self.periodic {
             return index;
         }
-        // the number of periods overflows: the phase is lost, and any value is as good
+        // the number of periods overflows, and the phase is lost: any value in the period serves
         distance.clamp(f64::MIN, f64::MAX) % self.lengths()[axis] / spacing + middle
     }
 
@@ -89,8 +89,8 @@ impl HeightMap {
 
     /// Height at the point (x1, x2) \[m\]; `None` outside the map and where it is missing.
     ///
-    /// Interpolated bicubically, exact at the points of the map. Next to masked points it is interpolated linearly
-    /// between the known ones, and missing if the nearest point is. Next to undecided points it is missing.
+    /// Interpolated bicubically, exact at the points of the map. Next to masked points the height is interpolated linearly
+    /// between the known points; it is missing if the nearest point is missing. Next to undecided points it is missing.
     pub fn height_at(&self, x1: f64, x2: f64) -> Option<f64> {
         let [u1, u2] = self.indices(x1, x2)?;
         let (along1, along2) = self.stencils(u1, u2);
@@ -125,7 +125,7 @@ impl HeightMap {
         sum
     }
 
-    /// Linear interpolation between the known ones of the four neighbours; `None` if the nearest is missing.
+    /// Linear interpolation between the known heights among the four neighbours; `None` if the nearest is missing.
     fn linear_of_known(&self, u1: f64, u2: f64) -> Option<f64> {
         let ((b1, t1), (b2, t2)) = (split(u1), split(u2));
         let (mut sum, mut weights) = (0.0, 0.0);

@@ -63,7 +63,7 @@ impl Rough {
         Ok(Rough { spec, map: map.periodic() })
     }
 
-    /// A surface with a longer `period` \[m\], of which the grid shows a part; it is not periodic on the grid.
+    /// A surface with a `period` \[m\] longer than the grid. The grid contains a part of it, which is not periodic.
     ///
     /// # Errors
     /// As [`Rough::new`], and if a period is shorter than the grid or not a whole number of its cells.
@@ -106,7 +106,7 @@ impl Geometry for Rough {
     }
 }
 
-/// Random waves, not yet of the specified roughness.
+/// Random waves before they are scaled to the specified roughness.
 struct Waves {
     spectrum: HeightSpectrum,
     /// Mean squares of height and slope of the waves of each k2.
@@ -114,7 +114,7 @@ struct Waves {
 }
 
 impl Waves {
-    /// The waves of some k2.
+    /// The waves of the k2 in `columns`.
     fn of(grid: &Grid, spec: &RoughSpec, columns: Range<usize>) -> Waves {
         let (cells, lengths) = (grid.cells(), grid.lengths());
         let line = cells[0] == 1 || cells[1] == 1;
@@ -152,7 +152,7 @@ impl Waves {
     }
 }
 
-/// The factor that gives waves with these mean squares the specified roughness.
+/// The factor that scales waves of these mean squares to the specified roughness.
 fn scale(spec: &RoughSpec, sums: &[[f64; 2]]) -> Result<f64> {
     let [height, slope] = sums.iter().fold([0.0; 2], |[height, slope], sums| [height + sums[0], slope + sums[1]]);
     if height == 0.0 {
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn it_has_the_specified_roughness() {
+    fn rough_surfaces_have_the_specified_roughness() {
         for grid in [Grid::square(64, 1.0).unwrap(), Grid::new([48, 81], [1.0, 2.0]).unwrap()] {
             let by_height = Rough::new(&grid, SPEC).unwrap();
             let heights = by_height.height_map().heights();
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn it_is_shifted_exactly() {
+    fn rough_surfaces_are_shifted_exactly() {
         let rough = Rough::new(&Grid::square(32, 1.0).unwrap(), SPEC).unwrap();
         let fine = Rough::new(&Grid::square(320, 1.0).unwrap(), SPEC).unwrap();
         // The gaps have different reference points.
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn a_window_shows_a_part_of_its_period() {
+    fn a_window_is_a_part_of_its_period() {
         let grid = Grid::square(32, 1.0).unwrap();
         let wide = Rough::windowed(&grid, RoughSpec { longest: 2.0, ..SPEC }, [2.0, 1.5]).unwrap();
         assert_eq!(wide.height_map().cells(), [64, 48]);

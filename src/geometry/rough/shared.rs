@@ -1,4 +1,4 @@
-//! Random rough surfaces that ranks share out.
+//! Random rough surfaces distributed over ranks.
 
 use std::sync::Arc;
 
@@ -12,15 +12,15 @@ use crate::parallel::{Ranks, Rows, catch_rank_loss, part};
 /// Distances from a cell centre below this, in cells, are rounding errors.
 const ROUNDING: f64 = 1e-6;
 
-/// A [`Rough`] surface of which each of several [ranks](crate::parallel) has its rows, and none the whole; made by
+/// A [`Rough`] surface distributed over [ranks](crate::parallel): each rank holds its local rows only. Made by
 /// [`Rough::shared`].
 ///
-/// As a [`Geometry`] it is known at the cell centres of own rows. Elsewhere it is NaN, which a contact refuses: shift or turn
-/// a [`Rough`] in place of it.
+/// As a [`Geometry`] it is defined at the cell centres of the local rows. Elsewhere it is NaN, which a contact refuses: to
+/// shift or turn a surface, use [`Rough`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct SharedRough {
     spec: RoughSpec,
-    /// Own rows.
+    /// The local rows.
     grid: Grid,
     heights: Vec<f64>,
     /// The greatest height on all ranks.
@@ -28,8 +28,8 @@ pub struct SharedRough {
 }
 
 impl Rough {
-    /// The surface of [`Rough::new`], the same to the last bit, of which each rank makes its rows: 40 bytes per cell of its own
-    /// for a moment, and 8 to stay. A call of all ranks.
+    /// The local rows of the surface of [`Rough::new`], with the same bits. Takes 40 bytes per local cell while the surface is
+    /// made, and 8 afterwards. A call of all ranks.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -88,7 +88,7 @@ impl SharedRough {
         &self.spec
     }
 
-    /// The heights of own rows \[m\], row-major with x2 fastest.
+    /// The heights of the local rows \[m\], row-major with x2 fastest.
     pub fn heights(&self) -> &[f64] {
         &self.heights
     }
@@ -98,7 +98,7 @@ impl SharedRough {
         self.highest
     }
 
-    /// The own cell whose centre is at a coordinate.
+    /// Index of the local cell along `axis` whose centre is at the coordinate `x`.
     fn cell(&self, axis: usize, x: f64) -> Option<usize> {
         let index = (x - self.grid.coordinate(axis, 0)) / self.grid.spacing()[axis];
         let cell = index.round();

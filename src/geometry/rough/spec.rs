@@ -46,12 +46,12 @@ pub struct RoughSpec {
 }
 
 /// Waves that are longer along one direction than across it, for instance after grinding. The spectrum is evaluated at
-/// q = √((γ q_along)² + q_across²), so that the wavelengths of the [`RoughSpec`] are those across.
+/// q = √((γ q_along)² + q_across²): the wavelengths of the [`RoughSpec`] are the wavelengths across.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Anisotropy {
-    /// Ratio γ ≥ 1 of a wavelength along the direction to the one across (default: 1).
+    /// Ratio γ ≥ 1 of a wavelength along the direction to the wavelength across (default: 1).
     pub ratio: f64,
     /// Angle of the direction from x1 towards x2 \[rad\] (default: 0).
     pub direction: f64,
@@ -70,7 +70,7 @@ impl Default for Anisotropy {
     }
 }
 
-/// Roughness of a surface, which it has exactly as a mean over its period.
+/// Roughness of a surface, exact as a mean over its period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -105,8 +105,7 @@ impl RoughSpec {
         RoughSpec { hurst: 0.8, longest, roll_off: longest, shortest, anisotropy, roughness, seed: 0 }
     }
 
-    /// Checks the ranges and the order of the values.
-    /// Rejects values out of range, and waves that the grid does not resolve.
+    /// Rejects values out of range or out of order, and waves that the grid does not resolve.
     pub(super) fn validate_on(&self, grid: &Grid) -> Result<()> {
         self.validate()?;
         let (cells, spacing) = (grid.cells(), grid.spacing());

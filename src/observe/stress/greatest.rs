@@ -28,7 +28,7 @@ impl SubsurfaceStress {
     ///
     /// Sought below the centres of all cells at each of the depths, then refined by parabolas through its neighbours along
     /// each axis, which are computed anew at the vertices and narrowed in eight rounds: the place does not depend on the
-    /// depths as long as they find the right hill. Of equal hills, as in symmetric contacts, one is returned.
+    /// depths as long as they find the right peak. Of equal peaks, as in symmetric contacts, one is returned.
     ///
     /// # Errors
     /// As [`SubsurfaceStress::on_section`].
@@ -102,7 +102,7 @@ impl SubsurfaceStress {
     }
 }
 
-/// The vertex of the parabola through three points, or the highest of them if it has none between them.
+/// The vertex of the parabola through three points, or the highest point if no vertex lies between them.
 fn vertex_of([before, here, after]: [f64; 3], [low, middle, high]: [f64; 3]) -> f64 {
     let highest = if low > middle && low >= high {
         before

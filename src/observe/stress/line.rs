@@ -1,13 +1,13 @@
-//! The stress below one line of cells, for sections: only what that line needs.
+//! The stress below one line of cells, for sections.
 //!
-//! Along the section the convolution is one of lines: the stress below the line l is the sum over the lines j of
-//! T_(l − j) * p_j. Each distance |l − j| takes one line of closed forms and one transform for every two components, the
-//! mirrored side has the same but for signs; one inverse transform yields the line. That is an eighth of the transforms of a
-//! whole plane, and half of its closed forms if the line is in the middle.
+//! The stress below the line l is a sum of convolutions along lines, T_(l − j) * p_j over the lines j. Each distance |l − j|
+//! takes one line of closed forms and one transform for every two components. The mirrored side has the same transforms but
+//! for signs, and one inverse transform yields the line. A section takes an eighth of the transforms of a plane, and half of
+//! its closed forms if the line is in the middle.
 
 use num_complex::Complex64;
 
-use super::plane::{SIGNS, pairs_below_wave, set_pair, two};
+use super::plane::{SIGNS, pair_of, pairs_below_wave, set_pair};
 use super::rectangle::corner;
 use super::waves::Wave;
 use super::{Source, Stress, SubsurfaceStress};
@@ -15,16 +15,16 @@ use crate::error::Result;
 use crate::kernel::HalfSpace;
 use crate::memory;
 
-/// What a line of cells needs at every depth.
+/// Transforms and buffers for the stress below a line of cells, reused at every depth.
 pub(super) struct LineBelow<'a> {
     stress: &'a SubsurfaceStress,
-    /// Along the line, and its place across.
+    /// The axis along the line, and the index of the line across it.
     axis: usize,
     line: usize,
-    /// Of each source the transforms of its lines, one after the other; nothing where waves are summed.
+    /// For each source the transforms of its lines, one after the other; empty for periodic bodies.
     spectra: Vec<Vec<Complex64>>,
     sums: [Vec<Complex64>; 3],
-    one: Vec<Complex64>,
+    term: Vec<Complex64>,
 }
 
 impl<'a> LineBelow<'a> {
@@ -35,7 +35,7 @@ impl<'a> LineBelow<'a> {
             _ => stress.sources.iter().map(|source| lines_of(stress, axis, source)).collect::<Result<_>>()?,
         };
         let empty = || vec![Complex64::default(); period];
-        Ok(LineBelow { stress, axis, line, spectra, sums: [empty(), empty(), empty()], one: empty() })
+        Ok(LineBelow { stress, axis, line, spectra, sums: [empty(), empty(), empty()], term: empty() })
     }
 
     /// Calls `write` with each cell of the line and the stress below it.
@@ -45,7 +45,7 @@ impl<'a> LineBelow<'a> {
         for source in 0..sources.len() {
             if *body == HalfSpace::Periodic { self.add_waves(depth, source) } else { self.add_cells(depth, source) }
         }
-        // waves that are summed across are transformed along the line alone, after a transform of both axes
+        // waves, transformed along both axes, are summed across and transformed back along the line only
         let count = if *body == HalfSpace::Periodic { transform.len() } else { transform.periods()[self.axis] };
         let norm = 1.0 / count as f64;
         self.sums.iter_mut().for_each(|sum| transform.along[self.axis].inverse(sum));
@@ -56,10 +56,10 @@ impl<'a> LineBelow<'a> {
         }
     }
 
-    /// Adds what the cells of a source do.
+    /// Adds the stress due to the cells of a source.
     fn add_cells(&mut self, depth: f64, source: usize) {
-        let LineBelow { stress, axis, line, spectra, sums, one } = self;
-        let (axis, line, across, period) = (*axis, *line, 1 - *axis, one.len());
+        let LineBelow { stress, axis, line, spectra, sums, term } = self;
+        let (axis, line, across, period) = (*axis, *line, 1 - *axis, term.len());
         let (cells, sides) = (stress.grid.cells(), stress.grid.spacing().map(|side| side / depth));
         let weights = stress.sources[source].weights;
         let of_line = |j: usize| &spectra[source][j * period..(j + 1) * period];
@@ -76,27 +76,27 @@ impl<'a> LineBelow<'a> {
         for distance in 0..=line.max(cells[across] - 1 - line) {
             corners(distance as f64 + 0.5, &mut far);
             for (pair, sum) in sums.iter_mut().enumerate() {
-                let signs = two(SIGNS[axis], pair);
-                one.fill(Complex64::default());
+                let signs = pair_of(SIGNS[axis], pair);
+                term.fill(Complex64::default());
                 for k in 0..cells[axis] {
                     let own = (far[k + 1] + -1.0 * far[k]) + -1.0 * (near[k + 1] + -1.0 * near[k]);
-                    let value = two(own.components(), pair);
+                    let value = pair_of(own.components(), pair);
                     // the other way along the line
-                    one[(period - k) % period] = Complex64::new(signs.re * value.re, signs.im * value.im);
-                    one[k] = value;
+                    term[(period - k) % period] = Complex64::new(signs.re * value.re, signs.im * value.im);
+                    term[k] = value;
                 }
-                stress.transform.along[axis].forward(one);
+                stress.transform.along[axis].forward(term);
                 if line >= distance {
-                    let terms = one.iter().zip(of_line(line - distance));
+                    let terms = term.iter().zip(of_line(line - distance));
                     sum.iter_mut().zip(terms).for_each(|(sum, (a, b))| *sum += a * b);
                 }
                 let beyond = line + distance;
                 if distance > 0 && beyond < cells[across] {
-                    // of (a, b) the transform is known, of (a, −b) it is the conjugate one of the opposite wave
+                    // the transform of (a, −b) is the conjugate of the transform of (a, b) at the opposite wave
                     let mirrored = |k: usize| match (pair, across) {
-                        (0, _) => one[k],
-                        (2, 0) => -one[(period - k) % period].conj(),
-                        _ => one[(period - k) % period].conj(),
+                        (0, _) => term[k],
+                        (2, 0) => -term[(period - k) % period].conj(),
+                        _ => term[(period - k) % period].conj(),
                     };
                     let terms = of_line(beyond).iter().enumerate();
                     sum.iter_mut().zip(terms).for_each(|(sum, (k, b))| *sum += mirrored(k) * b);
@@ -106,7 +106,7 @@ impl<'a> LineBelow<'a> {
         }
     }
 
-    /// Adds the waves of a source, those across the line at its place.
+    /// Adds the waves of a source, evaluated at the line's coordinate across it.
     fn add_waves(&mut self, depth: f64, source: usize) {
         let LineBelow { stress, axis, line, sums, .. } = self;
         let (axis, [n1, n2], [d1, d2]) = (*axis, stress.grid.cells(), stress.grid.spacing());

@@ -26,7 +26,7 @@ use rectangle::Weights;
 const GREATEST_PRESSURE: f64 = 1e150;
 /// Greatest depth \[m\].
 const GREATEST_DEPTH: f64 = 1e100;
-/// Greatest distance of a point from the origin, in depths of the point: higher powers of it do not overflow.
+/// Greatest distance of a point from the origin, in depths of the point: powers of the distance do not overflow.
 const FARTHEST: f64 = 1e40;
 
 /// The stress below the surface of a half-space under a pressure: on planes, on sections, at points, and where it is
@@ -36,17 +36,18 @@ const FARTHEST: f64 = 1e40;
 /// pressure.
 ///
 /// **Which pressure.** Equations of equilibrium and compatibility contain no modulus but Poisson's ratio ν. While this is
-/// constant, the stress in a linear viscoelastic half-space is that in an elastic one under the tractions of the moment,
-/// known on the whole surface: the pressure now, and nothing beside the contact. Creep, and any history, act only by way of
-/// that pressure. Where ν changes as the body creeps ([`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk)),
-/// the stress is A p + B r, linear in 1 − 2ν: A p is the stress at ν = ½, and r = ∫ (1 − 2ν)(t − s) dp(s) remembers; see
-/// [`StressHistory`](crate::contact::StressHistory).
+/// constant, the stress in a linear viscoelastic half-space equals the stress in an elastic half-space under the present
+/// tractions. These are known on the whole surface: the pressure, and zero outside the contact. Creep and history act only
+/// through the pressure. Where ν changes as the body creeps ([`Material::elastic_bulk`](crate::rheology::Material::elastic_bulk)),
+/// the stress is A p + B r, linear in 1 − 2ν: A p is the stress at ν = ½, and r = ∫ (1 − 2ν)(t − s) dp(s) depends on the
+/// history; see [`StressHistory`](crate::contact::StressHistory).
 ///
 /// **Which bodies.** A half-space loaded on the cells of the grid: closed forms of a rectangle, convolved on a padded grid.
 /// Line contacts: plane strain, σ22 (along the line) = ν (σ11 + σ33). Periodic bodies: closed forms of each wave; below the
 /// mean pressure p̄ σ33 = −p̄, and the lateral stress is −ν/(1 − ν) p̄, since every period keeps its lengths. The stress in the
-/// counter body is the same function of the pressure, with its own ν, and x3 the depth below its surface. Of layers, of bodies
-/// periodic along one axis with several cells along it, and of user-defined ones the stress is not known; they are refused.
+/// counter body is the same function of the pressure, with its own ν, and x3 the depth below its surface. The stress is
+/// not known, and refused, in layers, in user-defined bodies, and in bodies periodic along one axis with several cells
+/// along it.
 ///
 /// **How near the surface.** The pressure is constant over each cell: depths below half the longer side of a cell are
 /// refused, since there the stress varies within a cell. Where the pressure rises evenly from cell to cell, the ripple of

@@ -15,9 +15,9 @@ pub(super) const SIGNS: [[f64; 6]; 2] = [[1.0, 1.0, 1.0, -1.0, -1.0, 1.0], [1.0,
 /// Buffers for planes.
 pub(super) struct Buffers {
     transform: Plane,
-    /// Two components of the sum over the sources, and of what one of them adds.
+    /// Two components of the sum over the sources, and the term of one source.
     sum: Vec<Complex64>,
-    one: Vec<Complex64>,
+    term: Vec<Complex64>,
     work: Vec<Complex64>,
     /// For each source, the stress below a cell under a unit load, at the distances of the grid.
     coefficients: Vec<Vec<Stress>>,
@@ -33,7 +33,7 @@ impl SubsurfaceStress {
         Buffers {
             transform: self.transform.clone(),
             sum: empty(),
-            one: empty(),
+            term: empty(),
             work: empty(),
             coefficients: tables.collect(),
         }
@@ -58,10 +58,10 @@ impl Buffers {
                 if *body == HalfSpace::Periodic {
                     add_waves(grid, depth, source, pair, &mut self.sum);
                 } else {
-                    spread(grid, self.transform.periods(), table, pair, &mut self.one);
-                    self.transform.forward(&mut self.one, &mut self.work);
+                    write_mirrored(grid, self.transform.periods(), table, pair, &mut self.term);
+                    self.transform.forward(&mut self.term, &mut self.work);
                     for_each_line_share(&mut self.sum, p2, &|first, sums| {
-                        let terms = self.one[first * p2..].iter().zip(&source.spectrum[first * p2..]);
+                        let terms = self.term[first * p2..].iter().zip(&source.spectrum[first * p2..]);
                         sums.iter_mut().zip(terms).for_each(|(sum, (a, b))| *sum += a * b);
                     });
                 }
@@ -87,13 +87,13 @@ pub(super) fn set_pair(stress: &mut Stress, pair: usize, Complex64 { re, im }: C
     }
 }
 
-/// The two components of a pair.
-pub(super) fn two(components: [f64; 6], pair: usize) -> Complex64 {
+/// The two components of a pair, as real and imaginary part.
+pub(super) fn pair_of(components: [f64; 6], pair: usize) -> Complex64 {
     Complex64::new(components[2 * pair], components[2 * pair + 1])
 }
 
-/// Writes a pair of components at all distances, positive and negative, to the period.
-fn spread(grid: &Grid, [p1, p2]: [usize; 2], table: &[Stress], pair: usize, out: &mut [Complex64]) {
+/// Writes a pair of components at all distances, positive and negative, within the period.
+fn write_mirrored(grid: &Grid, [p1, p2]: [usize; 2], table: &[Stress], pair: usize, out: &mut [Complex64]) {
     let cells = grid.cells();
     // the distance of a row or column of the period, and whether it is negative
     let distance = |axis: usize, k: usize, period: usize| match period - k {
@@ -111,13 +111,13 @@ fn spread(grid: &Grid, [p1, p2]: [usize; 2], table: &[Stress], pair: usize, out:
                 for (axis, _) in [up, left].into_iter().enumerate().filter(|mirrored| mirrored.1) {
                     values.iter_mut().zip(SIGNS[axis]).for_each(|(value, sign)| *value *= sign);
                 }
-                *out = two(values, pair);
+                *out = pair_of(values, pair);
             }
         }
     });
 }
 
-/// The stress at the distances of the grid from a rectangle of the size of a cell.
+/// Writes the stress at the distances of the grid from a rectangle of the size of a cell.
 fn tabulate_rectangle(grid: &Grid, depth: f64, weights: Weights, table: &mut [Stress]) {
     let ([_, n2], [d1, d2]) = (grid.cells(), grid.spacing().map(|side| side / depth));
     let row = |i: usize, out: &mut Vec<Stress>| {
@@ -137,7 +137,7 @@ fn tabulate_rectangle(grid: &Grid, depth: f64, weights: Weights, table: &mut [St
     });
 }
 
-/// The stress at the distances of the grid from a strip.
+/// Writes the stress at the distances of the grid from a strip.
 fn tabulate_strip(grid: &Grid, across: usize, depth: f64, weights: Weights, table: &mut [Stress]) {
     let side = grid.spacing()[across] / depth;
     for (i, out) in table.iter_mut().enumerate() {
@@ -164,7 +164,7 @@ fn add_waves(grid: &Grid, depth: f64, source: &Source, pair: usize, sum: &mut [C
 pub(super) fn pairs_below_wave(waves: [Wave; 2], depth: f64, weights: Weights) -> [Complex64; 3] {
     let i = Complex64::i();
     let s = below_wave(waves.map(|wave| wave.q), depth, weights);
-    // the slope of a wave that alternates vanishes at the centres
+    // the slope of an alternating wave vanishes at the centres
     let slopes = waves.map(|wave| if wave.alternates { Complex64::default() } else { i });
     [
         Complex64::new(s.s11, s.s22),

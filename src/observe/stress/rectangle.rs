@@ -10,8 +10,8 @@
 //! 2π σ_xy = −z V_xy − (1 − 2ν) χ_xy
 //! ```
 //!
-//! Love has 2ν V_z − (1 − 2ν) χ_xx in σ_xx: the same, as χ_xx + χ_yy + V_z = 0, but the form above separates what depends on
-//! Poisson's ratio: a plane stress with Airy's function χ, which needs no other component for its equilibrium.
+//! Love writes 2ν V_z − (1 − 2ν) χ_xx in σ_xx, which is equal since χ_xx + χ_yy + V_z = 0. The form above separates the part
+//! that depends on Poisson's ratio: a plane stress with Airy's function χ, in equilibrium without other components.
 //!
 //! Over a rectangle of uniform pressure each derivative is the double difference of a function of the corner, of which
 //! ∂²/∂x∂y is that derivative of 1/ρ or ln(ρ + z). With ξ = x/z, η = y/z from the corner and ρ = √(1 + ξ² + η²), all over z:
@@ -32,11 +32,11 @@ use std::f64::consts::{FRAC_1_PI, TAU};
 use super::Stress;
 use crate::Grid;
 
-/// Weights of the stress that every body has, and of that with the factor 1 − 2ν.
+/// Weights of the part of the stress that does not depend on ν, and of the part with the factor 1 − 2ν.
 pub(super) type Weights = [f64; 2];
 
-/// The stress whose double difference over the corners of a rectangle is that below it, for a unit pressure, at x and y from
-/// a corner over the depth.
+/// The function of the corner whose double difference over the corners of a rectangle is the stress below the rectangle, for
+/// a unit pressure. `xi` and `eta` are the distances from the corner over the depth.
 pub(super) fn corner(xi: f64, eta: f64, [all, by_ratio]: Weights) -> Stress {
     let (x2, y2) = (xi * xi, eta * eta);
     let rho = (1.0 + x2 + y2).sqrt();
@@ -62,8 +62,8 @@ pub(super) fn corner(xi: f64, eta: f64, [all, by_ratio]: Weights) -> Stress {
     (1.0 / TAU) * stress
 }
 
-/// The stress whose difference over the edges of a strip along x2 is that below it, for a unit pressure, at x from an edge
-/// over the depth.
+/// The function of the edge whose difference over the edges of a strip along x2 is the stress below the strip, for a unit
+/// pressure. `xi` is the distance from the edge over the depth.
 pub(super) fn edge(xi: f64, [all, by_ratio]: Weights) -> Stress {
     let (angle, of_x) = (xi.atan(), 1.0 / (1.0 + xi * xi));
     FRAC_1_PI
@@ -77,14 +77,14 @@ pub(super) fn edge(xi: f64, [all, by_ratio]: Weights) -> Stress {
         }
 }
 
-/// The same stress with x1 and x2 exchanged.
+/// The stress with x1 and x2 exchanged.
 pub(super) fn exchanged(stress: Stress) -> Stress {
     let Stress { s11, s22, s33, s12, s13, s23 } = stress;
     Stress { s11: s22, s22: s11, s33, s12, s13: s23, s23: s13 }
 }
 
 /// The stress at a point below a field on rectangles: the sum over all corners, weighted by the double difference of the field
-/// there, so that each corner is computed once, and none between equal values.
+/// at the corner. Each corner is computed once; corners between equal values are skipped.
 pub(super) fn below_cells(grid: &Grid, field: &[f64], [x, y, z]: [f64; 3], weights: Weights) -> Stress {
     let ([n1, n2], [d1, d2]) = (grid.cells(), grid.spacing());
     let mut sum = Stress::default();

@@ -16,7 +16,7 @@ pub struct StressSection {
     pub positions: Vec<f64>,
     /// Depths \[m\].
     pub depths: Vec<f64>,
-    /// The stress, one for each position and depth, depths fastest: that below `positions[i]` at `depths[k]` is entry
+    /// The stress, one for each position and depth, depths fastest: the stress below `positions[i]` at `depths[k]` is entry
     /// `i * depths.len() + k`.
     pub values: Vec<Stress>,
 }

@@ -46,7 +46,7 @@ fn planes_are_the_sums_over_all_cells() {
     }
 }
 
-/// ∂σ_ij/∂x_j = 0 by central differences: what they leave is of second order.
+/// ∂σ_ij/∂x_j = 0 by central differences: the residual is of second order.
 #[test]
 fn stresses_are_in_equilibrium() {
     for kernel in kernels() {
@@ -115,7 +115,7 @@ fn traction_becomes_the_pressure() {
     }
 }
 
-/// A long period is a half-space, below a load in its middle. What the images add there is a uniform sheet, whose lateral
+/// A long period is a half-space, below a load in its middle. The images add a uniform sheet there, whose lateral
 /// stress is −(1 + 2ν)/2 p̄ if it is summed in squares, and −ν/(1 − ν) p̄ if the period keeps its lengths.
 #[test]
 fn a_long_period_is_a_half_space() {
@@ -134,9 +134,9 @@ fn a_long_period_is_a_half_space() {
     }
 }
 
-/// A changing ratio that does not change is constant; A and B are the parts of ν = ½ and the rest.
+/// A is the stress at ν = ½ and B the rest.
 #[test]
-fn a_ratio_that_does_not_change() {
+fn a_constant_poisson_ratio_gives_the_same_stress_either_way() {
     for kernel in kernels().into_iter().filter(|kernel| kernel.periodic_axes() != [true; 2]) {
         let pressure = field(kernel.grid().len());
         let reduced: Vec<f64> = pressure.iter().map(|p| 0.4 * p).collect();
@@ -186,7 +186,7 @@ fn wrong_arguments_are_refused_by_name() {
 }
 
 #[test]
-fn bodies_whose_inside_is_not_known_are_refused() {
+fn bodies_without_a_closed_form_are_refused() {
     let grid = Grid::square(4, 1.0).unwrap();
     let refused = |result: Result<SubsurfaceStress>| match result.unwrap_err() {
         Error::Kernel(KernelError::NoStress { body }) => body,
@@ -201,7 +201,7 @@ fn bodies_whose_inside_is_not_known_are_refused() {
     assert!(refused(changing).contains("Poisson"));
 }
 
-/// A section computes its line alone: the same as that line of a plane, wherever it is.
+/// A section equals its line of a plane, wherever the line is.
 #[test]
 fn sections_are_lines_of_planes() {
     let mut kernels = kernels();
@@ -234,7 +234,7 @@ fn sections_are_lines_of_planes() {
     }
 }
 
-/// Threads share the lines of a plane, and change no bit of it.
+/// Threads share the lines of a plane and change no bit.
 #[cfg(feature = "rayon")]
 #[test]
 fn planes_do_not_depend_on_the_number_of_threads() {

@@ -34,7 +34,7 @@ impl<'a> Header<'a> {
         MapError::Entry { format: self.format, key, text: text.to_owned(), allowed }
     }
 
-    /// A whole number, not checked further: the grid checks numbers of cells.
+    /// A whole number. The grid checks the range of numbers of cells.
     pub(super) fn count(&self, key: &'static str) -> Result<usize> {
         let text = self.require(key)?;
         text.parse().map_err(|_| self.error(key, text, "a whole number").into())

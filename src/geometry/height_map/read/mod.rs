@@ -86,7 +86,7 @@ impl HeightMap {
     }
 }
 
-/// All bytes of a reader. Sizes stated in a file are never allocated before they are confirmed.
+/// All bytes of a reader. Sizes stated in a file are checked before they are allocated.
 fn bytes(mut reader: impl Read, format: &str) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let read = reader.read_to_end(&mut bytes);
@@ -98,12 +98,12 @@ fn unreadable(file: String, error: std::io::Error) -> MapError {
     MapError::Unreadable { file, reason: error.to_string(), kind: Some(error.kind()) }
 }
 
-/// The number of points, if a grid may have that many: checked before anything is allocated for them.
+/// The number of points, within the limits of a grid: checked before anything is allocated for the points.
 fn count(cells: [usize; 2], spacing: [f64; 2]) -> Result<usize> {
     Ok(Grid::new(cells, [cells[0] as f64 * spacing[0], cells[1] as f64 * spacing[1]])?.len())
 }
 
-/// The heights that a file lists in words, NaN where one `is_missing`; there must be `count`.
+/// The heights that a file lists in words, NaN for words where `is_missing` is true; there must be `count` words.
 fn listed<'a>(
     words: impl Iterator<Item = &'a str>,
     is_missing: impl Fn(&str) -> bool,
@@ -120,7 +120,7 @@ fn listed<'a>(
     if rows.len() == count { Ok(rows) } else { Err(wrong_size(format, "heights", rows.len(), count).into()) }
 }
 
-/// The error of a file with `found` of the `expected` items, all of them counted.
+/// The error of a file with `found` items where `expected` are needed; all items are counted.
 fn wrong_size(format: &'static str, what: &'static str, found: usize, expected: usize) -> MapError {
     MapError::Size { format, what, found: found as u64, expected: expected as u64, exact: true }
 }

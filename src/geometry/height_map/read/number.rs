@@ -52,7 +52,7 @@ impl Number {
         }
     }
 
-    /// The first `count` numbers of `data`, which has no others if `exact`.
+    /// The first `count` numbers of `data`; if `exact`, further data are an error.
     pub(super) fn decode_all(self, format: &'static str, data: &[u8], count: usize, exact: bool) -> Result<Vec<f64>> {
         let expected = count.saturating_mul(self.size);
         if data.len() < expected || exact && data.len() > expected {
