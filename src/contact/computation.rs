@@ -52,7 +52,7 @@ impl Computation {
     /// Goes to another state, without reallocating where the regions are the same.
     pub(super) fn restore(&mut self, scene: &Scene, state: &State) {
         if self.state.region == state.region {
-            self.state.copy_from(state);
+            self.state.clone_from(state);
         } else {
             *self = Computation::new(scene, state.clone());
         }

@@ -1,5 +1,7 @@
 //! The hereditary integral as a sum over every past increment.
 
+use educe::Educe;
+
 use crate::error::{Error, MaterialError, Result};
 use crate::hereditary::history::HistoryInputs;
 use crate::hereditary::interval::Interval;
@@ -23,7 +25,8 @@ pub(crate) enum Weighting {
 const BLOCK: usize = 2048;
 
 /// The past as all increments of v = K p, one field per step, no transforms; or of p, each convolved anew in every step.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct DirectSum {
     weighting: Weighting,

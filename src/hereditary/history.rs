@@ -1,5 +1,7 @@
 //! State of the hereditary integral, for every time rule.
 
+use educe::Educe;
+
 use crate::error::Result;
 #[cfg(feature = "checkpoint")]
 use crate::hereditary::common_cells::CommonCells;
@@ -13,7 +15,8 @@ use crate::kernel::{LocalKernel, Workspace};
 use crate::rheology::{CreepSpectrum, Material};
 
 /// The displacement of a contact and the memory of its past.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct History {
     rule: Rule,
@@ -26,7 +29,8 @@ pub(crate) struct History {
 }
 
 /// How the displacement follows from its past.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 enum Rule {
     /// By the past of the displacement itself.
@@ -69,17 +73,6 @@ impl Rule {
     /// Number of fields that the displacement itself has for its past.
     fn branches(&self) -> usize {
         if let Rule::Exponential(own) = self { own.branches() } else { 0 }
-    }
-
-    fn copy_from(&mut self, other: &Rule) {
-        match (self, other) {
-            (Rule::Exponential(own), Rule::Exponential(other)) => own.copy_from(other),
-            (Rule::MovingFrame(own, frame), Rule::MovingFrame(other, other_frame)) => {
-                own.copy_from(other);
-                frame.copy_from(other_frame);
-            }
-            (own, other) => *own = other.clone(),
-        }
     }
 
     /// Whether it is the rule of another, on these cells.
@@ -358,17 +351,6 @@ impl History {
         let far = far.as_ref().filter(|_| !transfer.covers());
         let far = far.map(|far| far.carried(count, None, |own, _| transfer.confined(own)));
         History { rule, displacement, far, start_is_kept: false }
-    }
-
-    /// Copies another without reallocating where both have the same rule and cells, and no direct sum grows.
-    pub(crate) fn copy_from(&mut self, other: &History) {
-        self.start_is_kept = other.start_is_kept;
-        self.rule.copy_from(&other.rule);
-        self.displacement.copy_from(&other.displacement);
-        match (&mut self.far, &other.far) {
-            (Some(own), Some(other)) => own.copy_from(other),
-            (own, other) => *own = other.clone(),
-        }
     }
 
     /// The same on `cells` other cells, with every field zero; by the exponential rule, on no window of a grid.

@@ -1,5 +1,7 @@
 //! History of bodies that move under the grid.
 
+use educe::Educe;
+
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::remembered_field::RememberedField;
 
@@ -10,7 +12,8 @@ use crate::hereditary::remembered_field::RememberedField;
 ///
 /// The surface in contact is laid on the rigid body after each step. What that changes no pressure has caused; it
 /// follows the same recursion, as a displacement e: u = K U + e.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct MovingFrame {
     cells: [usize; 2],
@@ -39,14 +42,6 @@ impl MovingFrame {
     /// Bytes per cell: two fields at both ends of a step, their recursions, and one to shift branches in.
     pub(crate) fn bytes_per_cell(&self, kept: usize) -> usize {
         40 + self.source.bytes_per_cell(kept) + self.remainder.bytes_per_cell(kept)
-    }
-
-    /// Copies another without reallocating.
-    pub(crate) fn copy_from(&mut self, other: &MovingFrame) {
-        self.source.copy_from(&other.source);
-        self.remainder.copy_from(&other.remainder);
-        (self.cells, self.periodic) = (other.cells, other.periodic);
-        self.scratch.resize(other.scratch.len(), 0.0);
     }
 
     /// Whether it is like another, and its fields have such cells.

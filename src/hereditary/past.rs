@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use educe::Educe;
+
 #[cfg(feature = "checkpoint")]
 use crate::hereditary::common_cells::CommonCells;
 use crate::hereditary::exponential_rule::{ExponentialRule, Weights};
@@ -12,7 +14,8 @@ use crate::parallel::{BAND_CELLS, join, lanes, middle};
 ///
 /// What the step committed last adds waits until the next one is predicted, so that every q_i passes through the processor once
 /// per step: with many relaxation times this is the cost of a step besides its contact problem.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Past {
     branches: usize,
@@ -118,13 +121,6 @@ impl Past {
                 take(start + k, tried.c * stress - of(tried.past[1], first) - of(tried.past[2], second));
             }
         }
-    }
-
-    /// Copies another without reallocating where both have the same cells.
-    pub(super) fn copy_from(&mut self, other: &Past) {
-        (self.branches, self.waiting) = (other.branches, other.waiting);
-        self.fields.clone_from(&other.fields);
-        self.differences.iter_mut().zip(&other.differences).for_each(|(own, other)| own.clone_from(other));
     }
 
     /// Whether it has so many branches, and its fields so many cells.

@@ -1,5 +1,7 @@
 //! A field that follows the recursion of the displacement.
 
+use educe::Educe;
+
 #[cfg(feature = "checkpoint")]
 use crate::hereditary::common_cells::CommonCells;
 use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
@@ -14,7 +16,8 @@ const NOISE: f64 = -1e-14;
 
 /// A field and the memory of its past. The bodies being linear, whatever the displacement is a convolution of
 /// follows the recursion of the displacement itself.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct RememberedField {
     pub(super) past: Past,
@@ -98,13 +101,6 @@ impl RememberedField {
     /// Lets the past take in the last step, so that nothing depends on the field before it any more.
     pub(super) fn apply_pending_step(&mut self, rule: &ExponentialRule) {
         self.past.apply_pending_step(rule, &self.trial, &self.now);
-    }
-
-    /// Copies another without reallocating.
-    pub(super) fn copy_from(&mut self, other: &RememberedField) {
-        self.past.copy_from(&other.past);
-        self.now.clone_from(&other.now);
-        self.trial.clone_from(&other.trial);
     }
 
     /// The same field and past, once settled, on `cells` other cells. `carry` returns there each of its fields, given with the
