@@ -3,14 +3,12 @@
 use educe::Educe;
 
 use crate::error::Result;
-#[cfg(feature = "checkpoint")]
-use crate::hereditary::common_cells::CommonCells;
 use crate::hereditary::direct_sum::{DirectSum, Weighting};
 use crate::hereditary::exponential_rule::ExponentialRule;
+use crate::hereditary::field::Field;
 use crate::hereditary::interval::Interval;
 use crate::hereditary::moving_frame::MovingFrame;
 use crate::hereditary::remembered_field::RememberedField;
-use crate::hereditary::transfer::Transfer;
 use crate::kernel::{LocalKernel, Workspace};
 use crate::rheology::{CreepSpectrum, Material};
 
@@ -51,14 +49,12 @@ pub(crate) struct HistoryInputs<'a> {
 }
 
 impl Rule {
-    /// Without a past, on so many cells.
-    fn undisturbed_on(&self, cells: [usize; 2]) -> Rule {
+    /// The same rule on other cells, whose fields are what `map` makes of these.
+    fn map(&self, cells: [usize; 2], map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> Rule {
         match self {
             Rule::Exponential(own) => Rule::Exponential(own.clone()),
-            Rule::MovingFrame(own, frame) => {
-                Rule::MovingFrame(own.clone(), Box::new(frame.undisturbed_on(cells, own.least_kept())))
-            }
-            Rule::DirectSum(own) => Rule::DirectSum(own.undisturbed_on(cells[0] * cells[1])),
+            Rule::MovingFrame(own, frame) => Rule::MovingFrame(own.clone(), Box::new(frame.map(cells, map))),
+            Rule::DirectSum(own) => Rule::DirectSum(own.map(map)),
         }
     }
 
@@ -70,11 +66,6 @@ impl Rule {
         }
     }
 
-    /// Number of fields that the displacement itself has for its past.
-    fn branches(&self) -> usize {
-        if let Rule::Exponential(own) = self { own.branches() } else { 0 }
-    }
-
     /// Whether it is the rule of another, on these cells.
     #[cfg(feature = "checkpoint")]
     fn fits(&self, other: &Rule, cells: [usize; 2]) -> bool {
@@ -83,43 +74,69 @@ impl Rule {
             (Rule::MovingFrame(own, frame), Rule::MovingFrame(other, other_frame)) => {
                 own.fits(other) && frame.fits(other_frame, own.kept(), cells)
             }
-            (Rule::DirectSum(own), Rule::DirectSum(other)) => own.fits(other, cells[0] * cells[1]),
+            (Rule::DirectSum(own), Rule::DirectSum(other)) => own.fits(other),
             _ => false,
         }
     }
 }
 
 impl History {
-    fn new(rule: Rule) -> History {
-        let displacement = RememberedField::new(rule.branches(), 0);
+    fn new(rule: Rule, displacement: RememberedField) -> History {
         History { rule, displacement, far: None, start_is_kept: false }
     }
 
     /// Undisturbed bodies with contact compliance `creep`, by the exponential rule; on no cells yet.
     pub(crate) fn exponential(creep: &CreepSpectrum) -> History {
-        History::new(Rule::Exponential(ExponentialRule::new(creep)))
+        let rule = ExponentialRule::new(creep);
+        let displacement = RememberedField::on_no_cells(&rule, rule.branches());
+        History::new(Rule::Exponential(rule), displacement)
     }
 
     /// Undisturbed bodies, by a direct sum over all steps; on no cells yet.
     pub(crate) fn direct_sum(weighting: Weighting) -> History {
-        History::new(Rule::DirectSum(DirectSum::new(weighting)))
+        History::new(Rule::DirectSum(DirectSum::new(weighting)), RememberedField::new(0, 0))
     }
 
     /// Undisturbed bodies that move under the grid, by the exponential rule; on no cells yet.
     pub(crate) fn moving_frame(creep: &CreepSpectrum, periodic: [bool; 2]) -> History {
         let rule = ExponentialRule::new(creep);
-        let frame = MovingFrame::new(rule.branches(), periodic);
-        History::new(Rule::MovingFrame(rule, Box::new(frame)))
+        let frame = MovingFrame::new(RememberedField::on_no_cells(&rule, rule.branches()), periodic);
+        let displacement = RememberedField::on_no_cells(&rule, 0);
+        History::new(Rule::MovingFrame(rule, Box::new(frame)), displacement)
+    }
+
+    /// The same history on other cells, a `window` of the grid or all of it, whose fields are what `map` makes of these.
+    pub(crate) fn map(&self, cells: [usize; 2], window: bool, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> History {
+        let History { rule, displacement, far, start_is_kept } = self;
+        History {
+            rule: rule.map(cells, map),
+            displacement: displacement.map(far.as_ref(), map),
+            far: far.as_ref().filter(|_| window).map(|far| far.map(None, map)),
+            start_is_kept: *start_is_kept,
+        }
+    }
+
+    /// The same history on no cells, with a far field where they are to be a `window` of the grid.
+    fn layout(&self, window: bool) -> History {
+        let layout = self.map([0; 2], false, &mut |_| Vec::new());
+        let far = (window && self.has_far_field()).then(|| layout.displacement.clone());
+        History { far, ..layout }
     }
 
     /// The same bodies, undisturbed, on so many cells; with a far field where these are a `window` of the grid.
     pub(crate) fn undisturbed_on(&self, cells: [usize; 2], window: bool) -> History {
-        let rule = self.rule.undisturbed_on(cells);
-        // what steps of given length need, so that none of them allocates
-        let kept = rule.exponential().map_or(0, ExponentialRule::least_kept);
-        let displacement = self.displacement.undisturbed_on(cells[0] * cells[1], kept);
-        let far = (window && self.has_far_field()).then(|| displacement.clone());
-        History { rule, displacement, far, start_is_kept: false }
+        let count = cells[0] * cells[1];
+        self.layout(window).map(cells, window, &mut |field| vec![0.0; count * field.per_cell])
+    }
+
+    /// How many values [`History::undisturbed_on`] allocates for each cell.
+    pub(crate) fn values_per_cell(&self, window: bool) -> usize {
+        let mut values = 0;
+        self.layout(window).map([0; 2], window, &mut |field| {
+            values += field.per_cell;
+            Vec::new()
+        });
+        values
     }
 
     /// Whether the displacement outside a window of the grid can be found.
@@ -130,16 +147,6 @@ impl History {
     /// Whether each step adds a field to the past.
     pub(crate) fn grows(&self) -> bool {
         matches!(self.rule, Rule::DirectSum(_))
-    }
-
-    /// Bytes per cell of an undisturbed past, besides the displacement, with as many differences as steps of given length
-    /// need, and `more`; a far field takes as much again, and two fields.
-    pub(crate) fn bytes_per_cell(&self) -> usize {
-        match &self.rule {
-            Rule::Exponential(own) => self.displacement.bytes_per_cell(own.least_kept()),
-            Rule::MovingFrame(own, frame) => 8 * own.least_kept() + frame.bytes_per_cell(own.least_kept()),
-            Rule::DirectSum(own) => own.bytes_per_cell(),
-        }
     }
 
     /// The exponential rule, if the history follows it.
@@ -330,52 +337,26 @@ impl History {
         self.start_is_kept = step.stride == [0; 2];
     }
 
-    /// The same past on other cells. The start of the last step is given up.
-    pub(crate) fn carried(&mut self, transfer: &mut impl Transfer) -> History {
-        let cells = transfer.cells();
-        self.start_is_kept = false;
-        let (count, History { rule, displacement, far, .. }) = (cells[0] * cells[1], self);
-        if let Some(own) = rule.exponential() {
-            displacement.apply_pending_step(own);
-            far.iter_mut().for_each(|far| far.apply_pending_step(own));
+    /// Lets the past take in the last step, whose start is given up.
+    pub(crate) fn apply_pending_step(&mut self) {
+        let History { rule, displacement, far, start_is_kept } = self;
+        *start_is_kept = false;
+        let (Rule::Exponential(own) | Rule::MovingFrame(own, _)) = &*rule else { return };
+        displacement.apply_pending_step(own);
+        far.iter_mut().for_each(|far| far.apply_pending_step(own));
+        if let Rule::MovingFrame(own, frame) = rule {
+            frame.apply_pending_step(own);
         }
-        let rule = match rule {
-            Rule::Exponential(own) => Rule::Exponential(own.clone()),
-            Rule::MovingFrame(own, frame) => {
-                let frame = frame.carried(own, cells, |own| transfer.confined(own));
-                Rule::MovingFrame(own.clone(), Box::new(frame))
-            }
-            Rule::DirectSum(own) => Rule::DirectSum(own.carried(|own| transfer.confined(own))),
-        };
-        let displacement = displacement.carried(count, far.as_ref(), |own, source| transfer.induced(own, source));
-        let far = far.as_ref().filter(|_| !transfer.covers());
-        let far = far.map(|far| far.carried(count, None, |own, _| transfer.confined(own)));
-        History { rule, displacement, far, start_is_kept: false }
-    }
-
-    /// The same on `cells` other cells, with every field zero; by the exponential rule, on no window of a grid.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) fn blank_on(&self, cells: usize) -> History {
-        let History { rule, displacement, start_is_kept, .. } = self;
-        let displacement = displacement.blank_on(cells);
-        History { rule: rule.clone(), displacement, far: None, start_is_kept: *start_is_kept }
-    }
-
-    /// Copies the cells in common with another of the same rule.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) fn copy_common(&mut self, other: &History, common: CommonCells) {
-        self.displacement.copy_common(&other.displacement, common);
     }
 
     /// Whether it follows the same rule as another, on these cells, a `window` of the grid or all of it: a file may hold
     /// anything.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &History, cells: [usize; 2], window: bool) -> bool {
-        let (count, branches) = (cells[0] * cells[1], other.rule.branches());
         let kept = self.rule.exponential().map_or(0, ExponentialRule::kept);
+        let mut fields = std::iter::once(&self.displacement).chain(&self.far);
         self.rule.fits(&other.rule, cells)
-            && self.displacement.fits(branches, kept, count)
+            && fields.all(|field| field.past.fits(&other.displacement.past, kept))
             && self.far.is_some() == (window && self.has_far_field())
-            && self.far.as_ref().is_none_or(|far| far.fits(branches, kept, count))
     }
 }

@@ -3,6 +3,7 @@
 use educe::Educe;
 
 use crate::hereditary::exponential_rule::ExponentialRule;
+use crate::hereditary::field::{Field, Role};
 use crate::hereditary::remembered_field::RememberedField;
 
 /// The past kept as the field U with u = K U, and its branches, which follow the recursion of u itself, K and the bodies
@@ -22,36 +23,30 @@ pub(crate) struct MovingFrame {
     source: RememberedField,
     /// e.
     remainder: RememberedField,
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     scratch: Vec<f64>,
 }
 
 impl MovingFrame {
-    /// The undisturbed past of bodies with so many relaxation times, on no cells yet.
-    pub(crate) fn new(branches: usize, periodic: [bool; 2]) -> MovingFrame {
-        let source = RememberedField::new(branches, 0);
-        MovingFrame { cells: [0; 2], periodic, remainder: source.clone(), source, scratch: Vec::new() }
+    /// The undisturbed past, on no cells yet; both of its fields are like `field`.
+    pub(crate) fn new(field: RememberedField, periodic: [bool; 2]) -> MovingFrame {
+        MovingFrame { cells: [0; 2], periodic, remainder: field.clone(), source: field, scratch: Vec::new() }
     }
 
-    /// The undisturbed past of the same bodies on so many cells, with room for so many differences.
-    pub(crate) fn undisturbed_on(&self, cells: [usize; 2], kept: usize) -> MovingFrame {
-        let count = cells[0] * cells[1];
-        let [source, remainder] = [&self.source, &self.remainder].map(|field| field.undisturbed_on(count, kept));
-        MovingFrame { cells, periodic: self.periodic, source, remainder, scratch: vec![0.0; count] }
+    /// The same past on `cells` other cells, whose fields are what `map` makes of these.
+    pub(super) fn map(&self, cells: [usize; 2], map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> MovingFrame {
+        let [source, remainder] = [&self.source, &self.remainder].map(|field| field.map(None, map));
+        let scratch = map(Field::single(&self.scratch, Role::Work));
+        MovingFrame { cells, periodic: self.periodic, source, remainder, scratch }
     }
 
-    /// Bytes per cell: two fields at both ends of a step, their recursions, and one to shift branches in.
-    pub(crate) fn bytes_per_cell(&self, kept: usize) -> usize {
-        40 + self.source.bytes_per_cell(kept) + self.remainder.bytes_per_cell(kept)
-    }
-
-    /// Whether it is like another, and its fields have such cells.
+    /// Whether it is like another on these cells.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &MovingFrame, kept: usize, cells: [usize; 2]) -> bool {
-        let (count, branches) = (cells[0] * cells[1], other.source.past.branches());
         self.cells == cells
-            && self.scratch.len() == count
             && self.periodic == other.periodic
-            && [&self.source, &self.remainder].iter().all(|field| field.fits(branches, kept, count))
+            && self.source.past.fits(&other.source.past, kept)
+            && self.remainder.past.fits(&other.remainder.past, kept)
     }
 
     /// Finds U_old and e_old at the end of a step in which the cell `[i, j]` comes over what was the cell
@@ -98,19 +93,9 @@ impl MovingFrame {
         [displacement, &mut self.source, &mut self.remainder].into_iter().for_each(RememberedField::roll_back);
     }
 
-    /// The same past on other cells; `carry` gives a field there.
-    pub(crate) fn carried(
-        &mut self,
-        rule: &ExponentialRule,
-        cells: [usize; 2],
-        carry: impl Fn(&[f64]) -> Vec<f64>,
-    ) -> MovingFrame {
-        let count = cells[0] * cells[1];
-        let [source, remainder] = [&mut self.source, &mut self.remainder].map(|field| {
-            field.apply_pending_step(rule);
-            field.carried(count, None, |own, _| carry(own))
-        });
-        MovingFrame { cells, periodic: self.periodic, source, remainder, scratch: vec![0.0; count] }
+    /// Lets the pasts take in the last step.
+    pub(super) fn apply_pending_step(&mut self, rule: &ExponentialRule) {
+        [&mut self.source, &mut self.remainder].into_iter().for_each(|field| field.apply_pending_step(rule));
     }
 }
 

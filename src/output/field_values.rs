@@ -8,9 +8,7 @@ use std::path::Path;
 use crate::ViscoelasticContact;
 use crate::contact::Brought;
 use crate::error::{RanksError, Result};
-use crate::file::replace;
 use crate::output::Field;
-use crate::parallel::catch_rank_loss;
 
 /// Cells that ranks bring at a time, or one row or some columns where they have more.
 const PIECE_CELLS: usize = 1 << 16;
@@ -42,8 +40,8 @@ pub(super) enum Order {
     Columns,
 }
 
-/// Writes a file with these fields in the place of another ([`replace`]): a call of all ranks, of which rank 0 writes. Without
-/// ranks the values come from where they are.
+/// Writes a file with these fields in the place of another (`Rows::replace_file`): a call of all ranks,
+/// of which rank 0 writes. Without ranks the values come from where they are.
 pub(super) fn write_fields(
     path: &Path,
     (contact, fields, order): (&ViscoelasticContact, &[Field], Order),
@@ -51,29 +49,10 @@ pub(super) fn write_fields(
     write: impl FnOnce(&mut BufWriter<File>, &mut FieldValues<'_>) -> io::Result<()>,
 ) -> Result<()> {
     let mut values = FieldValues { contact, fields, order, buffer, left: None };
-    let rows = contact.shared_rows();
-    let Some(group) = rows.group() else { return replace(path, |out| write(out, &mut values)) };
-    // whether rank 0 could begin
-    let all_begin = |begun: bool| catch_rank_loss(&rows, || Ok(!rows.any(!begun)));
-    catch_rank_loss(&rows, || {
-        if group.rank() > 0 {
-            if all_begin(true)? {
-                values.pass_over_the_rest();
-            }
-            return rows.agree(Ok(()));
-        }
-        let mut begun = false;
-        let written = replace(path, |out| {
-            begun = true;
-            all_begin(true).map_err(io::Error::other)?;
-            let written = write(out, &mut values);
-            values.pass_over_the_rest();
-            written
-        });
-        if !begun {
-            all_begin(false)?;
-        }
-        rows.agree(written)
+    contact.shared_rows().replace_file(path, |out| {
+        let written = out.map_or(Ok(()), |out| write(out, &mut values));
+        values.pass_over_the_rest();
+        written
     })
 }
 

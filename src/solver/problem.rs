@@ -34,8 +34,10 @@ pub(crate) struct Problem<'a> {
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Solution {
     /// p \[Pa\].
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(crate) pressure: Vec<f64>,
     /// v = K p \[Pa·m\], updated together with `pressure`.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(crate) potential: Vec<f64>,
     /// The free part of the motion of each body; on entry the motion of the last step.
     pub(crate) motions: Vec<ModeCoefficients>,

@@ -10,7 +10,7 @@ use educe::Educe;
 use crate::contact::indenter::Indenter;
 use crate::contact::state::extrapolation::Extrapolation;
 use crate::contact::window::region::Region;
-use crate::hereditary::{History, Interpolant, Interval};
+use crate::hereditary::{Field, History, Interpolant, Interval, Role};
 use crate::load::Load;
 use crate::solver::{RigidMotion, Solution};
 
@@ -130,8 +130,40 @@ impl State {
         equilibrium.sum * self.region.grid().cell_area() * self.region.images() as f64
     }
 
-    /// Finds the sums that are not saved.
+    /// The same state on `region`, whose fields are what `map` makes of these; the sums are to be found anew.
+    pub(super) fn map(&self, region: &Region, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> State {
+        let [current, previous] = [&self.current, &self.previous].map(|of| {
+            let Solution { pressure, potential, motions, .. } = &of.solution;
+            let solution = Solution {
+                pressure: map(Field::single(pressure, Role::Lasting { source: None })),
+                potential: map(Field::single(potential, Role::Lasting { source: Some(pressure) })),
+                motions: motions.clone(),
+                ..of.solution
+            };
+            Equilibrium { solution, motions: of.motions.clone(), ..*of }
+        });
+        State {
+            loads: self.loads.clone(),
+            indenter: Arc::clone(&self.indenter),
+            region: region.clone(),
+            history: self.history.map(region.cells(), !region.covers(), map),
+            current,
+            previous,
+            start: self.start.clone(),
+            ..*self
+        }
+    }
+
+    /// Visits all fields.
     #[cfg(feature = "checkpoint")]
+    pub(super) fn each(&self, visit: &mut impl FnMut(Field<'_>)) {
+        self.map(&self.region, &mut |field| {
+            visit(field);
+            Vec::new()
+        });
+    }
+
+    /// Finds the sums that neither transfer nor file has.
     pub(super) fn sum_up(&mut self) {
         let rows = self.region.rows();
         for equilibrium in [&mut self.current, &mut self.previous] {

@@ -211,8 +211,8 @@ fn compute(
 ) -> Result<f64> {
     validate_loads(scene, step)?;
     if let Some((region, placed)) = region_for(scene, &own.state, step)? {
-        let carried = larger.insert(own.carried_to(scene, region, &step.indenter)?);
-        carried.state.region_is_placed = placed;
+        let transferred = larger.insert(own.transferred_to(scene, region, &step.indenter)?);
+        transferred.state.region_is_placed = placed;
     }
     loop {
         let at = larger.as_deref_mut().unwrap_or(&mut *own);
@@ -225,7 +225,7 @@ fn compute(
             Err(error) => return Err(error),
         };
         let Some(region) = grown else { return acceptable(scene, &at.state, &at.trial, step) };
-        *larger = Some(at.carried_to(scene, region, &step.indenter)?);
+        *larger = Some(at.transferred_to(scene, region, &step.indenter)?);
     }
 }
 

@@ -2,14 +2,12 @@
 
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
-use crate::contact::state::{Equilibrium, State};
+use crate::contact::state::State;
 use crate::contact::window::region::Region;
 use crate::contact::window::window::Window;
 use crate::extent::Extent;
 use crate::geometry::Gap;
-use crate::hereditary::Transfer;
-use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::Solution;
+use crate::hereditary::Role;
 
 impl Region {
     /// The part of a field on the whole grid that belongs to the region.
@@ -73,7 +71,7 @@ impl Region {
 
     /// A field of the region on another one of the same grid; `elsewhere` gives its values on cells that are neither in this
     /// region nor mirror images of it.
-    pub(crate) fn carry<V: Copy>(&self, own: &[V], other: &Region, elsewhere: impl Fn(usize) -> V) -> Vec<V> {
+    pub(crate) fn transfer(&self, own: &[f64], other: &Region, elsewhere: impl Fn(usize) -> f64) -> Vec<f64> {
         (0..other.len()).map(|k| self.find(other.cell(k)).map_or_else(|| elsewhere(k), |own_k| own[own_k])).collect()
     }
 
@@ -136,42 +134,10 @@ impl Region {
     }
 }
 
-/// Carries fields from one region to another. What is not known there is the convolution of a source: with u = K U, all
-/// that the displacement depends on transfers with U.
-struct Carry<'a> {
-    from: &'a Region,
-    to: &'a Region,
-    kernel: &'a LocalKernel,
-    work: &'a mut Workspace,
-}
-
-impl Transfer for Carry<'_> {
-    fn cells(&self) -> [usize; 2] {
-        self.to.cells()
-    }
-
-    fn covers(&self) -> bool {
-        self.to.covers()
-    }
-
-    fn confined(&self, own: &[f64]) -> Vec<f64> {
-        self.from.carry(own, self.to, |_| 0.0)
-    }
-
-    fn induced(&mut self, own: &[f64], source: Option<&[f64]>) -> Vec<f64> {
-        let mut far = vec![0.0; self.to.len()];
-        // nothing is unknown where the images of a region cover the grid
-        let source = source.filter(|source| !self.from.covers() && source.iter().any(|&s| s != 0.0));
-        if let Some(source) = source {
-            self.kernel.apply(&self.confined(source), &mut far, self.work);
-        }
-        self.from.carry(own, self.to, |k| far[k])
-    }
-}
-
-/// A copy of the state on another region, and the window that computes there under `indenter`. The state itself stays what
-/// it is.
-pub(in crate::contact) fn carried(
+/// A copy of the state on another region, and the window that computes there under `indenter`. The state loses the start of
+/// its last step, and is otherwise the same. With u = K U, a displacement outside the old region is the convolution of its
+/// source; nothing is unknown where the images of the region cover the grid.
+pub(in crate::contact) fn transferred(
     scene: &Scene,
     state: &mut State,
     region: Region,
@@ -179,28 +145,19 @@ pub(in crate::contact) fn carried(
 ) -> (State, Window) {
     let mut window = Window::new(scene, &region, indenter);
     let (kernel, work) = window.kernel_and_work();
-    let mut carry = Carry { from: &state.region, to: &region, kernel, work };
-    let history = state.history.carried(&mut carry);
-    let [current, previous] = [&state.current, &state.previous].map(|old| {
-        let Solution { pressure, potential, motions, .. } = &old.solution;
-        let solution = Solution {
-            potential: carry.induced(potential, Some(pressure)),
-            pressure: carry.confined(pressure),
-            motions: motions.clone(),
-            ..old.solution
-        };
-        let sum = region.rows().sum(&solution.pressure);
-        Equilibrium { solution, motions: old.motions.clone(), contact_cells: old.contact_cells, sum }
-    });
-    let carried = State {
-        loads: state.loads.clone(),
-        start: state.start.clone(),
-        indenter: state.indenter.clone(),
-        region,
-        history,
-        current,
-        previous,
-        ..*state
+    state.history.apply_pending_step();
+    let (from, cells) = (&state.region, region.len());
+    let mut one = |own: &[f64], source: Option<&[f64]>| {
+        let source = source.filter(|source| !from.covers() && source.iter().any(|&s| s != 0.0));
+        let Some(source) = source else { return from.transfer(own, &region, |_| 0.0) };
+        let mut far = vec![0.0; cells];
+        kernel.apply(&from.transfer(source, &region, |_| 0.0), &mut far, work);
+        from.transfer(own, &region, |k| far[k])
     };
-    (carried, window)
+    let mut transferred = state.map(&region, &mut |field| match field.role {
+        Role::Lasting { source } => field.transferred(source, cells, &mut one),
+        Role::OfStep | Role::Work => vec![0.0; cells * field.per_cell],
+    });
+    transferred.sum_up();
+    (transferred, window)
 }

@@ -68,8 +68,8 @@ fn regions_know_their_cells() {
                 assert_eq!([(low[0], high[0]), (low[1], high[1])], [of(0), of(1)], "{cell:?} {folded:?}");
             }
             assert_eq!(region.reach(&vec![0.0; region.len()]), None);
-            let carried = region.carry(&own, &Region::whole(&whole, [false; 2]), |_| f64::NAN);
-            assert!(carried.iter().zip(&spread).all(|(a, b)| a == b || (a.is_nan() && b.is_nan())));
+            let transferred = region.transfer(&own, &Region::whole(&whole, [false; 2]), |_| f64::NAN);
+            assert!(transferred.iter().zip(&spread).all(|(a, b)| a == b || (a.is_nan() && b.is_nan())));
         }
     }
 }
