@@ -102,7 +102,7 @@ impl Builder {
             .check(&Computed::on(&region), 0)?;
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
-            built: Built::new(indenter.gap(), grid.cells()),
+            built: Built::new(indenter.gap(), &Region::whole(&grid, [false; 2])),
             grid,
             kernel,
             material,
@@ -127,7 +127,7 @@ impl Builder {
         let indenter = gap.on(&region, &grid, even);
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
-            built: Built::of_own_rows(indenter.gap(), &region),
+            built: Built::new(indenter.gap(), &region),
             grid,
             kernel,
             material,

@@ -155,7 +155,7 @@ impl ViscoelasticContact {
         });
         let (state, mut gap) = all.of(read)?;
         let indenter = if shared {
-            let moved = difference(&Built::of_own_rows(&gap, &region).shape, &self.scene.built.shape).is_some();
+            let moved = difference(&Built::new(&gap, &region).shape, &self.scene.built.shape).is_some();
             all.of(if moved { Err(saved::moved_indenter()) } else { Ok(()) })?;
             own.indenter.with_gap_on(&region, gap)
         } else {
