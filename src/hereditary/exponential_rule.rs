@@ -68,7 +68,7 @@ pub(crate) struct ExponentialRule {
 }
 
 /// What a step does to a field that follows the rule.
-#[derive(Debug, PartialEq, Educe)]
+#[derive(Debug, Default, PartialEq, Educe)]
 #[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Weights {
@@ -114,20 +114,8 @@ impl ExponentialRule {
     /// For bodies with contact compliance `creep`.
     pub(crate) fn new(creep: &CreepSpectrum) -> ExponentialRule {
         let relaxation = creep.relaxation();
-        let weights = Weights {
-            dt: 0.0,
-            degree: 1,
-            corrects: [false; 2],
-            c: 0.0,
-            past: [0.0; 3],
-            branches: vec![[0.0; 4]; relaxation.terms().len()],
-            terms: 0,
-            ratios: [0.0; 2],
-            defects: [0.0; 2],
-            answer: 0.0,
-            span: 1.0,
-            known: 0,
-        };
+        let branches = vec![[0.0; 4]; relaxation.terms().len()];
+        let weights = Weights { degree: 1, branches, span: 1.0, ..Weights::default() };
         ExponentialRule {
             relaxation,
             spans: [0.0; 2],
@@ -271,7 +259,7 @@ impl ExponentialRule {
     }
 
     /// Finds the weights of a step of length `dt`; its compliance is 0 in a jump of a body without elastic response.
-    pub(super) fn compute_weights(&mut self, dt: f64, interpolant: Interpolant) {
+    pub(crate) fn compute_weights(&mut self, dt: f64, interpolant: Interpolant) {
         let quadratic = interpolant == Interpolant::CorrectedQuadratic
             || interpolant == Interpolant::CorrectedLinear && self.has_dashpot();
         let wanted = if quadratic { 2 } else { 1 };

@@ -22,6 +22,8 @@ pub(crate) struct History {
     /// Where only a window of the grid is computed, the field U whose convolution K U is the displacement elsewhere.
     /// Zero wherever there never was contact.
     far: Option<RememberedField>,
+    /// Where the bodies move under the grid, the past of the pressure, whose convolution is the displacement.
+    frame: Option<MovingFrame>,
     /// Whether the start of the last step is kept: the trial of each field, and what the past has yet to take in.
     start_is_kept: bool,
 }
@@ -31,10 +33,7 @@ pub(crate) struct History {
 #[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 enum Rule {
-    /// By the past of the displacement itself.
     Exponential(ExponentialRule),
-    /// By the past of the pressure, whose convolution is the displacement.
-    MovingFrame(ExponentialRule, Box<MovingFrame>),
     DirectSum(DirectSum),
 }
 
@@ -48,53 +47,21 @@ pub(crate) struct HistoryInputs<'a> {
     pub(crate) least_side: f64,
 }
 
-impl Rule {
-    /// The same rule on other cells, whose fields are what `map` makes of these.
-    fn map(&self, cells: [usize; 2], map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> Rule {
-        match self {
-            Rule::Exponential(own) => Rule::Exponential(own.clone()),
-            Rule::MovingFrame(own, frame) => Rule::MovingFrame(own.clone(), Box::new(frame.map(cells, map))),
-            Rule::DirectSum(own) => Rule::DirectSum(own.map(map)),
-        }
-    }
-
-    /// The exponential rule, if it is that.
-    fn exponential(&self) -> Option<&ExponentialRule> {
-        match self {
-            Rule::Exponential(own) | Rule::MovingFrame(own, _) => Some(own),
-            Rule::DirectSum(_) => None,
-        }
-    }
-
-    /// Whether it is the rule of another, on these cells.
-    #[cfg(feature = "checkpoint")]
-    fn fits(&self, other: &Rule, cells: [usize; 2]) -> bool {
-        match (self, other) {
-            (Rule::Exponential(own), Rule::Exponential(other)) => own.fits(other),
-            (Rule::MovingFrame(own, frame), Rule::MovingFrame(other, other_frame)) => {
-                own.fits(other) && frame.fits(other_frame, own.kept(), cells)
-            }
-            (Rule::DirectSum(own), Rule::DirectSum(other)) => own.fits(other),
-            _ => false,
-        }
-    }
-}
-
 impl History {
-    fn new(rule: Rule, displacement: RememberedField) -> History {
-        History { rule, displacement, far: None, start_is_kept: false }
+    fn new(rule: Rule, displacement: RememberedField, frame: Option<MovingFrame>) -> History {
+        History { rule, displacement, far: None, frame, start_is_kept: false }
     }
 
     /// Undisturbed bodies with contact compliance `creep`, by the exponential rule; on no cells yet.
     pub(crate) fn exponential(creep: &CreepSpectrum) -> History {
         let rule = ExponentialRule::new(creep);
         let displacement = RememberedField::on_no_cells(&rule, rule.branches());
-        History::new(Rule::Exponential(rule), displacement)
+        History::new(Rule::Exponential(rule), displacement, None)
     }
 
     /// Undisturbed bodies, by a direct sum over all steps; on no cells yet.
     pub(crate) fn direct_sum(weighting: Weighting) -> History {
-        History::new(Rule::DirectSum(DirectSum::new(weighting)), RememberedField::new(0, 0))
+        History::new(Rule::DirectSum(DirectSum::new(weighting)), RememberedField::new(0, 0), None)
     }
 
     /// Undisturbed bodies that move under the grid, by the exponential rule; on no cells yet.
@@ -102,16 +69,20 @@ impl History {
         let rule = ExponentialRule::new(creep);
         let frame = MovingFrame::new(RememberedField::on_no_cells(&rule, rule.branches()), periodic);
         let displacement = RememberedField::on_no_cells(&rule, 0);
-        History::new(Rule::MovingFrame(rule, Box::new(frame)), displacement)
+        History::new(Rule::Exponential(rule), displacement, Some(frame))
     }
 
     /// The same history on other cells, a `window` of the grid or all of it, whose fields are what `map` makes of these.
     pub(crate) fn map(&self, cells: [usize; 2], window: bool, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> History {
-        let History { rule, displacement, far, start_is_kept } = self;
+        let History { rule, displacement, far, frame, start_is_kept } = self;
         History {
-            rule: rule.map(cells, map),
+            rule: match rule {
+                Rule::Exponential(own) => Rule::Exponential(own.clone()),
+                Rule::DirectSum(own) => Rule::DirectSum(own.map(map)),
+            },
             displacement: displacement.map(far.as_ref(), map),
             far: far.as_ref().filter(|_| window).map(|far| far.map(None, map)),
+            frame: frame.as_ref().map(|frame| frame.map(cells, map)),
             start_is_kept: *start_is_kept,
         }
     }
@@ -141,7 +112,7 @@ impl History {
 
     /// Whether the displacement outside a window of the grid can be found.
     pub(crate) fn has_far_field(&self) -> bool {
-        matches!(self.rule, Rule::Exponential(_))
+        self.frame.is_none() && !self.grows()
     }
 
     /// Whether each step adds a field to the past.
@@ -151,14 +122,21 @@ impl History {
 
     /// The exponential rule, if the history follows it.
     pub(crate) fn exponential_rule(&self) -> Option<&ExponentialRule> {
-        self.rule.exponential()
+        if let Rule::Exponential(own) = &self.rule { Some(own) } else { None }
     }
 
     /// The past does not determine how the displacement continues, as after a corner of the load.
     pub(crate) fn reset_differences(&mut self) {
-        if let Rule::Exponential(own) | Rule::MovingFrame(own, _) = &mut self.rule {
+        if let Rule::Exponential(own) = &mut self.rule {
             own.reset_differences();
         }
+    }
+
+    /// The rule, and all fields that follow the recursion of the displacement.
+    fn parts(&mut self) -> (&mut Rule, impl Iterator<Item = &mut RememberedField>) {
+        let History { rule, displacement, far, frame, .. } = self;
+        let of_frame = frame.iter_mut().flat_map(MovingFrame::fields_mut);
+        (rule, [displacement].into_iter().chain(far).chain(of_frame))
     }
 
     /// The displacement \[m\].
@@ -184,25 +162,14 @@ impl History {
 
     /// Returns to the start of the last step, which must be kept; `touched` is true if the step was taken into a direct sum.
     pub(crate) fn roll_back(&mut self, touched: bool) {
-        let History { rule, displacement, far, start_is_kept } = self;
-        far.iter_mut().for_each(RememberedField::roll_back);
+        self.start_is_kept = false;
+        let (rule, fields) = self.parts();
         match rule {
-            Rule::Exponential(own) => {
-                own.roll_back();
-                displacement.roll_back();
-            }
-            Rule::MovingFrame(own, frame) => {
-                own.roll_back();
-                frame.roll_back(displacement);
-            }
-            Rule::DirectSum(own) => {
-                if touched {
-                    own.roll_back();
-                }
-                displacement.roll_back();
-            }
+            Rule::Exponential(own) => own.roll_back(),
+            Rule::DirectSum(own) if touched => own.roll_back(),
+            Rule::DirectSum(_) => {}
         }
-        *start_is_kept = false;
+        fields.for_each(RememberedField::roll_back);
     }
 
     /// The change of the displacement in the last step, once the next is predicted; none where it is not kept.
@@ -222,7 +189,7 @@ impl History {
 
     /// Whether the displacement itself is part of the past, rather than computed anew from v.
     pub(crate) fn integrates_displacement(&self) -> bool {
-        self.rule.exponential().is_some_and(ExponentialRule::has_memory)
+        self.exponential_rule().is_some_and(ExponentialRule::has_memory)
     }
 
     /// Whether the surface in contact stays, from step to step, exactly on a body whose motion is prescribed.
@@ -240,38 +207,18 @@ impl History {
         work: &mut Workspace,
     ) -> Result<(f64, usize)> {
         self.start_is_kept = false;
-        let History { rule, displacement, far, .. } = self;
+        let History { rule, displacement, far, frame, .. } = self;
         match rule {
             Rule::Exponential(own) => {
+                own.compute_weights(step.dt, step.interpolant);
+                if let Some(frame) = frame {
+                    let convolutions = frame.predict(own, step.stride, inputs.least_side, displacement, (kernel, work));
+                    return Ok((own.compliance(), convolutions));
+                }
                 // the sign of u is no criterion where pressures raise the surface
-                let sign_counts = || !kernel.raises();
-                let step = (step.dt, step.interpolant);
-                displacement.predict_non_negative(own, step, inputs.least_side, kernel.rows(), sign_counts);
+                displacement.predict_non_negative(own, inputs.least_side, kernel.rows(), || !kernel.raises());
                 far.iter_mut().for_each(|far| far.predict(own));
                 Ok((own.compliance(), 0))
-            }
-            Rule::MovingFrame(own, frame) => {
-                own.compute_weights(step.dt, step.interpolant);
-                displacement.apply_pending_step(own);
-                if !own.has_memory() {
-                    frame.predict(own, step.stride);
-                    displacement.trial.fill(0.0);
-                    return Ok((own.compliance(), 0));
-                }
-                let mut convolutions = 0;
-                loop {
-                    frame.predict(own, step.stride);
-                    let ([source, remainder], trial) = (frame.predicted(), &mut displacement.trial);
-                    kernel.apply(source, trial, work);
-                    trial.iter_mut().zip(remainder).for_each(|(u_old, &e)| *u_old += e);
-                    convolutions += 1;
-                    let falls_below_zero =
-                        own.has_less() && displacement.falls_below_zero(own, inputs.least_side, kernel.rows());
-                    if !falls_below_zero || kernel.raises() {
-                        return Ok((own.compliance(), convolutions));
-                    }
-                    own.reduce_order();
-                }
             }
             Rule::DirectSum(own) => {
                 let RememberedField { now, trial, .. } = displacement;
@@ -294,7 +241,7 @@ impl History {
     ) {
         let RememberedField { now, trial, .. } = &mut self.displacement;
         self.far.iter_mut().for_each(|far| far.add(c, pressure));
-        if let Rule::MovingFrame(_, frame) = &mut self.rule {
+        if let Some(frame) = &mut self.frame {
             frame.respond(c, pressure, trial, potential);
             displace(now, trial);
             frame.add_displacement(trial);
@@ -306,7 +253,7 @@ impl History {
     /// u − u_old, by which a free displacement recedes in the step predicted last: calls `take` with it for each cell that is
     /// `wanted`. Only the exponential rule has it.
     pub(crate) fn recovery(&self, wanted: impl Fn(usize) -> bool, mut take: impl FnMut(usize, f64)) {
-        let Rule::Exponential(own) = &self.rule else { return };
+        let Some(own) = self.exponential_rule().filter(|_| self.frame.is_none()) else { return };
         let RememberedField { past, now, .. } = &self.displacement;
         let held = own.compliance() * own.equilibrium();
         past.recovery(&own.tried, now.len(), wanted, |k, by_past| take(k, held * now[k] + by_past));
@@ -315,37 +262,25 @@ impl History {
     /// Accepts the step predicted last, given p and v = K p, each at its start and at its end; `touched` is true if
     /// anything has ever been displaced.
     pub(crate) fn commit(&mut self, step: Interval, pressed: [[&[f64]; 2]; 2], touched: bool) {
-        let History { rule, displacement, far, .. } = self;
-        far.iter_mut().for_each(RememberedField::commit);
-        match rule {
-            Rule::Exponential(own) => {
-                own.commit();
-                displacement.commit();
-            }
-            Rule::MovingFrame(own, frame) => {
-                own.commit();
-                frame.commit(step.stride, displacement);
-            }
-            Rule::DirectSum(own) => {
-                if touched {
-                    own.commit((step.reduced, step.dt), pressed);
-                }
-                displacement.commit();
-            }
+        if let Some(frame) = self.frame.as_mut().filter(|_| step.stride != [0; 2]) {
+            frame.shift_start(step.stride, &mut self.displacement);
         }
+        let (rule, fields) = self.parts();
+        match rule {
+            Rule::Exponential(own) => own.commit(),
+            Rule::DirectSum(own) if touched => own.commit((step.reduced, step.dt), pressed),
+            Rule::DirectSum(_) => {}
+        }
+        fields.for_each(RememberedField::commit);
         // under bodies that moved, the field before the step belongs to other places
         self.start_is_kept = step.stride == [0; 2];
     }
 
     /// Lets the past take in the last step, whose start is given up.
     pub(crate) fn apply_pending_step(&mut self) {
-        let History { rule, displacement, far, start_is_kept } = self;
-        *start_is_kept = false;
-        let (Rule::Exponential(own) | Rule::MovingFrame(own, _)) = &*rule else { return };
-        displacement.apply_pending_step(own);
-        far.iter_mut().for_each(|far| far.apply_pending_step(own));
-        if let Rule::MovingFrame(own, frame) = rule {
-            frame.apply_pending_step(own);
+        self.start_is_kept = false;
+        if let (Rule::Exponential(own), fields) = self.parts() {
+            fields.for_each(|field| field.apply_pending_step(own));
         }
     }
 
@@ -353,9 +288,18 @@ impl History {
     /// anything.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &History, cells: [usize; 2], window: bool) -> bool {
-        let kept = self.rule.exponential().map_or(0, ExponentialRule::kept);
+        let (kept, rule_fits) = match (&self.rule, &other.rule) {
+            (Rule::Exponential(own), Rule::Exponential(other)) => (own.kept(), own.fits(other)),
+            (Rule::DirectSum(own), Rule::DirectSum(other)) => (0, own.fits(other)),
+            _ => (0, false),
+        };
         let mut fields = std::iter::once(&self.displacement).chain(&self.far);
-        self.rule.fits(&other.rule, cells)
+        let frame_fits = match (&self.frame, &other.frame) {
+            (Some(own), Some(other)) => own.fits(other, kept, cells),
+            (own, other) => own.is_none() && other.is_none(),
+        };
+        rule_fits
+            && frame_fits
             && fields.all(|field| field.past.fits(&other.displacement.past, kept))
             && self.far.is_some() == (window && self.has_far_field())
     }

@@ -5,6 +5,7 @@ use educe::Educe;
 use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::field::{Field, Role};
 use crate::hereditary::remembered_field::RememberedField;
+use crate::kernel::{LocalKernel, Workspace};
 
 /// The past kept as the field U with u = K U, and its branches, which follow the recursion of u itself, K and the bodies
 /// being linear. U vanishes wherever there never was contact: what enters the grid across its edge is known, and so the
@@ -49,19 +50,38 @@ impl MovingFrame {
             && self.remainder.past.fits(&other.remainder.past, kept)
     }
 
-    /// Finds U_old and e_old at the end of a step in which the cell `[i, j]` comes over what was the cell
-    /// `[i, j] + stride`.
-    pub(crate) fn predict(&mut self, rule: &ExponentialRule, stride: [isize; 2]) {
+    /// Finds U_old and e_old at the end of a step in which the cell `[i, j]` comes over what was the cell `[i, j] + stride`, and
+    /// u_old = K U_old + e_old as the trial of the displacement. Returns the number of convolutions taken.
+    pub(crate) fn predict(
+        &mut self,
+        rule: &mut ExponentialRule,
+        stride: [isize; 2],
+        side: f64,
+        displacement: &mut RememberedField,
+        (kernel, work): (&LocalKernel, &mut Workspace),
+    ) -> usize {
+        displacement.apply_pending_step(rule);
         let (cells, periodic) = (self.cells, self.periodic);
-        for field in [&mut self.remainder, &mut self.source] {
-            field.predict(rule);
-            shift(&mut field.trial, cells, stride, periodic);
+        let mut convolutions = 0;
+        loop {
+            for field in [&mut self.remainder, &mut self.source] {
+                field.predict(rule);
+                shift(&mut field.trial, cells, stride, periodic);
+            }
+            let u_old = &mut displacement.trial;
+            if !rule.has_memory() {
+                u_old.fill(0.0);
+                return convolutions;
+            }
+            kernel.apply(&self.source.trial, u_old, work);
+            u_old.iter_mut().zip(&self.remainder.trial).for_each(|(u_old, &e)| *u_old += e);
+            convolutions += 1;
+            let falls_below_zero = rule.has_less() && displacement.falls_below_zero(rule, side, kernel.rows());
+            if !falls_below_zero || kernel.raises() {
+                return convolutions;
+            }
+            rule.reduce_order();
         }
-    }
-
-    /// U_old and e_old: u_old = K U_old + e_old.
-    pub(crate) fn predicted(&self) -> [&[f64]; 2] {
-        [self.source.trial(), self.remainder.trial()]
     }
 
     /// U = U_old + c p, and e less u_old + c v: what is left to add to e is the displacement.
@@ -76,26 +96,16 @@ impl MovingFrame {
         self.remainder.add(1.0, u);
     }
 
-    /// Takes the step that was predicted last into the past, `displacement` with it.
-    pub(crate) fn commit(&mut self, stride: [isize; 2], displacement: &mut RememberedField) {
+    /// Shifts what was at the start of the step predicted last, `displacement` with it: it is now elsewhere.
+    pub(crate) fn shift_start(&mut self, stride: [isize; 2], displacement: &mut RememberedField) {
         for field in [displacement, &mut self.source, &mut self.remainder] {
-            if stride != [0; 2] {
-                // what was before the step, too, is now elsewhere
-                shift(&mut field.now, self.cells, stride, self.periodic);
-                field.past.change(&mut self.scratch, |own| shift(own, self.cells, stride, self.periodic));
-            }
-            field.commit();
+            shift(&mut field.now, self.cells, stride, self.periodic);
+            field.past.change(&mut self.scratch, |own| shift(own, self.cells, stride, self.periodic));
         }
     }
 
-    /// Returns to the start of the step accepted last, in which the bodies did not move, `displacement` with it.
-    pub(crate) fn roll_back(&mut self, displacement: &mut RememberedField) {
-        [displacement, &mut self.source, &mut self.remainder].into_iter().for_each(RememberedField::roll_back);
-    }
-
-    /// Lets the pasts take in the last step.
-    pub(super) fn apply_pending_step(&mut self, rule: &ExponentialRule) {
-        [&mut self.source, &mut self.remainder].into_iter().for_each(|field| field.apply_pending_step(rule));
+    pub(super) fn fields_mut(&mut self) -> [&mut RememberedField; 2] {
+        [&mut self.source, &mut self.remainder]
     }
 }
 

@@ -2,7 +2,7 @@
 
 use educe::Educe;
 
-use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
+use crate::hereditary::exponential_rule::ExponentialRule;
 use crate::hereditary::field::{Field, Role};
 use crate::hereditary::past::Past;
 use crate::parallel::Rows;
@@ -52,17 +52,15 @@ impl RememberedField {
         self.past.predict(rule, &self.now, &mut self.trial);
     }
 
-    /// Finds the weights of a step and predicts its end. No pressure has pulled the surface up yet: where the field would fall
+    /// Predicts the end of the step whose weights were computed last. No pressure has pulled the surface up yet: where the field would fall
     /// below zero, a polynomial of lower degree is taken, where `sign_counts`. `side` \[m\] is the width of a cell.
     pub(crate) fn predict_non_negative(
         &mut self,
         rule: &mut ExponentialRule,
-        (dt, interpolant): (f64, Interpolant),
         side: f64,
         rows: &Rows,
         sign_counts: impl Fn() -> bool,
     ) {
-        rule.compute_weights(dt, interpolant);
         self.predict(rule);
         while rule.has_less() && self.falls_below_zero(rule, side, rows) && sign_counts() {
             rule.reduce_order();

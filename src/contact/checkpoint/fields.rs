@@ -23,8 +23,13 @@ pub(super) struct FieldWriter<'a> {
 }
 
 impl<'a> FieldWriter<'a> {
-    pub(super) fn new(out: Option<Output<'a>>) -> FieldWriter<'a> {
-        FieldWriter { out, written: Ok(()), lost: None, bytes: Vec::new() }
+    /// Continues a file, if this rank has begun one.
+    pub(super) fn new(begun: Option<io::Result<Output<'a>>>) -> FieldWriter<'a> {
+        let (out, written) = match begun.transpose() {
+            Ok(out) => (out, Ok(())),
+            Err(error) => (None, Err(error)),
+        };
+        FieldWriter { out, written, lost: None, bytes: Vec::new() }
     }
 
     /// Writes all fields of a state.

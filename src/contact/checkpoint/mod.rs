@@ -77,11 +77,12 @@ impl ViscoelasticContact {
         let (rows, above) = (region.rows(), &indenter.gap().above);
         rows.replace_file(path, |out| {
             let saved = Saved::of(self, progress);
-            let mut out = out.map(Output::begin).transpose()?;
-            if let Some(out) = &mut out {
-                postcard::to_io(&saved, out).map_err(io::Error::other)?;
-            }
-            let mut fields = FieldWriter::new(out);
+            let begun = out.map(|out| {
+                let mut out = Output::begin(out)?;
+                postcard::to_io(&saved, &mut out).map_err(io::Error::other)?;
+                Ok(out)
+            });
+            let mut fields = FieldWriter::new(begun);
             fields.state(&self.computation.state);
             let (gap, n2) = (saved.gap_region(self), self.scene.grid.cells()[1]);
             if rows.are_shared() {
@@ -160,7 +161,7 @@ impl ViscoelasticContact {
             own.indenter.with_gap_on(&region, gap)
         } else {
             let mut whole = vec![0.0; grid.len()];
-            gap_region.spread(&gap.above, &mut whole);
+            gap_region.show(&gap.above, &mut whole);
             gap.above = whole;
             Indenter::new(gap, self.scene.bodies)
         };

@@ -277,7 +277,7 @@ pub(in crate::contact) fn on_the_whole_grid<'a>(
         let kernel = scene.kernel.on(all.grid(), all.folded());
         let mut far = vec![0.0; all.len()];
         kernel.apply(&region.transfer(source, &all, |_| 0.0), &mut far, &mut kernel.workspace());
-        all.spread(&far, &mut whole);
+        all.show(&far, &mut whole);
     }
     region.show(own, &mut whole);
     Cow::Owned(whole)

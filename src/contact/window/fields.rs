@@ -18,9 +18,11 @@ impl Region {
     /// Overwrites a gap with the part of another that belongs to the region.
     pub(crate) fn cut_gap_into(&self, gap: &Gap, own: &mut Gap) {
         own.datum = gap.datum;
-        own.above.iter_mut().zip(self.part(&gap.above)).for_each(|(own, value)| *own = value);
+        own.above.clear();
+        own.above.extend(self.part(&gap.above));
         if let (Some(own), Some(owner)) = (&mut own.owner, &gap.owner) {
-            own.iter_mut().zip(self.part(owner)).for_each(|(own, value)| *own = value);
+            own.clear();
+            own.extend(self.part(owner));
         }
     }
 
@@ -39,27 +41,15 @@ impl Region {
         })
     }
 
-    /// Writes a field of the region to the cells that are shown, and what is outside it and its mirror images stays as it is.
+    /// Writes a field of the region, and its mirror images, over the cells that are shown; others stay as they are.
     pub(crate) fn show(&self, own: &[f64], shown: &mut [f64]) {
-        if !self.is_shared() {
-            return self.spread(own, shown);
-        }
-        let ([_, n2], [_, m2]) = (self.whole.cells(), self.cells());
-        for (row, line) in own.chunks_exact(m2).zip(shown.chunks_exact_mut(n2)) {
-            let (mirrored, computed) = line.split_at_mut(n2 - m2);
-            computed.copy_from_slice(row);
-            mirrored.iter_mut().rev().zip(row).for_each(|(out, &value)| *out = value);
-        }
-    }
-
-    /// Writes a field of the region over its cells, and their mirror images, of the whole grid.
-    pub(crate) fn spread(&self, own: &[f64], whole: &mut [f64]) {
-        let ([n1, n2], [_, m2]) = (self.whole.cells(), self.cells());
+        let ([n1, n2], [_, m2], rows) = (self.whole.cells(), self.cells(), self.shown_rows());
         for (i, row) in own.chunks_exact(m2).enumerate() {
             let i = self.first[0] + i;
-            let images = [Some(i), self.folded[0].then_some(n1 - 1 - i)];
+            // of shared rows no rank has the images
+            let images = [Some(i), (self.folded[0] && !self.is_shared()).then_some(n1 - 1 - i)];
             for i in images.into_iter().flatten() {
-                let line = &mut whole[i * n2..(i + 1) * n2];
+                let line = &mut shown[(i - rows.start) * n2..][..n2];
                 line[self.first[1]..self.first[1] + m2].copy_from_slice(row);
                 if self.folded[1] {
                     let start = n2 - self.first[1] - m2;

@@ -47,7 +47,7 @@ fn regions_know_their_cells() {
                 assert_eq!((region.find(region.cell(k)), value), (Some(k), even(region.cell(k))));
             }
             let mut spread = vec![f64::NAN; 600];
-            region.spread(&own, &mut spread);
+            region.show(&own, &mut spread);
             for k in 0..600 {
                 let cell = [k / 30, k % 30];
                 assert!(if region.find(cell).is_some() { spread[k] == field[k] } else { spread[k].is_nan() });
@@ -58,7 +58,7 @@ fn regions_know_their_cells() {
                 let mut one = vec![0.0; region.len()];
                 one[k] = 1.0;
                 let mut images = vec![0.0; 600];
-                region.spread(&one, &mut images);
+                region.show(&one, &mut images);
                 let of = |axis: usize| {
                     let along = |k: usize| [k / 30, k % 30][axis];
                     let touched = || (0..600).filter(|&k| images[k] > 0.0).map(along);
