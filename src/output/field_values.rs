@@ -7,10 +7,9 @@ use std::path::Path;
 
 use crate::ViscoelasticContact;
 use crate::contact::Brought;
-use crate::error::{RanksError, Result};
+use crate::error::Result;
 use crate::file::replace;
 use crate::output::Field;
-use crate::parallel::catch_rank_loss;
 
 /// Cells that ranks bring at a time, or one row or some columns where they have more.
 const PIECE_CELLS: usize = 1 << 16;
@@ -27,8 +26,6 @@ pub(super) struct FieldValues<'a> {
     order: Order,
     /// For fields that the contact does not store.
     buffer: &'a mut Vec<f64>,
-    /// A rank has left: nothing can be brought any more.
-    left: Option<RanksError>,
 }
 
 /// The order in which a format has the cells.
@@ -50,12 +47,12 @@ pub(super) fn write_fields(
     buffer: &mut Vec<f64>,
     write: impl FnOnce(&mut BufWriter<File>, &mut FieldValues<'_>) -> io::Result<()>,
 ) -> Result<()> {
-    let mut values = FieldValues { contact, fields, order, buffer, left: None };
+    let mut values = FieldValues { contact, fields, order, buffer };
     let rows = contact.shared_rows();
     let Some(group) = rows.group() else { return replace(path, |out| write(out, &mut values)) };
     // whether rank 0 could begin
-    let all_begin = |begun: bool| catch_rank_loss(&rows, || Ok(!rows.any(!begun)));
-    catch_rank_loss(&rows, || {
+    let all_begin = |begun: bool| rows.together(|| Ok(!rows.any(!begun)));
+    rows.together(|| {
         if group.rank() > 0 {
             if all_begin(true)? {
                 values.pass_over_the_rest();
@@ -81,7 +78,7 @@ impl FieldValues<'_> {
     /// The next field, some rows at a time.
     #[cfg(feature = "npy")]
     pub(super) fn by_rows(&mut self, mut take: impl FnMut(&[f64]) -> io::Result<()>) -> io::Result<()> {
-        let FieldValues { contact, fields, buffer, left, .. } = self;
+        let FieldValues { contact, fields, buffer, .. } = self;
         let Some((field, rest)) = fields.split_first() else { return Ok(()) };
         *fields = rest;
         let values = field.values(contact, buffer).map_err(io::Error::other)?;
@@ -90,13 +87,13 @@ impl FieldValues<'_> {
         }
         let [n1, n2] = contact.grid().cells();
         let pieces = pieces(n1, (PIECE_CELLS / n2).max(1)).map(|rows| [rows, 0..n2]);
-        bring(contact, values, left, pieces, |brought, [mut rows, _]| rows.try_for_each(|row| take(brought.row(row))))
+        bring(contact, values, pieces, |brought, [mut rows, _]| rows.try_for_each(|row| take(brought.row(row))))
     }
 
     /// The next field, value by value of its columns.
     #[cfg(feature = "vtk")]
     pub(super) fn by_columns(&mut self, mut take: impl FnMut(f64) -> io::Result<()>) -> io::Result<()> {
-        let FieldValues { contact, fields, buffer, left, .. } = self;
+        let FieldValues { contact, fields, buffer, .. } = self;
         let Some((field, rest)) = fields.split_first() else { return Ok(()) };
         *fields = rest;
         let values = field.values(contact, buffer).map_err(io::Error::other)?;
@@ -105,7 +102,7 @@ impl FieldValues<'_> {
             return (0..n2).flat_map(|j| (0..n1).map(move |i| values[i * n2 + j])).try_for_each(take);
         }
         let pieces = pieces(n2, (PIECE_CELLS / n1).max(LEAST_COLUMNS)).map(|columns| [0..n1, columns]);
-        bring(contact, values, left, pieces, |brought, [rows, columns]| {
+        bring(contact, values, pieces, |brought, [rows, columns]| {
             (0..columns.len()).try_for_each(|j| rows.clone().try_for_each(|row| take(brought.row(row)[j])))
         })
     }
@@ -133,22 +130,18 @@ fn pieces(all: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
 fn bring(
     contact: &ViscoelasticContact,
     values: &[f64],
-    left: &mut Option<RanksError>,
     rectangles: impl Iterator<Item = [Range<usize>; 2]>,
     mut take: impl FnMut(&Brought, [Range<usize>; 2]) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut taken = Ok(());
     for [rows, columns] in rectangles {
-        if left.is_some() {
-            break;
-        }
-        match contact.bring(values, 0, rows.clone(), columns.clone()) {
-            Ok(Some(brought)) if taken.is_ok() => taken = take(&brought, [rows, columns]),
-            Ok(_) => {}
-            Err(error) => *left = Some(error),
+        // without a rank that is lost nothing can be brought
+        let brought = contact.bring(values, 0, rows.clone(), columns.clone()).map_err(io::Error::other)?;
+        if let (Some(brought), Ok(())) = (brought, &taken) {
+            taken = take(&brought, [rows, columns]);
         }
     }
-    left.clone().map_or(taken, |error| Err(io::Error::other(error)))
+    taken
 }
 
 #[cfg(all(test, feature = "npy", feature = "vtk"))]
@@ -156,7 +149,7 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::error::Error;
+    use crate::error::{Error, RanksError};
     use crate::parallel::Threads;
     use crate::{Grid, geometry::Sphere, load::Load, rheology::Elastic, rheology::Material};
 

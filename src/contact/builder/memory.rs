@@ -128,11 +128,8 @@ impl Footprint<'_> {
         // of the far field of a window two fields, and one for each relaxation time
         let history = self.history.bytes_per_cell() as u128 * n;
         let far = if covers { 0 } else { 16 * n + history };
-        let [kernel, inverse] = match shared {
-            Some(rows) => self.kernel.own_bytes(rows, folded),
-            None => self.kernel.bytes_on(cells, folded),
-        };
         let rows = shared.clone().unwrap_or_else(|| Rows::all(cells));
+        let [kernel, inverse] = self.kernel.bytes(&rows, folded);
         let sums = Bands::bytes(&Rows::all(cells), self.bodies) as u128;
         let solver = match self.settings.solver {
             // three fields, a mark, and runs of cells

@@ -61,6 +61,7 @@ pub(super) fn save(
     let old = mark_at(path).filter(|_| first);
     let mark = if first { check_regular(path).map(|()| next_mark(path)) } else { Ok(0) };
     let mark = rows.greatest(rows.agree(mark)? as f64) as u64;
+    rows.intact()?;
 
     let index = (0..group.rank()).filter(|&rank| !rows.of(rank).is_empty()).count();
     let own = name(path, mark, index);
@@ -74,8 +75,9 @@ pub(super) fn save(
         })
         .map(|()| checksum)
     };
+    // without a rank that is lost, others may have placed the common file already
     let forget = || {
-        if state.region.len() > 0 {
+        if state.region.len() > 0 && rows.intact().is_ok() {
             _ = fs::remove_file(&own)
         }
     };
@@ -93,7 +95,8 @@ pub(super) fn save(
             files.filter(|file| !file.rows.is_empty()).collect()
         },
     );
-    let placed = if first {
+    // where a rank is lost, the files are not known
+    let placed = if first && rows.intact().is_ok() {
         let (scene, folded) = (Fingerprint::of(&contact.scene), state.region.folded());
         let progress = progress.map(Cow::Borrowed);
         let common = Common { mark, scene, folded, progress, files: files.unwrap_or_default() };

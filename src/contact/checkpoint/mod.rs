@@ -15,7 +15,6 @@ use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{CheckpointError, Error, Result};
 use crate::file::replace;
-use crate::parallel::catch_rank_loss;
 use distributed::Common;
 use format::{Kind, Whole};
 use saved::Saved;
@@ -73,7 +72,7 @@ impl ViscoelasticContact {
     pub(super) fn save_with(&self, path: &Path, progress: Option<&Progress>) -> Result<()> {
         let rows = self.computation.state.region.rows();
         if let Some(group) = rows.group() {
-            return catch_rank_loss(&rows, || distributed::save(self, path, progress, (&rows, &**group)));
+            return rows.together(|| distributed::save(self, path, progress, (&rows, &**group)));
         }
         let old = distributed::mark_at(path);
         replace(path, |out| format::write(out, Kind::Whole, &Saved::of(self, progress)).map(drop))?;
@@ -103,7 +102,7 @@ impl ViscoelasticContact {
     /// ([`CheckpointError::OtherScene`]).
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let (path, rows) = (path.as_ref(), self.computation.state.region.rows());
-        catch_rank_loss(&rows, || {
+        rows.together(|| {
             let read = self.read(path).map_err(|source| Error::Checkpoint { path: path.to_owned(), source });
             let (mut state, progress, checksum) = rows.agree(read)?;
             // not one save on one rank and the next on another
@@ -113,7 +112,9 @@ impl ViscoelasticContact {
                 // the indenter of the last step is not saved
                 state.history.forget_start();
             }
-            self.computation = Computation::new(&self.scene, state);
+            let computation = Computation::new(&self.scene, state);
+            rows.intact()?;
+            self.computation = computation;
             self.view.refresh(&self.computation.state);
             self.progress = progress.map(Box::new);
             Ok(())
