@@ -7,7 +7,7 @@ use std::path::Path;
 
 use crate::ViscoelasticContact;
 use crate::contact::Brought;
-use crate::error::{RanksError, Result};
+use crate::error::Result;
 use crate::output::Field;
 
 /// Cells that ranks bring at a time, or one row or some columns where they have more.
@@ -25,8 +25,6 @@ pub(super) struct FieldValues<'a> {
     order: Order,
     /// For fields that the contact does not store.
     buffer: &'a mut Vec<f64>,
-    /// A rank has left: nothing can be brought any more.
-    left: Option<RanksError>,
 }
 
 /// The order in which a format has the cells.
@@ -48,7 +46,7 @@ pub(super) fn write_fields(
     buffer: &mut Vec<f64>,
     write: impl FnOnce(&mut BufWriter<File>, &mut FieldValues<'_>) -> io::Result<()>,
 ) -> Result<()> {
-    let mut values = FieldValues { contact, fields, order, buffer, left: None };
+    let mut values = FieldValues { contact, fields, order, buffer };
     contact.shared_rows().replace_file(path, |out| {
         let written = out.map_or(Ok(()), |out| write(out, &mut values));
         values.pass_over_the_rest();
@@ -60,7 +58,7 @@ impl FieldValues<'_> {
     /// The next field, some rows at a time.
     #[cfg(feature = "npy")]
     pub(super) fn by_rows(&mut self, mut take: impl FnMut(&[f64]) -> io::Result<()>) -> io::Result<()> {
-        let FieldValues { contact, fields, buffer, left, .. } = self;
+        let FieldValues { contact, fields, buffer, .. } = self;
         let Some((field, rest)) = fields.split_first() else { return Ok(()) };
         *fields = rest;
         let values = field.values(contact, buffer).map_err(io::Error::other)?;
@@ -69,13 +67,13 @@ impl FieldValues<'_> {
         }
         let [n1, n2] = contact.grid().cells();
         let pieces = pieces(n1, (PIECE_CELLS / n2).max(1)).map(|rows| [rows, 0..n2]);
-        bring(contact, values, left, pieces, |brought, [mut rows, _]| rows.try_for_each(|row| take(brought.row(row))))
+        bring(contact, values, pieces, |brought, [mut rows, _]| rows.try_for_each(|row| take(brought.row(row))))
     }
 
     /// The next field, value by value of its columns.
     #[cfg(feature = "vtk")]
     pub(super) fn by_columns(&mut self, mut take: impl FnMut(f64) -> io::Result<()>) -> io::Result<()> {
-        let FieldValues { contact, fields, buffer, left, .. } = self;
+        let FieldValues { contact, fields, buffer, .. } = self;
         let Some((field, rest)) = fields.split_first() else { return Ok(()) };
         *fields = rest;
         let values = field.values(contact, buffer).map_err(io::Error::other)?;
@@ -84,7 +82,7 @@ impl FieldValues<'_> {
             return (0..n2).flat_map(|j| (0..n1).map(move |i| values[i * n2 + j])).try_for_each(take);
         }
         let pieces = pieces(n2, (PIECE_CELLS / n1).max(LEAST_COLUMNS)).map(|columns| [0..n1, columns]);
-        bring(contact, values, left, pieces, |brought, [rows, columns]| {
+        bring(contact, values, pieces, |brought, [rows, columns]| {
             (0..columns.len()).try_for_each(|j| rows.clone().try_for_each(|row| take(brought.row(row)[j])))
         })
     }
@@ -112,22 +110,18 @@ fn pieces(all: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
 fn bring(
     contact: &ViscoelasticContact,
     values: &[f64],
-    left: &mut Option<RanksError>,
     rectangles: impl Iterator<Item = [Range<usize>; 2]>,
     mut take: impl FnMut(&Brought, [Range<usize>; 2]) -> io::Result<()>,
 ) -> io::Result<()> {
     let mut taken = Ok(());
     for [rows, columns] in rectangles {
-        if left.is_some() {
-            break;
-        }
-        match contact.bring(values, 0, rows.clone(), columns.clone()) {
-            Ok(Some(brought)) if taken.is_ok() => taken = take(&brought, [rows, columns]),
-            Ok(_) => {}
-            Err(error) => *left = Some(error),
+        // without a rank that is lost nothing can be brought
+        let brought = contact.bring(values, 0, rows.clone(), columns.clone()).map_err(io::Error::other)?;
+        if let (Some(brought), Ok(())) = (brought, &taken) {
+            taken = take(&brought, [rows, columns]);
         }
     }
-    left.clone().map_or(taken, |error| Err(io::Error::other(error)))
+    taken
 }
 
 #[cfg(all(test, feature = "npy", feature = "vtk"))]
@@ -135,7 +129,7 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::error::Error;
+    use crate::error::{Error, RanksError};
     use crate::parallel::Threads;
     use crate::{Grid, geometry::Sphere, load::Load, rheology::Elastic, rheology::Material};
 

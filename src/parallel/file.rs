@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::error::Result;
 use crate::file::{Part, failed};
-use crate::parallel::{Rows, catch_rank_loss};
+use crate::parallel::Rows;
 
 impl Rows {
     /// Replaces a file when its new contents are complete and on the medium. A call of all ranks: all of them run `write`, rank 0
@@ -16,11 +16,13 @@ impl Rows {
         path: &Path,
         write: impl FnOnce(Option<&mut BufWriter<File>>) -> io::Result<()>,
     ) -> Result<()> {
-        let first = self.group().is_none_or(|group| group.rank() == 0);
-        catch_rank_loss(self, || {
-            let part = self.agree(if first { Part::create(path).map(Some) } else { Ok(None) })?;
+        self.together(|| {
+            let part = self.agree(if self.rank() == 0 { Part::create(path).map(Some) } else { Ok(None) })?;
             self.agree(match part {
-                Some((part, file)) => part.fill(file, |out| write(Some(out))),
+                // a file without the rows of a rank that is lost must not be placed
+                Some((part, file)) => {
+                    part.fill(file, |out| write(Some(out)).and_then(|()| self.intact().map_err(io::Error::other)))
+                }
                 None => write(None).map_err(|error| failed(path, error)),
             })
         })

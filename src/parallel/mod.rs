@@ -34,7 +34,10 @@
 //! [`max_pressure`](crate::ViscoelasticContact::max_pressure), [`contact_area`](crate::ViscoelasticContact::contact_area),
 //! [`lateral_force`](crate::ViscoelasticContact::lateral_force), [`profile`](crate::ViscoelasticContact::profile)), files and
 //! checkpoints. What a rank has by itself may be read by one
-//! alone: time, force, approach, tilt, contact cells, own rows.
+//! alone: time, force, approach, tilt, contact cells, local rows.
+//!
+//! If a rank leaves, the call that misses it returns [`RanksError::Left`] and leaves the contact as it was. An observation without
+//! an error to return is NaN, and the next call returns the error.
 //!
 //! | covered | refused, by [`RanksError::NotShared`] |
 //! |---|---|
@@ -65,9 +68,8 @@ mod rows;
 mod threads;
 mod tile;
 
-pub(crate) use exchange::exchange_numbers;
 pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, in_pool, join, lanes};
-pub(crate) use rows::{Rows, catch_rank_loss, part, unwind_rank_loss};
+pub(crate) use rows::{Rows, part};
 pub(crate) use tile::{TILE, rows_in_a_tile};
 
 pub use crate::error::RanksError;

@@ -127,11 +127,8 @@ impl Footprint<'_> {
         let grid = if count == self.all { gap * n } else { whole + 8 * all + gap * n };
         // the state counts two fields of it
         let history = 8 * self.history.values_per_cell(!covers).saturating_sub(2) as u128 * n;
-        let [kernel, inverse] = match shared {
-            Some(rows) => self.kernel.own_bytes(rows, folded),
-            None => self.kernel.bytes_on(cells, folded),
-        };
         let rows = shared.clone().unwrap_or_else(|| Rows::all(cells));
+        let [kernel, inverse] = self.kernel.bytes(&rows, folded);
         let sums = Bands::bytes(&Rows::all(cells), self.bodies) as u128;
         let solver = match self.settings.solver {
             // three fields, a mark, and runs of cells

@@ -7,9 +7,9 @@ use std::ops::Range;
 use super::format::{Input, Output};
 use crate::contact::state::State;
 use crate::contact::window::region::Region;
-use crate::error::{CheckpointError, RanksError};
+use crate::error::CheckpointError;
 use crate::hereditary::{Role, interleaved, runs};
-use crate::parallel::{Rows, exchange_numbers};
+use crate::parallel::Rows;
 
 /// Values that ranks bring at a time, or one row where that is more.
 const PIECE: usize = 1 << 16;
@@ -18,7 +18,6 @@ const PIECE: usize = 1 << 16;
 pub(super) struct FieldWriter<'a> {
     out: Option<Output<'a>>,
     written: io::Result<()>,
-    lost: Option<RanksError>,
     bytes: Vec<u8>,
 }
 
@@ -29,7 +28,7 @@ impl<'a> FieldWriter<'a> {
             Ok(out) => (out, Ok(())),
             Err(error) => (None, Err(error)),
         };
-        FieldWriter { out, written, lost: None, bytes: Vec::new() }
+        FieldWriter { out, written, bytes: Vec::new() }
     }
 
     /// Writes all fields of a state.
@@ -57,18 +56,13 @@ impl<'a> FieldWriter<'a> {
             let (local, first) = (common(rows.own()), rows.own().start);
             let cells = |row: usize| (row - first) * columns;
             let values = own(if local.is_empty() { 0..0 } else { cells(local.start)..cells(local.end) });
-            match rows.group() {
-                None => self.write(values),
-                Some(_) if self.lost.is_some() => return,
-                Some(group) => {
-                    let mut pieces = vec![Vec::new(); rows.ranks()];
-                    pieces[0] = values.collect();
-                    let count = |rank| if group.rank() == 0 { common(rows.of(rank)).len() * columns } else { 0 };
-                    match exchange_numbers(&**group, pieces, count) {
-                        Ok(brought) => self.write(brought.into_iter()),
-                        Err(error) => self.lost = Some(error),
-                    }
-                }
+            if rows.are_shared() {
+                let mut pieces = vec![Vec::new(); rows.ranks()];
+                pieces[0] = values.collect();
+                let count = |rank| if rows.rank() == 0 { common(rows.of(rank)).len() * columns } else { 0 };
+                self.write(rows.exchange(pieces, count).into_iter());
+            } else {
+                self.write(values);
             }
         }
     }
@@ -83,7 +77,7 @@ impl<'a> FieldWriter<'a> {
 
     /// Completes the file.
     pub(super) fn finish(self) -> io::Result<()> {
-        self.lost.map_or(self.written, |error| Err(io::Error::other(error)))?;
+        self.written?;
         self.out.map_or(Ok(()), Output::finish)
     }
 }

@@ -109,8 +109,7 @@ impl Input {
 
     /// The checksum of the part of the contents that a rank reads, and the number of its bytes.
     pub(super) fn checksum_of_part(&mut self, rows: &Rows) -> Result<[f64; 2], CheckpointError> {
-        let rank = rows.group().map_or(0, |group| group.rank());
-        let bytes = part(self.length as usize, rank, rows.ranks());
+        let bytes = part(self.length as usize, rows.rank(), rows.ranks());
         self.file.seek(SeekFrom::Start((HEADER + bytes.start) as u64)).map_err(unreadable)?;
         let (mut hasher, mut piece) = (Hasher::new(), vec![0; PIECE]);
         for start in bytes.clone().step_by(PIECE) {

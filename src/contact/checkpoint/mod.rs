@@ -19,7 +19,7 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::{CheckpointError, Error, Result};
 use crate::geometry::Gap;
-use crate::parallel::{Rows, catch_rank_loss};
+use crate::parallel::Rows;
 use fields::{FieldReader, FieldWriter};
 use format::{Input, Output};
 use saved::Saved;
@@ -117,14 +117,16 @@ impl ViscoelasticContact {
     /// ([`CheckpointError::OtherScene`]).
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let (path, rows) = (path.as_ref(), self.computation.state.region.rows());
-        catch_rank_loss(&rows, || {
+        rows.together(|| {
             let (mut state, progress) = self.read(path, &rows)?;
             state.sum_up();
             if state.indenter_is_new {
                 // the indenter of the last step is not saved
                 state.history.forget_start();
             }
-            self.computation = Computation::new(&self.scene, state);
+            let computation = Computation::new(&self.scene, state);
+            rows.intact()?;
+            self.computation = computation;
             self.view.refresh(&self.computation.state);
             self.progress = progress.map(Box::new);
             Ok(())

@@ -93,7 +93,7 @@ impl ViscoelasticContact {
         }
         if !self.view.has_displacement(state) {
             let whole = Region::whole(grid, state.region.folded());
-            let [kernel, _] = kernel.bytes_on(whole.cells(), whole.folded());
+            let [kernel, _] = kernel.bytes(&whole.rows(), whole.folded());
             let fields = 8 * (grid.len() + 2 * whole.len()) as u128;
             memory::check("the displacement on the whole grid", kernel + fields)?;
         }

@@ -150,7 +150,7 @@ impl ViscoelasticContact {
             let mut step = contact.request(time, time - from, &loads, tolerance)?;
             step.interval.interpolant = state.start.interpolant;
             let attempt = contact.attempt(&step)?;
-            contact.adopt(attempt, step, [0.0; 2]);
+            contact.adopt(attempt, step, [0.0; 2])?;
         }
         Ok(contact)
     }
