@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::contact::builder::memory::{Computed, Footprint, Memory, symmetry_of};
+use crate::contact::builder::memory::{Footprint, Memory, symmetry_of};
 use crate::contact::builder::{Builder, OwnGap};
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::scene_fingerprint::Built;
@@ -97,9 +97,7 @@ impl Builder {
         } else {
             Region::whole(&grid, folded)
         };
-        let all = grid.len();
-        Footprint { all, bodies, settings: &settings, kernel: &kernel, history: &history }
-            .check(&Computed::on(&region), 0)?;
+        Footprint { bodies, settings: &settings, kernel: &kernel, history: &history }.check(&region, 0)?;
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
             built: Built::new(indenter.gap(), &Region::whole(&grid, [false; 2])),
@@ -121,9 +119,8 @@ impl Builder {
         let even = gap.even_axes();
         let folded = even.map(|even| even && settings.symmetry);
         let region = Region::shared(&grid, folded, rows);
-        let all = region.shown_len();
-        let footprint = Footprint { all, bodies: 1, settings: &settings, kernel: &kernel, history: &history };
-        rows.agree(footprint.check(&Computed::on(&region), 0))?;
+        let footprint = Footprint { bodies: 1, settings: &settings, kernel: &kernel, history: &history };
+        rows.agree(footprint.check(&region, 0))?;
         let indenter = gap.on(&region, &grid, even);
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
@@ -174,9 +171,9 @@ impl Builder {
                 let gap = SharedGap::new(rows.agree(own_gap(&self.gaps, rows))?, &self.grid, rows)?;
                 let folded = gap.even_axes().map(|even| even && self.settings.symmetry);
                 let region = Region::shared(&self.grid, folded, rows);
-                let (all, settings) = (region.shown_len(), &self.settings);
-                let footprint = Footprint { all, bodies: 1, settings, kernel: &kernel, history: &history };
-                Ok(footprint.on(&Computed::on(&region)))
+                let settings = &self.settings;
+                let footprint = Footprint { bodies: 1, settings, kernel: &kernel, history: &history };
+                Ok(footprint.on(&region))
             });
         }
         self.settings.validate()?;
@@ -185,8 +182,8 @@ impl Builder {
         let (settings, cells) = (&self.settings, self.grid.cells());
         let gaps: Option<Vec<_>> = self.gaps.iter().map(|(_, gap)| gap.as_ref().ok()).collect();
         let folded = gaps.filter(|_| settings.symmetry).map_or([false; 2], |gaps| symmetry_of(&gaps, cells));
-        let footprint = Footprint { all: self.grid.len(), bodies, settings, kernel: &kernel, history: &history };
-        Ok(footprint.most(cells, folded, windowed(settings, &history, &kernel)))
+        let footprint = Footprint { bodies, settings, kernel: &kernel, history: &history };
+        Ok(footprint.most(&self.grid, folded, windowed(settings, &history, &kernel)))
     }
 
     /// Number of rigid bodies.
@@ -249,8 +246,7 @@ struct Prepared {
 impl Prepared {
     fn finish(self) -> ViscoelasticContact {
         let Prepared { scene, indenter, region, history } = self;
-        let history = history.undisturbed_on(region.cells(), !region.covers());
-        let state = State::at_rest(Arc::new(indenter), region, history);
+        let state = State::at_rest(Arc::new(indenter), region, &history);
         let computation = Computation::new(&scene, state);
         ViscoelasticContact::new(scene, computation)
     }
