@@ -83,7 +83,7 @@ fn text_of(path: &Path) -> String {
 mod npy {
     use std::io::Read;
 
-    use viscocontact::output::{NpzSeries, write_npy};
+    use viscocontact::output::{FrameFormat, FrameSeries, write_npy};
 
     use super::*;
 
@@ -152,7 +152,7 @@ mod npy {
     #[test]
     fn archives_hold_what_was_computed() {
         let folder = Folder::new("npz");
-        let mut series = NpzSeries::create(&folder.0, &scene(), &Field::ALL).unwrap();
+        let mut series = FrameSeries::create(&folder.0, FrameFormat::Npz, &scene(), &Field::ALL).unwrap();
         let mut contact = punch();
         run(&mut contact, |contact, _| {
             let path = series.write(contact).unwrap();
@@ -189,13 +189,14 @@ mod npy {
     #[test]
     fn earlier_runs_are_not_overwritten() {
         let folder = Folder::new("npz-again");
-        let mut series = NpzSeries::create(&folder.0, &scene(), &[Field::Gap]).unwrap();
+        let mut series = FrameSeries::create(&folder.0, FrameFormat::Npz, &scene(), &[Field::Gap]).unwrap();
         series.write(&punch()).unwrap();
-        let error = NpzSeries::create(&folder.0, &scene(), &[Field::Gap]).unwrap_err();
+        let error = FrameSeries::create(&folder.0, FrameFormat::Npz, &scene(), &[Field::Gap]).unwrap_err();
         let Error::Output(error) = error else { panic!("{error}") };
         assert_eq!(error.kind(), std::io::ErrorKind::AlreadyExists);
         assert!(error.io_error().to_string().contains("frame_000000.npz"), "{error:?}");
-        let twice = NpzSeries::create(folder.0.join("b"), &scene(), &[Field::Gap, Field::Gap]).unwrap_err();
+        let twice =
+            FrameSeries::create(folder.0.join("b"), FrameFormat::Npz, &scene(), &[Field::Gap, Field::Gap]).unwrap_err();
         let Error::Output(twice) = twice else { panic!("{twice}") };
         assert!(twice.io_error().to_string().contains("gap is requested twice"), "{twice:?}");
     }
@@ -203,7 +204,8 @@ mod npy {
     #[test]
     fn a_frame_that_fails_is_not_there_and_not_counted() {
         let folder = Folder::new("npz-fails");
-        let mut series = NpzSeries::create(folder.0.join("run"), &scene(), &[Field::Pressure]).unwrap();
+        let mut series =
+            FrameSeries::create(folder.0.join("run"), FrameFormat::Npz, &scene(), &[Field::Pressure]).unwrap();
         fs::remove_dir_all(folder.0.join("run")).unwrap();
         let error = series.write(&punch()).unwrap_err();
         assert!(matches!(&error, Error::Output(error) if error.path().ends_with("frame_000000.npz")), "{error}");
@@ -229,7 +231,7 @@ mod npy {
 
 #[cfg(feature = "vtk")]
 mod vtk {
-    use viscocontact::output::VtkSeries;
+    use viscocontact::output::{FrameFormat, FrameSeries};
 
     use super::*;
 
@@ -306,7 +308,7 @@ mod vtk {
     #[test]
     fn images_hold_what_was_computed() {
         let folder = Folder::new("vtk");
-        let mut series = VtkSeries::create(&folder.0, &scene(), &Field::ALL).unwrap();
+        let mut series = FrameSeries::create(&folder.0, FrameFormat::Vtk, &scene(), &Field::ALL).unwrap();
         let mut contact = punch();
         let mut listed = Vec::new();
         run(&mut contact, |contact, _| {
@@ -342,13 +344,13 @@ mod vtk {
             assert_eq!(lines.collect::<Vec<_>>(), listed);
         });
         assert_eq!(folder.names(), ["frame_000000.vti", "frame_000001.vti", "frame_000002.vti", "series.pvd"]);
-        assert!(matches!(VtkSeries::create(&folder.0, &scene(), &[]), Err(Error::Output(_))));
+        assert!(matches!(FrameSeries::create(&folder.0, FrameFormat::Vtk, &scene(), &[]), Err(Error::Output(_))));
     }
 
     #[test]
     fn fields_are_chosen() {
         let folder = Folder::new("vtk-few");
-        let mut series = VtkSeries::create(&folder.0, &scene(), &[Field::Gap]).unwrap();
+        let mut series = FrameSeries::create(&folder.0, FrameFormat::Vtk, &scene(), &[Field::Gap]).unwrap();
         let image = Image::open(&series.write(&punch()).unwrap());
         assert!(image.head.contains("gap [m]") && !image.head.contains("pressure"));
         assert!(image.numbers("gap [m]").contains(&f64::INFINITY));
@@ -430,12 +432,12 @@ mod csv {
 #[ignore = "tests/read_back.sh runs it"]
 fn a_run_for_other_readers() {
     use viscocontact::observe::Stress;
-    use viscocontact::output::{CsvHistory, NpzSeries, VtkSeries, write_npy, write_stress_vtk};
+    use viscocontact::output::{CsvHistory, FrameFormat, FrameSeries, write_npy, write_stress_vtk};
 
     let folder = PathBuf::from(std::env::var_os("READ_BACK_FOLDER").expect("READ_BACK_FOLDER names a folder"));
     let mut contact = punch();
-    let mut archives = NpzSeries::create(&folder, &scene(), &Field::ALL).unwrap();
-    let mut images = VtkSeries::create(&folder, &scene(), &Field::ALL).unwrap();
+    let mut archives = FrameSeries::create(&folder, FrameFormat::Npz, &scene(), &Field::ALL).unwrap();
+    let mut images = FrameSeries::create(&folder, FrameFormat::Vtk, &scene(), &Field::ALL).unwrap();
     let mut history =
         CsvHistory::create(folder.join("history.csv"), &scene(), &contact, &["twice, force [N]"]).unwrap();
     let mut frame = 0;
@@ -482,7 +484,7 @@ fn a_run_for_other_readers() {
 #[test]
 #[ignore = "full_disks_leave_whole_files_and_no_word runs it"]
 fn a_run_without_room() {
-    use viscocontact::output::{CsvHistory, NpzSeries, VtkSeries, write_npy};
+    use viscocontact::output::{CsvHistory, FrameFormat, FrameSeries, write_npy};
 
     let folder = PathBuf::from(std::env::var_os("FULL_FOLDER").expect("FULL_FOLDER names a folder"));
     let mut contact =
@@ -496,8 +498,8 @@ fn a_run_without_room() {
     drop(history);
     fs::write(folder.join("rows"), rows.to_string()).unwrap();
     // all fields of 73 KB, and none, which is small enough
-    let mut archives = NpzSeries::create(folder.join("npz"), &scene(), &Field::ALL).unwrap();
-    let mut images = VtkSeries::create(folder.join("vtk"), &scene(), &Field::ALL).unwrap();
+    let mut archives = FrameSeries::create(folder.join("npz"), FrameFormat::Npz, &scene(), &Field::ALL).unwrap();
+    let mut images = FrameSeries::create(folder.join("vtk"), FrameFormat::Vtk, &scene(), &Field::ALL).unwrap();
     for _ in 0..2 {
         assert!(matches!(archives.write(&contact), Err(Error::Output(_))));
         assert!(matches!(images.write(&contact), Err(Error::Output(_))));
@@ -505,7 +507,7 @@ fn a_run_without_room() {
         assert!(matches!(written, Err(Error::Output(_))));
     }
     assert_eq!((archives.frames(), images.frames()), (0, 0));
-    let mut few = NpzSeries::create(folder.join("few"), &scene(), &[]).unwrap();
+    let mut few = FrameSeries::create(folder.join("few"), FrameFormat::Npz, &scene(), &[]).unwrap();
     few.write(&contact).unwrap();
 }
 

@@ -8,10 +8,10 @@ use super::number::{Kind, Number};
 use super::{bytes, wrong_size};
 use crate::Grid;
 use crate::error::{MapError, Result};
+use crate::file::npy::MAGIC;
 use crate::geometry::{HeightMap, LengthUnit};
 use crate::memory;
 
-pub(in crate::geometry::height_map) const MAGIC: &[u8] = b"\x93NUMPY";
 const FORMAT: &str = "NPY";
 
 impl HeightMap {
