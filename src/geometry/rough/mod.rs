@@ -97,10 +97,6 @@ impl Geometry for Rough {
         self.map.initial_gap(x1, x2)
     }
 
-    fn fill_gap(&self, grid: &Grid, gap: &mut [f64]) {
-        self.map.fill_gap(grid, gap);
-    }
-
     fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
         self.map.fill_gap_at(grid, by, gap);
     }

@@ -63,7 +63,7 @@ fn from_text(text: &str) -> Result<HeightMap> {
     let Some((head, rest)) = text.split_once("\n*") else {
         return Err(MapError::Missing { format: FORMAT, key: "line * after the header" }.into());
     };
-    let header = Header::new(FORMAT, head);
+    let header = Header::of_lines(FORMAT, head);
     let cells = [header.count("NumPoints")?, header.count("NumProfiles")?];
     let spacing = [header.positive("Xscale")?, header.positive("Yscale")?];
     let scale = header.positive("Zscale")?;
