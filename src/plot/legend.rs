@@ -116,7 +116,7 @@ mod tests {
     }
     #[test]
     fn a_chart_grows_until_the_legend_hides_nothing() {
-        use crate::plot::{COLORS, Chart};
+        use crate::plot::{COLORS, Chart, Style};
         let blue = |label: &str| {
             let mut chart = Chart::new("", "x", "y", Legend::UpperRight);
             // zigzags through all positions

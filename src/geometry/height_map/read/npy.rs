@@ -103,12 +103,12 @@ fn number(descr: &str) -> Option<Number> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
     use crate::Error;
 
     /// A file as written by `numpy.save`, but without padding.
-    pub(in super::super) fn file(header: &str, data: &[u8]) -> Vec<u8> {
+    fn file(header: &str, data: &[u8]) -> Vec<u8> {
         [MAGIC, &[1, 0], &(header.len() as u16).to_le_bytes(), header.as_bytes(), data].concat()
     }
 

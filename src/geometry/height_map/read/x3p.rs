@@ -159,38 +159,13 @@ fn require_unrotated(root: Node<'_, '_>, header: &Header<'_>) -> Result<()> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
-    use std::io::Write;
-
-    use zip::write::{SimpleFileOptions, ZipWriter};
-
+mod tests {
+    use super::super::tests::x3p::{LINK, archive, xml};
     use super::*;
     use crate::Error;
 
-    pub(in super::super) const LINK: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>";
     const MASK: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink>\
         <ValidPointsLink>bindata/valid.bin</ValidPointsLink></DataLink>";
-
-    pub(in super::super) fn xml(height: &str, data: &str) -> String {
-        format!(
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?><p:ISO5436_2 xmlns:p=\"http://www.opengps.eu/2008/ISO5436_2\">\
-             <Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>\
-             <CX><AxisType>I</AxisType><DataType>D</DataType><Increment>1e-6</Increment><Offset>0</Offset></CX>\
-             <CY><AxisType>I</AxisType><DataType>D</DataType><Increment>2.5E-6</Increment><Offset>0</Offset></CY>\
-             <CZ><AxisType>A</AxisType><DataType>{height}</CZ></Axes></Record1>\
-             <Record3><MatrixDimension><SizeX> 3 </SizeX><SizeY>2</SizeY><SizeZ>1</SizeZ></MatrixDimension>{data}</Record3>\
-             </p:ISO5436_2>"
-        )
-    }
-
-    pub(in super::super) fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
-        let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
-        for (name, content) in files {
-            archive.start_file(*name, SimpleFileOptions::default()).unwrap();
-            archive.write_all(content).unwrap();
-        }
-        archive.finish().unwrap().into_inner()
-    }
 
     fn read(xml: &str, data: &[u8]) -> Result<HeightMap> {
         let files = [("main.xml", xml.as_bytes()), ("bindata/data.bin", data), ("bindata/valid.bin", &[0b10_1111])];
