@@ -318,12 +318,12 @@ impl Files {
             history: CsvHistory::create_or_replace(args.output.join("history.csv"), scene, contact, &[])?,
             #[cfg(any(feature = "npy", feature = "vtk"))]
             frames: {
-                use viscocontact::output::{Field, FrameFormat, FrameSeries};
+                use viscocontact::output::{Field, Format, FrameSeries};
                 let formats = [
                     #[cfg(feature = "npy")]
-                    (FrameFormat::Npz, "npz"),
+                    (Format::Npz, "npz"),
                     #[cfg(feature = "vtk")]
-                    (FrameFormat::Vtk, "vtk"),
+                    (Format::Vtk, "vtk"),
                 ];
                 let series = formats.map(|(format, folder)| {
                     FrameSeries::create_or_replace(args.output.join(folder), format, scene, &Field::ALL)

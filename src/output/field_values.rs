@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::ViscoelasticContact;
 use crate::error::{RanksError, Result};
 use crate::file::Part;
-use crate::output::{Field, FrameFormat};
+use crate::output::{Field, Format};
 
 /// Cells that ranks send at a time, or one row or some columns where they have more.
 const PIECE_CELLS: usize = 1 << 16;
@@ -20,7 +20,7 @@ const LEAST_COLUMNS: usize = 8;
 pub(super) struct FieldValues<'a> {
     contact: &'a ViscoelasticContact,
     pub(super) fields: &'a [Field],
-    format: FrameFormat,
+    format: Format,
     /// Values of a field that the contact does not store.
     buffer: &'a mut Vec<f64>,
     /// Set when a rank has left: nothing can be sent any more.
@@ -30,7 +30,7 @@ pub(super) struct FieldValues<'a> {
 /// Writes a file with these fields in the place of an earlier file. A call of all ranks, of which rank 0 writes.
 pub(super) fn write_fields(
     path: &Path,
-    (contact, fields, format): (&ViscoelasticContact, &[Field], FrameFormat),
+    (contact, fields, format): (&ViscoelasticContact, &[Field], Format),
     buffer: &mut Vec<f64>,
     write: impl FnOnce(&mut BufWriter<File>, &mut FieldValues<'_>) -> io::Result<()>,
 ) -> Result<()> {
@@ -120,7 +120,7 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("viscocontact-field-values-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
         let (path, fields) = (folder.join("a"), [Field::Pressure, Field::Gap]);
-        for format in [FrameFormat::Npz, FrameFormat::Vtk] {
+        for format in [Format::Npz, Format::Vtk] {
             for failing in 0..4 {
                 let written = Threads::run(3, |ranks| {
                     let mut contact = ViscoelasticContact::builder(Grid::square(256, 4.0e-3)?)

@@ -5,8 +5,8 @@
 //! | `FrameSeries`: a folder of frames as NPZ archives | `npy` | NumPy, Julia, MATLAB |
 //! | `FrameSeries`: a folder of frames as VTK images, with a `series.pvd` | `vtk` | ParaView, VisIt, PyVista |
 //! | `write_npy`, `write_field_npy`: one field as an NPY file | `npy` | NumPy, Julia, MATLAB |
-//! | `write_stress_npz`: the stress in a volume | `npy` | NumPy, Julia, MATLAB |
-//! | `write_stress_vtk`: the stress in a volume | `vtk` | ParaView, VisIt, PyVista |
+//! | `write_stress`: the stress in a volume as an NPZ archive | `npy` | NumPy, Julia, MATLAB |
+//! | `write_stress`: the stress in a volume as a VTK grid | `vtk` | ParaView, VisIt, PyVista |
 //! | `CsvHistory`: one row per step | `csv` | pandas, spreadsheets, gnuplot |
 //!
 //! Values are written in double precision, bitwise, in SI units. Each file contains [`Metadata`] that describe the run.
@@ -54,8 +54,6 @@ pub use metadata::Metadata;
 #[cfg(feature = "npy")]
 pub use npy::{write_field_npy, write_npy};
 #[cfg(any(feature = "npy", feature = "vtk"))]
-pub use series::{FrameFormat, FrameSeries};
-#[cfg(feature = "npy")]
-pub use stress::write_stress_npz;
-#[cfg(feature = "vtk")]
-pub use stress::write_stress_vtk;
+pub use series::{Format, FrameSeries};
+#[cfg(any(feature = "npy", feature = "vtk"))]
+pub use stress::write_stress;

@@ -6,7 +6,7 @@ use std::path::Path;
 use crate::error::{Result, exact_length};
 use crate::file::{npy, replace, write_numbers};
 use crate::output::field_values::write_fields;
-use crate::output::{Field, FrameFormat};
+use crate::output::{Field, Format};
 use crate::{Grid, ViscoelasticContact};
 
 /// Writes a field, one value per cell of `grid`, as an NPY file: a `float64` array of the shape of the grid, so that
@@ -58,7 +58,7 @@ pub fn write_npy(path: impl AsRef<Path>, grid: &Grid, values: &[f64]) -> Result<
 /// # Errors
 /// If the file cannot be written.
 pub fn write_field_npy(path: impl AsRef<Path>, contact: &ViscoelasticContact, field: Field) -> Result<()> {
-    write_fields(path.as_ref(), (contact, &[field], FrameFormat::Npz), &mut Vec::new(), |out, values| {
+    write_fields(path.as_ref(), (contact, &[field], Format::Npz), &mut Vec::new(), |out, values| {
         out.write_all(&npy::header("<f8", &contact.grid().cells()))?;
         values.next(|part| write_numbers(out, part.iter().copied()))
     })

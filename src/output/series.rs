@@ -17,15 +17,15 @@ use crate::output::{Field, Metadata};
 /// Name of the file that lists the frames of VTK.
 const COLLECTION: &str = "series.pvd";
 
-/// The format of the frames of a [`FrameSeries`].
+/// The format of files of fields, such as the frames of a [`FrameSeries`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
-pub enum FrameFormat {
-    /// NPZ archives of NumPy, `frame_000000.npz` and so on. Needs the feature `npy`.
+pub enum Format {
+    /// NPZ archives of NumPy. Needs the feature `npy`.
     ///
-    /// An archive contains `time` \[s\], the cell centres `x1` and `x2` \[m\], the chosen fields as arrays of shape (n1,
-    /// n2), `approach` \[m\], `force` \[N\], `tilt` \[rad\] and `contact_area` \[m²\], all in double precision and
-    /// uncompressed, and the [`Metadata`] as the JSON text `metadata`. In Python, without pickle:
+    /// Frames are `frame_000000.npz` and so on. They contain `time` \[s\], the cell centres `x1` and `x2` \[m\], the chosen
+    /// fields as arrays of shape (n1, n2), `approach` \[m\], `force` \[N\], `tilt` \[rad\] and `contact_area` \[m²\], all in
+    /// double precision and uncompressed, and the [`Metadata`] as the JSON text `metadata`. In Python, without pickle:
     ///
     /// ```python
     /// frame = numpy.load("run/frame_000012.npz")
@@ -34,13 +34,14 @@ pub enum FrameFormat {
     /// ```
     #[cfg(feature = "npy")]
     Npz,
-    /// VTK images, `frame_000000.vti` and so on, and a `series.pvd` that lists them with their times. Open this file in
-    /// ParaView, even while the run continues. Needs the feature `vtk`.
+    /// Files of VTK. Needs the feature `vtk`.
     ///
-    /// An image is a flat sheet of n1 × n2 cells in the plane of contact, with x1 along its x. The chosen fields are cell
-    /// data in double precision, named with their units, such as `pressure [Pa]`. `TimeValue` \[s\], `approach [m]`,
-    /// `force [N]`, `tilt [rad]`, `contact area [m2]` and the [`Metadata`] as the JSON text `metadata` are field data. The
-    /// gap is +∞ where the initial gap is infinite: rescale the colours to the finite range.
+    /// Frames are images `frame_000000.vti` and so on, and `series.pvd` lists them with their times. Open this file in
+    /// ParaView, even while the run continues. An image is a flat sheet of n1 × n2 cells in the plane of contact, with x1
+    /// along its x. The chosen fields are cell data in double precision, named with their units, such as `pressure [Pa]`.
+    /// `TimeValue` \[s\], `approach [m]`, `force [N]`, `tilt [rad]`, `contact area [m2]` and the [`Metadata`] as the JSON
+    /// text `metadata` are field data. The gap is +∞ where the initial gap is infinite: rescale the colours to the finite
+    /// range.
     ///
     /// Two frames of the same time, such as before and after a jump of the load, are both written and listed; ParaView
     /// shows one of them.
@@ -48,7 +49,7 @@ pub enum FrameFormat {
     Vtk,
 }
 
-impl FrameFormat {
+impl Format {
     fn extension(self) -> &'static str {
         if self.is_by_rows() { "npz" } else { "vti" }
     }
@@ -57,9 +58,9 @@ impl FrameFormat {
     pub(super) fn is_by_rows(self) -> bool {
         match self {
             #[cfg(feature = "npy")]
-            FrameFormat::Npz => true,
+            Format::Npz => true,
             #[cfg(feature = "vtk")]
-            FrameFormat::Vtk => false,
+            Format::Vtk => false,
         }
     }
 }
@@ -70,7 +71,7 @@ impl FrameFormat {
 ///
 /// ```
 /// # #[cfg(feature = "npy")] {
-/// use viscocontact::{output::{Field, FrameFormat, FrameSeries, Metadata}, prelude::*};
+/// use viscocontact::{output::{Field, Format, FrameSeries, Metadata}, prelude::*};
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
@@ -78,7 +79,7 @@ impl FrameFormat {
 ///     .build()?;
 /// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-series-{}", std::process::id()));
 /// let metadata = Metadata::new("Ball on rubber");
-/// let mut series = FrameSeries::create(&folder, FrameFormat::Npz, &metadata, &[Field::Pressure])?;
+/// let mut series = FrameSeries::create(&folder, Format::Npz, &metadata, &[Field::Pressure])?;
 /// contact.step(0.0, Load::force(0.5))?;
 /// for _ in 0..3 {
 ///     contact.step(0.1, Load::force(0.5))?;
@@ -92,7 +93,7 @@ impl FrameFormat {
 #[derive(Debug)]
 pub struct FrameSeries {
     folder: PathBuf,
-    format: FrameFormat,
+    format: Format,
     metadata: Metadata,
     fields: Vec<Field>,
     /// Number of frames written.
@@ -111,7 +112,7 @@ impl FrameSeries {
     /// field is requested twice.
     pub fn create(
         folder: impl AsRef<Path>,
-        format: FrameFormat,
+        format: Format,
         metadata: &Metadata,
         fields: &[Field],
     ) -> Result<FrameSeries> {
@@ -124,7 +125,7 @@ impl FrameSeries {
     /// If the folder or its frames cannot be used, or a field is requested twice.
     pub fn create_or_replace(
         folder: impl AsRef<Path>,
-        format: FrameFormat,
+        format: Format,
         metadata: &Metadata,
         fields: &[Field],
     ) -> Result<FrameSeries> {
@@ -133,7 +134,7 @@ impl FrameSeries {
 
     fn begin(
         folder: &Path,
-        format: FrameFormat,
+        format: Format,
         (metadata, fields): (&Metadata, &[Field]),
         replaced: bool,
     ) -> Result<FrameSeries> {
@@ -176,9 +177,9 @@ impl FrameSeries {
         let area = contact.contact_area();
         write_fields(&path, (contact, fields, *format), buffer, |out, values| match format {
             #[cfg(feature = "npy")]
-            FrameFormat::Npz => npz::write_frame(out, (contact, area), metadata, values),
+            Format::Npz => npz::write_frame(out, (contact, area), metadata, values),
             #[cfg(feature = "vtk")]
-            FrameFormat::Vtk => vtk::write_frame(out, (contact, area), metadata, values),
+            Format::Vtk => vtk::write_frame(out, (contact, area), metadata, values),
         })?;
         if !format.is_by_rows() {
             let time = contact.time();

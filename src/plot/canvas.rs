@@ -198,30 +198,14 @@ impl Canvas {
     }
 }
 
-/// Writes pixels as a PNG file, with a palette if 256 colours suffice.
+/// Writes pixels as a PNG file.
 pub(super) fn png_file(out: impl io::Write, size: [u32; 2], rgb: &[u8]) -> io::Result<()> {
-    let mut palette = std::collections::HashMap::new();
-    let mut colors = Vec::new();
-    let pixels = rgb.chunks_exact(3).map(|pixel| {
-        let next = u8::try_from(palette.len()).ok();
-        *palette.entry(pixel).or_insert_with(|| {
-            colors.extend_from_slice(pixel);
-            next
-        })
-    });
-    let indexed: Option<Vec<u8>> = pixels.collect();
     let mut encoder = png::Encoder::new(out, size[0], size[1]);
     encoder.set_compression(png::Compression::High);
-    if indexed.is_some() {
-        encoder.set_color(png::ColorType::Indexed);
-        encoder.set_palette(colors);
-        encoder.set_filter(png::Filter::NoFilter);
-    } else {
-        encoder.set_color(png::ColorType::Rgb);
-    }
-    let mut writer = encoder.write_header().map_err(io::Error::other)?;
-    writer.write_image_data(indexed.as_deref().unwrap_or(rgb)).map_err(io::Error::other)?;
-    writer.finish().map_err(io::Error::other)
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(rgb)?;
+    Ok(writer.finish()?)
 }
 
 #[cfg(test)]
@@ -277,23 +261,5 @@ mod tests {
         let rows = rows(canvas);
         assert_eq!(red(&rows[0]), [90; 4]);
         assert_eq!(red(&rows[2]), [10, 10, 200, 200]);
-    }
-
-    #[test]
-    fn few_colours_become_a_palette() {
-        for (colors, expected) in
-            [(2_usize, png::ColorType::Indexed), (256, png::ColorType::Indexed), (257, png::ColorType::Rgb)]
-        {
-            let rgb: Vec<u8> = (0..300).flat_map(|k| [(k % colors) as u8, ((k % colors) / 256) as u8, 7]).collect();
-            let mut file = Vec::new();
-            png_file(&mut file, [30, 10], &rgb).unwrap();
-            let mut decoder = png::Decoder::new(io::Cursor::new(file));
-            assert_eq!(decoder.read_header_info().unwrap().color_type, expected);
-            decoder.set_transformations(png::Transformations::EXPAND);
-            let mut reader = decoder.read_info().unwrap();
-            let mut read = vec![0; reader.output_buffer_size().unwrap()];
-            reader.next_frame(&mut read).unwrap();
-            assert_eq!(read, rgb);
-        }
     }
 }

@@ -147,7 +147,7 @@ mod outputs {
     use std::fs;
     use std::io::ErrorKind::AlreadyExists;
 
-    use viscocontact::output::{CsvHistory, Field, FrameFormat, FrameSeries, Metadata};
+    use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata};
 
     use super::*;
 
@@ -163,8 +163,8 @@ mod outputs {
         let count = |name: &str| fs::read_dir(folder.join(name)).unwrap().count();
 
         let (archives, images, table) = (folder.join("npz"), folder.join("vtk"), folder.join("history.csv"));
-        let mut first = FrameSeries::create(&archives, FrameFormat::Npz, &metadata(), &[Field::Pressure]).unwrap();
-        let mut second = FrameSeries::create(&images, FrameFormat::Vtk, &metadata(), &[Field::Pressure]).unwrap();
+        let mut first = FrameSeries::create(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap();
+        let mut second = FrameSeries::create(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap();
         let mut third = CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap();
         for _ in 0..3 {
             first.write(&contact).unwrap();
@@ -174,8 +174,8 @@ mod outputs {
         fs::write(archives.join("notes.txt"), "kept").unwrap();
         let before = fs::read(&table).unwrap();
         for error in [
-            FrameSeries::create(&archives, FrameFormat::Npz, &metadata(), &[Field::Pressure]).unwrap_err(),
-            FrameSeries::create(&images, FrameFormat::Vtk, &metadata(), &[Field::Pressure]).unwrap_err(),
+            FrameSeries::create(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap_err(),
+            FrameSeries::create(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap_err(),
             CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap_err(),
         ] {
             assert_eq!(error.io_kind(), Some(AlreadyExists), "{error:?}");
@@ -184,15 +184,14 @@ mod outputs {
         assert_eq!([count("npz"), count("vtk")], [4, 4]);
 
         // what is asked for wrongly removes nothing
-        assert!(FrameSeries::create_or_replace(&archives, FrameFormat::Npz, &metadata(), &[Field::Gap; 2]).is_err());
+        assert!(FrameSeries::create_or_replace(&archives, Format::Npz, &metadata(), &[Field::Gap; 2]).is_err());
         assert!(CsvHistory::create_or_replace(&table, &metadata(), &contact, &["a", "a"]).is_err());
         assert_eq!(fs::read(&table).unwrap(), before);
         assert_eq!(count("npz"), 4);
 
         let mut first =
-            FrameSeries::create_or_replace(&archives, FrameFormat::Npz, &metadata(), &[Field::Pressure]).unwrap();
-        let mut second =
-            FrameSeries::create_or_replace(&images, FrameFormat::Vtk, &metadata(), &[Field::Pressure]).unwrap();
+            FrameSeries::create_or_replace(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap();
+        let mut second = FrameSeries::create_or_replace(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap();
         CsvHistory::create_or_replace(&table, &metadata(), &contact, &[]).unwrap();
         assert_eq!([count("npz"), count("vtk")], [1, 0]);
         first.write(&contact).unwrap();
