@@ -44,6 +44,17 @@ impl Part {
         }
     }
 
+    /// Writes the whole file and places it, or removes it after an error.
+    pub(crate) fn fill(&self, file: File, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
+        let mut writer = BufWriter::with_capacity(1 << 18, file);
+        let written = write(&mut writer).and_then(|()| writer.into_inner().map_err(IntoInnerError::into_error));
+        let placed = written.map_err(|error| failed(&self.path, error)).and_then(|file| self.place(file));
+        if placed.is_err() {
+            self.remove();
+        }
+        placed
+    }
+
     /// Syncs the complete file and renames it to its final name.
     pub(crate) fn place(&self, file: File) -> Result<()> {
         let unusable = |error: io::Error| failed(&self.path, error);
@@ -68,13 +79,7 @@ impl Part {
 /// is unchanged if anything fails; of several concurrent writers the last one to finish wins.
 pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
     let (part, file) = Part::create(path)?;
-    let mut writer = BufWriter::with_capacity(1 << 18, file);
-    let written = write(&mut writer).and_then(|()| writer.into_inner().map_err(IntoInnerError::into_error));
-    let placed = written.map_err(|error| failed(path, error)).and_then(|file| part.place(file));
-    if placed.is_err() {
-        part.remove();
-    }
-    placed
+    part.fill(file, write)
 }
 
 #[cfg(test)]

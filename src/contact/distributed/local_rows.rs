@@ -7,7 +7,6 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{RanksError, Result, count_within, exact_length};
 use crate::observe::Axis;
 #[cfg(any(feature = "npy", feature = "vtk"))]
-use crate::parallel::Rows;
 use crate::parallel::catch_rank_loss;
 
 impl ViscoelasticContact {
@@ -137,24 +136,18 @@ impl ViscoelasticContact {
     }
 
     /// Goes on where every rank does.
-    #[cfg(any(feature = "csv", feature = "vtk"))]
+    #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
         let rows = self.computation.state.region.rows();
         catch_rank_loss(&rows, || rows.agree(own))
     }
 
     /// Does on rank 0 what is not for each of them, and goes on where that is done; the others get no result.
-    #[cfg(any(feature = "csv", feature = "vtk"))]
+    #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn by_one_rank<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
         let rows = self.computation.state.region.rows();
         let first = rows.group().is_none_or(|group| group.rank() == 0);
         self.agreed(if first { job().map(Some) } else { Ok(None) })
-    }
-
-    /// The rows of all ranks, and what joins them.
-    #[cfg(any(feature = "npy", feature = "vtk"))]
-    pub(crate) fn shared_rows(&self) -> Rows {
-        self.computation.state.region.rows()
     }
 
     /// Whether ranks share it out.
