@@ -48,7 +48,7 @@ pub use builder::memory::Memory;
 pub(crate) use distributed::gap::Brought;
 pub use moving::along_path::TravelReport;
 pub use moving::steady::{SteadyMotion, TowardSteady};
-pub use read::report::{BodyState, StepReport, Warning, Warnings};
+pub use read::report::{BodyState, StepReport, Warnings};
 pub use read::stress::StressHistory;
 pub use run::follow::Follow;
 pub use run::progress::{ErrorBudget, Stepping};
