@@ -5,7 +5,6 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use crate::Grid;
 use crate::contact::read::report::BodyState;
 use crate::contact::scene::Scene;
 use crate::contact::settings::Settings;
@@ -16,10 +15,9 @@ use crate::error::{Result, exact_length};
 use crate::extent::Extent;
 use crate::kernel::InfluenceKernel;
 use crate::load::Load;
-use crate::memory;
 use crate::rheology::{Material, TemperatureHistory};
 use crate::solver::RigidMotion;
-use crate::sum;
+use crate::{Grid, memory, sum};
 
 impl ViscoelasticContact {
     /// Time \[s\], initially 0.
