@@ -136,14 +136,14 @@ impl ViscoelasticContact {
     }
 
     /// Goes on where every rank does.
-    #[cfg(any(feature = "csv", feature = "vtk"))]
+    #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
         let rows = self.computation.state.region.rows();
         rows.together(|| rows.agree(own))
     }
 
     /// Does on rank 0 what is not for each of them, and goes on where that is done; the others get no result.
-    #[cfg(any(feature = "csv", feature = "vtk"))]
+    #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn by_one_rank<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
         let rows = self.computation.state.region.rows();
         let first = rows.group().is_none_or(|group| group.rank() == 0);
