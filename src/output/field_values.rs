@@ -82,7 +82,7 @@ impl FieldValues<'_> {
         let Some((field, rest)) = fields.split_first() else { return Ok(()) };
         *fields = rest;
         let values = field.values(contact, buffer).map_err(io::Error::other)?;
-        if !contact.is_shared() {
+        if !contact.shared_rows().are_shared() {
             return take(values);
         }
         let [n1, n2] = contact.grid().cells();
@@ -98,7 +98,7 @@ impl FieldValues<'_> {
         *fields = rest;
         let values = field.values(contact, buffer).map_err(io::Error::other)?;
         let [n1, n2] = contact.grid().cells();
-        if !contact.is_shared() {
+        if !contact.shared_rows().are_shared() {
             return (0..n2).flat_map(|j| (0..n1).map(move |i| values[i * n2 + j])).try_for_each(take);
         }
         let pieces = pieces(n2, (PIECE_CELLS / n1).max(LEAST_COLUMNS)).map(|columns| [0..n1, columns]);
@@ -136,7 +136,7 @@ fn bring(
     let mut taken = Ok(());
     for [rows, columns] in rectangles {
         // without a rank that is lost nothing can be brought
-        let brought = contact.bring(values, 0, rows.clone(), columns.clone()).map_err(io::Error::other)?;
+        let brought = contact.bring(values, Some(0), rows.clone(), columns.clone()).map_err(io::Error::other)?;
         if let (Some(brought), Ok(())) = (brought, &taken) {
             taken = take(&brought, [rows, columns]);
         }

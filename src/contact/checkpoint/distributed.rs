@@ -99,7 +99,7 @@ pub(super) fn save(
     let placed = if first && rows.intact().is_ok() {
         let (scene, folded) = (Fingerprint::of(&contact.scene), state.region.folded());
         let progress = progress.map(Cow::Borrowed);
-        let common = Common { mark, scene, folded, progress, files: files.unwrap_or_default() };
+        let common = Common { mark, scene, folded, progress, files };
         replace(path, |out| format::write(out, Kind::Ranks, &common).map(drop))
     } else {
         Ok(())

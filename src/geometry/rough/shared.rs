@@ -64,9 +64,7 @@ impl Rough {
             rows.agree(spec.validate_on(grid).and_then(|()| memory::check("a rough surface", bytes)))?;
             let Waves { mut spectrum, sums } = Waves::of(grid, &spec, columns);
             let count = |rank| 2 * part(n2 / 2 + 1, rank, ranks.size()).len();
-            let factor = rows
-                .gather(sums.into_iter().flatten(), count, |all| scale(&spec, all.as_chunks::<2>().0))
-                .unwrap_or(Err(Error::Missing { part: "ranks" }))?;
+            let factor = rows.gather(sums.into_iter().flatten(), count, |all| scale(&spec, all.as_chunks::<2>().0))?;
             spectrum.scale(factor);
             let heights = spectrum.local_heights(&rows);
             let highest = rows.greatest(heights.iter().copied().fold(f64::NEG_INFINITY, f64::max));
