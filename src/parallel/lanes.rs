@@ -128,12 +128,8 @@ const MIN_SHARED_CELLS: usize = 1 << 15;
 /// Cells that a thread passes over at a time. Sums are taken over bands of about so many cells, whatever the number of threads.
 pub(crate) const BAND_CELLS: usize = 1 << 13;
 
-/// Where fields of so many cells are halved between threads: at the start of a band.
-pub(crate) fn middle(cells: usize) -> usize {
-    cells.div_ceil(BAND_CELLS) / 2 * BAND_CELLS
-}
-
-/// Calls `job` with each band of some fields, and the number of its first cell.
+/// Calls `job` with each band of some fields, and the number of its first cell. The first field has one value for each cell, the
+/// others may have none or several.
 pub(crate) fn for_each_band<T: Send, const M: usize>(fields: [&mut [T]; M], job: impl Fn(usize, [&mut [T]; M]) + Sync) {
     let cells = fields.first().map_or(0, |field| field.len());
     let bands = 0..cells.div_ceil(BAND_CELLS);
@@ -141,9 +137,13 @@ pub(crate) fn for_each_band<T: Send, const M: usize>(fields: [&mut [T]; M], job:
     fork(bands, lanes(cells) > 1, fields, &|fields, k| cut(fields, k * BAND_CELLS), &job);
 }
 
-/// Cuts fields at a cell.
+/// Cuts fields at a cell of the first of them, which has one value for each cell.
 pub(crate) fn cut<T, const M: usize>(fields: [&mut [T]; M], at: usize) -> [[&mut [T]; M]; 2] {
-    let mut halves = fields.map(|field| field.split_at_mut(at));
+    let cells = fields.first().map_or(1, |field| field.len());
+    let mut halves = fields.map(|field| {
+        let per_cell = field.len() / cells;
+        field.split_at_mut(at * per_cell)
+    });
     let before = halves.each_mut().map(|(before, _)| std::mem::take(before));
     [before, halves.map(|(_, after)| after)]
 }

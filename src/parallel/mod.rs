@@ -48,9 +48,8 @@
 //! | snapshots in memory; checkpoints, which any number of ranks resumes | checkpoints of a window of the grid ([`Settings::window`](crate::contact::Settings::window)), or of indenters that have moved |
 //! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses, [`mesh_error`](crate::ViscoelasticContact::mesh_error) |
 //!
-//! Files are written by rank 0, with the same bytes as in one process; the other ranks send it their rows a piece at a time. A
-//! checkpoint is a file with the common part, and beside it one file for each rank with its rows, on a file system that all ranks
-//! see: `ViscoelasticContact::save`.
+//! Files and checkpoints are written by rank 0, files with the same bytes as in one process; the other ranks send it their rows a
+//! piece at a time. A checkpoint is read by all ranks: `ViscoelasticContact::resume`.
 //!
 //! No rank needs memory for the whole grid: [`Builder::ranks`](crate::contact::Builder::ranks), given before the geometry, has
 //! each evaluate it on own rows, random surfaces are made by [`Rough::shared`](crate::geometry::Rough::shared), coefficients of
@@ -61,13 +60,15 @@
 //! does not leave less.
 
 mod exchange;
+#[cfg(any(feature = "checkpoint", feature = "npy", feature = "vtk"))]
+mod file;
 mod lanes;
 mod ranks;
 mod rows;
 mod threads;
 mod tile;
 
-pub(crate) use lanes::{BAND_CELLS, Task, cut, for_each_band, for_each_share, fork, in_pool, join, lanes, middle};
+pub(crate) use lanes::{BAND_CELLS, Task, cut, for_each_band, for_each_share, fork, in_pool, join, lanes};
 pub(crate) use rows::{Rows, part};
 pub(crate) use tile::{TILE, rows_in_a_tile};
 

@@ -146,6 +146,18 @@ impl Rows {
         self.gather(found, |rank| K * self.bands_of(rank), join)
     }
 
+    /// Sums K terms of each cell over the cells that have any.
+    pub(crate) fn sum_terms<const K: usize>(&self, terms: impl Fn(usize) -> Option<[f64; K]> + Sync) -> [f64; K] {
+        let part = |band: Range<usize>| {
+            let mut sums = [0.0; K];
+            for terms in band.filter_map(&terms) {
+                sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+            }
+            sums
+        };
+        self.merge(part, sum::add)
+    }
+
     /// Σ part over the bands.
     pub(crate) fn sum_of(&self, part: impl Fn(Range<usize>) -> f64 + Sync) -> f64 {
         self.merge(|band| [part(band)], |[a], [b]| [a + b])[0]

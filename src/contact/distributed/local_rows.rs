@@ -113,14 +113,14 @@ impl ViscoelasticContact {
     }
 
     /// Returns `own` if all ranks succeed, else an error on every rank.
-    #[cfg(any(feature = "csv", feature = "vtk"))]
+    #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
         let rows = self.computation.state.region.rows();
         rows.together(|| rows.agree(own))
     }
 
     /// Runs `job` on rank 0 alone; all ranks wait for it and share its error.
-    #[cfg(any(feature = "csv", feature = "vtk"))]
+    #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn by_one_rank<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
         let rows = self.computation.state.region.rows();
         self.agreed(if rows.rank() == 0 { job().map(Some) } else { Ok(None) })
