@@ -146,7 +146,8 @@ impl InfluenceKernel {
 
     /// All values of the response of a grid, and how many belong to an index along x1.
     pub(super) fn table(&self) -> (impl Iterator<Item = f64>, usize) {
-        let count = [0, 1].map(|axis| self.grid.cells()[axis]);
+        let cells = self.grid.cells();
+        let count = [0, 1].map(|axis| if self.periodic[axis] { cells[axis] / 2 + 1 } else { cells[axis] });
         (indices(count).map(|at| (self.response)(at)), count[1])
     }
 
