@@ -50,7 +50,7 @@ pub(super) fn write_fields(
 }
 
 impl FieldValues<'_> {
-    /// Gives the next field to `take`: rows one after the other, or columns for VTK, where the index along x1 varies fastest.
+    /// Passes the next field to `take`: row by row, or for VTK column by column.
     pub(super) fn next(&mut self, mut take: impl FnMut(&[f64]) -> io::Result<()>) -> io::Result<()> {
         let FieldValues { contact, fields, format, buffer, left } = self;
         let Some((field, rest)) = fields.split_first() else { return Ok(()) };
@@ -95,7 +95,7 @@ impl FieldValues<'_> {
         left.clone().map_or(taken, |error| Err(io::Error::other(error)))
     }
 
-    /// Sends the fields that were not taken, because rank 0 waits for them or stopped early.
+    /// Sends the fields that were not taken: the other ranks always, rank 0 after an error.
     fn pass_over_the_rest(&mut self) {
         while self.contact.is_shared() && self.left.is_none() && !self.fields.is_empty() {
             let _ = self.next(|_| Ok(())); // `left` holds the error

@@ -1,4 +1,4 @@
-//! What pictures are drawn on: pixels, drawn by tiny-skia, and the same shapes as elements of an SVG document.
+//! The canvas of pictures: pixels, drawn by tiny-skia, and the same shapes as elements of an SVG document.
 
 use std::io;
 

@@ -27,7 +27,7 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// What was drawn on a canvas of this size.
+    /// The picture drawn on a canvas of this size.
     pub(super) fn new(size: [u32; 2], canvas: Canvas) -> Picture {
         let (rgb, elements) = canvas.finish();
         Picture { size, rgb, drawn: vec![(0, elements)] }
