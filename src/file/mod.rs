@@ -15,9 +15,9 @@ mod part;
 
 #[cfg(any(feature = "csv", feature = "plot"))]
 pub(crate) use appending::Appending;
-#[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
-pub(crate) use part::Part;
 #[cfg(any(feature = "checkpoint", feature = "npy", feature = "plot", feature = "vtk"))]
+pub(crate) use part::Part;
+#[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
 pub(crate) use part::replace;
 
 /// The error of writing a file.

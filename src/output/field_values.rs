@@ -5,8 +5,7 @@ use std::io::{self, BufWriter};
 use std::path::Path;
 
 use crate::ViscoelasticContact;
-use crate::error::{RanksError, Result};
-use crate::file::Part;
+use crate::error::Result;
 use crate::output::{Field, Format};
 
 /// Cells that ranks send at a time, or one row or some columns where they have more.
@@ -23,8 +22,6 @@ pub(super) struct FieldValues<'a> {
     format: Format,
     /// Values of a field that the contact does not store.
     buffer: &'a mut Vec<f64>,
-    /// Set when a rank has left: nothing can be sent any more.
-    left: Option<RanksError>,
 }
 
 /// Writes a file with these fields in the place of an earlier file. A call of all ranks, of which rank 0 writes.
@@ -34,25 +31,18 @@ pub(super) fn write_fields(
     buffer: &mut Vec<f64>,
     write: impl FnOnce(&mut BufWriter<File>, &mut FieldValues<'_>) -> io::Result<()>,
 ) -> Result<()> {
-    let mut values = FieldValues { contact, fields, format, buffer, left: None };
-    let written = match contact.by_one_rank(|| Part::create(path))? {
-        Some((part, file)) => part.fill(file, |out| {
-            let written = write(out, &mut values);
-            values.pass_over_the_rest();
-            written
-        }),
-        None => {
-            values.pass_over_the_rest();
-            Ok(())
-        }
-    };
-    contact.agreed(written)
+    let mut values = FieldValues { contact, fields, format, buffer };
+    contact.shared_rows().replace_file(path, |out| {
+        let written = out.map_or(Ok(()), |out| write(out, &mut values));
+        values.pass_over_the_rest();
+        written
+    })
 }
 
 impl FieldValues<'_> {
     /// Passes the next field to `take`: row by row, or for VTK column by column.
     pub(super) fn next(&mut self, mut take: impl FnMut(&[f64]) -> io::Result<()>) -> io::Result<()> {
-        let FieldValues { contact, fields, format, buffer, left } = self;
+        let FieldValues { contact, fields, format, buffer } = self;
         let Some((field, rest)) = fields.split_first() else { return Ok(()) };
         *fields = rest;
         let values = field.values(contact, buffer).map_err(io::Error::other)?;
@@ -66,14 +56,10 @@ impl FieldValues<'_> {
             let [rows, columns] = if by_rows { [piece, 0..n2] } else { [0..n1, piece] };
             let mut brought = None;
             if contact.is_shared() {
-                // every rank sends all pieces, even if one could not be written
-                match contact.bring(values, 0, rows.clone(), columns.clone()) {
-                    Ok(piece) if taken.is_ok() && piece.is_some() => brought = piece,
-                    Ok(_) => continue,
-                    Err(error) => {
-                        *left = Some(error);
-                        break;
-                    }
+                // every rank sends all pieces, even if one could not be written; none can be sent once a rank has left
+                brought = contact.bring(values, 0, rows.clone(), columns.clone()).map_err(io::Error::other)?;
+                if taken.is_err() || brought.is_none() {
+                    continue;
                 }
             } else if taken.is_err() {
                 break;
@@ -92,13 +78,14 @@ impl FieldValues<'_> {
                 })
             };
         }
-        left.clone().map_or(taken, |error| Err(io::Error::other(error)))
+        taken
     }
 
     /// Sends the fields that were not taken: the other ranks always, rank 0 after an error.
     fn pass_over_the_rest(&mut self) {
-        while self.contact.is_shared() && self.left.is_none() && !self.fields.is_empty() {
-            let _ = self.next(|_| Ok(())); // `left` holds the error
+        while self.contact.is_shared() && !self.fields.is_empty() {
+            // the loss of a rank is read by `Rows::replace_file`
+            let _ = self.next(|_| Ok(()));
         }
     }
 }
@@ -110,7 +97,7 @@ mod tests {
     use std::fs;
 
     use super::*;
-    use crate::error::Error;
+    use crate::error::{Error, RanksError};
     use crate::parallel::Threads;
     use crate::{Grid, geometry::Sphere, load::Load, rheology::Elastic, rheology::Material};
 

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::fs::File;
 use std::io;
+use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 
 use crate::ViscoelasticContact;
@@ -40,7 +41,8 @@ use crate::plot::{Map, Picture};
 /// ```
 pub struct Animation {
     path: PathBuf,
-    part: Part,
+    /// Left where it is if the animation is dropped.
+    part: ManuallyDrop<Part>,
     file: Appending<File>,
     field: Field,
     range: [f64; 2],
@@ -73,7 +75,7 @@ impl Animation {
         let (part, file) = Part::create(&path)?;
         Ok(Animation {
             path,
-            part,
+            part: ManuallyDrop::new(part),
             file: Appending::new(file),
             field,
             range,
@@ -147,7 +149,7 @@ impl Animation {
     /// If there are no frames, or the file cannot be written.
     pub fn finish(mut self) -> Result<()> {
         let Some(encoder) = self.encoder.take().filter(|_| self.frames > 0) else {
-            self.part.remove(); // without frames the file is useless
+            drop(ManuallyDrop::into_inner(self.part)); // without frames the file is useless
             return Err(Error::WrongLength { field: "frames of an animation", len: 0, expected: 1, exact: false });
         };
         let end = encoder.into_inner().map_err(io::Error::other);

@@ -7,7 +7,7 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{RanksError, Result, count_within, exact_length};
 use crate::observe::Axis;
 #[cfg(any(feature = "npy", feature = "vtk"))]
-use crate::parallel::catch_rank_loss;
+use crate::parallel::Rows;
 
 impl ViscoelasticContact {
     /// The rows (indices along x1) that [`pressure`](ViscoelasticContact::pressure) and all other fields hold: all of the
@@ -49,7 +49,7 @@ impl ViscoelasticContact {
         if !rows.are_shared() {
             return checked.map(|()| Some(field.to_vec()));
         }
-        catch_rank_loss(&rows, || {
+        rows.together(|| {
             rows.agree(checked)?;
             let [n1, n2] = self.grid().cells();
             let brought = self.bring(field, to, 0..n1, 0..n2)?;
@@ -139,7 +139,7 @@ impl ViscoelasticContact {
     #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
         let rows = self.computation.state.region.rows();
-        catch_rank_loss(&rows, || rows.agree(own))
+        rows.together(|| rows.agree(own))
     }
 
     /// Does on rank 0 what is not for each of them, and goes on where that is done; the others get no result.
@@ -148,6 +148,12 @@ impl ViscoelasticContact {
         let rows = self.computation.state.region.rows();
         let first = rows.group().is_none_or(|group| group.rank() == 0);
         self.agreed(if first { job().map(Some) } else { Ok(None) })
+    }
+
+    /// The rows of all ranks, and what joins them.
+    #[cfg(any(feature = "npy", feature = "vtk"))]
+    pub(crate) fn shared_rows(&self) -> Rows {
+        self.computation.state.region.rows()
     }
 
     /// Whether ranks share it out.

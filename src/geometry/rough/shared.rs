@@ -6,7 +6,7 @@ use super::{Rough, RoughSpec, heights};
 use crate::Grid;
 use crate::error::Result;
 use crate::geometry::Geometry;
-use crate::parallel::{Ranks, Rows, catch_rank_loss, part};
+use crate::parallel::{Ranks, Rows, part};
 
 /// Distances from a cell centre below this, in cells, are rounding errors.
 const ROUNDING: f64 = 1e-6;
@@ -57,7 +57,7 @@ impl Rough {
     pub fn shared(grid: &Grid, spec: RoughSpec, ranks: &Arc<dyn Ranks>) -> Result<SharedRough> {
         let [n1, n2] = grid.cells();
         let rows = Rows::of_rank([n1, n2], Arc::clone(ranks));
-        catch_rank_loss(&rows, || {
+        rows.together(|| {
             let columns = part(n2 / 2 + 1, ranks.rank(), ranks.size());
             let bytes = 40 * n2.max(2) as u128 * (n1 * columns.len() / (n2 / 2 + 1)).max(rows.own().len()) as u128;
             let heights = heights(grid, &spec, &rows, bytes)?;
