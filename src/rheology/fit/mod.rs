@@ -50,18 +50,17 @@ impl Search {
     /// nearest.
     pub(crate) fn within(&self, samples: &[Sample], most: f64) -> FittedSeries {
         let reached = |series: &FittedSeries| series.worst(samples) <= most;
-        let mut best: Option<FittedSeries> = None;
-        for density in DENSITIES {
-            let series = polish(&self.on_grid(samples, density), samples, self, LONG, &reached);
-            if best.as_ref().is_none_or(|best| series.worst(samples) < best.worst(samples)) {
-                best = Some(series);
-            }
-            if best.as_ref().is_some_and(reached) {
+        let fitted = |density| polish(&self.on_grid(samples, density), samples, self, LONG, &reached);
+        let mut found = fitted(DENSITIES[0]);
+        for density in &DENSITIES[1..] {
+            if reached(&found) {
                 break;
             }
+            let series = fitted(*density);
+            if series.worst(samples) < found.worst(samples) {
+                found = series;
+            }
         }
-        let found =
-            best.unwrap_or(FittedSeries { constant: self.constant.unwrap_or(0.0), slope: 0.0, terms: Vec::new() });
         let thinned = self.thinned(found, samples, TRIES, &|trial, _| reached(trial));
         // the polish of a merger stops early: complete it
         let polished = polish(&thinned, samples, self, LONG, &|_| false);
