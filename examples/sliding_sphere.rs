@@ -155,9 +155,9 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     map.save(output.join("pressure.png"))?;
     #[cfg(feature = "vtk")]
     {
-        use viscocontact::output::{Field, Metadata, VtkSeries};
+        use viscocontact::output::{Field, Format, FrameSeries, Metadata};
         let scene = Metadata::new("Sphere sliding steadily").note("friction", friction.to_string());
-        VtkSeries::create_or_replace(output.join("vtk"), &scene, &Field::ALL)?.write(&contact)?;
+        FrameSeries::create_or_replace(output.join("vtk"), Format::Vtk, &scene, &Field::ALL)?.write(&contact)?;
     }
     Ok(())
 }

@@ -44,8 +44,6 @@ mod window;
 pub use crate::error::CheckpointError;
 pub use builder::Builder;
 pub use builder::memory::Memory;
-#[cfg(any(feature = "npy", feature = "vtk"))]
-pub(crate) use distributed::gap::Brought;
 pub use moving::along_path::TravelReport;
 pub use moving::steady::{SteadyMotion, TowardSteady};
 pub use read::report::{BodyState, StepReport, Warning, Warnings};

@@ -1,8 +1,9 @@
 //! A field that follows the recursion of the displacement.
 
-#[cfg(feature = "checkpoint")]
-use crate::hereditary::common_cells::CommonCells;
-use crate::hereditary::exponential_rule::{ExponentialRule, Interpolant};
+use educe::Educe;
+
+use crate::hereditary::exponential_rule::ExponentialRule;
+use crate::hereditary::field::{Field, Role};
 use crate::hereditary::past::Past;
 use crate::parallel::Rows;
 use crate::sum::greatest;
@@ -14,12 +15,15 @@ const NOISE: f64 = -1e-14;
 
 /// A field and the memory of its past. The bodies being linear, whatever the displacement is a convolution of
 /// follows the recursion of the displacement itself.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct RememberedField {
     pub(super) past: Past,
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(super) now: Vec<f64>,
     /// At the end of the step being tried; between steps the field before the last one, which the past has yet to take in.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(super) trial: Vec<f64>,
 }
 
@@ -30,10 +34,11 @@ impl RememberedField {
         RememberedField { past, now: vec![0.0; cells], trial: vec![0.0; cells] }
     }
 
-    /// The same, undisturbed, on `cells` cells, with room for so many differences.
-    pub(super) fn undisturbed_on(&self, cells: usize, kept: usize) -> RememberedField {
-        let mut field = RememberedField::new(self.past.branches(), cells);
-        field.past.keep(kept, cells);
+    /// The undisturbed field of a rule, on no cells yet. It keeps the differences that steps of given length need, so that none
+    /// of these steps allocates.
+    pub(super) fn on_no_cells(rule: &ExponentialRule, branches: usize) -> RememberedField {
+        let mut field = RememberedField::new(branches, 0);
+        field.past.keep(rule.least_kept(), 0);
         field
     }
 
@@ -42,27 +47,20 @@ impl RememberedField {
         &self.trial
     }
 
-    /// Bytes per cell that the past takes, with so many differences.
-    pub(crate) fn bytes_per_cell(&self, kept: usize) -> usize {
-        self.past.bytes_per_cell(kept)
-    }
-
     /// Writes what the past makes of the end of a step to the trial.
     pub(crate) fn predict(&mut self, rule: &ExponentialRule) {
         self.past.predict(rule, &self.now, &mut self.trial);
     }
 
-    /// Finds the weights of a step and predicts its end. No pressure has pulled the surface up yet: where the field would fall
+    /// Predicts the end of the step whose weights were computed last. No pressure has pulled the surface up yet: where the field would fall
     /// below zero, a polynomial of lower degree is taken, where `sign_counts`. `side` \[m\] is the width of a cell.
     pub(crate) fn predict_non_negative(
         &mut self,
         rule: &mut ExponentialRule,
-        (dt, interpolant): (f64, Interpolant),
         side: f64,
         rows: &Rows,
         sign_counts: impl Fn() -> bool,
     ) {
-        rule.compute_weights(dt, interpolant);
         self.predict(rule);
         while rule.has_less() && self.falls_below_zero(rule, side, rows) && sign_counts() {
             rule.reduce_order();
@@ -97,45 +95,19 @@ impl RememberedField {
 
     /// Lets the past take in the last step, so that nothing depends on the field before it any more.
     pub(super) fn apply_pending_step(&mut self, rule: &ExponentialRule) {
-        self.past.apply_pending_step(rule, &self.trial, &self.now);
+        self.past.apply_pending_step(rule, &mut self.trial, &self.now);
     }
 
-    /// Copies another without reallocating.
-    pub(super) fn copy_from(&mut self, other: &RememberedField) {
-        self.past.copy_from(&other.past);
-        self.now.clone_from(&other.now);
-        self.trial.clone_from(&other.trial);
-    }
-
-    /// The same field and past, once settled, on `cells` other cells. `carry` returns there each of its fields, given with the
-    /// same field of `companion`.
-    pub(super) fn carried(
+    /// A field of the same past whose fields are what `map` makes of these; the fields of `far` are the sources of these.
+    pub(super) fn map(
         &self,
-        cells: usize,
-        companion: Option<&RememberedField>,
-        mut carry: impl FnMut(&[f64], Option<&[f64]>) -> Vec<f64>,
+        far: Option<&RememberedField>,
+        map: &mut impl FnMut(Field<'_>) -> Vec<f64>,
     ) -> RememberedField {
-        let past = self.past.carried([cells, self.now.len()], companion.map(|field| &field.past), &mut carry);
-        RememberedField { past, now: carry(&self.now, companion.map(|field| &field.now[..])), trial: vec![0.0; cells] }
-    }
-
-    /// The same on `cells` other cells, with every field zero.
-    #[cfg(feature = "checkpoint")]
-    pub(super) fn blank_on(&self, cells: usize) -> RememberedField {
-        RememberedField { past: self.past.blank_on(cells), now: vec![0.0; cells], trial: vec![0.0; cells] }
-    }
-
-    /// Copies the cells in common with another.
-    #[cfg(feature = "checkpoint")]
-    pub(super) fn copy_common(&mut self, other: &RememberedField, common: CommonCells) {
-        self.past.copy_common(&other.past, common, [self.now.len(), other.now.len()]);
-        common.copy(&other.now, &mut self.now);
-        common.copy(&other.trial, &mut self.trial);
-    }
-
-    /// Whether its past has so many branches, and its fields have so many cells.
-    #[cfg(feature = "checkpoint")]
-    pub(super) fn fits(&self, branches: usize, kept: usize, cells: usize) -> bool {
-        self.past.fits(branches, kept, cells) && [self.now.len(), self.trial.len()] == [cells; 2]
+        RememberedField {
+            past: self.past.map(far.map(|far| &far.past), map),
+            now: map(Field::single(&self.now, Role::Lasting { source: far.map(|far| &far.now[..]) })),
+            trial: map(Field::single(&self.trial, Role::OfStep)),
+        }
     }
 }

@@ -2,11 +2,11 @@
 //!
 //! | output | feature | opened by |
 //! |---|---|---|
-//! | `NpzSeries`: a folder of NPZ archives, one per frame | `npy` | NumPy, Julia, MATLAB |
+//! | `FrameSeries`: a folder of frames as NPZ archives | `npy` | NumPy, Julia, MATLAB |
+//! | `FrameSeries`: a folder of frames as VTK images, with a `series.pvd` | `vtk` | ParaView, VisIt, PyVista |
 //! | `write_npy`, `write_field_npy`: one field as an NPY file | `npy` | NumPy, Julia, MATLAB |
-//! | `VtkSeries`: a folder of VTK images and a `series.pvd` | `vtk` | ParaView, VisIt, PyVista |
-//! | `write_stress_npz`: the stress in a volume | `npy` | NumPy, Julia, MATLAB |
-//! | `write_stress_vtk`: the stress in a volume | `vtk` | ParaView, VisIt, PyVista |
+//! | `write_stress`: the stress in a volume as an NPZ archive | `npy` | NumPy, Julia, MATLAB |
+//! | `write_stress`: the stress in a volume as a VTK grid | `vtk` | ParaView, VisIt, PyVista |
 //! | `CsvHistory`: one row per step | `csv` | pandas, spreadsheets, gnuplot |
 //!
 //! Values are written in double precision, bitwise, in SI units. Each file contains [`Metadata`] that describe the run.
@@ -28,8 +28,6 @@
 //! A write that fails, for instance on a full disk, leaves earlier output intact and no partial output of its own. It
 //! can be repeated.
 
-#[cfg(feature = "vtk")]
-mod appended;
 #[cfg(feature = "csv")]
 mod csv;
 #[cfg(feature = "npy")]
@@ -37,14 +35,13 @@ mod deferred;
 mod field;
 #[cfg(any(feature = "npy", feature = "vtk"))]
 mod field_values;
-#[cfg(any(feature = "npy", feature = "vtk"))]
-mod frames;
-mod json;
 mod metadata;
 #[cfg(feature = "npy")]
 mod npy;
 #[cfg(feature = "npy")]
 mod npz;
+#[cfg(any(feature = "npy", feature = "vtk"))]
+mod series;
 #[cfg(any(feature = "npy", feature = "vtk"))]
 mod stress;
 #[cfg(feature = "vtk")]
@@ -56,11 +53,7 @@ pub use field::Field;
 pub use metadata::Metadata;
 #[cfg(feature = "npy")]
 pub use npy::{write_field_npy, write_npy};
-#[cfg(feature = "npy")]
-pub use npz::NpzSeries;
-#[cfg(feature = "npy")]
-pub use stress::write_stress_npz;
-#[cfg(feature = "vtk")]
-pub use stress::write_stress_vtk;
-#[cfg(feature = "vtk")]
-pub use vtk::VtkSeries;
+#[cfg(any(feature = "npy", feature = "vtk"))]
+pub use series::{Format, FrameSeries};
+#[cfg(any(feature = "npy", feature = "vtk"))]
+pub use stress::write_stress;

@@ -111,11 +111,12 @@ const MIN_SHARED_CELLS: usize = 1 << 15;
 pub(crate) const BAND_CELLS: usize = 1 << 13;
 
 /// Where fields of so many cells are halved between threads: at the start of a band.
-pub(crate) fn middle(cells: usize) -> usize {
+fn middle(cells: usize) -> usize {
     cells.div_ceil(BAND_CELLS) / 2 * BAND_CELLS
 }
 
-/// Calls `job` with each band of some fields, and the number of its first cell.
+/// Calls `job` with each band of some fields, and the number of its first cell. The first field has one value for each cell, the
+/// others may have none or several.
 pub(crate) fn for_each_band<T: Send, const M: usize>(fields: [&mut [T]; M], job: impl Fn(usize, [&mut [T]; M]) + Sync) {
     let cells = fields.first().map_or(0, |field| field.len());
     halve([0, cells], fields, lanes(cells) > 1, &job);
@@ -131,7 +132,10 @@ fn halve<T: Send, const M: usize>(
         return job(first, fields);
     }
     let middle = middle(cells);
-    let mut halves = fields.map(|field| field.split_at_mut(middle));
+    let mut halves = fields.map(|field| {
+        let per_cell = field.len() / cells;
+        field.split_at_mut(middle * per_cell)
+    });
     let before = halves.each_mut().map(|(before, _)| std::mem::take(before));
     let after = halves.map(|(_, after)| after);
     join(

@@ -1,12 +1,10 @@
 //! The rows that a rank has, and sums over the rows of all.
 
 use std::ops::Range;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use super::{BAND_CELLS, Ranks, join, lanes, rows_in_a_tile};
 use crate::error::{RanksError, Result};
-use crate::parallel::Ranks;
-use crate::parallel::{BAND_CELLS, join, lanes, rows_in_a_tile};
 use crate::sum;
 
 /// The computed rows of a grid, cut into bands. This process holds all of them, or some if ranks share them out.
@@ -37,6 +35,8 @@ struct Shared {
     group: Arc<dyn Ranks>,
     /// Kept, so that no sum allocates that is no longer than one before.
     buffers: Mutex<Buffers>,
+    /// Why a call of the group failed. Until that is returned ([`Rows::together`]), no other call is made.
+    lost: Mutex<Option<RanksError>>,
 }
 
 #[derive(Debug, Default)]
@@ -46,9 +46,6 @@ struct Buffers {
     counts: Vec<usize>,
 }
 
-/// With this a call ends that needs a rank that has left.
-pub(super) struct RankLoss(pub(super) RanksError);
-
 impl Rows {
     /// All rows of a field of so many cells.
     pub(crate) fn all(cells: [usize; 2]) -> Rows {
@@ -57,16 +54,16 @@ impl Rows {
         Rows { cells, own: 0..cells[0], band, shared: None }
     }
 
-    /// Those of a rank of the group.
+    /// The rows of a rank of the group.
     pub(crate) fn of_rank(cells: [usize; 2], group: Arc<dyn Ranks>) -> Rows {
-        let shared = Some(Arc::new(Shared { group, buffers: Mutex::default() }));
+        let shared = Some(Arc::new(Shared { group, buffers: Mutex::default(), lost: Mutex::default() }));
         Rows { shared, ..Rows::all(cells) }.of_cells(cells)
     }
 
     /// The rows of another field that the same ranks share out.
     pub(crate) fn of_cells(&self, cells: [usize; 2]) -> Rows {
         let mut rows = Rows { shared: self.shared.clone(), ..Rows::all(cells) };
-        rows.own = rows.of(self.group().map_or(0, |group| group.rank()));
+        rows.own = rows.of(self.rank());
         rows
     }
 
@@ -77,6 +74,11 @@ impl Rows {
 
     pub(crate) fn are_shared(&self) -> bool {
         self.shared.is_some()
+    }
+
+    /// Which of the ranks this is.
+    pub(crate) fn rank(&self) -> usize {
+        self.group().map_or(0, |group| group.rank())
     }
 
     /// Number of ranks.
@@ -99,7 +101,7 @@ impl Rows {
         self.own.clone()
     }
 
-    /// Those of a rank.
+    /// The rows of a rank.
     pub(crate) fn of(&self, rank: usize) -> Range<usize> {
         let bands = part(self.cells[0].div_ceil(self.band), rank, self.ranks());
         (bands.start * self.band).min(self.cells[0])..(bands.end * self.band).min(self.cells[0])
@@ -205,10 +207,38 @@ impl Rows {
     /// Gathers fields of own rows, `columns` values to a row, to one of all rows.
     pub(crate) fn gather_rows(&self, own: &[f64], all: &mut [f64], of: impl Fn(usize) -> usize) {
         let Some(shared) = &self.shared else { return };
-        shared.gather_into(own, of, all);
+        let mut counts = std::mem::take(&mut lock(&shared.buffers).counts);
+        counts.clear();
+        counts.extend((0..shared.group.size()).map(of));
+        shared.gather_into(own, &counts, all);
+        lock(&shared.buffers).counts = counts;
     }
 
-    /// Goes on only where every rank does: where one has failed, all get the same error.
+    /// Sends numbers to each rank, and receives numbers from each; if a rank is lost, `received` stays as it is.
+    pub(crate) fn exchange_into(
+        &self,
+        (send, send_counts): (&[f64], &[usize]),
+        (received, receive_counts): (&mut [f64], &[usize]),
+    ) {
+        let Some(shared) = &self.shared else { return };
+        shared.call(|group| group.exchange(send, send_counts, received, receive_counts));
+    }
+
+    /// Runs `job`, a call of all ranks. If one is lost meanwhile, that is the error, whatever `job` has found: its sums are NaN.
+    pub(crate) fn together<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<T> {
+        let done = job();
+        match self.shared.as_ref().and_then(|shared| lock(&shared.lost).take()) {
+            Some(loss) => Err(loss.into()),
+            None => done,
+        }
+    }
+
+    /// An error if a rank is lost: for what must not follow then, as a file or a state that is replaced.
+    pub(crate) fn intact(&self) -> Result<(), RanksError> {
+        self.shared.as_ref().and_then(|shared| lock(&shared.lost).clone()).map_or(Ok(()), Err)
+    }
+
+    /// Returns `own` where every rank succeeds: where one has failed, all get the same error.
     pub(crate) fn agree<T>(&self, own: Result<T>) -> Result<T> {
         let Some(shared) = &self.shared else { return own };
         let message = own.as_ref().err().map_or(String::new(), |error| format!("{error:?}"));
@@ -223,15 +253,17 @@ impl Rows {
                 failed.filter(|_| !all.iter().all(|other| *other == all[0]))
             },
         );
+        self.intact()?;
         // nobody has failed, or all in the same way
         let Some((rank, length)) = found else { return own };
-        let own = if shared.group.rank() == rank { message.as_bytes() } else { &[] };
+        let own = if self.rank() == rank { message.as_bytes() } else { &[] };
         let bytes = own.iter().map(|&byte| f64::from(byte));
         let message = shared.gather(
             bytes,
             |of| if of == rank { length } else { 0 },
             |all| String::from_utf8_lossy(&all.iter().map(|&byte| byte as u8).collect::<Vec<_>>()).into_owned(),
         );
+        self.intact()?;
         Err(RanksError::Failed { rank, message }.into())
     }
 
@@ -243,66 +275,50 @@ impl Rows {
             |_| K,
             |all| all.as_chunks::<K>().0.iter().any(|others| others.map(f64::to_bits) != bits),
         );
+        self.intact()?;
         if differ == Some(true) { Err(RanksError::Apart.into()) } else { Ok(()) }
     }
 }
 
 impl Shared {
+    /// Gathers numbers of all ranks: NaN if one is lost.
     fn gather<R>(
         &self,
         own: impl Iterator<Item = f64>,
         count: impl Fn(usize) -> usize,
         read: impl FnOnce(&[f64]) -> R,
     ) -> R {
-        let mut buffers = self.take();
-        buffers.own.clear();
-        buffers.own.extend(own);
-        let Buffers { own, all, counts } = &mut buffers;
+        let mut buffers = std::mem::take(&mut *lock(&self.buffers));
+        let Buffers { own: sent, all, counts } = &mut buffers;
+        sent.clear();
+        sent.extend(own);
         counts.clear();
         counts.extend((0..self.group.size()).map(count));
         all.resize(counts.iter().sum(), 0.0);
-        self.group.gather(own, counts, all).unwrap_or_else(|error| unwind_rank_loss(error));
+        self.gather_into(sent, counts, all);
         let found = read(all);
-        self.put_back(buffers);
+        *lock(&self.buffers) = buffers;
         found
     }
 
-    fn gather_into(&self, own: &[f64], count: impl Fn(usize) -> usize, all: &mut [f64]) {
-        let mut buffers = self.take();
-        buffers.counts.clear();
-        buffers.counts.extend((0..self.group.size()).map(count));
-        self.group.gather(own, &buffers.counts, all).unwrap_or_else(|error| unwind_rank_loss(error));
-        self.put_back(buffers);
+    fn gather_into(&self, own: &[f64], counts: &[usize], all: &mut [f64]) {
+        if !self.call(|group| group.gather(own, counts, all)) {
+            all.fill(f64::NAN);
+        }
     }
 
-    fn take(&self) -> Buffers {
-        std::mem::take(&mut *self.buffers.lock().unwrap_or_else(PoisonError::into_inner))
-    }
-
-    fn put_back(&self, buffers: Buffers) {
-        *self.buffers.lock().unwrap_or_else(PoisonError::into_inner) = buffers;
+    /// Makes a call of the group, unless one has failed; whether it succeeded.
+    fn call(&self, call: impl FnOnce(&dyn Ranks) -> Result<(), RanksError>) -> bool {
+        let mut lost = lock(&self.lost);
+        if lost.is_none() {
+            *lost = call(&*self.group).err();
+        }
+        lost.is_none()
     }
 }
 
-/// Ends the call at hand, up to where it is [`catch_rank_loss`]: sums have no error to return. In a program built with `panic = "abort"`
-/// it ends the process.
-pub(crate) fn unwind_rank_loss(error: RanksError) -> ! {
-    resume_unwind(Box::new(RankLoss(error)))
-}
-
-/// Runs `job`; the loss of a rank becomes `RanksError::Left`.
-pub(crate) fn catch_rank_loss<T>(rows: &Rows, job: impl FnOnce() -> Result<T>) -> Result<T> {
-    if !rows.are_shared() {
-        return job();
-    }
-    // what a step writes before it is accepted is never read
-    match catch_unwind(AssertUnwindSafe(job)) {
-        Ok(done) => done,
-        Err(panic) => match panic.downcast::<RankLoss>() {
-            Ok(departure) => Err(departure.0.into()),
-            Err(panic) => resume_unwind(panic),
-        },
-    }
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The part of `n` things that a rank has.

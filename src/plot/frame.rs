@@ -1,9 +1,8 @@
 //! The frame of charts and maps: axes, grid and labels around an area.
 
+use crate::plot::Color;
 use crate::plot::axis::{Axis, TICK_SIZE};
-use crate::plot::canvas::Canvas;
-use crate::plot::shape::Anchor;
-use crate::plot::{Color, font};
+use crate::plot::canvas::{Anchor, Canvas};
 
 /// Sizes of the labels of axes and of titles in pixels per em.
 pub(super) const LABEL_SIZE: f64 = 27.0;
@@ -56,13 +55,12 @@ impl Frame {
         let middle = [0.5 * (left + right), 0.5 * (top + bottom)];
         let corners = [[left, top], [left, bottom], [right, bottom], [right, top], [left, top]];
         let mut lines = vec![corners.to_vec()];
-        for (at, long) in x.ticks.iter().map(|tick| (tick.0, 1.0)).chain(x.minor.iter().map(|&at| (at, 0.5))) {
-            let [x, y] = self.place(at, 0.0);
-            lines.push(vec![[x, y], [x, y + long * TICK]]);
-        }
-        for (at, long) in y.ticks.iter().map(|tick| (tick.0, 1.0)).chain(y.minor.iter().map(|&at| (at, 0.5))) {
-            let [x, y] = self.place(0.0, at);
-            lines.push(vec![[x, y], [x - long * TICK, y]]);
+        for (axis, place) in [(x, [1.0, 0.0]), (y, [0.0, 1.0])] {
+            let ticks = axis.ticks.iter().map(|tick| (tick.0, TICK));
+            for (at, length) in ticks.chain(axis.minor.iter().map(|&at| (at, 0.5 * TICK))) {
+                let [x, y] = self.place(at * place[0], at * place[1]);
+                lines.push(vec![[x, y], [x - length * place[1], y + length * place[0]]]);
+            }
         }
         // on whole pixels, so that no line is spread over three rows
         lines.iter_mut().flatten().flatten().for_each(|value| *value = value.round());
@@ -85,9 +83,4 @@ impl Frame {
 /// The baseline of the upright label of a frame whose numbers begin at `left`.
 pub(super) fn label_baseline(left: f64) -> f64 {
     left + EDGE + 0.8 * LABEL_SIZE
-}
-
-/// The width of a text of the size of numbers.
-pub(super) fn text_width(text: &str) -> f64 {
-    font::width(text, TICK_SIZE)
 }

@@ -46,11 +46,6 @@ impl Quantity {
         let (prefix, factor) = prefix(unit, greatest.abs()).unwrap_or(("", 1.0));
         (format!("{} [{prefix}{unit}]", self.name), factor)
     }
-
-    /// The name, without the unit.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
 }
 
 impl From<&str> for Quantity {

@@ -19,7 +19,7 @@ use crate::geometry::Gap;
 use crate::hereditary;
 use crate::hereditary::{History, Weighting};
 use crate::kernel::InfluenceKernel;
-use crate::parallel::{Ranks, Rows, catch_rank_loss};
+use crate::parallel::{Ranks, Rows};
 use crate::rheology::Material;
 
 impl Builder {
@@ -45,7 +45,7 @@ impl Builder {
         let Some(group) = &self.ranks else { return Ok(self.prepare()?.finish()) };
         let rows = self.agreed_rows(group)?;
         let gaps = std::mem::take(&mut self.gaps);
-        catch_rank_loss(&rows, || {
+        rows.together(|| {
             let prepared = self.prepare_shared(&gaps, &rows)?;
             drop(gaps);
             Ok(prepared.finish())
@@ -56,7 +56,7 @@ impl Builder {
     fn agreed_rows(&self, group: &Arc<dyn Ranks>) -> Result<Rows> {
         // what is agreed upon before there are rows to share
         let anything = Rows::of_rank([1, 1], Arc::clone(group));
-        catch_rank_loss(&anything, || {
+        anything.together(|| {
             anything.agree(self.may_be_shared())?;
             let ([n1, n2], [side1, side2]) = (self.grid.cells(), self.grid.spacing());
             let Settings { tolerance, symmetry, .. } = self.settings;
@@ -102,7 +102,7 @@ impl Builder {
             .check(&Computed::on(&region), 0)?;
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
-            built: Built::new(indenter.gap(), grid.cells()),
+            built: Built::new(indenter.gap(), &Region::whole(&grid, [false; 2])),
             grid,
             kernel,
             material,
@@ -127,7 +127,7 @@ impl Builder {
         let indenter = gap.on(&region, &grid, even);
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
-            built: Built::of_own_rows(indenter.gap(), &region),
+            built: Built::new(indenter.gap(), &region),
             grid,
             kernel,
             material,
@@ -169,7 +169,7 @@ impl Builder {
     pub fn memory(&self) -> Result<Memory> {
         if let Some(group) = &self.ranks {
             let rows = &self.agreed_rows(group)?;
-            return catch_rank_loss(rows, || {
+            return rows.together(|| {
                 let (_, kernel, history) = rows.agree(self.parts())?;
                 let gap = SharedGap::new(rows.agree(own_gap(&self.gaps, rows))?, &self.grid, rows)?;
                 let folded = gap.even_axes().map(|even| even && self.settings.symmetry);

@@ -125,14 +125,10 @@ impl Footprint<'_> {
         // the whole of it, which ranks do not have, what is computed of it, and the pressure that is shown
         let whole = if shared.is_some() { 0 } else { gap * all };
         let grid = if count == self.all { gap * n } else { whole + 8 * all + gap * n };
-        // of the far field of a window two fields, and one for each relaxation time
-        let history = self.history.bytes_per_cell() as u128 * n;
-        let far = if covers { 0 } else { 16 * n + history };
-        let [kernel, inverse] = match shared {
-            Some(rows) => self.kernel.own_bytes(rows, folded),
-            None => self.kernel.bytes_on(cells, folded),
-        };
+        // the state counts two fields of it
+        let history = 8 * self.history.values_per_cell(!covers).saturating_sub(2) as u128 * n;
         let rows = shared.clone().unwrap_or_else(|| Rows::all(cells));
+        let [kernel, inverse] = self.kernel.bytes(&rows, folded);
         let sums = Bands::bytes(&Rows::all(cells), self.bodies) as u128;
         let solver = match self.settings.solver {
             // three fields, a mark, and runs of cells
@@ -146,7 +142,7 @@ impl Footprint<'_> {
             grid: saturated(grid),
             // pressure and K p now, before and tried; displacement now and before; the gap
             state: saturated(73 * n),
-            history: saturated(history + far),
+            history: saturated(history),
             solver: saturated(solver),
             kernel: saturated(kernel),
             each_step: if self.history.grows() { saturated(8 * n) } else { 0 },

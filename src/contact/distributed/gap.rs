@@ -11,7 +11,7 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::{Error, RanksError, Result};
 use crate::geometry::Gap;
-use crate::parallel::{Rows, exchange_numbers};
+use crate::parallel::Rows;
 
 /// The gap of a single body on own rows of the whole grid.
 pub(in crate::contact) struct SharedGap<'a> {
@@ -139,13 +139,16 @@ impl ViscoelasticContact {
             (first + own.start).max(rows.start)..(first + own.end).min(rows.end)
         };
         let whole = Brought { rows: rows.clone(), columns: columns.clone(), values: Vec::new(), folded: 2 * first };
-        let Some(group) = all.group() else { return Ok(None) };
-        let (own_rank, start) = (group.rank(), first + all.own().start);
+        if !all.are_shared() {
+            return Ok(None);
+        }
+        let (own_rank, start) = (all.rank(), first + all.own().start);
         let own = of(own_rank).flat_map(|row| &field[(row - start) * n2..(row - start + 1) * n2][columns.clone()]);
         let mut pieces = vec![Vec::new(); all.ranks()];
         pieces[to] = own.copied().collect();
         let count = |rank: usize| if own_rank == to { of(rank).len() * columns.len() } else { 0 };
-        let values = exchange_numbers(&**group, pieces, count)?;
+        let values = all.exchange(pieces, count);
+        all.intact()?;
         if own_rank != to {
             return Ok(None);
         }

@@ -8,7 +8,6 @@ use crate::error::{RanksError, Result, count_within, exact_length};
 use crate::observe::Axis;
 #[cfg(any(feature = "npy", feature = "vtk"))]
 use crate::parallel::Rows;
-use crate::parallel::catch_rank_loss;
 
 impl ViscoelasticContact {
     /// The rows (indices along x1) that [`pressure`](ViscoelasticContact::pressure) and all other fields hold: all of the
@@ -50,7 +49,7 @@ impl ViscoelasticContact {
         if !rows.are_shared() {
             return checked.map(|()| Some(field.to_vec()));
         }
-        catch_rank_loss(&rows, || {
+        rows.together(|| {
             rows.agree(checked)?;
             let [n1, n2] = self.grid().cells();
             let brought = self.bring(field, to, 0..n1, 0..n2)?;
@@ -137,14 +136,14 @@ impl ViscoelasticContact {
     }
 
     /// Goes on where every rank does.
-    #[cfg(any(feature = "csv", feature = "vtk"))]
+    #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
         let rows = self.computation.state.region.rows();
-        catch_rank_loss(&rows, || rows.agree(own))
+        rows.together(|| rows.agree(own))
     }
 
     /// Does on rank 0 what is not for each of them, and goes on where that is done; the others get no result.
-    #[cfg(any(feature = "csv", feature = "vtk"))]
+    #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn by_one_rank<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
         let rows = self.computation.state.region.rows();
         let first = rows.group().is_none_or(|group| group.rank() == 0);

@@ -123,7 +123,7 @@ fn next_id() -> u64 {
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
-/// Indenters in checkpoints: their gap, and how many bodies there are.
+/// Indenters in checkpoints: their gap without its heights, and how many bodies there are.
 #[cfg(feature = "checkpoint")]
 pub(crate) mod saved {
     use std::sync::Arc;

@@ -93,7 +93,7 @@ impl ViscoelasticContact {
         }
         if !self.view.has_displacement(state) {
             let whole = Region::whole(grid, state.region.folded());
-            let [kernel, _] = kernel.bytes_on(whole.cells(), whole.folded());
+            let [kernel, _] = kernel.bytes(&whole.rows(), whole.folded());
             let fields = 8 * (grid.len() + 2 * whole.len()) as u128;
             memory::check("the displacement on the whole grid", kernel + fields)?;
         }
@@ -276,8 +276,8 @@ pub(in crate::contact) fn on_the_whole_grid<'a>(
         let all = Region::whole(&scene.grid, region.folded());
         let kernel = scene.kernel.on(all.grid(), all.folded());
         let mut far = vec![0.0; all.len()];
-        kernel.apply(&region.carry(source, &all, |_| 0.0), &mut far, &mut kernel.workspace());
-        all.spread(&far, &mut whole);
+        kernel.apply(&region.transfer(source, &all, |_| 0.0), &mut far, &mut kernel.workspace());
+        all.show(&far, &mut whole);
     }
     region.show(own, &mut whole);
     Cow::Owned(whole)

@@ -64,7 +64,7 @@ impl ViscoelasticContact {
     /// same and no direct sum grows.
     pub fn snapshot_into(&self, snapshot: &mut Snapshot) {
         if Arc::ptr_eq(&snapshot.scene, &self.scene) {
-            snapshot.state.copy_from(&self.computation.state);
+            snapshot.state.clone_from(&self.computation.state);
         } else {
             *snapshot = self.snapshot();
         }
@@ -150,7 +150,7 @@ impl ViscoelasticContact {
             let mut step = contact.request(time, time - from, &loads, tolerance)?;
             step.interval.interpolant = state.start.interpolant;
             let attempt = contact.attempt(&step)?;
-            contact.adopt(attempt, step, [0.0; 2]);
+            contact.adopt(attempt, step, [0.0; 2])?;
         }
         Ok(contact)
     }

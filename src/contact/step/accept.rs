@@ -11,13 +11,17 @@ use crate::rheology::is_known;
 use crate::solver::RigidMotion;
 
 impl Computation {
-    /// Makes the trial the state; `sum` is Σ p, and `sizes` are the means of displacement and v in
-    /// contact.
-    pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, sizes: [f64; 2]) {
+    /// Number of cells of the region that are pressed in the trial, and the rectangle of the grid that holds them: of all ranks.
+    pub(super) fn pressed(&self) -> (usize, Option<Extent>) {
+        let (region, pressure) = (&self.state.region, &self.trial.solution.pressure);
+        (region.rows().count(pressure.iter().filter(|&&p| p > 0.0).count()), region.reach(pressure))
+    }
+
+    /// Makes the trial the state; `sum` is Σ p, `contact_cells` is the number of pressed cells of the region, and `sizes` are the
+    /// means of displacement and v in contact.
+    pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, contact_cells: usize, sizes: [f64; 2]) {
         let Computation { state, trial, .. } = self;
         let (interval, datum) = (step.interval, step.indenter.gap().datum);
-        let pressed = trial.solution.pressure.iter().filter(|&&p| p > 0.0).count();
-        let contact_cells = state.region.rows().count(pressed);
         let touched = !state.is_undisturbed() || contact_cells > 0;
         let (before, after) = (&state.current.solution, &trial.solution);
         let pressed = [[&before.pressure[..], &after.pressure], [&before.potential, &after.potential]];
@@ -51,13 +55,13 @@ const EDGE_MARGIN: usize = 2;
 const MIN_CELLS_ACROSS: usize = 8;
 const MIN_CELLS: usize = 50;
 
-/// The warnings of the step accepted last.
-pub(super) fn collect_warnings(scene: &Scene, state: &State) -> Warnings {
+/// The warnings of the step accepted last, with all pressed cells in `reach`.
+pub(super) fn collect_warnings(scene: &Scene, state: &State, reach: Option<Extent>) -> Warnings {
     let (axes, periodic) = (scene.grid.cells(), scene.kernel.periodic_axes());
     let (dt, material) = (state.clock.last_dt, &scene.material);
     let (solution, contact_cells) = (&state.current.solution, state.current.contact_cells);
     let (mut near, mut few) = (false, false);
-    if let Some(Extent { low, high }) = state.region.reach(&solution.pressure) {
+    if let Some(Extent { low, high }) = reach {
         let all_in_touch = contact_cells == scene.grid.len();
         let mut line = false;
         for axis in 0..2 {

@@ -36,9 +36,9 @@ use crate::contact::window::placement::region_for;
 use crate::contact::window::region::Region;
 use crate::error::{Error, Result, non_negative};
 use crate::events;
+use crate::extent::Extent;
 use crate::hereditary::{Interval, TimeError};
 use crate::load::Load;
-use crate::parallel::catch_rank_loss;
 use crate::parallel::in_pool;
 use crate::solver::Stop;
 use accept::collect_warnings;
@@ -81,7 +81,7 @@ impl ViscoelasticContact {
     /// As [`ViscoelasticContact::step`], or if there is not one load per body.
     pub fn step_each(&mut self, dt: f64, loads: &[Load]) -> Result<StepReport> {
         let rows = self.computation.state.region.rows();
-        catch_rank_loss(&rows, || {
+        rows.together(|| {
             let requested = non_negative("time step", dt)
                 .and_then(|dt| self.request(self.time() + dt, dt, loads, self.settings().tolerance));
             let requested = requested.and_then(|step| validate_loads(&self.scene, &step).map(|()| step));
@@ -120,7 +120,7 @@ impl ViscoelasticContact {
     ) -> Result<(StepReport, TimeError)> {
         let attempt = self.attempt(&step)?;
         let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, outlook);
-        Ok((self.accept(attempt, step, error), error))
+        Ok((self.accept(attempt, step, error)?, error))
     }
 
     /// Computes a step. The state stays as it is.
@@ -129,7 +129,7 @@ impl ViscoelasticContact {
         let (rows, from) = (region.rows(), region.cells());
         // ranks wait for each other, which they must not do on threads that all of them need
         let cells = if region.is_shared() { 0 } else { region.len() };
-        let tried = catch_rank_loss(&rows, || {
+        let tried = rows.together(|| {
             rows.same(marks(step))?;
             in_pool(cells, || compute(&self.scene, &mut self.computation, &mut larger, step))
         });
@@ -145,26 +145,41 @@ impl ViscoelasticContact {
         tried.map(|sum| Attempt { larger, sum })
     }
 
-    /// Makes an attempt the state. Nothing here can fail.
-    pub(in crate::contact) fn accept(&mut self, attempt: Attempt, step: Step<'_>, error: TimeError) -> StepReport {
+    /// Makes an attempt the state; an error, which leaves the state as it is, if a rank is lost.
+    pub(in crate::contact) fn accept(
+        &mut self,
+        attempt: Attempt,
+        step: Step<'_>,
+        error: TimeError,
+    ) -> Result<StepReport> {
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
-        self.adopt(attempt, step, error.sizes);
-        let report = StepReport { time_error: estimated.then_some(error.relative), ..self.report() };
+        let reach = self.adopt(attempt, step, error.sizes)?;
+        let report = StepReport { time_error: estimated.then_some(error.relative), ..self.report(reach) };
         report.emit();
-        report
+        Ok(report)
     }
 
-    /// Makes an attempt the state, without a report; `sizes` are the means of displacement and v in contact.
-    pub(in crate::contact) fn adopt(&mut self, attempt: Attempt, step: Step<'_>, sizes: [f64; 2]) {
+    /// Makes an attempt the state, without a report; `sizes` are the means of displacement and v in contact. Returns the rectangle
+    /// that holds all pressed cells.
+    pub(in crate::contact) fn adopt(
+        &mut self,
+        attempt: Attempt,
+        step: Step<'_>,
+        sizes: [f64; 2],
+    ) -> Result<Option<Extent>> {
+        // nothing is asked of other ranks once the state changes
+        let (contact_cells, reach) = attempt.computation(&self.computation).pressed();
+        self.computation.state.region.rows().intact()?;
         if let Some(larger) = attempt.larger {
             self.computation = *larger;
         }
-        self.computation.accept(step, attempt.sum, sizes);
+        self.computation.accept(step, attempt.sum, contact_cells, sizes);
         self.view.refresh(&self.computation.state);
+        Ok(reach)
     }
 
-    fn report(&self) -> StepReport {
+    fn report(&self, reach: Option<Extent>) -> StepReport {
         let state = &self.computation.state;
         let counts = state.current.solution.counts;
         StepReport {
@@ -176,7 +191,7 @@ impl ViscoelasticContact {
             tilt: self.tilt(),
             dt: state.clock.last_length,
             time_error: None,
-            warnings: collect_warnings(&self.scene, state),
+            warnings: collect_warnings(&self.scene, state, reach),
             iterations: counts.iterations,
             fallback_iterations: counts.fallback_iterations,
             convolutions: counts.convolutions,
@@ -211,8 +226,8 @@ fn compute(
 ) -> Result<f64> {
     validate_loads(scene, step)?;
     if let Some((region, placed)) = region_for(scene, &own.state, step)? {
-        let carried = larger.insert(own.carried_to(scene, region, &step.indenter)?);
-        carried.state.region_is_placed = placed;
+        let transferred = larger.insert(own.transferred_to(scene, region, &step.indenter)?);
+        transferred.state.region_is_placed = placed;
     }
     loop {
         let at = larger.as_deref_mut().unwrap_or(&mut *own);
@@ -225,7 +240,7 @@ fn compute(
             Err(error) => return Err(error),
         };
         let Some(region) = grown else { return acceptable(scene, &at.state, &at.trial, step) };
-        *larger = Some(at.carried_to(scene, region, &step.indenter)?);
+        *larger = Some(at.transferred_to(scene, region, &step.indenter)?);
     }
 }
 

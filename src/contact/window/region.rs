@@ -49,11 +49,10 @@ impl Region {
         Region { shared: Some(rows), ..own }
     }
 
-    /// Some rows of all of `grid`, as [`Region::whole`].
+    /// The region whose rows ranks share out, or the region itself.
     #[cfg(feature = "checkpoint")]
-    pub(crate) fn of_rows(grid: &Grid, folded: [bool; 2], rows: Range<usize>) -> Region {
-        let Region { first: [_, first], grid: part, .. } = Region::whole(grid, folded);
-        Region::new(grid, folded, [rows.start, first], [rows.len(), part.cells()[1]])
+    pub(crate) fn of_all_ranks(&self) -> Region {
+        if self.is_shared() { Region::whole(&self.whole, self.folded) } else { self.clone() }
     }
 
     /// A region of suitable size that holds these cells of the whole grid, and a fraction `margin` more along each axis.

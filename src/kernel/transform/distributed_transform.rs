@@ -5,28 +5,25 @@
 //! that only pad the columns stay at home.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use num_complex::Complex64;
+use pulp::bytemuck::{cast_slice, cast_slice_mut};
 
 use super::column::{Column, ColumnWorkspace};
 use super::tasks::{ColumnsInPlace, RowsForward};
 use super::{AREA, SpectralOperator, TransformWorkspace};
 use crate::kernel::layout::Layout;
-use crate::parallel::for_each_share;
-use crate::parallel::{Ranks, Rows, exchange_numbers, part, unwind_rank_loss};
-use crate::parallel::{TILE, rows_in_a_tile};
+use crate::parallel::{Rows, TILE, for_each_share, part, rows_in_a_tile};
 
 /// Who has which tiles of rows, and which panels of columns.
 #[derive(Debug, Clone)]
 pub(crate) struct Shares {
     rows: Rows,
-    group: Arc<dyn Ranks>,
     /// The tiles of rows that each rank has.
     down: Vec<Range<usize>>,
     /// The panels of columns that each rank has.
     across: Vec<Range<usize>>,
-    /// How many numbers are sent to each rank when the rows are transformed, and received from it.
+    /// How many real numbers are sent to each rank when the rows are transformed, and received from it.
     sent: Vec<usize>,
     received: Vec<usize>,
 }
@@ -34,21 +31,23 @@ pub(crate) struct Shares {
 impl Shares {
     /// Of an operator with this layout on rows that are shared out.
     pub(crate) fn new(layout: &Layout, rows: &Rows) -> Option<Shares> {
-        let group = Arc::clone(rows.group()?);
+        if !rows.are_shared() {
+            return None;
+        }
         let high = rows_in_a_tile(layout.folded);
         let panels = layout.independent(1).div_ceil(TILE);
-        let ranks = 0..group.size();
+        let ranks = 0..rows.ranks();
         let down: Vec<_> = ranks.clone().map(|rank| tiles(rows.of(rank), high)).collect();
-        let across: Vec<_> = ranks.map(|rank| part(panels, rank, group.size())).collect();
-        let (own_down, own_across) = (down[group.rank()].len(), across[group.rank()].len());
-        let sent = across.iter().map(|panels| own_down * panels.len() * AREA).collect();
-        let received = down.iter().map(|tiles| tiles.len() * own_across * AREA).collect();
-        Some(Shares { rows: rows.clone(), group, down, across, sent, received })
+        let across: Vec<_> = ranks.map(|rank| part(panels, rank, rows.ranks())).collect();
+        let (own_down, own_across) = (down[rows.rank()].len(), across[rows.rank()].len());
+        let sent = across.iter().map(|panels| 2 * own_down * panels.len() * AREA).collect();
+        let received = down.iter().map(|tiles| 2 * tiles.len() * own_across * AREA).collect();
+        Some(Shares { rows: rows.clone(), down, across, sent, received })
     }
 
     /// The own columns of the spectrum; all of a single column, which every rank transforms.
     pub(crate) fn columns(&self, layout: &Layout) -> Range<usize> {
-        self.columns_of(self.group.rank(), layout)
+        self.columns_of(self.rows.rank(), layout)
     }
 
     fn columns_of(&self, rank: usize, layout: &Layout) -> Range<usize> {
@@ -67,26 +66,21 @@ impl Shares {
         count: usize,
         mut write: impl FnMut(usize, &mut [f64]),
     ) -> Vec<f64> {
-        let (size, columns) = (self.group.size(), |rank: usize| self.columns_of(rank, layout));
+        let (size, columns) = (self.rows.ranks(), |rank: usize| self.columns_of(rank, layout));
         let rows = |rank: usize| part(count, rank, size);
         let mut row = vec![0.0; layout.independent(1)];
         let mut written: Vec<Vec<f64>> = (0..size).map(|_| Vec::new()).collect();
-        for i in rows(self.group.rank()) {
+        for i in rows(self.rows.rank()) {
             write(i, &mut row);
             written.iter_mut().enumerate().for_each(|(rank, piece)| piece.extend_from_slice(&row[columns(rank)]));
         }
-        let own = columns(self.group.rank()).len();
-        exchange_numbers(&*self.group, written, |rank| rows(rank).len() * own)
-            .unwrap_or_else(|error| unwind_rank_loss(error))
+        let own = columns(self.rows.rank()).len();
+        self.rows.exchange(written, |rank| rows(rank).len() * own)
     }
 
     /// Most complex values that this rank has at a time: of own rows, or of own columns.
     pub(super) fn most(&self) -> usize {
-        self.sent.iter().sum::<usize>().max(self.received.iter().sum())
-    }
-
-    fn own_across(&self) -> Range<usize> {
-        self.across[self.group.rank()].clone()
+        self.sent.iter().sum::<usize>().max(self.received.iter().sum()) / 2
     }
 }
 
@@ -105,8 +99,8 @@ impl SpectralOperator {
             work.column.all = all;
             return;
         }
-        let Shares { group, down, across, sent, received, .. } = shares;
-        let (own_down, own_across) = (down[group.rank()].len(), shares.own_across().len());
+        let Shares { rows, down, across, sent, received } = shares;
+        let (own_down, own_across) = (down[rows.rank()].len(), across[rows.rank()].len());
         let (of_rows, of_columns) = (own_down * self.across() * AREA, own_across * self.down() * AREA);
         let TransformWorkspace { tiles, result, lanes, .. } = work;
 
@@ -125,13 +119,16 @@ impl SpectralOperator {
                 packed = rest;
             }
         }
-        exchange(group, (&result[..of_rows], sent), (&mut tiles[..of_columns], received));
+        let exchange = |(send, sent): (&[Complex64], &[usize]), (got, counts): (&mut [Complex64], &[usize])| {
+            rows.exchange_into((cast_slice(send), sent), (cast_slice_mut(got), counts));
+        };
+        exchange((&result[..of_rows], sent), (&mut tiles[..of_columns], received));
 
         // what came lies tile by tile, as it does where one process has all
         let task = ColumnsInPlace { operator: self, across: own_across };
         for_each_share(&task, lanes, &mut tiles[..of_columns], usize::MAX);
 
-        exchange(group, (&tiles[..of_columns], received), (&mut result[..of_rows], sent));
+        exchange((&tiles[..of_columns], received), (&mut result[..of_rows], sent));
         let mut packed = &result[..of_rows];
         for panels in across {
             let (start, length) = pieces(panels);
@@ -156,12 +153,4 @@ impl SpectralOperator {
         output.copy_from_slice(&all[shares.rows.own()]);
         work.all = all;
     }
-}
-
-fn exchange(
-    group: &Arc<dyn Ranks>,
-    (send, send_counts): (&[Complex64], &[usize]),
-    (received, receive_counts): (&mut [Complex64], &[usize]),
-) {
-    group.exchange(send, send_counts, received, receive_counts).unwrap_or_else(|error| unwind_rank_loss(error));
 }

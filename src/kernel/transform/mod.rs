@@ -48,17 +48,12 @@ pub(crate) struct SpectralOperator {
 
 impl SpectralOperator {
     /// Multiplication of the Fourier coefficients on [`Layout::period`] by `symbol(k1, k2)`, for wave numbers
-    /// 0 … period/2 along each axis.
-    pub(crate) fn from_symbol(layout: Layout, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator {
-        SpectralOperator::new(layout, None, symbol)
-    }
-
-    /// The same where ranks share out the rows; `symbol` is called for local columns k2 alone.
-    pub(crate) fn shared(layout: Layout, shares: Shares, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator {
-        SpectralOperator::new(layout, Some(shares), symbol)
-    }
-
-    fn new(layout: Layout, shares: Option<Shares>, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator {
+    /// 0 … period/2 along each axis; where ranks share out the rows, for local columns k2 alone.
+    pub(crate) fn new(
+        layout: Layout,
+        shares: Option<Shares>,
+        symbol: impl Fn(usize, usize) -> f64,
+    ) -> SpectralOperator {
         let [columns, rows] = [0, 1].map(|axis| Line::new(layout.line(axis), layout.folded[axis]));
         let scale = 1.0 / (rows.norm() * columns.norm());
         let own = shares.as_ref().map_or(0..rows.independent(), |shares| shares.columns(&layout));
@@ -77,7 +72,7 @@ impl SpectralOperator {
 
     /// Number of complex values in all tiles, or the most that a rank has of them at a time.
     fn tiles(&self) -> usize {
-        self.shares.as_ref().map_or(self.across() * self.down() * AREA, Shares::most)
+        self.layout.tiles(self.shares.as_ref()) as usize
     }
 
     /// Number of tiles below each other.
@@ -215,8 +210,8 @@ mod tests {
         /// Convolution with the even kernel whose coefficient at distance (i, j) is `coefficient(i, j)`; called for
         /// distances below the number of cells (twice that along a folded axis), taken as zero beyond.
         pub(crate) fn from_coefficients(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> SpectralOperator {
-            let spectrum = EvenSpectrum::of(layout, None, coefficient);
-            SpectralOperator::from_symbol(layout, |k1, k2| spectrum.at(k1, k2))
+            let spectrum = EvenSpectrum::of(layout, None, &|[i, j]| coefficient(i, j));
+            SpectralOperator::new(layout, None, |k1, k2| spectrum.at(k1, k2))
         }
     }
 
@@ -321,7 +316,7 @@ mod tests {
             let layout = Layout { cells: [12, 16], ends: [Ends::Periodic; 2], folded };
             let period = [layout.period(0), layout.period(1)];
             for k in [[0, 0], [2, 3], [0, 5], [6, 0], [5, 4]] {
-                let operator = SpectralOperator::from_symbol(layout, |k1, k2| (1 + k1 + 10 * k2) as f64);
+                let operator = SpectralOperator::new(layout, None, |k1, k2| (1 + k1 + 10 * k2) as f64);
                 let wave = |axis: usize, n: usize| {
                     let shift = if folded[axis] { 0.5 } else { 0.0 };
                     (std::f64::consts::TAU * k[axis] as f64 * (n as f64 + shift) / period[axis] as f64).cos()

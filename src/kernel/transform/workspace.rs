@@ -7,7 +7,6 @@ use num_complex::Complex64;
 use super::column::ColumnWorkspace;
 use super::{SpectralOperator, TILE};
 use crate::kernel::layout::Layout;
-use crate::parallel::lanes;
 
 /// Buffers of a [`SpectralOperator`]: made once, used by every application.
 #[derive(Clone)]
@@ -62,18 +61,14 @@ impl SpectralOperator {
         self.workspace_for(self.lanes())
     }
 
-    /// As many threads as pay off for this size; one for each rank, if ranks share it.
     fn lanes(&self) -> usize {
-        if self.shares.is_some() { 1 } else { lanes(self.layout.cells[0] * self.layout.cells[1]) }
+        self.layout.lanes(self.shares.as_ref())
     }
 
-    /// Buffers for [`SpectralOperator::apply_beside`] an operator of the same cells, which lends its tiles if they suffice.
+    /// Buffers for [`SpectralOperator::apply_beside`] an operator of the same cells, which lends its tiles if they suffice: by
+    /// chance of who has which, the smaller operator may have more of them on a rank.
     pub(crate) fn workspace_beside(&self, lender: &SpectralOperator) -> TransformWorkspace {
-        let lends = match (&self.shares, &lender.shares) {
-            (None, None) => lender.layout.lends_to(&self.layout),
-            // by chance of who has which, the smaller operator may have more of them on a rank
-            _ => self.column.is_none() && lender.column.is_none() && lender.tiles() >= self.tiles(),
-        };
+        let lends = self.column.is_none() && lender.column.is_none() && lender.tiles() >= self.tiles();
         self.buffers(self.lanes(), if lends { 0 } else { self.tiles() })
     }
 

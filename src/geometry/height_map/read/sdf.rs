@@ -63,7 +63,7 @@ fn from_text(text: &str) -> Result<HeightMap> {
     let Some((head, rest)) = text.split_once("\n*") else {
         return Err(MapError::Missing { format: FORMAT, key: "line * after the header" }.into());
     };
-    let header = Header::new(FORMAT, head);
+    let header = Header::of_lines(FORMAT, head);
     let cells = [header.count("NumPoints")?, header.count("NumProfiles")?];
     let spacing = [header.positive("Xscale")?, header.positive("Yscale")?];
     let scale = header.positive("Zscale")?;
@@ -110,23 +110,14 @@ fn from_binary(file: &[u8]) -> Result<HeightMap> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
+    use super::super::tests::binary_sdf as binary;
     use super::*;
     use crate::Error;
 
     const TEXT: &str = "aISO-1.0\r\nManufacID = Nobody\r\nCreateDate = 010120240000\r\nModDate = 010120240000\r\n\
         NumPoints = 3\r\nNumProfiles = 2\r\nXscale = 1e-6\r\nYscale = 2.5E-06\r\nZscale = 1e-9\r\nZresolution = -1\r\n\
         Compression = 0\r\nDataType = 7\r\nCheckType = 0\r\n*\r\n1 2 BAD\r\n4 5.5\r\n-6\r\n*\r\nNote = * and 7\r\n*\r\n";
-
-    /// A binary file of 3 × 2 points.
-    pub(in super::super) fn binary(data_type: u8, data: &[u8]) -> Vec<u8> {
-        let mut file = b"bISO-1.0Nobody    010120240000010120240000".to_vec();
-        file.extend([3, 0, 2, 0]);
-        file.extend([1e-6_f64, 2.5e-6, 1e-9, -1.0].iter().flat_map(|scale| scale.to_le_bytes()));
-        file.extend([0, data_type, 0]);
-        file.extend(data);
-        file
-    }
 
     fn expected(map: &HeightMap) {
         assert_eq!((map.cells, map.spacing), ([3, 2], [1e-6, 2.5e-6]));
