@@ -8,10 +8,10 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 
-pub(crate) use text::TextTable;
-pub use text::{Delimiter, TextFormat};
 #[cfg(feature = "csv")]
-pub(crate) use text::{TextRow, shortened};
+pub(crate) use text::shortened;
+pub use text::{Delimiter, TextFormat};
+pub(crate) use text::{TextRow, TextTable};
 
 pub(crate) fn open(path: &Path) -> Result<File> {
     File::open(path).map_err(|error| unreadable(path.display().to_string(), error))
