@@ -182,18 +182,17 @@ impl MasterCurve {
     /// The points of the curve: reduced time \[s\] or angular frequency \[rad/s\], material function, value; from
     /// the lowest temperature to the highest.
     pub fn points(&self) -> Vec<(f64, MaterialFunction, f64)> {
-        let mut points = Vec::new();
-        for (isotherm, row) in self.reduced() {
-            let columns = isotherm.experiment.layout().columns.iter().zip(&row.values);
-            points.extend(columns.map(|(&(_, function), &value)| (row.x, function, value)));
-        }
-        points
+        let functions = self.isotherms[0].experiment.layout().columns.iter().map(|&(_, function)| function);
+        let values =
+            |row: Row| functions.clone().zip(row.values).map(move |(function, value)| (row.x, function, value));
+        self.reduced().flat_map(values).collect()
     }
 
-    fn reduced(&self) -> impl Iterator<Item = (&Isotherm, Row)> {
+    /// The rows of all isotherms, at reduced times or frequencies.
+    fn reduced(&self) -> impl Iterator<Item = Row> {
         self.isotherms.iter().zip(&self.log_shifts).flat_map(|(isotherm, &shift)| {
             let factor = if isotherm.experiment.layout().zero { (-shift).exp() } else { shift.exp() };
-            isotherm.rows.iter().map(move |row| (isotherm, Row { x: row.x * factor, ..row.clone() }))
+            isotherm.rows.iter().map(move |row| Row { x: row.x * factor, ..row.clone() })
         })
     }
 
@@ -204,7 +203,7 @@ impl MasterCurve {
     /// # Errors
     /// If the curve cannot be fitted ([`Measurements::fit`]).
     pub fn fit(&self) -> Result<CreepSeries> {
-        let mut rows: Vec<Row> = self.reduced().map(|(_, row)| row).collect();
+        let mut rows: Vec<Row> = self.reduced().collect();
         rows.sort_by(|a, b| a.x.total_cmp(&b.x));
         for k in 0..rows.len() {
             if k > 0 && rows[k].x <= rows[k - 1].x {
