@@ -69,8 +69,8 @@ fn greatest_of(values: &[f64], least: f64, f: impl Fn(f64) -> f64) -> f64 {
             *lane = if f(value) > *lane { f(value) } else { *lane };
         }
     }
-    let rest = rest.iter().map(|&value| f(value));
-    lanes.into_iter().chain(rest).fold(least, |greatest, value| value.max(greatest))
+    let greatest = lanes.into_iter().fold(least, |greatest, value| value.max(greatest));
+    rest.iter().fold(greatest, |greatest, &value| f(value).max(greatest))
 }
 
 /// Σ f(a, b) over the values of two fields.

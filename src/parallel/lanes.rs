@@ -1,5 +1,7 @@
 //! Loops over fields: compiled for the vector units of the machine that runs them, and shared between threads.
 
+use std::ops::Range;
+
 use pulp::{Arch, Simd, WithSimd};
 
 /// Work of a thread on its share of a field. `run` must be `#[inline(always)]`: only then is it compiled for vectors
@@ -118,25 +120,33 @@ pub(crate) fn middle(cells: usize) -> usize {
 /// Calls `job` with each band of some fields, and the number of its first cell.
 pub(crate) fn for_each_band<T: Send, const M: usize>(fields: [&mut [T]; M], job: impl Fn(usize, [&mut [T]; M]) + Sync) {
     let cells = fields.first().map_or(0, |field| field.len());
-    halve([0, cells], fields, lanes(cells) > 1, &job);
+    let mut no_results = vec![(); cells.div_ceil(BAND_CELLS)];
+    let job = |band: Range<usize>, fields: [&mut [T]; M], _: &mut [()]| job(band.start, fields);
+    over_bands(0..cells, BAND_CELLS, fields, (&mut no_results, 1), lanes(cells) > 1, &job);
 }
 
-fn halve<T: Send, const M: usize>(
-    [first, cells]: [usize; 2],
+/// Calls `job` with each band of `length` cells, its part of the fields and its part of the results, which has `count` of them.
+pub(crate) fn over_bands<T: Send, R: Send, const M: usize>(
+    cells: Range<usize>,
+    length: usize,
     fields: [&mut [T]; M],
+    (results, count): (&mut [R], usize),
     shared: bool,
-    job: &(dyn Fn(usize, [&mut [T]; M]) + Sync),
+    job: &(dyn Fn(Range<usize>, [&mut [T]; M], &mut [R]) + Sync),
 ) {
-    if cells <= BAND_CELLS {
-        return job(first, fields);
+    if results.len() <= count {
+        return job(cells, fields, results);
     }
-    let middle = middle(cells);
+    let bands = results.len() / count / 2;
+    let middle = bands * length;
     let mut halves = fields.map(|field| field.split_at_mut(middle));
-    let before = halves.each_mut().map(|(before, _)| std::mem::take(before));
-    let after = halves.map(|(_, after)| after);
+    let first = halves.each_mut().map(|(first, _)| std::mem::take(first));
+    let second = halves.map(|(_, second)| second);
+    let (results, others) = results.split_at_mut(bands * count);
+    let (before, after) = (cells.start..cells.start + middle, cells.start + middle..cells.end);
     join(
         shared,
-        || halve([first, middle], before, shared, job),
-        || halve([first + middle, cells - middle], after, shared, job),
+        || over_bands(before, length, first, (results, count), shared, job),
+        || over_bands(after, length, second, (others, count), shared, job),
     );
 }

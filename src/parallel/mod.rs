@@ -65,7 +65,7 @@ mod threads;
 mod tile;
 
 pub(crate) use exchange::exchange_numbers;
-pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, in_pool, join, lanes, middle};
+pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, in_pool, join, lanes, middle, over_bands};
 pub(crate) use rows::{Rows, catch_rank_loss, part, unwind_rank_loss};
 pub(crate) use tile::{TILE, rows_in_a_tile};
 

@@ -3,9 +3,10 @@
 //! Each pass works on pieces of [`RowSegments`], along which the motion of a body is affine, and does everything that needs the
 //! same fields at once. Sums are taken for each body: Σ B f of its modes B from Σ f and Σ j f of every piece.
 
-use crate::parallel::Rows;
-use crate::solver::bands::{Bands, Found};
-use crate::solver::problem::Problem;
+use std::ops::Range;
+
+use crate::solver::bands::{BandSums, Bands};
+use crate::solver::problem::{Problem, Solution};
 use crate::solver::rigid_motion::{Line, ModeCoefficients};
 use crate::solver::row_segments::{PIECE_CELLS, Piece, RowSegments};
 use crate::sum::{most, sum, sum_of_pairs};
@@ -20,23 +21,44 @@ pub(crate) static NUMBERS: [f64; PIECE_CELLS] = {
     numbers
 };
 
-/// The fields of [`Passes::survey`].
-pub(crate) struct Fields<'a> {
-    pub(crate) direction: &'a [f64],
-    pub(crate) image: &'a [f64],
-    pub(crate) pressure: &'a mut [f64],
-    pub(crate) potential: &'a mut [f64],
+/// A piece of cells under one body, in a pass.
+struct Visit<'p, const M: usize> {
+    cells: Range<usize>,
+    body: usize,
+    in_contact: bool,
+    /// The parts of the fields that the pass writes.
+    outputs: [&'p mut [f64]; M],
+    /// A buffer for r.
+    residual: &'p mut [f64],
+    /// The sums of the body.
+    sums: &'p mut BandSums,
 }
 
-/// The passes over the fields of one contact.
-#[derive(Debug, Clone)]
-pub(crate) struct Passes {
-    bands: Bands,
-}
-
-impl Passes {
-    pub(crate) fn new(rows: &Rows, bodies: usize) -> Passes {
-        Passes { bands: Bands::new(rows, bodies) }
+impl Bands {
+    /// Visits the pieces of all bands.
+    #[inline]
+    fn visit<const M: usize>(
+        &mut self,
+        problem: &Problem<'_>,
+        runs: &RowSegments,
+        outputs: [&mut [f64]; M],
+        pass: impl Fn(Visit<'_, M>) + Sync,
+    ) -> &[BandSums] {
+        let cut = problem.cut();
+        self.over(outputs, |band, mut outputs, sums| {
+            let mut residual = [0.0; PIECE_CELLS];
+            runs.walk(&band, cut, |Piece { cells, body }, in_contact| {
+                let here = cells.start - band.start..cells.end - band.start;
+                pass(Visit {
+                    body,
+                    in_contact,
+                    outputs: outputs.each_mut().map(|output| &mut output[here.clone()]),
+                    residual: &mut residual[..cells.len()],
+                    sums: &mut sums[body],
+                    cells,
+                });
+            });
+        })
     }
 
     /// p += a d, v += a K d, with r = motion − (c v + gap) on the cells in contact. Finds Σ B r, Σ r², Σ (c v)² and
@@ -46,59 +68,50 @@ impl Passes {
         problem: &Problem<'_>,
         runs: &RowSegments,
         a: f64,
-        motions: &[ModeCoefficients],
-        fields: Fields<'_>,
-    ) -> &[Found] {
-        let Fields { direction, image, pressure, potential } = fields;
-        let (c, cut) = (problem.compliance, problem.cut());
-        self.bands.over([pressure, potential], |band, [p, v], found| {
-            let mut residual = [0.0; PIECE_CELLS];
-            runs.walk(&band, cut, |Piece { cells, body }, inside| {
-                let here = cells.start - band.start..cells.end - band.start;
-                let (v, h, found) = (&mut v[here.clone()], &problem.gap[cells.clone()], &mut found[body]);
+        [direction, image]: [&[f64]; 2],
+        solution: &mut Solution,
+    ) -> &[BandSums] {
+        let (c, Solution { motions, pressure, potential, .. }) = (problem.compliance, solution);
+        self.visit(
+            problem,
+            runs,
+            [pressure, potential],
+            |Visit { cells, body, in_contact, outputs: [p, v], residual: r, sums }| {
                 if a != 0.0 {
                     add(v, a, &image[cells.clone()]);
                 }
-                let line = problem.line(body, cells.start);
-                let motion = line.of(motions[body]);
-                if !inside {
-                    if !problem.released(body) {
-                        note_depth(found, motion, c, v, h);
-                    }
+                if !in_contact && problem.released(body) {
                     return;
                 }
-                let (p, r) = (&mut p[here], &mut residual[..cells.len()]);
+                let line = problem.line(body, cells.start);
+                fill_residual(line.of(motions[body]), r, c, v, &problem.gap[cells.clone()]);
+                if !in_contact {
+                    sums.penetration = sums.penetration.max(most(r));
+                    return;
+                }
                 if a != 0.0 {
                     add(p, a, &direction[cells]);
                 }
-                fill_residual(motion, r, c, v, h);
-                add_modes(&mut found.sums.residual_modes, &line, r);
-                found.peak = found.peak.max(most(r));
-                found.sums.residual_square += sum_of_pairs(r, r, |r, _| r * r);
-                found.sums.displacement_square += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
-                found.sums.negative_square += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
-            });
-        })
+                add_modes(&mut sums.residual_modes, &line, r);
+                sums.peak = sums.peak.max(most(r));
+                sums.residual_square += sum_of_pairs(r, r, |r, _| r * r);
+                sums.displacement_square += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
+                sums.negative_square += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
+            },
+        )
     }
 
     /// The deepest penetration of the cells outside that may carry pressure, 0 if there is none.
-    pub(crate) fn penetration(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
-        motions: &[ModeCoefficients],
-        potential: &[f64],
-    ) -> f64 {
-        let (c, cut) = (problem.compliance, problem.cut());
-        let found = self.bands.over([], |band, [], found| {
-            runs.walk(&band, cut, |Piece { cells, body }, inside| {
-                if !inside && !problem.released(body) {
-                    let motion = problem.line(body, cells.start).of(motions[body]);
-                    note_depth(&mut found[body], motion, c, &potential[cells.clone()], &problem.gap[cells]);
-                }
-            });
+    pub(crate) fn penetration(&mut self, problem: &Problem<'_>, runs: &RowSegments, solution: &Solution) -> f64 {
+        let Solution { motions, potential, .. } = solution;
+        let found = self.visit(problem, runs, [], |Visit { cells, body, in_contact, residual, sums, .. }| {
+            if !in_contact && !problem.released(body) {
+                let (motion, v) = (problem.line(body, cells.start).of(motions[body]), &potential[cells.clone()]);
+                fill_residual(motion, residual, problem.compliance, v, &problem.gap[cells]);
+                sums.penetration = sums.penetration.max(most(residual));
+            }
         });
-        found.iter().map(Found::greatest).fold(0.0, f64::max)
+        found.iter().map(|sums| sums.penetration).fold(0.0, f64::max)
     }
 
     /// z ← r = motion − (c v + gap) in contact, zero elsewhere; returns Σ r² and the greatest r.
@@ -106,26 +119,20 @@ impl Passes {
         &mut self,
         problem: &Problem<'_>,
         runs: &RowSegments,
-        motions: &[ModeCoefficients],
-        potential: &[f64],
+        solution: &Solution,
         z: &mut [f64],
     ) -> [f64; 2] {
-        let (c, cut) = (problem.compliance, problem.cut());
-        let found = self.bands.over([z], |band, [z], found| {
-            runs.walk(&band, cut, |Piece { cells, body }, inside| {
-                let z = &mut z[cells.start - band.start..cells.end - band.start];
-                if !inside {
-                    return z.fill(0.0);
-                }
-                let motion = problem.line(body, cells.start).of(motions[body]);
-                fill_residual(motion, z, c, &potential[cells.clone()], &problem.gap[cells]);
-                found[body].sums.residual_square += sum_of_pairs(z, z, |z, _| z * z);
-                found[body].peak = found[body].peak.max(most(z));
-            });
+        let Solution { motions, potential, .. } = solution;
+        let found = self.visit(problem, runs, [z], |Visit { cells, body, in_contact, outputs: [z], sums, .. }| {
+            if !in_contact {
+                return z.fill(0.0);
+            }
+            let (motion, v) = (problem.line(body, cells.start).of(motions[body]), &potential[cells.clone()]);
+            fill_residual(motion, z, problem.compliance, v, &problem.gap[cells]);
+            sums.residual_square += sum_of_pairs(z, z, |z, _| z * z);
+            sums.peak = sums.peak.max(most(z));
         });
-        let of =
-            |[square, deepest]: [f64; 2], found: &Found| [square + found.sums.residual_square, deepest.max(found.peak)];
-        found.iter().fold([0.0; 2], of)
+        found.iter().fold([0.0; 2], |[square, peak], sums| [square + sums.residual_square, peak.max(sums.peak)])
     }
 
     /// Finds Σ B z, Σ B Kd, Σ B d and Σ z·Kd in contact.
@@ -134,19 +141,18 @@ impl Passes {
         problem: &Problem<'_>,
         runs: &RowSegments,
         z: &[f64],
-        image: &[f64],
-        direction: &[f64],
-    ) -> &[Found] {
-        let cut = problem.cut();
-        self.bands.over([], |band, [], found| {
-            for Piece { cells, body } in runs.inside(&band, cut) {
-                let (sums, line) = (&mut found[body].sums, problem.line(body, cells.start));
-                let (z, kd, d) = (&z[cells.clone()], &image[cells.clone()], &direction[cells]);
-                add_modes(&mut sums.residual_modes, &line, z);
-                add_modes(&mut sums.image_modes, &line, kd);
-                add_modes(&mut sums.direction_modes, &line, d);
-                sums.residual_image += sum_of_pairs(z, kd, |z, kd| z * kd);
+        [direction, image]: [&[f64]; 2],
+    ) -> &[BandSums] {
+        self.visit(problem, runs, [], |Visit { cells, body, in_contact, sums, .. }| {
+            if !in_contact {
+                return;
             }
+            let line = problem.line(body, cells.start);
+            let (z, kd, d) = (&z[cells.clone()], &image[cells.clone()], &direction[cells]);
+            add_modes(&mut sums.residual_modes, &line, z);
+            add_modes(&mut sums.image_modes, &line, kd);
+            add_modes(&mut sums.direction_modes, &line, d);
+            sums.residual_image += sum_of_pairs(z, kd, |z, kd| z * kd);
         })
     }
 
@@ -160,21 +166,16 @@ impl Passes {
         z: &[f64],
         direction: &mut [f64],
     ) {
-        let cut = problem.cut();
-        self.bands.over([direction], |band, [d], _| {
-            runs.walk(&band, cut, |Piece { cells, body }, inside| {
-                let d = &mut d[cells.start - band.start..cells.end - band.start];
-                if !inside {
-                    return d.fill(0.0);
-                }
-                let motion = problem.line(body, cells.start).of(motions[body]);
-                let z = &z[cells];
-                if beta == 0.0 {
-                    map(motion, d, [z, z], |_, z, _, motion| scale * (z + motion));
-                } else {
-                    map(motion, d, [z, z], |d, z, _, motion| scale * (z + beta * d + motion));
-                }
-            });
+        self.visit(problem, runs, [direction], |Visit { cells, body, in_contact, outputs: [d], .. }| {
+            if !in_contact {
+                return d.fill(0.0);
+            }
+            let (motion, z) = (problem.line(body, cells.start).of(motions[body]), &z[cells]);
+            if beta == 0.0 {
+                map(motion, d, [z, z], |_, z, _, motion| scale * (z + motion));
+            } else {
+                map(motion, d, [z, z], |d, z, _, motion| scale * (z + beta * d + motion));
+            }
         });
     }
 
@@ -189,20 +190,16 @@ impl Passes {
         [pressure, shape]: [&[f64]; 2],
         direction: &mut [f64],
     ) {
-        let cut = problem.cut();
-        self.bands.over([direction], |band, [d], _| {
-            for Piece { cells, body } in runs.inside(&band, cut) {
-                let d = &mut d[cells.start - band.start..cells.end - band.start];
-                let Some(motion) = motions[body] else { continue };
-                let motion = problem.line(body, cells.start).of(motion);
-                map(motion, d, [&pressure[cells.clone()], &shape[cells]], |d, p, shape, motion| {
-                    if whole {
-                        return (p + d + shape * motion).max(0.0) - p;
-                    }
-                    let p = p.max(0.0);
-                    d + ((p + shape * motion).max(0.0) - p)
-                });
-            }
+        self.visit(problem, runs, [direction], |Visit { cells, body, in_contact, outputs: [d], .. }| {
+            let Some(motion) = motions[body].filter(|_| in_contact) else { return };
+            let motion = problem.line(body, cells.start).of(motion);
+            map(motion, d, [&pressure[cells.clone()], &shape[cells]], |d, p, shape, motion| {
+                if whole {
+                    return (p + d + shape * motion).max(0.0) - p;
+                }
+                let p = p.max(0.0);
+                d + ((p + shape * motion).max(0.0) - p)
+            });
         });
     }
 
@@ -211,22 +208,22 @@ impl Passes {
         &mut self,
         problem: &Problem<'_>,
         runs: &RowSegments,
-        motions: &[ModeCoefficients],
-        [potential, direction, image]: [&[f64]; 3],
-    ) -> &[Found] {
-        let (c, cut) = (problem.compliance, problem.cut());
-        self.bands.over([], |band, [], found| {
-            let mut residual = [0.0; PIECE_CELLS];
-            for Piece { cells, body } in runs.inside(&band, cut) {
-                let (sums, line) = (&mut found[body].sums, problem.line(body, cells.start));
-                let (d, kd, r) = (&direction[cells.clone()], &image[cells.clone()], &mut residual[..cells.len()]);
-                fill_residual(line.of(motions[body]), r, c, &potential[cells.clone()], &problem.gap[cells]);
-                if problem.bodies[body].tilts() {
-                    add_modes(&mut sums.image_modes, &line, kd);
-                }
-                sums.residual_direction += sum_of_pairs(r, d, |r, d| r * d);
-                sums.direction_image += sum_of_pairs(d, kd, |d, kd| d * kd);
+        solution: &Solution,
+        [direction, image]: [&[f64]; 2],
+    ) -> &[BandSums] {
+        let Solution { motions, potential, .. } = solution;
+        self.visit(problem, runs, [], |Visit { cells, body, in_contact, residual: r, sums, .. }| {
+            if !in_contact {
+                return;
             }
+            let (d, kd, v) = (&direction[cells.clone()], &image[cells.clone()], &potential[cells.clone()]);
+            let line = problem.line(body, cells.start);
+            fill_residual(line.of(motions[body]), r, problem.compliance, v, &problem.gap[cells]);
+            if problem.bodies[body].tilts() {
+                add_modes(&mut sums.image_modes, &line, kd);
+            }
+            sums.residual_direction += sum_of_pairs(r, d, |r, d| r * d);
+            sums.direction_image += sum_of_pairs(d, kd, |d, kd| d * kd);
         })
     }
 }
@@ -254,16 +251,6 @@ fn add_modes(sums: &mut [f64; 3], line: &Line, f: &[f64]) {
     let moment = if line.changes() { sum_of_pairs(f, &NUMBERS[..f.len()], |f, j| f * j) } else { 0.0 };
     let part = line.sums([sum(f), moment]);
     sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
-}
-
-/// Takes the depths of a piece into the greatest.
-#[inline]
-fn note_depth(found: &mut Found, [start, slope]: [f64; 2], c: f64, v: &[f64], h: &[f64]) {
-    if slope == 0.0 {
-        found.raise([v, h], |v, h, _| start - (c * v + h));
-    } else {
-        found.raise([v, h], |v, h, j| start + slope * j - (c * v + h));
-    }
 }
 
 /// z ← f(z, x, y, start + slope j) on the cells of a piece.
@@ -326,12 +313,14 @@ mod tests {
         let inside = |body: usize, f: &dyn Fn(usize) -> f64| {
             (0..n).filter(|&k| set.member[k] && problem.owner(k) == body).map(f).sum::<f64>()
         };
-        let (mut passes, runs) = (Passes::new(kernel.rows(), bodies.len()), &set.runs);
+        let (mut bands, runs) = (Bands::new(kernel.rows(), bodies.len()), &set.runs);
 
-        let (mut p, mut v) = (field(1.3), field(1.7));
-        let (p0, v0) = (p.clone(), v.clone());
-        let fields = Fields { direction: &d, image: &kd, pressure: &mut p, potential: &mut v };
-        let found = passes.survey(&problem, runs, a, &motions, fields).to_vec();
+        let (p0, v0) = (field(1.3), field(1.7));
+        let mut solution = Solution::zero(n, bodies.len());
+        (solution.pressure, solution.potential) = (p0.clone(), v0.clone());
+        solution.motions.clone_from(&motions);
+        let found = bands.survey(&problem, runs, a, [&d, &kd], &mut solution).to_vec();
+        let Solution { pressure: p, potential: v, .. } = &solution;
         let mut deepest = 0.0_f64;
         for k in 0..n {
             assert_eq!(v[k], v0[k] + a * kd[k]);
@@ -342,38 +331,38 @@ mod tests {
         }
         let r: Vec<f64> = (0..n).map(|k| at(k) - (c * v[k] + gap[k])).collect();
         for (body, found) in found.iter().enumerate() {
-            (0..3).for_each(|m| near(found.sums.residual_modes[m], inside(body, &|k| modes(k)[m] * r[k])));
-            near(found.sums.residual_square, inside(body, &|k| r[k] * r[k]));
-            near(found.sums.displacement_square, inside(body, &|k| c * v[k] * c * v[k]));
-            near(found.sums.negative_square, inside(body, &|k| p[k].min(0.0).powi(2)));
+            (0..3).for_each(|m| near(found.residual_modes[m], inside(body, &|k| modes(k)[m] * r[k])));
+            near(found.residual_square, inside(body, &|k| r[k] * r[k]));
+            near(found.displacement_square, inside(body, &|k| c * v[k] * c * v[k]));
+            near(found.negative_square, inside(body, &|k| p[k].min(0.0).powi(2)));
             let own = (0..n).filter(|&k| set.member[k] && problem.owner(k) == body);
             assert_eq!(found.peak, own.map(|k| r[k]).fold(f64::NEG_INFINITY, f64::max));
         }
-        near(found.iter().map(Found::greatest).fold(0.0, f64::max), deepest);
-        near(passes.penetration(&problem, runs, &motions, &v), deepest);
+        near(found.iter().map(|sums| sums.penetration).fold(0.0, f64::max), deepest);
+        near(bands.penetration(&problem, runs, &solution), deepest);
 
         let mut z = field(2.0);
-        let [square, highest] = passes.residual(&problem, runs, &motions, &v, &mut z);
+        let [square, highest] = bands.residual(&problem, runs, &solution, &mut z);
         near(square, z.iter().map(|z| z * z).sum());
         assert_eq!(highest, z.iter().copied().fold(0.0, f64::max));
         (0..n).for_each(|k| near(z[k], if set.member[k] { r[k] } else { 0.0 }));
         let z = field(2.2);
-        for (body, found) in passes.overlaps(&problem, runs, &z, &kd, &d).iter().enumerate() {
+        for (body, found) in bands.overlaps(&problem, runs, &z, [&d, &kd]).iter().enumerate() {
             for m in 0..3 {
-                near(found.sums.residual_modes[m], inside(body, &|k| modes(k)[m] * z[k]));
-                near(found.sums.image_modes[m], inside(body, &|k| modes(k)[m] * kd[k]));
-                near(found.sums.direction_modes[m], inside(body, &|k| modes(k)[m] * d[k]));
+                near(found.residual_modes[m], inside(body, &|k| modes(k)[m] * z[k]));
+                near(found.image_modes[m], inside(body, &|k| modes(k)[m] * kd[k]));
+                near(found.direction_modes[m], inside(body, &|k| modes(k)[m] * d[k]));
             }
-            near(found.sums.residual_image, inside(body, &|k| z[k] * kd[k]));
+            near(found.residual_image, inside(body, &|k| z[k] * kd[k]));
         }
-        for (body, found) in passes.slope_and_curvature(&problem, runs, &motions, [&v, &d, &kd]).iter().enumerate() {
+        for (body, found) in bands.slope_and_curvature(&problem, runs, &solution, [&d, &kd]).iter().enumerate() {
             let tilts = if bodies[body].tilts() { 1.0 } else { 0.0 };
-            (0..3).for_each(|m| near(found.sums.image_modes[m], tilts * inside(body, &|k| modes(k)[m] * kd[k])));
-            near(found.sums.residual_direction, inside(body, &|k| r[k] * d[k]));
-            near(found.sums.direction_image, inside(body, &|k| d[k] * kd[k]));
+            (0..3).for_each(|m| near(found.image_modes[m], tilts * inside(body, &|k| modes(k)[m] * kd[k])));
+            near(found.residual_direction, inside(body, &|k| r[k] * d[k]));
+            near(found.direction_image, inside(body, &|k| d[k] * kd[k]));
         }
         let mut turned = d.clone();
-        passes.redirect(&problem, runs, [2.0, 0.5], &motions, &z, &mut turned);
+        bands.redirect(&problem, runs, [2.0, 0.5], &motions, &z, &mut turned);
         (0..n).for_each(|k| {
             near(turned[k], if set.member[k] { 2.0 * (z[k] + 0.5 * d[k] + at(k)) } else { 0.0 });
         });
@@ -381,7 +370,7 @@ mod tests {
         let corrections: Vec<_> = (0..bodies.len()).map(corrected).collect();
         for whole in [false, true] {
             let before = turned.clone();
-            passes.correct(&problem, runs, &corrections, whole, [&p, &gap], &mut turned);
+            bands.correct(&problem, runs, &corrections, whole, [p, &gap], &mut turned);
             for k in 0..n {
                 let (base, kept) =
                     if whole { (p[k] + before[k], -p[k]) } else { (p[k].max(0.0), before[k] - p[k].max(0.0)) };

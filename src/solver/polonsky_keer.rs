@@ -2,10 +2,10 @@
 
 use crate::kernel::Workspace;
 use crate::parallel::Rows;
+use crate::solver::bands::Bands;
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{Outcome, ResidualSums, Stop};
-use crate::solver::passes::{Fields, Passes};
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::resting_position::RestingPosition;
 use crate::solver::rigid_motion::{Freedom, ModeCoefficients, Modes, dot};
@@ -18,7 +18,7 @@ const FORCE_TOLERANCE: f64 = 1e-9;
 #[derive(Debug, Clone)]
 pub(crate) struct PolonskyKeer {
     set: ContactSet,
-    passes: Passes,
+    bands: Bands,
     /// −h in contact.
     residual: Vec<f64>,
     direction: Vec<f64>,
@@ -29,8 +29,8 @@ impl PolonskyKeer {
     pub(crate) fn new(rows: &Rows, bodies: usize) -> PolonskyKeer {
         let cells = rows.len();
         let field = vec![0.0; cells];
-        let (set, passes) = (ContactSet::new(cells, bodies), Passes::new(rows, bodies));
-        PolonskyKeer { set, passes, residual: field.clone(), direction: field.clone(), image: field }
+        let (set, bands) = (ContactSet::new(cells, bodies), Bands::new(rows, bodies));
+        PolonskyKeer { set, bands, residual: field.clone(), direction: field.clone(), image: field }
     }
 
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent.
@@ -92,18 +92,15 @@ impl PolonskyKeer {
     /// Sets the free motion of each body to the best fit in contact, and the residual to −h there; returns the sums over it
     /// and the deepest penetration outside.
     fn fit_motions(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> (ResidualSums, f64) {
-        let Solution { motions, pressure, potential, .. } = solution;
-        let set = &self.set;
-        let fields = Fields { direction: &self.direction, image: &self.image, pressure, potential };
+        let PolonskyKeer { set, bands, residual, direction, image } = self;
         let mut state = ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() };
-        for (body, found) in self.passes.survey(problem, &set.runs, 0.0, motions, fields).iter().enumerate() {
-            motions[body] = motions[body].plus(-1.0, set.fit(problem, body, found.sums.residual_modes));
-            state.displacement += found.sums.displacement_square;
-            state.negative += found.sums.negative_square;
+        for (body, found) in bands.survey(problem, &set.runs, 0.0, [direction, image], solution).iter().enumerate() {
+            solution.motions[body] = solution.motions[body].plus(-1.0, set.fit(problem, body, found.residual_modes));
+            state.displacement += found.displacement_square;
+            state.negative += found.negative_square;
         }
-        [state.square, state.deepest] =
-            self.passes.residual(problem, &set.runs, motions, potential, &mut self.residual);
-        (state, self.passes.penetration(problem, &set.runs, motions, potential))
+        [state.square, state.deepest] = bands.residual(problem, &set.runs, solution, residual);
+        (state, bands.penetration(problem, &set.runs, solution))
     }
 
     /// Whether the pressures carry every force: they may not where no balance was found.
@@ -119,17 +116,15 @@ impl PolonskyKeer {
     fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) -> f64 {
         problem.kernel.apply(&self.direction, &mut self.image, work);
         solution.counts.convolutions += 1;
-        let PolonskyKeer { set, passes, residual, direction, image, .. } = self;
+        let PolonskyKeer { set, bands, residual, direction, image, .. } = self;
         let (mut numerator, mut denominator) = (0.0, 0.0);
-        for found in
-            passes.slope_and_curvature(problem, &set.runs, &solution.motions, [&solution.potential, direction, image])
-        {
-            numerator -= found.sums.residual_direction;
-            denominator += found.sums.direction_image;
+        for found in bands.slope_and_curvature(problem, &set.runs, solution, [direction, image]) {
+            numerator -= found.residual_direction;
+            denominator += found.direction_image;
         }
-        for (body, found) in passes.overlaps(problem, &set.runs, residual, image, direction).iter().enumerate() {
-            let fit = set.fit(problem, body, found.sums.image_modes);
-            denominator -= dot(fit.0, found.sums.direction_modes);
+        for (body, found) in bands.overlaps(problem, &set.runs, residual, [direction, image]).iter().enumerate() {
+            let fit = set.fit(problem, body, found.image_modes);
+            denominator -= dot(fit.0, found.direction_modes);
         }
         if denominator > 0.0 {
             return numerator / (problem.compliance * denominator);

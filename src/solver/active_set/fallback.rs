@@ -16,6 +16,7 @@ use super::{ActiveSet, JOIN_OVER_RMS};
 use crate::kernel::Workspace;
 use crate::solver::cold_start::{balance, cold_start};
 use crate::solver::outcome::{Outcome, ResidualSums, Stop};
+use crate::solver::passes::add;
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::rigid_motion::ModeCoefficients;
 
@@ -214,11 +215,6 @@ impl ActiveSet {
         }
         true
     }
-}
-
-/// x += a y.
-fn add(x: &mut [f64], a: f64, y: &[f64]) {
-    x.iter_mut().zip(y).for_each(|(x, &y)| *x += a * y);
 }
 
 #[cfg(test)]

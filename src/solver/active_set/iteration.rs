@@ -3,7 +3,7 @@
 use super::{ActiveSet, CORRECTION_LENGTH, JOIN_OVER_RMS, Search};
 use crate::kernel::Workspace;
 use crate::solver::outcome::{Outcome, ResidualSums, Stop};
-use crate::solver::passes::{Fields, add};
+use crate::solver::passes::add;
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::rigid_motion::{ModeCoefficients, dot};
 
@@ -103,36 +103,34 @@ impl ActiveSet {
 
     /// p += a d, v += a K d; sets r and the free motions, and returns the sums over A and the deepest penetration outside.
     pub(super) fn advance(&mut self, problem: &Problem<'_>, solution: &mut Solution, a: f64) -> (ResidualSums, f64) {
-        let Solution { motions, pressure, potential, .. } = solution;
         if a != 0.0 {
             // r had no motion on A before the step: what K d adds is known, but for rounding
-            for (motion, &image) in motions.iter_mut().zip(&self.search.image_motions) {
+            for (motion, &image) in solution.motions.iter_mut().zip(&self.search.image_motions) {
                 *motion = motion.plus(a * problem.compliance, image);
             }
         }
-        let Search { direction, image, .. } = &self.search;
-        let fields = Fields { direction, image, pressure, potential };
+        let search = [&*self.search.direction, &*self.search.image];
         let mut state =
             ResidualSums { greatest_gap: self.set.greatest_gap, cells: self.set.count(), ..ResidualSums::default() };
         let (mut square, mut penetration, mut turned) = (0.0, 0.0_f64, 0.0_f64);
-        for (body, found) in self.passes.survey(problem, &self.set.runs, a, motions, fields).iter().enumerate() {
+        for (body, found) in self.bands.survey(problem, &self.set.runs, a, search, solution).iter().enumerate() {
             // The fit determines a change of the last motion: what the cells at hand do not determine remains as it was.
-            let fit = self.set.fit(problem, body, found.sums.residual_modes);
-            motions[body] = motions[body].plus(-1.0, fit);
+            let fit = self.set.fit(problem, body, found.residual_modes);
+            solution.motions[body] = solution.motions[body].plus(-1.0, fit);
             let tilts = problem.bodies[body].tilts();
             // of a body that tilts, no cell moves more than this
             let moved = if tilts { fit.0.iter().map(|y| y.abs()).sum() } else { -fit.0[0] };
-            let (all, fitted) = (found.sums.residual_square, dot(fit.0, found.sums.residual_modes));
+            let (all, fitted) = (found.residual_square, dot(fit.0, found.residual_modes));
             square += all;
             state.square += all - fitted;
-            state.displacement += found.sums.displacement_square;
-            state.negative += found.sums.negative_square;
+            state.displacement += found.displacement_square;
+            state.negative += found.negative_square;
             state.deepest = state.deepest.max(found.peak + moved);
             if tilts {
                 turned = turned.max(moved);
-                penetration = penetration.max(found.greatest());
+                penetration = penetration.max(found.penetration);
             } else {
-                penetration = penetration.max(found.greatest() + moved);
+                penetration = penetration.max(found.penetration + moved);
             }
         }
         // where a motion was far off, the difference is mostly rounding
@@ -140,8 +138,7 @@ impl ActiveSet {
             [state.square, state.deepest] = self.find_residual(problem, solution);
         }
         if turned > MAX_TURN_OVER_RMS * state.rms() {
-            let Solution { motions, potential, .. } = &*solution;
-            penetration = self.passes.penetration(problem, &self.set.runs, motions, potential);
+            penetration = self.bands.penetration(problem, &self.set.runs, solution);
             [_, state.deepest] = self.find_residual(problem, solution);
         }
         (state, penetration)
@@ -149,8 +146,7 @@ impl ActiveSet {
 
     /// z ← r on A, zero elsewhere; returns Σ r² and the greatest r.
     fn find_residual(&mut self, problem: &Problem<'_>, solution: &Solution) -> [f64; 2] {
-        let Solution { motions, potential, .. } = solution;
-        self.passes.residual(problem, &self.set.runs, motions, potential, &mut self.preconditioned)
+        self.bands.residual(problem, &self.set.runs, solution, &mut self.preconditioned)
     }
 
     /// d ← z + β d without free motion on A; with pressures to bring to zero or into balance, d is the whole change of p.
@@ -177,21 +173,21 @@ impl ActiveSet {
         let (runs, z) = (&self.set.runs, &self.preconditioned);
         let Search { direction, image, energy, shifts, .. } = &mut self.search;
         let mut overlap = 0.0;
-        let found = self.passes.overlaps(problem, runs, z, image, direction);
+        let found = self.bands.overlaps(problem, runs, z, [direction, image]);
         for (body, found) in found.iter().enumerate() {
-            let fit = self.set.fit(problem, body, found.sums.residual_modes);
+            let fit = self.set.fit(problem, body, found.residual_modes);
             shifts[body] = ModeCoefficients::default().plus(-1.0, fit);
-            overlap += found.sums.residual_image - dot(fit.0, found.sums.image_modes);
+            overlap += found.residual_image - dot(fit.0, found.image_modes);
         }
         let beta = conjugate(*energy, overlap, pending);
         // without a last direction, d holds values of an earlier solve
         if beta != 0.0 {
             for (body, found) in found.iter().enumerate() {
-                shifts[body] = shifts[body].plus(-beta, self.set.fit(problem, body, found.sums.direction_modes));
+                shifts[body] = shifts[body].plus(-beta, self.set.fit(problem, body, found.direction_modes));
             }
         }
         let scale = if pending { length } else { 1.0 };
-        self.passes.redirect(problem, runs, [scale, beta], shifts, z, direction);
+        self.bands.redirect(problem, runs, [scale, beta], shifts, z, direction);
         if pending {
             self.correct_direction(problem, solution);
         }
@@ -230,7 +226,7 @@ impl ActiveSet {
             // what leaves is dropped: the balance of the rest is known
             runs.cells().for_each(|k| direction[k] -= self.preconditioned[k]);
         }
-        self.passes.correct(problem, runs, &self.changes.corrections, whole, [p, &self.shape], direction);
+        self.bands.correct(problem, runs, &self.changes.corrections, whole, [p, &self.shape], direction);
     }
 
     /// The length a of the step along d, 1 for a correction. Brings cells that leave to p = 0.
@@ -261,14 +257,13 @@ impl ActiveSet {
     /// Σ r d and Σ d·Kd on A; notes how K d moves the bodies that tilt.
     pub(super) fn slope_and_curvature(&mut self, problem: &Problem<'_>, solution: &Solution) -> [f64; 2] {
         let Search { direction, image, image_motions, .. } = &mut self.search;
-        let (motions, fields) = (&solution.motions, [&*solution.potential, &*direction, &*image]);
-        let found = self.passes.slope_and_curvature(problem, &self.set.runs, motions, fields);
+        let found = self.bands.slope_and_curvature(problem, &self.set.runs, solution, [direction, image]);
         let mut sums = [0.0; 2];
         for (body, found) in found.iter().enumerate() {
             let tilts = problem.bodies[body].tilts();
             image_motions[body] =
-                if tilts { self.set.fit(problem, body, found.sums.image_modes) } else { Default::default() };
-            sums = [sums[0] + found.sums.residual_direction, sums[1] + found.sums.direction_image];
+                if tilts { self.set.fit(problem, body, found.image_modes) } else { Default::default() };
+            sums = [sums[0] + found.residual_direction, sums[1] + found.direction_image];
         }
         sums
     }

@@ -29,9 +29,9 @@ mod iteration;
 mod membership;
 
 use crate::kernel::{LocalKernel, Workspace};
+use crate::solver::bands::Bands;
 use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{Outcome, PENETRATION_SLACK, Stop};
-use crate::solver::passes::Passes;
 use crate::solver::preconditioner::Preconditioner;
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::rigid_motion::ModeCoefficients;
@@ -57,7 +57,7 @@ pub(crate) struct ActiveSet {
     preconditioner: Preconditioner,
     /// The active set A.
     set: ContactSet,
-    passes: Passes,
+    bands: Bands,
     /// Rounding of c K p of the guess: where an approach is given, the pressure may fall far below the pressure of the guess.
     guess_rounding: f64,
     changes: PendingChanges,
@@ -131,7 +131,7 @@ impl ActiveSet {
         ActiveSet {
             preconditioner: Preconditioner::new(kernel, work),
             set: ContactSet::new(cells, bodies),
-            passes: Passes::new(kernel.rows(), bodies),
+            bands: Bands::new(kernel.rows(), bodies),
             guess_rounding: 0.0,
             was_cut: false,
             changes: PendingChanges { leaving: false, moves: false, corrections: vec![None; bodies] },
