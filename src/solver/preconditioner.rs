@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::kernel::{LocalKernel, SpectralOperator, TransformWorkspace, Workspace};
 use crate::solver::contact_set::ContactSet;
-use crate::solver::extension::{Attenuation, Extension, Range};
+use crate::solver::extension::{Attenuation, Extension, ExtensionKind};
 
 /// What remains of the continued residual where the distance from the contact exceeds the thickness of a layer on a rigid
 /// base. There M acts as K⁻¹ of a bed of springs, which needs no extension, or of an incompressible layer, −∇⁻², whose
@@ -33,7 +33,7 @@ impl Preconditioner {
         let (rows, [n1, n2]) = (kernel.rows(), kernel.rows().cells());
         let operator = kernel.inverse();
         let work = kernel.inverse_workspace(&operator);
-        let extension = Extension::new(rows, kernel.periodic_axes(), ebb(kernel));
+        let extension = Extension::new(rows, kernel.periodic_axes(), attenuation(kernel));
         let mut preconditioner =
             Preconditioner { operator: Arc::new(operator), work, diagonal: 0.0, extension, version: 0 };
         let mut impulse = vec![0.0; kernel.grid().len()];
@@ -51,13 +51,13 @@ impl Preconditioner {
         self.fit(set);
         self.extension.extend(field, &set.member);
         self.filter(field, lender);
-        self.extension.gather(field, &set.member, Range::Attenuated);
+        self.extension.gather(field, &set.member, ExtensionKind::Attenuated);
     }
 
     /// field ← Eᵀ field: the values of other cells are moved to the cells of A around them, whose sum becomes the sum over all cells.
     pub(crate) fn gather(&mut self, field: &mut [f64], set: &ContactSet) {
         self.fit(set);
-        self.extension.gather(field, &set.member, Range::Unbounded);
+        self.extension.gather(field, &set.member, ExtensionKind::Unbounded);
     }
 
     fn fit(&mut self, set: &ContactSet) {
@@ -78,7 +78,7 @@ impl Preconditioner {
 }
 
 /// Range of the extension of the residual. For wavelengths beyond its thickness a layer on a half-space responds like the half-space.
-fn ebb(kernel: &LocalKernel) -> Option<Attenuation> {
+fn attenuation(kernel: &LocalKernel) -> Option<Attenuation> {
     let layer = kernel.layer()?;
     let remains = BEYOND_LAYER + (1.0 - BEYOND_LAYER) * layer.longest_over_half_space();
     let (cells, spacing) = (kernel.rows().cells(), kernel.grid().spacing());

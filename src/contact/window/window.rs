@@ -7,7 +7,7 @@ use crate::contact::step::request::Trial;
 use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::{ActiveSet, Ghosts, HaloExchange, Outcome, PolonskyKeer, Problem, Stop};
+use crate::solver::{ActiveSet, HaloExchange, HaloRows, Outcome, PolonskyKeer, Problem, Stop};
 
 /// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt for
 /// another region and never saved.
@@ -23,7 +23,7 @@ pub(crate) struct Window {
     /// The indenter whose gap these are.
     indenter: u64,
     /// What fetches rows of other ranks, if they share out the region.
-    beside: Option<(HaloExchange, Ghosts)>,
+    beside: Option<(HaloExchange, HaloRows)>,
 }
 
 #[derive(Debug, Clone)]
@@ -44,7 +44,7 @@ impl Window {
         };
         let rows = region.rows();
         let beside = rows.group().map(|group| {
-            let ghosts = Ghosts::beside(&rows, |rank| rows.of(rank), rows.cells(), false);
+            let ghosts = HaloRows::new(&rows, |rank| rows.of(rank), rows.cells(), false);
             (HaloExchange::new(group, rows.cells()[1]), ghosts)
         });
         Window {

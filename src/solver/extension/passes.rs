@@ -3,23 +3,23 @@
 use std::ops::Range;
 
 use crate::parallel::Task;
-use crate::solver::extension::TRUST;
-use crate::solver::extension::neighbours::Ghosts;
+use crate::solver::extension::halo::HaloRows;
+
+/// κ: how far the mean of a block of cells is trusted, of which only the share s is known, w = κ s/(1 + (κ − 1) s).
+pub(super) const TRUST: f64 = 1.5;
 
 /// Row buffers of one thread: blocks with one neighbour at either end, cells of the finer level with two.
 #[derive(Debug, Clone)]
 pub(super) struct RowBuffers {
     blocks: Vec<f64>,
     fine: Vec<f64>,
-    /// The first row of the share of a thread.
-    pub(super) first: usize,
 }
 
 impl RowBuffers {
     /// For rows of `columns` cells.
     pub(super) fn new(columns: usize) -> RowBuffers {
         let blocks = columns.div_ceil(2);
-        RowBuffers { blocks: vec![0.0; blocks + 2], fine: vec![0.0; 2 * blocks + 4], first: 0 }
+        RowBuffers { blocks: vec![0.0; blocks + 2], fine: vec![0.0; 2 * blocks + 4] }
     }
 
     /// Bytes that they take.
@@ -28,15 +28,30 @@ impl RowBuffers {
     }
 }
 
-/// What the blocks of a level are summed over.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum Values<'a> {
-    /// Ones on the cells of the set.
-    Members(&'a [bool]),
-    /// A field that is zero outside the set.
-    Field(&'a [f64]),
-    /// φ S of blocks.
-    Weighted(&'a [f64], &'a [f64]),
+/// A pass that computes a level row by row from the level below or above it.
+pub(super) trait RowPass: Sync {
+    /// Computes row `i`. Implementations are `#[inline(always)]`, as [`Task`] asks.
+    fn compute(&self, i: usize, buffers: &mut RowBuffers, out: &mut [f64]);
+}
+
+/// The rows of a pass, `share` of them to a thread.
+pub(super) struct SharedRows<'a, P> {
+    pub(super) pass: &'a P,
+    pub(super) first: usize,
+    pub(super) share: usize,
+    pub(super) columns: usize,
+}
+
+impl<P: RowPass> Task for SharedRows<'_, P> {
+    type Lane = RowBuffers;
+    type Item = f64;
+
+    #[inline(always)]
+    fn run(&self, k: usize, buffers: &mut RowBuffers, values: &mut [f64]) {
+        for (i, row) in (self.first + k * self.share..).zip(values.chunks_exact_mut(self.columns)) {
+            self.pass.compute(i, buffers, row);
+        }
+    }
 }
 
 /// The weights w of cells or blocks.
@@ -47,23 +62,38 @@ pub(super) enum Known<'a> {
     Factors(&'a [f64]),
 }
 
-/// The rows that are kept of a level, and those beside them.
+impl Known<'_> {
+    /// out ← (1 − w) f.
+    pub(super) fn write_open(self, values: &[f64], out: &mut [f64]) {
+        let values = out.iter_mut().zip(values);
+        match self {
+            Known::Members(member) => {
+                values.zip(member).for_each(|((out, &f), &inside)| *out = if inside { 0.0 } else { f });
+            }
+            Known::Factors(factors) => {
+                values.zip(factors).for_each(|((out, &f), &factor)| *out = (1.0 - weight(factor)) * f);
+            }
+        }
+    }
+}
+
+/// The rows of a level that a rank holds, and the halo rows.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Blocks<'a> {
     pub(super) values: &'a [f64],
-    /// The first row that is kept.
+    /// The first row that the rank holds.
     pub(super) first: usize,
     pub(super) columns: usize,
-    pub(super) ghosts: &'a Ghosts,
+    pub(super) halo: &'a HaloRows,
 }
 
 impl<'a> Blocks<'a> {
     #[inline(always)]
     fn row(&self, row: usize) -> &'a [f64] {
-        self.kept(row).map_or_else(|| self.ghosts.row(row), |cells| &self.values[cells])
+        self.kept(row).map_or_else(|| self.halo.row(row), |cells| &self.values[cells])
     }
 
-    /// The cells of a row, if it is kept.
+    /// The cells of a row, if the rank holds it.
     #[inline(always)]
     fn kept(&self, row: usize) -> Option<Range<usize>> {
         let start = row.checked_sub(self.first)? * self.columns;
@@ -75,74 +105,140 @@ impl<'a> Blocks<'a> {
 pub(super) const NOTHING_KNOWN: f64 = 0.25 * TRUST;
 
 /// S of blocks from the level below.
-pub(super) struct Push<'a> {
-    pub(super) values: Values<'a>,
-    pub(super) fine: [usize; 2],
-    /// The first row that is kept of the level below.
+pub(super) struct Ascent<'a> {
+    /// The values of the level below; `None` for ones on the members of the set.
+    pub(super) values: Option<Blocks<'a>>,
+    pub(super) known: Known<'a>,
+    /// The first row that the rank holds of the level below.
     pub(super) first: usize,
+    pub(super) fine: [usize; 2],
+    pub(super) periodic: [bool; 2],
+    /// Whether S is the transpose of the interpolation of (1 − w) f, or the sum of w f.
+    pub(super) interpolated: bool,
 }
 
-impl Task for Push<'_> {
-    type Lane = RowBuffers;
-    type Item = f64;
-
+impl RowPass for Ascent<'_> {
     #[inline(always)]
-    fn run(&self, _: usize, rows: &mut RowBuffers, sums: &mut [f64]) {
-        let [n1, n2] = self.fine;
-        for (i, out) in (rows.first..).zip(sums.chunks_exact_mut(n2.div_ceil(2))) {
-            out.fill(0.0);
-            for row in (2 * i..(2 * i + 2).min(n1)).map(|row| row - self.first).map(|row| row * n2..(row + 1) * n2) {
-                match self.values {
-                    Values::Members(member) => {
-                        let ones = &mut rows.fine[..n2];
-                        ones.iter_mut().zip(&member[row]).for_each(|(one, &m)| *one = f64::from(u8::from(m)));
-                        add_pairs(out, ones);
-                    }
-                    Values::Field(field) => add_pairs(out, &field[row]),
-                    Values::Weighted(values, factors) => add_weighted_pairs(out, &values[row.clone()], &factors[row]),
-                }
-            }
+    fn compute(&self, i: usize, buffers: &mut RowBuffers, out: &mut [f64]) {
+        match self.values {
+            Some(values) if self.interpolated => self.restrict(i, values, &mut buffers.fine, out),
+            values => self.sum(i, values, &mut buffers.fine, out),
         }
     }
 }
 
-/// x = w m + (1 − w) up(x), from the x of the level above.
-pub(super) struct Pull<'a> {
+impl Ascent<'_> {
+    /// The sums of w f over the blocks of row `i`.
+    #[inline(always)]
+    fn sum(&self, i: usize, values: Option<Blocks<'_>>, fine: &mut [f64], out: &mut [f64]) {
+        let [n1, n2] = self.fine;
+        out.fill(0.0);
+        for row in (2 * i..(2 * i + 2).min(n1)).map(|row| row - self.first).map(|row| row * n2..(row + 1) * n2) {
+            match (self.known, values) {
+                (Known::Members(member), None) => {
+                    let ones = &mut fine[..n2];
+                    ones.iter_mut().zip(&member[row]).for_each(|(one, &m)| *one = f64::from(u8::from(m)));
+                    add_pairs(out, ones);
+                }
+                // the field is zero outside the set
+                (Known::Members(_), Some(Blocks { values, .. })) => add_pairs(out, &values[row]),
+                (Known::Factors(factors), Some(Blocks { values, .. })) => {
+                    add_weighted_pairs(out, &values[row.clone()], &factors[row])
+                }
+                (Known::Factors(factors), None) => add_pairs(out, &factors[row]),
+            }
+        }
+    }
+
+    /// The transpose of the interpolation: the open part of the level below, brought to row `i` of its blocks.
+    #[inline(always)]
+    fn restrict(&self, i: usize, values: Blocks<'_>, fine: &mut [f64], out: &mut [f64]) {
+        let (n2, m2) = (self.fine[1], self.fine[1].div_ceil(2));
+        let fine = &mut fine[..2 * m2 + 4];
+        let parts = self.parts(i);
+        let (rows, shares) = (parts.map(|(row, _)| values.row(row)), parts.map(|(_, share)| share));
+        let sums = &mut fine[2..n2 + 2];
+        match self.known {
+            Known::Members(member) => {
+                let known =
+                    parts.map(|(row, _)| values.kept(row).map_or(values.halo.outside(), |cells| &member[cells]));
+                add_open(sums, shares, rows, known, |inside, f| if inside { 0.0 } else { f });
+            }
+            Known::Factors(factors) => {
+                let known = parts.map(|(row, _)| values.kept(row).map_or(values.halo.open(), |cells| &factors[cells]));
+                add_open(sums, shares, rows, known, |factor, f| (1.0 - weight(factor)) * f);
+            }
+        }
+        fine[n2 + 2..2 * m2 + 2].fill(0.0);
+        let [before, after] = if self.periodic[1] { [2 * m2 + 1, 2] } else { [2, 2 * m2 + 1] };
+        (fine[1], fine[2 * m2 + 2]) = (fine[before], fine[after]);
+        let pairs = fine.as_chunks::<2>().0;
+        let (a, b, c) = (&pairs[..m2], &pairs[1..][..m2], &pairs[2..][..m2]);
+        for (((out, a), b), c) in out.iter_mut().zip(a).zip(b).zip(c) {
+            *out = 0.75 * (b[0] + b[1]) + 0.25 * (a[1] + c[0]);
+        }
+    }
+
+    /// The rows of the level that row `i` of blocks reaches, and what part of them it gets: none of rows beyond the end.
+    #[inline(always)]
+    fn parts(&self, i: usize) -> [(usize, f64); 4] {
+        let (n1, rows) = (self.fine[0], 2 * self.fine[0].div_ceil(2));
+        let [before, after] = match self.periodic[0] {
+            true => [(2 * i + rows - 1) % rows, (2 * i + 2) % rows],
+            false => [(2 * i).saturating_sub(1), (2 * i + 2).min(rows - 1)],
+        };
+        let part = |row: usize, part: f64| if row < n1 { (row, part) } else { (2 * i, 0.0) };
+        [part(before, 0.25), part(2 * i, 0.75), part(2 * i + 1, 0.75), part(after, 0.25)]
+    }
+}
+
+/// x of a level from the x of the blocks above it.
+pub(super) struct Descent<'a> {
     pub(super) blocks: Blocks<'a>,
     pub(super) known: Known<'a>,
-    pub(super) fine: [usize; 2],
-    /// The first row that is kept of the level below.
+    /// The first row that the rank holds of the level.
     pub(super) first: usize,
+    pub(super) fine: [usize; 2],
     pub(super) periodic: [bool; 2],
+    /// Whether x is w m + (1 − w) up(x), or w (m + x of the block).
+    pub(super) interpolated: bool,
 }
 
-impl Task for Pull<'_> {
-    type Lane = RowBuffers;
-    type Item = f64;
-
+impl RowPass for Descent<'_> {
     #[inline(always)]
-    fn run(&self, _: usize, rows: &mut RowBuffers, values: &mut [f64]) {
-        let n2 = self.fine[1];
-        for (i, values) in (rows.first..).zip(values.chunks_exact_mut(n2)) {
-            let up = self.interpolate(i, rows);
-            let own = (i - self.first) * n2;
-            match self.known {
-                Known::Members(member) => {
-                    for ((x, &inside), &up) in values.iter_mut().zip(&member[own..]).zip(up) {
-                        *x = if inside { *x } else { up };
-                    }
-                }
-                Known::Factors(factors) => {
-                    for ((x, &factor), &up) in values.iter_mut().zip(&factors[own..]).zip(up) {
-                        *x = factor * *x + (1.0 - weight(factor)) * up;
-                    }
-                }
+    fn compute(&self, i: usize, buffers: &mut RowBuffers, values: &mut [f64]) {
+        let known = (i - self.first) * self.fine[1];
+        let above = if self.interpolated { self.interpolate(i, buffers) } else { self.repeat(i, buffers) };
+        let values = values.iter_mut().zip(above);
+        match (self.known, self.interpolated) {
+            (Known::Members(member), true) => {
+                values.zip(&member[known..]).for_each(|((x, &up), &inside)| *x = if inside { *x } else { up });
+            }
+            (Known::Factors(factors), true) => {
+                values
+                    .zip(&factors[known..])
+                    .for_each(|((x, &up), &factor)| *x = factor * *x + (1.0 - weight(factor)) * up);
+            }
+            (Known::Members(member), false) => {
+                values.zip(&member[known..]).for_each(|((f, &sum), &inside)| *f = if inside { *f + sum } else { 0.0 });
+            }
+            (Known::Factors(factors), false) => {
+                values.zip(&factors[known..]).for_each(|((f, &sum), &factor)| *f = factor * (*f + sum));
             }
         }
     }
 }
 
-impl Pull<'_> {
+impl Descent<'_> {
+    /// The block of each cell of row `i`.
+    #[inline(always)]
+    fn repeat<'r>(&self, i: usize, buffers: &'r mut RowBuffers) -> &'r [f64] {
+        let fine = &mut buffers.fine[..2 * self.fine[1].div_ceil(2)];
+        let pairs = fine.as_chunks_mut::<2>().0;
+        pairs.iter_mut().zip(self.blocks.row(i / 2)).for_each(|(pair, &value)| *pair = [value; 2]);
+        fine
+    }
+
     /// Row `i` of the level from the blocks: 9/16 of its own, 3/16 of two neighbours and 1/16 of the third.
     #[inline(always)]
     fn interpolate<'r>(&self, i: usize, rows: &'r mut RowBuffers) -> &'r [f64] {
@@ -167,106 +263,6 @@ impl Pull<'_> {
             *pair = [0.75 * b + 0.25 * a, 0.75 * b + 0.25 * c];
         }
         fine
-    }
-}
-
-/// The transpose of the interpolation: what is open of the level below, brought to its blocks.
-pub(super) struct Restrict<'a> {
-    pub(super) values: Blocks<'a>,
-    pub(super) known: Known<'a>,
-    pub(super) fine: [usize; 2],
-    pub(super) periodic: [bool; 2],
-}
-
-impl Task for Restrict<'_> {
-    type Lane = RowBuffers;
-    type Item = f64;
-
-    #[inline(always)]
-    fn run(&self, _: usize, RowBuffers { first, fine, .. }: &mut RowBuffers, blocks: &mut [f64]) {
-        let (n2, m2) = (self.fine[1], self.fine[1].div_ceil(2));
-        let fine = &mut fine[..2 * m2 + 4];
-        for (i, out) in (*first..).zip(blocks.chunks_exact_mut(m2)) {
-            let parts = self.parts(i);
-            let shares = [parts[0].1, parts[1].1, parts[2].1, parts[3].1];
-            let [a, b, c, d] = [parts[0].0, parts[1].0, parts[2].0, parts[3].0];
-            let (rows, ghosts) = (self.values, self.values.ghosts);
-            let values = [rows.row(a), rows.row(b), rows.row(c), rows.row(d)];
-            let sums = &mut fine[2..n2 + 2];
-            match self.known {
-                Known::Members(member) => {
-                    let known = |row: usize| rows.kept(row).map_or(ghosts.outside(), |cells| &member[cells]);
-                    let known = [known(a), known(b), known(c), known(d)];
-                    add_open(sums, shares, values, known, |inside, f| if inside { 0.0 } else { f });
-                }
-                Known::Factors(factors) => {
-                    let known = |row: usize| rows.kept(row).map_or(ghosts.open(), |cells| &factors[cells]);
-                    let known = [known(a), known(b), known(c), known(d)];
-                    add_open(sums, shares, values, known, |factor, f| (1.0 - weight(factor)) * f);
-                }
-            }
-            fine[n2 + 2..2 * m2 + 2].fill(0.0);
-            let [before, after] = if self.periodic[1] { [2 * m2 + 1, 2] } else { [2, 2 * m2 + 1] };
-            (fine[1], fine[2 * m2 + 2]) = (fine[before], fine[after]);
-            let pairs = fine.as_chunks::<2>().0;
-            let (a, b, c) = (&pairs[..m2], &pairs[1..][..m2], &pairs[2..][..m2]);
-            for (((out, a), b), c) in out.iter_mut().zip(a).zip(b).zip(c) {
-                *out = 0.75 * (b[0] + b[1]) + 0.25 * (a[1] + c[0]);
-            }
-        }
-    }
-}
-
-impl Restrict<'_> {
-    /// The rows of the level that row `i` of blocks reaches, and what part of them it gets: none of rows beyond the end.
-    #[inline(always)]
-    fn parts(&self, i: usize) -> [(usize, f64); 4] {
-        let (n1, rows) = (self.fine[0], 2 * self.fine[0].div_ceil(2));
-        let [before, after] = match self.periodic[0] {
-            true => [(2 * i + rows - 1) % rows, (2 * i + 2) % rows],
-            false => [(2 * i).saturating_sub(1), (2 * i + 2).min(rows - 1)],
-        };
-        let part = |row: usize, part: f64| if row < n1 { (row, part) } else { (2 * i, 0.0) };
-        [part(before, 0.25), part(2 * i, 0.75), part(2 * i + 1, 0.75), part(after, 0.25)]
-    }
-}
-
-/// The transpose of the sums over blocks: what a block holds goes to what is known of its parts.
-pub(super) struct Spread<'a> {
-    pub(super) blocks: Blocks<'a>,
-    pub(super) known: Known<'a>,
-    pub(super) fine: [usize; 2],
-    /// The first row that is kept of the level below.
-    pub(super) first: usize,
-}
-
-impl Task for Spread<'_> {
-    type Lane = RowBuffers;
-    type Item = f64;
-
-    #[inline(always)]
-    fn run(&self, _: usize, RowBuffers { first, fine, .. }: &mut RowBuffers, values: &mut [f64]) {
-        let (n2, m2) = (self.fine[1], self.fine[1].div_ceil(2));
-        let fine = &mut fine[..2 * m2];
-        for (i, values) in (*first..).zip(values.chunks_exact_mut(n2)) {
-            // both rows of a block get the same values
-            if i == *first || i.is_multiple_of(2) {
-                let pairs = fine.as_chunks_mut::<2>().0;
-                pairs.iter_mut().zip(self.blocks.row(i / 2)).for_each(|(pair, &value)| *pair = [value; 2]);
-            }
-            let own = (i - self.first) * n2;
-            match self.known {
-                Known::Members(member) => {
-                    for ((f, &inside), &sum) in values.iter_mut().zip(&member[own..]).zip(&*fine) {
-                        *f = if inside { *f + sum } else { 0.0 };
-                    }
-                }
-                Known::Factors(factors) => {
-                    let known = factors[own..].iter();
-                    values.iter_mut().zip(known).zip(&*fine).for_each(|((f, &factor), &sum)| *f = factor * (*f + sum));
-                }
-            }
-        }
     }
 }
 

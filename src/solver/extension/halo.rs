@@ -10,7 +10,7 @@ use crate::solver::extension::passes::{NOTHING_KNOWN, weight};
 
 /// Halo rows of a level: the row before the local rows and the row after them, where another rank has these.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Ghosts {
+pub(crate) struct HaloRows {
     /// The rank that has each.
     partners: [Option<usize>; 2],
     /// Their numbers.
@@ -21,18 +21,18 @@ pub(crate) struct Ghosts {
     open: Vec<f64>,
 }
 
-impl Ghosts {
+impl HaloRows {
     /// Of a level of so many rows and columns; `of` gives the rows of each rank.
-    pub(crate) fn beside(
+    pub(crate) fn new(
         rows: &Rows,
         of: impl Fn(usize) -> Range<usize>,
         [n1, n2]: [usize; 2],
         periodic: bool,
-    ) -> Ghosts {
-        let Some(group) = rows.group() else { return Ghosts::default() };
+    ) -> HaloRows {
+        let Some(group) = rows.group() else { return HaloRows::default() };
         let own = of(group.rank());
         if own.is_empty() {
-            return Ghosts::default();
+            return HaloRows::default();
         }
         let before = own.start.checked_sub(1).or(periodic.then_some(n1 - 1));
         let after = Some(own.end).filter(|&row| row < n1).or(periodic.then_some(0));
@@ -40,7 +40,7 @@ impl Ghosts {
         let owner = |row: usize| (0..group.size()).find(|&rank| of(rank).contains(&row));
         let field = |row: Option<usize>| vec![0.0; if row.is_some() { n2 } else { 0 }];
         debug_assert_eq!(weight(NOTHING_KNOWN), 0.0);
-        Ghosts {
+        HaloRows {
             partners: beside.map(|row| row.and_then(owner)),
             rows: beside.map(|row| row.unwrap_or(usize::MAX)),
             values: beside.map(field),
@@ -95,10 +95,10 @@ impl HaloExchange {
     }
 
     /// Fills the halo rows, `columns` long; `write` gives the first local row, and the last.
-    pub(crate) fn fetch(&mut self, ghosts: &mut Ghosts, columns: usize, own: usize, write: impl Fn(usize, &mut [f64])) {
+    pub(crate) fn fetch(&mut self, halo: &mut HaloRows, columns: usize, own: usize, write: impl Fn(usize, &mut [f64])) {
         let HaloExchange { group, row, send, received, counts } = self;
         let (row, length) = (&mut row[..columns], columns.div_ceil(2));
-        let asked_by = |rank: usize, which: usize| ghosts.partners[which] == Some(rank);
+        let asked_by = |rank: usize, which: usize| halo.partners[which] == Some(rank);
         let mut sent = 0;
         for (rank, count) in counts.iter_mut().enumerate() {
             *count = 0;
@@ -119,10 +119,10 @@ impl HaloExchange {
         for rank in 0..counts.len() {
             // of one that has both, its first row, which lies behind mine, comes first
             for which in [1, 0] {
-                if ghosts.partners[which] == Some(rank)
+                if halo.partners[which] == Some(rank)
                     && let Some(values) = next.next()
                 {
-                    let pairs = ghosts.values[which].chunks_mut(2).zip(values);
+                    let pairs = halo.values[which].chunks_mut(2).zip(values);
                     pairs.for_each(|(out, z)| out.iter_mut().zip([z.re, z.im]).for_each(|(out, part)| *out = part));
                 }
             }
