@@ -73,7 +73,7 @@ impl BandSums {
     }
 }
 
-/// The bands, and what a pass has found in each of them for each body.
+/// The bands of the local rows, and the sums of a pass over each of them for each body.
 #[derive(Debug, Clone)]
 pub(crate) struct Bands {
     rows: Rows,
@@ -88,31 +88,35 @@ impl Bands {
         Bands { rows: rows.clone(), bodies, found, shared: lanes(rows.own().len() * rows.cells()[1]) > 1 }
     }
 
-    /// Bytes that the findings take.
+    /// Bytes of the sums.
     pub(crate) fn bytes(rows: &Rows, bodies: usize) -> usize {
         rows.bands().saturating_mul(bodies).saturating_mul(size_of::<BandSums>())
     }
 
-    /// Calls `job` with each own band, its part of `outputs`, and what it is to find for each body; returns what is found for
-    /// each body in the bands of all ranks.
-    pub(crate) fn over<const M: usize>(
+    /// Calls `job` with each local band, its part of the outputs and its sums for each body.
+    pub(crate) fn over<T: Send, const M: usize>(
         &mut self,
-        outputs: [&mut [f64]; M],
-        job: impl Fn(Range<usize>, [&mut [f64]; M], &mut [BandSums]) + Sync,
-    ) -> &[BandSums] {
+        outputs: [&mut [T]; M],
+        job: impl Fn(Range<usize>, [&mut [T]; M], &mut [BandSums]) + Sync,
+    ) {
         let Bands { ref rows, bodies, ref mut found, shared } = *self;
         let cells = rows.own().len() * rows.cells()[1];
-        over_bands(0..cells, rows.band_cells(), outputs, (found, bodies), shared, &|band, outputs, found| {
-            found.fill(BandSums::NOTHING);
-            job(band, outputs, found);
+        over_bands(0..cells, rows.band_cells(), outputs, (found, bodies), shared, &|band, outputs, sums| {
+            sums.fill(BandSums::NOTHING);
+            job(band, outputs, sums);
         });
+    }
+
+    /// The sums of each body over the bands of all ranks, after [`Bands::over`].
+    pub(crate) fn joined(&mut self) -> &[BandSums] {
+        let Bands { ref rows, bodies, ref mut found, .. } = *self;
         if rows.are_shared() {
             found[0] = join_ranks(rows, &found[..rows.bands()]);
             return &found[..1];
         }
         let (all, others) = found.split_at_mut(bodies);
         for band in others.chunks(bodies) {
-            all.iter_mut().zip(band).for_each(|(all, found)| all.join(found.numbers()));
+            all.iter_mut().zip(band).for_each(|(all, sums)| all.join(sums.numbers()));
         }
         all
     }
@@ -123,12 +127,7 @@ impl Bands {
 fn join_ranks(rows: &Rows, found: &[BandSums]) -> BandSums {
     let own = found.iter().flat_map(|sums| sums.numbers());
     let mut joined = BandSums::NOTHING;
-    rows.gather(
-        own,
-        |rank| BandSums::NUMBERS * rows.bands_of(rank),
-        |all| {
-            all.as_chunks().0.iter().for_each(|sums| joined.join(*sums));
-        },
-    );
+    let join = |all: &[f64]| all.as_chunks().0.iter().for_each(|sums| joined.join(*sums));
+    rows.gather(own, |rank| BandSums::NUMBERS * rows.bands_of(rank), join);
     joined
 }

@@ -10,6 +10,23 @@ use crate::solver::rigid_motion::ModeCoefficients;
 /// Bisections for the level, far beyond the accuracy that a guess needs.
 const LEVEL_BISECTIONS: usize = 40;
 
+/// Clips a guess to p ≥ 0 where there is something to touch, balances it, and sets the contact to the cells with pressure. Fails
+/// with the body whose load no pressure can balance.
+pub(crate) fn make_feasible(problem: &Problem<'_>, set: &mut ContactSet, solution: &mut Solution) -> Result<(), usize> {
+    for (k, p) in solution.pressure.iter_mut().enumerate() {
+        *p = if problem.possible(k) { p.max(0.0) } else { 0.0 };
+    }
+    set.find_pressed(problem, &solution.pressure);
+    for body in problem.loaded_bodies() {
+        let balanced = set.count_under(body) > 0 && balance(problem, body, set, solution);
+        if !balanced && !cold_start(problem, body, set, solution, |_, _| ()) {
+            return Err(body);
+        }
+    }
+    set.find_pressed(problem, &solution.pressure);
+    Ok(())
+}
+
 /// Fills the pressure under `body` with a guess whose force and moments are in balance; takes all cells that it
 /// may touch into `set`.
 ///
@@ -144,8 +161,7 @@ pub(crate) fn balance(problem: &Problem<'_>, body: usize, set: &ContactSet, solu
         set.cells(problem, body).for_each(|k| pressure[k] *= scale);
         return true;
     }
-    let pieces = |band| set.pieces_in(problem, body, band);
-    let Some(y) = modes.balance(problem.rows(), pieces, |k| pressure[k], |k| pressure[k]) else { return false };
+    let Some(y) = set.balance(problem, body, |k| pressure[k], |k| pressure[k]) else { return false };
     for (k, factor) in set.displacements(problem, body, y) {
         pressure[k] = (pressure[k] + pressure[k] * factor).max(0.0);
     }

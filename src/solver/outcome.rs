@@ -1,5 +1,6 @@
 //! How far a state is from a solution, and how a solve ends.
 
+use crate::solver::contact_set::ContactSet;
 use crate::solver::problem::{Problem, Solution};
 
 /// When to stop.
@@ -55,8 +56,10 @@ pub(crate) struct ResidualSums {
     /// Rounding of gap and c K p where they are small differences of large parts.
     pub(crate) cancellation: f64,
     pub(crate) cells: usize,
-    /// The deepest penetration.
+    /// The greatest −h in contact.
     pub(crate) deepest: f64,
+    /// The deepest penetration outside the contact.
+    pub(crate) penetration: f64,
 }
 
 /// Penetration may exceed the root mean square of the residual by this factor, being a maximum.
@@ -69,11 +72,15 @@ const UNDERFLOW: f64 = 1.5e-154;
 const JOIN_OVER_DEEPEST: f64 = 0.2;
 
 impl ResidualSums {
-    /// Writes the residual of a state with this `penetration` outside the contact to `solution` and its trace; `rounding` is
-    /// the rounding of c K p of the guess.
-    pub(crate) fn note(&mut self, problem: &Problem<'_>, penetration: f64, rounding: f64, solution: &mut Solution) {
+    /// The sums over a set of cells before they are computed.
+    pub(crate) fn of(set: &ContactSet) -> ResidualSums {
+        ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() }
+    }
+
+    /// Writes the residual to `solution` and its trace; `rounding` is the rounding of c K p of the guess.
+    pub(crate) fn note(&mut self, problem: &Problem<'_>, rounding: f64, solution: &mut Solution) {
         self.cancellation = problem.rounding(&solution.pressure) + rounding;
-        solution.residual = self.relative_residual(penetration);
+        solution.residual = self.relative_residual();
         // a smaller residual cannot be detected; where squares of displacements vanish, none can
         solution.rounding = if self.displacement > 0.0 {
             (self.rounding() + UNDERFLOW) / self.yielding()
@@ -87,8 +94,9 @@ impl ResidualSums {
 
     /// How far a state is from solving its [`Problem`], relative to rms (c v) in contact: the larger of rms |h| in contact
     /// and a tenth of the deepest penetration. Rounding of the gap itself does not count.
-    fn relative_residual(&self, penetration: f64) -> f64 {
-        let error = self.rms().max(self.deepest.max(penetration) / PENETRATION_SLACK) - self.rounding() - UNDERFLOW;
+    fn relative_residual(&self) -> f64 {
+        let error =
+            self.rms().max(self.deepest.max(self.penetration) / PENETRATION_SLACK) - self.rounding() - UNDERFLOW;
         if error <= 0.0 { 0.0 } else { error / self.yielding() }
     }
 
@@ -109,7 +117,7 @@ impl ResidualSums {
 
     /// The penetration from which cells join the contact: the shallowest, on the rim of a growing contact, would mostly leave
     /// again. A body that penetrates deeper than the surface yields is far from its position: then only the deepest join.
-    pub(crate) fn joining_depth(&self, penetration: f64) -> f64 {
-        penetration * if penetration > self.yielding() { 0.5 } else { JOIN_OVER_DEEPEST }
+    pub(crate) fn joining_depth(&self) -> f64 {
+        self.penetration * if self.penetration > self.yielding() { 0.5 } else { JOIN_OVER_DEEPEST }
     }
 }

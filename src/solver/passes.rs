@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use crate::kernel::Workspace;
 use crate::solver::bands::{BandSums, Bands};
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::rigid_motion::{Line, ModeCoefficients};
@@ -12,7 +13,7 @@ use crate::solver::row_segments::{PIECE_CELLS, Piece, RowSegments};
 use crate::sum::{most, sum, sum_of_pairs};
 
 /// The numbers of the cells of a piece.
-pub(crate) static NUMBERS: [f64; PIECE_CELLS] = {
+static NUMBERS: [f64; PIECE_CELLS] = {
     let (mut numbers, mut j) = ([0.0; PIECE_CELLS], 0);
     while j < PIECE_CELLS {
         numbers[j] = j as f64;
@@ -21,109 +22,138 @@ pub(crate) static NUMBERS: [f64; PIECE_CELLS] = {
     numbers
 };
 
+/// A search direction d and its K d.
+#[derive(Debug, Clone)]
+pub(crate) struct Search {
+    pub(crate) direction: Vec<f64>,
+    pub(crate) image: Vec<f64>,
+}
+
+impl Search {
+    pub(crate) fn new(cells: usize) -> Search {
+        Search { direction: vec![0.0; cells], image: vec![0.0; cells] }
+    }
+
+    /// Computes K d, counted.
+    pub(crate) fn convolve(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) {
+        problem.kernel.apply(&self.direction, &mut self.image, work);
+        solution.counts.convolutions += 1;
+    }
+}
+
+/// The cells of a problem, cut into bands and pieces, for one pass.
+pub(crate) struct Passes<'a> {
+    pub(crate) problem: &'a Problem<'a>,
+    pub(crate) segments: &'a RowSegments,
+    pub(crate) bands: &'a mut Bands,
+}
+
 /// A piece of cells under one body, in a pass.
-struct Visit<'p, const M: usize> {
+struct Visit<'p, T, const M: usize> {
     cells: Range<usize>,
     body: usize,
     in_contact: bool,
     /// The parts of the fields that the pass writes.
-    outputs: [&'p mut [f64]; M],
+    outputs: [&'p mut [T]; M],
     /// A buffer for r.
     residual: &'p mut [f64],
     /// The sums of the body.
     sums: &'p mut BandSums,
 }
 
-impl Bands {
-    /// Visits the pieces of all bands.
+impl<'a> Passes<'a> {
+    /// Calls `visit` with all pieces.
     #[inline]
-    fn visit<const M: usize>(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
-        outputs: [&mut [f64]; M],
-        pass: impl Fn(Visit<'_, M>) + Sync,
-    ) -> &[BandSums] {
+    fn over<T: Send, const M: usize>(
+        self,
+        outputs: [&mut [T]; M],
+        visit: impl Fn(Visit<'_, T, M>) + Sync,
+    ) -> &'a mut Bands {
+        let Passes { problem, segments, bands } = self;
         let cut = problem.cut();
-        self.over(outputs, |band, mut outputs, sums| {
+        bands.over(outputs, |band, mut outputs, sums| {
             let mut residual = [0.0; PIECE_CELLS];
-            runs.walk(&band, cut, |Piece { cells, body }, in_contact| {
+            segments.walk(&band, cut, |Piece { cells, body }, in_contact| {
                 let here = cells.start - band.start..cells.end - band.start;
-                pass(Visit {
-                    body,
-                    in_contact,
-                    outputs: outputs.each_mut().map(|output| &mut output[here.clone()]),
-                    residual: &mut residual[..cells.len()],
-                    sums: &mut sums[body],
-                    cells,
-                });
+                let outputs = outputs.each_mut().map(|output| &mut output[here.clone()]);
+                let (residual, sums) = (&mut residual[..cells.len()], &mut sums[body]);
+                visit(Visit { cells, body, in_contact, outputs, residual, sums });
             });
-        })
+        });
+        bands
     }
 
     /// p += a d, v += a K d, with r = motion − (c v + gap) on the cells in contact. Finds Σ B r, Σ r², Σ (c v)² and
     /// Σ min(p, 0)² over them, the greatest r of them, and the greatest motion − (c v + gap) of all others that may carry pressure.
-    pub(crate) fn survey(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
-        a: f64,
-        [direction, image]: [&[f64]; 2],
-        solution: &mut Solution,
-    ) -> &[BandSums] {
-        let (c, Solution { motions, pressure, potential, .. }) = (problem.compliance, solution);
-        self.visit(
-            problem,
-            runs,
-            [pressure, potential],
-            |Visit { cells, body, in_contact, outputs: [p, v], residual: r, sums }| {
-                if a != 0.0 {
-                    add(v, a, &image[cells.clone()]);
-                }
-                if !in_contact && problem.released(body) {
-                    return;
-                }
-                let line = problem.line(body, cells.start);
-                fill_residual(line.of(motions[body]), r, c, v, &problem.gap[cells.clone()]);
-                if !in_contact {
-                    sums.penetration = sums.penetration.max(most(r));
-                    return;
-                }
-                if a != 0.0 {
-                    add(p, a, &direction[cells]);
-                }
-                add_modes(&mut sums.residual_modes, &line, r);
-                sums.peak = sums.peak.max(most(r));
-                sums.residual_square += sum_of_pairs(r, r, |r, _| r * r);
-                sums.displacement_square += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
-                sums.negative_square += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
-            },
-        )
+    pub(crate) fn survey(self, a: f64, search: &Search, solution: &mut Solution) -> &'a [BandSums] {
+        let (problem, c) = (self.problem, self.problem.compliance);
+        let Solution { motions, pressure, potential, .. } = solution;
+        let bands = self.over([pressure, potential], |visit| {
+            let Visit { cells, body, in_contact, outputs: [p, v], residual: r, sums } = visit;
+            if a != 0.0 {
+                add(v, a, &search.image[cells.clone()]);
+            }
+            if !in_contact && problem.released(body) {
+                return;
+            }
+            let line = problem.line(body, cells.start);
+            fill_residual(line.of(motions[body]), r, c, v, &problem.gap[cells.clone()]);
+            if !in_contact {
+                sums.penetration = sums.penetration.max(most(r));
+                return;
+            }
+            if a != 0.0 {
+                add(p, a, &search.direction[cells]);
+            }
+            add_modes(&mut sums.residual_modes, &line, r);
+            sums.peak = sums.peak.max(most(r));
+            sums.residual_square += sum_of_pairs(r, r, |r, _| r * r);
+            sums.displacement_square += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
+            sums.negative_square += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
+        });
+        bands.joined()
+    }
+
+    /// Calls `visit` with motion − (c v + gap) on the pieces outside the contact that may carry pressure.
+    #[inline]
+    fn over_depths<T: Send, const M: usize>(
+        self,
+        solution: &Solution,
+        outputs: [&mut [T]; M],
+        visit: impl Fn(&[f64], Visit<'_, T, M>) + Sync,
+    ) -> &'a mut Bands {
+        let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
+        self.over(outputs, |mut piece| {
+            if !piece.in_contact && !problem.released(piece.body) {
+                let (motion, cells) =
+                    (problem.line(piece.body, piece.cells.start).of(motions[piece.body]), piece.cells.clone());
+                let depths = std::mem::take(&mut piece.residual);
+                fill_residual(motion, depths, problem.compliance, &potential[cells.clone()], &problem.gap[cells]);
+                visit(depths, piece);
+            }
+        })
     }
 
     /// The deepest penetration of the cells outside that may carry pressure, 0 if there is none.
-    pub(crate) fn penetration(&mut self, problem: &Problem<'_>, runs: &RowSegments, solution: &Solution) -> f64 {
-        let Solution { motions, potential, .. } = solution;
-        let found = self.visit(problem, runs, [], |Visit { cells, body, in_contact, residual, sums, .. }| {
-            if !in_contact && !problem.released(body) {
-                let (motion, v) = (problem.line(body, cells.start).of(motions[body]), &potential[cells.clone()]);
-                fill_residual(motion, residual, problem.compliance, v, &problem.gap[cells]);
-                sums.penetration = sums.penetration.max(most(residual));
-            }
+    pub(crate) fn penetration(self, solution: &Solution) -> f64 {
+        let bands = self.over_depths::<f64, 0>(solution, [], |depths, Visit { sums, .. }| {
+            sums.penetration = sums.penetration.max(most(depths));
         });
-        found.iter().map(|sums| sums.penetration).fold(0.0, f64::max)
+        bands.joined().iter().map(|sums| sums.penetration).fold(0.0, f64::max)
+    }
+
+    /// Takes cells without pressure that penetrate deeper than `least` into the set.
+    pub(crate) fn add_penetrating(self, least: f64, solution: &Solution, member: &mut [bool]) {
+        self.over_depths(solution, [member], |depths, Visit { cells, outputs: [member], .. }| {
+            let fields = solution.pressure[cells].iter().zip(depths);
+            member.iter_mut().zip(fields).for_each(|(member, (&p, &depth))| *member = (p == 0.0) & (depth > least));
+        });
     }
 
     /// z ← r = motion − (c v + gap) in contact, zero elsewhere; returns Σ r² and the greatest r.
-    pub(crate) fn residual(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
-        solution: &Solution,
-        z: &mut [f64],
-    ) -> [f64; 2] {
-        let Solution { motions, potential, .. } = solution;
-        let found = self.visit(problem, runs, [z], |Visit { cells, body, in_contact, outputs: [z], sums, .. }| {
+    pub(crate) fn residual(self, solution: &Solution, z: &mut [f64]) -> [f64; 2] {
+        let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
+        let bands = self.over([z], |Visit { cells, body, in_contact, outputs: [z], sums, .. }| {
             if !in_contact {
                 return z.fill(0.0);
             }
@@ -132,41 +162,37 @@ impl Bands {
             sums.residual_square += sum_of_pairs(z, z, |z, _| z * z);
             sums.peak = sums.peak.max(most(z));
         });
-        found.iter().fold([0.0; 2], |[square, peak], sums| [square + sums.residual_square, peak.max(sums.peak)])
+        let add = |[square, peak]: [f64; 2], sums: &BandSums| [square + sums.residual_square, peak.max(sums.peak)];
+        bands.joined().iter().fold([0.0; 2], add)
     }
 
     /// Finds Σ B z, Σ B Kd, Σ B d and Σ z·Kd in contact.
-    pub(crate) fn overlaps(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
-        z: &[f64],
-        [direction, image]: [&[f64]; 2],
-    ) -> &[BandSums] {
-        self.visit(problem, runs, [], |Visit { cells, body, in_contact, sums, .. }| {
+    pub(crate) fn overlaps(self, z: &[f64], search: &Search) -> &'a [BandSums] {
+        let problem = self.problem;
+        let bands = self.over::<f64, 0>([], |Visit { cells, body, in_contact, sums, .. }| {
             if !in_contact {
                 return;
             }
             let line = problem.line(body, cells.start);
-            let (z, kd, d) = (&z[cells.clone()], &image[cells.clone()], &direction[cells]);
+            let (z, kd, d) = (&z[cells.clone()], &search.image[cells.clone()], &search.direction[cells]);
             add_modes(&mut sums.residual_modes, &line, z);
             add_modes(&mut sums.image_modes, &line, kd);
             add_modes(&mut sums.direction_modes, &line, d);
             sums.residual_image += sum_of_pairs(z, kd, |z, kd| z * kd);
-        })
+        });
+        bands.joined()
     }
 
     /// d ← scale (z + β d + motion) in contact, 0 elsewhere; with β = 0 for any d, NaN included.
     pub(crate) fn redirect(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
+        self,
         [scale, beta]: [f64; 2],
         motions: &[ModeCoefficients],
         z: &[f64],
         direction: &mut [f64],
     ) {
-        self.visit(problem, runs, [direction], |Visit { cells, body, in_contact, outputs: [d], .. }| {
+        let problem = self.problem;
+        self.over([direction], |Visit { cells, body, in_contact, outputs: [d], .. }| {
             if !in_contact {
                 return d.fill(0.0);
             }
@@ -182,15 +208,14 @@ impl Bands {
     /// d += max(0, p + shape · motion) − p in contact, with p = 0 for negative pressures; if `whole`,
     /// d ← max(0, p + d + shape · motion) − p. Bodies without motion keep their d.
     pub(crate) fn correct(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
+        self,
         motions: &[Option<ModeCoefficients>],
         whole: bool,
         [pressure, shape]: [&[f64]; 2],
         direction: &mut [f64],
     ) {
-        self.visit(problem, runs, [direction], |Visit { cells, body, in_contact, outputs: [d], .. }| {
+        let problem = self.problem;
+        self.over([direction], |Visit { cells, body, in_contact, outputs: [d], .. }| {
             let Some(motion) = motions[body].filter(|_| in_contact) else { return };
             let motion = problem.line(body, cells.start).of(motion);
             map(motion, d, [&pressure[cells.clone()], &shape[cells]], |d, p, shape, motion| {
@@ -204,19 +229,14 @@ impl Bands {
     }
 
     /// Finds Σ B Kd of bodies that tilt, and Σ r·d and Σ d·Kd, in contact.
-    pub(crate) fn slope_and_curvature(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
-        solution: &Solution,
-        [direction, image]: [&[f64]; 2],
-    ) -> &[BandSums] {
-        let Solution { motions, potential, .. } = solution;
-        self.visit(problem, runs, [], |Visit { cells, body, in_contact, residual: r, sums, .. }| {
+    pub(crate) fn slope_and_curvature(self, solution: &Solution, search: &Search) -> &'a [BandSums] {
+        let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
+        let bands = self.over::<f64, 0>([], |Visit { cells, body, in_contact, residual: r, sums, .. }| {
             if !in_contact {
                 return;
             }
-            let (d, kd, v) = (&direction[cells.clone()], &image[cells.clone()], &potential[cells.clone()]);
+            let (d, kd, v) =
+                (&search.direction[cells.clone()], &search.image[cells.clone()], &potential[cells.clone()]);
             let line = problem.line(body, cells.start);
             fill_residual(line.of(motions[body]), r, problem.compliance, v, &problem.gap[cells]);
             if problem.bodies[body].tilts() {
@@ -224,7 +244,8 @@ impl Bands {
             }
             sums.residual_direction += sum_of_pairs(r, d, |r, d| r * d);
             sums.direction_image += sum_of_pairs(d, kd, |d, kd| d * kd);
-        })
+        });
+        bands.joined()
     }
 }
 
@@ -313,13 +334,14 @@ mod tests {
         let inside = |body: usize, f: &dyn Fn(usize) -> f64| {
             (0..n).filter(|&k| set.member[k] && problem.owner(k) == body).map(f).sum::<f64>()
         };
-        let (mut bands, runs) = (Bands::new(kernel.rows(), bodies.len()), &set.runs);
+        let (mut bands, search) =
+            (Bands::new(kernel.rows(), bodies.len()), Search { direction: d.clone(), image: kd.clone() });
 
         let (p0, v0) = (field(1.3), field(1.7));
         let mut solution = Solution::zero(n, bodies.len());
         (solution.pressure, solution.potential) = (p0.clone(), v0.clone());
         solution.motions.clone_from(&motions);
-        let found = bands.survey(&problem, runs, a, [&d, &kd], &mut solution).to_vec();
+        let found = set.passes(&problem, &mut bands).survey(a, &search, &mut solution).to_vec();
         let Solution { pressure: p, potential: v, .. } = &solution;
         let mut deepest = 0.0_f64;
         for k in 0..n {
@@ -339,15 +361,15 @@ mod tests {
             assert_eq!(found.peak, own.map(|k| r[k]).fold(f64::NEG_INFINITY, f64::max));
         }
         near(found.iter().map(|sums| sums.penetration).fold(0.0, f64::max), deepest);
-        near(bands.penetration(&problem, runs, &solution), deepest);
+        near(set.passes(&problem, &mut bands).penetration(&solution), deepest);
 
         let mut z = field(2.0);
-        let [square, highest] = bands.residual(&problem, runs, &solution, &mut z);
+        let [square, highest] = set.passes(&problem, &mut bands).residual(&solution, &mut z);
         near(square, z.iter().map(|z| z * z).sum());
         assert_eq!(highest, z.iter().copied().fold(0.0, f64::max));
         (0..n).for_each(|k| near(z[k], if set.member[k] { r[k] } else { 0.0 }));
         let z = field(2.2);
-        for (body, found) in bands.overlaps(&problem, runs, &z, [&d, &kd]).iter().enumerate() {
+        for (body, found) in set.passes(&problem, &mut bands).overlaps(&z, &search).iter().enumerate() {
             for m in 0..3 {
                 near(found.residual_modes[m], inside(body, &|k| modes(k)[m] * z[k]));
                 near(found.image_modes[m], inside(body, &|k| modes(k)[m] * kd[k]));
@@ -355,14 +377,15 @@ mod tests {
             }
             near(found.residual_image, inside(body, &|k| z[k] * kd[k]));
         }
-        for (body, found) in bands.slope_and_curvature(&problem, runs, &solution, [&d, &kd]).iter().enumerate() {
+        for (body, found) in set.passes(&problem, &mut bands).slope_and_curvature(&solution, &search).iter().enumerate()
+        {
             let tilts = if bodies[body].tilts() { 1.0 } else { 0.0 };
             (0..3).for_each(|m| near(found.image_modes[m], tilts * inside(body, &|k| modes(k)[m] * kd[k])));
             near(found.residual_direction, inside(body, &|k| r[k] * d[k]));
             near(found.direction_image, inside(body, &|k| d[k] * kd[k]));
         }
         let mut turned = d.clone();
-        bands.redirect(&problem, runs, [2.0, 0.5], &motions, &z, &mut turned);
+        set.passes(&problem, &mut bands).redirect([2.0, 0.5], &motions, &z, &mut turned);
         (0..n).for_each(|k| {
             near(turned[k], if set.member[k] { 2.0 * (z[k] + 0.5 * d[k] + at(k)) } else { 0.0 });
         });
@@ -370,7 +393,7 @@ mod tests {
         let corrections: Vec<_> = (0..bodies.len()).map(corrected).collect();
         for whole in [false, true] {
             let before = turned.clone();
-            bands.correct(&problem, runs, &corrections, whole, [p, &gap], &mut turned);
+            set.passes(&problem, &mut bands).correct(&corrections, whole, [p, &gap], &mut turned);
             for k in 0..n {
                 let (base, kept) =
                     if whole { (p[k] + before[k], -p[k]) } else { (p[k].max(0.0), before[k] - p[k].max(0.0)) };

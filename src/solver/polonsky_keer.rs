@@ -3,9 +3,10 @@
 use crate::kernel::Workspace;
 use crate::parallel::Rows;
 use crate::solver::bands::Bands;
-use crate::solver::cold_start::{balance, cold_start, press_everywhere};
+use crate::solver::cold_start::{balance, make_feasible, press_everywhere};
 use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{Outcome, ResidualSums, Stop};
+use crate::solver::passes::Search;
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::resting_position::RestingPosition;
 use crate::solver::rigid_motion::{Freedom, ModeCoefficients, Modes, dot};
@@ -21,16 +22,14 @@ pub(crate) struct PolonskyKeer {
     bands: Bands,
     /// −h in contact.
     residual: Vec<f64>,
-    direction: Vec<f64>,
-    image: Vec<f64>,
+    search: Search,
 }
 
 impl PolonskyKeer {
     pub(crate) fn new(rows: &Rows, bodies: usize) -> PolonskyKeer {
         let cells = rows.len();
-        let field = vec![0.0; cells];
         let (set, bands) = (ContactSet::new(cells, bodies), Bands::new(rows, bodies));
-        PolonskyKeer { set, bands, residual: field.clone(), direction: field.clone(), image: field }
+        PolonskyKeer { set, bands, residual: vec![0.0; cells], search: Search::new(cells) }
     }
 
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent.
@@ -41,16 +40,16 @@ impl PolonskyKeer {
         solution: &mut Solution,
         work: &mut Workspace,
     ) -> Outcome {
-        if let Err(body) = self.make_feasible(problem, solution) {
+        if let Err(body) = make_feasible(problem, &mut self.set, solution) {
             return Outcome::Unbalanced(body);
         }
-        self.direction.fill(0.0);
+        self.search.direction.fill(0.0);
         let (mut square_old, mut conjugate) = (1.0, false);
         loop {
             solution.convolve(problem, work);
-            self.find_contact(problem, solution);
-            let (mut state, penetration) = self.fit_motions(problem, solution);
-            state.note(problem, penetration, 0.0, solution);
+            self.set.find_pressed(problem, &solution.pressure);
+            let mut state = self.fit_motions(problem, solution);
+            state.note(problem, 0.0, solution);
             if let Some(outcome) = stop.outcome(solution, || self.carries_the_forces(problem, solution)) {
                 return outcome;
             }
@@ -59,7 +58,7 @@ impl PolonskyKeer {
             // t = h + δ G/G_old t in contact
             let beta = if conjugate && square_old > 0.0 { state.square / square_old } else { 0.0 };
             square_old = state.square;
-            for (k, t) in self.direction.iter_mut().enumerate() {
+            for (k, t) in self.search.direction.iter_mut().enumerate() {
                 *t = if solution.pressure[k] > 0.0 { -self.residual[k] + beta * *t } else { 0.0 };
             }
             let step = self.step_length(problem, solution, work);
@@ -67,40 +66,19 @@ impl PolonskyKeer {
         }
     }
 
-    /// Clips a guess to p ≥ 0 where there is something to touch, and brings it into balance.
-    fn make_feasible(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> Result<(), usize> {
-        for k in 0..problem.gap.len() {
-            let p = &mut solution.pressure[k];
-            *p = if problem.possible(k) { p.max(0.0) } else { 0.0 };
-        }
-        self.find_contact(problem, solution);
-        for body in (0..problem.bodies.len()).filter(|&body| !problem.released(body)) {
-            let balanced = self.set.count_under(body) > 0 && balance(problem, body, &self.set, solution);
-            if !balanced && !cold_start(problem, body, &mut self.set, solution, |_, _| ()) {
-                return Err(body);
-            }
-        }
-        Ok(())
-    }
-
-    /// Cells in contact carry pressure.
-    fn find_contact(&mut self, problem: &Problem<'_>, solution: &Solution) {
-        self.set.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
-        self.set.update(problem);
-    }
-
     /// Sets the free motion of each body to the best fit in contact, and the residual to −h there; returns the sums over it
     /// and the deepest penetration outside.
-    fn fit_motions(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> (ResidualSums, f64) {
-        let PolonskyKeer { set, bands, residual, direction, image } = self;
-        let mut state = ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() };
-        for (body, found) in bands.survey(problem, &set.runs, 0.0, [direction, image], solution).iter().enumerate() {
+    fn fit_motions(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> ResidualSums {
+        let PolonskyKeer { set, bands, residual, search } = self;
+        let mut state = ResidualSums::of(set);
+        for (body, found) in set.passes(problem, bands).survey(0.0, search, solution).iter().enumerate() {
             solution.motions[body] = solution.motions[body].plus(-1.0, set.fit(problem, body, found.residual_modes));
             state.displacement += found.displacement_square;
             state.negative += found.negative_square;
         }
-        [state.square, state.deepest] = bands.residual(problem, &set.runs, solution, residual);
-        (state, bands.penetration(problem, &set.runs, solution))
+        [state.square, state.deepest] = set.passes(problem, bands).residual(solution, residual);
+        state.penetration = set.passes(problem, bands).penetration(solution);
+        state
     }
 
     /// Whether the pressures carry every force: they may not where no balance was found.
@@ -114,15 +92,14 @@ impl PolonskyKeer {
 
     /// Step length from the image of the direction, less its free motion in contact.
     fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) -> f64 {
-        problem.kernel.apply(&self.direction, &mut self.image, work);
-        solution.counts.convolutions += 1;
-        let PolonskyKeer { set, bands, residual, direction, image, .. } = self;
+        self.search.convolve(problem, solution, work);
+        let PolonskyKeer { set, bands, residual, search } = self;
         let (mut numerator, mut denominator) = (0.0, 0.0);
-        for found in bands.slope_and_curvature(problem, &set.runs, solution, [direction, image]) {
+        for found in set.passes(problem, bands).slope_and_curvature(solution, search) {
             numerator -= found.residual_direction;
             denominator += found.direction_image;
         }
-        for (body, found) in bands.overlaps(problem, &set.runs, residual, [direction, image]).iter().enumerate() {
+        for (body, found) in set.passes(problem, bands).overlaps(residual, search).iter().enumerate() {
             let fit = set.fit(problem, body, found.image_modes);
             denominator -= dot(fit.0, found.direction_modes);
         }
@@ -138,7 +115,7 @@ impl PolonskyKeer {
         let mut joined = false;
         for k in 0..problem.gap.len() {
             if solution.pressure[k] > 0.0 {
-                solution.pressure[k] = (solution.pressure[k] - step * self.direction[k]).max(0.0);
+                solution.pressure[k] = (solution.pressure[k] - step * self.search.direction[k]).max(0.0);
             } else if problem.possible(k) {
                 let depth = problem.depth(solution, k);
                 if depth > 0.0 {
@@ -148,8 +125,8 @@ impl PolonskyKeer {
                 }
             }
         }
-        self.find_contact(problem, solution);
-        for body in (0..problem.bodies.len()).filter(|&body| !problem.released(body)) {
+        self.set.find_pressed(problem, &solution.pressure);
+        for body in problem.loaded_bodies() {
             let modes = problem.modes(body);
             let balanced = balance(problem, body, &self.set, solution);
             if modes.translates() {

@@ -60,6 +60,13 @@ impl Preconditioner {
         self.extension.gather(field, &set.member, ExtensionKind::Unbounded);
     }
 
+    /// out ← Eᵀ of the values of `field` outside A: they are moved to the cells of A around them.
+    pub(crate) fn gather_outside(&mut self, field: &[f64], set: &ContactSet, out: &mut [f64]) {
+        out.copy_from_slice(field);
+        set.segments.cells().for_each(|k| out[k] = 0.0);
+        self.gather(out, set);
+    }
+
     fn fit(&mut self, set: &ContactSet) {
         if std::mem::replace(&mut self.version, set.version) != set.version {
             self.extension.fit(&set.member);

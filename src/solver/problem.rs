@@ -100,9 +100,14 @@ impl<'a> Problem<'a> {
         self.bodies[body].translation && self.bodies[body].total == 0.0
     }
 
+    /// The bodies under a force that is not zero, and those whose approach is given.
+    pub(crate) fn loaded_bodies(&self) -> impl Iterator<Item = usize> {
+        (0..self.bodies.len()).filter(|&body| !self.released(body))
+    }
+
     /// Whether the force on every body is zero.
     pub(crate) fn all_released(&self) -> bool {
-        (0..self.bodies.len()).all(|body| self.released(body))
+        self.loaded_bodies().next().is_none()
     }
 
     /// Whether cell `k` may carry pressure.

@@ -25,6 +25,11 @@ impl Freedom {
     pub(crate) fn tilts(&self) -> bool {
         self.tilt != [false; 2]
     }
+
+    /// Whether any motion is free.
+    pub(crate) fn moves(&self) -> bool {
+        self.translation || self.tilts()
+    }
 }
 
 /// A motion ω + α1 x1 + α2 x2 of a rigid body, x measured from the origin of the grid.

@@ -46,12 +46,9 @@ impl ActiveSet {
         if !single || problem.bodies[0].tilts() {
             self.fill_shape(shape, solution);
         }
-        for body in 0..problem.bodies.len() {
+        self.changes.corrections.fill(None);
+        for body in problem.loaded_bodies().filter(|&body| problem.bodies[body].moves()) {
             let modes = problem.modes(body);
-            self.changes.corrections[body] = None;
-            if problem.released(body) || !(modes.translates() || modes.tilts()) {
-                continue;
-            }
             if single && !modes.tilts() {
                 let scale = problem.bodies[body].total / carried;
                 if (scale - 1.0).abs() > f64::EPSILON {
@@ -63,8 +60,7 @@ impl ActiveSet {
                 continue;
             }
             let p = |k: usize| solution.pressure[k].max(0.0);
-            let pieces = |band| self.set.pieces_in(problem, body, band);
-            if let Some(y) = modes.balance(problem.rows(), pieces, p, |k| self.shape[k]) {
+            if let Some(y) = self.set.balance(problem, body, p, |k| self.shape[k]) {
                 // pressures that are moved change the moments, and the force of the bodies beside their own
                 self.changes.corrections[body] = (self.changes.moves || y != Default::default()).then_some(y);
                 continue;
@@ -91,7 +87,7 @@ impl ActiveSet {
             self.set.keep_pressed(problem, body, &solution.pressure);
             solution.convolve(problem, work);
             self.changes.leaving = self.some_leave(problem, solution);
-            self.search.energy = 0.0;
+            self.energy = 0.0;
         }
         Ok(())
     }
@@ -99,7 +95,7 @@ impl ActiveSet {
     /// Removes from a converged pressure the imbalance of force and moments that rounding has left: too little to show in v.
     /// False if it is more than rounding.
     pub(super) fn close_balance(&mut self, problem: &Problem<'_>, tolerance: f64, solution: &mut Solution) -> bool {
-        (0..problem.bodies.len()).filter(|&body| !problem.released(body)).all(|body| {
+        problem.loaded_bodies().all(|body| {
             let modes = problem.modes(body);
             if !modes.tilts() {
                 let sum = |solution: &Solution| self.set.sum(problem, body, &solution.pressure);
@@ -108,7 +104,7 @@ impl ActiveSet {
                 return !modes.translates()
                     || closed && (sum(solution) - carried).abs() <= MAX_CLOSING_CHANGE * carried;
             }
-            let before = &mut self.preconditioned;
+            let before = &mut self.buffer;
             before.copy_from_slice(&solution.pressure);
             let closed = balance(problem, body, &self.set, solution);
             let carried = self.set.sum_of(problem, body, |k| before[k]);
@@ -137,13 +133,8 @@ impl ActiveSet {
     /// The displacement that a residual below the tolerance does not show, and the rounding of the gap in it.
     fn unseen(&self, problem: &Problem<'_>, tolerance: f64, solution: &Solution) -> [f64; 2] {
         let square = self.set.sum_over_all(problem, |k| (problem.compliance * solution.potential[k]).powi(2));
-        let sums = ResidualSums {
-            displacement: square,
-            cells: self.set.count(),
-            greatest_gap: self.set.greatest_gap,
-            cancellation: problem.rounding(&solution.pressure) + self.guess_rounding,
-            ..ResidualSums::default()
-        };
+        let cancellation = problem.rounding(&solution.pressure) + self.guess_rounding;
+        let sums = ResidualSums { displacement: square, cancellation, ..ResidualSums::of(&self.set) };
         [tolerance * sums.yielding() + sums.rounding(), sums.rounding()]
     }
 }

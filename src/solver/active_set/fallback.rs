@@ -14,11 +14,10 @@
 use super::iteration::Towards;
 use super::{ActiveSet, JOIN_OVER_RMS};
 use crate::kernel::Workspace;
-use crate::solver::cold_start::{balance, cold_start};
+use crate::solver::cold_start::make_feasible;
 use crate::solver::outcome::{Outcome, ResidualSums, Stop};
 use crate::solver::passes::add;
 use crate::solver::problem::{Problem, Solution};
-use crate::solver::rigid_motion::ModeCoefficients;
 
 /// Times that cells may join A without any gain in between; after that, the rest of the residual is rounding.
 const MAX_JOINS_WITHOUT_GAIN: usize = 3;
@@ -51,24 +50,24 @@ impl ActiveSet {
         stop: Stop,
         solution: &mut Solution,
         work: &mut Workspace,
-    ) -> Outcome {
-        if let Err(body) = self.make_feasible(problem, solution, work) {
-            return Outcome::Unbalanced(body);
-        }
+    ) -> Result<Outcome, usize> {
+        self.changes.clear();
+        make_feasible(problem, &mut self.set, solution)?;
+        solution.convolve(problem, work);
         let (mut gained, mut joins_without_gain, mut blocked) = (true, 0, false);
-        self.search.energy = 0.0;
+        self.energy = 0.0;
         loop {
-            let (mut state, penetration) = self.advance(problem, solution, 0.0);
-            state.note(problem, penetration, self.guess_rounding, solution);
+            let mut state = self.advance(problem, solution, 0.0);
+            state.note(problem, self.guess_rounding, solution);
             if let Some(outcome) = stop.outcome(solution, || true) {
-                return outcome;
+                return Ok(outcome);
             }
-            let penetrates = penetration > JOIN_OVER_RMS * state.rms();
+            let penetrates = state.penetration > JOIN_OVER_RMS * state.rms();
             // cells at zero that blocked the step have left; where they joined again before any gain, they would block the next
             if penetrates && !blocked {
                 joins_without_gain = if gained { 0 } else { joins_without_gain + 1 };
                 if joins_without_gain > MAX_JOINS_WITHOUT_GAIN {
-                    return Outcome::Stagnated;
+                    return Ok(Outcome::Stagnated);
                 }
                 gained = false;
                 self.add_deepest_cells(problem, joins_without_gain > 0, state, solution);
@@ -82,38 +81,9 @@ impl ActiveSet {
             gained |= gain > 0.0;
             blocked = gain <= 0.0 && self.set.count() < cells;
             if gain <= 0.0 && !blocked && !penetrates {
-                return Outcome::Stagnated;
+                return Ok(Outcome::Stagnated);
             }
         }
-    }
-
-    /// Makes the pressures ≥ 0 and balanced, computes their K p, and sets A to where they are positive.
-    fn make_feasible(
-        &mut self,
-        problem: &Problem<'_>,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Result<(), usize> {
-        for (k, member) in self.set.member.iter_mut().enumerate() {
-            let p = &mut solution.pressure[k];
-            *member = problem.possible(k) && *p > 0.0;
-            if !*member {
-                *p = 0.0;
-            }
-        }
-        self.set.update(problem);
-        self.changes.clear();
-        for body in (0..problem.bodies.len()).filter(|&body| !problem.released(body)) {
-            if (self.set.count_under(body) == 0 || !balance(problem, body, &self.set, solution))
-                && !cold_start(problem, body, &mut self.set, solution, |_, _| ())
-            {
-                return Err(body);
-            }
-        }
-        self.set.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
-        self.set.update(problem);
-        solution.convolve(problem, work);
-        Ok(())
     }
 
     /// Takes penetrating cells into A: the deeper ones, or the deepest alone.
@@ -122,12 +92,12 @@ impl ActiveSet {
         let cells = (0..self.set.member.len()).filter(outside);
         let deepest = problem.rows().greatest(cells.map(|k| problem.depth(solution, k)).fold(0.0, f64::max));
         // where several cells have joined without any gain, only the deepest one
-        let least = if alone { deepest } else { state.joining_depth(deepest) };
+        let least = if alone { deepest } else { ResidualSums { penetration: deepest, ..state }.joining_depth() };
         for k in 0..self.set.member.len() {
             self.set.member[k] |= problem.possible(k) && least > 0.0 && problem.depth(solution, k) >= least;
         }
         self.set.update(problem);
-        self.search.energy = 0.0;
+        self.energy = 0.0;
     }
 
     /// One step; returns by how much E falls.
@@ -140,22 +110,21 @@ impl ActiveSet {
     ) -> f64 {
         let c = problem.compliance;
         self.find_direction(problem, towards, solution, work);
-        problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
-        solution.counts.convolutions += 1;
+        self.search.convolve(problem, solution, work);
         let [slope, curvature] = self.slope_and_curvature(problem, solution);
-        self.search.energy = curvature;
+        self.energy = curvature;
         let free = Gain::along(slope, c * curvature, f64::INFINITY);
         if free.energy <= 0.0 {
-            self.search.energy = 0.0;
+            self.energy = 0.0;
             return 0.0;
         }
         let to_zero = |k: usize| {
             let (p, d) = (solution.pressure[k], self.search.direction[k]);
             if d < 0.0 { -p / d } else { f64::INFINITY }
         };
-        let first_zero = problem.rows().least(self.set.runs.cells().map(to_zero).fold(f64::INFINITY, f64::min));
+        let first_zero = problem.rows().least(self.set.segments.cells().map(to_zero).fold(f64::INFINITY, f64::min));
         if free.length <= first_zero {
-            for k in self.set.runs.cells() {
+            for k in self.set.segments.cells() {
                 solution.pressure[k] = (solution.pressure[k] + free.length * self.search.direction[k]).max(0.0);
             }
             add(&mut solution.potential, free.length, &self.search.image);
@@ -163,57 +132,51 @@ impl ActiveSet {
         }
 
         let straight = Gain::along(slope, c * curvature, first_zero);
-        // s of the clipped step takes the place of z
         let clipped = if self.find_clipped_step(problem, free.length, solution) {
-            let slope = self.set.sum_over_all(problem, |k| problem.depth(solution, k) * self.preconditioned[k]);
-            self.shape.resize(solution.pressure.len(), 0.0);
-            problem.kernel.apply(&self.preconditioned, &mut self.shape, work);
+            let ActiveSet { set, buffer: step, shape: image, .. } = self;
+            let slope = set.sum_over_all(problem, |k| problem.depth(solution, k) * step[k]);
+            image.resize(step.len(), 0.0);
+            problem.kernel.apply(step, image, work);
             solution.counts.convolutions += 1;
-            let curvature = self.set.sum_over_all(problem, |k| self.preconditioned[k] * self.shape[k]);
+            let curvature = set.sum_over_all(problem, |k| step[k] * image[k]);
             Gain::along(slope, c * curvature, 1.0)
         } else {
             Gain::default()
         };
         let clips = clipped.energy > straight.energy;
-        for k in self.set.runs.cells() {
-            let (p, d) = (&mut solution.pressure[k], self.search.direction[k]);
+        let ActiveSet { set, buffer: clipped_step, shape: clipped_image, search, .. } = self;
+        for k in set.segments.cells() {
+            let (p, d) = (&mut solution.pressure[k], search.direction[k]);
             *p = if clips {
-                (*p + clipped.length * self.preconditioned[k]).max(0.0)
+                (*p + clipped.length * clipped_step[k]).max(0.0)
             } else if d < 0.0 && -*p / d <= first_zero {
                 0.0
             } else {
                 (*p + straight.length * d).max(0.0)
             };
             if *p <= 0.0 && d < 0.0 {
-                self.set.member[k] = false;
+                set.member[k] = false;
             }
         }
-        let (gain, image) = if clips { (clipped, &self.shape) } else { (straight, &self.search.image) };
+        let (gain, image) = if clips { (clipped, clipped_image) } else { (straight, &mut search.image) };
         add(&mut solution.potential, gain.length, image);
-        self.set.update(problem);
-        self.search.energy = 0.0;
+        set.update(problem);
+        self.energy = 0.0;
         gain.energy
     }
 
-    /// Writes s, the way from p to the balanced max(0, p + a d), to `preconditioned`; false if there is no such balance on A.
+    /// Writes the step from p to the balanced max(0, p + a d) to the buffer; false if there is no such balance on A.
     fn find_clipped_step(&mut self, problem: &Problem<'_>, a: f64, solution: &Solution) -> bool {
-        self.preconditioned.fill(0.0);
-        for body in (0..problem.bodies.len()).filter(|&body| !problem.released(body)) {
-            let modes = problem.modes(body);
-            let clipped = |k: usize| (solution.pressure[k] + a * self.search.direction[k]).max(0.0);
-            let y = if modes.tilts() || modes.translates() {
-                let pieces = |band| self.set.pieces_in(problem, body, band);
-                let Some(y) = modes.balance(problem.rows(), pieces, clipped, clipped) else { return false };
-                y
-            } else {
-                ModeCoefficients::default()
-            };
-            for (k, factor) in self.set.displacements(problem, body, y) {
-                let balanced = (clipped(k) + clipped(k) * factor).max(0.0);
-                self.preconditioned[k] = balanced - solution.pressure[k];
+        let ActiveSet { set, buffer: step, search, .. } = self;
+        step.fill(0.0);
+        problem.loaded_bodies().all(|body| {
+            let clipped = |k: usize| (solution.pressure[k] + a * search.direction[k]).max(0.0);
+            let Some(y) = set.balance(problem, body, clipped, clipped) else { return false };
+            for (k, factor) in set.displacements(problem, body, y) {
+                step[k] = (clipped(k) + clipped(k) * factor).max(0.0) - solution.pressure[k];
             }
-        }
-        true
+            true
+        })
     }
 }
 
@@ -254,7 +217,7 @@ mod tests {
 
             let mut slow = Solution::zero(grid.len(), 1);
             slow.pressure.iter_mut().zip(&gap).for_each(|(p, h)| *p = if h.is_finite() { 1.0 } else { 0.0 });
-            assert_eq!(solver.descend(&problem, stop, &mut slow, &mut work), Outcome::Converged);
+            assert_eq!(solver.descend(&problem, stop, &mut slow, &mut work), Ok(Outcome::Converged));
             assert!(slow.counts.fallback_iterations < 60, "{compliance}: {:?}", slow.counts);
             let peak = exact.pressure.iter().copied().fold(0.0, f64::max);
             for (a, b) in slow.pressure.iter().zip(&exact.pressure) {

@@ -32,6 +32,7 @@ use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::bands::Bands;
 use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{Outcome, PENETRATION_SLACK, Stop};
+use crate::solver::passes::Search;
 use crate::solver::preconditioner::Preconditioner;
 use crate::solver::problem::{Problem, Solution};
 use crate::solver::rigid_motion::ModeCoefficients;
@@ -64,48 +65,37 @@ pub(crate) struct ActiveSet {
     /// Whether the last step was cut short: cells that joined together may have held each other off, and the deepest one joins
     /// alone.
     was_cut: bool,
-    /// r, and what is made of it.
-    preconditioned: Vec<f64>,
     search: Search,
-    /// The shape of corrections of the balance, in the fall-back K s: allocated by the first solve with a tilting load, several
-    /// bodies or the fall-back.
+    /// d·Kd; 0 if the next direction need not be conjugate to d.
+    energy: f64,
+    /// c a of the last search of this solve.
+    search_length: f64,
+    /// The fit of K d on A under each body that tilts.
+    image_motions: Vec<ModeCoefficients>,
+    /// The free motion of each body that is added to d.
+    shifts: Vec<ModeCoefficients>,
+    /// A field that a method fills and reads under a name of its own: z, moved pressures and so on. Its values do not outlive
+    /// the method.
+    buffer: Vec<f64>,
+    /// The shape s of corrections of the balance, in the fall-back a second buffer: allocated by the first solve with a tilting
+    /// load, several bodies or the fall-back.
     shape: Vec<f64>,
 }
 
-/// The search direction d.
-#[derive(Debug, Clone)]
-struct Search {
-    direction: Vec<f64>,
-    /// K d.
-    image: Vec<f64>,
-    /// d·Kd.
-    energy: f64,
-    /// c a of the last search of this solve.
-    length: f64,
-    /// The fit of K d on A under each body that tilts.
-    image_motions: Vec<ModeCoefficients>,
-    /// What makes d free of motion on A.
-    shifts: Vec<ModeCoefficients>,
-}
-
-/// What the next direction changes of the pressure.
+/// Changes of the pressure that the next direction makes.
 #[derive(Debug, Clone)]
 struct PendingChanges {
     /// Whether cells outside A carry pressure, which it brings to zero.
     leaving: bool,
     /// Whether it moves that pressure to the cells around.
     moves: bool,
-    /// For each body the y of the change shape · B y by which it balances the pressure, where that is needed.
+    /// For each body the y of the change shape · B y that balances the pressure, where the pressure is out of balance.
     corrections: Vec<Option<ModeCoefficients>>,
 }
 
 impl PendingChanges {
-    fn corrects(&self) -> bool {
-        self.corrections.iter().any(Option::is_some)
-    }
-
     fn any(&self) -> bool {
-        self.leaving || self.corrects()
+        self.leaving || self.corrections.iter().any(Option::is_some)
     }
 
     fn clear(&mut self) {
@@ -127,7 +117,7 @@ impl ActiveSet {
     /// A solver that works in the buffers of the kernel.
     pub(crate) fn new(kernel: &LocalKernel, bodies: usize, work: &mut Workspace) -> ActiveSet {
         let cells = kernel.grid().len();
-        let (field, motions) = (vec![0.0; cells], vec![ModeCoefficients::default(); bodies]);
+        let motions = vec![ModeCoefficients::default(); bodies];
         ActiveSet {
             preconditioner: Preconditioner::new(kernel, work),
             set: ContactSet::new(cells, bodies),
@@ -135,15 +125,12 @@ impl ActiveSet {
             guess_rounding: 0.0,
             was_cut: false,
             changes: PendingChanges { leaving: false, moves: false, corrections: vec![None; bodies] },
-            preconditioned: field.clone(),
-            search: Search {
-                direction: field.clone(),
-                image: field,
-                energy: 0.0,
-                length: f64::INFINITY,
-                image_motions: motions.clone(),
-                shifts: motions,
-            },
+            search: Search::new(cells),
+            energy: 0.0,
+            search_length: f64::INFINITY,
+            image_motions: motions.clone(),
+            shifts: motions,
+            buffer: vec![0.0; cells],
             shape: Vec::new(),
         }
     }
@@ -162,16 +149,16 @@ impl ActiveSet {
         let most = if given { problem.rows().greatest(greatest(&solution.potential)) } else { 0.0 };
         self.guess_rounding = 4.0 * f64::EPSILON * problem.compliance * most;
         let outcome = match self.iterate(problem, stop, solution, work) {
-            Outcome::Stagnated => self.descend(problem, stop, solution, work),
+            Ok(Outcome::Stagnated) => self.descend(problem, stop, solution, work),
             outcome => outcome,
         };
-        if outcome != Outcome::Converged || self.close_balance(problem, stop.tolerance, solution) {
-            return outcome;
+        if outcome != Ok(Outcome::Converged) || self.close_balance(problem, stop.tolerance, solution) {
+            return outcome.unwrap_or_else(Outcome::Unbalanced);
         }
         // the converged pressure does not carry the loads
         match self.descend(problem, stop, solution, work) {
-            Outcome::Converged if !self.close_balance(problem, stop.tolerance, solution) => Outcome::Stagnated,
-            outcome => outcome,
+            Ok(Outcome::Converged) if !self.close_balance(problem, stop.tolerance, solution) => Outcome::Stagnated,
+            outcome => outcome.unwrap_or_else(Outcome::Unbalanced),
         }
     }
 }

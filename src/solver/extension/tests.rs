@@ -9,7 +9,7 @@ fn noise(seed: &mut u64) -> f64 {
 
 /// E as its definition says, cell by cell.
 fn dense(member: &[bool], values: &[f64], cells: [usize; 2], periodic: [bool; 2], attenuation: [f64; 2]) -> Vec<f64> {
-    pull(&member.iter().map(|&m| f64::from(u8::from(m))).collect::<Vec<_>>(), values, cells, periodic, ebb)
+    pull(&member.iter().map(|&m| f64::from(u8::from(m))).collect::<Vec<_>>(), values, cells, periodic, attenuation)
 }
 
 /// `levels_to_go` levels above this one the extension is attenuated.
