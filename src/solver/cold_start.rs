@@ -91,12 +91,12 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &m
     let cells = || set.cells(problem, body);
     cells().for_each(|k| solution.pressure[k] = 0.0);
     // a body that tilts under a force starts from its resting position
-    let motion = if modes.tilts() && modes.translates() {
+    let motion = if modes.freedom.tilts() && modes.freedom.translation {
         RestingPosition::new(rows, &modes, cells(), problem.gap).motion
     } else {
         ModeCoefficients::default()
     };
-    if modes.tilts() {
+    if modes.freedom.tilts() {
         solution.motions[body] = motion;
     }
     let gap = |k: usize| problem.gap[k] - modes.displacement(motion, k);
@@ -148,12 +148,12 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &m
 /// if that cannot be.
 pub(crate) fn balance(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &mut Solution) -> bool {
     let modes = problem.modes(body);
-    if !modes.tilts() && !modes.translates() {
+    if !modes.freedom.tilts() && !modes.freedom.translation {
         return true;
     }
     let pressure = &mut solution.pressure;
     let admissible = || !problem.rows().any(!set.cells(problem, body).all(|k| pressure[k] >= 0.0));
-    if !modes.tilts() && admissible() {
+    if !modes.freedom.tilts() && admissible() {
         let scale = problem.bodies[body].total / set.sum(problem, body, pressure);
         if !scale.is_finite() {
             return false;

@@ -155,8 +155,11 @@ impl ContactSet {
     /// The motion of a body that fits a field best on its cells in contact, from Σ B f over them; zero for what they do not
     /// determine.
     pub(crate) fn fit(&self, problem: &Problem<'_>, body: usize, sums: [f64; 3]) -> ModeCoefficients {
-        let BodyContact { cells, ref gram, .. } = self.bodies[body];
-        problem.modes(body).fit(gram, cells, sums)
+        let (BodyContact { cells, gram, .. }, freedom) = (&self.bodies[body], problem.bodies[body]);
+        if freedom.tilts() {
+            return ModeCoefficients(gram.solve(sums));
+        }
+        ModeCoefficients([if freedom.translation { sums[0] / (*cells).max(1) as f64 } else { 0.0 }, 0.0, 0.0])
     }
 
     /// The cells of a problem for one pass.

@@ -129,11 +129,11 @@ impl PolonskyKeer {
         for body in problem.loaded_bodies() {
             let modes = problem.modes(body);
             let balanced = balance(problem, body, &self.set, solution);
-            if modes.translates() {
+            if modes.freedom.translation {
                 if !balanced {
                     press_everywhere(problem, body, &mut self.set, solution);
                 }
-            } else if modes.tilts() && (!balanced || self.is_unloaded(problem, body, solution)) {
+            } else if modes.freedom.tilts() && (!balanced || self.is_unloaded(problem, body, solution)) {
                 // held at its pivot, and touching on one side of it only: unloaded, and turned to where its deepest
                 // penetration is least, on both sides of the pivot if it cannot swing clear
                 self.set.cells(problem, body).for_each(|k| solution.pressure[k] = 0.0);

@@ -65,8 +65,7 @@ impl<'a> Problem<'a> {
     /// The free modes of a body along a row, from cell `k` on.
     #[inline]
     pub(crate) fn line(&self, body: usize, k: usize) -> Line {
-        // without tilt, the common scene, there is nothing to compute
-        if self.bodies[body].tilts() { self.modes(body).line(k) } else { Line::UPRIGHT }
+        self.modes(body).line(k)
     }
 
     /// The local rows, with the reductions over all ranks.

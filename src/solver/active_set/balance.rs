@@ -49,7 +49,7 @@ impl ActiveSet {
         self.changes.corrections.fill(None);
         for body in problem.loaded_bodies().filter(|&body| problem.bodies[body].moves()) {
             let modes = problem.modes(body);
-            if single && !modes.tilts() {
+            if single && !modes.freedom.tilts() {
                 let scale = problem.bodies[body].total / carried;
                 if (scale - 1.0).abs() > f64::EPSILON {
                     for_each_band([&mut solution.pressure, &mut solution.potential], |_, [p, v]| {
@@ -75,7 +75,7 @@ impl ActiveSet {
                     *p = 0.0;
                 }
             }
-            if !modes.translates() {
+            if !modes.freedom.translation {
                 // held at a pivot, and touching on one side of it only: unloaded, it may turn away
                 self.set.cells(problem, body).for_each(|k| solution.pressure[k] = 0.0);
             } else if shape == Shape::Punch {
@@ -97,11 +97,11 @@ impl ActiveSet {
     pub(super) fn close_balance(&mut self, problem: &Problem<'_>, tolerance: f64, solution: &mut Solution) -> bool {
         problem.loaded_bodies().all(|body| {
             let modes = problem.modes(body);
-            if !modes.tilts() {
+            if !modes.freedom.tilts() {
                 let sum = |solution: &Solution| self.set.sum(problem, body, &solution.pressure);
                 let carried = sum(solution);
                 let closed = balance(problem, body, &self.set, solution);
-                return !modes.translates()
+                return !modes.freedom.translation
                     || closed && (sum(solution) - carried).abs() <= MAX_CLOSING_CHANGE * carried;
             }
             let before = &mut self.buffer;
@@ -111,7 +111,7 @@ impl ActiveSet {
             // what cannot be balanced would have to be removed entirely
             let change = |k: usize| (solution.pressure[k] - before[k]).abs();
             let changed = if closed { self.set.sum_of(problem, body, change) } else { carried };
-            if modes.translates() {
+            if modes.freedom.translation {
                 return closed && changed <= MAX_CLOSING_CHANGE * carried;
             }
             // where no force is prescribed, the pressure may be rounding itself: no cell moves more than by this

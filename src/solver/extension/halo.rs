@@ -8,21 +8,25 @@ use num_complex::Complex64;
 use crate::parallel::{Ranks, Rows, unwind_rank_loss};
 use crate::solver::extension::passes::{NOTHING_KNOWN, weight};
 
-/// Halo rows of a level: the row before the local rows and the row after them, where another rank has these.
+/// Halo rows of a level: the row before the local rows and the row after them, where another rank holds these.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HaloRows {
-    /// The rank that has each.
-    partners: [Option<usize>; 2],
-    /// Their numbers.
-    rows: [usize; 2],
-    values: [Vec<f64>; 2],
-    /// What is known of cells whose values come without what is known of them.
-    outside: Vec<bool>,
-    open: Vec<f64>,
+    rows: [Option<HaloRow>; 2],
+    /// Halo values are multiplied by 1 − w already: these are the members, none, and the factors φ with w = 0 of a halo row.
+    no_members: Vec<bool>,
+    nothing_known: Vec<f64>,
+}
+
+/// A row of another rank.
+#[derive(Debug, Clone)]
+struct HaloRow {
+    rank: usize,
+    row: usize,
+    values: Vec<f64>,
 }
 
 impl HaloRows {
-    /// Of a level of so many rows and columns; `of` gives the rows of each rank.
+    /// For a level of `n1` rows of `n2` values; `of` gives the rows of each rank.
     pub(crate) fn new(
         rows: &Rows,
         of: impl Fn(usize) -> Range<usize>,
@@ -36,37 +40,34 @@ impl HaloRows {
         }
         let before = own.start.checked_sub(1).or(periodic.then_some(n1 - 1));
         let after = Some(own.end).filter(|&row| row < n1).or(periodic.then_some(0));
-        let beside = [before, after].map(|row| row.filter(|row| !own.contains(row)));
-        let owner = |row: usize| (0..group.size()).find(|&rank| of(rank).contains(&row));
-        let field = |row: Option<usize>| vec![0.0; if row.is_some() { n2 } else { 0 }];
+        let halo_row = |row: usize| {
+            let rank = (0..group.size()).find(|&rank| rank != group.rank() && of(rank).contains(&row))?;
+            Some(HaloRow { rank, row, values: vec![0.0; n2] })
+        };
         debug_assert_eq!(weight(NOTHING_KNOWN), 0.0);
         HaloRows {
-            partners: beside.map(|row| row.and_then(owner)),
-            rows: beside.map(|row| row.unwrap_or(usize::MAX)),
-            values: beside.map(field),
-            outside: vec![false; n2],
-            open: vec![NOTHING_KNOWN; n2],
+            rows: [before, after].map(|row| row.and_then(halo_row)),
+            no_members: vec![false; n2],
+            nothing_known: vec![NOTHING_KNOWN; n2],
         }
     }
 
-    /// The values of the row before the local rows, if another rank has it.
+    /// The values of the row before the local rows, if another rank holds it.
     pub(crate) fn before(&self) -> Option<&[f64]> {
-        self.partners[0].map(|_| &self.values[0][..])
+        self.rows[0].as_ref().map(|halo| &halo.values[..])
     }
 
-    /// The values of one of the two rows.
+    /// The values of one of the rows.
     pub(super) fn row(&self, row: usize) -> &[f64] {
-        if row == self.rows[0] { &self.values[0] } else { &self.values[1] }
+        self.rows.iter().flatten().find(|halo| halo.row == row).map_or(&[], |halo| &halo.values)
     }
 
-    /// That none of its cells is in the set.
-    pub(super) fn outside(&self) -> &[bool] {
-        &self.outside
+    pub(super) fn no_members(&self) -> &[bool] {
+        &self.no_members
     }
 
-    /// The factor of blocks of which nothing is known.
-    pub(super) fn open(&self) -> &[f64] {
-        &self.open
+    pub(super) fn nothing_known(&self) -> &[f64] {
+        &self.nothing_known
     }
 }
 
@@ -98,13 +99,12 @@ impl HaloExchange {
     pub(crate) fn fetch(&mut self, halo: &mut HaloRows, columns: usize, own: usize, write: impl Fn(usize, &mut [f64])) {
         let HaloExchange { group, row, send, received, counts } = self;
         let (row, length) = (&mut row[..columns], columns.div_ceil(2));
-        let asked_by = |rank: usize, which: usize| halo.partners[which] == Some(rank);
         let mut sent = 0;
         for (rank, count) in counts.iter_mut().enumerate() {
             *count = 0;
-            // who has the row before mine needs my first, who has the one behind mine my last
-            for (which, k) in [(0, 0), (1, own.saturating_sub(1))] {
-                if asked_by(rank, which) {
+            // the rank of the row before the local rows needs the first of them, the rank of the row after them the last
+            for (halo, k) in halo.rows.iter().zip([0, own.saturating_sub(1)]) {
+                if halo.as_ref().is_some_and(|halo| halo.rank == rank) {
                     write(k, row);
                     let pairs = row.chunks(2).map(|pair| Complex64::new(pair[0], pair.get(1).copied().unwrap_or(0.0)));
                     send[sent..sent + length].iter_mut().zip(pairs).for_each(|(z, pair)| *z = pair);
@@ -117,14 +117,10 @@ impl HaloExchange {
             .unwrap_or_else(|error| unwind_rank_loss(error));
         let mut next = received.chunks_exact(length);
         for rank in 0..counts.len() {
-            // of one that has both, its first row, which lies behind mine, comes first
-            for which in [1, 0] {
-                if halo.partners[which] == Some(rank)
-                    && let Some(values) = next.next()
-                {
-                    let pairs = halo.values[which].chunks_mut(2).zip(values);
-                    pairs.for_each(|(out, z)| out.iter_mut().zip([z.re, z.im]).for_each(|(out, part)| *out = part));
-                }
+            // of a rank that has both rows, its first one, which is the row after the local rows, comes first
+            for halo in halo.rows.iter_mut().rev().flatten().filter(|halo| halo.rank == rank) {
+                let pairs = halo.values.chunks_mut(2).zip(next.next().unwrap_or(&[]));
+                pairs.for_each(|(out, z)| out.iter_mut().zip([z.re, z.im]).for_each(|(out, part)| *out = part));
             }
         }
     }

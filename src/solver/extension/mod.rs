@@ -45,7 +45,7 @@ pub(crate) struct Extension {
     /// The halo rows of the cells.
     halo: HaloRows,
     exchange: Option<HaloExchange>,
-    attenuation: Option<LevelFactor>,
+    attenuation: Option<Attenuation>,
 }
 
 /// Range of an extension, and the factor beyond it.
@@ -57,6 +57,13 @@ pub(crate) struct Attenuation {
     pub(crate) remains: f64,
 }
 
+impl Attenuation {
+    /// The height of the blocks that are multiplied by `remains`: they are no longer than the reach.
+    fn height(&self) -> usize {
+        (self.reach.log2() as usize).max(1)
+    }
+}
+
 /// Which of two extensions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ExtensionKind {
@@ -64,13 +71,6 @@ pub(crate) enum ExtensionKind {
     Attenuated,
     /// Without one: constants are reproduced.
     Unbounded,
-}
-
-/// A factor of all values of the level of this height.
-#[derive(Debug, Clone, Copy)]
-struct LevelFactor {
-    height: usize,
-    factor: f64,
 }
 
 /// Blocks of cells.
@@ -144,10 +144,10 @@ impl Level {
         rows.gather_rows(local, value, |rank| columns * blocks_of(rows.of(rank), height).len());
     }
 
-    /// Multiplies all values by the factor of this level, if it has one.
-    fn attenuate(&mut self, attenuation: Option<LevelFactor>) {
-        if let Some(LevelFactor { factor, .. }) = attenuation.filter(|of| of.height == self.height) {
-            self.value.iter_mut().for_each(|value| *value *= factor);
+    /// Multiplies all values by the factor of the attenuation, if it is that of this level.
+    fn attenuate(&mut self, attenuation: Option<Attenuation>) {
+        if let Some(Attenuation { remains, .. }) = attenuation.filter(|of| of.height() == self.height) {
+            self.value.iter_mut().for_each(|value| *value *= remains);
         }
     }
 
@@ -171,12 +171,8 @@ impl Extension {
     pub(crate) fn new(rows: &Rows, periodic: [bool; 2], attenuation: Option<Attenuation>) -> Extension {
         let cells = rows.cells();
         let threads = lanes(rows.own().len() * cells[1]).min(rows.own().len()).max(1);
-        let level_factor = |Attenuation { reach, remains }: Attenuation| {
-            // blocks that are no longer than the reach
-            LevelFactor { height: (reach.log2() as usize).max(1), factor: remains }
-        };
         Extension {
-            attenuation: attenuation.map(level_factor),
+            attenuation,
             periodic,
             levels: (1..=count_levels(cells)).map(|height| Level::new(rows, height, periodic[0])).collect(),
             share: 0.0,
@@ -215,9 +211,9 @@ impl Extension {
         self.descend(field, member, false, None);
     }
 
-    /// Finds S from level to level: the sums of w m over the blocks, of m = 1 with the factors φ if there is no field; if
-    /// `interpolated`, by the transpose of the interpolation of (1 − w) f.
-    fn ascend(&mut self, field: Option<&[f64]>, member: &[bool], interpolated: bool, attenuation: Option<LevelFactor>) {
+    /// Finds S from level to level: the sums of w f over the blocks, or the transpose of the interpolation of (1 − w) f if
+    /// `interpolated`. Without a field, f is 1 on the set, and the factors φ are found, too.
+    fn ascend(&mut self, field: Option<&[f64]>, member: &[bool], interpolated: bool, attenuation: Option<Attenuation>) {
         let Extension { ref rows, periodic, ref mut levels, ref mut buffers, ref mut halo, ref mut exchange, .. } =
             *self;
         let columns = rows.cells()[1];
@@ -227,28 +223,15 @@ impl Extension {
                 Known::Members(&member[cells.clone()]).write_open(&field[cells], out);
             });
         }
+        let (values, known) = field.map_or((&[][..], Known::Ones(member)), |field| (field, Known::Members(member)));
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
             let level = &mut level[0];
-            let cells = field.map(|values| Blocks { values, first: rows.own().start, columns, halo });
-            let pass = match finer.last() {
-                None => Ascent {
-                    values: cells,
-                    known: Known::Members(member),
-                    first: rows.own().start,
-                    fine: rows.cells(),
-                    periodic,
-                    interpolated,
-                },
-                Some(finer) => Ascent {
-                    values: Some(finer.blocks()),
-                    known: Known::Factors(&finer.factor),
-                    first: finer.kept.start,
-                    fine: finer.cells,
-                    periodic,
-                    interpolated,
-                },
+            let (values, known, fine) = match finer.last() {
+                None => (Blocks { values, first: rows.own().start, columns, halo }, known, rows.cells()),
+                Some(finer) => (finer.blocks(), Known::Factors(&finer.factor), finer.cells),
             };
+            let pass = Ascent { values, known, fine, periodic, interpolated };
             level.compute(&pass, rows, buffers);
             if field.is_none() {
                 let factors = level.factor.iter_mut().zip(&level.value);
@@ -263,7 +246,7 @@ impl Extension {
 
     /// Finds x from level to level, down to the cells: w m + (1 − w) up(x) if `interpolated`, else w (m + x of the block), the
     /// transpose of the sums over blocks.
-    fn descend(&mut self, field: &mut [f64], member: &[bool], interpolated: bool, attenuation: Option<LevelFactor>) {
+    fn descend(&mut self, field: &mut [f64], member: &[bool], interpolated: bool, attenuation: Option<Attenuation>) {
         let Extension { ref rows, periodic, ref mut levels, share, ref mut buffers, ref mut exchange, .. } = *self;
         levels.last_mut().into_iter().for_each(|coarsest| coarsest.value[0] *= share);
         for l in (0..levels.len()).rev() {

@@ -57,6 +57,8 @@ impl<P: RowPass> Task for SharedRows<'_, P> {
 /// The weights w of cells or blocks.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Known<'a> {
+    /// The members of the set, with the field 1 on each of them.
+    Ones(&'a [bool]),
     Members(&'a [bool]),
     /// φ.
     Factors(&'a [f64]),
@@ -67,7 +69,7 @@ impl Known<'_> {
     pub(super) fn write_open(self, values: &[f64], out: &mut [f64]) {
         let values = out.iter_mut().zip(values);
         match self {
-            Known::Members(member) => {
+            Known::Ones(member) | Known::Members(member) => {
                 values.zip(member).for_each(|((out, &f), &inside)| *out = if inside { 0.0 } else { f });
             }
             Known::Factors(factors) => {
@@ -106,11 +108,9 @@ pub(super) const NOTHING_KNOWN: f64 = 0.25 * TRUST;
 
 /// S of blocks from the level below.
 pub(super) struct Ascent<'a> {
-    /// The values of the level below; `None` for ones on the members of the set.
-    pub(super) values: Option<Blocks<'a>>,
+    /// The level below.
+    pub(super) values: Blocks<'a>,
     pub(super) known: Known<'a>,
-    /// The first row that the rank holds of the level below.
-    pub(super) first: usize,
     pub(super) fine: [usize; 2],
     pub(super) periodic: [bool; 2],
     /// Whether S is the transpose of the interpolation of (1 − w) f, or the sum of w f.
@@ -120,52 +120,54 @@ pub(super) struct Ascent<'a> {
 impl RowPass for Ascent<'_> {
     #[inline(always)]
     fn compute(&self, i: usize, buffers: &mut RowBuffers, out: &mut [f64]) {
-        match self.values {
-            Some(values) if self.interpolated => self.restrict(i, values, &mut buffers.fine, out),
-            values => self.sum(i, values, &mut buffers.fine, out),
-        }
+        let fine = &mut buffers.fine;
+        if self.interpolated { self.restrict(i, fine, out) } else { self.sum(i, fine, out) }
     }
 }
 
 impl Ascent<'_> {
     /// The sums of w f over the blocks of row `i`.
     #[inline(always)]
-    fn sum(&self, i: usize, values: Option<Blocks<'_>>, fine: &mut [f64], out: &mut [f64]) {
+    fn sum(&self, i: usize, fine: &mut [f64], out: &mut [f64]) {
         let [n1, n2] = self.fine;
+        let Blocks { values, first, .. } = self.values;
         out.fill(0.0);
-        for row in (2 * i..(2 * i + 2).min(n1)).map(|row| row - self.first).map(|row| row * n2..(row + 1) * n2) {
-            match (self.known, values) {
-                (Known::Members(member), None) => {
-                    let ones = &mut fine[..n2];
-                    ones.iter_mut().zip(&member[row]).for_each(|(one, &m)| *one = f64::from(u8::from(m)));
-                    add_pairs(out, ones);
+        for row in (2 * i..(2 * i + 2).min(n1)).map(|row| (row - first) * n2..(row - first + 1) * n2) {
+            let terms = fine[..n2].iter_mut();
+            match self.known {
+                Known::Ones(member) => {
+                    terms.zip(&member[row]).for_each(|(term, &inside)| *term = f64::from(u8::from(inside)));
+                    add_pairs(out, &fine[..n2]);
                 }
                 // the field is zero outside the set
-                (Known::Members(_), Some(Blocks { values, .. })) => add_pairs(out, &values[row]),
-                (Known::Factors(factors), Some(Blocks { values, .. })) => {
-                    add_weighted_pairs(out, &values[row.clone()], &factors[row])
+                Known::Members(_) => add_pairs(out, &values[row]),
+                Known::Factors(factors) => {
+                    let weighted = values[row.clone()].iter().zip(&factors[row]);
+                    terms.zip(weighted).for_each(|(term, (f, factor))| *term = factor * f);
+                    add_pairs(out, &fine[..n2]);
                 }
-                (Known::Factors(factors), None) => add_pairs(out, &factors[row]),
             }
         }
     }
 
     /// The transpose of the interpolation: the open part of the level below, brought to row `i` of its blocks.
     #[inline(always)]
-    fn restrict(&self, i: usize, values: Blocks<'_>, fine: &mut [f64], out: &mut [f64]) {
+    fn restrict(&self, i: usize, fine: &mut [f64], out: &mut [f64]) {
+        let values = self.values;
         let (n2, m2) = (self.fine[1], self.fine[1].div_ceil(2));
         let fine = &mut fine[..2 * m2 + 4];
         let parts = self.parts(i);
         let (rows, shares) = (parts.map(|(row, _)| values.row(row)), parts.map(|(_, share)| share));
         let sums = &mut fine[2..n2 + 2];
         match self.known {
-            Known::Members(member) => {
+            Known::Ones(member) | Known::Members(member) => {
                 let known =
-                    parts.map(|(row, _)| values.kept(row).map_or(values.halo.outside(), |cells| &member[cells]));
+                    parts.map(|(row, _)| values.kept(row).map_or(values.halo.no_members(), |cells| &member[cells]));
                 add_open(sums, shares, rows, known, |inside, f| if inside { 0.0 } else { f });
             }
             Known::Factors(factors) => {
-                let known = parts.map(|(row, _)| values.kept(row).map_or(values.halo.open(), |cells| &factors[cells]));
+                let known =
+                    parts.map(|(row, _)| values.kept(row).map_or(values.halo.nothing_known(), |cells| &factors[cells]));
                 add_open(sums, shares, rows, known, |factor, f| (1.0 - weight(factor)) * f);
             }
         }
@@ -211,7 +213,7 @@ impl RowPass for Descent<'_> {
         let above = if self.interpolated { self.interpolate(i, buffers) } else { self.repeat(i, buffers) };
         let values = values.iter_mut().zip(above);
         match (self.known, self.interpolated) {
-            (Known::Members(member), true) => {
+            (Known::Ones(member) | Known::Members(member), true) => {
                 values.zip(&member[known..]).for_each(|((x, &up), &inside)| *x = if inside { *x } else { up });
             }
             (Known::Factors(factors), true) => {
@@ -219,7 +221,7 @@ impl RowPass for Descent<'_> {
                     .zip(&factors[known..])
                     .for_each(|((x, &up), &factor)| *x = factor * *x + (1.0 - weight(factor)) * up);
             }
-            (Known::Members(member), false) => {
+            (Known::Ones(member) | Known::Members(member), false) => {
                 values.zip(&member[known..]).for_each(|((f, &sum), &inside)| *f = if inside { *f + sum } else { 0.0 });
             }
             (Known::Factors(factors), false) => {
@@ -296,14 +298,5 @@ fn add_pairs(out: &mut [f64], row: &[f64]) {
     out.iter_mut().zip(pairs).for_each(|(out, [a, b])| *out += a + b);
     if let ([last], Some(out)) = (rest, out.last_mut()) {
         *out += last;
-    }
-}
-
-#[inline(always)]
-fn add_weighted_pairs(out: &mut [f64], values: &[f64], weights: &[f64]) {
-    let ((f, last_f), (w, last_w)) = (values.as_chunks::<2>(), weights.as_chunks::<2>());
-    out.iter_mut().zip(f.iter().zip(w)).for_each(|(out, (f, w))| *out += w[0] * f[0] + w[1] * f[1]);
-    if let ([f], [w], Some(out)) = (last_f, last_w, out.last_mut()) {
-        *out += w * f;
     }
 }
