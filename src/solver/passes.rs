@@ -5,9 +5,8 @@
 
 use std::ops::Range;
 
-use crate::kernel::Workspace;
 use crate::solver::bands::{BandSums, Bands};
-use crate::solver::problem::{Problem, Solution};
+use crate::solver::problem::{Problem, Solution, Solve};
 use crate::solver::rigid_motion::{Line, ModeCoefficients};
 use crate::solver::row_segments::{PIECE_CELLS, Piece, RowSegments};
 use crate::sum::{most, sum, sum_of_pairs};
@@ -34,10 +33,9 @@ impl Search {
         Search { direction: vec![0.0; cells], image: vec![0.0; cells] }
     }
 
-    /// Computes K d, counted.
-    pub(crate) fn convolve(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) {
-        problem.kernel.apply(&self.direction, &mut self.image, work);
-        solution.counts.convolutions += 1;
+    /// Computes K d.
+    pub(crate) fn convolve(&mut self, solve: &mut Solve<'_>) {
+        solve.convolve_field(&self.direction, &mut self.image);
     }
 }
 
@@ -114,39 +112,32 @@ impl<'a> Passes<'a> {
         bands.joined()
     }
 
-    /// Calls `visit` with motion − (c v + gap) on the pieces outside the contact that may carry pressure.
-    #[inline]
-    fn over_depths<T: Send, const M: usize>(
-        self,
-        solution: &Solution,
-        outputs: [&mut [T]; M],
-        visit: impl Fn(&[f64], Visit<'_, T, M>) + Sync,
-    ) -> &'a mut Bands {
-        let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
-        self.over(outputs, |mut piece| {
-            if !piece.in_contact && !problem.released(piece.body) {
-                let (motion, cells) =
-                    (problem.line(piece.body, piece.cells.start).of(motions[piece.body]), piece.cells.clone());
-                let depths = std::mem::take(&mut piece.residual);
-                fill_residual(motion, depths, problem.compliance, &potential[cells.clone()], &problem.gap[cells]);
-                visit(depths, piece);
-            }
-        })
-    }
-
     /// The deepest penetration of the cells outside that may carry pressure, 0 if there is none.
     pub(crate) fn penetration(self, solution: &Solution) -> f64 {
-        let bands = self.over_depths::<f64, 0>(solution, [], |depths, Visit { sums, .. }| {
-            sums.penetration = sums.penetration.max(most(depths));
+        let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
+        let bands = self.over::<f64, 0>([], |Visit { cells, body, in_contact, residual: depth, sums, .. }| {
+            if !in_contact && !problem.released(body) {
+                let (motion, v) = (problem.line(body, cells.start).of(motions[body]), &potential[cells.clone()]);
+                fill_residual(motion, depth, problem.compliance, v, &problem.gap[cells]);
+                sums.penetration = sums.penetration.max(most(depth));
+            }
         });
         bands.joined().iter().map(|sums| sums.penetration).fold(0.0, f64::max)
     }
 
     /// Takes cells without pressure that penetrate deeper than `least` into the set.
     pub(crate) fn add_penetrating(self, least: f64, solution: &Solution, member: &mut [bool]) {
-        self.over_depths(solution, [member], |depths, Visit { cells, outputs: [member], .. }| {
-            let fields = solution.pressure[cells].iter().zip(depths);
-            member.iter_mut().zip(fields).for_each(|(member, (&p, &depth))| *member = (p == 0.0) & (depth > least));
+        let (problem, Solution { motions, pressure, potential, .. }) = (self.problem, solution);
+        self.over([member], |Visit { cells, body, in_contact, outputs: [member], residual: depth, .. }| {
+            if !in_contact && !problem.released(body) {
+                let (motion, v) = (problem.line(body, cells.start).of(motions[body]), &potential[cells.clone()]);
+                fill_residual(motion, depth, problem.compliance, v, &problem.gap[cells.clone()]);
+                let fields = pressure[cells].iter().zip(depth);
+                member
+                    .iter_mut()
+                    .zip(fields)
+                    .for_each(|(member, (&p, &mut depth))| *member = (p == 0.0) & (depth > least));
+            }
         });
     }
 

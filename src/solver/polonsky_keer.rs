@@ -1,13 +1,12 @@
 //! The reference solver of the source paper.
 
-use crate::kernel::Workspace;
 use crate::parallel::Rows;
 use crate::solver::bands::Bands;
 use crate::solver::cold_start::{balance, make_feasible, press_everywhere};
 use crate::solver::contact_set::ContactSet;
-use crate::solver::outcome::{Outcome, ResidualSums, Stop};
+use crate::solver::outcome::{Outcome, ResidualSums};
 use crate::solver::passes::Search;
-use crate::solver::problem::{Problem, Solution};
+use crate::solver::problem::{Problem, Solution, Solve};
 use crate::solver::resting_position::RestingPosition;
 use crate::solver::rigid_motion::{Freedom, ModeCoefficients, Modes, dot};
 
@@ -33,20 +32,16 @@ impl PolonskyKeer {
     }
 
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent.
-    pub(crate) fn solve(
-        &mut self,
-        problem: &Problem<'_>,
-        stop: Stop,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Outcome {
-        if let Err(body) = make_feasible(problem, &mut self.set, solution) {
+    pub(crate) fn solve(&mut self, solve: &mut Solve<'_>) -> Outcome {
+        let (problem, stop) = (solve.problem, solve.stop);
+        if let Err(body) = make_feasible(problem, &mut self.set, solve.solution) {
             return Outcome::Unbalanced(body);
         }
         self.search.direction.fill(0.0);
         let (mut square_old, mut conjugate) = (1.0, false);
         loop {
-            solution.convolve(problem, work);
+            solve.convolve();
+            let solution = &mut *solve.solution;
             self.set.find_pressed(problem, &solution.pressure);
             let mut state = self.fit_motions(problem, solution);
             state.note(problem, 0.0, solution);
@@ -61,8 +56,8 @@ impl PolonskyKeer {
             for (k, t) in self.search.direction.iter_mut().enumerate() {
                 *t = if solution.pressure[k] > 0.0 { -self.residual[k] + beta * *t } else { 0.0 };
             }
-            let step = self.step_length(problem, solution, work);
-            conjugate = !self.advance(problem, solution, step);
+            let step = self.step_length(solve);
+            conjugate = !self.advance(problem, solve.solution, step);
         }
     }
 
@@ -91,8 +86,9 @@ impl PolonskyKeer {
     }
 
     /// Step length from the image of the direction, less its free motion in contact.
-    fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution, work: &mut Workspace) -> f64 {
-        self.search.convolve(problem, solution, work);
+    fn step_length(&mut self, solve: &mut Solve<'_>) -> f64 {
+        self.search.convolve(solve);
+        let Solve { problem, solution, .. } = solve;
         let PolonskyKeer { set, bands, residual, search } = self;
         let (mut numerator, mut denominator) = (0.0, 0.0);
         for found in set.passes(problem, bands).slope_and_curvature(solution, search) {

@@ -21,7 +21,8 @@ const BEYOND_LAYER: f64 = -0.2;
 pub(crate) struct Preconditioner {
     operator: Arc<SpectralOperator>,
     work: TransformWorkspace,
-    diagonal: f64,
+    /// The diagonal of M.
+    pub(crate) diagonal: f64,
     extension: Extension,
     /// The version of A that `extension` is made for.
     version: u64,
@@ -76,11 +77,6 @@ impl Preconditioner {
     /// field ← M field.
     pub(crate) fn filter(&mut self, field: &mut [f64], lender: &mut Workspace) {
         self.operator.apply_beside(field, &mut self.work, &mut lender.0);
-    }
-
-    /// The diagonal of M.
-    pub(crate) fn diagonal(&self) -> f64 {
-        self.diagonal
     }
 }
 

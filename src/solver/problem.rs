@@ -2,6 +2,7 @@
 
 use crate::kernel::{LocalKernel, Workspace};
 use crate::parallel::Rows;
+use crate::solver::outcome::Stop;
 use crate::solver::rigid_motion::{Freedom, Line, ModeCoefficients, Modes};
 use crate::solver::row_segments::Cut;
 use crate::solver::trace::Trace;
@@ -159,10 +160,26 @@ impl Solution {
             self.motions[body] = ModeCoefficients([lowest, 0.0, 0.0]);
         }
     }
+}
 
+/// A problem, its solution so far, when to stop, and the buffers of the convolutions.
+pub(crate) struct Solve<'a> {
+    pub(crate) problem: &'a Problem<'a>,
+    pub(crate) stop: Stop,
+    pub(crate) solution: &'a mut Solution,
+    pub(crate) work: &'a mut Workspace,
+}
+
+impl Solve<'_> {
     /// v ← K p, counted.
-    pub(crate) fn convolve(&mut self, problem: &Problem<'_>, work: &mut Workspace) {
-        problem.kernel.apply(&self.pressure, &mut self.potential, work);
-        self.counts.convolutions += 1;
+    pub(crate) fn convolve(&mut self) {
+        self.problem.kernel.apply(&self.solution.pressure, &mut self.solution.potential, self.work);
+        self.solution.counts.convolutions += 1;
+    }
+
+    /// image ← K field, counted.
+    pub(crate) fn convolve_field(&mut self, field: &[f64], image: &mut [f64]) {
+        self.problem.kernel.apply(field, image, self.work);
+        self.solution.counts.convolutions += 1;
     }
 }

@@ -39,26 +39,21 @@ impl RowSegments {
     /// Finds the runs of members of a set.
     pub(crate) fn find(&mut self, member: &[bool]) {
         self.runs.clear();
-        let mut start = None;
+        let mut inside = false;
         for (block, values) in member.chunks(SEARCH_BLOCK).enumerate() {
             // most blocks are all inside or all outside, as the cell before them
-            let inside = start.is_some();
             if values.iter().fold(true, |same, &m| same & (m == inside)) {
                 continue;
             }
-            for (k, &m) in values.iter().enumerate() {
-                let k = (block * SEARCH_BLOCK + k) as u32;
-                match start {
-                    None if m => start = Some(k),
-                    Some(first) if !m => {
-                        self.runs.push([first, k]);
-                        start = None;
-                    }
-                    _ => {}
+            for (k, &m) in (block * SEARCH_BLOCK..).zip(values) {
+                match self.runs.last_mut() {
+                    _ if m == inside => continue,
+                    Some(last) if inside => last[1] = k as u32,
+                    _ => self.runs.push([k as u32, member.len() as u32]),
                 }
+                inside = m;
             }
         }
-        self.runs.extend(start.map(|first| [first, member.len() as u32]));
     }
 
     /// The cells of all runs.

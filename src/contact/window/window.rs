@@ -7,7 +7,7 @@ use crate::contact::step::request::Trial;
 use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::{ActiveSet, HaloExchange, HaloRows, Outcome, PolonskyKeer, Problem, Stop};
+use crate::solver::{ActiveSet, HaloExchange, HaloRows, Outcome, PolonskyKeer, Problem, Solve, Stop};
 
 /// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt for
 /// another region and never saved.
@@ -128,8 +128,8 @@ impl Window {
                 solution.release();
                 Outcome::Converged
             }
-            ContactSolver::ActiveSet(solver) => solver.solve(&problem, stop, solution, work),
-            ContactSolver::PolonskyKeer(solver) => solver.solve(&problem, stop, solution, work),
+            ContactSolver::ActiveSet(solver) => solver.solve(&mut Solve { problem: &problem, stop, solution, work }),
+            ContactSolver::PolonskyKeer(solver) => solver.solve(&mut Solve { problem: &problem, stop, solution, work }),
         };
         solution.follow_surface(&problem);
         outcome

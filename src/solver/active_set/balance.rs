@@ -1,11 +1,10 @@
 //! Balance of force and moments on the active set.
 
 use super::{ActiveSet, MAX_MOVED_SHARE, Shape};
-use crate::kernel::Workspace;
 use crate::parallel::for_each_band;
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::outcome::ResidualSums;
-use crate::solver::problem::{Problem, Solution};
+use crate::solver::problem::{Problem, Solution, Solve};
 
 /// Share of the force by which a converged pressure may be changed in order to balance it.
 const MAX_CLOSING_CHANGE: f64 = 1e-9;
@@ -30,21 +29,16 @@ impl ActiveSet {
     /// Makes the pressure on A carry the force and moments of each body: at once, by scaling p and v, where the force of a
     /// single body is the only load; else by the next direction. Where that cannot be, the last step is cut short, if it was a
     /// search, `searched` long; else the body begins again.
-    pub(super) fn balance(
-        &mut self,
-        problem: &Problem<'_>,
-        shape: Shape,
-        searched: f64,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Result<(), usize> {
+    pub(super) fn balance(&mut self, shape: Shape, searched: f64, solve: &mut Solve<'_>) -> Result<(), usize> {
+        let problem = solve.problem;
         let single = problem.bodies.len() == 1;
-        let pressed: f64 = (0..problem.bodies.len()).map(|body| self.set.sum(problem, body, &solution.pressure)).sum();
-        let all = if self.changes.leaving { problem.rows().sum(&solution.pressure) } else { pressed };
+        let pressed: f64 =
+            (0..problem.bodies.len()).map(|body| self.set.sum(problem, body, &solve.solution.pressure)).sum();
+        let all = if self.changes.leaving { problem.rows().sum(&solve.solution.pressure) } else { pressed };
         self.changes.moves = self.changes.leaving && (all - pressed).abs() < MAX_MOVED_SHARE * pressed;
         let carried = if self.changes.moves { all } else { pressed };
         if !single || problem.bodies[0].tilts() {
-            self.fill_shape(shape, solution);
+            self.fill_shape(shape, solve.solution);
         }
         self.changes.corrections.fill(None);
         for body in problem.loaded_bodies().filter(|&body| problem.bodies[body].moves()) {
@@ -52,13 +46,14 @@ impl ActiveSet {
             if single && !modes.freedom.tilts() {
                 let scale = problem.bodies[body].total / carried;
                 if (scale - 1.0).abs() > f64::EPSILON {
-                    for_each_band([&mut solution.pressure, &mut solution.potential], |_, [p, v]| {
+                    for_each_band([&mut solve.solution.pressure, &mut solve.solution.potential], |_, [p, v]| {
                         p.iter_mut().for_each(|p| *p *= scale);
                         v.iter_mut().for_each(|v| *v *= scale);
                     });
                 }
                 continue;
             }
+            let solution = &mut *solve.solution;
             let p = |k: usize| solution.pressure[k].max(0.0);
             if let Some(y) = self.set.balance(problem, body, p, |k| self.shape[k]) {
                 // pressures that are moved change the moments, and the force of the bodies beside their own
@@ -85,8 +80,8 @@ impl ActiveSet {
                 return Err(body);
             }
             self.set.keep_pressed(problem, body, &solution.pressure);
-            solution.convolve(problem, work);
-            self.changes.leaving = self.some_leave(problem, solution);
+            solve.convolve();
+            self.changes.leaving = self.some_leave(problem, solve.solution);
             self.energy = 0.0;
         }
         Ok(())
@@ -94,7 +89,8 @@ impl ActiveSet {
 
     /// Removes from a converged pressure the imbalance of force and moments that rounding has left: too little to show in v.
     /// False if it is more than rounding.
-    pub(super) fn close_balance(&mut self, problem: &Problem<'_>, tolerance: f64, solution: &mut Solution) -> bool {
+    pub(super) fn close_balance(&mut self, solve: &mut Solve<'_>) -> bool {
+        let Solve { problem, ref stop, ref mut solution, .. } = *solve;
         problem.loaded_bodies().all(|body| {
             let modes = problem.modes(body);
             if !modes.freedom.tilts() {
@@ -117,7 +113,7 @@ impl ActiveSet {
             // where no force is prescribed, the pressure may be rounding itself: no cell moves more than by this
             let kernel = problem.kernel;
             let moved = problem.compliance * kernel.self_influence() * kernel.images();
-            let [unseen, rounding] = self.unseen(problem, tolerance, solution);
+            let [unseen, rounding] = self.unseen(problem, stop.tolerance, solution);
             if moved * carried <= rounding {
                 // the body is held by a touch
                 self.set.cells(problem, body).for_each(|k| solution.pressure[k] = 0.0);

@@ -13,11 +13,10 @@
 
 use super::iteration::Towards;
 use super::{ActiveSet, JOIN_OVER_RMS};
-use crate::kernel::Workspace;
 use crate::solver::cold_start::make_feasible;
-use crate::solver::outcome::{Outcome, ResidualSums, Stop};
+use crate::solver::outcome::{Outcome, ResidualSums};
 use crate::solver::passes::add;
-use crate::solver::problem::{Problem, Solution};
+use crate::solver::problem::{Problem, Solution, Solve};
 
 /// Times that cells may join A without any gain in between; after that, the rest of the residual is rounding.
 const MAX_JOINS_WITHOUT_GAIN: usize = 3;
@@ -44,22 +43,17 @@ impl Gain {
 
 impl ActiveSet {
     /// Improves `solution` until its residual is below the tolerance, the iterations are spent, or rounding hides any gain.
-    pub(super) fn descend(
-        &mut self,
-        problem: &Problem<'_>,
-        stop: Stop,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Result<Outcome, usize> {
+    pub(super) fn descend(&mut self, solve: &mut Solve<'_>) -> Result<Outcome, usize> {
+        let (problem, stop) = (solve.problem, solve.stop);
         self.changes.clear();
-        make_feasible(problem, &mut self.set, solution)?;
-        solution.convolve(problem, work);
+        make_feasible(problem, &mut self.set, solve.solution)?;
+        solve.convolve();
         let (mut gained, mut joins_without_gain, mut blocked) = (true, 0, false);
         self.energy = 0.0;
         loop {
-            let mut state = self.advance(problem, solution, 0.0);
-            state.note(problem, self.guess_rounding, solution);
-            if let Some(outcome) = stop.outcome(solution, || true) {
+            let mut state = self.advance(problem, solve.solution, 0.0);
+            state.note(problem, self.guess_rounding, solve.solution);
+            if let Some(outcome) = stop.outcome(solve.solution, || true) {
                 return Ok(outcome);
             }
             let penetrates = state.penetration > JOIN_OVER_RMS * state.rms();
@@ -70,14 +64,14 @@ impl ActiveSet {
                     return Ok(Outcome::Stagnated);
                 }
                 gained = false;
-                self.add_deepest_cells(problem, joins_without_gain > 0, state, solution);
-                self.advance(problem, solution, 0.0);
+                self.add_deepest_cells(problem, joins_without_gain > 0, state, solve.solution);
+                self.advance(problem, solve.solution, 0.0);
             }
-            solution.counts.iterations += 1;
-            solution.counts.fallback_iterations += 1;
+            solve.solution.counts.iterations += 1;
+            solve.solution.counts.fallback_iterations += 1;
             let cells = self.set.count();
             let towards = if joins_without_gain > 1 { Towards::Residual } else { Towards::Preconditioned };
-            let gain = self.step_downhill(problem, towards, solution, work);
+            let gain = self.step_downhill(towards, solve);
             gained |= gain > 0.0;
             blocked = gain <= 0.0 && self.set.count() < cells;
             if gain <= 0.0 && !blocked && !penetrates {
@@ -101,16 +95,11 @@ impl ActiveSet {
     }
 
     /// One step; returns by how much E falls.
-    fn step_downhill(
-        &mut self,
-        problem: &Problem<'_>,
-        towards: Towards,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> f64 {
-        let c = problem.compliance;
-        self.find_direction(problem, towards, solution, work);
-        self.search.convolve(problem, solution, work);
+    fn step_downhill(&mut self, towards: Towards, solve: &mut Solve<'_>) -> f64 {
+        let (problem, c) = (solve.problem, solve.problem.compliance);
+        self.find_direction(towards, solve);
+        self.search.convolve(solve);
+        let solution = &mut *solve.solution;
         let [slope, curvature] = self.slope_and_curvature(problem, solution);
         self.energy = curvature;
         let free = Gain::along(slope, c * curvature, f64::INFINITY);
@@ -136,14 +125,14 @@ impl ActiveSet {
             let ActiveSet { set, buffer: step, shape: image, .. } = self;
             let slope = set.sum_over_all(problem, |k| problem.depth(solution, k) * step[k]);
             image.resize(step.len(), 0.0);
-            problem.kernel.apply(step, image, work);
-            solution.counts.convolutions += 1;
+            solve.convolve_field(step, image);
             let curvature = set.sum_over_all(problem, |k| step[k] * image[k]);
             Gain::along(slope, c * curvature, 1.0)
         } else {
             Gain::default()
         };
         let clips = clipped.energy > straight.energy;
+        let solution = &mut *solve.solution;
         let ActiveSet { set, buffer: clipped_step, shape: clipped_image, search, .. } = self;
         for k in set.segments.cells() {
             let (p, d) = (&mut solution.pressure[k], search.direction[k]);
@@ -185,6 +174,7 @@ mod tests {
     use super::*;
     use crate::Grid;
     use crate::kernel::InfluenceKernel;
+    use crate::solver::outcome::Stop;
     use crate::solver::rigid_motion::Freedom;
 
     /// Alone, and from a bad guess, it finds what the active set finds, on soft surfaces and on nearly rigid ones.
@@ -213,11 +203,17 @@ mod tests {
             };
             let mut solver = ActiveSet::new(&kernel, 1, &mut work);
             let mut exact = Solution::zero(grid.len(), 1);
-            assert_eq!(solver.solve(&problem, stop, &mut exact, &mut work), Outcome::Converged);
+            assert_eq!(
+                solver.solve(&mut Solve { problem: &problem, stop, solution: &mut exact, work: &mut work }),
+                Outcome::Converged
+            );
 
             let mut slow = Solution::zero(grid.len(), 1);
             slow.pressure.iter_mut().zip(&gap).for_each(|(p, h)| *p = if h.is_finite() { 1.0 } else { 0.0 });
-            assert_eq!(solver.descend(&problem, stop, &mut slow, &mut work), Ok(Outcome::Converged));
+            assert_eq!(
+                solver.descend(&mut Solve { problem: &problem, stop, solution: &mut slow, work: &mut work }),
+                Ok(Outcome::Converged)
+            );
             assert!(slow.counts.fallback_iterations < 60, "{compliance}: {:?}", slow.counts);
             let peak = exact.pressure.iter().copied().fold(0.0, f64::max);
             for (a, b) in slow.pressure.iter().zip(&exact.pressure) {

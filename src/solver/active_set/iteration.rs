@@ -1,10 +1,9 @@
 //! One iteration of the active set: its residual, its direction and its length.
 
 use super::{ActiveSet, CORRECTION_LENGTH, JOIN_OVER_RMS};
-use crate::kernel::Workspace;
-use crate::solver::outcome::{Outcome, ResidualSums, Stop};
+use crate::solver::outcome::{Outcome, ResidualSums};
 use crate::solver::passes::add;
-use crate::solver::problem::{Problem, Solution};
+use crate::solver::problem::{Problem, Solution, Solve};
 use crate::solver::rigid_motion::{ModeCoefficients, dot};
 
 /// Σ (r − mean)² is computed afresh, not from Σ r², where less than this fraction of Σ r² is left.
@@ -37,56 +36,51 @@ pub(super) enum Towards {
 
 impl ActiveSet {
     /// Iterates from a guess until the solve ends, or stagnates. Fails with the body whose load no pressure can balance.
-    pub(super) fn iterate(
-        &mut self,
-        problem: &Problem<'_>,
-        stop: Stop,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Result<Outcome, usize> {
-        self.start(problem, solution, work)?;
+    pub(super) fn iterate(&mut self, solve: &mut Solve<'_>) -> Result<Outcome, usize> {
+        let (problem, stop) = (solve.problem, solve.stop);
+        self.start(solve)?;
         let (mut lowest, mut without_gain, mut step, mut searched) = (f64::INFINITY, 0, 0.0, 0.0);
         loop {
-            let mut state = self.advance(problem, solution, step);
+            let mut state = self.advance(problem, solve.solution, step);
             let aggressive = without_gain <= MAX_CORRECTIONS_WITHOUT_GAIN || searched != 0.0 || step == 0.0;
             if state.negative > 0.0 && self.should_remove_tensile(problem, stop, state, aggressive) {
-                self.remove_tensile_cells(problem, searched, solution, work)?;
-                state = self.advance(problem, solution, 0.0);
+                self.remove_tensile_cells(searched, solve)?;
+                state = self.advance(problem, solve.solution, 0.0);
             }
-            state.note(problem, self.guess_rounding, solution);
-            let mut ended = stop.outcome(solution, || !self.changes.any() && state.negative == 0.0);
-            let tensile = || !solution.pressure.iter().all(|&p| p >= 0.0);
+            state.note(problem, self.guess_rounding, solve.solution);
+            let mut ended = stop.outcome(solve.solution, || !self.changes.any() && state.negative == 0.0);
+            let tensile = || !solve.solution.pressure.iter().all(|&p| p >= 0.0);
             if ended == Some(Outcome::Converged) && problem.rows().any(tensile()) {
                 // tiny tensile pressures, whose squares vanish, still violate p ≥ 0
-                self.remove_tensile_cells(problem, searched, solution, work)?;
-                state = self.advance(problem, solution, 0.0);
-                ended = stop.outcome(solution, || false);
+                self.remove_tensile_cells(searched, solve)?;
+                state = self.advance(problem, solve.solution, 0.0);
+                ended = stop.outcome(solve.solution, || false);
             }
             if let Some(outcome) = ended {
                 return Ok(outcome);
             }
-            without_gain = if solution.residual < lowest { 0 } else { without_gain + 1 };
-            lowest = lowest.min(solution.residual);
+            without_gain = if solve.solution.residual < lowest { 0 } else { without_gain + 1 };
+            lowest = lowest.min(solve.solution.residual);
             if without_gain > MAX_ITERATIONS_WITHOUT_GAIN {
                 return Ok(Outcome::Stagnated);
             }
             // do not test the predicted set at iteration 0: it has no pressure yet
-            let predicted = problem.likely.is_some() && solution.counts.iterations == 0;
+            let predicted = problem.likely.is_some() && solve.solution.counts.iterations == 0;
             // only small pressures that leave remain to be removed
-            let solved = solution.residual <= stop.tolerance && self.changes.any();
+            let solved = solve.solution.residual <= stop.tolerance && self.changes.any();
             if state.penetration > JOIN_OVER_RMS * state.rms() && !predicted && !solved {
                 let was_cut = std::mem::take(&mut self.was_cut);
                 let least = if was_cut { DEEPEST * state.penetration } else { state.joining_depth() };
-                self.add_penetrating_cells(problem, least, solution);
-                self.advance(problem, solution, 0.0);
+                self.add_penetrating_cells(problem, least, solve.solution);
+                self.advance(problem, solve.solution, 0.0);
             }
 
-            solution.counts.iterations += 1;
+            solve.solution.counts.iterations += 1;
             let corrects = self.changes.any();
             let towards = if solved { Towards::Corrections } else { Towards::Preconditioned };
-            self.find_direction(problem, towards, solution, work);
-            self.search.convolve(problem, solution, work);
-            step = self.step_length(problem, solution);
+            self.find_direction(towards, solve);
+            self.search.convolve(solve);
+            step = self.step_length(problem, solve.solution);
             searched = if corrects { 0.0 } else { step };
         }
     }
@@ -134,13 +128,8 @@ impl ActiveSet {
     }
 
     /// d ← z + β d without free motion on A; with pressures to bring to zero or into balance, d is the whole change of p.
-    pub(super) fn find_direction(
-        &mut self,
-        problem: &Problem<'_>,
-        towards: Towards,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) {
+    pub(super) fn find_direction(&mut self, towards: Towards, solve: &mut Solve<'_>) {
+        let Solve { problem, solution, work, .. } = solve;
         // no longer than the last search: where M is too great an inverse, a longer one would not lower the residual
         let length = CORRECTION_LENGTH.min(self.search_length) / problem.compliance;
         let pending = self.changes.any();

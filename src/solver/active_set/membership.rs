@@ -3,23 +3,18 @@
 use std::ops::Range;
 
 use super::{ActiveSet, LEAVE_OVER_RMS, Shape};
-use crate::kernel::Workspace;
 use crate::parallel::for_each_band;
 use crate::solver::cold_start::cold_start;
 use crate::solver::contact_set::ContactSet;
 use crate::solver::outcome::{ResidualSums, Stop};
 use crate::solver::passes::{Passes, Search, add};
-use crate::solver::problem::{Problem, Solution};
+use crate::solver::problem::{Problem, Solution, Solve};
 
 impl ActiveSet {
     /// A = {p > 0}, or the cells that are likely to be in contact; other cells that carry pressure are to leave; the pressure
     /// on A is in balance. Fails with the body whose load no pressure can balance.
-    pub(super) fn start(
-        &mut self,
-        problem: &Problem<'_>,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Result<(), usize> {
+    pub(super) fn start(&mut self, solve: &mut Solve<'_>) -> Result<(), usize> {
+        let Solve { problem, solution, work, .. } = solve;
         (self.energy, self.search_length, self.was_cut) = (0.0, f64::INFINITY, false);
         for_each_band([&mut self.set.member], |first, [member]| {
             for (k, member) in (first..).zip(member) {
@@ -56,11 +51,11 @@ impl ActiveSet {
             reset |= self.set.count_under(body) > 0;
         }
         if reset {
-            solution.convolve(problem, work);
+            solve.convolve();
         }
         self.changes.clear();
-        self.changes.leaving = self.some_leave(problem, solution);
-        self.balance(problem, Shape::Pressure, 0.0, solution, work)
+        self.changes.leaving = self.some_leave(solve.problem, solve.solution);
+        self.balance(Shape::Pressure, 0.0, solve)
     }
 
     /// Whether cells outside A carry pressure.
@@ -85,7 +80,7 @@ impl ActiveSet {
         state: ResidualSums,
         aggressive: bool,
     ) -> bool {
-        let equivalent_gap = problem.compliance / self.preconditioner.diagonal();
+        let equivalent_gap = problem.compliance / self.preconditioner.diagonal;
         let solved = state.square <= stop.tolerance * stop.tolerance * state.displacement;
         let large = equivalent_gap * equivalent_gap * state.negative > LEAVE_OVER_RMS * LEAVE_OVER_RMS * state.square;
         solved || aggressive && large
@@ -93,13 +88,8 @@ impl ActiveSet {
 
     /// Takes cells with negative pressure out of A, and cells whose pressure becomes negative by the pressure that is moved to them.
     /// Where the others cannot carry the load, the last step is cut short instead, if it was a search, `searched` long.
-    pub(super) fn remove_tensile_cells(
-        &mut self,
-        problem: &Problem<'_>,
-        searched: f64,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Result<(), usize> {
+    pub(super) fn remove_tensile_cells(&mut self, searched: f64, solve: &mut Solve<'_>) -> Result<(), usize> {
+        let Solve { problem, solution, .. } = solve;
         self.changes.leaving = true;
         let ActiveSet { set, preconditioner, buffer: moved, .. } = self;
         set.segments.cells().for_each(|k| set.member[k] = solution.pressure[k] >= 0.0);
@@ -107,7 +97,7 @@ impl ActiveSet {
         preconditioner.gather_outside(&solution.pressure, set, moved);
         set.segments.cells().for_each(|k| set.member[k] = solution.pressure[k] + moved[k] >= 0.0);
         set.update(problem);
-        self.balance(problem, Shape::Punch, searched, solution, work)
+        self.balance(Shape::Punch, searched, solve)
     }
 
     /// Goes back along the last direction, `step` long, to where the first pressure became zero: before that all pressures

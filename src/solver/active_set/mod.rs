@@ -31,10 +31,10 @@ mod membership;
 use crate::kernel::{LocalKernel, Workspace};
 use crate::solver::bands::Bands;
 use crate::solver::contact_set::ContactSet;
-use crate::solver::outcome::{Outcome, PENETRATION_SLACK, Stop};
+use crate::solver::outcome::{Outcome, PENETRATION_SLACK};
 use crate::solver::passes::Search;
 use crate::solver::preconditioner::Preconditioner;
-use crate::solver::problem::{Problem, Solution};
+use crate::solver::problem::Solve;
 use crate::solver::rigid_motion::ModeCoefficients;
 use crate::sum::greatest;
 
@@ -138,26 +138,21 @@ impl ActiveSet {
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent. On
     /// entry `solution.potential` is K p of the guess, whose pressure may be negative on some cells; a body
     /// without any positive pressure gets a cold start.
-    pub(crate) fn solve(
-        &mut self,
-        problem: &Problem<'_>,
-        stop: Stop,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Outcome {
+    pub(crate) fn solve(&mut self, solve: &mut Solve<'_>) -> Outcome {
+        let problem = solve.problem;
         let given = problem.bodies.iter().any(|freedom| !freedom.translation);
-        let most = if given { problem.rows().greatest(greatest(&solution.potential)) } else { 0.0 };
+        let most = if given { problem.rows().greatest(greatest(&solve.solution.potential)) } else { 0.0 };
         self.guess_rounding = 4.0 * f64::EPSILON * problem.compliance * most;
-        let outcome = match self.iterate(problem, stop, solution, work) {
-            Ok(Outcome::Stagnated) => self.descend(problem, stop, solution, work),
+        let outcome = match self.iterate(solve) {
+            Ok(Outcome::Stagnated) => self.descend(solve),
             outcome => outcome,
         };
-        if outcome != Ok(Outcome::Converged) || self.close_balance(problem, stop.tolerance, solution) {
+        if outcome != Ok(Outcome::Converged) || self.close_balance(solve) {
             return outcome.unwrap_or_else(Outcome::Unbalanced);
         }
         // the converged pressure does not carry the loads
-        match self.descend(problem, stop, solution, work) {
-            Ok(Outcome::Converged) if !self.close_balance(problem, stop.tolerance, solution) => Outcome::Stagnated,
+        match self.descend(solve) {
+            Ok(Outcome::Converged) if !self.close_balance(solve) => Outcome::Stagnated,
             outcome => outcome.unwrap_or_else(Outcome::Unbalanced),
         }
     }
