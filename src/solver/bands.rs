@@ -79,13 +79,12 @@ pub(crate) struct Bands {
     rows: Rows,
     bodies: usize,
     found: Vec<BandSums>,
-    shared: bool,
 }
 
 impl Bands {
     pub(crate) fn new(rows: &Rows, bodies: usize) -> Bands {
         let found = vec![BandSums::NOTHING; rows.bands().max(1) * bodies];
-        Bands { rows: rows.clone(), bodies, found, shared: lanes(rows.own().len() * rows.cells()[1]) > 1 }
+        Bands { rows: rows.clone(), bodies, found }
     }
 
     /// Bytes of the sums.
@@ -99,9 +98,9 @@ impl Bands {
         outputs: [&mut [T]; M],
         job: impl Fn(Range<usize>, [&mut [T]; M], &mut [BandSums]) + Sync,
     ) {
-        let Bands { ref rows, bodies, ref mut found, shared } = *self;
+        let Bands { ref rows, bodies, ref mut found } = *self;
         let cells = rows.own().len() * rows.cells()[1];
-        over_bands(0..cells, rows.band_cells(), outputs, (found, bodies), shared, &|band, outputs, sums| {
+        over_bands(0..cells, rows.band_cells(), outputs, (found, bodies), lanes(cells) > 1, &|band, outputs, sums| {
             sums.fill(BandSums::NOTHING);
             job(band, outputs, sums);
         });
@@ -109,7 +108,7 @@ impl Bands {
 
     /// The sums of each body over the bands of all ranks, after [`Bands::over`].
     pub(crate) fn joined(&mut self) -> &[BandSums] {
-        let Bands { ref rows, bodies, ref mut found, .. } = *self;
+        let Bands { ref rows, bodies, ref mut found } = *self;
         if rows.are_shared() {
             found[0] = join_ranks(rows, &found[..rows.bands()]);
             return &found[..1];

@@ -133,10 +133,9 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &m
 
     let depth = level - lowest;
     for k in cells() {
-        let above = if depth > 0.0 { ((level - gap(k)) / depth).max(0.0).sqrt() } else { 0.0 };
         // where the rise is below rounding, the lowest cells are pressed evenly
-        let share = if depth > 0.0 { above } else { f64::from(u8::from(gap(k) <= lowest)) };
-        solution.pressure[k] = peak * share;
+        let evenly = || f64::from(u8::from(gap(k) <= lowest));
+        solution.pressure[k] = peak * if depth > 0.0 { ((level - gap(k)) / depth).max(0.0).sqrt() } else { evenly() };
     }
     if freedom.translation {
         let scale = freedom.total / set.sum_of(problem, body, |k| solution.pressure[k]);

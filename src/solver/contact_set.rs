@@ -98,13 +98,8 @@ impl ContactSet {
         self.bodies[body].cells
     }
 
-    /// The cells in contact under one body, in pieces along which its modes are affine.
-    pub(crate) fn pieces(&self, problem: &Problem<'_>, body: usize) -> impl Iterator<Item = Range<usize>> + Clone {
-        self.pieces_in(problem, body, 0..self.member.len())
-    }
-
-    /// Those of a band.
-    pub(crate) fn pieces_in(
+    /// The cells of a band in contact under one body, in pieces along which its modes are affine.
+    fn pieces(
         &self,
         problem: &Problem<'_>,
         body: usize,
@@ -118,7 +113,7 @@ impl ContactSet {
 
     /// Σ f over the cells in contact under one body.
     pub(crate) fn sum_of(&self, problem: &Problem<'_>, body: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
-        problem.rows().sum_of(|band| self.pieces_in(problem, body, band).flatten().map(&f).sum())
+        problem.rows().sum_of(|band| self.pieces(problem, body, band).flatten().map(&f).sum())
     }
 
     /// Σ f over all cells in contact.
@@ -130,12 +125,12 @@ impl ContactSet {
 
     /// The cells in contact under one body.
     pub(crate) fn cells(&self, problem: &Problem<'_>, body: usize) -> impl Iterator<Item = usize> + Clone {
-        self.pieces(problem, body).flatten()
+        self.pieces(problem, body, 0..self.member.len()).flatten()
     }
 
     /// Σ values over the cells in contact under one body.
     pub(crate) fn sum(&self, problem: &Problem<'_>, body: usize, values: &[f64]) -> f64 {
-        problem.rows().sum_of(|band| self.pieces_in(problem, body, band).map(|piece| sum(&values[piece])).sum())
+        problem.rows().sum_of(|band| self.pieces(problem, body, band).map(|piece| sum(&values[piece])).sum())
     }
 
     /// The cells in contact under one body, and the value of a motion on each of them.
@@ -146,7 +141,7 @@ impl ContactSet {
         motion: ModeCoefficients,
     ) -> impl Iterator<Item = (usize, f64)> {
         let modes = problem.modes(body);
-        self.pieces(problem, body).flat_map(move |piece| {
+        self.pieces(problem, body, 0..self.member.len()).flat_map(move |piece| {
             let [start, slope] = modes.line(piece.start).of(motion);
             piece.enumerate().map(move |(j, k)| (k, start + slope * j as f64))
         })
@@ -178,7 +173,7 @@ impl ContactSet {
         if !problem.bodies[body].moves() {
             return Some(ModeCoefficients::default());
         }
-        problem.modes(body).balance(problem.rows(), |band| self.pieces_in(problem, body, band), base, weight)
+        problem.modes(body).balance(problem.rows(), |band| self.pieces(problem, body, band), base, weight)
     }
 
     /// Takes in the cells with positive pressure alone.

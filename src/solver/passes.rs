@@ -256,10 +256,6 @@ pub(crate) fn add(x: &mut [f64], a: f64, y: &[f64]) {
 /// Adds Σ B f over a piece.
 #[inline]
 fn add_modes(sums: &mut [f64; 3], line: &Line, f: &[f64]) {
-    if line.upright {
-        sums[0] += sum(f);
-        return;
-    }
     let moment = if line.step != 0.0 { sum_of_pairs(f, &NUMBERS[..f.len()], |f, j| f * j) } else { 0.0 };
     let part = line.sums([sum(f), moment]);
     sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);

@@ -94,8 +94,6 @@ pub(crate) struct Modes<'a> {
 pub(crate) struct Line {
     first: [f64; 3],
     pub(crate) step: f64,
-    /// Whether the body does not tilt, which is quicker.
-    pub(crate) upright: bool,
 }
 
 /// Σ w B Bᵀ over some cells.
@@ -127,7 +125,7 @@ impl<'a> Modes<'a> {
             return Line::UPRIGHT;
         }
         let step = if self.freedom.tilt[1] { self.grid.spacing()[1] / self.scale[1] } else { 0.0 };
-        Line { first: self.at(k), step, upright: false }
+        Line { first: self.at(k), step }
     }
 
     /// Which of ω, α1 and α2 are free.
@@ -223,7 +221,8 @@ impl<'a> Modes<'a> {
             });
             // near the minimum the value is rounded, but the gradient still falls
             let next = trials.find(|(length, _, (_, next_sums, next_value))| {
-                *next_value <= value - 1e-4 * length * descent || norm(*next_sums) <= 0.5 * norm(sums)
+                *next_value <= value - 1e-4 * length * descent
+                    || dot(*next_sums, *next_sums).sqrt() <= 0.5 * dot(sums, sums).sqrt()
             });
             // if no trial falls, rounding hides any further descent: the balance decides
             let Some((_, next, state)) = next else { break };
@@ -235,20 +234,17 @@ impl<'a> Modes<'a> {
 
 impl Line {
     /// Of a body that does not tilt.
-    pub(crate) const UPRIGHT: Line = Line { first: [1.0, 0.0, 0.0], step: 0.0, upright: true };
+    pub(crate) const UPRIGHT: Line = Line { first: [1.0, 0.0, 0.0], step: 0.0 };
 
     /// The same modes, with j counted from elsewhere.
     fn from(self, j: f64) -> Line {
         let [mode0, mode1, mode2] = self.first;
-        Line { first: [mode0, mode1, mode2 + self.step * j], ..self }
+        Line { first: [mode0, mode1, mode2 + self.step * j], step: self.step }
     }
 
     /// A motion on the first cell, and its increase from cell to cell.
     #[inline]
     pub(crate) fn of(&self, motion: ModeCoefficients) -> [f64; 2] {
-        if self.upright {
-            return [motion.0[0], 0.0];
-        }
         [dot(self.first, motion.0), self.step * motion.0[2]]
     }
 
@@ -285,10 +281,6 @@ impl Gram {
     pub(crate) fn solve(&self, right: [f64; 3]) -> [f64; 3] {
         linalg::solve_normal_equations(&self.entries, right, DEPENDENT_FRACTION)
     }
-}
-
-fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
 }
 
 pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {

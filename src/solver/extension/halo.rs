@@ -13,8 +13,8 @@ use crate::solver::extension::passes::{NOTHING_KNOWN, weight};
 pub(crate) struct HaloRows {
     rows: [Option<HaloRow>; 2],
     /// Halo values are multiplied by 1 − w already: these are the members, none, and the factors φ with w = 0 of a halo row.
-    no_members: Vec<bool>,
-    nothing_known: Vec<f64>,
+    pub(super) no_members: Vec<bool>,
+    pub(super) nothing_known: Vec<f64>,
 }
 
 /// A row of another rank.
@@ -60,14 +60,6 @@ impl HaloRows {
     /// The values of one of the rows.
     pub(super) fn row(&self, row: usize) -> &[f64] {
         self.rows.iter().flatten().find(|halo| halo.row == row).map_or(&[], |halo| &halo.values)
-    }
-
-    pub(super) fn no_members(&self) -> &[bool] {
-        &self.no_members
-    }
-
-    pub(super) fn nothing_known(&self) -> &[f64] {
-        &self.nothing_known
     }
 }
 

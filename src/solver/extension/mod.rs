@@ -223,15 +223,17 @@ impl Extension {
                 Known::Members(&member[cells.clone()]).write_open(&field[cells], out);
             });
         }
-        let (values, known) = field.map_or((&[][..], Known::Ones(member)), |field| (field, Known::Members(member)));
+        let values = field.unwrap_or(&[]);
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
             let level = &mut level[0];
             let (values, known, fine) = match finer.last() {
-                None => (Blocks { values, first: rows.own().start, columns, halo }, known, rows.cells()),
+                None => {
+                    (Blocks { values, first: rows.own().start, columns, halo }, Known::Members(member), rows.cells())
+                }
                 Some(finer) => (finer.blocks(), Known::Factors(&finer.factor), finer.cells),
             };
-            let pass = Ascent { values, known, fine, periodic, interpolated };
+            let pass = Ascent { values, known, fine, periodic, of_ones: field.is_none(), interpolated };
             level.compute(&pass, rows, buffers);
             if field.is_none() {
                 let factors = level.factor.iter_mut().zip(&level.value);

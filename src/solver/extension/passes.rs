@@ -57,8 +57,6 @@ impl<P: RowPass> Task for SharedRows<'_, P> {
 /// The weights w of cells or blocks.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Known<'a> {
-    /// The members of the set, with the field 1 on each of them.
-    Ones(&'a [bool]),
     Members(&'a [bool]),
     /// φ.
     Factors(&'a [f64]),
@@ -69,7 +67,7 @@ impl Known<'_> {
     pub(super) fn write_open(self, values: &[f64], out: &mut [f64]) {
         let values = out.iter_mut().zip(values);
         match self {
-            Known::Ones(member) | Known::Members(member) => {
+            Known::Members(member) => {
                 values.zip(member).for_each(|((out, &f), &inside)| *out = if inside { 0.0 } else { f });
             }
             Known::Factors(factors) => {
@@ -113,6 +111,8 @@ pub(super) struct Ascent<'a> {
     pub(super) known: Known<'a>,
     pub(super) fine: [usize; 2],
     pub(super) periodic: [bool; 2],
+    /// Whether the field is 1 on the set, and has no values.
+    pub(super) of_ones: bool,
     /// Whether S is the transpose of the interpolation of (1 − w) f, or the sum of w f.
     pub(super) interpolated: bool,
 }
@@ -133,20 +133,20 @@ impl Ascent<'_> {
         let Blocks { values, first, .. } = self.values;
         out.fill(0.0);
         for row in (2 * i..(2 * i + 2).min(n1)).map(|row| (row - first) * n2..(row - first + 1) * n2) {
-            let terms = fine[..n2].iter_mut();
+            let terms = fine.iter_mut();
             match self.known {
-                Known::Ones(member) => {
+                Known::Members(member) if self.of_ones => {
                     terms.zip(&member[row]).for_each(|(term, &inside)| *term = f64::from(u8::from(inside)));
-                    add_pairs(out, &fine[..n2]);
                 }
                 // the field is zero outside the set
-                Known::Members(_) => add_pairs(out, &values[row]),
+                Known::Members(_) => fine[..n2].copy_from_slice(&values[row]),
                 Known::Factors(factors) => {
                     let weighted = values[row.clone()].iter().zip(&factors[row]);
                     terms.zip(weighted).for_each(|(term, (f, factor))| *term = factor * f);
-                    add_pairs(out, &fine[..n2]);
                 }
             }
+            fine[n2..2 * n2.div_ceil(2)].fill(0.0);
+            out.iter_mut().zip(fine.as_chunks::<2>().0).for_each(|(out, [a, b])| *out += a + b);
         }
     }
 
@@ -160,14 +160,14 @@ impl Ascent<'_> {
         let (rows, shares) = (parts.map(|(row, _)| values.row(row)), parts.map(|(_, share)| share));
         let sums = &mut fine[2..n2 + 2];
         match self.known {
-            Known::Ones(member) | Known::Members(member) => {
+            Known::Members(member) => {
                 let known =
-                    parts.map(|(row, _)| values.kept(row).map_or(values.halo.no_members(), |cells| &member[cells]));
+                    parts.map(|(row, _)| values.kept(row).map_or(&values.halo.no_members[..], |cells| &member[cells]));
                 add_open(sums, shares, rows, known, |inside, f| if inside { 0.0 } else { f });
             }
             Known::Factors(factors) => {
-                let known =
-                    parts.map(|(row, _)| values.kept(row).map_or(values.halo.nothing_known(), |cells| &factors[cells]));
+                let known = parts
+                    .map(|(row, _)| values.kept(row).map_or(&values.halo.nothing_known[..], |cells| &factors[cells]));
                 add_open(sums, shares, rows, known, |factor, f| (1.0 - weight(factor)) * f);
             }
         }
@@ -213,7 +213,7 @@ impl RowPass for Descent<'_> {
         let above = if self.interpolated { self.interpolate(i, buffers) } else { self.repeat(i, buffers) };
         let values = values.iter_mut().zip(above);
         match (self.known, self.interpolated) {
-            (Known::Ones(member) | Known::Members(member), true) => {
+            (Known::Members(member), true) => {
                 values.zip(&member[known..]).for_each(|((x, &up), &inside)| *x = if inside { *x } else { up });
             }
             (Known::Factors(factors), true) => {
@@ -221,7 +221,7 @@ impl RowPass for Descent<'_> {
                     .zip(&factors[known..])
                     .for_each(|((x, &up), &factor)| *x = factor * *x + (1.0 - weight(factor)) * up);
             }
-            (Known::Ones(member) | Known::Members(member), false) => {
+            (Known::Members(member), false) => {
                 values.zip(&member[known..]).for_each(|((f, &sum), &inside)| *f = if inside { *f + sum } else { 0.0 });
             }
             (Known::Factors(factors), false) => {
@@ -288,15 +288,5 @@ fn add_open<K: Copy>(
     for ((out, ((&a, &b), (&c, &d))), ((&ka, &kb), (&kc, &kd))) in out.iter_mut().zip(values).zip(known) {
         let outer = parts[0] * open(ka, a) + parts[3] * open(kd, d);
         *out = outer + (parts[1] * open(kb, b) + parts[2] * open(kc, c));
-    }
-}
-
-/// Adds pairs of values to each block.
-#[inline(always)]
-fn add_pairs(out: &mut [f64], row: &[f64]) {
-    let (pairs, rest) = row.as_chunks::<2>();
-    out.iter_mut().zip(pairs).for_each(|(out, [a, b])| *out += a + b);
-    if let ([last], Some(out)) = (rest, out.last_mut()) {
-        *out += last;
     }
 }
