@@ -33,7 +33,7 @@ pub(crate) use named_sums;
 
 const LANES: usize = 8;
 
-/// The sum of two bands' sums, number by number.
+/// The sums of two arrays, number by number.
 pub(crate) fn add<const K: usize>(a: [f64; K], b: [f64; K]) -> [f64; K] {
     std::array::from_fn(|n| a[n] + b[n])
 }
@@ -55,7 +55,7 @@ pub(crate) fn greatest(values: &[f64]) -> f64 {
     greatest_of(values, 0.0, f64::abs)
 }
 
-/// The greatest value, −∞ of none.
+/// The greatest value, −∞ of no values.
 pub(crate) fn most(values: &[f64]) -> f64 {
     greatest_of(values, f64::NEG_INFINITY, |value| value)
 }

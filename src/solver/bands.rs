@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use crate::parallel::{Rows, lanes, over_bands};
 
-/// Sums and maxima of a pass over the cells of one body, in contact unless said otherwise, with the modes B of its motion. A
-/// pass finds some of them.
+/// Sums and maxima of a pass over the cells in contact under one body, with the modes B of its motion. Each pass computes some
+/// of them.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BandSums {
     /// Σ B r, of the residual r or of the preconditioned residual z.

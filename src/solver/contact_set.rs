@@ -20,11 +20,11 @@ pub(crate) struct ContactSet {
     bodies: Vec<BodyContact>,
     /// The greatest |gap| in contact.
     pub(crate) greatest_gap: f64,
-    /// How often the set was updated: what is made for the set is made anew where this has changed.
+    /// Number of updates of the set: values that depend on the set are computed anew where this number has changed.
     pub(crate) version: u64,
 }
 
-/// The part of the set that belongs to one body.
+/// The cells in contact under one body.
 #[derive(Debug, Clone, Default)]
 struct BodyContact {
     /// Number of cells.
@@ -46,7 +46,7 @@ impl ContactSet {
         }
     }
 
-    /// Finds the runs of the members, and what belongs to them.
+    /// Finds the segments of the members, and counts, products and the greatest gap over them.
     pub(crate) fn update(&mut self, problem: &Problem<'_>) {
         self.version += 1;
         self.segments.find(&self.member);
@@ -147,7 +147,7 @@ impl ContactSet {
         })
     }
 
-    /// The motion of a body that fits a field best on its cells in contact, from Σ B f over them; zero for what they do not
+    /// The motion of a body that fits a field best on its cells in contact, from Σ B f over them; zero for modes that they do not
     /// determine.
     pub(crate) fn fit(&self, problem: &Problem<'_>, body: usize, sums: [f64; 3]) -> ModeCoefficients {
         let (BodyContact { cells, gram, .. }, freedom) = (&self.bodies[body], problem.bodies[body]);
@@ -176,13 +176,13 @@ impl ContactSet {
         problem.modes(body).balance(problem.rows(), |band| self.pieces(problem, body, band), base, weight)
     }
 
-    /// Takes in the cells with positive pressure alone.
+    /// Sets the contact to the cells with positive pressure.
     pub(crate) fn find_pressed(&mut self, problem: &Problem<'_>, pressure: &[f64]) {
         self.member.iter_mut().zip(pressure).for_each(|(member, &p)| *member = p > 0.0);
         self.update(problem);
     }
 
-    /// Takes in all cells that a body may touch.
+    /// Adds all cells that a body may touch.
     pub(crate) fn press_possible(&mut self, problem: &Problem<'_>, body: usize) {
         for (k, member) in self.member.iter_mut().enumerate() {
             *member |= problem.gap[k].is_finite() && problem.owner(k) == body;
@@ -190,7 +190,7 @@ impl ContactSet {
         self.update(problem);
     }
 
-    /// Keeps of the cells of a body only those with positive pressure.
+    /// Removes the cells of a body without positive pressure.
     pub(crate) fn keep_pressed(&mut self, problem: &Problem<'_>, body: usize, pressure: &[f64]) {
         let own = self.member.iter_mut().enumerate().filter(|(k, _)| problem.owner(*k) == body);
         own.for_each(|(k, member)| *member &= pressure[k] > 0.0);

@@ -1,4 +1,4 @@
-//! How far a state is from a solution, and how a solve ends.
+//! The residual of a state, and the outcome of a solve.
 
 use crate::solver::contact_set::ContactSet;
 use crate::solver::problem::{Problem, Solution};
@@ -27,7 +27,7 @@ pub(crate) enum Outcome {
 }
 
 impl Stop {
-    /// How the solve ends here, if it does. Only an `admissible` state converges: its pressures are ≥ 0 and balance the
+    /// The outcome if the solve ends here. Only an `admissible` state converges: its pressures are ≥ 0 and balance the
     /// loads.
     pub(crate) fn outcome(&self, solution: &Solution, admissible: impl FnOnce() -> bool) -> Option<Outcome> {
         if solution.residual <= self.tolerance && admissible() {
@@ -42,7 +42,7 @@ impl Stop {
     }
 }
 
-/// Sums over the cells in contact, of which the residual is made.
+/// Sums over the cells in contact, from which the residual is computed.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ResidualSums {
     /// Σ h².
@@ -68,7 +68,7 @@ pub(crate) const PENETRATION_SLACK: f64 = 10.0;
 /// Lengths whose squares underflow \[m\].
 const UNDERFLOW: f64 = 1.5e-154;
 
-/// Of the penetrating cells, those join the contact that are deeper than this fraction of the deepest.
+/// Penetrating cells join the contact if they are deeper than this fraction of the deepest.
 const JOIN_OVER_DEEPEST: f64 = 0.2;
 
 impl ResidualSums {
@@ -92,7 +92,7 @@ impl ResidualSums {
         solution.trace.note(solution.counts.iterations, solution.residual);
     }
 
-    /// How far a state is from solving its [`Problem`], relative to rms (c v) in contact: the larger of rms |h| in contact
+    /// The residual of a state, relative to rms (c v) in contact: the larger of rms |h| in contact
     /// and a tenth of the deepest penetration. Rounding of the gap itself does not count.
     fn relative_residual(&self) -> f64 {
         let error =
@@ -115,8 +115,9 @@ impl ResidualSums {
         (self.displacement / self.cells.max(1) as f64).sqrt()
     }
 
-    /// The penetration from which cells join the contact: the shallowest, on the rim of a growing contact, would mostly leave
-    /// again. A body that penetrates deeper than the surface yields is far from its position: then only the deepest join.
+    /// The penetration from which cells join the contact: the shallowest cells, on the rim of a growing contact, would mostly
+    /// leave again. A body that penetrates deeper than the surface yields is far from its position: then only the deepest
+    /// cells join.
     pub(crate) fn joining_depth(&self) -> f64 {
         self.penetration * if self.penetration > self.yielding() { 0.5 } else { JOIN_OVER_DEEPEST }
     }

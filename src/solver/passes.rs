@@ -1,6 +1,6 @@
 //! The passes of the solvers over their fields.
 //!
-//! Each pass works on pieces of [`RowSegments`], along which the motion of a body is affine, and does everything that needs the
+//! Each pass works on pieces of [`RowSegments`], along which the motion of a body is affine, and does all work that reads the
 //! same fields at once. Sums are taken for each body: Σ B f of its modes B from Σ f and Σ j f of every piece.
 
 use std::ops::Range;
@@ -11,7 +11,7 @@ use crate::solver::rigid_motion::{Line, ModeCoefficients};
 use crate::solver::row_segments::{PIECE_CELLS, Piece, RowSegments};
 use crate::sum::{most, sum, sum_of_pairs};
 
-/// The numbers of the cells of a piece.
+/// The numbers j = 0, 1, … of the cells of a piece, as values.
 static NUMBERS: [f64; PIECE_CELLS] = {
     let (mut numbers, mut j) = ([0.0; PIECE_CELLS], 0);
     while j < PIECE_CELLS {
@@ -81,8 +81,9 @@ impl<'a> Passes<'a> {
         bands
     }
 
-    /// p += a d, v += a K d, with r = motion − (c v + gap) on the cells in contact. Finds Σ B r, Σ r², Σ (c v)² and
-    /// Σ min(p, 0)² over them, the greatest r of them, and the greatest motion − (c v + gap) of all others that may carry pressure.
+    /// p += a d, v += a K d, with r = motion − (c v + gap) on the cells in contact. Sums Σ B r, Σ r², Σ (c v)² and
+    /// Σ min(p, 0)² over them, and takes the greatest r. Over all other cells that may carry pressure it takes the greatest
+    /// motion − (c v + gap).
     pub(crate) fn survey(self, a: f64, search: &Search, solution: &mut Solution) -> &'a [BandSums] {
         let (problem, c) = (self.problem, self.problem.compliance);
         let Solution { motions, pressure, potential, .. } = solution;
@@ -157,7 +158,7 @@ impl<'a> Passes<'a> {
         bands.joined().iter().fold([0.0; 2], add)
     }
 
-    /// Finds Σ B z, Σ B Kd, Σ B d and Σ z·Kd in contact.
+    /// Sums Σ B z, Σ B Kd, Σ B d and Σ z·Kd in contact.
     pub(crate) fn overlaps(self, z: &[f64], search: &Search) -> &'a [BandSums] {
         let problem = self.problem;
         let bands = self.over::<f64, 0>([], |Visit { cells, body, in_contact, sums, .. }| {
@@ -219,7 +220,7 @@ impl<'a> Passes<'a> {
         });
     }
 
-    /// Finds Σ B Kd of bodies that tilt, and Σ r·d and Σ d·Kd, in contact.
+    /// Sums Σ B Kd of bodies that tilt, and Σ r·d and Σ d·Kd, in contact.
     pub(crate) fn slope_and_curvature(self, solution: &Solution, search: &Search) -> &'a [BandSums] {
         let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
         let bands = self.over::<f64, 0>([], |Visit { cells, body, in_contact, residual: r, sums, .. }| {
@@ -280,7 +281,7 @@ mod tests {
     use crate::solver::contact_set::ContactSet;
     use crate::solver::rigid_motion::Freedom;
 
-    /// Every pass against its definition, cell by cell, with one body and with several, on one band and on more.
+    /// Every pass equals its definition, cell by cell, with one body and with several, on one band and on several.
     #[test]
     fn passes_match_their_definitions() {
         let freedom = |translation, tilt, total| Freedom { translation, tilt, point: [0.1, -0.2], total };

@@ -76,7 +76,7 @@ impl PolonskyKeer {
         state
     }
 
-    /// Whether the pressures carry every force: they may not where no balance was found.
+    /// Whether the pressures carry every force; false where no balance was found.
     fn carries_the_forces(&self, problem: &Problem<'_>, solution: &Solution) -> bool {
         (0..problem.bodies.len()).all(|body| {
             let freedom = problem.bodies[body];
@@ -130,8 +130,8 @@ impl PolonskyKeer {
                     press_everywhere(problem, body, &mut self.set, solution);
                 }
             } else if modes.freedom.tilts() && (!balanced || self.is_unloaded(problem, body, solution)) {
-                // held at its pivot, and touching on one side of it only: unloaded, and turned to where its deepest
-                // penetration is least, on both sides of the pivot if it cannot swing clear
+                // the body is held at its pivot, and touches on one side of it only: it is unloaded, and turned to where its
+                // deepest penetration is least, on both sides of the pivot if it cannot swing clear
                 self.set.cells(problem, body).for_each(|k| solution.pressure[k] = 0.0);
                 self.set.press_possible(problem, body);
                 solution.motions[body] = least_penetrating_tilt(problem, body, &self.set);
@@ -140,7 +140,7 @@ impl PolonskyKeer {
         joined
     }
 
-    /// Whether there are no pressures under a body, or too small ones to show in the gap.
+    /// Whether a body carries no pressure, or too little to change the gap.
     fn is_unloaded(&self, problem: &Problem<'_>, body: usize, solution: &Solution) -> bool {
         let greatest = |field: &[f64]| self.set.cells(problem, body).map(|k| field[k].abs()).fold(0.0, f64::max);
         let sunk = problem.compliance * problem.kernel.self_influence() * greatest(&solution.pressure);
@@ -153,7 +153,7 @@ impl PolonskyKeer {
 fn least_penetrating_tilt(problem: &Problem<'_>, body: usize, set: &ContactSet) -> ModeCoefficients {
     let free = Freedom { translation: true, total: 1.0, ..problem.bodies[body] };
     let modes = Modes::new(problem.kernel.grid(), problem.rows(), free);
-    let resting = RestingPosition::new(problem.rows(), &modes, set.cells(problem, body), problem.gap);
+    let resting = RestingPosition::new(problem, &modes, set, body);
     let ModeCoefficients([_, tilt1, tilt2]) = resting.motion;
     ModeCoefficients([0.0, tilt1, tilt2])
 }

@@ -6,7 +6,7 @@ use crate::kernel::{LocalKernel, SpectralOperator, TransformWorkspace, Workspace
 use crate::solver::contact_set::ContactSet;
 use crate::solver::extension::{Attenuation, Extension, ExtensionKind};
 
-/// What remains of the continued residual where the distance from the contact exceeds the thickness of a layer on a rigid
+/// Factor of the extended residual where the distance from the contact exceeds the thickness of a layer on a rigid
 /// base. There M acts as K⁻¹ of a bed of springs, which needs no extension, or of an incompressible layer, −∇⁻², whose
 /// pressure falls to zero at the edge: then the residual continues with the opposite sign. A fifth of that suits both.
 const BEYOND_LAYER: f64 = -0.2;
@@ -14,8 +14,8 @@ const BEYOND_LAYER: f64 = -0.2;
 /// Eᵀ M E ≈ (K on A)⁻¹, with M ≈ K⁻¹, a multiplication in wave space on a grid without padding ([`LocalKernel::inverse`]): for the
 /// half-space a quarter of the size of a convolution.
 ///
-/// M alone, cut off at the edge of the set A of cells in contact, would be wrong over a strip along the edge whose width is that
-/// of a cell, and the more so the finer the mesh. The [`Extension`] E continues the residual smoothly beyond the edge instead; on
+/// M alone, cut off at the edge of the set A of cells in contact, would be wrong over a strip along the edge, a cell
+/// wide, and the more so the finer the mesh. The [`Extension`] E continues the residual smoothly beyond the edge instead; on
 /// a layer no farther than the layer is thick ([`BEYOND_LAYER`]).
 #[derive(Debug, Clone)]
 pub(crate) struct Preconditioner {
@@ -29,7 +29,7 @@ pub(crate) struct Preconditioner {
 }
 
 impl Preconditioner {
-    /// That of a kernel, whose buffers it borrows.
+    /// The preconditioner of a kernel, whose buffers it borrows.
     pub(crate) fn new(kernel: &LocalKernel, lender: &mut Workspace) -> Preconditioner {
         let (rows, [n1, n2]) = (kernel.rows(), kernel.rows().cells());
         let operator = kernel.inverse();

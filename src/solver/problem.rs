@@ -17,7 +17,7 @@ pub(crate) struct Problem<'a> {
     pub(crate) compliance: f64,
     /// Initial gap, history and prescribed motion, hi + u_old − (ω + α·x) \[m\]; +∞ where the indenter has no surface.
     pub(crate) gap: &'a [f64],
-    /// The greatest of the prescribed motions that were subtracted from `gap`, which carries their rounding \[m\].
+    /// Greatest of the prescribed motions that were subtracted from `gap`; their rounding is in it \[m\].
     pub(crate) prescribed: f64,
     /// The free motions of each rigid body.
     pub(crate) bodies: &'a [Freedom],
@@ -115,7 +115,7 @@ impl<'a> Problem<'a> {
         self.gap[k].is_finite() && !self.released(self.owner(k))
     }
 
-    /// How deep cell `k` penetrates (negative: its gap).
+    /// Penetration of cell `k`; a negative value is its gap.
     pub(crate) fn depth(&self, solution: &Solution, k: usize) -> f64 {
         let body = self.owner(k);
         self.modes(body).displacement(solution.motions[body], k)
@@ -151,7 +151,7 @@ impl Solution {
         (self.residual, self.rounding) = (0.0, 0.0);
     }
 
-    /// Lets every released body follow the surface: it just touches, and does not tilt.
+    /// Moves every released body until it just touches the surface, without tilt.
     pub(crate) fn follow_surface(&mut self, problem: &Problem<'_>) {
         for body in (0..problem.bodies.len()).filter(|&body| problem.released(body)) {
             let own = (0..problem.gap.len()).filter(|&k| problem.owner(k) == body);

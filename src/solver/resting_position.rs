@@ -1,10 +1,11 @@
-//! Where a body comes to rest on the undeformed surface.
+//! The position in which a rigid body rests on the undeformed surface.
 
 use crate::linalg;
-use crate::parallel::Rows;
+use crate::solver::contact_set::ContactSet;
+use crate::solver::problem::Problem;
 use crate::solver::rigid_motion::{ModeCoefficients, Modes};
 
-/// Pivots after which the search ends: its result is a guess, and any motion serves as one.
+/// Number of pivots after which the search ends: its result is a guess, and any motion serves as a guess.
 const MAX_PIVOTS: usize = 200;
 
 /// Pivots of the elimination, of modes of order one, that count as zero.
@@ -28,17 +29,13 @@ impl RestingPosition {
     ///
     /// whose dual is the motion. Solved by the revised simplex method on bases of three columns, begun from artificial
     /// columns that cost more than any cell. The column of a motion that is not free costs nothing, and never leaves.
-    pub(crate) fn new(
-        rows: &Rows,
-        modes: &Modes<'_>,
-        cells: impl Iterator<Item = usize> + Clone,
-        gap: &[f64],
-    ) -> RestingPosition {
-        let heights = || cells.clone().map(|k| gap[k]);
+    pub(crate) fn new(problem: &Problem<'_>, modes: &Modes<'_>, set: &ContactSet, body: usize) -> RestingPosition {
+        let (rows, gap, cells) = (problem.rows(), problem.gap, || set.cells(problem, body));
+        let heights = || cells().map(|k| gap[k]);
         let lowest = rows.least(heights().fold(f64::INFINITY, f64::min));
         let highest = rows.greatest(heights().fold(f64::NEG_INFINITY, f64::max));
         let range = (highest - lowest).max(f64::MIN_POSITIVE);
-        let artificial = 1e3 * range * rows.count(cells.clone().count()) as f64;
+        let artificial = 1e3 * range * rows.count(cells().count()) as f64;
 
         let rank = rows.group().map_or(0, |group| group.rank()) as f64;
 
@@ -52,7 +49,7 @@ impl RestingPosition {
             let Some(next) = solve(basis.map(|(column, _)| column), basis.map(|(_, cost)| cost)) else { break };
             dual = ModeCoefficients(next);
             let cost = |k: usize| (gap[k] - lowest) - modes.displacement(dual, k);
-            let cell = cells.clone().min_by(|&a, &b| cost(a).total_cmp(&cost(b)));
+            let cell = cells().min_by(|&a, &b| cost(a).total_cmp(&cost(b)));
             let entering = cell.map_or([f64::INFINITY, 0.0, 0.0, 0.0, 0.0, rank], |k| {
                 let [a, b, c] = modes.at(k);
                 [cost(k), a, b, c, gap[k] - lowest, rank]

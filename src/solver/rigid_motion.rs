@@ -1,5 +1,4 @@
-//! The rigid motion of a body: the part of it that a load leaves free, and the balance of force and moments that
-//! belongs to every freedom.
+//! The rigid motion of a body: the modes that a load leaves free, and the balance of force and moments of each free mode.
 
 use std::ops::Range;
 
@@ -8,7 +7,7 @@ use crate::linalg;
 use crate::parallel::Rows;
 use crate::sum;
 
-/// The motions ω + α1 ξ1 + α2 ξ2 that a load leaves free to one body, ξ = x − e measured from the point e
+/// The motions ω + α1 ξ1 + α2 ξ2 of one body that a load leaves free, ξ = x − e measured from the point e
 /// at which the load acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0 (Eq. 4 and
 /// Eq. 5 of the paper).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,7 +69,7 @@ impl ModeCoefficients {
     }
 }
 
-/// Part of the square of a mode, independent of the other modes, that counts as zero: the cells at hand do not determine
+/// Fraction of the square of a mode, independent of the other modes, that counts as zero: the cells do not determine
 /// the motion (fewer than three, or all on a line).
 const DEPENDENT_FRACTION: f64 = 1e-11;
 
@@ -233,7 +232,7 @@ impl<'a> Modes<'a> {
 }
 
 impl Line {
-    /// Of a body that does not tilt.
+    /// The line of a body that does not tilt.
     pub(crate) const UPRIGHT: Line = Line { first: [1.0, 0.0, 0.0], step: 0.0 };
 
     /// The same modes, with j counted from elsewhere.
@@ -292,7 +291,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn coefficients_are_those_of_the_motion() {
+    fn coefficients_and_motions_convert_into_each_other() {
         let grid = Grid::new([7, 4], [2.0, 3.0]).unwrap();
         let rows = Rows::all(grid.cells());
         let motion = RigidMotion { approach: 0.3, tilt: [-0.2, 0.7] };

@@ -60,7 +60,7 @@ impl ActiveSet {
                 self.changes.corrections[body] = (self.changes.moves || y != Default::default()).then_some(y);
                 continue;
             }
-            // the load acts outside the hull of what is left of A
+            // the load acts outside the hull of the cells that are left in A
             if searched > 0.0 && self.cut_step(problem, searched, solution) {
                 return Ok(());
             }
@@ -71,13 +71,13 @@ impl ActiveSet {
                 }
             }
             if !modes.freedom.translation {
-                // held at a pivot, and touching on one side of it only: unloaded, it may turn away
+                // the body is held at a pivot, and touches on one side of it only: without pressure it may turn away
                 self.set.cells(problem, body).for_each(|k| solution.pressure[k] = 0.0);
             } else if shape == Shape::Punch {
                 // the iterations may have begun from a cold start: another one could lead to the same state
                 press_everywhere(problem, body, &mut self.set, solution);
-            } else if !cold_start(problem, body, &mut self.set, solution, |_, _| ()) {
-                return Err(body);
+            } else {
+                cold_start(problem, body, &mut self.set, solution, |_, _| ())?;
             }
             self.set.keep_pressed(problem, body, &solution.pressure);
             solve.convolve();
@@ -87,7 +87,7 @@ impl ActiveSet {
         Ok(())
     }
 
-    /// Removes from a converged pressure the imbalance of force and moments that rounding has left: too little to show in v.
+    /// Removes from a converged pressure the imbalance of force and moments that rounding has left: too little to change v.
     /// False if it is more than rounding.
     pub(super) fn close_balance(&mut self, solve: &mut Solve<'_>) -> bool {
         let Solve { problem, ref stop, ref mut solution, .. } = *solve;
@@ -104,13 +104,13 @@ impl ActiveSet {
             before.copy_from_slice(&solution.pressure);
             let closed = balance(problem, body, &self.set, solution);
             let carried = self.set.sum_of(problem, body, |k| before[k]);
-            // what cannot be balanced would have to be removed entirely
+            // a pressure that cannot be balanced would have to be removed entirely
             let change = |k: usize| (solution.pressure[k] - before[k]).abs();
             let changed = if closed { self.set.sum_of(problem, body, change) } else { carried };
             if modes.freedom.translation {
                 return closed && changed <= MAX_CLOSING_CHANGE * carried;
             }
-            // where no force is prescribed, the pressure may be rounding itself: no cell moves more than by this
+            // without a prescribed force, the whole pressure may be rounding: no cell moves more than by this
             let kernel = problem.kernel;
             let moved = problem.compliance * kernel.self_influence() * kernel.images();
             let [unseen, rounding] = self.unseen(problem, stop.tolerance, solution);
@@ -126,7 +126,7 @@ impl ActiveSet {
         })
     }
 
-    /// The displacement that a residual below the tolerance does not show, and the rounding of the gap in it.
+    /// The displacement that a residual below the tolerance may hide, and the rounding of the gap in it.
     fn unseen(&self, problem: &Problem<'_>, tolerance: f64, solution: &Solution) -> [f64; 2] {
         let square = self.set.sum_over_all(problem, |k| (problem.compliance * solution.potential[k]).powi(2));
         let cancellation = problem.rounding(&solution.pressure) + self.guess_rounding;

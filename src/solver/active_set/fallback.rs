@@ -18,7 +18,7 @@ use crate::solver::outcome::{Outcome, ResidualSums};
 use crate::solver::passes::add;
 use crate::solver::problem::{Problem, Solution, Solve};
 
-/// Times that cells may join A without any gain in between; after that, the rest of the residual is rounding.
+/// Number of times that cells may join A without a gain in between; then the remaining residual is rounding.
 const MAX_JOINS_WITHOUT_GAIN: usize = 3;
 
 /// The best step along a direction.
@@ -26,12 +26,12 @@ const MAX_JOINS_WITHOUT_GAIN: usize = 3;
 struct Gain {
     /// Length of the step.
     length: f64,
-    /// By how much E falls.
+    /// Decrease of E.
     energy: f64,
 }
 
 impl Gain {
-    /// Of a step along a direction with Σ r d = `slope` and c Σ d·Kd = `curvature`, up to the minimum or to `most`.
+    /// The gain of a step along a direction with Σ r d = `slope` and c Σ d·Kd = `curvature`, up to the minimum or to `most`.
     fn along(slope: f64, curvature: f64, most: f64) -> Gain {
         if slope <= 0.0 || curvature <= 0.0 {
             return Gain::default();
@@ -94,7 +94,7 @@ impl ActiveSet {
         self.energy = 0.0;
     }
 
-    /// One step; returns by how much E falls.
+    /// One step; returns the decrease of E.
     fn step_downhill(&mut self, towards: Towards, solve: &mut Solve<'_>) -> f64 {
         let (problem, c) = (solve.problem, solve.problem.compliance);
         self.find_direction(towards, solve);
@@ -177,7 +177,7 @@ mod tests {
     use crate::solver::outcome::Stop;
     use crate::solver::rigid_motion::Freedom;
 
-    /// Alone, and from a bad guess, it finds what the active set finds, on soft surfaces and on nearly rigid ones.
+    /// The fall-back alone, from a bad guess, converges to the solution of the active set, on soft and on nearly rigid surfaces.
     #[test]
     fn it_converges_on_its_own() {
         let grid = Grid::square(12, 1.2).unwrap();

@@ -1,4 +1,4 @@
-//! Which cells are in the active set.
+//! Cells that enter and leave the active set.
 
 use std::ops::Range;
 
@@ -11,8 +11,8 @@ use crate::solver::passes::{Passes, Search, add};
 use crate::solver::problem::{Problem, Solution, Solve};
 
 impl ActiveSet {
-    /// A = {p > 0}, or the cells that are likely to be in contact; other cells that carry pressure are to leave; the pressure
-    /// on A is in balance. Fails with the body whose load no pressure can balance.
+    /// Sets A to {p > 0}, or to the cells that are likely to be in contact, and balances the pressure on A. Other cells that
+    /// carry pressure are to leave. Fails with the body whose load no pressure can balance.
     pub(super) fn start(&mut self, solve: &mut Solve<'_>) -> Result<(), usize> {
         let Solve { problem, solution, work, .. } = solve;
         (self.energy, self.search_length, self.was_cut) = (0.0, f64::INFINITY, false);
@@ -25,7 +25,7 @@ impl ActiveSet {
         self.set.update(problem);
         let mut reset = false;
         for body in problem.loaded_bodies() {
-            // cells that are likely to touch may carry nothing yet
+            // cells that are likely to touch may carry no pressure yet
             let pressed = || self.set.sum(problem, body, &solution.pressure) > 0.0;
             let unloaded = self.set.count_under(body) == 0 || problem.likely.is_some() && !pressed();
             if !unloaded {
@@ -44,9 +44,7 @@ impl ActiveSet {
                 let scale = sum(&solution.pressure) / sum(punch);
                 cells().for_each(|k| solution.pressure[k] = scale * punch[k].max(0.0));
             };
-            if !cold_start(problem, body, &mut self.set, solution, sharpen) {
-                return Err(body);
-            }
+            cold_start(problem, body, &mut self.set, solution, sharpen)?;
             self.set.keep_pressed(problem, body, &solution.pressure);
             reset |= self.set.count_under(body) > 0;
         }

@@ -14,8 +14,8 @@
 //!   residual ([`JOIN_OVER_RMS`]).
 //! * Cells whose pressure is negative leave when their error is large compared with the residual ([`LEAVE_OVER_RMS`]). The
 //!   *next* direction brings them to p = 0: it contains δ = −p on them, so that the convolution it needs anyway updates v.
-//!   Its length is then 1, and the rest of it is z with the usual length ([`CORRECTION_LENGTH`]). What they carried is moved
-//!   to the cells around by Eᵀ, which keeps the force. Cells whose pressure that would make negative leave with them.
+//!   Its length is then 1, and z enters it with the usual length ([`CORRECTION_LENGTH`]). Eᵀ moves their pressure
+//!   to the cells around, which keeps the force. Cells whose pressure becomes negative by the move leave with them.
 //! * Where the force is out of balance, p and v are scaled together. With moments to balance, or several bodies, the
 //!   correction B y times a shape differs from cell to cell, and joins the next direction too.
 //! * A guess extrapolated from earlier steps comes with its own v.
@@ -49,8 +49,8 @@ const LEAVE_OVER_RMS: f64 = 0.1;
 /// c a of a direction that corrects the pressure and has no line search, unless the last search was shorter.
 const CORRECTION_LENGTH: f64 = 0.9;
 
-/// Pressures that leave are moved to the cells around, unless they carry more than this part of the force: then the
-/// contact is another one, and they are dropped.
+/// Pressures that leave are moved to the cells around. Pressures that carry more than this part of the force are dropped
+/// instead: the contact is another one.
 const MAX_MOVED_SHARE: f64 = 0.1;
 
 #[derive(Debug, Clone)]

@@ -1,4 +1,4 @@
-//! Rows of neighbours, where ranks share out the rows of a field.
+//! Halo rows, where ranks share the rows of a field.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use crate::solver::extension::passes::{NOTHING_KNOWN, weight};
 #[derive(Debug, Clone, Default)]
 pub(crate) struct HaloRows {
     rows: [Option<HaloRow>; 2],
-    /// Halo values are multiplied by 1 − w already: these are the members, none, and the factors φ with w = 0 of a halo row.
+    /// The members of a halo row, none, and its factors φ, all for w = 0: halo values are multiplied by 1 − w already.
     pub(super) no_members: Vec<bool>,
     pub(super) nothing_known: Vec<f64>,
 }
@@ -63,7 +63,7 @@ impl HaloRows {
     }
 }
 
-/// Fetches rows from neighbours.
+/// Exchanges rows with the neighbours, in buffers of its own.
 #[derive(Debug, Clone)]
 pub(crate) struct HaloExchange {
     group: Arc<dyn Ranks>,

@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use crate::parallel::{Rows, for_each_share, lanes};
 pub(crate) use crate::solver::extension::halo::{HaloExchange, HaloRows};
-use crate::solver::extension::passes::{Ascent, Blocks, Descent, Known, RowBuffers, RowPass, SharedRows, TRUST};
+use crate::solver::extension::passes::{Blocks, Known, Operation, Pass, RowBuffers, SharedRows, TRUST};
 
 /// E: from the cells of a set A to all cells, by means over blocks of 2 × 2 cells, over blocks of such blocks and so on, and
 /// bilinear interpolation back (a push–pull pyramid),
@@ -19,8 +19,8 @@ use crate::solver::extension::passes::{Ascent, Blocks, Descent, Known, RowBuffer
 ///
 /// where s is the mean of w_l over the block, and w_0 is 1 on A and 0 elsewhere; x = m on the coarsest level, a single block. E
 /// reproduces constants. Its transpose moves the values of all cells to A, and keeps their sum.
-/// Blocks hold the sums S = Σ w m over their parts, and the factor φ = κ/(4 + 4 (κ − 1) s), in which everything is
-/// linear: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
+/// Blocks hold the sums S = Σ w m over their parts, and the factor φ = κ/(4 + 4 (κ − 1) s). The weights are
+/// linear in φ: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
 ///
 /// An [`Attenuation`] multiplies x of one level before the next finer one is computed: the factor is 1 near A and decays with distance.
 ///
@@ -64,7 +64,7 @@ impl Attenuation {
     }
 }
 
-/// Which of two extensions.
+/// Extension with or without attenuation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum ExtensionKind {
     /// With its [`Attenuation`].
@@ -92,7 +92,7 @@ struct Level {
     local: Option<Vec<f64>>,
 }
 
-/// Greatest number of levels of which a rank holds the local rows alone: the next one has blocks as high as a band.
+/// Greatest number of levels of which a rank holds the local rows alone: blocks of the next level are as high as a band.
 const MOST_LOCAL: usize = 3;
 
 /// Number of levels over so many cells: the last one is a single block.
@@ -137,14 +137,14 @@ impl Level {
     }
 
     /// Computes all values by a pass.
-    fn compute(&mut self, pass: &impl RowPass, rows: &Rows, buffers: &mut [RowBuffers]) {
+    fn compute(&mut self, pass: &Pass<'_>, rows: &Rows, buffers: &mut [RowBuffers]) {
         let Level { height, cells: [_, columns], ref kept, ref mut value, ref mut local, .. } = *self;
         let Some(local) = local else { return compute_rows(pass, buffers, value, kept.start, columns) };
         compute_rows(pass, buffers, local, blocks_of(rows.own(), height).start, columns);
         rows.gather_rows(local, value, |rank| columns * blocks_of(rows.of(rank), height).len());
     }
 
-    /// Multiplies all values by the factor of the attenuation, if it is that of this level.
+    /// Multiplies all values by the factor of the attenuation, if it acts on this level.
     fn attenuate(&mut self, attenuation: Option<Attenuation>) {
         if let Some(Attenuation { remains, .. }) = attenuation.filter(|of| of.height() == self.height) {
             self.value.iter_mut().for_each(|value| *value *= remains);
@@ -193,69 +193,65 @@ impl Extension {
 
     /// Builds E for the set of members.
     pub(crate) fn fit(&mut self, member: &[bool]) {
-        self.ascend(None, member, false, None);
+        self.ascend(Operation::SumOnes, &[], member, None);
         let known = self.levels.last().map_or(0.0, |coarsest| coarsest.value[0]);
         self.share = if known > 0.0 { 1.0 / known } else { 0.0 };
     }
 
     /// Fills all cells outside the set, where `field` is zero, with attenuation.
     pub(crate) fn extend(&mut self, field: &mut [f64], member: &[bool]) {
-        self.ascend(Some(field), member, false, None);
-        self.descend(field, member, true, self.attenuation);
+        self.ascend(Operation::Sum, field, member, None);
+        self.descend(Operation::Interpolate, field, member, self.attenuation);
     }
 
     /// The transpose: moves the values of all cells to the set, and leaves zero elsewhere. The unbounded one keeps the sum.
     pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool], kind: ExtensionKind) {
         let attenuation = self.attenuation.filter(|_| kind == ExtensionKind::Attenuated);
-        self.ascend(Some(field), member, true, attenuation);
-        self.descend(field, member, false, None);
+        self.ascend(Operation::Restrict, field, member, attenuation);
+        self.descend(Operation::Repeat, field, member, None);
     }
 
-    /// Finds S from level to level: the sums of w f over the blocks, or the transpose of the interpolation of (1 − w) f if
-    /// `interpolated`. Without a field, f is 1 on the set, and the factors φ are found, too.
-    fn ascend(&mut self, field: Option<&[f64]>, member: &[bool], interpolated: bool, attenuation: Option<Attenuation>) {
+    /// Computes S from level to level; with the factors φ, if the field is 1 on the set.
+    fn ascend(&mut self, operation: Operation, field: &[f64], member: &[bool], attenuation: Option<Attenuation>) {
         let Extension { ref rows, periodic, ref mut levels, ref mut buffers, ref mut halo, ref mut exchange, .. } =
             *self;
         let columns = rows.cells()[1];
-        if let (true, Some(field), Some(exchange)) = (interpolated, field, &mut *exchange) {
+        if let (Operation::Restrict, Some(exchange)) = (operation, &mut *exchange) {
             exchange.fetch(halo, columns, rows.own().len(), |row, out| {
                 let cells = row * columns..(row + 1) * columns;
                 Known::Members(&member[cells.clone()]).write_open(&field[cells], out);
             });
         }
-        let values = field.unwrap_or(&[]);
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
             let level = &mut level[0];
-            let (values, known, fine) = match finer.last() {
-                None => {
-                    (Blocks { values, first: rows.own().start, columns, halo }, Known::Members(member), rows.cells())
-                }
+            let first = rows.own().start;
+            let (read, known, fine) = match finer.last() {
+                None => (Blocks { values: field, first, columns, halo }, Known::Members(member), rows.cells()),
                 Some(finer) => (finer.blocks(), Known::Factors(&finer.factor), finer.cells),
             };
-            let pass = Ascent { values, known, fine, periodic, of_ones: field.is_none(), interpolated };
+            let pass = Pass { operation, read, known, first: read.first, fine, periodic };
             level.compute(&pass, rows, buffers);
-            if field.is_none() {
+            if operation == Operation::SumOnes {
                 let factors = level.factor.iter_mut().zip(&level.value);
                 factors.for_each(|(factor, &sum)| *factor = TRUST / (4.0 + (TRUST - 1.0) * sum));
             }
-            if interpolated {
+            if operation == Operation::Restrict {
                 level.attenuate(attenuation);
                 level.fetch_halo(rows, exchange, true);
             }
         }
     }
 
-    /// Finds x from level to level, down to the cells: w m + (1 − w) up(x) if `interpolated`, else w (m + x of the block), the
-    /// transpose of the sums over blocks.
-    fn descend(&mut self, field: &mut [f64], member: &[bool], interpolated: bool, attenuation: Option<Attenuation>) {
+    /// Computes x from level to level, down to the cells.
+    fn descend(&mut self, operation: Operation, field: &mut [f64], member: &[bool], attenuation: Option<Attenuation>) {
         let Extension { ref rows, periodic, ref mut levels, share, ref mut buffers, ref mut exchange, .. } = *self;
         levels.last_mut().into_iter().for_each(|coarsest| coarsest.value[0] *= share);
         for l in (0..levels.len()).rev() {
             let (finer, coarser) = levels.split_at_mut(l);
             let coarser = &mut coarser[0];
             coarser.attenuate(attenuation);
-            if interpolated {
+            if operation == Operation::Interpolate {
                 coarser.fetch_halo(rows, exchange, false);
             }
             let (values, known, first, fine) = match finer.last_mut() {
@@ -264,14 +260,14 @@ impl Extension {
                     (&mut value[..], Known::Factors(factor), kept.start, *cells)
                 }
             };
-            let pass = Descent { blocks: coarser.blocks(), known, first, fine, periodic, interpolated };
+            let pass = Pass { operation, read: coarser.blocks(), known, first, fine, periodic };
             compute_rows(&pass, buffers, values, first, fine[1]);
         }
     }
 }
 
 /// Computes rows of a level from the `first` on by a pass, each thread some of them.
-fn compute_rows(pass: &impl RowPass, buffers: &mut [RowBuffers], values: &mut [f64], first: usize, columns: usize) {
+fn compute_rows(pass: &Pass<'_>, buffers: &mut [RowBuffers], values: &mut [f64], first: usize, columns: usize) {
     let threads = buffers.len().min(lanes(values.len()));
     let share = (values.len() / columns).div_ceil(threads).max(1);
     for_each_share(&SharedRows { pass, first, share, columns }, &mut buffers[..threads], values, share * columns);

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::parallel::Task;
 use crate::solver::extension::halo::HaloRows;
 
-/// κ: how far the mean of a block of cells is trusted, of which only the share s is known, w = κ s/(1 + (κ − 1) s).
+/// κ: trust in the mean of a block of which only the share s is known, w = κ s/(1 + (κ − 1) s).
 pub(super) const TRUST: f64 = 1.5;
 
 /// Row buffers of one thread: blocks with one neighbour at either end, cells of the finer level with two.
@@ -22,34 +22,62 @@ impl RowBuffers {
         RowBuffers { blocks: vec![0.0; blocks + 2], fine: vec![0.0; 2 * blocks + 4] }
     }
 
-    /// Bytes that they take.
+    /// Bytes of the buffers.
     pub(super) fn bytes(columns: usize) -> u128 {
         8 * (3 * columns.div_ceil(2) as u128 + 6) + size_of::<RowBuffers>() as u128
     }
 }
 
-/// A pass that computes a level row by row from the level below or above it.
-pub(super) trait RowPass: Sync {
-    /// Computes row `i`. Implementations are `#[inline(always)]`, as [`Task`] asks.
-    fn compute(&self, i: usize, buffers: &mut RowBuffers, out: &mut [f64]);
+/// What a pass computes of a level, from the level below it (S) or above it (x).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Operation {
+    /// S = Σ w f over each block, of a field that is 1 on the set.
+    SumOnes,
+    /// S = Σ w f over each block.
+    Sum,
+    /// S: the transpose of `Interpolate`, of (1 − w) f.
+    Restrict,
+    /// x = w m + (1 − w) up(x).
+    Interpolate,
+    /// x = w (m + x of the block): the transpose of `Sum`.
+    Repeat,
 }
 
-/// The rows of a pass, `share` of them to a thread.
-pub(super) struct SharedRows<'a, P> {
-    pub(super) pass: &'a P,
+/// A pass between two levels.
+pub(super) struct Pass<'a> {
+    pub(super) operation: Operation,
+    /// The level that is read.
+    pub(super) read: Blocks<'a>,
+    /// The weights of the finer level.
+    pub(super) known: Known<'a>,
+    /// The first row that the rank holds of the finer level.
+    pub(super) first: usize,
+    /// Rows and columns of the finer level.
+    pub(super) fine: [usize; 2],
+    pub(super) periodic: [bool; 2],
+}
+
+/// The rows that a pass computes, from the `first` on, `share` of them to a thread.
+pub(super) struct SharedRows<'a> {
+    pub(super) pass: &'a Pass<'a>,
     pub(super) first: usize,
     pub(super) share: usize,
     pub(super) columns: usize,
 }
 
-impl<P: RowPass> Task for SharedRows<'_, P> {
+impl Task for SharedRows<'_> {
     type Lane = RowBuffers;
     type Item = f64;
 
     #[inline(always)]
     fn run(&self, k: usize, buffers: &mut RowBuffers, values: &mut [f64]) {
         for (i, row) in (self.first + k * self.share..).zip(values.chunks_exact_mut(self.columns)) {
-            self.pass.compute(i, buffers, row);
+            match self.pass.operation {
+                Operation::SumOnes | Operation::Sum => self.pass.sum(i, buffers, row),
+                Operation::Restrict => self.pass.restrict(i, buffers, row),
+                Operation::Interpolate => self.pass.interpolate(i, buffers, row),
+                Operation::Repeat => self.pass.repeat(i, buffers, row),
+            }
         }
     }
 }
@@ -104,38 +132,17 @@ impl<'a> Blocks<'a> {
 /// φ of blocks of which nothing is known: w is 0, and the whole value counts.
 pub(super) const NOTHING_KNOWN: f64 = 0.25 * TRUST;
 
-/// S of blocks from the level below.
-pub(super) struct Ascent<'a> {
-    /// The level below.
-    pub(super) values: Blocks<'a>,
-    pub(super) known: Known<'a>,
-    pub(super) fine: [usize; 2],
-    pub(super) periodic: [bool; 2],
-    /// Whether the field is 1 on the set, and has no values.
-    pub(super) of_ones: bool,
-    /// Whether S is the transpose of the interpolation of (1 − w) f, or the sum of w f.
-    pub(super) interpolated: bool,
-}
-
-impl RowPass for Ascent<'_> {
-    #[inline(always)]
-    fn compute(&self, i: usize, buffers: &mut RowBuffers, out: &mut [f64]) {
-        let fine = &mut buffers.fine;
-        if self.interpolated { self.restrict(i, fine, out) } else { self.sum(i, fine, out) }
-    }
-}
-
-impl Ascent<'_> {
+impl Pass<'_> {
     /// The sums of w f over the blocks of row `i`.
     #[inline(always)]
-    fn sum(&self, i: usize, fine: &mut [f64], out: &mut [f64]) {
+    fn sum(&self, i: usize, RowBuffers { fine, .. }: &mut RowBuffers, out: &mut [f64]) {
         let [n1, n2] = self.fine;
-        let Blocks { values, first, .. } = self.values;
+        let (values, first) = (self.read.values, self.first);
         out.fill(0.0);
         for row in (2 * i..(2 * i + 2).min(n1)).map(|row| (row - first) * n2..(row - first + 1) * n2) {
             let terms = fine.iter_mut();
             match self.known {
-                Known::Members(member) if self.of_ones => {
+                Known::Members(member) if self.operation == Operation::SumOnes => {
                     terms.zip(&member[row]).for_each(|(term, &inside)| *term = f64::from(u8::from(inside)));
                 }
                 // the field is zero outside the set
@@ -152,22 +159,22 @@ impl Ascent<'_> {
 
     /// The transpose of the interpolation: the open part of the level below, brought to row `i` of its blocks.
     #[inline(always)]
-    fn restrict(&self, i: usize, fine: &mut [f64], out: &mut [f64]) {
-        let values = self.values;
+    fn restrict(&self, i: usize, buffers: &mut RowBuffers, out: &mut [f64]) {
+        let read = self.read;
         let (n2, m2) = (self.fine[1], self.fine[1].div_ceil(2));
-        let fine = &mut fine[..2 * m2 + 4];
+        let fine = &mut buffers.fine[..2 * m2 + 4];
         let parts = self.parts(i);
-        let (rows, shares) = (parts.map(|(row, _)| values.row(row)), parts.map(|(_, share)| share));
+        let (rows, shares) = (parts.map(|(row, _)| read.row(row)), parts.map(|(_, share)| share));
         let sums = &mut fine[2..n2 + 2];
         match self.known {
             Known::Members(member) => {
                 let known =
-                    parts.map(|(row, _)| values.kept(row).map_or(&values.halo.no_members[..], |cells| &member[cells]));
+                    parts.map(|(row, _)| read.kept(row).map_or(&read.halo.no_members[..], |cells| &member[cells]));
                 add_open(sums, shares, rows, known, |inside, f| if inside { 0.0 } else { f });
             }
             Known::Factors(factors) => {
-                let known = parts
-                    .map(|(row, _)| values.kept(row).map_or(&values.halo.nothing_known[..], |cells| &factors[cells]));
+                let known =
+                    parts.map(|(row, _)| read.kept(row).map_or(&read.halo.nothing_known[..], |cells| &factors[cells]));
                 add_open(sums, shares, rows, known, |factor, f| (1.0 - weight(factor)) * f);
             }
         }
@@ -181,7 +188,7 @@ impl Ascent<'_> {
         }
     }
 
-    /// The rows of the level that row `i` of blocks reaches, and what part of them it gets: none of rows beyond the end.
+    /// The rows of the level that row `i` of blocks reaches, and the part of each row that it gets: 0 for rows beyond the end.
     #[inline(always)]
     fn parts(&self, i: usize) -> [(usize, f64); 4] {
         let (n1, rows) = (self.fine[0], 2 * self.fine[0].div_ceil(2));
@@ -192,58 +199,27 @@ impl Ascent<'_> {
         let part = |row: usize, part: f64| if row < n1 { (row, part) } else { (2 * i, 0.0) };
         [part(before, 0.25), part(2 * i, 0.75), part(2 * i + 1, 0.75), part(after, 0.25)]
     }
-}
 
-/// x of a level from the x of the blocks above it.
-pub(super) struct Descent<'a> {
-    pub(super) blocks: Blocks<'a>,
-    pub(super) known: Known<'a>,
-    /// The first row that the rank holds of the level.
-    pub(super) first: usize,
-    pub(super) fine: [usize; 2],
-    pub(super) periodic: [bool; 2],
-    /// Whether x is w m + (1 − w) up(x), or w (m + x of the block).
-    pub(super) interpolated: bool,
-}
-
-impl RowPass for Descent<'_> {
+    /// Row `i` of x from the same value on all cells of a block.
     #[inline(always)]
-    fn compute(&self, i: usize, buffers: &mut RowBuffers, values: &mut [f64]) {
-        let known = (i - self.first) * self.fine[1];
-        let above = if self.interpolated { self.interpolate(i, buffers) } else { self.repeat(i, buffers) };
-        let values = values.iter_mut().zip(above);
-        match (self.known, self.interpolated) {
-            (Known::Members(member), true) => {
-                values.zip(&member[known..]).for_each(|((x, &up), &inside)| *x = if inside { *x } else { up });
+    fn repeat(&self, i: usize, buffers: &mut RowBuffers, values: &mut [f64]) {
+        let above = &mut buffers.fine[..2 * self.fine[1].div_ceil(2)];
+        let pairs = above.as_chunks_mut::<2>().0;
+        pairs.iter_mut().zip(self.read.row(i / 2)).for_each(|(pair, &value)| *pair = [value; 2]);
+        let (known, values) = ((i - self.first) * self.fine[1], values.iter_mut().zip(above));
+        match self.known {
+            Known::Members(member) => {
+                values.zip(&member[known..]).for_each(|((x, up), &inside)| *x = if inside { *x + *up } else { 0.0 });
             }
-            (Known::Factors(factors), true) => {
-                values
-                    .zip(&factors[known..])
-                    .for_each(|((x, &up), &factor)| *x = factor * *x + (1.0 - weight(factor)) * up);
-            }
-            (Known::Members(member), false) => {
-                values.zip(&member[known..]).for_each(|((f, &sum), &inside)| *f = if inside { *f + sum } else { 0.0 });
-            }
-            (Known::Factors(factors), false) => {
-                values.zip(&factors[known..]).for_each(|((f, &sum), &factor)| *f = factor * (*f + sum));
+            Known::Factors(factors) => {
+                values.zip(&factors[known..]).for_each(|((x, up), &factor)| *x = factor * (*x + *up));
             }
         }
     }
-}
 
-impl Descent<'_> {
-    /// The block of each cell of row `i`.
+    /// Row `i` of x from 9/16 of the block of a cell, 3/16 of two neighbours and 1/16 of the third.
     #[inline(always)]
-    fn repeat<'r>(&self, i: usize, buffers: &'r mut RowBuffers) -> &'r [f64] {
-        let fine = &mut buffers.fine[..2 * self.fine[1].div_ceil(2)];
-        let pairs = fine.as_chunks_mut::<2>().0;
-        pairs.iter_mut().zip(self.blocks.row(i / 2)).for_each(|(pair, &value)| *pair = [value; 2]);
-        fine
-    }
-
-    /// Row `i` of the level from the blocks: 9/16 of its own, 3/16 of two neighbours and 1/16 of the third.
-    #[inline(always)]
-    fn interpolate<'r>(&self, i: usize, rows: &'r mut RowBuffers) -> &'r [f64] {
+    fn interpolate(&self, i: usize, rows: &mut RowBuffers, values: &mut [f64]) {
         let [m1, m2] = self.fine.map(|n| n.div_ceil(2));
         let (near, last) = (i / 2, m1 - 1);
         let far = match (i.is_multiple_of(2), self.periodic[0]) {
@@ -253,7 +229,7 @@ impl Descent<'_> {
             (false, false) => (near + 1).min(last),
         };
         let across = &mut rows.blocks[..m2 + 2];
-        let [near, far] = [near, far].map(|i| &self.blocks.row(i)[..m2]);
+        let [near, far] = [near, far].map(|i| &self.read.row(i)[..m2]);
         for ((a, &near), &far) in across[1..=m2].iter_mut().zip(near).zip(far) {
             *a = 0.75 * near + 0.25 * far;
         }
@@ -264,7 +240,16 @@ impl Descent<'_> {
         for (((pair, a), b), c) in fine.as_chunks_mut::<2>().0.iter_mut().zip(a).zip(b).zip(c) {
             *pair = [0.75 * b + 0.25 * a, 0.75 * b + 0.25 * c];
         }
-        fine
+        let (known, values) = ((i - self.first) * self.fine[1], values.iter_mut().zip(fine));
+        match self.known {
+            Known::Members(member) => {
+                values.zip(&member[known..]).for_each(|((x, up), &inside)| *x = if inside { *x } else { *up });
+            }
+            Known::Factors(factors) => {
+                let values = values.zip(&factors[known..]);
+                values.for_each(|((x, up), &factor)| *x = factor * *x + (1.0 - weight(factor)) * *up);
+            }
+        }
     }
 }
 

@@ -7,12 +7,12 @@ fn noise(seed: &mut u64) -> f64 {
     (*seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
 }
 
-/// E as its definition says, cell by cell.
+/// E by its definition, cell by cell.
 fn dense(member: &[bool], values: &[f64], cells: [usize; 2], periodic: [bool; 2], attenuation: [f64; 2]) -> Vec<f64> {
     pull(&member.iter().map(|&m| f64::from(u8::from(m))).collect::<Vec<_>>(), values, cells, periodic, attenuation)
 }
 
-/// `levels_to_go` levels above this one the extension is attenuated.
+/// The extension is attenuated `levels_to_go` levels above this one.
 fn pull(
     weight: &[f64],
     mean: &[f64],
@@ -53,7 +53,7 @@ fn pull(
 }
 
 #[test]
-fn it_is_what_its_definition_says_and_has_an_exact_transpose() {
+fn extension_matches_its_definition_and_has_an_exact_transpose() {
     let mut seed = 1;
     let sizes =
         [[16, 16], [13, 31], [20, 9], [32, 32], [1, 17], [17, 1], [1, 1], [2, 3], [64, 5], [370, 361], [5, 30000]];
@@ -114,7 +114,7 @@ fn has_transpose(extension: &mut Extension, member: &[bool], values: &[f64], kin
     let [there, back] = [there, back].map(|terms| terms.iter().sum::<f64>());
     assert!((there - back).abs() < 2.0 * rounding, "{there} {back}");
     assert!(member.iter().zip(&gathered).all(|(&m, &x)| m || x == 0.0));
-    // the endless one keeps the sum, whether or not the other one is attenuated
+    // the unbounded extension keeps the sum, with and without an attenuation
     let mut kept = field.clone();
     extension.gather(&mut kept, member, ExtensionKind::Unbounded);
     let [before, after] = [field.iter().sum::<f64>(), kept.iter().sum()];
