@@ -1,8 +1,9 @@
 //! Maps of the stress on a section.
 
-use crate::error::{Error, Result, exact_length, least_length};
+use crate::error::{Result, exact_length, in_order, least_length};
 use crate::observe::{Axis, Stress, StressSection};
 use crate::plot::contact::time_title;
+use crate::plot::map::runs;
 use crate::plot::{Map, Quantity};
 use crate::{Grid, ViscoelasticContact};
 
@@ -47,12 +48,8 @@ impl Map {
         exact_length("stresses on a section", section.values.len(), positions.len() * depths.len())?;
         least_length("depths of a section", depths.len(), 2)?;
         let step = depths[1] - depths[0];
-        let unequal = |pair: &[f64]| (pair[1] - pair[0] - step).abs() > UNEQUAL * step;
-        if let Some(k) = depths.windows(2).position(unequal) {
-            let (previous, value) = (depths[k], depths[k + 1]);
-            let (field, rule) = ("depths of a section", "rise in equal steps");
-            return Err(Error::OutOfOrder { field, index: k + 1, value, previous, rule });
-        }
+        let equal = |previous: f64, value: f64| (value - previous - step).abs() <= UNEQUAL * step;
+        in_order("depths of a section", depths.iter().copied(), "rise in equal steps", equal)?;
         let (side, count) = (contact.grid().spacing()[axis], depths.len());
         let grid = Grid::new([positions.len(), count], [side * positions.len() as f64, step * count as f64])?;
         // the map is drawn from below
@@ -64,13 +61,9 @@ impl Map {
         map.axes = [Quantity::of(label, "m"), Quantity::of("−x3", "m")];
         map.title = time_title(contact);
         let profile = contact.profile(section.along, section.at)?;
-        for (k, _) in profile.pressure.iter().enumerate().filter(|(_, p)| **p > 0.0) {
-            let ends = [positions[k] - 0.5 * side, positions[k] + 0.5 * side];
-            match map.lines.last_mut() {
-                Some([_, last]) if (last.0 - ends[0]).abs() < 0.1 * side => last.0 = ends[1],
-                _ => map.lines.push(ends.map(|x| (x, surface))),
-            }
-        }
+        let pressed = runs(positions.len(), |k| profile.pressure[k] > 0.0).into_iter();
+        let ends = pressed.map(|(from, to)| [positions[from] - 0.5 * side, positions[to - 1] + 0.5 * side]);
+        map.lines = ends.map(|ends| ends.map(|x| (x, surface))).collect();
         Ok(map)
     }
 }

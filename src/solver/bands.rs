@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::parallel::{Rows, lanes, over_bands};
+use crate::parallel::{Rows, cut, fork, lanes};
 
 /// Sums and maxima of a pass over the cells in contact under one body, with the modes B of its motion. Each pass computes some
 /// of them.
@@ -93,16 +93,21 @@ impl Bands {
     }
 
     /// Calls `job` with each local band, its part of the outputs and its sums for each body.
-    pub(crate) fn over<T: Send, const M: usize>(
-        &mut self,
-        outputs: [&mut [T]; M],
+    pub(crate) fn over<'f, T: Send, const M: usize>(
+        &'f mut self,
+        outputs: [&'f mut [T]; M],
         job: impl Fn(Range<usize>, [&mut [T]; M], &mut [BandSums]) + Sync,
     ) {
         let Bands { ref rows, bodies, ref mut found } = *self;
-        let cells = rows.own().len() * rows.cells()[1];
-        over_bands(0..cells, rows.band_cells(), outputs, (found, bodies), lanes(cells) > 1, &|band, outputs, sums| {
+        let cut_at = |(outputs, sums): ([&'f mut [T]; M], &'f mut [BandSums]), band: usize| {
+            let ([before, after], (sums, others)) =
+                (cut(outputs, band * rows.band_cells()), sums.split_at_mut(band * bodies));
+            [(before, sums), (after, others)]
+        };
+        let in_threads = lanes(rows.own().len() * rows.cells()[1]) > 1;
+        fork(0..rows.bands(), in_threads, (outputs, &mut found[..]), &cut_at, &|band, (outputs, sums)| {
             sums.fill(BandSums::NOTHING);
-            job(band, outputs, sums);
+            job(rows.band(band), outputs, sums);
         });
     }
 

@@ -7,6 +7,10 @@ use std::io;
 use crate::common::bodies::maxwell;
 use crate::common::spheres::sphere_on;
 use viscocontact::Error;
+#[cfg(feature = "csv")]
+use viscocontact::TextFormat;
+#[cfg(feature = "csv")]
+use viscocontact::rheology::{Experiment, Units};
 
 /// Names that the prelude leaves to others: an ambiguous one would not compile.
 mod names {
@@ -54,7 +58,7 @@ fn no_message_is_said_twice() {
         (false, Ramp::new(Load::force(0.0), Load::approach(0.0), 1.0).unwrap_err()),
         (true, HeightMap::read(format!("{missing}.sdf")).unwrap_err()),
         #[cfg(feature = "csv")]
-        (true, TabulatedCreep::from_csv(missing, viscocontact::rheology::Units::SI).unwrap_err()),
+        (true, Measurements::from_csv(Experiment::Creep, missing, Units::SI, TextFormat::default()).unwrap_err()),
         #[cfg(feature = "checkpoint")]
         (true, contact().resume(missing).unwrap_err()),
         #[cfg(feature = "checkpoint")]
@@ -147,7 +151,7 @@ mod outputs {
     use std::fs;
     use std::io::ErrorKind::AlreadyExists;
 
-    use viscocontact::output::{CsvHistory, Field, Metadata, NpzSeries, VtkSeries};
+    use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata};
 
     use super::*;
 
@@ -163,8 +167,8 @@ mod outputs {
         let count = |name: &str| fs::read_dir(folder.join(name)).unwrap().count();
 
         let (archives, images, table) = (folder.join("npz"), folder.join("vtk"), folder.join("history.csv"));
-        let mut first = NpzSeries::create(&archives, &metadata(), &[Field::Pressure]).unwrap();
-        let mut second = VtkSeries::create(&images, &metadata(), &[Field::Pressure]).unwrap();
+        let mut first = FrameSeries::create(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap();
+        let mut second = FrameSeries::create(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap();
         let mut third = CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap();
         for _ in 0..3 {
             first.write(&contact).unwrap();
@@ -174,8 +178,8 @@ mod outputs {
         fs::write(archives.join("notes.txt"), "kept").unwrap();
         let before = fs::read(&table).unwrap();
         for error in [
-            NpzSeries::create(&archives, &metadata(), &[Field::Pressure]).unwrap_err(),
-            VtkSeries::create(&images, &metadata(), &[Field::Pressure]).unwrap_err(),
+            FrameSeries::create(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap_err(),
+            FrameSeries::create(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap_err(),
             CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap_err(),
         ] {
             assert_eq!(error.io_kind(), Some(AlreadyExists), "{error:?}");
@@ -184,13 +188,14 @@ mod outputs {
         assert_eq!([count("npz"), count("vtk")], [4, 4]);
 
         // what is asked for wrongly removes nothing
-        assert!(NpzSeries::create_or_replace(&archives, &metadata(), &[Field::Gap; 2]).is_err());
+        assert!(FrameSeries::create_or_replace(&archives, Format::Npz, &metadata(), &[Field::Gap; 2]).is_err());
         assert!(CsvHistory::create_or_replace(&table, &metadata(), &contact, &["a", "a"]).is_err());
         assert_eq!(fs::read(&table).unwrap(), before);
         assert_eq!(count("npz"), 4);
 
-        let mut first = NpzSeries::create_or_replace(&archives, &metadata(), &[Field::Pressure]).unwrap();
-        let mut second = VtkSeries::create_or_replace(&images, &metadata(), &[Field::Pressure]).unwrap();
+        let mut first =
+            FrameSeries::create_or_replace(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap();
+        let mut second = FrameSeries::create_or_replace(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap();
         CsvHistory::create_or_replace(&table, &metadata(), &contact, &[]).unwrap();
         assert_eq!([count("npz"), count("vtk")], [1, 0]);
         first.write(&contact).unwrap();

@@ -83,7 +83,7 @@ fn text_of(path: &Path) -> String {
 mod npy {
     use std::io::Read;
 
-    use viscocontact::output::{NpzSeries, write_npy};
+    use viscocontact::output::{Format, FrameSeries, write_npy};
 
     use super::*;
 
@@ -106,7 +106,7 @@ mod npy {
     #[test]
     fn an_archive_of_the_stress() {
         use viscocontact::observe::Stress;
-        use viscocontact::output::write_stress_npz;
+        use viscocontact::output::write_stress;
 
         let folder = Folder::new("npz-stress");
         let mut contact = punch();
@@ -115,7 +115,7 @@ mod npy {
         let depths = [0.5 * side, side, 3.0 * side];
         let volume = contact.stress().unwrap().in_volume(&depths).unwrap();
         let path = folder.0.join("stress.npz");
-        write_stress_npz(&path, &contact, &volume, &scene()).unwrap();
+        write_stress(&path, Format::Npz, &contact, &volume, &scene()).unwrap();
         let mut archive = Archive(zip::ZipArchive::new(fs::File::open(&path).unwrap()).unwrap());
         assert_eq!(archive.0.len(), 14);
         assert_eq!(archive.numbers("x3"), (vec![3], depths.to_vec()));
@@ -145,14 +145,14 @@ mod npy {
             .material(contact.material().clone())
             .build()
             .unwrap();
-        let error = write_stress_npz(&path, &smaller, &volume, &scene()).unwrap_err();
+        let error = write_stress(&path, Format::Npz, &smaller, &volume, &scene()).unwrap_err();
         assert!(matches!(error, Error::WrongLength { field: "stress in a volume", .. }), "{error}");
     }
 
     #[test]
     fn archives_hold_what_was_computed() {
         let folder = Folder::new("npz");
-        let mut series = NpzSeries::create(&folder.0, &scene(), &Field::ALL).unwrap();
+        let mut series = FrameSeries::create(&folder.0, Format::Npz, &scene(), &Field::ALL).unwrap();
         let mut contact = punch();
         run(&mut contact, |contact, _| {
             let path = series.write(contact).unwrap();
@@ -189,13 +189,14 @@ mod npy {
     #[test]
     fn earlier_runs_are_not_overwritten() {
         let folder = Folder::new("npz-again");
-        let mut series = NpzSeries::create(&folder.0, &scene(), &[Field::Gap]).unwrap();
+        let mut series = FrameSeries::create(&folder.0, Format::Npz, &scene(), &[Field::Gap]).unwrap();
         series.write(&punch()).unwrap();
-        let error = NpzSeries::create(&folder.0, &scene(), &[Field::Gap]).unwrap_err();
+        let error = FrameSeries::create(&folder.0, Format::Npz, &scene(), &[Field::Gap]).unwrap_err();
         let Error::Output(error) = error else { panic!("{error}") };
         assert_eq!(error.kind(), std::io::ErrorKind::AlreadyExists);
         assert!(error.io_error().to_string().contains("frame_000000.npz"), "{error:?}");
-        let twice = NpzSeries::create(folder.0.join("b"), &scene(), &[Field::Gap, Field::Gap]).unwrap_err();
+        let twice =
+            FrameSeries::create(folder.0.join("b"), Format::Npz, &scene(), &[Field::Gap, Field::Gap]).unwrap_err();
         let Error::Output(twice) = twice else { panic!("{twice}") };
         assert!(twice.io_error().to_string().contains("gap is requested twice"), "{twice:?}");
     }
@@ -203,7 +204,7 @@ mod npy {
     #[test]
     fn a_frame_that_fails_is_not_there_and_not_counted() {
         let folder = Folder::new("npz-fails");
-        let mut series = NpzSeries::create(folder.0.join("run"), &scene(), &[Field::Pressure]).unwrap();
+        let mut series = FrameSeries::create(folder.0.join("run"), Format::Npz, &scene(), &[Field::Pressure]).unwrap();
         fs::remove_dir_all(folder.0.join("run")).unwrap();
         let error = series.write(&punch()).unwrap_err();
         assert!(matches!(&error, Error::Output(error) if error.path().ends_with("frame_000000.npz")), "{error}");
@@ -229,7 +230,7 @@ mod npy {
 
 #[cfg(feature = "vtk")]
 mod vtk {
-    use viscocontact::output::VtkSeries;
+    use viscocontact::output::{Format, FrameSeries};
 
     use super::*;
 
@@ -274,7 +275,7 @@ mod vtk {
 
     #[test]
     fn an_image_of_the_stress() {
-        use viscocontact::output::write_stress_vtk;
+        use viscocontact::output::write_stress;
 
         let folder = Folder::new("vtk-stress");
         let mut contact = punch();
@@ -283,7 +284,7 @@ mod vtk {
         let depths = [0.5 * side, side, 3.0 * side];
         let volume = contact.stress().unwrap().in_volume(&depths).unwrap();
         let path = folder.0.join("stress.vtr");
-        write_stress_vtk(&path, &contact, &volume, &scene()).unwrap();
+        write_stress(&path, Format::Vtk, &contact, &volume, &scene()).unwrap();
         let image = Image::open(&path);
         assert_eq!(image.attribute("RectilinearGrid WholeExtent", "WholeExtent"), "0 23 0 16 0 2");
         assert_eq!(image.numbers("TimeValue"), [contact.time()]);
@@ -306,7 +307,7 @@ mod vtk {
     #[test]
     fn images_hold_what_was_computed() {
         let folder = Folder::new("vtk");
-        let mut series = VtkSeries::create(&folder.0, &scene(), &Field::ALL).unwrap();
+        let mut series = FrameSeries::create(&folder.0, Format::Vtk, &scene(), &Field::ALL).unwrap();
         let mut contact = punch();
         let mut listed = Vec::new();
         run(&mut contact, |contact, _| {
@@ -342,13 +343,13 @@ mod vtk {
             assert_eq!(lines.collect::<Vec<_>>(), listed);
         });
         assert_eq!(folder.names(), ["frame_000000.vti", "frame_000001.vti", "frame_000002.vti", "series.pvd"]);
-        assert!(matches!(VtkSeries::create(&folder.0, &scene(), &[]), Err(Error::Output(_))));
+        assert!(matches!(FrameSeries::create(&folder.0, Format::Vtk, &scene(), &[]), Err(Error::Output(_))));
     }
 
     #[test]
     fn fields_are_chosen() {
         let folder = Folder::new("vtk-few");
-        let mut series = VtkSeries::create(&folder.0, &scene(), &[Field::Gap]).unwrap();
+        let mut series = FrameSeries::create(&folder.0, Format::Vtk, &scene(), &[Field::Gap]).unwrap();
         let image = Image::open(&series.write(&punch()).unwrap());
         assert!(image.head.contains("gap [m]") && !image.head.contains("pressure"));
         assert!(image.numbers("gap [m]").contains(&f64::INFINITY));
@@ -430,12 +431,12 @@ mod csv {
 #[ignore = "tests/read_back.sh runs it"]
 fn a_run_for_other_readers() {
     use viscocontact::observe::Stress;
-    use viscocontact::output::{CsvHistory, NpzSeries, VtkSeries, write_npy, write_stress_vtk};
+    use viscocontact::output::{CsvHistory, Format, FrameSeries, write_npy, write_stress};
 
     let folder = PathBuf::from(std::env::var_os("READ_BACK_FOLDER").expect("READ_BACK_FOLDER names a folder"));
     let mut contact = punch();
-    let mut archives = NpzSeries::create(&folder, &scene(), &Field::ALL).unwrap();
-    let mut images = VtkSeries::create(&folder, &scene(), &Field::ALL).unwrap();
+    let mut archives = FrameSeries::create(&folder, Format::Npz, &scene(), &Field::ALL).unwrap();
+    let mut images = FrameSeries::create(&folder, Format::Vtk, &scene(), &Field::ALL).unwrap();
     let mut history =
         CsvHistory::create(folder.join("history.csv"), &scene(), &contact, &["twice, force [N]"]).unwrap();
     let mut frame = 0;
@@ -462,7 +463,7 @@ fn a_run_for_other_readers() {
         fs::write(folder.join("scene.json"), scene().json(contact)).unwrap();
         let depths = [1.0, 1.5, 3.5].map(|sides| sides * contact.grid().spacing()[0].max(contact.grid().spacing()[1]));
         let volume = contact.stress().unwrap().in_volume(&depths).unwrap();
-        write_stress_vtk(folder.join(format!("frame_{frame:06}.vtr")), contact, &volume, &scene()).unwrap();
+        write_stress(folder.join(format!("frame_{frame:06}.vtr")), Format::Vtk, contact, &volume, &scene()).unwrap();
         dump("depths", &depths);
         let components: Vec<f64> = volume.values.iter().flat_map(Stress::components).collect();
         dump("stress", &components);
@@ -482,7 +483,7 @@ fn a_run_for_other_readers() {
 #[test]
 #[ignore = "full_disks_leave_whole_files_and_no_word runs it"]
 fn a_run_without_room() {
-    use viscocontact::output::{CsvHistory, NpzSeries, VtkSeries, write_npy};
+    use viscocontact::output::{CsvHistory, Format, FrameSeries, write_npy};
 
     let folder = PathBuf::from(std::env::var_os("FULL_FOLDER").expect("FULL_FOLDER names a folder"));
     let mut contact =
@@ -496,8 +497,8 @@ fn a_run_without_room() {
     drop(history);
     fs::write(folder.join("rows"), rows.to_string()).unwrap();
     // all fields of 73 KB, and none, which is small enough
-    let mut archives = NpzSeries::create(folder.join("npz"), &scene(), &Field::ALL).unwrap();
-    let mut images = VtkSeries::create(folder.join("vtk"), &scene(), &Field::ALL).unwrap();
+    let mut archives = FrameSeries::create(folder.join("npz"), Format::Npz, &scene(), &Field::ALL).unwrap();
+    let mut images = FrameSeries::create(folder.join("vtk"), Format::Vtk, &scene(), &Field::ALL).unwrap();
     for _ in 0..2 {
         assert!(matches!(archives.write(&contact), Err(Error::Output(_))));
         assert!(matches!(images.write(&contact), Err(Error::Output(_))));
@@ -505,7 +506,7 @@ fn a_run_without_room() {
         assert!(matches!(written, Err(Error::Output(_))));
     }
     assert_eq!((archives.frames(), images.frames()), (0, 0));
-    let mut few = NpzSeries::create(folder.join("few"), &scene(), &[]).unwrap();
+    let mut few = FrameSeries::create(folder.join("few"), Format::Npz, &scene(), &[]).unwrap();
     few.write(&contact).unwrap();
 }
 

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use viscocontact::output::{CsvHistory, Field, Metadata, NpzSeries, VtkSeries, write_field_npy};
+use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata, write_field_npy};
 use viscocontact::parallel::{RanksError, Threads};
 use viscocontact::prelude::*;
 
@@ -21,8 +21,9 @@ fn folder(name: &str) -> PathBuf {
 fn write(mut contact: ViscoelasticContact, loads: &[Load], folder: &Path) -> Result<Vec<f64>, Error> {
     fs::create_dir_all(folder).unwrap();
     let metadata = || Metadata::new("Ranks").note("batch", "7");
-    let mut npz = NpzSeries::create(folder.join("npz"), &metadata(), &Field::ALL)?;
-    let mut vtk = VtkSeries::create_or_replace(folder.join("vtk"), &metadata(), &[Field::Gap, Field::Pressure])?;
+    let mut npz = FrameSeries::create(folder.join("npz"), Format::Npz, &metadata(), &Field::ALL)?;
+    let mut vtk =
+        FrameSeries::create_or_replace(folder.join("vtk"), Format::Vtk, &metadata(), &[Field::Gap, Field::Pressure])?;
     let mut csv = CsvHistory::create(folder.join("history.csv"), &metadata(), &contact, &["twice [N]"])?;
     let mut areas = Vec::new();
     for (step, &load) in loads.iter().enumerate() {
@@ -160,8 +161,8 @@ fn errors_are_those_of_all() {
         errors.push(csv.write(&contact, &report, if ranks.rank() == 2 { &[1.0] } else { &[] }).err());
         csv.write(&contact, &report, &[])?;
         let series = root.join("series");
-        let mut npz = NpzSeries::create(&series, &metadata(), &[Field::Pressure])?;
-        let mut vtk = VtkSeries::create(&series, &metadata(), &[Field::Pressure])?;
+        let mut npz = FrameSeries::create(&series, Format::Npz, &metadata(), &[Field::Pressure])?;
+        let mut vtk = FrameSeries::create(&series, Format::Vtk, &metadata(), &[Field::Pressure])?;
         // all have made theirs
         contact.moment();
         if ranks.rank() == 0 {

@@ -1,11 +1,8 @@
 //! Halo rows, where ranks share the rows of a field.
 
 use std::ops::Range;
-use std::sync::Arc;
 
-use num_complex::Complex64;
-
-use crate::parallel::{Ranks, Rows, unwind_rank_loss};
+use crate::parallel::Rows;
 use crate::solver::extension::passes::{NOTHING_KNOWN, weight};
 
 /// Halo rows of a level: the row before the local rows and the row after them, where another rank holds these.
@@ -33,15 +30,14 @@ impl HaloRows {
         [n1, n2]: [usize; 2],
         periodic: bool,
     ) -> HaloRows {
-        let Some(group) = rows.group() else { return HaloRows::default() };
-        let own = of(group.rank());
-        if own.is_empty() {
+        let own = of(rows.rank());
+        if !rows.are_shared() || own.is_empty() {
             return HaloRows::default();
         }
         let before = own.start.checked_sub(1).or(periodic.then_some(n1 - 1));
         let after = Some(own.end).filter(|&row| row < n1).or(periodic.then_some(0));
         let halo_row = |row: usize| {
-            let rank = (0..group.size()).find(|&rank| rank != group.rank() && of(rank).contains(&row))?;
+            let rank = (0..rows.ranks()).find(|&rank| rank != rows.rank() && of(rank).contains(&row))?;
             Some(HaloRow { rank, row, values: vec![0.0; n2] })
         };
         debug_assert_eq!(weight(NOTHING_KNOWN), 0.0);
@@ -66,54 +62,44 @@ impl HaloRows {
 /// Exchanges rows with the neighbours, in buffers of its own.
 #[derive(Debug, Clone)]
 pub(crate) struct HaloExchange {
-    group: Arc<dyn Ranks>,
-    row: Vec<f64>,
-    send: Vec<Complex64>,
-    received: Vec<Complex64>,
+    rows: Rows,
+    send: Vec<f64>,
+    received: Vec<f64>,
     counts: Vec<usize>,
 }
 
 impl HaloExchange {
-    /// For rows of at most so many columns.
-    pub(crate) fn new(group: &Arc<dyn Ranks>, columns: usize) -> HaloExchange {
-        let two_rows = vec![Complex64::default(); 2 * columns.div_ceil(2)];
-        let counts = vec![0; group.size()];
-        HaloExchange {
-            group: Arc::clone(group),
-            row: vec![0.0; columns],
+    /// For rows of at most so many columns, if ranks share them.
+    pub(crate) fn new(rows: &Rows, columns: usize) -> Option<HaloExchange> {
+        let (two_rows, counts) = (vec![0.0; 2 * columns], vec![0; rows.ranks()]);
+        rows.are_shared().then(|| HaloExchange {
+            rows: rows.clone(),
             send: two_rows.clone(),
             received: two_rows,
             counts,
-        }
+        })
     }
 
     /// Fills the halo rows, `columns` long; `write` gives the first local row, and the last.
     pub(crate) fn fetch(&mut self, halo: &mut HaloRows, columns: usize, own: usize, write: impl Fn(usize, &mut [f64])) {
-        let HaloExchange { group, row, send, received, counts } = self;
-        let (row, length) = (&mut row[..columns], columns.div_ceil(2));
+        let HaloExchange { rows, send, received, counts } = self;
         let mut sent = 0;
         for (rank, count) in counts.iter_mut().enumerate() {
             *count = 0;
             // the rank of the row before the local rows needs the first of them, the rank of the row after them the last
             for (halo, k) in halo.rows.iter().zip([0, own.saturating_sub(1)]) {
                 if halo.as_ref().is_some_and(|halo| halo.rank == rank) {
-                    write(k, row);
-                    let pairs = row.chunks(2).map(|pair| Complex64::new(pair[0], pair.get(1).copied().unwrap_or(0.0)));
-                    send[sent..sent + length].iter_mut().zip(pairs).for_each(|(z, pair)| *z = pair);
-                    (sent, *count) = (sent + length, *count + length);
+                    write(k, &mut send[sent..sent + columns]);
+                    (sent, *count) = (sent + columns, *count + columns);
                 }
             }
         }
-        group
-            .exchange(&send[..sent], counts, &mut received[..sent], counts)
-            .unwrap_or_else(|error| unwind_rank_loss(error));
-        let mut next = received.chunks_exact(length);
+        rows.exchange_into((&send[..sent], counts), (&mut received[..sent], counts));
+        let mut next = received.chunks_exact(columns);
         for rank in 0..counts.len() {
             // of a rank that has both rows, its first one, which is the row after the local rows, comes first
-            for halo in halo.rows.iter_mut().rev().flatten().filter(|halo| halo.rank == rank) {
-                let pairs = halo.values.chunks_mut(2).zip(next.next().unwrap_or(&[]));
-                pairs.for_each(|(out, z)| out.iter_mut().zip([z.re, z.im]).for_each(|(out, part)| *out = part));
-            }
+            let rows = halo.rows.iter_mut().rev().flatten().filter(|halo| halo.rank == rank);
+            rows.zip(&mut next).for_each(|(halo, values)| halo.values.copy_from_slice(values));
         }
     }
 }

@@ -178,7 +178,7 @@ impl Extension {
             share: 0.0,
             buffers: vec![RowBuffers::new(cells[1]); threads],
             halo: HaloRows::new(rows, |rank| rows.of(rank), cells, periodic[0]),
-            exchange: rows.group().map(|group| HaloExchange::new(group, cells[1])),
+            exchange: HaloExchange::new(rows, cells[1]),
             rows: rows.clone(),
         }
     }
@@ -270,5 +270,5 @@ impl Extension {
 fn compute_rows(pass: &Pass<'_>, buffers: &mut [RowBuffers], values: &mut [f64], first: usize, columns: usize) {
     let threads = buffers.len().min(lanes(values.len()));
     let share = (values.len() / columns).div_ceil(threads).max(1);
-    for_each_share(&SharedRows { pass, first, share, columns }, &mut buffers[..threads], values, share * columns);
+    for_each_share(&SharedRows { pass, first, columns }, &mut buffers[..threads], values, share * columns);
 }

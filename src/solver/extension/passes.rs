@@ -57,11 +57,10 @@ pub(super) struct Pass<'a> {
     pub(super) periodic: [bool; 2],
 }
 
-/// The rows that a pass computes, from the `first` on, `share` of them to a thread.
+/// The rows that a pass computes, from the `first` on.
 pub(super) struct SharedRows<'a> {
     pub(super) pass: &'a Pass<'a>,
     pub(super) first: usize,
-    pub(super) share: usize,
     pub(super) columns: usize,
 }
 
@@ -70,8 +69,8 @@ impl Task for SharedRows<'_> {
     type Item = f64;
 
     #[inline(always)]
-    fn run(&self, k: usize, buffers: &mut RowBuffers, values: &mut [f64]) {
-        for (i, row) in (self.first + k * self.share..).zip(values.chunks_exact_mut(self.columns)) {
+    fn run(&self, start: usize, buffers: &mut RowBuffers, values: &mut [f64]) {
+        for (i, row) in (self.first + start / self.columns..).zip(values.chunks_exact_mut(self.columns)) {
             match self.pass.operation {
                 Operation::SumOnes | Operation::Sum => self.pass.sum(i, buffers, row),
                 Operation::Restrict => self.pass.restrict(i, buffers, row),
