@@ -123,7 +123,7 @@ impl Rows {
     }
 
     /// The cells of a local band in a field of local rows.
-    fn band(&self, band: usize) -> Range<usize> {
+    pub(crate) fn band(&self, band: usize) -> Range<usize> {
         let (length, cells) = (self.band_cells(), self.own.len() * self.cells[1]);
         band * length..((band + 1) * length).min(cells)
     }
