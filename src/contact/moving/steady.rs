@@ -176,7 +176,8 @@ impl TowardSteady<'_> {
         let (cells, contact) = (grid.cells()[axis], self.length_of_contact());
         let limit = self.motion.tolerance;
         (self.stride, self.left) = match self.stride {
-            0 => (longest_stride(contact), cells),
+            // the largest power of two within an eighth of the contact
+            0 => (1 << (contact / STEPS_PER_CONTACT_LENGTH).max(1).ilog2(), cells),
             1 => {
                 let pairs = self.contact.pressure().iter().zip(&self.before);
                 let change: f64 = pairs.map(|(now, before)| (now - before).abs()).sum();
@@ -202,9 +203,4 @@ impl TowardSteady<'_> {
         let along = |Extent { low, high }| high[self.motion.axis] + 1 - low[self.motion.axis];
         self.contact.extent_of_contact().map_or(1, along)
     }
-}
-
-/// The largest power of two of which a contact is [`STEPS_PER_CONTACT_LENGTH`] long.
-fn longest_stride(contact: usize) -> usize {
-    1 << (contact / STEPS_PER_CONTACT_LENGTH).max(1).ilog2()
 }
