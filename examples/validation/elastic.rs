@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use viscocontact::Result;
 use viscocontact::analytic::{Hertz, HertzEllipse, RigidPunch};
+use viscocontact::observe::Stress;
 use viscocontact::plot::Legend;
 use viscocontact::prelude::*;
 

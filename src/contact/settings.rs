@@ -116,7 +116,7 @@ pub enum Edge {
     /// result would be wrong.
     #[default]
     Refuse,
-    /// The step goes on: the rigid body ends where the grid does.
+    /// The step continues: the rigid body ends where the grid does.
     Allow,
 }
 

@@ -67,7 +67,7 @@ impl ViscoelasticContact {
     }
 
     /// Normal stiffness of the contact over the contact modulus \[m\]: dW/dω = E* times this while the contact area
-    /// stays as it is; with 1/C(0) it is the response to a jump, with 1/C(t) that to a step held for t. 2a for a circle
+    /// stays as it is; with 1/C(0) it is the response to a jump, with 1/C(t) the response to a step held for t. 2a for a circle
     /// of radius a. It depends on the area alone, not on the material; the electrical and thermal conductance of the
     /// contact are proportional to it (J. R. Barber, Proc. R. Soc. A 459, 2003).
     ///

@@ -75,14 +75,12 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
 fn predict_contact(state: &State, window: &mut Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
     let (now, before) = (&state.current, &state.previous);
     let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.has_memory());
-    let change = state.history.last_change();
+    let (change, rows) = (state.history.last_change(), state.region.rows());
     if now.contact_cells == 0 || before.contact_cells == 0 {
         return false;
     }
     // a rank without cells has no changes
-    let unknown = change.is_none() && state.region.len() > 0;
-    let rows = state.region.rows();
-    if rows.any(unknown) && !elastic {
+    if rows.any(change.is_none() && state.region.len() > 0) && !elastic {
         return false;
     }
     let ahead = state.extrapolation.reach(step.interval.dt);
