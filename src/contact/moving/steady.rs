@@ -124,25 +124,23 @@ impl TowardSteady<'_> {
         if self.arrived {
             return Ok(None);
         }
-        if self.contact.contact_cells() == 0 {
-            if self.tried_to_touch {
-                return Err(Error::NoContact { time: self.contact.time() });
-            }
-            self.tried_to_touch = true;
-            let motion = self.motion;
-            let dt = self.contact.grid().spacing()[motion.axis] / motion.velocity.abs();
-            return self.contact.step_over([0; 2], dt, motion.load).map(Some);
+        let apart = self.contact.contact_cells() == 0;
+        if apart && self.tried_to_touch {
+            return Err(Error::NoContact { time: self.contact.time() });
         }
-        if self.left == 0 && !self.next_stride()? {
+        if !apart && self.left == 0 && !self.next_stride()? {
             return Ok(None);
         }
+        self.tried_to_touch |= apart;
         let SteadyMotion { axis, velocity, load, .. } = self.motion;
+        // bodies that are apart touch in place, within the time for one cell
+        let (stride, lasts) = if apart { (0, 1) } else { (self.stride, self.stride) };
         let mut cells = [0; 2];
-        cells[axis] = if velocity > 0.0 { self.stride as isize } else { -(self.stride as isize) };
-        let dt = self.stride as f64 * self.contact.grid().spacing()[axis] / velocity.abs();
+        cells[axis] = velocity.signum() as isize * stride as isize;
+        let dt = lasts as f64 * self.contact.grid().spacing()[axis] / velocity.abs();
         let report = self.contact.step_over(cells, dt, load)?;
-        self.travelled += self.stride;
-        self.left = self.left.saturating_sub(self.stride);
+        self.travelled += stride;
+        self.left = self.left.saturating_sub(stride);
         Ok(Some(report))
     }
 

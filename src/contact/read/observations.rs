@@ -187,10 +187,10 @@ impl ViscoelasticContact {
         let ((axis, across), grid) = (along.and_other(), self.grid());
         let line = line_through(grid, across, ("coordinate of the profile", at))?;
         let gap = self.gap()?;
-        let fields = [self.pressure(), self.displacement(), &gap];
         let rows = self.computation.state.region.rows();
-        let on_line = || Ok(fields.map(|field| self.line_of(field, along, line)));
-        let [pressure, displacement, gap] = rows.together(on_line)?;
+        let line_of = |field| self.line_of(field, along, line);
+        let [pressure, displacement, gap] =
+            rows.together(|| Ok([line_of(self.pressure())?, line_of(self.displacement())?, line_of(&gap)?]))?;
         let positions = (0..grid.cells()[axis]).map(|k| grid.coordinate(axis, k)).collect();
         Ok(LineProfile { at: grid.coordinate(across, line), positions, pressure, displacement, gap })
     }
