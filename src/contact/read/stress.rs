@@ -21,7 +21,7 @@ use crate::{Grid, ViscoelasticContact, memory};
 /// history costs one field per retardation time and one pass over these fields per step.
 ///
 /// ```
-/// use viscocontact::{contact::StressHistory, prelude::*};
+/// use viscocontact::{contact::StressHistory, observe::Stress, prelude::*};
 ///
 /// let polymer = Material::elastic_bulk(Zener::new(1.0e9, 2.0e8, 5.0e7)?, 3.0e9)?;
 /// let mut contact = ViscoelasticContact::builder(Grid::square(32, 2.0e-3)?)

@@ -59,7 +59,7 @@ const FARTHEST: f64 = 1e40;
 /// an eighth of the transforms; a point one closed form per loaded cell.
 ///
 /// ```
-/// use viscocontact::prelude::*;
+/// use viscocontact::{observe::Stress, prelude::*};
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(64, 2.4e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
