@@ -109,7 +109,7 @@ impl Window {
         trial: &mut Trial,
     ) -> Outcome {
         let Window { kernel, work, solver, gap, .. } = self;
-        let Trial { solution, gap: open, free, likely, foreseen, .. } = trial;
+        let Trial { solution, gap: open, free, likely, predicted, .. } = trial;
         let owner = gap.as_ref().unwrap_or(indenter.gap()).owner.as_deref();
         let problem = Problem {
             kernel,
@@ -118,7 +118,7 @@ impl Window {
             prescribed,
             bodies: free,
             owner,
-            likely: foreseen.then_some(&likely[..]),
+            likely: predicted.then_some(&likely[..]),
         };
         let outcome = match solver {
             _ if c == 0.0 => Outcome::Converged,
