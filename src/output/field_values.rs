@@ -40,7 +40,7 @@ pub(super) fn write_fields(
 }
 
 impl FieldValues<'_> {
-    /// Gives the next field to `take`: rows one after the other, or columns for VTK, where the index along x1 varies fastest.
+    /// Passes the next field to `take`: row by row, or for VTK column by column.
     pub(super) fn next(&mut self, mut take: impl FnMut(&[f64]) -> io::Result<()>) -> io::Result<()> {
         let FieldValues { contact, fields, format, buffer } = self;
         let Some((field, rest)) = fields.split_first() else { return Ok(()) };
@@ -81,7 +81,7 @@ impl FieldValues<'_> {
         taken
     }
 
-    /// Sends the fields that were not taken, because rank 0 waits for them or stopped early.
+    /// Sends the fields that were not taken: the other ranks always, rank 0 after an error.
     fn pass_over_the_rest(&mut self) {
         while self.contact.shared_rows().are_shared() && !self.fields.is_empty() {
             // the loss of a rank is read by `Rows::replace_file`

@@ -213,10 +213,7 @@ fn load_tables_are_checked() {
     assert!(matches!(error(&[at(0.0, 1.0)]), Error::WrongLength { field: "load table", len: 1, .. }));
     assert!(matches!(error(&[at(0.0, 1.0), at(-1.0, 1.0)]), Error::OutOfOrder { index: 1, .. }));
     assert!(matches!(error(&[at(0.0, 1.0), at(0.0, 2.0), at(0.0, 3.0)]), Error::OutOfOrder { index: 2, .. }));
-    assert!(matches!(
-        error(&[at(0.0, 1.0), at(f64::NAN, 1.0)]),
-        Error::OutOfRange { field: "time in the load table", .. }
-    ));
+    assert!(matches!(error(&[at(0.0, 1.0), at(f64::NAN, 1.0)]), Error::OutOfRange { field: "load table times", .. }));
     assert!(matches!(error(&[at(0.0, 1.0), at(1.0, -1.0)]), Error::OutOfRange { field: "normal force", .. }));
     let load = Load::force(1.0);
     assert!(matches!(Ramp::new(load, load, 0.0), Err(Error::OutOfRange { field: "duration of the ramp", .. })));

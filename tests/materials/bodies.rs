@@ -283,7 +283,9 @@ fn waiting_changes_nothing_that_follows() {
     assert!(contact.follow(&load, Stepping::fixed(1.0), f64::INFINITY).next_step().is_err());
     contact.step(1e-3, Load::force(0.01)).unwrap();
     // tables and direct sums
-    let table = TabulatedCreep::new(&[0.1, 1.0, 10.0, 100.0], &[1.0e-6, 1.2e-6, 1.5e-6, 1.6e-6]).unwrap();
+    let table = Measurements::creep(&[0.1, 1.0, 10.0, 100.0], &[1.0e-6, 1.2e-6, 1.5e-6, 1.6e-6])
+        .and_then(|table| table.fit())
+        .unwrap();
     let settings = Settings::default().with_time_rule(TimeRule::Backward);
     let mut contact = grid().material(Material::incompressible(table)).settings(settings).build().unwrap();
     for _ in 0..20 {

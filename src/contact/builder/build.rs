@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::contact::builder::memory::{Computed, Footprint, Memory, symmetry_of};
+use crate::contact::builder::memory::{Footprint, Memory, symmetry_of};
 use crate::contact::builder::{Builder, OwnGap};
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::scene_fingerprint::Built;
@@ -54,14 +54,14 @@ impl Builder {
             } else {
                 Region::whole(&self.grid, folded)
             };
-            parts.footprint(self.grid.len(), bodies).check(&Computed::on(&region), 0)?;
+            parts.footprint(bodies).check(&region, 0)?;
             return Ok(self.assemble(parts, indenter, region));
         };
         let rows = self.agreed_rows(group)?;
         let gaps = std::mem::take(&mut self.gaps);
         rows.together(|| {
             let (parts, gap, even, region) = self.shared_parts(&gaps, &rows)?;
-            rows.agree(parts.footprint(region.shown_len(), 1).check(&Computed::on(&region), 0))?;
+            rows.agree(parts.footprint(1).check(&region, 0))?;
             let indenter = gap.on(&region, &self.grid, even);
             drop(gaps);
             Ok(self.assemble(parts, indenter, region))
@@ -71,14 +71,9 @@ impl Builder {
     /// The contact of these parts; nothing here can fail. A call of all ranks that share out the region.
     fn assemble(self, parts: Parts, indenter: Indenter, region: Region) -> ViscoelasticContact {
         let (Builder { grid, temperature, .. }, Parts { settings, material, kernel, history }) = (self, parts);
-        let history = history.undisturbed_on(region.cells(), !region.covers());
         let scene = Scene {
             #[cfg(feature = "checkpoint")]
-            built: if region.is_shared() {
-                Built::new(indenter.gap(), &region)
-            } else {
-                Built::new(indenter.gap(), &Region::whole(&grid, [false; 2]))
-            },
+            built: Built::new(indenter.gap(), &region.of_gap()),
             bodies: indenter.bodies(),
             grid,
             kernel,
@@ -86,7 +81,7 @@ impl Builder {
             settings,
             temperature,
         };
-        let computation = Computation::new(&scene, State::at_rest(Arc::new(indenter), region, history));
+        let computation = Computation::new(&scene, State::at_rest(Arc::new(indenter), region, &history));
         ViscoelasticContact::new(scene, computation)
     }
 
@@ -161,14 +156,14 @@ impl Builder {
             let rows = self.agreed_rows(group)?;
             return rows.together(|| {
                 let (parts, _, _, region) = self.shared_parts(&self.gaps, &rows)?;
-                Ok(parts.footprint(region.shown_len(), 1).on(&Computed::on(&region)))
+                Ok(parts.footprint(1).on(&region))
             });
         }
         self.validate()?;
         let (parts, cells) = (self.parts()?, self.grid.cells());
         let gaps: Option<Vec<_>> = self.gaps.iter().map(|(_, gap)| gap.as_ref().ok()).collect();
         let folded = gaps.filter(|_| self.settings.symmetry).map_or([false; 2], |gaps| symmetry_of(&gaps, cells));
-        Ok(parts.footprint(self.grid.len(), self.gaps.len()).most(cells, folded, parts.are_windowed()))
+        Ok(parts.footprint(self.gaps.len()).most(&self.grid, folded, parts.are_windowed()))
     }
 
     /// Rejects settings out of range, and no rigid body or too many.
@@ -234,9 +229,8 @@ impl Parts {
         windowed(&self.settings, &self.history, &self.kernel)
     }
 
-    /// The memory with `all` cells of the whole grid, or of the local rows.
-    fn footprint(&self, all: usize, bodies: usize) -> Footprint<'_> {
-        Footprint { all, bodies, settings: &self.settings, kernel: &self.kernel, history: &self.history }
+    fn footprint(&self, bodies: usize) -> Footprint<'_> {
+        Footprint { bodies, settings: &self.settings, kernel: &self.kernel, history: &self.history }
     }
 }
 
