@@ -20,7 +20,7 @@ pub(super) fn even_spectrum(layout: Layout, shares: Option<&Shares>, response: &
         let (cells, half) = (layout.unfolded(axis), layout.period(axis) / 2 + 1);
         if layout.ends[axis] == Ends::Free { cells } else { cells.min(half) }
     });
-    let columns = shares.map_or(layout.all_columns(), |shares| shares.columns(&layout));
+    let columns = shares.map_or(0..layout.period(1) / 2 + 1, |shares| shares.columns(&layout));
     let (first, count, length) = (columns.start, columns.len(), layout.period(0) / 2 + 1);
     let [mut down, mut across] = [0, 1].map(|axis| EvenLine::new(&layout, axis));
     let mut write = |i: usize, row: &mut [f64]| across.transform((0..known[1]).map(|j| response([i, j])), row);
