@@ -150,8 +150,11 @@ impl Rows {
     pub(crate) fn sum_terms<const K: usize>(&self, terms: impl Fn(usize) -> Option<[f64; K]> + Sync) -> [f64; K] {
         let part = |band: Range<usize>| {
             let mut sums = [0.0; K];
-            for terms in band.filter_map(&terms) {
-                sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+            for k in band {
+                // called here, to be inlined
+                if let Some(terms) = terms(k) {
+                    sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+                }
             }
             sums
         };
