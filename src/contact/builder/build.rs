@@ -50,7 +50,7 @@ impl Builder {
             let folded = if self.settings.symmetry { indenter.even_axes(&self.grid) } else { [false; 2] };
             let region = if parts.are_windowed() {
                 // without load, each body is above the cell that it would touch first
-                Region::first_touched(&self.grid, folded, indenter.gap(), bodies)
+                Region::around(&self.grid, folded, Region::lowest_cells(&self.grid, indenter.gap(), bodies), 0.0)
             } else {
                 Region::whole(&self.grid, folded)
             };

@@ -20,8 +20,8 @@ pub(crate) struct Window {
     gap: Option<Gap>,
     /// The lowest of the gaps outside the region and its mirror images, above the datum.
     lowest_outside: f64,
-    /// The indenter whose gap these are.
-    indenter: u64,
+    /// The number of the indenter that the gap belongs to.
+    indenter: Option<u64>,
     /// What fetches rows of other ranks, if they share out the region.
     beside: Option<(HaloExchange, HaloRows)>,
 }
@@ -45,27 +45,20 @@ impl Window {
         let rows = region.rows();
         let beside = HaloExchange::new(&rows, rows.cells()[1])
             .map(|exchange| (exchange, HaloRows::new(&rows, |rank| rows.of(rank), rows.cells(), false)));
-        Window {
-            beside,
-            work,
-            kernel,
-            solver,
-            gap: region.cut_gap(indenter.gap()),
-            lowest_outside: region.lowest_outside(&indenter.gap().above),
-            indenter: indenter.id(),
-        }
+        let mut window =
+            Window { beside, work, kernel, solver, gap: None, lowest_outside: f64::INFINITY, indenter: None };
+        window.follow(region, indenter);
+        window
     }
 
     /// Brings the gap up to date with an indenter that has moved.
     pub(crate) fn follow(&mut self, region: &Region, indenter: &Indenter) {
-        if self.indenter == indenter.id() {
+        if self.indenter == Some(indenter.id()) {
             return;
         }
-        if let Some(own) = &mut self.gap {
-            region.cut_gap_into(indenter.gap(), own);
-        }
+        region.cut_gap(indenter.gap(), &mut self.gap);
         self.lowest_outside = region.lowest_outside(&indenter.gap().above);
-        self.indenter = indenter.id();
+        self.indenter = Some(indenter.id());
     }
 
     /// The gap of the indenter on the region, which the window follows.
