@@ -66,6 +66,10 @@ pub(super) fn same(one: f64, other: f64) -> bool {
 /// The possible meanings of a text as a unit, empty if none: `1/s` is an angular frequency or another notation of Hz.
 pub(super) fn readings(text: &str) -> Vec<Unit> {
     let text = plain(text);
+    // of J / (10⁻⁶/Pa), the first slash is no part of the unit
+    if text.starts_with('/') && text.matches('/').count() > 1 {
+        return Vec::new();
+    }
     let mut products = vec![([0; 4], 1.0)];
     for (k, part) in text.split('/').enumerate() {
         let mut factors: Vec<&str> = part.split([' ', '·', '*', '×']).filter(|factor| !factor.is_empty()).collect();
