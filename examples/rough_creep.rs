@@ -79,7 +79,7 @@ fn main() {
     support::finish(run(&Args::parse()));
 }
 
-/// What is kept of a moment.
+/// Results at one time.
 struct Moment {
     time: f64,
     /// Share of the cells in contact.

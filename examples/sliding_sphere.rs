@@ -76,7 +76,7 @@ impl Bodies {
 
     /// The steady state at a speed, cells of a given side, and the sphere where it is on the grid.
     fn slide(&self, velocity: f64, side: f64) -> Result<(ViscoelasticContact, Shifted)> {
-        // behind, the solid recovers over v τ; what is farther away matters little
+        // behind, the solid recovers over v τ; displacements farther away matter little
         let behind = (4.0 * velocity * self.tau).clamp(3.0 * self.relaxed, 20.0 * self.relaxed);
         let cells = [behind + 2.0 * self.relaxed, 2.6 * self.relaxed].map(|length| (length / side).ceil() as usize);
         let grid = Grid::new(cells, cells.map(|count| count as f64 * side))?;

@@ -8,8 +8,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use viscocontact::output::{Field, Format, FrameSeries, Metadata};
-use viscocontact::prelude::*;
 use viscocontact::parallel::{Ranks, RanksError};
+use viscocontact::prelude::*;
 use viscocontact_mpi::Mpi;
 
 type Failure = Box<dyn std::error::Error>;

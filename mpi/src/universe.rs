@@ -74,7 +74,7 @@ impl Mpi {
         }
         let (rank, size) = (self.rank(), self.size());
         let own = [if leaves { (size - rank) as u64 } else { 0 }, calls as u64];
-        let mut all = [0; 2];
+        let mut all = [0_u64; 2];
         self.universe.world().all_reduce_into(&own, &mut all, SystemOperation::max());
         if all[0] > 0 {
             let rank = size - all[0] as usize;

@@ -1,6 +1,6 @@
 //! A state on its region, with what computes there.
 
-use crate::contact::builder::memory::{Computed, Footprint};
+use crate::contact::builder::memory::Footprint;
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
@@ -44,9 +44,8 @@ impl Computation {
     /// Rejects a region for which there is no memory beside this one.
     pub(super) fn check_memory_for(&self, scene: &Scene, region: &Region) -> Result<()> {
         let Scene { kernel, settings, bodies, .. } = scene;
-        let footprint =
-            Footprint { all: region.shown_len(), bodies: *bodies, settings, kernel, history: &self.state.history };
-        footprint.check(&Computed::on(region), footprint.on(&Computed::on(&self.state.region)).total())
+        let footprint = Footprint { bodies: *bodies, settings, kernel, history: &self.state.history };
+        footprint.check(region, footprint.on(&self.state.region).total())
     }
 
     /// Goes to another state, without reallocating where the regions are the same.

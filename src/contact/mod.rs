@@ -46,7 +46,7 @@ pub use builder::Builder;
 pub use builder::memory::Memory;
 pub use moving::along_path::TravelReport;
 pub use moving::steady::{SteadyMotion, TowardSteady};
-pub use read::report::{BodyState, StepReport, Warning, Warnings};
+pub use read::report::{BodyState, StepReport, Warnings};
 pub use read::stress::StressHistory;
 pub use run::follow::Follow;
 pub use run::progress::{ErrorBudget, Stepping};

@@ -84,7 +84,7 @@ pub trait Geometry: Debug + Send + Sync {
     /// Writes the gap at every cell centre of `grid` into `gap` \[m\], which has one value per cell. Where
     /// [ranks](crate::parallel) share a contact, `grid` holds the local rows: [`Grid::center`] gives their positions.
     ///
-    /// Override it if a whole field is cheaper than its points one by one.
+    /// It is the shape that is not shifted: override [`fill_gap_at`](Geometry::fill_gap_at) instead.
     ///
     /// # Panics
     /// If `gap` is not of length [`Grid::len`].
@@ -94,8 +94,8 @@ pub trait Geometry: Debug + Send + Sync {
 
     /// As [`fill_gap`](Geometry::fill_gap), for the shape with its origin shifted to the point `by` \[m\].
     ///
-    /// Override it if a whole field can be shifted more accurately than its points one by one, such as the Fourier
-    /// series of a periodic surface.
+    /// Override it if a whole field is cheaper than its points one by one, or can be shifted more accurately, such as the
+    /// Fourier series of a periodic surface.
     ///
     /// # Panics
     /// If `gap` is not of length [`Grid::len`].

@@ -56,7 +56,7 @@ impl DirectSum {
         DirectSum { weighting, increments: Vec::new(), weights: Vec::new(), image: Vec::new() }
     }
 
-    /// The same past, whose fields are what `map` makes of these.
+    /// A copy; `map` gives its fields, one for each field here.
     pub(super) fn map(&self, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> DirectSum {
         let DirectSum { weighting, ref increments, ref weights, ref image } = *self;
         let increment = |&Increment { time, ref change }: &Increment| {

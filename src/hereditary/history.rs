@@ -72,7 +72,7 @@ impl History {
         History::new(Rule::Exponential(rule), displacement, Some(frame))
     }
 
-    /// The same history on other cells, a `window` of the grid or all of it, whose fields are what `map` makes of these.
+    /// A copy on other cells, a `window` of the grid or all of it. `map` gives its fields, one for each field here.
     pub(crate) fn map(&self, cells: [usize; 2], window: bool, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> History {
         let History { rule, displacement, far, frame, start_is_kept } = self;
         History {
@@ -87,20 +87,14 @@ impl History {
         }
     }
 
-    /// The same history on no cells, with a far field where they are to be a `window` of the grid.
-    fn layout(&self, window: bool) -> History {
+    /// A copy without values, with a far field for a `window` of the grid.
+    pub(crate) fn layout(&self, window: bool) -> History {
         let layout = self.map([0; 2], false, &mut |_| Vec::new());
         let far = (window && self.has_far_field()).then(|| layout.displacement.clone());
         History { far, ..layout }
     }
 
-    /// The same bodies, undisturbed, on so many cells; with a far field where these are a `window` of the grid.
-    pub(crate) fn undisturbed_on(&self, cells: [usize; 2], window: bool) -> History {
-        let count = cells[0] * cells[1];
-        self.layout(window).map(cells, window, &mut |field| vec![0.0; count * field.per_cell])
-    }
-
-    /// How many values [`History::undisturbed_on`] allocates for each cell.
+    /// How many values the layout has for each cell.
     pub(crate) fn values_per_cell(&self, window: bool) -> usize {
         let mut values = 0;
         self.layout(window).map([0; 2], window, &mut |field| {
@@ -174,7 +168,7 @@ impl History {
 
     /// The change of the displacement in the last step, once the next is predicted; none where it is not kept.
     pub(crate) fn last_change(&self) -> Option<&[f64]> {
-        Some(self.displacement.past.differences()[0]).filter(|change| !change.is_empty())
+        Some(self.displacement.differences()[0]).filter(|change| !change.is_empty())
     }
 
     /// The source U of the far field, if only a window is computed.
@@ -182,7 +176,7 @@ impl History {
         self.far.as_ref().map(|far| &far.now[..])
     }
 
-    /// The same at the end of the step being tried; between steps, before the last one.
+    /// The source U at the end of the step being tried; between steps, before the last one.
     pub(crate) fn far_trial(&self) -> Option<&[f64]> {
         self.far.as_ref().map(|far| &far.trial[..])
     }
@@ -254,9 +248,8 @@ impl History {
     /// `wanted`. Only the exponential rule has it.
     pub(crate) fn recovery(&self, wanted: impl Fn(usize) -> bool, mut take: impl FnMut(usize, f64)) {
         let Some(own) = self.exponential_rule().filter(|_| self.frame.is_none()) else { return };
-        let RememberedField { past, now, .. } = &self.displacement;
-        let held = own.compliance() * own.equilibrium();
-        past.recovery(&own.tried, now.len(), wanted, |k, by_past| take(k, held * now[k] + by_past));
+        let (held, now) = (own.compliance() * own.equilibrium(), &self.displacement.now);
+        self.displacement.recovery(&own.tried, wanted, |k, by_past| take(k, held * now[k] + by_past));
     }
 
     /// Accepts the step predicted last, given p and v = K p, each at its start and at its end; `touched` is true if
@@ -300,7 +293,7 @@ impl History {
         };
         rule_fits
             && frame_fits
-            && fields.all(|field| field.past.fits(&other.displacement.past, kept))
+            && fields.all(|field| field.fits(&other.displacement, kept))
             && self.far.is_some() == (window && self.has_far_field())
     }
 }

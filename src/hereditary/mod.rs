@@ -29,7 +29,6 @@ mod interval;
 mod lasting_error;
 mod moments;
 mod moving_frame;
-mod past;
 mod remembered_field;
 #[cfg(test)]
 mod rule_tests;

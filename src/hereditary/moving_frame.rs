@@ -34,7 +34,7 @@ impl MovingFrame {
         MovingFrame { cells: [0; 2], periodic, remainder: field.clone(), source: field, scratch: Vec::new() }
     }
 
-    /// The same past on `cells` other cells, whose fields are what `map` makes of these.
+    /// A copy on other cells; `map` gives its fields, one for each field here.
     pub(super) fn map(&self, cells: [usize; 2], map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> MovingFrame {
         let [source, remainder] = [&self.source, &self.remainder].map(|field| field.map(None, map));
         let scratch = map(Field::single(&self.scratch, Role::Work));
@@ -46,8 +46,8 @@ impl MovingFrame {
     pub(crate) fn fits(&self, other: &MovingFrame, kept: usize, cells: [usize; 2]) -> bool {
         self.cells == cells
             && self.periodic == other.periodic
-            && self.source.past.fits(&other.source.past, kept)
-            && self.remainder.past.fits(&other.remainder.past, kept)
+            && self.source.fits(&other.source, kept)
+            && self.remainder.fits(&other.remainder, kept)
     }
 
     /// Finds U_old and e_old at the end of a step in which the cell `[i, j]` comes over what was the cell `[i, j] + stride`, and
@@ -84,7 +84,7 @@ impl MovingFrame {
         }
     }
 
-    /// U = U_old + c p, and e less u_old + c v: what is left to add to e is the displacement.
+    /// U = U_old + c p, and e less u_old + c v. The displacement is still to be added to e.
     pub(crate) fn respond(&mut self, c: f64, pressure: &[f64], u_old: &[f64], potential: &[f64]) {
         self.source.add(c, pressure);
         let fields = self.remainder.trial.iter_mut().zip(u_old.iter().zip(potential));
@@ -96,11 +96,10 @@ impl MovingFrame {
         self.remainder.add(1.0, u);
     }
 
-    /// Shifts what was at the start of the step predicted last, `displacement` with it: it is now elsewhere.
+    /// Shifts all fields at the start of the step predicted last, and the displacement: the bodies have moved.
     pub(crate) fn shift_start(&mut self, stride: [isize; 2], displacement: &mut RememberedField) {
         for field in [displacement, &mut self.source, &mut self.remainder] {
-            shift(&mut field.now, self.cells, stride, self.periodic);
-            field.past.change(&mut self.scratch, |own| shift(own, self.cells, stride, self.periodic));
+            field.change_start(&mut self.scratch, |own| shift(own, self.cells, stride, self.periodic));
         }
     }
 

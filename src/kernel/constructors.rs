@@ -1,7 +1,9 @@
 //! Constructors of the kernels.
 
+use std::sync::Arc;
+
 use super::definiteness::least_eigenvalue;
-use super::influence::{Body, Influence, indices, magnitude};
+use super::influence::{Body, indices, magnitude};
 use super::layer::Remainder;
 use super::layout::{Ends, Layout};
 use super::line_load::{Strip, wave_number};
@@ -24,8 +26,22 @@ const GREATEST: f64 = 1e100;
 const FARTHEST_DATUM: f64 = 1e120;
 
 impl InfluenceKernel {
-    pub(super) fn new(grid: &Grid, influence: Influence) -> InfluenceKernel {
-        InfluenceKernel { grid: grid.clone(), influence, operators: Default::default(), facts: Default::default() }
+    /// The kernel of a body with this response on the grid.
+    pub(super) fn new(
+        grid: &Grid,
+        body: Body,
+        periodic: [bool; 2],
+        response: impl Fn([usize; 2]) -> f64 + Send + Sync + 'static,
+    ) -> InfluenceKernel {
+        InfluenceKernel {
+            grid: grid.clone(),
+            body,
+            periodic,
+            datum: None,
+            response: Arc::new(response),
+            operators: Default::default(),
+            facts: Default::default(),
+        }
     }
 
     /// The kernel of an elastic half-space (Eq. 6 of the [paper](crate::paper)): Love's coefficients, right to 1e-14 at every
@@ -40,8 +56,7 @@ impl InfluenceKernel {
     pub fn half_space(grid: &Grid) -> Result<InfluenceKernel> {
         representable(grid)?;
         let love = Love::new(grid.spacing());
-        let influence = Influence::new(Body::HalfSpace, [false; 2], move |at| love.coefficient(at));
-        Ok(InfluenceKernel::new(grid, influence))
+        Ok(InfluenceKernel::new(grid, Body::HalfSpace, [false; 2], move |at| love.coefficient(at)))
     }
 
     /// A half-space that is periodic along both axes, the grid being one period: Westergaard's K p = 2p/|q| for each
@@ -74,7 +89,7 @@ impl InfluenceKernel {
         representable(grid)?;
         let q = magnitude(grid, grid.cells());
         let compliance = move |k: [usize; 2]| if k == [0, 0] { 0.0 } else { 2.0 / q(k) };
-        Ok(InfluenceKernel::new(grid, Influence::new(Body::HalfSpace, [true; 2], compliance)))
+        Ok(InfluenceKernel::new(grid, Body::HalfSpace, [true; 2], compliance))
     }
 
     /// A half-space that is periodic along `axis` (0 is x1, 1 is x2), the grid being one period, and loaded on the grid
@@ -146,10 +161,9 @@ impl InfluenceKernel {
                 }
             }
         }
-        let kernel =
-            InfluenceKernel::new(grid, Influence::new(Body::User, [false; 2], move |[i, j]| values[i * n2 + j]));
+        let kernel = InfluenceKernel::new(grid, Body::User, [false; 2], move |[i, j]| values[i * n2 + j]);
         let whole = kernel.operator([false; 2]);
-        let symbol = kernel.influence.symbol(layout, None);
+        let symbol = kernel.symbol(layout, None);
         if !indices([0, 1].map(|axis| layout.period(axis) / 2 + 1)).all(|[k1, k2]| symbol(k1, k2) > 0.0) {
             memory::check(
                 "the check that a kernel is positive definite",
@@ -210,11 +224,11 @@ impl InfluenceKernel {
             return Err(KernelError::InvalidInfluence { of: "wave", at: [0, 0], value: 0.0, allowed }.into());
         }
         let compliance = move |[k1, k2]: [usize; 2]| values[k1 * counts[1] + k2];
-        Ok(InfluenceKernel::new(grid, Influence::new(Body::User, [true; 2], compliance)))
+        Ok(InfluenceKernel::new(grid, Body::User, [true; 2], compliance))
     }
 
-    /// A body that is periodic along `axis`: the coefficients of strips of a half-space for each wave along the axis, and what a
-    /// layer adds for each wave that reaches its base.
+    /// A body that is periodic along `axis`. Its response is the coefficient of a strip of a half-space for each wave along the axis,
+    /// and the addition of a layer for each wave that reaches its base.
     pub(super) fn strips(
         grid: &Grid,
         body: Body,
@@ -228,7 +242,7 @@ impl InfluenceKernel {
             let added = added.get(k).map_or(0.0, |remainder| remainder.on_line(i as f64 * side, side));
             strip.coefficient(i, wave_number(k, cells, along)) + added
         };
-        InfluenceKernel::new(grid, Influence { datum, ..Influence::new(body, [axis == 0, axis == 1], response) })
+        InfluenceKernel { datum, ..InfluenceKernel::new(grid, body, [axis == 0, axis == 1], response) }
     }
 }
 

@@ -1,9 +1,10 @@
-//! The displacement under a unit pressure: the body below the surface, and the axes along which the load is periodic.
+//! Spectrum, coefficients and approximate inverse of a body, from its response.
 
 use std::f64::consts::PI;
 use std::fmt;
 use std::sync::Arc;
 
+use super::InfluenceKernel;
 use super::even_spectrum::EvenSpectrum;
 use super::layer::Layer;
 use super::layout::{Ends, Layout, is_fast, waves_at};
@@ -17,7 +18,7 @@ pub(super) type Symbol = Box<dyn Fn(usize, usize) -> f64>;
 /// The response \[m\] at two indices, one for each axis: a wave number of the grid along a periodic axis, a distance in cells
 /// along an axis that ends. So it is the influence of a cell on another, the compliance of a wave, or, of a body periodic along
 /// one axis, the influence of a cell on another across it for a wave along it.
-type Response = Arc<dyn Fn([usize; 2]) -> f64 + Send + Sync>;
+pub(super) type Response = Arc<dyn Fn([usize; 2]) -> f64 + Send + Sync>;
 
 /// Least compliance of a wave in the approximate inverse, relative to the greatest of all waves.
 const LEAST_COMPLIANCE: f64 = 1e-8;
@@ -31,17 +32,6 @@ pub(super) enum Body {
     User,
 }
 
-/// A body, the axes along which it and its load are periodic, and the response that follows from both.
-#[derive(Clone)]
-pub(super) struct Influence {
-    pub(super) body: Body,
-    pub(super) periodic: [bool; 2],
-    /// Distance from a line load at which the displacement is zero \[m\], where one is needed: for a half-space, and for a layer
-    /// on one, periodic along one axis.
-    pub(super) datum: Option<f64>,
-    pub(super) response: Response,
-}
-
 /// How the load of a half-space continues beyond the grid.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum HalfSpace {
@@ -53,37 +43,34 @@ pub(crate) enum HalfSpace {
     Line { across: usize },
 }
 
-impl Influence {
-    /// The influence of a body loaded on the grid alone, or periodic along both axes.
-    pub(super) fn new(
-        body: Body,
-        periodic: [bool; 2],
-        response: impl Fn([usize; 2]) -> f64 + Send + Sync + 'static,
-    ) -> Influence {
-        Influence { body, periodic, datum: None, response: Arc::new(response) }
-    }
-
+impl InfluenceKernel {
     /// The axis across a load that is periodic along the other one.
     fn across(&self) -> Option<usize> {
         if self.periodic[0] == self.periodic[1] { None } else { self.periodic.iter().position(|&periodic| !periodic) }
     }
 
     /// Whether the load is uniform along its periodic axis.
-    fn is_plane(&self, grid: &Grid) -> bool {
-        self.across().is_some_and(|across| grid.cells()[1 - across] == 1)
+    fn is_plane(&self) -> bool {
+        self.across().is_some_and(|across| self.grid.cells()[1 - across] == 1)
     }
 
-    /// How the load continues, if the body is a half-space whose inside is known.
-    pub(super) fn half_space(&self, grid: &Grid) -> Option<HalfSpace> {
+    /// How the load continues beyond the grid, if the body is a half-space whose inside is known.
+    pub(crate) fn half_space_below(&self) -> Option<HalfSpace> {
         match (self.body, self.across()) {
             (Body::HalfSpace, None) if self.periodic[0] => Some(HalfSpace::Periodic),
             (Body::HalfSpace, None) => Some(HalfSpace::LoadedOnGrid),
-            (Body::HalfSpace, Some(across)) if self.is_plane(grid) => Some(HalfSpace::Line { across }),
+            (Body::HalfSpace, Some(across)) if self.is_plane() => Some(HalfSpace::Line { across }),
             _ => None,
         }
     }
 
-    pub(super) fn layer(&self) -> Option<&Layer> {
+    /// Whether the body is a half-space, whose displacement is positive everywhere around a load.
+    pub(crate) fn is_half_space(&self) -> bool {
+        self.half_space_below() == Some(HalfSpace::LoadedOnGrid)
+    }
+
+    /// The layer, if the body is one: its Poisson's ratio must equal the material's.
+    pub(crate) fn layer_of(&self) -> Option<&Layer> {
         if let Body::Layer(layer) = &self.body { Some(layer) } else { None }
     }
 
@@ -109,12 +96,12 @@ impl Influence {
     /// approximate inverse is |q|/2, except for the mean, whose stiffness is that against a uniform pressure; layers
     /// have the compliance of their own waves. Other bodies are inverted wave by wave, on the grid taken as periodic (G.
     /// Strang, Stud. Appl. Math. 74, 1986).
-    pub(super) fn inverse(&self, grid: &Grid, cells: [usize; 2], folded: [bool; 2]) -> (Layout, Symbol) {
+    pub(super) fn inverse(&self, cells: [usize; 2], folded: [bool; 2]) -> (Layout, Symbol) {
         // a user's coefficients are known within the grid alone: too few for the period of its mirror image
         let mirrors = |axis: usize| self.body != Body::User && !self.periodic[axis] && is_fast(cells[axis]);
         let mirrored = [0, 1].map(|axis| folded[axis] || mirrors(axis));
         let layout = Layout { cells, ends: self.ends(), folded: mirrored }.wrapped();
-        let count = [0, 1].map(|axis| cells[axis] * if folded[axis] { 2 } else { 1 });
+        let (grid, count) = (&self.grid, [0, 1].map(|axis| cells[axis] * if folded[axis] { 2 } else { 1 }));
         let lengths = [0, 1].map(|axis| grid.spacing()[axis] * count[axis] as f64);
         let period = [layout.period(0), layout.period(1)];
         let q = magnitude(grid, period);
@@ -158,51 +145,57 @@ impl Influence {
     }
 
     /// All values of the response of a grid, and how many belong to an index along x1.
-    pub(super) fn table(&self, grid: &Grid) -> (impl Iterator<Item = f64>, usize) {
-        let count =
-            [0, 1].map(|axis| if self.periodic[axis] { grid.cells()[axis] / 2 + 1 } else { grid.cells()[axis] });
+    pub(super) fn table(&self) -> (impl Iterator<Item = f64>, usize) {
+        let cells = self.grid.cells();
+        let count = [0, 1].map(|axis| if self.periodic[axis] { cells[axis] / 2 + 1 } else { cells[axis] });
         (indices(count).map(|at| (self.response)(at)), count[1])
     }
 
-    /// The greatest compliance of a wave, if the mean has none.
-    pub(super) fn softest_wave_if_mean_is_held(&self, grid: &Grid) -> Option<f64> {
-        if self.periodic != [true; 2] || (self.response)([0, 0]) != 0.0 {
-            return None;
-        }
-        if self.body == Body::HalfSpace {
+    /// The greatest compliance of a wave \[m\], if the mean has none.
+    pub(super) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
+        *self.facts.softest.get_or_init(|| match self.body {
+            _ if self.periodic != [true; 2] || (self.response)([0, 0]) != 0.0 => None,
             // the longest wave: 2/q = L/π
-            return Some(longest_side(grid) / PI);
-        }
-        Some(self.table(grid).0.fold(0.0, f64::max))
+            Body::HalfSpace => Some(longest_side(&self.grid) / PI),
+            _ => Some(self.table().0.fold(0.0, f64::max)),
+        })
     }
 
     /// Whether a pressure raises the surface somewhere, as beside the load on a layer that bulges, or to keep the mean.
-    pub(super) fn raises(&self, grid: &Grid) -> bool {
-        let [n1, n2] = grid.cells();
-        let negative = |at: [usize; 2]| self.coefficient(grid, at) < 0.0;
-        match (self.body, self.periodic) {
+    /// Costs a line of coefficients, more where each is a sum over waves: computed at the first call.
+    pub(super) fn raises(&self) -> bool {
+        let [n1, n2] = self.grid.cells();
+        let negative = |at: [usize; 2]| self.coefficient_at(at) < 0.0;
+        *self.facts.raises.get_or_init(|| match (self.body, self.periodic) {
             (_, [true, true]) => true,
             (Body::HalfSpace, _) => false,
-            (Body::User, _) => self.table(grid).0.any(|value| value < 0.0),
+            (Body::User, _) => self.table().0.any(|value| value < 0.0),
             // the same in all directions
             (_, [false, false]) => (0..n1).any(|i| negative([i, 0])) || (0..n2).any(|j| negative([0, j])),
             (_, [false, true]) => (0..n1).any(|i| negative([i, 0]) || negative([i, n2 / 2])),
             (_, [true, false]) => (0..n2).any(|j| negative([0, j]) || negative([n1 / 2, j])),
-        }
+        })
+    }
+
+    /// The influence of a cell on itself \[m\].
+    pub(crate) fn self_influence(&self) -> f64 {
+        *self.facts.on_itself.get_or_init(|| self.coefficient_at([0; 2]))
     }
 
     /// The coefficient \[m\] of the cell `at` cells away along each axis of the grid: along periodic axes the mean of the waves.
-    pub(super) fn coefficient(&self, grid: &Grid, at: [usize; 2]) -> f64 {
-        let periods = [0, 1].map(|axis| if self.periodic[axis] { grid.cells()[axis] } else { 1 });
+    pub(super) fn coefficient_at(&self, at: [usize; 2]) -> f64 {
+        let periods = [0, 1].map(|axis| if self.periodic[axis] { self.grid.cells()[axis] } else { 1 });
         let terms = |axis: usize| if self.periodic[axis] { 0..=periods[axis] / 2 } else { at[axis]..=at[axis] };
         let weight =
             |axis: usize, k: usize| if self.periodic[axis] { waves_at(at[axis], k, periods[axis]) } else { 1.0 };
         let row = |k1: usize| terms(1).map(|k2| weight(1, k2) * (self.response)([k1, k2])).sum::<f64>();
         terms(0).map(|k1| weight(0, k1) * row(k1)).sum::<f64>() / (periods[0] * periods[1]) as f64
     }
+}
 
-    /// Writes the body: "half-space, periodic along x2, datum 1e0 m".
-    pub(super) fn describe(&self, grid: &Grid, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+/// The body: "half-space, periodic along x2, datum 1e0 m".
+impl fmt::Display for InfluenceKernel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.body {
             Body::HalfSpace => write!(f, "half-space")?,
             Body::Layer(layer) => write!(f, "{layer}")?,
@@ -210,25 +203,23 @@ impl Influence {
             Body::User => write!(f, "user-defined coefficients")?,
         }
         match (self.periodic, self.across()) {
-            (_, Some(_)) if self.is_plane(grid) => write!(f, ", in plane strain")?,
+            (_, Some(_)) if self.is_plane() => write!(f, ", in plane strain")?,
             (_, Some(across)) => write!(f, ", periodic along x{}", 2 - across)?,
             ([true, _], _) => write!(f, ", periodic along x1 and x2")?,
             _ => {}
         }
-        if self.half_space(grid) == Some(HalfSpace::Periodic) {
+        if self.half_space_below() == Some(HalfSpace::Periodic) {
             write!(f, ", the mean of the surface being the datum")?;
         }
         self.datum.map_or(Ok(()), |datum| write!(f, ", datum {datum:e} m"))
     }
 }
 
-impl fmt::Debug for Influence {
+impl fmt::Debug for InfluenceKernel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Influence { body, periodic, datum, .. } = self;
-        f.debug_struct("Influence")
-            .field("body", body)
-            .field("periodic", periodic)
-            .field("datum", datum)
+        f.debug_struct("InfluenceKernel")
+            .field("grid", &self.grid)
+            .field("body", &self.to_string())
             .finish_non_exhaustive()
     }
 }

@@ -2,16 +2,17 @@
 
 use super::InfluenceKernel;
 use super::constructors::{check_axis, check_line, representable, strip};
-use super::influence::{Body, Influence, longest_side, magnitude};
-use super::layer::Layer;
+use super::influence::{Body, longest_side, magnitude};
+use super::layer::{Layer, Remainder};
 use super::line_load::{Strip, wave_number};
 use super::love::Love;
 use crate::Grid;
 use crate::error::{KernelError, Result, count_within, within};
 
-/// Cells may be so much longer than the layer is thick: their coefficients then have lost as many digits.
+/// Longest cell over the thickness: the coefficients have then lost as many digits.
 const LONGEST_CELL: f64 = 1e3;
-/// The same for layers that yield to a pressure only by being squeezed out, as the middle of a long cell is not.
+/// Longest cell over the thickness, for layers that yield to a pressure only by being squeezed out: the middle of a long cell is
+/// not.
 const LONGEST_SQUEEZED: f64 = 2.0;
 
 impl InfluenceKernel {
@@ -32,12 +33,12 @@ impl InfluenceKernel {
         representable(grid)?;
         let sides = grid.spacing();
         check_side(sides[0].max(sides[1]), layer)?;
-        let (love, added) = (Love::new(sides), layer.remainder_of_cells(grid.lengths()[0].hypot(grid.lengths()[1])));
+        let (love, added) = (Love::new(sides), Remainder::of_cells(&layer, grid.lengths()[0].hypot(grid.lengths()[1])));
         let coefficient = move |at: [usize; 2]| {
             let distance = [0, 1].map(|axis| at[axis] as f64 * sides[axis]);
             love.coefficient(at) + added.on_cell(distance, sides)
         };
-        Ok(InfluenceKernel::new(grid, Influence::new(Body::Layer(layer), [false; 2], coefficient)))
+        Ok(InfluenceKernel::new(grid, Body::Layer(layer), [false; 2], coefficient))
     }
 
     /// A [`Layer`] that is periodic along both axes, the grid being one period: (2/q) L(qh) for each wave q of the
@@ -78,7 +79,7 @@ impl InfluenceKernel {
         }
         let q = magnitude(grid, grid.cells());
         let compliance = move |k: [usize; 2]| if k == [0, 0] { mean } else { layer.compliance(q(k)) };
-        Ok(InfluenceKernel::new(grid, Influence::new(Body::Layer(layer), [true; 2], compliance)))
+        Ok(InfluenceKernel::new(grid, Body::Layer(layer), [true; 2], compliance))
     }
 
     /// A [`Layer`] in line contact, in plane strain: a grid of N × 1 cells, and pressures that do not depend on x2,
@@ -110,8 +111,8 @@ impl InfluenceKernel {
         check_axis(axis)?;
         let strip = layer_strip(grid, layer, 1 - axis, datum)?;
         let (last, cells, side) = (grid.lengths()[1 - axis], grid.cells()[axis], grid.spacing()[axis]);
-        let mut added = vec![layer.remainder_of_lines(last, datum)];
-        let waves = (1..=cells / 2).map(|k| layer.remainder_of_wave(last, wave_number(k, cells, side)));
+        let mut added = vec![Remainder::of_lines(&layer, last, datum)];
+        let waves = (1..=cells / 2).map(|k| Remainder::of_wave(&layer, last, wave_number(k, cells, side)));
         added.extend(waves.map_while(|remainder| remainder));
         Ok(InfluenceKernel::strips(grid, Body::Layer(layer), axis, (strip, datum), added))
     }

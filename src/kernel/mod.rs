@@ -33,14 +33,13 @@ pub use layer::Layer;
 pub(crate) use layout::{fast_length, images};
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
-use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
 use crate::error::{Error, KernelError, Result, exact_length, finite};
 use crate::memory;
 use crate::parallel::Rows;
-use influence::Influence;
+use influence::{Body, Response};
 use layout::Layout;
 use transform::Shares;
 
@@ -70,16 +69,22 @@ const MEMORY_WHILE_MADE: u128 = 3;
 /// assert!((kp[32 * 64 + 32] / exact - 1.0).abs() < 1.0e-3);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct InfluenceKernel {
     grid: Grid,
-    influence: Influence,
+    body: Body,
+    /// Axes along which the body and its load are periodic.
+    periodic: [bool; 2],
+    /// Distance from a line load at which the displacement is zero \[m\], where one is needed: for a half-space, and for a layer
+    /// on one, periodic along one axis.
+    datum: Option<f64>,
+    response: Response,
     /// Operators on the whole grid, for each choice of folded axes.
     operators: [OnceLock<Arc<SpectralOperator>>; 4],
     facts: Arc<Facts>,
 }
 
-/// What follows from the influence, each once it is needed.
+/// Properties of the response, each computed at its first use.
 #[derive(Debug, Default)]
 struct Facts {
     /// The influence of a cell on itself \[m\].
@@ -192,7 +197,7 @@ impl InfluenceKernel {
         if at[0] >= cells[0] || at[1] >= cells[1] {
             return Err(KernelError::OffsetOutsideGrid { offset, cells }.into());
         }
-        Ok(self.influence.coefficient(&self.grid, at))
+        Ok(self.coefficient_at(at))
     }
 
     /// The operator on the whole grid, without folded axes; an error if there is not enough memory for it.
@@ -230,12 +235,12 @@ impl InfluenceKernel {
     /// The layout of the whole grid, or of half or a quarter of it where axes are folded.
     fn layout(&self, folded: [bool; 2]) -> Layout {
         let cells = [0, 1].map(|axis| self.grid.cells()[axis] / if folded[axis] { 2 } else { 1 });
-        Layout { cells, ends: self.influence.ends(), folded }
+        Layout { cells, ends: self.ends(), folded }
     }
 
     /// An operator of this layout; where ranks share out its rows, each makes its part of the spectrum.
     fn make(&self, layout: Layout, shares: Option<Shares>) -> SpectralOperator {
-        let symbol = self.influence.symbol(layout, shares.as_ref());
+        let symbol = self.symbol(layout, shares.as_ref());
         SpectralOperator::new(layout, shares, symbol)
     }
 
@@ -256,17 +261,12 @@ impl InfluenceKernel {
         LocalKernel { kernel: self.clone(), grid: part.clone(), rows: rows.clone(), folded, operator }
     }
 
-    /// The influence of a cell on itself \[m\].
-    pub(crate) fn self_influence(&self) -> f64 {
-        *self.facts.on_itself.get_or_init(|| self.influence.coefficient(&self.grid, [0; 2]))
-    }
-
     /// Fingerprint of the kernel among kernels of the same kind.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn mark(&self) -> Vec<f64> {
         let mut mark = vec![self.self_influence()];
-        if self.influence.body == influence::Body::User {
-            let (values, columns) = self.influence.table(&self.grid);
+        if self.body == Body::User {
+            let (values, columns) = self.table();
             mark.extend(crate::sum::moments(values, columns));
         }
         mark
@@ -274,29 +274,7 @@ impl InfluenceKernel {
 
     /// Axes along which the bodies are periodic, the grid being one period.
     pub fn periodic_axes(&self) -> [bool; 2] {
-        self.influence.periodic
-    }
-
-    /// The layer, if the body is one: its Poisson's ratio must equal the material's.
-    pub(crate) fn layer_of(&self) -> Option<&Layer> {
-        self.influence.layer()
-    }
-
-    /// How the load continues beyond the grid, if the body is a half-space whose inside is known.
-    pub(crate) fn half_space_below(&self) -> Option<HalfSpace> {
-        self.influence.half_space(&self.grid)
-    }
-
-    /// Whether the body is a half-space, whose displacement is positive everywhere around a load.
-    pub(crate) fn is_half_space(&self) -> bool {
-        self.half_space_below() == Some(HalfSpace::LoadedOnGrid)
-    }
-}
-
-/// The body: "half-space, periodic along x2, datum 1e0 m".
-impl fmt::Display for InfluenceKernel {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.influence.describe(&self.grid, f)
+        self.periodic
     }
 }
 
@@ -305,7 +283,7 @@ fn index(folded: [bool; 2]) -> usize {
 }
 
 impl LocalKernel {
-    /// The own rows.
+    /// The local rows.
     pub(crate) fn grid(&self) -> &Grid {
         &self.grid
     }
@@ -317,7 +295,7 @@ impl LocalKernel {
 
     /// The greatest compliance of a wave \[m\], if the mean has none.
     pub(crate) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
-        *self.kernel.facts.softest.get_or_init(|| self.kernel.influence.softest_wave_if_mean_is_held(&self.kernel.grid))
+        self.kernel.softest_wave_if_mean_is_held()
     }
 
     /// Whether the mean displacement is fixed: then the approach cannot exceed the approach of full contact.
@@ -326,10 +304,8 @@ impl LocalKernel {
     }
 
     /// Whether a pressure raises the surface somewhere, so that displacements may be negative.
-    ///
-    /// Costs a line of coefficients, more where each is a sum over waves: computed at the first call.
     pub(crate) fn raises(&self) -> bool {
-        *self.kernel.facts.raises.get_or_init(|| self.kernel.influence.raises(&self.kernel.grid))
+        self.kernel.raises()
     }
 
     /// The layer, if the body is one.
@@ -339,7 +315,7 @@ impl LocalKernel {
 
     /// An approximate inverse, on a layout without padding.
     pub(crate) fn inverse(&self) -> SpectralOperator {
-        let (layout, symbol) = self.kernel.influence.inverse(&self.kernel.grid, self.rows.cells(), self.folded);
+        let (layout, symbol) = self.kernel.inverse(self.rows.cells(), self.folded);
         SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol)
     }
 

@@ -76,7 +76,7 @@ pub struct CsvHistory {
 }
 
 impl CsvHistory {
-    /// A new file for the history of `contact`, with `additional` columns after those of every history.
+    /// A new file for the history of `contact`, with `additional` columns after the standard ones.
     ///
     /// # Errors
     /// If the file exists ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)) or cannot be written, or the name of a column is empty, already used, or contains `#`, a

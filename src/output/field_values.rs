@@ -40,7 +40,7 @@ pub(super) fn write_fields(
 }
 
 impl FieldValues<'_> {
-    /// Gives the next field to `take`: rows one after the other, or columns for VTK, where the index along x1 varies fastest.
+    /// Passes the next field to `take`: row by row, or for VTK column by column.
     pub(super) fn next(&mut self, mut take: impl FnMut(&[f64]) -> io::Result<()>) -> io::Result<()> {
         let FieldValues { contact, fields, format, buffer } = self;
         let Some((field, rest)) = fields.split_first() else { return Ok(()) };
@@ -55,9 +55,9 @@ impl FieldValues<'_> {
             let piece = start..(start + most).min(all);
             let [rows, columns] = if by_rows { [piece, 0..n2] } else { [0..n1, piece] };
             let mut brought = None;
-            if contact.is_shared() {
+            if contact.shared_rows().are_shared() {
                 // every rank sends all pieces, even if one could not be written; none can be sent once a rank has left
-                brought = contact.bring(values, 0, rows.clone(), columns.clone()).map_err(io::Error::other)?;
+                brought = contact.bring(values, Some(0), rows.clone(), columns.clone()).map_err(io::Error::other)?;
                 if taken.is_err() || brought.is_none() {
                     continue;
                 }
@@ -81,9 +81,9 @@ impl FieldValues<'_> {
         taken
     }
 
-    /// Sends the fields that were not taken, because rank 0 waits for them or stopped early.
+    /// Sends the fields that were not taken: the other ranks always, rank 0 after an error.
     fn pass_over_the_rest(&mut self) {
-        while self.contact.is_shared() && !self.fields.is_empty() {
+        while self.contact.shared_rows().are_shared() && !self.fields.is_empty() {
             // the loss of a rank is read by `Rows::replace_file`
             let _ = self.next(|_| Ok(()));
         }

@@ -13,17 +13,17 @@
 //! You choose which [`Field`]s are written. A frame is complete on disk when its `write` returns: if a run is killed,
 //! all earlier frames are readable.
 //!
-//! Files of an earlier run are replaced by these rules. What grows with a run, a series or a history, is not replaced by
-//! `create`, which refuses a folder with frames or an existing file ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists));
-//! `create_or_replace` removes them first. What is written at once (`write_npy`, stresses, pictures, animations, checkpoints) replaces
-//! an existing file, once the new one is complete; if the path is a link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
-//! [`Error::NotAFile`](crate::Error::NotAFile). While a file is being written, the process ID and `.part` are appended
-//! to its name; a process that is killed leaves it under that name.
+//! Files of an earlier run are replaced by these rules. Series and histories grow with a run: `create` refuses a folder with
+//! frames or an existing file ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)), and `create_or_replace` removes them first.
+//! Files that are written at once (fields, stresses, pictures, animations, checkpoints) replace an existing file when the new one
+//! is complete; if the path is a link, its target is replaced. Folders, devices, pipes and sockets are never replaced:
+//! [`Error::NotAFile`](crate::Error::NotAFile). While a file is being written, the process ID and `.part` are appended to its
+//! name; a process that is killed leaves the file under that name.
 //!
-//! Where [ranks](crate::parallel) share out a contact, writing it is a call of all of them. Rank 0 writes, the same bytes that one
-//! process writes, and the rows of the others come to it some at a time: no rank holds a whole field, and no other rank needs
-//! the disk. An error is one of all ranks. A series is created by each of them: so the folder must be one that all see, or be
-//! new to each.
+//! Where [ranks](crate::parallel) share out a contact, all of them call a function that writes it. Rank 0 writes the same bytes
+//! that one process writes; the other ranks send their rows piece by piece. No rank holds a whole field, and no other rank needs
+//! the disk. All ranks get the same error. Each rank creates a series: all must see the same folder, or the folder must be new
+//! to each.
 //!
 //! A write that fails, for instance on a full disk, leaves earlier output intact and no partial output of its own. It
 //! can be repeated.

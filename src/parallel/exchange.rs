@@ -11,16 +11,14 @@ impl Rows {
         let sent: Vec<usize> = pieces.iter().map(Vec::len).collect();
         let counts: Vec<usize> = (0..self.ranks()).map(count).collect();
         let send = pieces.concat();
+        drop(pieces);
         let mut received = vec![0.0; counts.iter().sum()];
         self.exchange_into((&send, &sent), (&mut received, &counts));
         received
     }
 
-    /// Brings a field of local rows to those who have them of the rows `to`, which begin at the row `first` of these.
+    /// Redistributes a field of local rows to the rows `to`, which begin at the row `first` of these rows.
     pub(crate) fn moved(&self, field: &[f64], first: usize, to: &Rows) -> Vec<f64> {
-        if !self.are_shared() {
-            return field.to_vec();
-        }
         let columns = self.cells()[1];
         let common = |from: Range<usize>, to: Range<usize>| {
             let start = from.start.max(first + to.start);

@@ -18,7 +18,7 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// Runs `job` on `size` threads, each with its rank; returns what each of them returned, in their order.
+    /// Runs `job` on `size` threads, each with its rank; returns the results in the order of the ranks.
     ///
     /// A rank that is done, or panics, has left: calls in which others wait for it fail with [`RanksError::Left`]. When all
     /// have ended, a panic goes on in the caller.
@@ -42,7 +42,7 @@ impl Threads {
     }
 }
 
-/// Tells the others, when it is dropped, that a rank has left: its job has ended, or panicked.
+/// Marks a rank as gone when it is dropped, as its job ends or panics, and wakes the waiting ranks.
 struct Leaving<'a> {
     rank: usize,
     meeting: &'a Meeting,
@@ -58,9 +58,9 @@ impl Drop for Leaving<'_> {
 /// Upper limit of threads.
 const MOST: usize = 1024;
 
-/// Where the threads meet.
+/// Meeting point of the threads.
 struct Meeting {
-    /// What each rank brings: kept, so that no meeting allocates that is no larger than one before.
+    /// Numbers of each rank. The buffers are kept, so that no meeting allocates that is no larger than one before.
     brought: Vec<Mutex<Brought>>,
     gate: Mutex<Gate>,
     opened: Condvar,

@@ -1,4 +1,4 @@
-//! What pictures are drawn on: pixels, drawn by tiny-skia, and the same shapes as elements of an SVG document.
+//! The canvas of pictures: pixels, drawn by tiny-skia, and the same shapes as elements of an SVG document.
 
 use std::io;
 
@@ -77,6 +77,11 @@ impl Canvas {
         Ok(Canvas { pixels, elements: Vec::new() })
     }
 
+    /// Width and height in pixels.
+    pub(super) fn size(&self) -> [u32; 2] {
+        [self.pixels.width(), self.pixels.height()]
+    }
+
     /// Red, green and blue of the pixels, and the elements of the SVG document.
     pub(super) fn finish(self) -> (Vec<u8>, Vec<Element>) {
         let rgb = self.pixels.pixels().iter().flat_map(|pixel| [pixel.red(), pixel.green(), pixel.blue()]);
@@ -144,7 +149,7 @@ impl Canvas {
             Anchor::End => (1.0, "end"),
         };
         let (along, across) = if upright { (-y, x.round()) } else { (x, y.round()) };
-        let [width, height] = [self.pixels.width() as i32, self.pixels.height() as i32];
+        let [width, height] = self.size().map(|side| side as i32);
         let data = self.pixels.data_mut();
         font::draw(&text, size, [along - share * font::width(&text, size), across], &mut |u, v, covered| {
             let [x, y] = if upright { [v, -u - 1] } else { [u, v] };

@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::plot::axis::{Axis, Room};
 use crate::plot::canvas::Canvas;
-use crate::plot::frame::{BELOW, Frame, label_baseline, width_beside};
+use crate::plot::frame::{BELOW, Frame, width_beside};
 use crate::plot::legend::{self, points_along};
 use crate::plot::map::extremes;
 use crate::plot::quantity::{drawable, drawable_as_power};
@@ -151,13 +151,13 @@ impl Chart {
         }
         let mut canvas = Canvas::new(SIZE)?;
         frame.draw_grid(&mut canvas);
-        frame.draw(&mut canvas, &self.title, label_baseline(0.0)); // below the curves: those at zero stay visible
+        frame.draw(&mut canvas, &self.title); // below the curves: those at zero stay visible
         for curve in &self.curves {
             let pieces = self.placed(curve, &frame);
             curve.style.draw(&mut canvas, &pieces, &pieces.concat(), curve.color);
         }
         legend::draw(&mut canvas, &entries, self.legend, &frame, &self.points(&frame));
-        Ok(Picture::new(SIZE, canvas))
+        Ok(Picture::new(canvas))
     }
 
     /// The axes around all points, the vertical one longer by the share `above` of the height of the points.

@@ -12,6 +12,8 @@ const TICK: f64 = 8.0;
 const GAP: f64 = 6.0;
 /// Distance from the edge of a picture to the labels in pixels.
 const EDGE: f64 = 10.0;
+/// Length by which title and label may exceed a frame, half of it at each end, in pixels.
+const BESIDE: f64 = 40.0;
 /// Height of the numbers and the label below a frame in pixels.
 pub(super) const BELOW: f64 = 85.0;
 
@@ -49,7 +51,7 @@ impl Frame {
     }
 
     /// The frame with ticks, numbers, labels and a title.
-    pub(super) fn draw(&self, canvas: &mut Canvas, title: &str, label_left: f64) {
+    pub(super) fn draw(&self, canvas: &mut Canvas, title: &str) {
         let Frame { left, top, right, bottom, axes: [x, y] } = self;
         let (left, top, right, bottom) = (*left, *top, *right, *bottom);
         let middle = [0.5 * (left + right), 0.5 * (top + bottom)];
@@ -74,13 +76,8 @@ impl Frame {
             canvas.text(text, at, TICK_SIZE, Anchor::End, false);
         }
         let below = bottom + TICK + GAP + TICK_SIZE + GAP + LABEL_SIZE;
-        canvas.fitted_text(&x.label, [middle[0], below], LABEL_SIZE, right - left + 60.0, false);
-        canvas.fitted_text(&y.label, [label_left, middle[1]], LABEL_SIZE, bottom - top + 60.0, true);
-        canvas.fitted_text(title, [middle[0], top - 18.0], TITLE_SIZE, right - left + 70.0, false);
+        canvas.fitted_text(&x.label, [middle[0], below], LABEL_SIZE, right - left + BESIDE, false);
+        canvas.fitted_text(&y.label, [EDGE + 0.8 * LABEL_SIZE, middle[1]], LABEL_SIZE, bottom - top + 60.0, true);
+        canvas.fitted_text(title, [middle[0], top - 18.0], TITLE_SIZE, right - left + BESIDE, false);
     }
-}
-
-/// The baseline of the upright label of a frame whose numbers begin at `left`.
-pub(super) fn label_baseline(left: f64) -> f64 {
-    left + EDGE + 0.8 * LABEL_SIZE
 }

@@ -11,7 +11,7 @@ use crate::error::{Error, Result, count_within, least_length};
 use crate::file::replace;
 use crate::plot::canvas::{Canvas, Element, png_file};
 
-/// Greatest width or height of a picture in pixels.
+/// Greatest width of a picture in pixels.
 const MAX_SIDE: usize = 16_384;
 /// The font of the pixels, then fonts that most systems have.
 const FONTS: &str = "'Ubuntu Light', Ubuntu, Arial, Helvetica, 'Liberation Sans', sans-serif";
@@ -27,8 +27,9 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// What was drawn on a canvas of this size.
-    pub(super) fn new(size: [u32; 2], canvas: Canvas) -> Picture {
+    /// The picture drawn on a canvas of this size.
+    pub(super) fn new(canvas: Canvas) -> Picture {
+        let size = canvas.size();
         let (rgb, elements) = canvas.finish();
         Picture { size, rgb, drawn: vec![(0, elements)] }
     }
@@ -40,7 +41,7 @@ impl Picture {
     pub fn beside(pictures: &[Picture]) -> Result<Picture> {
         least_length("pictures", pictures.len(), 1)?;
         let width = pictures.iter().map(|picture| picture.size[0] as usize).sum();
-        check_side(width)?;
+        count_within("pixels along a side of a picture", width, (1..=MAX_SIDE).contains(&width), "in [1, 16384]")?;
         let height = pictures.iter().map(|picture| picture.size[1]).max().unwrap_or(1);
         let mut rgb = vec![255; 3 * width * height as usize];
         let mut drawn = Vec::new();
@@ -123,11 +124,6 @@ impl fmt::Debug for Picture {
     }
 }
 
-/// Accepts a width or height in pixels.
-pub(super) fn check_side(value: usize) -> Result<()> {
-    count_within("pixels along a side of a picture", value, (1..=MAX_SIDE).contains(&value), "in [1, 16384]")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -136,7 +132,7 @@ mod tests {
     fn plain(size: [u32; 2], value: u8) -> Picture {
         let mut canvas = Canvas::new(size).unwrap();
         canvas.rectangle([0.0, 0.0, f64::from(size[0]), f64::from(size[1])], Color(value, value, value), 100);
-        Picture::new(size, canvas)
+        Picture::new(canvas)
     }
 
     fn file(name: &str) -> std::path::PathBuf {

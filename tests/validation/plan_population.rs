@@ -191,11 +191,11 @@ fn deliver(scene: &Scene) -> Result<Outcome, Error> {
     let planning = started.elapsed().as_secs_f64();
     let limit = from_environment("PLANS_CELLS", 150) as usize;
     let note = format!("{plan}; planned in {planning:.2} s");
-    if plan.grid().len() > limit * limit {
+    if plan.grid.len() > limit * limit {
         return Ok(Outcome { over: [None; 2], note });
     }
-    let mut contact = plan.builder().build()?;
-    let mut run = contact.follow(&**history, plan.stepping(), *until);
+    let mut contact = plan.builder.clone().build()?;
+    let mut run = contact.follow(&**history, plan.stepping, *until);
     let (mut times, mut main, mut highest) = (vec![], vec![], 0.0_f64);
     while let Some(report) = run.next_step()? {
         // of several states at a time, the last
@@ -211,7 +211,7 @@ fn deliver(scene: &Scene) -> Result<Outcome, Error> {
     assert_eq!(exact.len(), main.len());
     let greatest = exact.iter().copied().fold(0.0, f64::max);
     let worst = main.iter().zip(&exact).map(|(main, exact)| (main - exact).abs()).fold(0.0, f64::max) / greatest;
-    let asked = accuracy.target().max(plan.time_error().unwrap_or(0.0));
+    let asked = accuracy.target().max(plan.time_error.unwrap_or(0.0));
     let pressure = peak.map(|peak| (highest / peak - 1.0).abs() / accuracy.target());
     let promised = pressure.filter(|_| plan.pressure_converges());
     let shown = pressure.map_or("-".into(), |over| format!("{over:.2}"));

@@ -203,8 +203,8 @@ fn deliver(scene: &Scene, target: f64, area: bool) -> Result<Option<Outcome>, Er
     let accuracy = Accuracy::target_of(target).unwrap();
     let Scene { geometry, material, history, until, .. } = scene;
     let started = Instant::now();
-    let made = if area { Plan::with_area } else { Plan::new };
-    let plan = match made(geometry, material, history, *until, accuracy) {
+    let options = PlanOptions { area, ..PlanOptions::default() };
+    let plan = match Plan::with(geometry, material, history, *until, accuracy, options) {
         Err(error @ Error::CountOutOfRange { .. }) => {
             println!("{}, {target:.0e}: {error}", scene.name);
             return Ok(None);
@@ -213,23 +213,23 @@ fn deliver(scene: &Scene, target: f64, area: bool) -> Result<Option<Outcome>, Er
     };
     let planning = started.elapsed().as_secs_f64();
     let limit: usize = env::var("PLAN_CELLS").map_or(160, |n| n.parse().unwrap());
-    let [n1, n2] = plan.grid().cells();
+    let [n1, n2] = plan.grid.cells();
     if n1 * n2 > limit * limit {
         println!("{}, {target:.0e}: left out: {plan}; planned in {planning:.1} s", scene.name);
         return Ok(None);
     }
-    let stepping = match (env::var("PLAN_FINER_STEPS"), plan.stepping()) {
+    let stepping = match (env::var("PLAN_FINER_STEPS"), plan.stepping) {
         (Ok(factor), Stepping::Adaptive { tolerance }) => {
             Stepping::adaptive(tolerance / factor.parse::<f64>().unwrap())
         }
         (_, stepping) => stepping,
     };
     let started = Instant::now();
-    let mut contact = plan.builder().build()?;
+    let mut contact = plan.builder.clone().build()?;
     let mut run = contact.follow(history, stepping, *until);
     let (mut states, mut work) = (Vec::new(), 0.0);
     while let Some(report) = run.next_step()? {
-        states.push((report.time, observed(run.contact()), !report.warnings.contains(Warning::FewCells)));
+        states.push((report.time, observed(run.contact()), !report.warnings.contains(Warnings::FEW_CELLS)));
         work += report.convolution_equivalents();
     }
     let took = started.elapsed().as_secs_f64();
@@ -247,7 +247,7 @@ fn deliver(scene: &Scene, target: f64, area: bool) -> Result<Option<Outcome>, Er
         Some(exact) => states.iter().map(|&(t, ..)| exact(t)).collect(),
         None => {
             let finer = if scene.singular { 3 } else { 2 };
-            let grid = Grid::new([finer * n1, finer * n2], plan.grid().lengths()).unwrap();
+            let grid = Grid::new([finer * n1, finer * n2], plan.grid.lengths()).unwrap();
             let tolerance = 0.036 * target;
             let settings = Settings::default().with_tolerance(1e-7);
             let reference = ViscoelasticContact::builder(grid).geometry(geometry).material(material.clone());
@@ -267,9 +267,9 @@ fn deliver(scene: &Scene, target: f64, area: bool) -> Result<Option<Outcome>, Er
         }
     };
     // approach, radius and pressure at all times, then the greatest pressure of the run
-    let error = plan.mesh_error();
-    let asked = target.max(plan.time_error().unwrap_or(0.0));
-    let promised = [asked, asked.max(0.5 * error.area), asked.max(plan.pressure_error_at_all_times()), asked];
+    let error = plan.mesh_error;
+    let asked = target.max(plan.time_error.unwrap_or(0.0));
+    let promised = [asked, asked.max(0.5 * error.area), asked.max(plan.pressure_error_at_all_times), asked];
     let (mut over, mut at) = ([None; 4], [0.0; 3]);
     for which in 0..3 {
         if truth[0][which].is_none() {
@@ -296,12 +296,12 @@ fn deliver(scene: &Scene, target: f64, area: bool) -> Result<Option<Outcome>, Er
         show(over[3]),
         error.approach / target,
         0.5 * error.area / target,
-        plan.pressure_error_at_all_times() / target,
+        plan.pressure_error_at_all_times / target,
         error.max_pressure.unwrap_or(f64::NAN) / target,
         if plan.pressure_converges() { "" } else { " (not)" },
-        plan.steps(),
-        plan.convolutions(),
-        plan.time_error().unwrap_or(f64::NAN) / target
+        plan.steps,
+        plan.convolutions,
+        plan.time_error.unwrap_or(f64::NAN) / target
     );
     println!("{line}");
     Ok(Some(Outcome { over: [over[0], over[1], over[3]], line }))

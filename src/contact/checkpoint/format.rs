@@ -13,7 +13,7 @@ use crate::error::CheckpointError;
 use crate::parallel::{Rows, part};
 
 const MAGIC: &[u8; 8] = b"VISCOCHK";
-/// Raised whenever what is saved changes.
+/// Raised with every change of the contents.
 pub(super) const VERSION: u32 = 8;
 /// Magic number, version, length, checksum of all but itself.
 const HEADER: usize = 24;
@@ -71,7 +71,7 @@ pub(super) struct Input {
     header: [u8; HEADER],
     /// Bytes of the contents.
     length: u64,
-    /// Where the values begin, once what is before them was read.
+    /// Where the values begin, once the contents before them were read.
     values: u64,
 }
 

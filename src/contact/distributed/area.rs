@@ -54,7 +54,7 @@ impl ViscoelasticContact {
         covered * self.grid().cell_area()
     }
 
-    /// The computed row that a row is, or is the image of; none beyond a grid that ends.
+    /// The computed row of a row or of its mirror image; none beyond a grid that ends.
     fn computed_row(&self, row: isize) -> Option<usize> {
         let (n1, folded) = (self.grid().cells()[0], self.computation.state.region.folded()[0]);
         let row = if self.scene.kernel.periodic_axes()[0] { row.rem_euclid(n1 as isize) } else { row };

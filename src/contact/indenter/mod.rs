@@ -47,7 +47,6 @@ impl Indenter {
     }
 
     /// Number of rigid bodies.
-    #[cfg(feature = "checkpoint")]
     pub(crate) fn bodies(&self) -> usize {
         self.bodies
     }

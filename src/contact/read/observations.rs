@@ -181,9 +181,9 @@ impl ViscoelasticContact {
     pub fn profile(&self, along: Axis, at: f64) -> Result<LineProfile> {
         LineProfile::new(self.grid(), along, at, |line| {
             let gap = self.gap()?;
-            let fields = [self.pressure(), self.displacement(), &gap];
             let rows = self.computation.state.region.rows();
-            rows.together(|| Ok(fields.map(|field| self.line_of(field, along, line))))
+            let line_of = |field| self.line_of(field, along, line);
+            rows.together(|| Ok([line_of(self.pressure())?, line_of(self.displacement())?, line_of(&gap)?]))
         })
     }
 

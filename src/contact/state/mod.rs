@@ -103,26 +103,38 @@ pub(crate) struct StepStart {
 }
 
 impl State {
-    /// Bodies without load, where they just touch.
-    pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, history: History) -> State {
+    /// Bodies without load, where they just touch, by the time rule of a history; without values.
+    pub(super) fn layout(indenter: Arc<Indenter>, region: Region, history: &History) -> State {
         let motions = indenter.first_touch();
-        let bodies = motions.len();
-        let current =
-            Equilibrium { solution: Solution::zero(region.len(), bodies), motions, contact_cells: 0, sum: 0.0 };
+        let (loads, solution) = (vec![Load::force(0.0); motions.len()], Solution::zero(0, motions.len()));
+        let current = Equilibrium { solution, motions, contact_cells: 0, sum: 0.0 };
         State {
             clock: Clock::default(),
-            loads: vec![Load::force(0.0); bodies],
+            start: StepStart { loads: loads.clone(), ..StepStart::default() },
+            loads,
             indenter,
             indenter_is_new: false,
+            history: history.layout(!region.covers()),
             region,
             region_is_placed: false,
-            history,
             previous: current.clone(),
             current,
-            start: StepStart { loads: vec![Load::force(0.0); bodies], ..StepStart::default() },
             extrapolation: Extrapolation::default(),
             greatest: [0.0; 2],
         }
+    }
+
+    /// Bodies without load, where they just touch, by the time rule of a history.
+    pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, history: &History) -> State {
+        let cells = region.len();
+        State::layout(indenter, region.clone(), history).map(&region, &mut |field| vec![0.0; cells * field.per_cell])
+    }
+
+    /// How many values the state has for each cell.
+    pub(super) fn values_per_cell(&self) -> usize {
+        let mut values = 0;
+        self.each(&mut |field| values += field.per_cell);
+        values
     }
 
     /// Normal force on all bodies together \[N\].
@@ -130,7 +142,7 @@ impl State {
         equilibrium.sum * self.region.grid().cell_area() * self.region.images() as f64
     }
 
-    /// The same state on `region`, whose fields are what `map` makes of these; the sums are to be found anew.
+    /// A copy on `region`; `map` gives its fields, one for each field here. Its sums are to be found anew.
     pub(super) fn map(&self, region: &Region, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> State {
         let [current, previous] = [&self.current, &self.previous].map(|of| {
             let Solution { pressure, potential, motions, .. } = &of.solution;
@@ -155,7 +167,6 @@ impl State {
     }
 
     /// Visits all fields.
-    #[cfg(feature = "checkpoint")]
     pub(super) fn each(&self, visit: &mut impl FnMut(Field<'_>)) {
         self.map(&self.region, &mut |field| {
             visit(field);

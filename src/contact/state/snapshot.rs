@@ -88,8 +88,8 @@ impl ViscoelasticContact {
 }
 
 impl ViscoelasticContact {
-    /// The contact at a time within the last step, its ends included. So the times at which a user looks need not be those at
-    /// which a step ends.
+    /// The contact at a time within the last step, its ends included. So a user may look at other times than the ends of
+    /// steps.
     ///
     /// It is the contact at the start of the step, advanced by a shorter step of the same rule: its state is as exact as one at
     /// the end of a step. This contact stays as it is. The load is taken to be linear between the ends of the step; a run has

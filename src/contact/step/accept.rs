@@ -1,7 +1,7 @@
 //! A step that was computed becomes the state, and leaves its warnings.
 
 use crate::contact::computation::Computation;
-use crate::contact::read::report::{Warning, Warnings};
+use crate::contact::read::report::Warnings;
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Edge, TimeRule};
 use crate::contact::state::State;
@@ -81,14 +81,16 @@ pub(super) fn collect_warnings(scene: &Scene, state: &State, reach: Option<Exten
     // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once
     let oscillates = matches!(scene.settings.time_rule, TimeRule::Rectangle | TimeRule::RectangleUncached)
         && material.contact_compliance(dt) > 2.0 * material.contact_compliance(0.0);
-    Warnings::default()
-        .with(Warning::NearEdge, near && scene.settings.edge == Edge::Refuse)
-        .with(Warning::FewCells, few)
-        .with(Warning::Extrapolated, has_memory && !is_known(age, until))
-        .with(Warning::FasterThanMaterial, has_memory && dt > 0.0 && dt < from)
-        .with(Warning::NearEndOfMaterial, has_memory && dt > 0.0 && !is_known(age + dt, material.known_until()))
-        .with(Warning::Rings, oscillates)
-        .with(Warning::FallBack, solution.counts.fallback_iterations > 0)
-        .with(Warning::UncertainMaterial, has_memory && uncertain)
-        .with(Warning::Rounding, solution.rounding > scene.settings.tolerance)
+    let reasons = [
+        (Warnings::NEAR_EDGE, near && scene.settings.edge == Edge::Refuse),
+        (Warnings::FEW_CELLS, few),
+        (Warnings::EXTRAPOLATED, has_memory && !is_known(age, until)),
+        (Warnings::FASTER_THAN_MATERIAL, has_memory && dt > 0.0 && dt < from),
+        (Warnings::NEAR_END_OF_MATERIAL, has_memory && dt > 0.0 && !is_known(age + dt, material.known_until())),
+        (Warnings::RINGS, oscillates),
+        (Warnings::FALL_BACK, solution.counts.fallback_iterations > 0),
+        (Warnings::UNCERTAIN_MATERIAL, has_memory && uncertain),
+        (Warnings::ROUNDING, solution.rounding > scene.settings.tolerance),
+    ];
+    reasons.into_iter().filter(|(_, applies)| *applies).map(|(warning, _)| warning).collect()
 }

@@ -28,11 +28,10 @@ use std::sync::Arc;
 use crate::contact::computation::Computation;
 use crate::contact::read::report::StepReport;
 use crate::contact::scene::Scene;
-use crate::contact::state::State;
+use crate::contact::state::{Equilibrium, State};
 use crate::contact::step::request::Step;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::contact::window::placement::outgrown;
-use crate::contact::window::placement::region_for;
+use crate::contact::window::placement::{outgrown, region_for};
 use crate::contact::window::region::Region;
 use crate::error::{Error, Result, non_negative};
 use crate::events;
@@ -40,10 +39,10 @@ use crate::extent::Extent;
 use crate::hereditary::{Interval, TimeError};
 use crate::load::Load;
 use crate::parallel::in_pool;
-use crate::solver::Stop;
+use crate::solver::{Solution, Stop};
 use accept::collect_warnings;
-use constraints::{Prescribed, find_free_motions, surface_follows_bodies, validate_loads};
 use constraints::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
+use constraints::{find_free_motions, validate_loads};
 use error_in_time::{StepContext, error_in_time};
 use gap::RigidBodies;
 use initial_guess::initial_guess;
@@ -155,7 +154,24 @@ impl ViscoelasticContact {
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
         let reach = self.adopt(attempt, step, error.sizes)?;
-        let report = StepReport { time_error: estimated.then_some(error.relative), ..self.report(reach) };
+        let (scene, state) = (&self.scene, &self.computation.state);
+        let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.current;
+        let report = StepReport {
+            time: state.clock.time,
+            force: self.force(),
+            approach: self.approach(),
+            area: contact_cells as f64 * scene.grid.cell_area(),
+            contact_cells,
+            tilt: self.tilt(),
+            dt: state.clock.last_length,
+            time_error: estimated.then_some(error.relative),
+            warnings: collect_warnings(scene, state, reach),
+            iterations: counts.iterations,
+            fallback_iterations: counts.fallback_iterations,
+            convolutions: counts.convolutions,
+            preconditioner_applications: counts.preconditioner_applications,
+            residual,
+        };
         report.emit();
         Ok(report)
     }
@@ -177,27 +193,6 @@ impl ViscoelasticContact {
         self.computation.accept(step, attempt.sum, contact_cells, sizes);
         self.view.refresh(&self.computation.state);
         Ok(reach)
-    }
-
-    fn report(&self, reach: Option<Extent>) -> StepReport {
-        let state = &self.computation.state;
-        let counts = state.current.solution.counts;
-        StepReport {
-            time: state.clock.time,
-            force: self.force(),
-            approach: self.approach(),
-            area: state.current.contact_cells as f64 * self.scene.grid.cell_area(),
-            contact_cells: state.current.contact_cells,
-            tilt: self.tilt(),
-            dt: state.clock.last_length,
-            time_error: None,
-            warnings: collect_warnings(&self.scene, state, reach),
-            iterations: counts.iterations,
-            fallback_iterations: counts.fallback_iterations,
-            convolutions: counts.convolutions,
-            preconditioner_applications: counts.preconditioner_applications,
-            residual: state.current.solution.residual,
-        }
     }
 }
 
@@ -258,12 +253,11 @@ impl Computation {
         compliance_is_usable(c, step)?;
 
         // h = hi + u_old + c K p − ω − α·x, what is prescribed of ω and α included
-        let prescribed =
-            Prescribed::new(step, surface_follows_bodies(step, state), &state.loads, &state.current.motions);
-        let bodies = RigidBodies { region: &state.region, initial: window.gap(&step.indenter), prescribed };
-        bodies.fill_gap(state.history.trial(), &mut trial.gap);
-        bodies.refine_gap(&state.history, &state.current.solution.pressure, &mut trial.gap);
-        let greatest = prescribed.greatest(&scene.grid);
+        let on_bodies = state.history.follows_body_exactly() && !step.has_new_indenter(state);
+        let start = on_bodies.then_some((&state.loads[..], &state.current.motions[..]));
+        let bodies = RigidBodies { step, region: &state.region, start };
+        let before = &state.current.solution.pressure;
+        bodies.fill_gap(window.gap(&step.indenter), &state.history, before, &mut trial.gap);
         below_full_contact(window, trial, step)?;
 
         // p ≥ 0, h ≥ 0, p h = 0, with force and moments in balance
@@ -273,7 +267,7 @@ impl Computation {
             initial_guess(state, window, trial, step, c);
         }
         let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations };
-        let outcome = window.solve(&step.indenter, [c, greatest], stop, trial);
+        let outcome = window.solve(&step.indenter, [c, bodies.greatest_motion(&scene.grid)], stop, trial);
         converged(outcome, scene, &trial.solution, step)?;
         trial.solution.counts.convolutions += convolutions;
         let pressure = &trial.solution.pressure;
@@ -281,11 +275,10 @@ impl Computation {
         material_is_known(scene, state, step, touched)?;
 
         // the history of the bodies
-        let (integrated, before) = (state.history.integrates_displacement(), &state.current.solution.pressure);
-        let bodies = RigidBodies { region: &state.region, initial: window.gap(&step.indenter), prescribed };
+        let (initial, integrated) = (window.gap(&step.indenter), state.history.integrates_displacement());
         state.history.respond(c, [pressure, &trial.solution.potential], |now, u| {
-            bodies.displace(c, integrated, trial, u);
-            bodies.follow_prescribed([before, pressure], now, u);
+            bodies.displace(initial, c, integrated, trial, u);
+            bodies.follow_prescribed(initial, [before, pressure], now, u);
         });
         Ok(())
     }

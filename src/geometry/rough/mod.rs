@@ -102,11 +102,9 @@ fn heights(grid: &Grid, spec: &RoughSpec, rows: &Rows, bytes: u128) -> Result<Ve
     let [_, n2] = grid.cells();
     let columns = |rank: usize| part(n2 / 2 + 1, rank, rows.ranks());
     rows.agree(spec.validate_on(grid).and_then(|()| memory::check("a rough surface", bytes)))?;
-    let rank = rows.group().map_or(0, |group| group.rank());
-    let (mut spectrum, sums) = waves(grid, spec, columns(rank));
+    let (mut spectrum, sums) = waves(grid, spec, columns(rows.rank()));
     let count = |rank: usize| 2 * columns(rank).len();
-    let factor = rows.gather(sums.iter().flatten().copied(), count, |all| scale(spec, all.as_chunks::<2>().0));
-    spectrum.scale(factor.unwrap_or_else(|| scale(spec, &sums))?);
+    spectrum.scale(rows.gather(sums.into_iter().flatten(), count, |all| scale(spec, all.as_chunks::<2>().0))?);
     let heights = spectrum.local_heights(rows);
     let invalid = heights.iter().position(|z| !z.is_finite());
     let own = invalid.map_or([f64::INFINITY, 0.0], |k| [(rows.own().start * n2 + k) as f64, heights[k]]);

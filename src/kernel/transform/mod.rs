@@ -42,7 +42,7 @@ pub(crate) struct SpectralOperator {
     spectrum: Vec<f64>,
     /// The transform of a single column, which has no tiles.
     column: Option<Column>,
-    /// Who has which tiles of rows and panels of columns, if ranks share them out; `spectrum` holds the local columns.
+    /// Shares of the ranks, if they share out the rows; `spectrum` holds the local columns.
     shares: Option<Shares>,
 }
 
@@ -128,7 +128,7 @@ impl SpectralOperator {
             return self.convolve_column(column, input, &mut work.column);
         }
         let share = self.down().div_ceil(work.lanes.len());
-        let task = RowsForward { operator: self, input, share };
+        let task = RowsForward { operator: self, input };
         // buffers that are lent may be longer
         let tiles = &mut work.tiles[..self.tiles()];
         for_each_share(&task, &mut work.lanes, tiles, share * self.across() * AREA);
@@ -137,7 +137,7 @@ impl SpectralOperator {
             return for_each_share(&task, std::slice::from_mut(lane), tiles, usize::MAX);
         }
         let share = self.across().div_ceil(work.lanes.len());
-        let task = Columns { operator: self, tiles, share };
+        let task = Columns { operator: self, tiles };
         for_each_share(&task, &mut work.lanes, &mut work.result[..self.tiles()], share * self.down() * AREA);
     }
 
@@ -145,14 +145,14 @@ impl SpectralOperator {
     fn read(&self, output: &mut [f64], work: &mut TransformWorkspace) {
         if let Some(column) = &self.column {
             return match &self.shares {
-                Some(shares) => self.read_own_of_column(column, shares, &mut work.column, output),
+                Some(shares) => output.copy_from_slice(&work.column.all[shares.rows.own()]),
                 None => self.read_column(column, &work.column, output),
             };
         }
         let share = self.down().div_ceil(work.lanes.len());
         let in_place = work.lanes.len() == 1;
         let tiles = if in_place { &work.tiles } else { &work.result };
-        let task = RowsInverse { operator: self, tiles, in_place, share };
+        let task = RowsInverse { operator: self, tiles, in_place };
         for_each_share(&task, &mut work.lanes, output, share * self.rows_in_a_tile() * self.layout.cells[1]);
     }
 
@@ -260,7 +260,7 @@ mod tests {
                 let input = signal(cells);
                 let mut output = vec![f64::NAN; input.len()];
                 // many times: what remains in the workspace must not grow
-                let mut work = operator.workspace_for(1);
+                let mut work = operator.buffers(1, operator.tiles());
                 for _ in 0..500 {
                     operator.apply(&input, &mut output, &mut work);
                 }
@@ -268,7 +268,7 @@ mod tests {
                     let exact = sum(layout, &input, [k / cells[1], k % cells[1]], coefficient);
                     assert!((value - exact).abs() < 1e-12, "{cells:?} {folded:?} {k}: {value} {exact}");
                 }
-                let (mut threaded, mut work) = (vec![f64::NAN; input.len()], operator.workspace_for(3));
+                let (mut threaded, mut work) = (vec![f64::NAN; input.len()], operator.buffers(3, operator.tiles()));
                 for _ in 0..500 {
                     operator.apply(&input, &mut threaded, &mut work);
                 }
@@ -286,7 +286,7 @@ mod tests {
         for n in [64, 128, 256, 512, 1024] {
             let time = |layout: Layout, input: &mut [f64]| {
                 let operator = SpectralOperator::from_coefficients(layout, kernel);
-                let mut work = operator.workspace_for(1);
+                let mut work = operator.buffers(1, operator.tiles());
                 let best = |seconds: f64, _| {
                     let start = Instant::now();
                     operator.apply_in_place(input, &mut work);
