@@ -2,6 +2,7 @@
 
 pub mod any_scene;
 pub mod bodies;
+pub mod chosen_scenes;
 pub mod draws;
 pub mod environment;
 pub mod histories;
@@ -29,6 +30,7 @@ pub mod spectra;
 pub mod spheres;
 #[path = "../../examples/support/scenes/step_loaded_sphere.rs"]
 pub mod step_loaded_sphere;
+pub mod temporary;
 pub mod truth;
 pub mod watched_ranks;
 pub mod watched_runs;

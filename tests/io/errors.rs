@@ -240,27 +240,6 @@ fn everything_travels_between_threads() {
     assert_send_sync::<Error>();
 }
 
-/// What a failed solve leaves in the solver must not reach the next one.
-#[test]
-fn a_failure_in_the_solver_leaves_no_trace() {
-    for edge in [Edge::Refuse, Edge::Allow] {
-        let mut contact = contact_with(maxwell(), Settings::default().with_edge(edge));
-        contact.step(0.0, Load::force(0.5)).unwrap();
-        contact.step(0.1, Load::force(0.4)).unwrap();
-        let mut twin = contact.clone();
-        for force in [50.0, 1e200, 1e305, 5e-324] {
-            let failed = contact.clone().step(0.1, Load::force(force));
-            if failed.is_err() {
-                contact.step(0.1, Load::force(force)).unwrap_err();
-            }
-        }
-        for force in [0.3, 0.2, 0.35] {
-            assert_eq!(contact.step(0.1, Load::force(force)), twin.step(0.1, Load::force(force)));
-            assert_eq!(state(&contact), state(&twin));
-        }
-    }
-}
-
 #[test]
 fn forces_beyond_numbers_are_refused() {
     let grid = Grid::square(8, 4.0e3).unwrap();

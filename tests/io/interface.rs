@@ -150,13 +150,12 @@ mod outputs {
     use viscocontact::output::{CsvHistory, Field, Metadata, NpzSeries, VtkSeries};
 
     use super::*;
+    use crate::common::temporary::Temporary;
 
     /// Every output that grows refuses an earlier one, leaves it as it is, and replaces it when told so.
     #[test]
     fn earlier_outputs_are_replaced_when_told_so() {
-        let folder = std::env::temp_dir().join(format!("viscocontact-replaced-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
+        let folder = Temporary::folder("replaced");
         let mut contact = contact();
         let report = contact.step(0.0, Load::force(0.5)).unwrap();
         let metadata = || Metadata::new("Ball on rubber");
@@ -201,6 +200,5 @@ mod outputs {
 
         let error = CsvHistory::create_or_replace(&archives, &metadata(), &contact, &[]).unwrap_err();
         assert!(matches!(error, Error::NotAFile { .. }), "{error}");
-        fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -5,36 +5,12 @@
 )]
 
 use crate::common::bodies::maxwell;
+use crate::common::temporary::Temporary;
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use viscocontact::output::{Field, Metadata};
 use viscocontact::prelude::*;
-
-/// A folder of its own for each test, removed when the test is over.
-struct Folder(PathBuf);
-
-impl Folder {
-    fn new(name: &str) -> Folder {
-        let path = std::env::temp_dir().join(format!("viscocontact-output-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        Folder(path)
-    }
-
-    fn names(&self) -> Vec<String> {
-        let mut names: Vec<String> =
-            fs::read_dir(&self.0).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-}
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
 
 /// A punch that is off the origin and of another number of cells along x1 than along x2, so that no two axes,
 /// signs or orders can be mixed up unseen; there is nothing to touch off its face.
@@ -108,13 +84,13 @@ mod npy {
         use viscocontact::observe::Stress;
         use viscocontact::output::write_stress_npz;
 
-        let folder = Folder::new("npz-stress");
+        let folder = Temporary::folder("npz-stress");
         let mut contact = punch();
         run(&mut contact, |_, _| ());
         let side = contact.grid().spacing().into_iter().fold(0.0, f64::max);
         let depths = [0.5 * side, side, 3.0 * side];
         let volume = contact.stress().unwrap().in_volume(&depths).unwrap();
-        let path = folder.0.join("stress.npz");
+        let path = folder.join("stress.npz");
         write_stress_npz(&path, &contact, &volume, &scene()).unwrap();
         let mut archive = Archive(zip::ZipArchive::new(fs::File::open(&path).unwrap()).unwrap());
         assert_eq!(archive.0.len(), 14);
@@ -151,8 +127,8 @@ mod npy {
 
     #[test]
     fn archives_hold_what_was_computed() {
-        let folder = Folder::new("npz");
-        let mut series = NpzSeries::create(&folder.0, &scene(), &Field::ALL).unwrap();
+        let folder = Temporary::folder("npz");
+        let mut series = NpzSeries::create(&folder, &scene(), &Field::ALL).unwrap();
         let mut contact = punch();
         run(&mut contact, |contact, _| {
             let path = series.write(contact).unwrap();
@@ -188,34 +164,34 @@ mod npy {
 
     #[test]
     fn earlier_runs_are_not_overwritten() {
-        let folder = Folder::new("npz-again");
-        let mut series = NpzSeries::create(&folder.0, &scene(), &[Field::Gap]).unwrap();
+        let folder = Temporary::folder("npz-again");
+        let mut series = NpzSeries::create(&folder, &scene(), &[Field::Gap]).unwrap();
         series.write(&punch()).unwrap();
-        let error = NpzSeries::create(&folder.0, &scene(), &[Field::Gap]).unwrap_err();
+        let error = NpzSeries::create(&folder, &scene(), &[Field::Gap]).unwrap_err();
         let Error::Output(error) = error else { panic!("{error}") };
         assert_eq!(error.kind(), std::io::ErrorKind::AlreadyExists);
         assert!(error.io_error().to_string().contains("frame_000000.npz"), "{error:?}");
-        let twice = NpzSeries::create(folder.0.join("b"), &scene(), &[Field::Gap, Field::Gap]).unwrap_err();
+        let twice = NpzSeries::create(folder.join("b"), &scene(), &[Field::Gap, Field::Gap]).unwrap_err();
         let Error::Output(twice) = twice else { panic!("{twice}") };
         assert!(twice.io_error().to_string().contains("gap is requested twice"), "{twice:?}");
     }
 
     #[test]
     fn a_frame_that_fails_is_not_there_and_not_counted() {
-        let folder = Folder::new("npz-fails");
-        let mut series = NpzSeries::create(folder.0.join("run"), &scene(), &[Field::Pressure]).unwrap();
-        fs::remove_dir_all(folder.0.join("run")).unwrap();
+        let folder = Temporary::folder("npz-fails");
+        let mut series = NpzSeries::create(folder.join("run"), &scene(), &[Field::Pressure]).unwrap();
+        fs::remove_dir_all(folder.join("run")).unwrap();
         let error = series.write(&punch()).unwrap_err();
         assert!(matches!(&error, Error::Output(error) if error.path().ends_with("frame_000000.npz")), "{error}");
         assert_eq!(series.frames(), 0);
-        fs::create_dir(folder.0.join("run")).unwrap();
+        fs::create_dir(folder.join("run")).unwrap();
         assert!(series.write(&punch()).unwrap().ends_with("frame_000000.npz"));
     }
 
     #[test]
     fn single_fields_are_read_back_bit_by_bit() {
-        let folder = Folder::new("npy");
-        let path = folder.0.join("field.npy");
+        let folder = Temporary::folder("npy");
+        let path = folder.join("field.npy");
         let grid = Grid::new([2, 3], [1.0, 1.0]).unwrap();
         let field = [0.1, -0.0, f64::INFINITY, 5e-324, f64::MAX, f64::NAN];
         write_npy(&path, &grid, &field).unwrap();
@@ -223,7 +199,7 @@ mod npy {
         assert_eq!((file.shape(), file.order()), (&[2, 3][..], npyz::Order::C));
         assert_eq!(bits(&file.into_vec::<f64>().unwrap()), bits(&field));
         assert!(matches!(write_npy(&path, &grid, &[0.0; 5]), Err(Error::WrongLength { expected: 6, .. })));
-        assert!(matches!(write_npy(folder.0.join("no/field.npy"), &grid, &field), Err(Error::Output(_))));
+        assert!(matches!(write_npy(folder.join("no/field.npy"), &grid, &field), Err(Error::Output(_))));
     }
 }
 
@@ -276,13 +252,13 @@ mod vtk {
     fn an_image_of_the_stress() {
         use viscocontact::output::write_stress_vtk;
 
-        let folder = Folder::new("vtk-stress");
+        let folder = Temporary::folder("vtk-stress");
         let mut contact = punch();
         run(&mut contact, |_, _| ());
         let side = contact.grid().spacing().into_iter().fold(0.0, f64::max);
         let depths = [0.5 * side, side, 3.0 * side];
         let volume = contact.stress().unwrap().in_volume(&depths).unwrap();
-        let path = folder.0.join("stress.vtr");
+        let path = folder.join("stress.vtr");
         write_stress_vtk(&path, &contact, &volume, &scene()).unwrap();
         let image = Image::open(&path);
         assert_eq!(image.attribute("RectilinearGrid WholeExtent", "WholeExtent"), "0 23 0 16 0 2");
@@ -305,8 +281,8 @@ mod vtk {
 
     #[test]
     fn images_hold_what_was_computed() {
-        let folder = Folder::new("vtk");
-        let mut series = VtkSeries::create(&folder.0, &scene(), &Field::ALL).unwrap();
+        let folder = Temporary::folder("vtk");
+        let mut series = VtkSeries::create(&folder, &scene(), &Field::ALL).unwrap();
         let mut contact = punch();
         let mut listed = Vec::new();
         run(&mut contact, |contact, _| {
@@ -336,19 +312,19 @@ mod vtk {
             // the collection is complete after every frame
             let (time, number) = (contact.time(), listed.len());
             listed.push(format!("timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"frame_{number:06}.vti\""));
-            let collection = text_of(&folder.0.join("series.pvd"));
+            let collection = text_of(&folder.join("series.pvd"));
             assert!(collection.ends_with("</VTKFile>\n"));
             let lines = collection.lines().filter_map(|line| line.trim().strip_prefix("<DataSet ")?.strip_suffix("/>"));
             assert_eq!(lines.collect::<Vec<_>>(), listed);
         });
         assert_eq!(folder.names(), ["frame_000000.vti", "frame_000001.vti", "frame_000002.vti", "series.pvd"]);
-        assert!(matches!(VtkSeries::create(&folder.0, &scene(), &[]), Err(Error::Output(_))));
+        assert!(matches!(VtkSeries::create(&folder, &scene(), &[]), Err(Error::Output(_))));
     }
 
     #[test]
     fn fields_are_chosen() {
-        let folder = Folder::new("vtk-few");
-        let mut series = VtkSeries::create(&folder.0, &scene(), &[Field::Gap]).unwrap();
+        let folder = Temporary::folder("vtk-few");
+        let mut series = VtkSeries::create(&folder, &scene(), &[Field::Gap]).unwrap();
         let image = Image::open(&series.write(&punch()).unwrap());
         assert!(image.head.contains("gap [m]") && !image.head.contains("pressure"));
         assert!(image.numbers("gap [m]").contains(&f64::INFINITY));
@@ -363,8 +339,8 @@ mod csv {
 
     #[test]
     fn histories_hold_a_row_a_step() {
-        let folder = Folder::new("csv");
-        let path = folder.0.join("history.csv");
+        let folder = Temporary::folder("csv");
+        let path = folder.join("history.csv");
         let mut contact = punch();
         let mut history = CsvHistory::create(&path, &scene(), &contact, &["energy, total [J]", "odd"]).unwrap();
         let mut steps = 0;
@@ -408,8 +384,8 @@ mod csv {
 
     #[test]
     fn bad_histories_are_refused() {
-        let folder = Folder::new("csv-bad");
-        let (path, contact) = (folder.0.join("history.csv"), punch());
+        let folder = Temporary::folder("csv-bad");
+        let (path, contact) = (folder.join("history.csv"), punch());
         for names in [&["a", "a"][..], &["time [s]"], &[""], &["a#b"], &["a\nb"], &["\"a\""]] {
             let error = CsvHistory::create(&path, &scene(), &contact, names).unwrap_err();
             assert!(
@@ -514,7 +490,7 @@ fn a_run_without_room() {
 #[cfg(all(unix, feature = "csv", feature = "npy", feature = "vtk"))]
 #[test]
 fn full_disks_leave_whole_files_and_no_word() {
-    let folder = Folder::new("full");
+    let folder = Temporary::folder("full");
     // writes beyond 64 blocks of 512 bytes fail in the child, which is not killed for them
     let child = std::process::Command::new("sh")
         .args([
@@ -522,21 +498,20 @@ fn full_disks_leave_whole_files_and_no_word() {
             "trap '' XFSZ; ulimit -f 64; exec \"$0\" --exact io::output::a_run_without_room --ignored --nocapture",
         ])
         .arg(std::env::current_exe().unwrap())
-        .env("FULL_FOLDER", &folder.0)
+        .env("FULL_FOLDER", &*folder)
         .output()
         .unwrap();
     let told = String::from_utf8_lossy(&child.stderr);
     assert!(child.status.success() && told.is_empty(), "{told}");
-    let (text, rows) =
-        (text_of(&folder.0.join("history.csv")), text_of(&folder.0.join("rows")).parse::<usize>().unwrap());
+    let (text, rows) = (text_of(&folder.join("history.csv")), text_of(&folder.join("rows")).parse::<usize>().unwrap());
     assert!(rows > 50 && text.len() <= 32768, "{rows} rows, {} bytes", text.len());
     let (head, lines): (Vec<_>, Vec<_>) = (text.lines().take(2).collect(), text.lines().skip(2).collect());
     assert_eq!((head.len(), lines.len()), (2, rows));
     assert!(text.ends_with('\n') && lines.iter().all(|line| *line == lines[0]));
     assert_eq!(folder.names(), ["few", "history.csv", "npz", "rows", "vtk"]);
     assert_eq!(
-        fs::read_dir(folder.0.join("npz")).unwrap().count() + fs::read_dir(folder.0.join("vtk")).unwrap().count(),
+        fs::read_dir(folder.join("npz")).unwrap().count() + fs::read_dir(folder.join("vtk")).unwrap().count(),
         0
     );
-    assert_eq!(fs::read_dir(folder.0.join("few")).unwrap().count(), 1);
+    assert_eq!(fs::read_dir(folder.join("few")).unwrap().count(), 1);
 }

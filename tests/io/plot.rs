@@ -1,9 +1,10 @@
 //! Pictures: what they show, that files are whole, and that no data make them fail otherwise than by an error.
 
 use crate::common::bodies::maxwell;
+use crate::common::temporary::Temporary;
 use approx::assert_abs_diff_eq;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use proptest::prelude::*;
 use viscocontact::Result;
@@ -23,12 +24,6 @@ fn ball() -> ViscoelasticContact {
         .unwrap();
     contact.step(0.0, Load::force(0.3)).unwrap();
     contact
-}
-
-fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("viscocontact-plot-{name}-{}", std::process::id()));
-    fs::create_dir_all(&folder).unwrap();
-    folder
 }
 
 /// Pixels of a colour: how many, and their mean column and row.
@@ -205,7 +200,7 @@ fn bad_pictures_are_refused_by_name() {
 
 #[test]
 fn animations_play_back() {
-    let folder = folder("animation");
+    let folder = Temporary::folder("animation");
     let path = folder.join("run.gif");
     let mut contact = ball();
     let mut animation = Animation::create(&path, Field::Pressure, [0.0, 0.4e6], 0.05).unwrap();
@@ -255,7 +250,6 @@ fn animations_play_back() {
     let empty = Animation::create(folder.join("b.gif"), Field::Gap, [0.0, 1.0], 0.1).unwrap();
     assert!(matches!(empty.finish(), Err(Error::WrongLength { .. })));
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
-    fs::remove_dir_all(&folder).unwrap();
 }
 
 /// Numbers of every size, and those that are none.
@@ -330,17 +324,16 @@ fn frames_until_there_is_no_room() {
 #[cfg(unix)]
 #[test]
 fn a_frame_without_room_leaves_no_trace() {
-    let folder = folder("full");
+    let folder = Temporary::folder("full-animation");
     let child = std::process::Command::new("sh")
         .args([
             "-c",
             "trap '' XFSZ; ulimit -f 64; exec \"$0\" --exact io::plot::frames_until_there_is_no_room --ignored --nocapture",
         ])
         .arg(std::env::current_exe().unwrap())
-        .env("FULL_FOLDER", &folder)
+        .env("FULL_FOLDER", &*folder)
         .output()
         .unwrap();
     assert!(child.status.success(), "{}", String::from_utf8_lossy(&child.stderr));
     assert!(String::from_utf8_lossy(&child.stdout).contains("1 passed"), "the test above has run");
-    fs::remove_dir_all(folder).unwrap();
 }

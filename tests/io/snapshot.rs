@@ -97,8 +97,10 @@ fn operate(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) -> bool
 /// states that are restored.
 fn disturb(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) {
     let (dt, too_much) = (0.2 * a, 1.0e3 * (1.0 + b));
-    match (6.0 * kind) as usize {
+    match (8.0 * kind) as usize {
         0 => assert!(contact.step(dt, Load::force(too_much)).is_err(), "contact at the edge"),
+        4 => assert!(contact.step(dt, Load::force([1e200, 1e305][(2.0 * b) as usize])).is_err(), "beyond numbers"),
+        5 => assert!(contact.step(-dt, Load::force(0.1)).is_err()),
         1 => assert!(contact.step(dt, Load::force(f64::NAN)).is_err()),
         2 => assert!(contact.step(dt, Load::eccentric_force(0.5, [1.0, 0.0])).is_err(), "outside the hull"),
         3 => {

@@ -304,37 +304,6 @@ fn work_is_what_the_documents_say() {
     }
 }
 
-/// Mirrored scene, mirrored answer; shifted by whole cells, shifted answer.
-#[test]
-fn mirrored_and_shifted_scenes_have_such_answers() {
-    let grid = Grid::new([40, 32], [4.0e-3, 3.2e-3]).unwrap();
-    let solve = |shape: &dyn Geometry| {
-        let mut contact = ViscoelasticContact::builder(grid.clone())
-            .geometry(shape)
-            .material(elastic())
-            .settings(Settings::default().with_tolerance(1e-10))
-            .build()
-            .unwrap();
-        contact.step(0.0, Load::force(0.3)).unwrap();
-        contact.pressure().to_vec()
-    };
-    let lump =
-        |x: f64, y: f64| 40.0 * (x * x + 2.0 * y * y) + 1.0e-6 * (3000.0 * x).sin() + 0.5e-6 * (2000.0 * y).sin();
-    let field = solve(&FnGeometry::new(lump));
-    let peak = field.iter().copied().fold(0.0, f64::max);
-    let mirrored = solve(&FnGeometry::new(move |x, y| lump(-x, y)));
-    let shifted = solve(&FnGeometry::new(move |x, y| lump(x - 0.3e-3, y + 0.1e-3))); // 3 and −1 cells
-    for i in 0..40 {
-        for j in 0..32 {
-            let value = field[i * 32 + j];
-            assert_abs_diff_eq!(mirrored[(39 - i) * 32 + j], value, epsilon = 1e-8 * peak);
-            if i < 37 && j > 0 {
-                assert_abs_diff_eq!(shifted[(i + 3) * 32 + j - 1], value, epsilon = 1e-8 * peak);
-            }
-        }
-    }
-}
-
 /// A thousand isolated spots, and what their neighbours make of them.
 #[test]
 fn a_thousand_spots_keep_the_conditions() {
@@ -376,7 +345,7 @@ fn warm_steps_hardly_grow_with_the_mesh() {
 fn pressures_are_never_negative_when_iterations_run_out() {
     let wavy = Sum::new(Sphere::new(5.0e-3).unwrap(), Wavy::new(2.0e-5, 0.7e-3).unwrap());
     let (mut solved, mut given_up) = (0, 0);
-    for max_iterations in 1..6 {
+    for max_iterations in 1..12 {
         for tolerance in [1e-4, 1e-3, 1e-2, 0.1] {
             let settings = Settings::default()
                 .with_max_iterations(max_iterations)
@@ -392,6 +361,7 @@ fn pressures_are_never_negative_when_iterations_run_out() {
                 match contact.step(dt, Load::force(force)) {
                     Ok(_) => {
                         assert!(contact.pressure().iter().all(|&p| p >= 0.0), "{max_iterations} {tolerance:e}");
+                        assert!((contact.force() / force - 1.0).abs() < 1e-9, "{max_iterations} {tolerance:e}");
                         solved += 1;
                     }
                     Err(Error::NotConverged { .. }) => given_up += 1,

@@ -289,39 +289,6 @@ fn stress_of_a_changing_poisson_ratio_is_that_of_the_reduced_time() {
     close(peaks[0], peaks[1], 1e-9, "von Mises stress");
 }
 
-#[cfg(feature = "checkpoint")]
-#[test]
-fn checkpoints_keep_both_clocks() {
-    let history = |warm: f64| TemperatureHistory::function(wlf(), move |t| 290.0 + warm * t, &[0.5]).unwrap();
-    let build = |history: TemperatureHistory| {
-        builder_on(grid(16), Material::incompressible(zener())).temperature(history).build().unwrap()
-    };
-    let path = std::env::temp_dir().join(format!("viscocontact-temperature-{}", std::process::id()));
-    let load = FnHistory::new(|t: f64| Load::force(0.1 + 0.05 * t));
-    let mut whole = build(history(20.0));
-    let mut run = whole.follow(&load, Stepping::adaptive(1e-4), 1.0);
-    for _ in 0..5 {
-        run.next_step().unwrap();
-    }
-    run.save(&path).unwrap();
-    while run.next_step().unwrap().is_some() {}
-    let mut resumed = build(history(20.0));
-    resumed.resume(&path).unwrap();
-    let mut run = resumed.follow(&load, Stepping::adaptive(1e-4), 1.0);
-    while run.next_step().unwrap().is_some() {}
-    assert_eq!(whole.approach().to_bits(), resumed.approach().to_bits());
-    assert_eq!(whole.reduced_time().to_bits(), resumed.reduced_time().to_bits());
-    let why = |contact: &mut ViscoelasticContact| match contact.resume(&path).unwrap_err() {
-        Error::Checkpoint { source, .. } => source.to_string(),
-        other => panic!("{other:?}"),
-    };
-    let other = why(&mut build(history(21.0)));
-    assert!(other.contains("temperature") && other.contains("reduced time"), "{other}");
-    let none = why(&mut builder_on(grid(16), Material::incompressible(zener())).build().unwrap());
-    assert!(none.contains("temperature"), "{none}");
-    std::fs::remove_file(path).unwrap();
-}
-
 #[test]
 fn files_tell_the_temperature() {
     use viscocontact::output::Metadata;

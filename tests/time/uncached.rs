@@ -117,25 +117,3 @@ fn uncached_sums_are_refused_where_cached_ones_are() {
     let [cached, uncached] = [TimeRule::Rectangle, TimeRule::RectangleUncached].map(memory);
     assert_eq!((uncached.total(), uncached.each_step), (cached.total() + 8 * 480, cached.each_step));
 }
-
-/// A checkpoint holds the increments; whoever continues from it repeats the same convolutions.
-#[cfg(feature = "checkpoint")]
-#[test]
-fn uncached_sums_continue_from_a_checkpoint() {
-    let path = std::env::temp_dir().join(format!("viscocontact-uncached-{}", std::process::id()));
-    let new = |rule| sphere(maxwell(), paper(rule)).build().unwrap();
-    let (mut one, mut other) = (new(TimeRule::RectangleUncached), new(TimeRule::RectangleUncached));
-    for (dt, load) in loads(1.0e-5).take(6) {
-        one.step(dt, load).unwrap();
-    }
-    one.save(&path).unwrap();
-    other.resume(&path).unwrap();
-    for (dt, load) in loads(1.0e-5).skip(6) {
-        assert_eq!(one.step(dt, load), other.step(dt, load));
-    }
-    assert_eq!(one.pressure(), other.pressure());
-    let error = new(TimeRule::Rectangle).resume(&path).unwrap_err();
-    let refused = std::error::Error::source(&error).unwrap().to_string();
-    assert!(refused.contains("Settings::time_rule"), "{refused}");
-    std::fs::remove_file(path).unwrap();
-}

@@ -379,30 +379,3 @@ fn contacts_on_layers_that_are_periodic_along_one_axis() {
     println!("a chain over one ball: {:e}", chain.force() / alone.force() - 1.0);
     assert!((chain.force() / alone.force() - 1.0).abs() < 2e-3, "{} {}", chain.force(), alone.force());
 }
-
-#[cfg(feature = "checkpoint")]
-#[test]
-fn a_checkpoint_knows_its_layer() {
-    let build = |thickness: f64| {
-        let grid = Grid::square(24, 4.0e-3).unwrap();
-        let layer = Layer::bonded_to_rigid(thickness, 0.5).unwrap();
-        ViscoelasticContact::builder(grid.clone())
-            .geometry(&Sphere::new(10.0e-3).unwrap())
-            .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap()))
-            .kernel(Arc::new(InfluenceKernel::layer(&grid, layer).unwrap()))
-            .build()
-            .unwrap()
-    };
-    let path = std::env::temp_dir().join(format!("viscocontact-layer-{}", std::process::id()));
-    let mut whole = build(1.0e-3);
-    whole.step(0.0, Load::force(0.2)).unwrap();
-    whole.save(&path).unwrap();
-    whole.step(0.3, Load::force(0.3)).unwrap();
-    let mut resumed = build(1.0e-3);
-    resumed.resume(&path).unwrap();
-    resumed.step(0.3, Load::force(0.3)).unwrap();
-    assert_eq!(whole.pressure(), resumed.pressure());
-    let Error::Checkpoint { source, .. } = build(1.1e-3).resume(&path).unwrap_err() else { panic!() };
-    assert!(source.to_string().contains("layer"), "{source}");
-    std::fs::remove_file(path).unwrap();
-}
