@@ -64,6 +64,8 @@ pub struct AnyScene {
     pub size: usize,
     /// Whether a rank evaluates the shape on its own rows alone.
     pub on_own_rows: bool,
+    /// Whether the stiffness and the state within the last step are compared, which take contact problems of their own.
+    pub(super) probed: bool,
 }
 
 /// Cells of a line or a plane: of one band of rows, or of several.
@@ -210,7 +212,20 @@ impl AnyScene {
         let name = format!("seed {seed}: {:?} cells, {kernel}, {material:?}, {stepping:?}, {size} ranks", grid.cells());
         let (kernel, steps) = (Arc::new(kernel), Steps::Along(history, stepping, 1.0));
         let rough = None;
-        AnyScene { name, grid, kernel, shape, rough, material, temperature, settings, steps, size, on_own_rows }
+        AnyScene {
+            name,
+            grid,
+            kernel,
+            shape,
+            rough,
+            material,
+            temperature,
+            settings,
+            steps,
+            size,
+            on_own_rows,
+            probed: true,
+        }
     }
 
     /// A shape on a Zener half-space, all cells of which are computed.
@@ -227,6 +242,7 @@ impl AnyScene {
             steps,
             size: 1,
             on_own_rows: true,
+            probed: false,
         }
     }
 
@@ -303,17 +319,15 @@ impl AnyScene {
         let whole = |field: &[f64]| Ok::<_, Error>(bits(contact.gathered(field, 0)?.unwrap_or_default()));
         let ([moment1, moment2], [tilt1, tilt2]) = (contact.moment(), contact.tilt());
         let [force1, force2] = contact.lateral_force(&self.shape);
-        // after a step that failed, the state before it is not kept
-        let inside = contact.time() - if error.is_none() { 0.4 * length } else { 0.0 };
-        let last = contact.within_step(inside)?;
-        let state = [
-            contact.force(),
-            contact.approach(),
-            contact.max_pressure(),
-            contact.contact_area(),
-            contact.stiffness_over_modulus().unwrap_or(-1.0),
-        ];
-        let turned = [moment1, moment2, tilt1, tilt2, force1, force2, last.force(), last.approach()];
+        let mut probes = [-1.0; 3];
+        if self.probed {
+            // after a step that failed, the state before it is not kept
+            let inside = contact.time() - if error.is_none() { 0.4 * length } else { 0.0 };
+            let last = contact.within_step(inside)?;
+            probes = [contact.stiffness_over_modulus().unwrap_or(-1.0), last.force(), last.approach()];
+        }
+        let state = [contact.force(), contact.approach(), contact.max_pressure(), contact.contact_area(), probes[0]];
+        let turned = [moment1, moment2, tilt1, tilt2, force1, force2, probes[1], probes[2]];
         let numbers = state.into_iter().chain(turned).chain(budget).collect();
         let fields = [whole(contact.pressure())?, whole(contact.displacement())?];
         Ok(Course { reports, error: error.map(|error| error.to_string()), numbers: bits(numbers), fields })

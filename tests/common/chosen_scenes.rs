@@ -52,7 +52,7 @@ pub fn folded() -> AnyScene {
     AnyScene::plain("folded", Grid::square(384, 4.0e-3).unwrap(), sphere(), steps)
 }
 
-/// Symmetric about one axis alone: half of the rows is computed, by other ranks than those that have evaluated them, or half of each
+/// Symmetric about one axis alone: half of the rows is computed, by other ranks than had evaluated them, or half of each
 /// row, in other bands.
 pub fn beside(axis: usize) -> AnyScene {
     let by = if axis == 0 { [0.31e-3, 0.0] } else { [0.0, 0.1e-3] };

@@ -5,6 +5,7 @@ pub mod bodies;
 pub mod chosen_scenes;
 pub mod draws;
 pub mod environment;
+pub mod gauss;
 pub mod histories;
 #[path = "../../examples/support/scenes/indenters.rs"]
 pub mod indenters;
@@ -20,6 +21,8 @@ pub mod random_bodies;
 pub mod random_histories;
 pub mod random_returns;
 pub mod random_scenes;
+pub mod ratios;
+pub mod refused;
 #[cfg(feature = "laws")]
 pub mod related;
 #[path = "../../examples/support/scenes/rolling.rs"]

@@ -6,7 +6,7 @@ use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
 use super::bodies::{power_law, three_times};
-use super::spheres::{builder_on, sphere, sphere_on};
+use super::spheres::{builder_of, builder_on, sphere, sphere_on};
 
 pub type Build = Box<dyn Fn() -> ViscoelasticContact>;
 pub type Step = Box<dyn Fn(&mut ViscoelasticContact, u32) -> StepReport>;
@@ -25,9 +25,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
     let whole = Settings::default().with_window(false).with_symmetry(false);
     let line = || {
         let grid = Grid::new([200, 1], [10.0e-3, 1.0]).unwrap();
-        ViscoelasticContact::builder(grid.clone())
-            .geometry(&Cylinder::new(10.0e-3).unwrap())
-            .material(three_times())
+        builder_of(&Cylinder::new(10.0e-3).unwrap(), grid.clone(), three_times())
             .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
             .settings(Settings::default().with_frame(Frame::Indenter))
             .build()
@@ -38,9 +36,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
     };
     let strip = || {
         let grid = Grid::new([64, 24], [8.0e-3, 3.0e-3]).unwrap();
-        ViscoelasticContact::builder(grid.clone())
-            .geometry(&sphere())
-            .material(three_times())
+        builder_on(grid.clone(), three_times())
             .kernel(Arc::new(InfluenceKernel::periodic_along(&grid, 1, 1.0).unwrap()))
             .build()
             .unwrap()

@@ -13,7 +13,7 @@ pub enum Call {
     Exchange(usize),
 }
 
-/// Calls `watch` before each call; its error is that of the call.
+/// Calls `watch` before each call, which returns the error of `watch`.
 pub struct WatchedRanks<F> {
     inner: Arc<dyn Ranks>,
     watch: F,

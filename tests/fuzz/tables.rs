@@ -1,19 +1,19 @@
 //! Tables of measured data: from files, from slices, and master curves.
 
-use viscocontact::rheology::{Isotherm, MasterCurve, Rheology, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
+use viscocontact::rheology::{
+    Isotherm, MasterCurve, Rheology, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation, Units,
+};
 
 use crate::engine::{Target, Verdict, judged, known};
 use crate::models::creeps;
 use crate::source::Source;
 
 pub fn targets() -> Vec<Target> {
-    let mut targets = vec![
+    vec![
         Target { name: "table_slices", short: 300, run: slices },
         Target { name: "table_master", short: 60, run: master },
-    ];
-    #[cfg(feature = "csv")]
-    targets.push(Target { name: "table_csv", short: 600, run: csv });
-    targets
+        Target { name: "table_csv", short: 600, run: csv },
+    ]
 }
 
 /// A table is known, and creeps, until its end, and no further.
@@ -104,10 +104,7 @@ fn master(source: &mut Source) -> Verdict {
     })
 }
 
-#[cfg(feature = "csv")]
 fn csv(source: &mut Source) -> Verdict {
-    use viscocontact::rheology::Units;
-
     const FILES: [&str; 8] = [
         "# PMMA, 23 C\ntime [s], J [1/Pa]\n10, 1.2e-9\n1, 1.0e-9\n100, 1.3e-9\n3, 1.1e-9\n30, 1.25e-9\n300, 1.4e-9\n",
         "1; 4.0e6\n3; 3.1e6\n10; 2.4e6\n30; 2.1e6\n100; 1.9e6\n300; 1.8e6\n",

@@ -222,12 +222,12 @@ fn other_scenes_are_refused_by_what_differs() {
         scene(one).resume(&path).unwrap();
         assert_eq!(what(scene(other)), differs);
     }
-    // the last file tells both clocks
+    // the message has both clocks
     let error = refused(&mut warming(21.0), &path).to_string();
     assert!(error.contains("temperature") && error.contains("reduced time"), "{error}");
 }
 
-/// What only says how steps are solved may be another one: a run that did not converge goes on with more iterations.
+/// Settings of the solver may differ: a run that did not converge resumes with more iterations.
 #[test]
 fn other_ways_to_solve_are_taken() {
     let path = Temporary::file("solve");
@@ -246,7 +246,7 @@ fn other_ways_to_solve_are_taken() {
     }
 }
 
-/// A material that is known for ten seconds, and says so by a panic.
+/// A material that is known for ten seconds, and panics beyond.
 #[derive(Debug)]
 struct Known;
 
@@ -262,7 +262,7 @@ impl Rheology for Known {
 }
 
 #[test]
-fn materials_are_not_asked_for_what_they_do_not_know() {
+fn materials_are_not_evaluated_beyond_their_data() {
     let path = Temporary::file("known");
     let build = || {
         let settings = Settings::default().with_time_rule(TimeRule::Backward);
@@ -276,7 +276,6 @@ fn materials_are_not_asked_for_what_they_do_not_know() {
 
 /// A material is fitted over the times of the builder: a contact of the same times goes on bit by bit, whatever steps it took
 /// before, and one of other times is another scene.
-// new contract
 #[test]
 fn materials_are_fitted_as_they_were() {
     let path = Temporary::file("fitted");
@@ -308,22 +307,9 @@ fn materials_are_fitted_as_they_were() {
     assert!(matches!(error, CheckpointError::OtherScene { what: "contact compliance", .. }), "{error}");
 }
 
-/// A contact whose region has grown goes back to a file of a smaller one: nothing of the larger is left to be seen.
-#[test]
-fn nothing_is_left_of_a_larger_contact() {
-    let path = Temporary::file("larger");
-    let mut contact = sphere_on(Grid::square(64, 4.0e-3).unwrap(), three_times(), Settings::default());
-    contact.step(0.0, Load::force(0.01)).unwrap();
-    contact.save(&path).unwrap();
-    let (pressure, area) = (contact.pressure().to_vec(), contact.contact_area());
-    contact.step(0.0, Load::force(1.0)).unwrap();
-    contact.resume(&path).unwrap();
-    assert_eq!((contact.pressure(), contact.contact_area()), (&pressure[..], area));
-}
-
 /// A step whose file cannot be written is reported by the call that writes it.
 #[test]
-fn no_step_is_lost_with_its_file() {
+fn a_step_whose_file_fails_is_reported() {
     let folder = Temporary::file("medium");
     let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), Settings::default());
     let load = StepLoad::new(Load::force(0.1)).unwrap();
@@ -346,7 +332,7 @@ fn no_step_is_lost_with_its_file() {
 
 /// A run to before where the file is, is refused, the first time as well.
 #[test]
-fn runs_that_are_over_do_not_begin() {
+fn runs_that_end_before_the_checkpoint_are_refused() {
     let path = Temporary::file("over");
     let mut contact = sphere_on(Grid::square(16, 4.0e-3).unwrap(), three_times(), Settings::default());
     let load = StepLoad::new(Load::force(0.1)).unwrap();
@@ -388,7 +374,7 @@ fn a_run_that_is_killed() {
     fs::rename(folder.join("part"), done).unwrap();
 }
 
-/// Starts the run in a folder; kills it when it has written so many lines, if told so. Whether it came to its end.
+/// Starts the run in a folder; kills it when it has written `kill_after` lines. Returns whether it came to its end.
 fn start(folder: &Path, every_step: bool, kill_after: Option<usize>) -> bool {
     let mut command = Command::new(std::env::current_exe().unwrap());
     command.args(["--exact", "io::checkpoint::a_run_that_is_killed", "--ignored"]);
@@ -453,25 +439,4 @@ fn fifty_killed_runs_end_with_the_same_bits() {
     }
     println!("{kills} kills in {runs} runs, {differing} answers differ, {most} steps lost at most");
     assert_eq!(differing, 0);
-}
-
-/// After a step that failed with numbers out of range, the contact is saved and resumed like any other.
-#[test]
-fn a_failed_step_does_not_spoil_a_checkpoint() {
-    let path = Temporary::file("after_failure");
-    let build = || {
-        let body = Material::incompressible(Maxwell::new(1.0e6, 1.0).unwrap());
-        sphere_on(Grid::square(16, 4.0e-3).unwrap(), body, Settings::default())
-    };
-    let mut contact = build();
-    contact.step(0.0, Load::force(0.5)).unwrap();
-    contact.step(1.0e305, Load::force(0.5)).unwrap_err();
-    contact.save(&path).unwrap();
-    let mut resumed = build();
-    resumed.resume(&path).unwrap();
-    for contact in [&mut contact, &mut resumed] {
-        contact.step(1.0e-7, Load::force(0.5)).unwrap();
-    }
-    assert_eq!(contact.pressure(), resumed.pressure());
-    assert_eq!(contact.displacement(), resumed.displacement());
 }

@@ -1,7 +1,7 @@
-//! What a step tells of its own quality, and a failed one of why.
+//! Warnings of steps, and the reasons of failed steps.
 
 use crate::common::bodies::{elastic, maxwell};
-use crate::common::spheres::sphere_on;
+use crate::common::spheres::{builder_of, sphere_on};
 use viscocontact::contact::Warning;
 use viscocontact::prelude::*;
 use viscocontact::{Error, Trend};
@@ -127,12 +127,10 @@ fn few_cells_are_warned_of_where_errors_are_large() {
     assert!(warned == 0 && approach < 5e-3 && peak < 2e-2 && area < 3e-2);
 }
 
-/// Where hardly anything of the pressure is left and the body may turn, rounding of the gap hides it: that is told.
+/// Where hardly anything of the pressure is left and the body may turn, rounding of the gap hides it: the step warns.
 #[test]
 fn rounding_is_warned_of() {
-    let mut contact = ViscoelasticContact::builder(Grid::square(40, 4.0e-3).unwrap())
-        .geometry(&FlatPunch::circular(1.2e-3).unwrap())
-        .material(maxwell())
+    let mut contact = builder_of(&FlatPunch::circular(1.2e-3).unwrap(), Grid::square(40, 4.0e-3).unwrap(), maxwell())
         .build()
         .unwrap();
     let held = Load::Approach { approach: 1.0e-5, tilt: [Tilt::Free { at: 0.1e-3 }, Tilt::Fixed(0.0)] };

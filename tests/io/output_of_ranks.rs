@@ -1,4 +1,4 @@
-//! An error of one rank that writes a file is that of all, and nobody waits.
+//! A file that one rank cannot write is an error on all ranks, and no rank waits for ever.
 
 use std::fs;
 use std::sync::Arc;

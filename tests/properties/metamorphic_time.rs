@@ -16,12 +16,12 @@ struct Record {
     work: Vec<f64>,
 }
 
-/// Each step knows only its own ends.
+/// The rule whose steps use only their own ends.
 fn linear() -> Settings {
     tight().with_time_rule(TimeRule::ExponentialLinear)
 }
 
-/// Takes `steps`, and says what they did.
+/// Takes `steps`, and records them.
 fn record(scene: &Scenario, steps: &[(f64, Load)]) -> Record {
     let settings = tight().with_edge(Edge::Allow);
     let mut contact = scene.builder().settings(settings).build().unwrap();
@@ -110,7 +110,7 @@ proptest! {
         prop_assert!(pressed.iter().sum::<f64>() >= -1e-7 * size, "{:e} J of {:e} J", pressed.iter().sum::<f64>(), size);
     }
 
-    /// Steps cut in two, and again: what is left on a face that stays down is an error in time of second order, by the rule that
+    /// Steps cut in two, and again: on a face that stays down the error in time is of second order, by the rule that
     /// continues nothing across the corners of the load.
     #[test]
     fn splitting_leaves_an_error_of_second_order(scene in scenarios(), parts in prop::collection::vec(0.2..1.0_f64, 2..4), dt in 0.02..0.15_f64) {

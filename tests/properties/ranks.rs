@@ -1,4 +1,4 @@
-//! A contact that ranks share out is that of one process, bit by bit and whatever their number: its steps, its fields, its files, and
+//! A contact that ranks share out is the same as in one process, bit by bit and whatever their number: its steps, its fields, its files, and
 //! the steps after a checkpoint. `RANKS_SCENES` (24) and `RANKS_SEED` (1) choose random scenes.
 
 use std::collections::BTreeMap;

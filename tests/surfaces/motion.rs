@@ -1,7 +1,7 @@
-//! Indenters that move: two frames that must agree, energy, what is rough where, and steps that fail.
+//! Indenters that move: two frames that must agree, energy, roughness of either body, and steps that fail.
 
 use crate::common::bodies::elastic;
-use crate::common::spheres::sphere_on;
+use crate::common::spheres::{builder_of, contact_of, sphere_on};
 use approx::assert_abs_diff_eq;
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ fn builder(grid: &Grid, shape: &dyn Geometry, frame: Frame) -> viscocontact::con
     ViscoelasticContact::builder(grid.clone()).geometry(shape).material(zener()).settings(settings)
 }
 
-/// A ball on a half-space: with the grid it comes upon bodies that the grid did not know, and forgets none it still feels.
+/// A ball on a half-space: the moving grid takes in undisturbed bodies ahead, and keeps those behind as long as they matter.
 #[test]
 fn frames_agree_on_a_half_space() {
     let track = Grid::new([96, 24], [9.6e-3, 2.4e-3]).unwrap();
@@ -52,7 +52,7 @@ fn frames_agree_on_a_half_space() {
 /// What force and lateral force do at a contact is what the pressure does at the surface: Σ p Δu = W Δω + F Δs, to second
 /// order in the step.
 #[test]
-fn work_is_done_on_the_bodies() {
+fn the_work_of_the_loads_is_the_work_at_the_surface() {
     let grid = Grid::new([128, 1], [8.0e-3, 1.0]).unwrap();
     let errors = [16, 32, 64].map(|steps: usize| {
         let (load, dt) = (Load::force(150.0), 0.016 / steps as f64);
@@ -92,9 +92,7 @@ fn elastic_bodies_dissipate_nothing() {
     let slider = Rough::new(&grid, spec).unwrap();
     let travel = Travel::new(slider.clone(), Straight::new([0.0; 2], [1.0e-3, 0.0]).unwrap());
     let track = Rough::new(&grid, spec.with_seed(4)).unwrap();
-    let mut contact = ViscoelasticContact::builder(grid.clone())
-        .geometry(&Sum::new(slider, track.clone()))
-        .material(elastic())
+    let mut contact = builder_of(&Sum::new(slider, track.clone()), grid.clone(), elastic())
         .kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()))
         .build()
         .unwrap();
@@ -114,9 +112,9 @@ fn elastic_bodies_dissipate_nothing() {
     assert!(contact.pressure().iter().zip(&pressure).all(|(a, b)| (a - b).abs() < 1e-3 * most));
 }
 
-/// Roughness of the creeping body stays where it is, that of a slider wanders: the same at the start, not thereafter.
+/// Roughness of the creeping body stays in place, roughness of a slider moves: both scenes are equal at the start, not thereafter.
 #[test]
-fn it_matters_what_is_rough() {
+fn roughness_moves_with_the_body_that_has_it() {
     let grid = Grid::new([128, 1], [8.0e-3, 1.0]).unwrap();
     let waves = || Wavy::new(2.0e-6, 1.0e-3).unwrap();
     let cylinder = || Cylinder::new(10.0e-3).unwrap();
@@ -189,14 +187,10 @@ fn steps_that_fail_leave_the_indenter_where_it_was() {
 
 /// A step along a path costs what a step in place does, and a guess that goes on is worth having.
 #[test]
-fn sliding_steps_are_warm() {
+fn steps_along_a_path_cost_as_much_as_steps_in_place() {
     let grid = Grid::new([192, 64], [12.0e-3, 4.0e-3]).unwrap();
     let travel = Travel::new(Sphere::new(10.0e-3).unwrap(), Straight::new([-4.0e-3, 0.0], [0.1, 0.0]).unwrap());
-    let mut contact = ViscoelasticContact::builder(grid.clone())
-        .geometry(&travel.shape_at(0.0).unwrap())
-        .material(zener())
-        .build()
-        .unwrap();
+    let mut contact = contact_of(&travel.shape_at(0.0).unwrap(), grid.clone(), zener(), Settings::default());
     contact.step(0.0, Load::force(0.5)).unwrap();
     let mut work = 0;
     for _ in 0..60 {
@@ -254,7 +248,7 @@ fn power_counts_the_rim_of_a_punch() {
 }
 
 #[test]
-fn motions_without_contact_end_in_words() {
+fn motions_without_contact_are_refused() {
     let grid = Grid::new([64, 1], [4.0e-3, 1.0]).unwrap();
     let cylinder = Cylinder::new(5.0e-3).unwrap();
     let motion = |load| SteadyMotion::new(0, 0.1, load);

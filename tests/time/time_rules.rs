@@ -1,7 +1,7 @@
 //! How each time rule converges, and what it survives.
 
 use crate::common::bodies::{maxwell, zener};
-use crate::common::spheres::{contact_of, sphere_on};
+use crate::common::spheres::{builder_of, contact_of, sphere_on};
 use crate::common::step_loaded_sphere::StepLoadedSphere;
 use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;
@@ -68,7 +68,7 @@ fn the_order_is_that_of_the_rule_on_every_body() {
         let errors = [64, 128, 256].map(|steps| (approach(steps) / fine - 1.0).abs());
         let order = (errors[0] / errors[2]).log2() / 2.0;
         println!("{name}: errors {errors:?}, order {order:.2}");
-        // an immediate dashpot answers with the slope of u at the end of a step, which a straight line knows to first order
+        // an immediate dashpot responds to the slope of u at the end of a step, which a straight line has to first order
         let immediate = material.contact_compliance(0.0) == 0.0;
         assert!(if immediate { order > 0.95 } else { order >= 1.95 }, "{name}: {errors:?}");
     }
@@ -143,9 +143,7 @@ fn the_rectangle_rule_is_unstable_for_long_steps() {
 fn a_closure_matches_its_series() {
     let scene = StepLoadedSphere::maxwell();
     let run = |material: Material, time_rule| {
-        let mut contact = ViscoelasticContact::builder(scene.grid(32).unwrap())
-            .geometry(&Sphere::new(scene.radius).unwrap())
-            .material(material)
+        let mut contact = builder_of(&Sphere::new(scene.radius).unwrap(), scene.grid(32).unwrap(), material)
             .times(1e-3..=1e5)
             .settings(Settings::default().with_tolerance(1e-9).with_time_rule(time_rule))
             .build()

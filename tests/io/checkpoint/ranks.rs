@@ -1,4 +1,4 @@
-//! Checkpoints of contacts that ranks share out: what is refused, and what is left where a rank is lost. That the steps after a
+//! Checkpoints of contacts that ranks share out: which files are refused, and which file remains when a rank is lost. That the steps after a
 //! checkpoint are the same on any number of ranks is in `properties::ranks`.
 
 use std::fs;
@@ -62,7 +62,7 @@ fn save(size: Option<usize>, path: &Path, force: f64) {
     saved.into_iter().for_each(Result::unwrap);
 }
 
-/// The cause, of whichever rank: in one process an error of its own, else one that tells of it.
+/// The message of the cause, on whichever rank it is.
 fn told(error: &Error) -> String {
     match error {
         Error::Checkpoint { source: CheckpointError::Rows { source, .. }, .. } => source.to_string(),
@@ -72,7 +72,7 @@ fn told(error: &Error) -> String {
 }
 
 #[test]
-fn sets_that_are_not_whole_are_refused() {
+fn incomplete_sets_of_files_are_refused() {
     let folder = Temporary::folder("ranks-torn");
     let (path, other) = (folder.join("run.checkpoint"), folder.join("other"));
     save(Some(2), &path, 1.0);
@@ -124,7 +124,7 @@ fn sets_that_are_not_whole_are_refused() {
 }
 
 #[test]
-fn what_ranks_cannot_go_on_from_is_refused_by_name() {
+fn checkpoints_that_ranks_cannot_resume_are_refused_by_name() {
     let folder = Temporary::folder("ranks-other");
     let path = folder.join("run.checkpoint");
     let what = |error: Error| match error {

@@ -1,4 +1,4 @@
-//! Random scenes and those that differ from them; files that many write.
+//! Checkpoints of random scenes refused by slightly different scenes; files that many threads write.
 
 use crate::common::bodies::three_times;
 use std::fs;
@@ -177,7 +177,7 @@ fn many_save_to_one_path() {
     });
     assert_eq!(folder.names(), ["run"]);
 
-    // what is no file is not replaced
+    // a folder is not replaced
     fs::create_dir(folder.join("folder")).unwrap();
     let error = build(&grid, &body()).unwrap().save(folder.join("folder")).unwrap_err();
     assert!(matches!(error, Error::NotAFile { kind: "a folder", .. }), "{error}");
