@@ -175,7 +175,7 @@ fn over_frequency(args: &Args, body: &Body) -> Result<(), Box<dyn Error>> {
     Ok(chart.save(args.output.join("frequency.png"))?)
 }
 
-/// What the changing contact of the ball makes of the loss, over the amplitude, and the loop of force and approach.
+/// Loss in the changing contact of the ball over the amplitude, and the loop of force and approach.
 fn over_amplitude(args: &Args, body: &Body) -> Result<(), Box<dyn Error>> {
     println!("\nball at {} Hz: loss over that of a fixed contact", args.frequency);
     println!("{:>7} {:>10} {:>11} {:>8}", "Wa / Wm", "computed", "foundation", "error");

@@ -1,5 +1,5 @@
 //! Friction of random rough surfaces on a standard solid over speed: many small contacts, one for each speed and seed, shared
-//! out over the threads of this machine by rayon. Stopped and started again, it goes on where it was. `mpi/examples/ensemble.rs`
+//! out over the threads of this machine by rayon. A run that was stopped resumes where it ended. `mpi/examples/ensemble.rs`
 //! is the same over processes of MPI.
 //!
 //! `cargo run --release --features plot --example ensemble`
@@ -32,7 +32,7 @@ struct Args {
     /// Few and coarse: 3 speeds, 2 seeds, 64 cells.
     #[arg(long)]
     quick: bool,
-    /// Folder for what is kept, and the picture.
+    /// Folder for the results of the cases, and the picture.
     #[arg(long, default_value = "out/ensemble")]
     output: PathBuf,
 }

@@ -37,7 +37,7 @@ struct Args {
     output: PathBuf,
 }
 
-/// 1 + Σ c_n χⁿ: the force over that of Hertz at the same depth, for χ = √(Rδ)/h, bonded and incompressible.
+/// 1 + Σ c_n χⁿ: the force over Hertz' force at the same depth, for χ = √(Rδ)/h, bonded and incompressible.
 const SERIES: [(&str, [f64; 4]); 3] = [
     ("half-space (Hertz)", [0.0; 4]),
     ("Dimitriadis", [1.133, 1.283, 0.769, 0.0975]),

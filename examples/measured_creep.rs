@@ -50,7 +50,7 @@ fn main() {
     support::finish(run(&Args::parse()));
 }
 
-/// What the table was made from: glassy 1 GPa, relaxed 1 MPa.
+/// The body that the table was made from: glassy 1 GPa, relaxed 1 MPa.
 fn truth() -> Result<FractionalZener> {
     FractionalZener::new(1.0e9, 1.0e6, 10.0, 0.45)
 }

@@ -114,7 +114,7 @@ fn prepare(raw: &HeightMap, margin: usize) -> Result<HeightMap, Box<dyn Error>> 
         Ok(())
     };
     row("as measured", raw)?;
-    // the form first, from what is known; holes are filled on the even surface
+    // the form first, from the known heights; holes are filled on the even surface
     let map = raw.clone().leveled(Form::Curvature)?;
     row("less a paraboloid", &map)?;
     let map = map.filled()?;

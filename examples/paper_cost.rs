@@ -2,7 +2,7 @@
 //! beside the same with past convolutions kept, and the default of this crate; summation of all pairs of cells against
 //! the FFT; and the ratio of the paper's time to the default one, cause by cause. Writes tables (CSV) and a picture.
 //!
-//! Times are processor times where the system tells them (Linux), so that a busy machine disturbs them little.
+//! Times are processor times where the system measures them (Linux), so that a busy machine disturbs them little.
 //!
 //! `RAYON_NUM_THREADS=1 cargo run --release --features plot --example paper_cost`
 //! (six minutes), or with `-- --quick` (seconds)
@@ -85,7 +85,7 @@ fn settings(way: usize) -> Settings {
     }
 }
 
-/// What a run takes after the jump of the load.
+/// Cost of a run after the jump of the load.
 #[derive(Clone, Copy)]
 struct Cost {
     /// Convolution equivalents: an application of the preconditioner counts a quarter.
@@ -96,7 +96,7 @@ struct Cost {
     bytes: f64,
 }
 
-/// The least time of a run within `repeat` seconds. The system tells processor times by milliseconds: short runs are
+/// The least time of a run within `repeat` seconds. The system measures processor times in milliseconds: short runs are
 /// repeated for a tenth of a second, and their mean counts as one.
 fn cost(cells: usize, steps: usize, settings: Settings, repeat: f64) -> Result<Cost> {
     let scene = StepLoadedSphere::maxwell();

@@ -1,4 +1,4 @@
-//! What a step costs: the paper's scene on several meshes, computed in every way there is, in units of one convolution
+//! Cost of a step: the paper's scene on several meshes, computed in every way there is, in units of one convolution
 //! on the whole grid and of the paper's own algorithm. Writes a table (CSV) and a picture.
 //!
 //! `RAYON_NUM_THREADS=1 cargo run --release --features plot --example performance`
@@ -45,13 +45,13 @@ fn main() {
 const RADIUS: f64 = 10.0e-3;
 const FORCE: f64 = 1.0;
 
-/// What was measured of one way to compute one scene.
+/// Measurements of one way to compute one scene.
 struct Cost {
     milliseconds: f64,
     equivalents: f64,
 }
 
-/// Ways to compute the scene, and the side of the grid over that of the tightest.
+/// Ways to compute the scene, and the side of the grid over the side of the tightest grid.
 fn ways(tolerance: f64) -> Vec<(&'static str, Settings, f64)> {
     let settings = Settings::default().with_tolerance(tolerance);
     let whole = settings.with_symmetry(false).with_window(false);

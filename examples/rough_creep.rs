@@ -79,7 +79,7 @@ fn main() {
     support::finish(run(&Args::parse()));
 }
 
-/// What is kept of a moment.
+/// Results at one time.
 struct Moment {
     time: f64,
     /// Share of the cells in contact.
@@ -308,38 +308,38 @@ fn map(contact: &ViscoelasticContact, mean: f64, time: f64, share: f64) -> Resul
 /// The run as files: a row a step, and the whole state once a decade where the crate is built to write it.
 struct Files {
     history: CsvHistory,
-    #[cfg(feature = "npy")]
-    npz: viscocontact::output::NpzSeries,
-    #[cfg(feature = "vtk")]
-    vtk: viscocontact::output::VtkSeries,
+    #[cfg(any(feature = "npy", feature = "vtk"))]
+    frames: Vec<viscocontact::output::FrameSeries>,
 }
 
 impl Files {
     fn create(args: &Args, scene: &Metadata, contact: &ViscoelasticContact) -> Result<Files, Box<dyn Error>> {
         Ok(Files {
             history: CsvHistory::create_or_replace(args.output.join("history.csv"), scene, contact, &[])?,
-            #[cfg(feature = "npy")]
-            npz: viscocontact::output::NpzSeries::create_or_replace(
-                args.output.join("npz"),
-                scene,
-                &viscocontact::output::Field::ALL,
-            )?,
-            #[cfg(feature = "vtk")]
-            vtk: viscocontact::output::VtkSeries::create_or_replace(
-                args.output.join("vtk"),
-                scene,
-                &viscocontact::output::Field::ALL,
-            )?,
+            #[cfg(any(feature = "npy", feature = "vtk"))]
+            frames: {
+                use viscocontact::output::{Field, Format, FrameSeries};
+                let formats = [
+                    #[cfg(feature = "npy")]
+                    (Format::Npz, "npz"),
+                    #[cfg(feature = "vtk")]
+                    (Format::Vtk, "vtk"),
+                ];
+                let series = formats.map(|(format, folder)| {
+                    FrameSeries::create_or_replace(args.output.join(folder), format, scene, &Field::ALL)
+                });
+                series.into_iter().collect::<Result<_>>()?
+            },
         })
     }
 
     /// Writes the state as it is.
     #[allow(clippy::unnecessary_wraps, unused_variables, reason = "there is nothing to write without features")]
     fn frame(&mut self, contact: &ViscoelasticContact) -> Result<()> {
-        #[cfg(feature = "npy")]
-        self.npz.write(contact)?;
-        #[cfg(feature = "vtk")]
-        self.vtk.write(contact)?;
+        #[cfg(any(feature = "npy", feature = "vtk"))]
+        for series in &mut self.frames {
+            series.write(contact)?;
+        }
         Ok(())
     }
 }

@@ -76,7 +76,7 @@ impl Bodies {
 
     /// The steady state at a speed, cells of a given side, and the sphere where it is on the grid.
     fn slide(&self, velocity: f64, side: f64) -> Result<(ViscoelasticContact, Shifted)> {
-        // behind, the solid recovers over v τ; what is farther away matters little
+        // behind, the solid recovers over v τ; displacements farther away matter little
         let behind = (4.0 * velocity * self.tau).clamp(3.0 * self.relaxed, 20.0 * self.relaxed);
         let cells = [behind + 2.0 * self.relaxed, 2.6 * self.relaxed].map(|length| (length / side).ceil() as usize);
         let grid = Grid::new(cells, cells.map(|count| count as f64 * side))?;
@@ -155,9 +155,9 @@ fn steady(bodies: &Bodies, cells: usize, speeds: usize, output: &File) -> Result
     map.save(output.join("pressure.png"))?;
     #[cfg(feature = "vtk")]
     {
-        use viscocontact::output::{Field, Metadata, VtkSeries};
+        use viscocontact::output::{Field, Format, FrameSeries, Metadata};
         let scene = Metadata::new("Sphere sliding steadily").note("friction", friction.to_string());
-        VtkSeries::create_or_replace(output.join("vtk"), &scene, &Field::ALL)?.write(&contact)?;
+        FrameSeries::create_or_replace(output.join("vtk"), Format::Vtk, &scene, &Field::ALL)?.write(&contact)?;
     }
     Ok(())
 }

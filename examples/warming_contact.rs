@@ -67,7 +67,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     let [cold, warm, cool] = [args.cold, args.warm, args.cool].map(|celsius| FREEZING + celsius);
     let (until, cells) = (1.5 * args.ends, if args.quick { 48 } else { args.cells });
 
-    // a growing contact is that of an elastic body as soft as the creeping one is now (Lee & Radok 1960)
+    // a growing contact equals the contact of an elastic body as soft as the creeping body is now (Lee & Radok 1960)
     let approach = |xi: f64| {
         let contact_radius = (0.75 * args.radius * args.load * material.contact_compliance(xi)).cbrt();
         contact_radius * contact_radius / args.radius

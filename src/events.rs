@@ -1,42 +1,29 @@
 //! Events for `tracing`, with the feature `tracing`; without it they do nothing.
 
-#[cfg(feature = "tracing")]
-use tracing::{debug, warn};
-
 use crate::Error;
 
-/// A step was too long, and is repeated with a shorter one.
-#[inline]
-pub(crate) fn rejected(time: f64, dt: f64, error: f64, tolerance: f64) {
-    #[cfg(feature = "tracing")]
-    warn!(time, dt, error, tolerance, "step rejected");
-    #[cfg(not(feature = "tracing"))]
-    let _ = (time, dt, error, tolerance);
+/// Functions that emit an event each: name and arguments, level, and what the event contains.
+macro_rules! events {
+    ($($(#[$doc:meta])* $name:ident($($argument:ident: $type:ty),*) = $level:ident!($($fields:tt)*);)*) => {$(
+        $(#[$doc])*
+        #[inline]
+        pub(crate) fn $name($($argument: $type),*) {
+            #[cfg(feature = "tracing")]
+            tracing::$level!($($fields)*);
+            #[cfg(not(feature = "tracing"))]
+            let _ = ($($argument,)*);
+        }
+    )*};
 }
 
-/// A step failed.
-#[inline]
-pub(crate) fn failed(time: f64, dt: f64, error: &Error) {
-    #[cfg(feature = "tracing")]
-    warn!(time, dt, %error, "step failed");
-    #[cfg(not(feature = "tracing"))]
-    let _ = (time, dt, error);
-}
-
-/// The computed part of the grid changed.
-#[inline]
-pub(crate) fn moved(from: [usize; 2], to: [usize; 2]) {
-    #[cfg(feature = "tracing")]
-    debug!(from = ?from, to = ?to, "region moved");
-    #[cfg(not(feature = "tracing"))]
-    let _ = (from, to);
-}
-
-/// A series was fitted to a material.
-#[inline]
-pub(crate) fn fitted(times: [f64; 2], terms: usize, misfit: f64) {
-    #[cfg(feature = "tracing")]
-    debug!(first = times[0], last = times[1], terms, misfit, "series fitted");
-    #[cfg(not(feature = "tracing"))]
-    let _ = (times, terms, misfit);
+events! {
+    /// A step was too long, and is repeated with a shorter one.
+    rejected(time: f64, dt: f64, error: f64, tolerance: f64) = warn!(time, dt, error, tolerance, "step rejected");
+    /// A step failed.
+    failed(time: f64, dt: f64, error: &Error) = warn!(time, dt, %error, "step failed");
+    /// The computed part of the grid changed.
+    moved(from: [usize; 2], to: [usize; 2]) = debug!(?from, ?to, "region moved");
+    /// A series was fitted to a material.
+    fitted(times: [f64; 2], terms: usize, misfit: f64) =
+        debug!(first = times[0], last = times[1], terms, misfit, "series fitted");
 }

@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use realfft::RealFftPlanner;
 use rustfft::{Fft, FftPlanner};
 
-use crate::parallel::{join, lanes};
+use crate::parallel::{cut, fork, lanes};
 
 /// Complex transforms of lines of one length that lie one after the other.
 #[derive(Clone)]
@@ -133,26 +133,10 @@ pub(crate) fn real_rows(rows: usize, n2: usize, coefficient: impl Fn(usize, usiz
 /// Calls `job` with shares of the lines of `values` and the index of the first line of each share. There are as many shares
 /// as threads for this number of values. The result of `job` for a line must not depend on other lines.
 pub(crate) fn for_each_line_share<T: Send>(values: &mut [T], length: usize, job: &(impl Fn(usize, &mut [T]) + Sync)) {
-    let shares = lanes(values.len());
-    halve(values, length, [0, shares], job);
-}
-
-fn halve<T: Send>(
-    values: &mut [T],
-    length: usize,
-    [first, shares]: [usize; 2],
-    job: &(dyn Fn(usize, &mut [T]) + Sync),
-) {
-    let middle = values.len() / length / 2;
-    if shares < 2 || middle == 0 {
-        return job(first, values);
-    }
-    let (before, after) = values.split_at_mut(middle * length);
-    join(
-        true,
-        || halve(before, length, [first, shares / 2], job),
-        || halve(after, length, [first + middle, shares - shares / 2], job),
-    );
+    let lines = (values.len() / length).div_ceil(lanes(values.len())).max(1);
+    let shares = values.len().div_ceil(lines * length);
+    let job = |k: usize, [share]: [&mut [T]; 1]| job(k * lines, share);
+    fork(0..shares, true, [values], &|values, k| cut(values, k * lines * length), &job);
 }
 
 /// Side of the blocks that are transposed at once: a block of either plane fits in the first cache.

@@ -219,7 +219,7 @@ pub use num_complex;
 pub mod prelude {
     pub use crate::contact::{
         BodyState, Builder, Edge, Follow, Frame, Settings, Snapshot, Solver, SteadyMotion, StepReport, Stepping,
-        TimeRule, ViscoelasticContact, Warning,
+        TimeRule, ViscoelasticContact, Warnings,
     };
     pub use crate::geometry::{
         Anisotropy, Cone, Cylinder, Ellipsoid, FlatPunch, FnGeometry, Geometry, HeightMap, LengthUnit, Repeated, Rough,
@@ -227,7 +227,7 @@ pub mod prelude {
     };
     pub use crate::load::{FnHistory, Load, LoadHistory, PiecewiseLinear, Ramp, Sinusoid, StepLoad, Tilt};
     pub use crate::motion::{FnPath, Straight, Travel};
-    pub use crate::plan::{Accuracy, Plan};
+    pub use crate::plan::{Accuracy, Plan, PlanOptions};
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
         KelvinVoigt, Kww, LogCreep, Material, Maxwell, PowerLaw, Rheology, SlowCreep, TabulatedCreep, TabulatedDynamic,

@@ -51,7 +51,7 @@ done
 resumed=$("$check" alone resume "$folder/run")
 [ "$resumed" = "$whole" ] || { echo "4 ranks resumed by one process: $resumed instead of $whole"; exit 1; }
 "$check" alone save "$folder/run"
-[ "$(find "$folder" -maxdepth 1 -type f | wc -l)" = 1 ] || { echo "files with rows are left"; exit 1; }
+[ "$(find "$folder" -maxdepth 1 -type f | wc -l)" = 1 ] || { echo "other files are left"; exit 1; }
 resumed=$(run 2 resume "$folder/run")
 [ "$resumed" = "$whole" ] || { echo "one process resumed on 2 ranks: $resumed instead of $whole"; exit 1; }
 echo "a run goes on on another number of ranks: $whole"

@@ -4,7 +4,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-use viscocontact::num_complex::Complex64;
 use viscocontact::parallel::{Ranks, RanksError};
 use viscocontact::prelude::*;
 
@@ -128,15 +127,15 @@ impl Ranks for Counted {
 
     fn exchange(
         &self,
-        send: &[Complex64],
+        send: &[f64],
         send_counts: &[usize],
-        received: &mut [Complex64],
+        received: &mut [f64],
         receive_counts: &[usize],
     ) -> Result<(), RanksError> {
         let start = Instant::now();
         let done = self.ranks.exchange(send, send_counts, received, receive_counts);
         let to_others = send.len() - send_counts[self.rank()];
-        self.bytes.fetch_add((to_others * size_of::<Complex64>()) as u64, Ordering::Relaxed);
+        self.bytes.fetch_add((to_others * size_of::<f64>()) as u64, Ordering::Relaxed);
         self.exchanging.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
         done
     }

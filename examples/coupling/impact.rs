@@ -66,7 +66,7 @@ fn main() {
     support::finish(run(&args));
 }
 
-/// What resists the mass.
+/// The resistance to the mass.
 trait Foundation: Clone {
     /// Advances by `dt` to `approach`; returns the force.
     fn indent(&mut self, dt: f64, approach: f64) -> Result<f64>;
@@ -98,7 +98,7 @@ impl<F: Foundation> System<f64, Vector2<f64>> for Motion<'_, F> {
     fn system(&self, t: f64, y: &Vector2<f64>, dy: &mut Vector2<f64>) {
         let force = if t > 0.0 { self.foundation.clone().indent(t, y[0]) } else { Ok(self.force) };
         let force = force.unwrap_or_else(|error| {
-            // the integrator knows of no errors: it is told afterwards
+            // the integrator takes no errors: they are reported afterwards
             self.failed.borrow_mut().get_or_insert(error);
             0.0
         });

@@ -1,5 +1,5 @@
 //! A sweep of many small contacts: a random rough surface slides over a standard solid, at several speeds and with several
-//! seeds. What is computed is kept in a file for each case, so that a sweep that was stopped goes on where it was.
+//! seeds. The result of each case is kept in a file, so that a sweep that was stopped resumes.
 
 use std::error::Error;
 use std::fs;
@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use viscocontact::prelude::*;
 
-/// What may go wrong in a case, also on another thread.
+/// Error of a case, also on another thread.
 pub type Failure = Box<dyn Error + Send + Sync>;
 
 /// One contact of the sweep.

@@ -1,9 +1,9 @@
-//! What the examples share.
+//! Functions that the examples share.
 #![allow(dead_code, reason = "each example takes what it needs")]
 
 use std::error::Error;
 
-/// Ends an example: an error is told in a line, and in the exit status.
+/// Ends an example: prints an error with its causes in a line, and sets the exit status.
 pub fn finish(result: Result<(), Box<dyn Error>>) {
     if let Err(error) = result {
         eprint!("error: {error}");

@@ -4,7 +4,7 @@ use std::error::Error;
 
 use viscocontact::plot::{COLORS, Chart, Legend, Style};
 
-/// What a scene comes to.
+/// Result of a scene.
 pub type Outcome = Result<Checked, Box<dyn Error>>;
 
 /// One number beside the one that it should be.
@@ -30,7 +30,7 @@ impl Claim {
 
 /// A curve beside the one that it should lie on.
 pub struct Curve {
-    /// What the axes show.
+    /// Quantities of the axes.
     pub axes: [&'static str; 2],
     pub legend: Legend,
     pub exact: Vec<(f64, f64)>,

@@ -151,7 +151,7 @@ pub fn elastic_bulk() -> Outcome {
     Ok(Checked::new("sphere, shear relaxing from 1 GPa to 1 MPa, bulk elastic", "Hertz 1882, ν of G and B", &rows))
 }
 
-/// A punch that oscillates: the loss tangent of its force is that of the body.
+/// A punch that oscillates: its force has the loss tangent of the body.
 pub fn oscillating() -> Outcome {
     let (body, omega, steps) = (Zener::new(G, 0.5 * G, 0.5 * G)?, 2.0, 128);
     let spectrum = body.creep_spectrum().ok_or("a Zener body has a spectrum")?;

@@ -34,7 +34,7 @@ pub fn between(low: f64, high: f64) -> impl Iterator<Item = f64> {
     (0..=400).map(move |k| low + (high - low) * f64::from(k) / 400.0)
 }
 
-/// What a square under a uniform pressure displaces, in its middle and in the corner of the grid.
+/// Displacement of a square under a uniform pressure, in its middle and in the corner of the grid.
 pub fn convolution() -> Outcome {
     let (cells, side) = (96, 1.0e-5);
     let grid = Grid::square(cells, cells as f64 * side)?;

@@ -127,7 +127,7 @@ resisted by F = −∫ p u′ dA; μ is F over the normal force.
 
 ";
 
-/// Errors beside what is allowed, claim by claim.
+/// Errors and allowed errors, claim by claim.
 fn errors(claims: &[&Claim]) -> Chart {
     let numbered =
         |value: fn(&Claim) -> f64| (1..).map(f64::from).zip(claims.iter().map(|&claim| value(claim))).collect();

@@ -1,4 +1,4 @@
-//! What resists an indenter that slides without friction over a creeping body, against closed forms.
+//! Resistance to an indenter that slides without friction over a creeping body, against closed forms.
 //!
 //! With w = K p, an indenter that moves steadily along x1 at v finds the surface at
 //! u(x) = C(0) w(x) + ∫ C′(s) w(x + v s) ds over s > 0, x measured from the indenter, and is resisted by F = −∫ p u′ dA, as

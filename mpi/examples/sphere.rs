@@ -4,8 +4,8 @@
 
 use std::time::Instant;
 
-use viscocontact::prelude::*;
 use viscocontact::parallel::Ranks;
+use viscocontact::prelude::*;
 use viscocontact_mpi::Mpi;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

@@ -8,7 +8,6 @@ use mpi::datatype::{Partition, PartitionMut};
 use mpi::environment::{Universe, initialize_with_threading};
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::*;
-use num_complex::Complex64;
 use viscocontact::parallel::{Ranks, RanksError};
 
 use crate::chunks::{Chunks, MOST};
@@ -75,7 +74,7 @@ impl Mpi {
         }
         let (rank, size) = (self.rank(), self.size());
         let own = [if leaves { (size - rank) as u64 } else { 0 }, calls as u64];
-        let mut all = [0; 2];
+        let mut all = [0_u64; 2];
         self.universe.world().all_reduce_into(&own, &mut all, SystemOperation::max());
         if all[0] > 0 {
             let rank = size - all[0] as usize;
@@ -116,9 +115,9 @@ impl Ranks for Mpi {
 
     fn exchange(
         &self,
-        send: &[Complex64],
+        send: &[f64],
         send_counts: &[usize],
-        received: &mut [Complex64],
+        received: &mut [f64],
         receive_counts: &[usize],
     ) -> Result<(), RanksError> {
         let [out, back] = [send_counts, receive_counts].map(|counts| Chunks::new(counts, self.most));
@@ -130,8 +129,7 @@ impl Ranks for Mpi {
             world.all_to_all_varcount_into(&send, &mut PartitionMut::new(received, back, back_at));
             return Ok(());
         }
-        let zero = Complex64::default();
-        let (mut sent, mut came) = (vec![zero; out.longest()], vec![zero; back.longest()]);
+        let (mut sent, mut came) = (vec![0.0; out.longest()], vec![0.0; back.longest()]);
         for call in 0..calls {
             out.copy_in(call, send, &mut sent);
             let ((out, out_at), (counts, starts)) = (out.of(call), back.of(call));

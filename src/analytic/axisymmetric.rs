@@ -174,9 +174,9 @@ impl AxisymmetricContact {
         if !is_known(time, known_until) {
             return Err(Error::BeyondMaterial { time, age: time, known_until });
         }
-        let step = (dt, Interpolant::CorrectedLinear);
         let rows = Rows::all([self.profile.len(), 1]);
-        self.displacement.predict_non_negative(&mut self.rule, step, self.width, &rows, || true);
+        self.rule.compute_weights(dt, Interpolant::CorrectedLinear);
+        self.displacement.predict_non_negative(&mut self.rule, self.width, &rows, || true);
         let c = self.rule.compliance();
         if c == 0.0 && dt == 0.0 {
             return Err(Error::NoElasticResponse { time, what: "a jump of the foundation (ramp the load instead)" });

@@ -1,11 +1,11 @@
 //! A state on its region, with what computes there.
 
-use crate::contact::builder::memory::{Computed, Footprint};
+use crate::contact::builder::memory::Footprint;
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
 use crate::contact::step::request::Trial;
-use crate::contact::window::fields::carried;
+use crate::contact::window::fields::transferred;
 use crate::contact::window::region::Region;
 use crate::contact::window::window::Window;
 use crate::error::Result;
@@ -29,7 +29,7 @@ impl Computation {
     ///
     /// # Errors
     /// If there is no memory for both.
-    pub(super) fn carried_to(
+    pub(super) fn transferred_to(
         &mut self,
         scene: &Scene,
         region: Region,
@@ -37,22 +37,21 @@ impl Computation {
     ) -> Result<Box<Computation>> {
         self.check_memory_for(scene, &region)?;
         let cells = region.len();
-        let (state, window) = carried(scene, &mut self.state, region, indenter);
+        let (state, window) = transferred(scene, &mut self.state, region, indenter);
         Ok(Box::new(Computation { state, window, trial: Trial::new(cells, scene.bodies) }))
     }
 
     /// Rejects a region for which there is no memory beside this one.
     pub(super) fn check_memory_for(&self, scene: &Scene, region: &Region) -> Result<()> {
         let Scene { kernel, settings, bodies, .. } = scene;
-        let footprint =
-            Footprint { all: region.shown_len(), bodies: *bodies, settings, kernel, history: &self.state.history };
-        footprint.check(&Computed::on(region), footprint.on(&Computed::on(&self.state.region)).total())
+        let footprint = Footprint { bodies: *bodies, settings, kernel, history: &self.state.history };
+        footprint.check(region, footprint.on(&self.state.region).total())
     }
 
     /// Goes to another state, without reallocating where the regions are the same.
     pub(super) fn restore(&mut self, scene: &Scene, state: &State) {
         if self.state.region == state.region {
-            self.state.copy_from(state);
+            self.state.clone_from(state);
         } else {
             *self = Computation::new(scene, state.clone());
         }

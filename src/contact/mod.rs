@@ -44,11 +44,9 @@ mod window;
 pub use crate::error::CheckpointError;
 pub use builder::Builder;
 pub use builder::memory::Memory;
-#[cfg(any(feature = "npy", feature = "vtk"))]
-pub(crate) use distributed::gap::Brought;
 pub use moving::along_path::TravelReport;
 pub use moving::steady::{SteadyMotion, TowardSteady};
-pub use read::report::{BodyState, StepReport, Warning, Warnings};
+pub use read::report::{BodyState, StepReport, Warnings};
 pub use read::stress::StressHistory;
 pub use run::follow::Follow;
 pub use run::progress::{ErrorBudget, Stepping};

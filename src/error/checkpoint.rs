@@ -72,24 +72,6 @@ pub enum CheckpointError {
         /// Its value in the contact.
         built: String,
     },
-
-    /// It was saved by several [ranks](crate::parallel), and one of the files with their rows is missing or damaged. The cause is
-    /// the [`source`](std::error::Error::source) of the error.
-    #[error("{}, a file with rows, cannot be used", .file.display())]
-    Rows {
-        /// The file.
-        file: std::path::PathBuf,
-        /// The cause.
-        source: Box<CheckpointError>,
-    },
-
-    /// A file with rows is not of the save that the checkpoint is of.
-    #[error("it is of another save")]
-    OtherSave,
-
-    /// A file with the rows of one rank was given in place of the checkpoint that it belongs to.
-    #[error("it holds the rows of one of several ranks: resume from the file that they were saved to")]
-    RowsAlone,
 }
 
 impl CheckpointError {
@@ -97,7 +79,6 @@ impl CheckpointError {
     pub(super) fn io_kind(&self) -> Option<std::io::ErrorKind> {
         match self {
             CheckpointError::Unreadable { kind, .. } => Some(*kind),
-            CheckpointError::Rows { source, .. } => source.io_kind(),
             _ => None,
         }
     }

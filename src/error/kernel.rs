@@ -1,4 +1,4 @@
-/// What is wrong with an influence kernel.
+/// Errors of an influence kernel.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum KernelError {

@@ -1,4 +1,4 @@
-/// What is wrong where a contact is shared out over several [ranks](crate::parallel).
+/// Errors of a contact that several [ranks](crate::parallel) share out.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum RanksError {
@@ -18,7 +18,7 @@ pub enum RanksError {
         message: String,
     },
 
-    /// The ranks made different calls, or the same with different arguments.
+    /// The ranks made different calls, or the same call with different arguments.
     #[error("the ranks are not at the same step: all of them must make the same calls with the same arguments")]
     Apart,
 

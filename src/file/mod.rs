@@ -8,19 +8,27 @@ use crate::error::{Error, OutputError, Result};
 
 #[cfg(any(feature = "csv", feature = "plot"))]
 mod appending;
+#[cfg(feature = "npy")]
+pub(crate) mod npy;
 #[cfg(any(feature = "checkpoint", feature = "npy", feature = "plot", feature = "vtk"))]
 mod part;
 
 #[cfg(any(feature = "csv", feature = "plot"))]
 pub(crate) use appending::Appending;
-#[cfg(feature = "plot")]
-pub(crate) use part::Part;
 #[cfg(any(feature = "checkpoint", feature = "npy", feature = "plot", feature = "vtk"))]
+pub(crate) use part::Part;
+#[cfg(any(feature = "npy", feature = "plot", feature = "vtk"))]
 pub(crate) use part::replace;
 
 /// The error of writing a file.
 pub(crate) fn failed(path: &Path, cause: io::Error) -> Error {
     OutputError::new(path, cause).into()
+}
+
+/// Writes numbers in little-endian order.
+#[cfg(any(feature = "npy", feature = "vtk"))]
+pub(crate) fn write_numbers(out: &mut impl io::Write, mut values: impl Iterator<Item = f64>) -> io::Result<()> {
+    values.try_for_each(|value| out.write_all(&value.to_le_bytes()))
 }
 
 /// Rejects a path at which there is something other than a regular file, or a link to one.

@@ -13,11 +13,20 @@ use crate::error::Result;
 static NUMBER: AtomicU64 = AtomicU64::new(0);
 
 /// A file that is being written. Its name is the name of the final file, followed by the process number and `.part`, so
-/// that no two writers share it.
+/// that no two writers share it. It is removed with this value, unless it was placed.
 #[derive(Debug)]
 pub(crate) struct Part {
     path: PathBuf,
     part: PathBuf,
+    placed: bool,
+}
+
+impl Drop for Part {
+    fn drop(&mut self) {
+        if !self.placed {
+            let _ = fs::remove_file(&self.part);
+        }
+    }
 }
 
 impl Part {
@@ -36,7 +45,7 @@ impl Part {
             name.push(format!(".{}-{}.part", process::id(), NUMBER.fetch_add(1, Ordering::Relaxed)));
             let part = path.with_file_name(name);
             match File::create_new(&part) {
-                Ok(file) => return Ok((Part { path, part }, file)),
+                Ok(file) => return Ok((Part { path, part, placed: false }, file)),
                 // left by a killed process with the same number
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(failed(&path, error)),
@@ -45,12 +54,13 @@ impl Part {
     }
 
     /// Syncs the complete file and renames it to its final name.
-    pub(crate) fn place(&self, file: File) -> Result<()> {
+    pub(crate) fn place(&mut self, file: File) -> Result<()> {
         let unusable = |error: io::Error| failed(&self.path, error);
         file.sync_all().map_err(unusable)?;
         drop(file); // some systems do not rename open files
         check_regular(&self.path)?;
         fs::rename(&self.part, &self.path).map_err(unusable)?;
+        self.placed = true;
         // the new name is durable once its folder is synced, where the system can do so; the file is complete in any
         // case
         let folder = self.path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -58,23 +68,21 @@ impl Part {
         Ok(())
     }
 
-    /// Removes the file after an error, ignoring errors of the removal.
-    pub(crate) fn remove(&self) {
-        let _ = fs::remove_file(&self.part);
+    /// Writes the file and places it.
+    pub(crate) fn fill(mut self, file: File, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
+        let mut writer = BufWriter::with_capacity(1 << 18, file);
+        let written = write(&mut writer).and_then(|()| writer.into_inner().map_err(IntoInnerError::into_error));
+        let file = written.map_err(|error| failed(&self.path, error))?;
+        self.place(file)
     }
 }
 
 /// Writes a file under a temporary name, syncs it and renames it to `path`. A file of this name is replaced then, and
 /// is unchanged if anything fails; of several concurrent writers the last one to finish wins.
+#[cfg(any(test, feature = "npy", feature = "plot", feature = "vtk"))]
 pub(crate) fn replace(path: &Path, write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>) -> Result<()> {
     let (part, file) = Part::create(path)?;
-    let mut writer = BufWriter::with_capacity(1 << 18, file);
-    let written = write(&mut writer).and_then(|()| writer.into_inner().map_err(IntoInnerError::into_error));
-    let placed = written.map_err(|error| failed(path, error)).and_then(|file| part.place(file));
-    if placed.is_err() {
-        part.remove();
-    }
-    placed
+    part.fill(file, write)
 }
 
 #[cfg(test)]

@@ -4,9 +4,10 @@ use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
 use num_complex::Complex64;
+use pulp::bytemuck::{cast_slice, cast_slice_mut};
 
 use crate::fft::{Lines, fourier_coefficients, real_rows};
-use crate::parallel::{Rows, part, unwind_rank_loss};
+use crate::parallel::{Rows, part};
 
 /// Fourier coefficients of a real field on `cells` points: amplitudes of exp(2πi (k1 i/n1 + k2 j/n2)), normalised so
 /// that the sum of all waves is the field. Coefficients of k2 ≥ 0 are stored; the others are their conjugates.
@@ -56,7 +57,9 @@ impl HeightSpectrum {
 
     /// The local rows of the field, where each rank holds some k2. A call of all ranks.
     pub(super) fn local_heights(mut self, rows: &Rows) -> Vec<f64> {
-        let Some(group) = rows.group().cloned() else { return self.heights() };
+        if !rows.are_shared() {
+            return self.heights();
+        }
         let ([n1, n2], own) = (self.cells, rows.own().len());
         Lines::new(n1).inverse(&mut self.amplitudes);
         let ranks = 0..rows.ranks();
@@ -65,10 +68,10 @@ impl HeightSpectrum {
             self.amplitudes.chunks_exact(n1).for_each(|column| send.extend_from_slice(&column[rows.of(rank)]));
         }
         drop(self.amplitudes);
-        let sent: Vec<usize> = ranks.clone().map(|rank| self.columns.len() * rows.of(rank).len()).collect();
-        let counts: Vec<usize> = ranks.map(|rank| own * part(n2 / 2 + 1, rank, rows.ranks()).len()).collect();
+        let sent: Vec<usize> = ranks.clone().map(|rank| 2 * self.columns.len() * rows.of(rank).len()).collect();
+        let counts: Vec<usize> = ranks.map(|rank| 2 * own * part(n2 / 2 + 1, rank, rows.ranks()).len()).collect();
         let mut received = vec![Complex64::ZERO; (n2 / 2 + 1) * own];
-        group.exchange(&send, &sent, &mut received, &counts).unwrap_or_else(|error| unwind_rank_loss(error));
+        rows.exchange_into((cast_slice(&send), &sent), (cast_slice_mut(&mut received), &counts));
         drop(send);
         real_rows(own, n2, |i, k2| received[k2 * own + i])
     }

@@ -84,18 +84,18 @@ pub trait Geometry: Debug + Send + Sync {
     /// Writes the gap at every cell centre of `grid` into `gap` \[m\], which has one value per cell. Where
     /// [ranks](crate::parallel) share a contact, `grid` holds the local rows: [`Grid::center`] gives their positions.
     ///
-    /// Override it if a whole field is cheaper than its points one by one.
+    /// It is the shape that is not shifted: override [`fill_gap_at`](Geometry::fill_gap_at) instead.
     ///
     /// # Panics
     /// If `gap` is not of length [`Grid::len`].
     fn fill_gap(&self, grid: &Grid, gap: &mut [f64]) {
-        fill_by_points(self, grid, [0.0; 2], gap);
+        self.fill_gap_at(grid, [0.0; 2], gap);
     }
 
     /// As [`fill_gap`](Geometry::fill_gap), for the shape with its origin shifted to the point `by` \[m\].
     ///
-    /// Override it if a whole field can be shifted more accurately than its points one by one, such as the Fourier
-    /// series of a periodic surface.
+    /// Override it if a whole field is cheaper than its points one by one, or can be shifted more accurately, such as the
+    /// Fourier series of a periodic surface.
     ///
     /// # Panics
     /// If `gap` is not of length [`Grid::len`].
@@ -144,6 +144,7 @@ pub(crate) struct Gap {
     /// Minimum of the gap \[m\].
     pub(crate) datum: f64,
     /// Gap of each cell above the minimum \[m\]; 0 in at least one cell, +∞ where there is nothing to touch.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(crate) above: Vec<f64>,
     /// The body of each cell, the lowest one there; `None` for a single body.
     pub(crate) owner: Option<Vec<u16>>,
@@ -175,6 +176,13 @@ fn check(gap: &[f64], grid: &Grid) -> Result<()> {
     }
 }
 
+/// Subtracts the least gap from all, and returns it.
+fn subtract_least(gap: &mut [f64]) -> f64 {
+    let least = gap.iter().copied().fold(f64::INFINITY, f64::min);
+    gap.iter_mut().for_each(|h| *h -= least);
+    least
+}
+
 impl Gap {
     /// Combines the gap fields of the bodies and checks them: no NaN, no −∞, and each body has something to touch.
     pub(crate) fn new(bodies: Vec<Vec<f64>>, grid: &Grid) -> Result<Gap> {
@@ -204,21 +212,18 @@ impl Gap {
                 return Err(Error::NothingToTouch { body, cells: grid.len() });
             }
         }
-        let datum = above.iter().copied().fold(f64::INFINITY, f64::min);
-        above.iter_mut().for_each(|h| *h -= datum);
+        let datum = subtract_least(&mut above);
         Ok(Gap { datum, above, owner })
     }
 
     /// Checks the heights of a single body and swaps them in; `heights` receives the old gap above its datum.
     pub(crate) fn exchange(&mut self, heights: &mut Vec<f64>, grid: &Grid) -> Result<()> {
         check(heights, grid)?;
-        let datum = heights.iter().copied().fold(f64::INFINITY, f64::min);
-        if datum == f64::INFINITY {
+        if heights.iter().all(|h| *h == f64::INFINITY) {
             return Err(Error::NothingToTouch { body: 0, cells: grid.len() });
         }
-        heights.iter_mut().for_each(|h| *h -= datum);
+        self.datum = subtract_least(heights);
         std::mem::swap(&mut self.above, heights);
-        self.datum = datum;
         Ok(())
     }
 

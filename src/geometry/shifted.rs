@@ -40,10 +40,6 @@ impl Geometry for Shifted {
         self.shape.initial_gap(x1 - self.by[0], x2 - self.by[1])
     }
 
-    fn fill_gap(&self, grid: &Grid, gap: &mut [f64]) {
-        self.shape.fill_gap_at(grid, self.by, gap);
-    }
-
     fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
         self.shape.fill_gap_at(grid, [self.by[0] + by[0], self.by[1] + by[1]], gap);
     }

@@ -40,6 +40,9 @@ pub struct SurfaceStatistics {
     pub rms_curvature: f64,
 }
 
+/// An rms height below this, relative to the mean, is rounding.
+pub(super) const FLAT: f64 = 1e-14;
+
 /// Mean squares of the derivatives ∂z/∂x1 and ∂z/∂x2 and of the mean curvature.
 type MeanSquares = [f64; 3];
 
@@ -52,12 +55,9 @@ impl SurfaceStatistics {
         map.require_known()?;
         let count = map.known().count() as f64;
         let mean = map.known().map(|z| z / count).sum::<f64>();
-        let moment = |power: i32| map.known().map(|z| (z - mean).powi(power) / count).sum::<f64>();
-        let rms_height = moment(2).sqrt();
-        if rms_height <= 1e-14 * mean.abs() {
-            positive("rms height", 0.0)?;
-        }
-        positive("rms height", rms_height)?;
+        let rms_height = map.known().map(|z| (z - mean).powi(2) / count).sum::<f64>().sqrt();
+        // the rms height of equal heights is rounding
+        let rms_height = positive("rms height", if rms_height <= FLAT * mean.abs() { 0.0 } else { rms_height })?;
         // In units of the rms height, whose fourth power may underflow.
         let scaled = |power: i32| map.known().map(|z| ((z - mean) / rms_height).powi(power) / count).sum::<f64>();
         let [slope1, slope2, curvature] =

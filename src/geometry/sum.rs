@@ -29,16 +29,6 @@ impl Sum {
         self.parts.push(Arc::new(shape));
         self
     }
-
-    /// Adds up the fields that `write` fills for each part.
-    fn fill(&self, gap: &mut [f64], write: impl Fn(&dyn Geometry, &mut [f64])) {
-        gap.fill(0.0);
-        let mut part = vec![0.0; gap.len()];
-        for shape in &self.parts {
-            write(shape.as_ref(), &mut part);
-            gap.iter_mut().zip(&part).for_each(|(sum, h)| *sum += h);
-        }
-    }
 }
 
 impl Geometry for Sum {
@@ -46,12 +36,13 @@ impl Geometry for Sum {
         self.parts.iter().map(|shape| shape.initial_gap(x1, x2)).sum()
     }
 
-    fn fill_gap(&self, grid: &Grid, gap: &mut [f64]) {
-        self.fill(gap, |shape, part| shape.fill_gap(grid, part));
-    }
-
     fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
-        self.fill(gap, |shape, part| shape.fill_gap_at(grid, by, part));
+        gap.fill(0.0);
+        let mut part = vec![0.0; gap.len()];
+        for shape in &self.parts {
+            shape.fill_gap_at(grid, by, &mut part);
+            gap.iter_mut().zip(&part).for_each(|(sum, h)| *sum += h);
+        }
     }
 }
 

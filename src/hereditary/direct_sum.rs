@@ -1,6 +1,9 @@
 //! The hereditary integral as a sum over every past increment.
 
+use educe::Educe;
+
 use crate::error::{Error, MaterialError, Result};
+use crate::hereditary::field::{Field, Role};
 use crate::hereditary::history::HistoryInputs;
 use crate::hereditary::interval::Interval;
 use crate::kernel::{LocalKernel, Workspace};
@@ -23,12 +26,12 @@ pub(crate) enum Weighting {
 const BLOCK: usize = 2048;
 
 /// The past as all increments of v = K p, one field per step, no transforms; or of p, each convolved anew in every step.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct DirectSum {
     weighting: Weighting,
-    /// When each increment happened, by the weighting, and the increment.
-    increments: Vec<(f64, Vec<f64>)>,
+    increments: Vec<Increment>,
     /// What each increment contributes to u_old of the step predicted last, per unit of v.
     #[cfg_attr(feature = "checkpoint", serde(skip))]
     weights: Vec<f64>,
@@ -37,25 +40,37 @@ pub(crate) struct DirectSum {
     image: Vec<f64>,
 }
 
+/// What a step has added.
+#[derive(Debug, Educe)]
+#[educe(Clone)]
+#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+struct Increment {
+    /// When it happened, by the weighting.
+    time: f64,
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
+    change: Vec<f64>,
+}
+
 impl DirectSum {
     pub(crate) fn new(weighting: Weighting) -> DirectSum {
         DirectSum { weighting, increments: Vec::new(), weights: Vec::new(), image: Vec::new() }
     }
 
-    /// Without increments, on so many cells.
-    pub(crate) fn undisturbed_on(&self, cells: usize) -> DirectSum {
-        let image = if self.is_uncached() { vec![0.0; cells] } else { Vec::new() };
-        DirectSum { image, ..DirectSum::new(self.weighting) }
+    /// A copy; `map` gives its fields, one for each field here.
+    pub(super) fn map(&self, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> DirectSum {
+        let DirectSum { weighting, ref increments, ref weights, ref image } = *self;
+        let increment = |&Increment { time, ref change }: &Increment| {
+            let change = map(Field::single(change, Role::Lasting { source: None }));
+            Increment { time, change }
+        };
+        let increments = increments.iter().map(increment).collect();
+        let image = map(Field { values: image, per_cell: usize::from(self.is_uncached()), role: Role::Work });
+        DirectSum { weighting, increments, weights: weights.clone(), image }
     }
 
     /// Whether the stored increments are increments of p.
     fn is_uncached(&self) -> bool {
         self.weighting == Weighting::EndUncached
-    }
-
-    /// Bytes per cell before the first increment.
-    pub(super) fn bytes_per_cell(&self) -> usize {
-        if self.is_uncached() { 8 } else { 0 }
     }
 
     /// Writes u_old over `u_old`; returns c and the number of convolutions taken.
@@ -80,7 +95,7 @@ impl DirectSum {
         // c acts on the whole of v, so that a past increment adds only what exceeds c
         self.weights.clear();
         let (mut oldest, mut younger) = (age, newest);
-        for (when, _) in self.increments.iter().rev() {
+        for Increment { time: when, .. } in self.increments.iter().rev() {
             // ages never fall, but their differences of times may, by rounding
             let older = (reduced - when).max(oldest);
             younger = material.checked_compliance(older, (oldest, younger))?;
@@ -89,10 +104,9 @@ impl DirectSum {
         }
         let past = || self.increments.iter().rev().zip(&self.weights);
         if self.is_uncached() {
-            self.image.resize(u_old.len(), 0.0);
             u_old.fill(0.0);
-            for ((_, increment), &weight) in past() {
-                kernel.apply(increment, &mut self.image, work);
+            for (Increment { change, .. }, &weight) in past() {
+                kernel.apply(change, &mut self.image, work);
                 u_old.iter_mut().zip(&self.image).for_each(|(old, &dv)| *old += weight * dv);
             }
             return Ok((newest, self.increments.len()));
@@ -100,8 +114,8 @@ impl DirectSum {
         for (block, old) in u_old.chunks_mut(BLOCK).enumerate() {
             old.fill(0.0);
             let first = block * BLOCK;
-            for ((_, increment), &weight) in past() {
-                for (old, &dv) in old.iter_mut().zip(&increment[first..]) {
+            for (Increment { change, .. }, &weight) in past() {
+                for (old, &dv) in old.iter_mut().zip(&change[first..]) {
                     *old += weight * dv;
                 }
             }
@@ -109,18 +123,12 @@ impl DirectSum {
         Ok((newest, 0))
     }
 
-    /// The same past on other cells; `carry` gives each increment there.
-    pub(crate) fn carried(&self, carry: impl Fn(&[f64]) -> Vec<f64>) -> DirectSum {
-        let increments = self.increments.iter().map(|(when, increment)| (*when, carry(increment))).collect();
-        DirectSum { increments, ..DirectSum::new(self.weighting) }
-    }
-
-    /// Takes the step of length `dt` that ends at the reduced `time` into the past, given p and v at its start and at its end.
-    pub(super) fn commit(&mut self, (time, dt): (f64, f64), [pressure, potential]: [[&[f64]; 2]; 2]) {
-        let when = if self.weighting == Weighting::Start { time - dt } else { time };
+    /// Takes the step of length `dt` that ends at the reduced time `end` into the past, given p and v at its start and at its end.
+    pub(super) fn commit(&mut self, (end, dt): (f64, f64), [pressure, potential]: [[&[f64]; 2]; 2]) {
+        let time = if self.weighting == Weighting::Start { end - dt } else { end };
         let [before, after] = if self.is_uncached() { pressure } else { potential };
-        let increment = after.iter().zip(before).map(|(new, old)| new - old).collect();
-        self.increments.push((when, increment));
+        let change = after.iter().zip(before).map(|(new, old)| new - old).collect();
+        self.increments.push(Increment { time, change });
     }
 
     /// Drops the increment of the step committed last.
@@ -128,9 +136,9 @@ impl DirectSum {
         self.increments.pop();
     }
 
-    /// Whether `other` has the same weighting, and every increment has so many cells.
+    /// Whether `other` has the same weighting.
     #[cfg(feature = "checkpoint")]
-    pub(crate) fn fits(&self, other: &DirectSum, cells: usize) -> bool {
-        self.weighting == other.weighting && self.increments.iter().all(|(_, increment)| increment.len() == cells)
+    pub(crate) fn fits(&self, other: &DirectSum) -> bool {
+        self.weighting == other.weighting
     }
 }

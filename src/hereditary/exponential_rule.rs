@@ -1,5 +1,7 @@
 //! Exponential integration of the relaxation form of the hereditary integral.
 
+use educe::Educe;
+
 use crate::hereditary::moments::{moments as moments_of, slopes as slopes_of};
 use crate::rheology::{CreepSpectrum, RelaxationSpectrum};
 
@@ -39,7 +41,8 @@ pub(crate) enum Interpolant {
 ///
 /// Fields keep their differences undivided, d₁ = u − u_before and so on, which have the unit of u whatever the length of the
 /// steps: d_k of a step is d_(k−1) less ρ_(k−1) times the d_(k−1) of the previous step.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct ExponentialRule {
     #[cfg_attr(feature = "checkpoint", serde(with = "crate::rheology::SavedRelaxation"))]
@@ -65,7 +68,8 @@ pub(crate) struct ExponentialRule {
 }
 
 /// What a step does to a field that follows the rule.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Default, PartialEq, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Weights {
     /// Length of the step.
@@ -110,20 +114,8 @@ impl ExponentialRule {
     /// For bodies with contact compliance `creep`.
     pub(crate) fn new(creep: &CreepSpectrum) -> ExponentialRule {
         let relaxation = creep.relaxation();
-        let weights = Weights {
-            dt: 0.0,
-            degree: 1,
-            corrects: [false; 2],
-            c: 0.0,
-            past: [0.0; 3],
-            branches: vec![[0.0; 4]; relaxation.terms().len()],
-            terms: 0,
-            ratios: [0.0; 2],
-            defects: [0.0; 2],
-            answer: 0.0,
-            span: 1.0,
-            known: 0,
-        };
+        let branches = vec![[0.0; 4]; relaxation.terms().len()];
+        let weights = Weights { degree: 1, branches, span: 1.0, ..Weights::default() };
         ExponentialRule {
             relaxation,
             spans: [0.0; 2],
@@ -245,19 +237,6 @@ impl ExponentialRule {
         }
     }
 
-    /// Copies another without reallocating.
-    pub(crate) fn copy_from(&mut self, other: &ExponentialRule) {
-        if self.relaxation != other.relaxation {
-            *self = other.clone();
-            return;
-        }
-        (self.spans, self.known, self.kept, self.lacking) = (other.spans, other.known, other.kept, other.lacking);
-        self.at_start = other.at_start;
-        (self.greatest, self.repeated) = (other.greatest, other.repeated);
-        self.tried.copy_from(&other.tried);
-        self.committed.copy_from(&other.committed);
-    }
-
     /// Whether it is a rule for the bodies of another: a file may hold anything.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &ExponentialRule) -> bool {
@@ -280,7 +259,7 @@ impl ExponentialRule {
     }
 
     /// Finds the weights of a step of length `dt`; its compliance is 0 in a jump of a body without elastic response.
-    pub(super) fn compute_weights(&mut self, dt: f64, interpolant: Interpolant) {
+    pub(crate) fn compute_weights(&mut self, dt: f64, interpolant: Interpolant) {
         let quadratic = interpolant == Interpolant::CorrectedQuadratic
             || interpolant == Interpolant::CorrectedLinear && self.has_dashpot();
         let wanted = if quadratic { 2 } else { 1 };
@@ -365,21 +344,11 @@ impl ExponentialRule {
         self.known = step.known;
         self.spans = if step.dt > 0.0 { [step.dt, self.spans[0]] } else { [0.0; 2] };
         self.lacking = if step.corrects[1] && self.known > 0 { step.degree + 1 } else { 0 };
-        self.committed.copy_from(&self.tried);
+        self.committed.clone_from(&self.tried);
     }
 
     /// Returns to the start of the step accepted last.
     pub(super) fn roll_back(&mut self) {
         (self.spans, self.known, self.lacking) = self.at_start;
-    }
-}
-
-impl Weights {
-    fn copy_from(&mut self, other: &Weights) {
-        let Weights { dt, degree, corrects, c, past, branches, terms, ratios, defects, answer, span, known } = self;
-        (*dt, *degree, *corrects, *c) = (other.dt, other.degree, other.corrects, other.c);
-        (*past, *terms, *ratios) = (other.past, other.terms, other.ratios);
-        (*defects, *answer, *span, *known) = (other.defects, other.answer, other.span, other.known);
-        branches.copy_from_slice(&other.branches);
     }
 }

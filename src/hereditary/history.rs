@@ -1,19 +1,20 @@
 //! State of the hereditary integral, for every time rule.
 
+use educe::Educe;
+
 use crate::error::Result;
-#[cfg(feature = "checkpoint")]
-use crate::hereditary::common_cells::CommonCells;
 use crate::hereditary::direct_sum::{DirectSum, Weighting};
 use crate::hereditary::exponential_rule::ExponentialRule;
+use crate::hereditary::field::Field;
 use crate::hereditary::interval::Interval;
 use crate::hereditary::moving_frame::MovingFrame;
 use crate::hereditary::remembered_field::RememberedField;
-use crate::hereditary::transfer::Transfer;
 use crate::kernel::{LocalKernel, Workspace};
 use crate::rheology::{CreepSpectrum, Material};
 
 /// The displacement of a contact and the memory of its past.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct History {
     rule: Rule,
@@ -21,18 +22,18 @@ pub(crate) struct History {
     /// Where only a window of the grid is computed, the field U whose convolution K U is the displacement elsewhere.
     /// Zero wherever there never was contact.
     far: Option<RememberedField>,
+    /// Where the bodies move under the grid, the past of the pressure, whose convolution is the displacement.
+    frame: Option<MovingFrame>,
     /// Whether the start of the last step is kept: the trial of each field, and what the past has yet to take in.
     start_is_kept: bool,
 }
 
 /// How the displacement follows from its past.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 enum Rule {
-    /// By the past of the displacement itself.
     Exponential(ExponentialRule),
-    /// By the past of the pressure, whose convolution is the displacement.
-    MovingFrame(ExponentialRule, Box<MovingFrame>),
     DirectSum(DirectSum),
 }
 
@@ -46,92 +47,66 @@ pub(crate) struct HistoryInputs<'a> {
     pub(crate) least_side: f64,
 }
 
-impl Rule {
-    /// Without a past, on so many cells.
-    fn undisturbed_on(&self, cells: [usize; 2]) -> Rule {
-        match self {
-            Rule::Exponential(own) => Rule::Exponential(own.clone()),
-            Rule::MovingFrame(own, frame) => {
-                Rule::MovingFrame(own.clone(), Box::new(frame.undisturbed_on(cells, own.least_kept())))
-            }
-            Rule::DirectSum(own) => Rule::DirectSum(own.undisturbed_on(cells[0] * cells[1])),
-        }
-    }
-
-    /// The exponential rule, if it is that.
-    fn exponential(&self) -> Option<&ExponentialRule> {
-        match self {
-            Rule::Exponential(own) | Rule::MovingFrame(own, _) => Some(own),
-            Rule::DirectSum(_) => None,
-        }
-    }
-
-    /// Number of fields that the displacement itself has for its past.
-    fn branches(&self) -> usize {
-        if let Rule::Exponential(own) = self { own.branches() } else { 0 }
-    }
-
-    fn copy_from(&mut self, other: &Rule) {
-        match (self, other) {
-            (Rule::Exponential(own), Rule::Exponential(other)) => own.copy_from(other),
-            (Rule::MovingFrame(own, frame), Rule::MovingFrame(other, other_frame)) => {
-                own.copy_from(other);
-                frame.copy_from(other_frame);
-            }
-            (own, other) => *own = other.clone(),
-        }
-    }
-
-    /// Whether it is the rule of another, on these cells.
-    #[cfg(feature = "checkpoint")]
-    fn fits(&self, other: &Rule, cells: [usize; 2]) -> bool {
-        match (self, other) {
-            (Rule::Exponential(own), Rule::Exponential(other)) => own.fits(other),
-            (Rule::MovingFrame(own, frame), Rule::MovingFrame(other, other_frame)) => {
-                own.fits(other) && frame.fits(other_frame, own.kept(), cells)
-            }
-            (Rule::DirectSum(own), Rule::DirectSum(other)) => own.fits(other, cells[0] * cells[1]),
-            _ => false,
-        }
-    }
-}
-
 impl History {
-    fn new(rule: Rule) -> History {
-        let displacement = RememberedField::new(rule.branches(), 0);
-        History { rule, displacement, far: None, start_is_kept: false }
+    fn new(rule: Rule, displacement: RememberedField, frame: Option<MovingFrame>) -> History {
+        History { rule, displacement, far: None, frame, start_is_kept: false }
     }
 
     /// Undisturbed bodies with contact compliance `creep`, by the exponential rule; on no cells yet.
     pub(crate) fn exponential(creep: &CreepSpectrum) -> History {
-        History::new(Rule::Exponential(ExponentialRule::new(creep)))
+        let rule = ExponentialRule::new(creep);
+        let displacement = RememberedField::on_no_cells(&rule, rule.branches());
+        History::new(Rule::Exponential(rule), displacement, None)
     }
 
     /// Undisturbed bodies, by a direct sum over all steps; on no cells yet.
     pub(crate) fn direct_sum(weighting: Weighting) -> History {
-        History::new(Rule::DirectSum(DirectSum::new(weighting)))
+        History::new(Rule::DirectSum(DirectSum::new(weighting)), RememberedField::new(0, 0), None)
     }
 
     /// Undisturbed bodies that move under the grid, by the exponential rule; on no cells yet.
     pub(crate) fn moving_frame(creep: &CreepSpectrum, periodic: [bool; 2]) -> History {
         let rule = ExponentialRule::new(creep);
-        let frame = MovingFrame::new(rule.branches(), periodic);
-        History::new(Rule::MovingFrame(rule, Box::new(frame)))
+        let frame = MovingFrame::new(RememberedField::on_no_cells(&rule, rule.branches()), periodic);
+        let displacement = RememberedField::on_no_cells(&rule, 0);
+        History::new(Rule::Exponential(rule), displacement, Some(frame))
     }
 
-    /// The same bodies, undisturbed, on so many cells; with a far field where these are a `window` of the grid.
-    pub(crate) fn undisturbed_on(&self, cells: [usize; 2], window: bool) -> History {
-        let rule = self.rule.undisturbed_on(cells);
-        // what steps of given length need, so that none of them allocates
-        let kept = rule.exponential().map_or(0, ExponentialRule::least_kept);
-        let displacement = self.displacement.undisturbed_on(cells[0] * cells[1], kept);
-        let far = (window && self.has_far_field()).then(|| displacement.clone());
-        History { rule, displacement, far, start_is_kept: false }
+    /// A copy on other cells, a `window` of the grid or all of it. `map` gives its fields, one for each field here.
+    pub(crate) fn map(&self, cells: [usize; 2], window: bool, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> History {
+        let History { rule, displacement, far, frame, start_is_kept } = self;
+        History {
+            rule: match rule {
+                Rule::Exponential(own) => Rule::Exponential(own.clone()),
+                Rule::DirectSum(own) => Rule::DirectSum(own.map(map)),
+            },
+            displacement: displacement.map(far.as_ref(), map),
+            far: far.as_ref().filter(|_| window).map(|far| far.map(None, map)),
+            frame: frame.as_ref().map(|frame| frame.map(cells, map)),
+            start_is_kept: *start_is_kept,
+        }
+    }
+
+    /// A copy without values, with a far field for a `window` of the grid.
+    pub(crate) fn layout(&self, window: bool) -> History {
+        let layout = self.map([0; 2], false, &mut |_| Vec::new());
+        let far = (window && self.has_far_field()).then(|| layout.displacement.clone());
+        History { far, ..layout }
+    }
+
+    /// How many values the layout has for each cell.
+    pub(crate) fn values_per_cell(&self, window: bool) -> usize {
+        let mut values = 0;
+        self.layout(window).map([0; 2], window, &mut |field| {
+            values += field.per_cell;
+            Vec::new()
+        });
+        values
     }
 
     /// Whether the displacement outside a window of the grid can be found.
     pub(crate) fn has_far_field(&self) -> bool {
-        matches!(self.rule, Rule::Exponential(_))
+        self.frame.is_none() && !self.grows()
     }
 
     /// Whether each step adds a field to the past.
@@ -139,26 +114,23 @@ impl History {
         matches!(self.rule, Rule::DirectSum(_))
     }
 
-    /// Bytes per cell of an undisturbed past, besides the displacement, with as many differences as steps of given length
-    /// need, and `more`; a far field takes as much again, and two fields.
-    pub(crate) fn bytes_per_cell(&self) -> usize {
-        match &self.rule {
-            Rule::Exponential(own) => self.displacement.bytes_per_cell(own.least_kept()),
-            Rule::MovingFrame(own, frame) => 8 * own.least_kept() + frame.bytes_per_cell(own.least_kept()),
-            Rule::DirectSum(own) => own.bytes_per_cell(),
-        }
-    }
-
     /// The exponential rule, if the history follows it.
     pub(crate) fn exponential_rule(&self) -> Option<&ExponentialRule> {
-        self.rule.exponential()
+        if let Rule::Exponential(own) = &self.rule { Some(own) } else { None }
     }
 
     /// The past does not determine how the displacement continues, as after a corner of the load.
     pub(crate) fn reset_differences(&mut self) {
-        if let Rule::Exponential(own) | Rule::MovingFrame(own, _) = &mut self.rule {
+        if let Rule::Exponential(own) = &mut self.rule {
             own.reset_differences();
         }
+    }
+
+    /// The rule, and all fields that follow the recursion of the displacement.
+    fn parts(&mut self) -> (&mut Rule, impl Iterator<Item = &mut RememberedField>) {
+        let History { rule, displacement, far, frame, .. } = self;
+        let of_frame = frame.iter_mut().flat_map(MovingFrame::fields_mut);
+        (rule, [displacement].into_iter().chain(far).chain(of_frame))
     }
 
     /// The displacement \[m\].
@@ -184,30 +156,19 @@ impl History {
 
     /// Returns to the start of the last step, which must be kept; `touched` is true if the step was taken into a direct sum.
     pub(crate) fn roll_back(&mut self, touched: bool) {
-        let History { rule, displacement, far, start_is_kept } = self;
-        far.iter_mut().for_each(RememberedField::roll_back);
+        self.start_is_kept = false;
+        let (rule, fields) = self.parts();
         match rule {
-            Rule::Exponential(own) => {
-                own.roll_back();
-                displacement.roll_back();
-            }
-            Rule::MovingFrame(own, frame) => {
-                own.roll_back();
-                frame.roll_back(displacement);
-            }
-            Rule::DirectSum(own) => {
-                if touched {
-                    own.roll_back();
-                }
-                displacement.roll_back();
-            }
+            Rule::Exponential(own) => own.roll_back(),
+            Rule::DirectSum(own) if touched => own.roll_back(),
+            Rule::DirectSum(_) => {}
         }
-        *start_is_kept = false;
+        fields.for_each(RememberedField::roll_back);
     }
 
     /// The change of the displacement in the last step, once the next is predicted; none where it is not kept.
     pub(crate) fn last_change(&self) -> Option<&[f64]> {
-        Some(self.displacement.past.differences()[0]).filter(|change| !change.is_empty())
+        Some(self.displacement.differences()[0]).filter(|change| !change.is_empty())
     }
 
     /// The source U of the far field, if only a window is computed.
@@ -215,14 +176,14 @@ impl History {
         self.far.as_ref().map(|far| &far.now[..])
     }
 
-    /// The same at the end of the step being tried; between steps, before the last one.
+    /// The source U at the end of the step being tried; between steps, before the last one.
     pub(crate) fn far_trial(&self) -> Option<&[f64]> {
         self.far.as_ref().map(|far| &far.trial[..])
     }
 
     /// Whether the displacement itself is part of the past, rather than computed anew from v.
     pub(crate) fn integrates_displacement(&self) -> bool {
-        self.rule.exponential().is_some_and(ExponentialRule::has_memory)
+        self.exponential_rule().is_some_and(ExponentialRule::has_memory)
     }
 
     /// Whether the surface in contact stays, from step to step, exactly on a body whose motion is prescribed.
@@ -240,38 +201,18 @@ impl History {
         work: &mut Workspace,
     ) -> Result<(f64, usize)> {
         self.start_is_kept = false;
-        let History { rule, displacement, far, .. } = self;
+        let History { rule, displacement, far, frame, .. } = self;
         match rule {
             Rule::Exponential(own) => {
+                own.compute_weights(step.dt, step.interpolant);
+                if let Some(frame) = frame {
+                    let convolutions = frame.predict(own, step.stride, inputs.least_side, displacement, (kernel, work));
+                    return Ok((own.compliance(), convolutions));
+                }
                 // the sign of u is no criterion where pressures raise the surface
-                let sign_counts = || !kernel.raises();
-                let step = (step.dt, step.interpolant);
-                displacement.predict_non_negative(own, step, inputs.least_side, kernel.rows(), sign_counts);
+                displacement.predict_non_negative(own, inputs.least_side, kernel.rows(), || !kernel.raises());
                 far.iter_mut().for_each(|far| far.predict(own));
                 Ok((own.compliance(), 0))
-            }
-            Rule::MovingFrame(own, frame) => {
-                own.compute_weights(step.dt, step.interpolant);
-                displacement.apply_pending_step(own);
-                if !own.has_memory() {
-                    frame.predict(own, step.stride);
-                    displacement.trial.fill(0.0);
-                    return Ok((own.compliance(), 0));
-                }
-                let mut convolutions = 0;
-                loop {
-                    frame.predict(own, step.stride);
-                    let ([source, remainder], trial) = (frame.predicted(), &mut displacement.trial);
-                    kernel.apply(source, trial, work);
-                    trial.iter_mut().zip(remainder).for_each(|(u_old, &e)| *u_old += e);
-                    convolutions += 1;
-                    let falls_below_zero =
-                        own.has_less() && displacement.falls_below_zero(own, inputs.least_side, kernel.rows());
-                    if !falls_below_zero || kernel.raises() {
-                        return Ok((own.compliance(), convolutions));
-                    }
-                    own.reduce_order();
-                }
             }
             Rule::DirectSum(own) => {
                 let RememberedField { now, trial, .. } = displacement;
@@ -294,7 +235,7 @@ impl History {
     ) {
         let RememberedField { now, trial, .. } = &mut self.displacement;
         self.far.iter_mut().for_each(|far| far.add(c, pressure));
-        if let Rule::MovingFrame(_, frame) = &mut self.rule {
+        if let Some(frame) = &mut self.frame {
             frame.respond(c, pressure, trial, potential);
             displace(now, trial);
             frame.add_displacement(trial);
@@ -306,94 +247,53 @@ impl History {
     /// u − u_old, by which a free displacement recedes in the step predicted last: calls `take` with it for each cell that is
     /// `wanted`. Only the exponential rule has it.
     pub(crate) fn recovery(&self, wanted: impl Fn(usize) -> bool, mut take: impl FnMut(usize, f64)) {
-        let Rule::Exponential(own) = &self.rule else { return };
-        let RememberedField { past, now, .. } = &self.displacement;
-        let held = own.compliance() * own.equilibrium();
-        past.recovery(&own.tried, now.len(), wanted, |k, by_past| take(k, held * now[k] + by_past));
+        let Some(own) = self.exponential_rule().filter(|_| self.frame.is_none()) else { return };
+        let (held, now) = (own.compliance() * own.equilibrium(), &self.displacement.now);
+        self.displacement.recovery(&own.tried, wanted, |k, by_past| take(k, held * now[k] + by_past));
     }
 
     /// Accepts the step predicted last, given p and v = K p, each at its start and at its end; `touched` is true if
     /// anything has ever been displaced.
     pub(crate) fn commit(&mut self, step: Interval, pressed: [[&[f64]; 2]; 2], touched: bool) {
-        let History { rule, displacement, far, .. } = self;
-        far.iter_mut().for_each(RememberedField::commit);
-        match rule {
-            Rule::Exponential(own) => {
-                own.commit();
-                displacement.commit();
-            }
-            Rule::MovingFrame(own, frame) => {
-                own.commit();
-                frame.commit(step.stride, displacement);
-            }
-            Rule::DirectSum(own) => {
-                if touched {
-                    own.commit((step.reduced, step.dt), pressed);
-                }
-                displacement.commit();
-            }
+        if let Some(frame) = self.frame.as_mut().filter(|_| step.stride != [0; 2]) {
+            frame.shift_start(step.stride, &mut self.displacement);
         }
+        let (rule, fields) = self.parts();
+        match rule {
+            Rule::Exponential(own) => own.commit(),
+            Rule::DirectSum(own) if touched => own.commit((step.reduced, step.dt), pressed),
+            Rule::DirectSum(_) => {}
+        }
+        fields.for_each(RememberedField::commit);
         // under bodies that moved, the field before the step belongs to other places
         self.start_is_kept = step.stride == [0; 2];
     }
 
-    /// The same past on other cells. The start of the last step is given up.
-    pub(crate) fn carried(&mut self, transfer: &mut impl Transfer) -> History {
-        let cells = transfer.cells();
+    /// Lets the past take in the last step, whose start is given up.
+    pub(crate) fn apply_pending_step(&mut self) {
         self.start_is_kept = false;
-        let (count, History { rule, displacement, far, .. }) = (cells[0] * cells[1], self);
-        if let Some(own) = rule.exponential() {
-            displacement.apply_pending_step(own);
-            far.iter_mut().for_each(|far| far.apply_pending_step(own));
+        if let (Rule::Exponential(own), fields) = self.parts() {
+            fields.for_each(|field| field.apply_pending_step(own));
         }
-        let rule = match rule {
-            Rule::Exponential(own) => Rule::Exponential(own.clone()),
-            Rule::MovingFrame(own, frame) => {
-                let frame = frame.carried(own, cells, |own| transfer.confined(own));
-                Rule::MovingFrame(own.clone(), Box::new(frame))
-            }
-            Rule::DirectSum(own) => Rule::DirectSum(own.carried(|own| transfer.confined(own))),
-        };
-        let displacement = displacement.carried(count, far.as_ref(), |own, source| transfer.induced(own, source));
-        let far = far.as_ref().filter(|_| !transfer.covers());
-        let far = far.map(|far| far.carried(count, None, |own, _| transfer.confined(own)));
-        History { rule, displacement, far, start_is_kept: false }
-    }
-
-    /// Copies another without reallocating where both have the same rule and cells, and no direct sum grows.
-    pub(crate) fn copy_from(&mut self, other: &History) {
-        self.start_is_kept = other.start_is_kept;
-        self.rule.copy_from(&other.rule);
-        self.displacement.copy_from(&other.displacement);
-        match (&mut self.far, &other.far) {
-            (Some(own), Some(other)) => own.copy_from(other),
-            (own, other) => *own = other.clone(),
-        }
-    }
-
-    /// The same on `cells` other cells, with every field zero; by the exponential rule, on no window of a grid.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) fn blank_on(&self, cells: usize) -> History {
-        let History { rule, displacement, start_is_kept, .. } = self;
-        let displacement = displacement.blank_on(cells);
-        History { rule: rule.clone(), displacement, far: None, start_is_kept: *start_is_kept }
-    }
-
-    /// Copies the cells in common with another of the same rule.
-    #[cfg(feature = "checkpoint")]
-    pub(crate) fn copy_common(&mut self, other: &History, common: CommonCells) {
-        self.displacement.copy_common(&other.displacement, common);
     }
 
     /// Whether it follows the same rule as another, on these cells, a `window` of the grid or all of it: a file may hold
     /// anything.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &History, cells: [usize; 2], window: bool) -> bool {
-        let (count, branches) = (cells[0] * cells[1], other.rule.branches());
-        let kept = self.rule.exponential().map_or(0, ExponentialRule::kept);
-        self.rule.fits(&other.rule, cells)
-            && self.displacement.fits(branches, kept, count)
+        let (kept, rule_fits) = match (&self.rule, &other.rule) {
+            (Rule::Exponential(own), Rule::Exponential(other)) => (own.kept(), own.fits(other)),
+            (Rule::DirectSum(own), Rule::DirectSum(other)) => (0, own.fits(other)),
+            _ => (0, false),
+        };
+        let mut fields = std::iter::once(&self.displacement).chain(&self.far);
+        let frame_fits = match (&self.frame, &other.frame) {
+            (Some(own), Some(other)) => own.fits(other, kept, cells),
+            (own, other) => own.is_none() && other.is_none(),
+        };
+        rule_fits
+            && frame_fits
+            && fields.all(|field| field.fits(&other.displacement, kept))
             && self.far.is_some() == (window && self.has_far_field())
-            && self.far.as_ref().is_none_or(|far| far.fits(branches, kept, count))
     }
 }

@@ -20,30 +20,27 @@
 //! [`RememberedField`] is a field at the start of a step and at its end, with its past. It serves the displacement, the far
 //! field of a window, and the moving frame alike.
 
-#[cfg(feature = "checkpoint")]
-mod common_cells;
 mod direct_sum;
 mod error_weight;
 mod exponential_rule;
+mod field;
 mod history;
 mod interval;
 mod lasting_error;
 mod moments;
 mod moving_frame;
-mod past;
 mod remembered_field;
 #[cfg(test)]
 mod rule_tests;
 mod time_error;
-mod transfer;
 
-#[cfg(feature = "checkpoint")]
-pub(crate) use common_cells::CommonCells;
 pub(crate) use direct_sum::Weighting;
 pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
+pub(crate) use field::{Field, Role};
+#[cfg(feature = "checkpoint")]
+pub(crate) use field::{interleaved, runs};
 pub(crate) use history::{History, HistoryInputs};
 pub(crate) use interval::Interval;
 pub(crate) use lasting_error::LastingError;
 pub(crate) use remembered_field::RememberedField;
 pub(crate) use time_error::{ErrorMeasure, TimeError};
-pub(crate) use transfer::Transfer;

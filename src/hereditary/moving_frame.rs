@@ -1,7 +1,11 @@
 //! History of bodies that move under the grid.
 
+use educe::Educe;
+
 use crate::hereditary::exponential_rule::ExponentialRule;
+use crate::hereditary::field::{Field, Role};
 use crate::hereditary::remembered_field::RememberedField;
+use crate::kernel::{LocalKernel, Workspace};
 
 /// The past kept as the field U with u = K U, and its branches, which follow the recursion of u itself, K and the bodies
 /// being linear. U vanishes wherever there never was contact: what enters the grid across its edge is known, and so the
@@ -10,7 +14,8 @@ use crate::hereditary::remembered_field::RememberedField;
 ///
 /// The surface in contact is laid on the rigid body after each step. What that changes no pressure has caused; it
 /// follows the same recursion, as a displacement e: u = K U + e.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct MovingFrame {
     cells: [usize; 2],
@@ -19,62 +24,67 @@ pub(crate) struct MovingFrame {
     source: RememberedField,
     /// e.
     remainder: RememberedField,
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     scratch: Vec<f64>,
 }
 
 impl MovingFrame {
-    /// The undisturbed past of bodies with so many relaxation times, on no cells yet.
-    pub(crate) fn new(branches: usize, periodic: [bool; 2]) -> MovingFrame {
-        let source = RememberedField::new(branches, 0);
-        MovingFrame { cells: [0; 2], periodic, remainder: source.clone(), source, scratch: Vec::new() }
+    /// The undisturbed past, on no cells yet; both of its fields are like `field`.
+    pub(crate) fn new(field: RememberedField, periodic: [bool; 2]) -> MovingFrame {
+        MovingFrame { cells: [0; 2], periodic, remainder: field.clone(), source: field, scratch: Vec::new() }
     }
 
-    /// The undisturbed past of the same bodies on so many cells, with room for so many differences.
-    pub(crate) fn undisturbed_on(&self, cells: [usize; 2], kept: usize) -> MovingFrame {
-        let count = cells[0] * cells[1];
-        let [source, remainder] = [&self.source, &self.remainder].map(|field| field.undisturbed_on(count, kept));
-        MovingFrame { cells, periodic: self.periodic, source, remainder, scratch: vec![0.0; count] }
+    /// A copy on other cells; `map` gives its fields, one for each field here.
+    pub(super) fn map(&self, cells: [usize; 2], map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> MovingFrame {
+        let [source, remainder] = [&self.source, &self.remainder].map(|field| field.map(None, map));
+        let scratch = map(Field::single(&self.scratch, Role::Work));
+        MovingFrame { cells, periodic: self.periodic, source, remainder, scratch }
     }
 
-    /// Bytes per cell: two fields at both ends of a step, their recursions, and one to shift branches in.
-    pub(crate) fn bytes_per_cell(&self, kept: usize) -> usize {
-        40 + self.source.bytes_per_cell(kept) + self.remainder.bytes_per_cell(kept)
-    }
-
-    /// Copies another without reallocating.
-    pub(crate) fn copy_from(&mut self, other: &MovingFrame) {
-        self.source.copy_from(&other.source);
-        self.remainder.copy_from(&other.remainder);
-        (self.cells, self.periodic) = (other.cells, other.periodic);
-        self.scratch.resize(other.scratch.len(), 0.0);
-    }
-
-    /// Whether it is like another, and its fields have such cells.
+    /// Whether it is like another on these cells.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn fits(&self, other: &MovingFrame, kept: usize, cells: [usize; 2]) -> bool {
-        let (count, branches) = (cells[0] * cells[1], other.source.past.branches());
         self.cells == cells
-            && self.scratch.len() == count
             && self.periodic == other.periodic
-            && [&self.source, &self.remainder].iter().all(|field| field.fits(branches, kept, count))
+            && self.source.fits(&other.source, kept)
+            && self.remainder.fits(&other.remainder, kept)
     }
 
-    /// Finds U_old and e_old at the end of a step in which the cell `[i, j]` comes over what was the cell
-    /// `[i, j] + stride`.
-    pub(crate) fn predict(&mut self, rule: &ExponentialRule, stride: [isize; 2]) {
+    /// Finds U_old and e_old at the end of a step in which the cell `[i, j]` comes over what was the cell `[i, j] + stride`, and
+    /// u_old = K U_old + e_old as the trial of the displacement. Returns the number of convolutions taken.
+    pub(crate) fn predict(
+        &mut self,
+        rule: &mut ExponentialRule,
+        stride: [isize; 2],
+        side: f64,
+        displacement: &mut RememberedField,
+        (kernel, work): (&LocalKernel, &mut Workspace),
+    ) -> usize {
+        displacement.apply_pending_step(rule);
         let (cells, periodic) = (self.cells, self.periodic);
-        for field in [&mut self.remainder, &mut self.source] {
-            field.predict(rule);
-            shift(&mut field.trial, cells, stride, periodic);
+        let mut convolutions = 0;
+        loop {
+            for field in [&mut self.remainder, &mut self.source] {
+                field.predict(rule);
+                shift(&mut field.trial, cells, stride, periodic);
+            }
+            let u_old = &mut displacement.trial;
+            if !rule.has_memory() {
+                u_old.fill(0.0);
+                return convolutions;
+            }
+            kernel.apply(&self.source.trial, u_old, work);
+            u_old.iter_mut().zip(&self.remainder.trial).for_each(|(u_old, &e)| *u_old += e);
+            convolutions += 1;
+            let falls_below_zero = rule.has_less() && displacement.falls_below_zero(rule, side, kernel.rows());
+            if !falls_below_zero || kernel.raises() {
+                return convolutions;
+            }
+            rule.reduce_order();
         }
     }
 
-    /// U_old and e_old: u_old = K U_old + e_old.
-    pub(crate) fn predicted(&self) -> [&[f64]; 2] {
-        [self.source.trial(), self.remainder.trial()]
-    }
-
-    /// U = U_old + c p, and e less u_old + c v: what is left to add to e is the displacement.
+    /// U = U_old + c p, and e less u_old + c v. The displacement is still to be added to e.
     pub(crate) fn respond(&mut self, c: f64, pressure: &[f64], u_old: &[f64], potential: &[f64]) {
         self.source.add(c, pressure);
         let fields = self.remainder.trial.iter_mut().zip(u_old.iter().zip(potential));
@@ -86,36 +96,15 @@ impl MovingFrame {
         self.remainder.add(1.0, u);
     }
 
-    /// Takes the step that was predicted last into the past, `displacement` with it.
-    pub(crate) fn commit(&mut self, stride: [isize; 2], displacement: &mut RememberedField) {
+    /// Shifts all fields at the start of the step predicted last, and the displacement: the bodies have moved.
+    pub(crate) fn shift_start(&mut self, stride: [isize; 2], displacement: &mut RememberedField) {
         for field in [displacement, &mut self.source, &mut self.remainder] {
-            if stride != [0; 2] {
-                // what was before the step, too, is now elsewhere
-                shift(&mut field.now, self.cells, stride, self.periodic);
-                field.past.change(&mut self.scratch, |own| shift(own, self.cells, stride, self.periodic));
-            }
-            field.commit();
+            field.change_start(&mut self.scratch, |own| shift(own, self.cells, stride, self.periodic));
         }
     }
 
-    /// Returns to the start of the step accepted last, in which the bodies did not move, `displacement` with it.
-    pub(crate) fn roll_back(&mut self, displacement: &mut RememberedField) {
-        [displacement, &mut self.source, &mut self.remainder].into_iter().for_each(RememberedField::roll_back);
-    }
-
-    /// The same past on other cells; `carry` gives a field there.
-    pub(crate) fn carried(
-        &mut self,
-        rule: &ExponentialRule,
-        cells: [usize; 2],
-        carry: impl Fn(&[f64]) -> Vec<f64>,
-    ) -> MovingFrame {
-        let count = cells[0] * cells[1];
-        let [source, remainder] = [&mut self.source, &mut self.remainder].map(|field| {
-            field.apply_pending_step(rule);
-            field.carried(count, None, |own, _| carry(own))
-        });
-        MovingFrame { cells, periodic: self.periodic, source, remainder, scratch: vec![0.0; count] }
+    pub(super) fn fields_mut(&mut self) -> [&mut RememberedField; 2] {
+        [&mut self.source, &mut self.remainder]
     }
 }
 

@@ -174,7 +174,7 @@ impl History {
     /// Sums over the cells of the step tried.
     fn sums(&self, rule: &ExponentialRule, measure: &ErrorMeasure<'_>, weight: Weight) -> Sums {
         let lacking = rule.missing().map_or(0, |(degree, _)| degree);
-        let [first, second] = self.displacement.past.differences();
+        let [first, second] = self.displacement.differences();
         let [to_first, to_second] = rule.tried.ratios;
         let (new, old) = (&self.displacement.trial, &self.displacement.now);
         let [tried, now, before] = measure.pressure;

@@ -3,13 +3,14 @@
 use std::sync::Arc;
 
 use super::definiteness::least_eigenvalue;
-use super::influence::Influence;
+use super::influence::{Body, indices, magnitude};
+use super::layer::Remainder;
 use super::layout::{Ends, Layout};
 use super::line_load::{Strip, wave_number};
 use super::love::Love;
 use super::{InfluenceKernel, MEMORY_WHILE_MADE};
 use crate::Grid;
-use crate::error::{Error, KernelError, Result, within};
+use crate::error::{KernelError, Result, count_within, within};
 use crate::memory;
 
 /// Greatest difference of mirrored coefficients, relative to the greatest coefficient.
@@ -25,13 +26,21 @@ const GREATEST: f64 = 1e100;
 const FARTHEST_DATUM: f64 = 1e120;
 
 impl InfluenceKernel {
-    pub(super) fn new(grid: &Grid, influence: Influence) -> InfluenceKernel {
+    /// The kernel of a body with this response on the grid.
+    pub(super) fn new(
+        grid: &Grid,
+        body: Body,
+        periodic: [bool; 2],
+        response: impl Fn([usize; 2]) -> f64 + Send + Sync + 'static,
+    ) -> InfluenceKernel {
         InfluenceKernel {
             grid: grid.clone(),
-            influence,
+            body,
+            periodic,
+            datum: None,
+            response: Arc::new(response),
             operators: Default::default(),
-            on_itself: Default::default(),
-            raises: Default::default(),
+            facts: Default::default(),
         }
     }
 
@@ -46,7 +55,8 @@ impl InfluenceKernel {
     /// `f64`.
     pub fn half_space(grid: &Grid) -> Result<InfluenceKernel> {
         representable(grid)?;
-        Ok(InfluenceKernel::new(grid, Influence::HalfSpace(Love::new(grid.spacing()))))
+        let love = Love::new(grid.spacing());
+        Ok(InfluenceKernel::new(grid, Body::HalfSpace, [false; 2], move |at| love.coefficient(at)))
     }
 
     /// A half-space that is periodic along both axes, the grid being one period: Westergaard's K p = 2p/|q| for each
@@ -74,12 +84,12 @@ impl InfluenceKernel {
     /// If the grid has one cell: nothing on it can be displaced. If a side of a cell, or their ratio, is not in
     /// \[1e-100, 1e100\] (m).
     pub fn periodic(grid: &Grid) -> Result<InfluenceKernel> {
-        if grid.len() == 1 {
-            let allowed = "2 or more: the mean of a periodic surface is not displaced";
-            return Err(Error::CountOutOfRange { field: "cells of a periodic grid", value: 1, allowed });
-        }
+        let allowed = "2 or more: the mean of a periodic surface is not displaced";
+        count_within("cells of a periodic grid", grid.len(), grid.len() > 1, allowed)?;
         representable(grid)?;
-        Ok(InfluenceKernel::new(grid, Influence::Periodic))
+        let q = magnitude(grid, grid.cells());
+        let compliance = move |k: [usize; 2]| if k == [0, 0] { 0.0 } else { 2.0 / q(k) };
+        Ok(InfluenceKernel::new(grid, Body::HalfSpace, [true; 2], compliance))
     }
 
     /// A half-space that is periodic along `axis` (0 is x1, 1 is x2), the grid being one period, and loaded on the grid
@@ -93,11 +103,9 @@ impl InfluenceKernel {
     /// If `axis` is neither 0 nor 1, or `datum` is not finite, or less than the length of the grid along the other
     /// axis, or more than 1e120 m; if a side of a cell, or their ratio, is not in \[1e-100, 1e100\] (m).
     pub fn periodic_along(grid: &Grid, axis: usize, datum: f64) -> Result<InfluenceKernel> {
-        if axis > 1 {
-            return Err(Error::CountOutOfRange { field: "periodic axis", value: axis, allowed: "0 (x1) or 1 (x2)" });
-        }
+        check_axis(axis)?;
         let strip = strip(grid, 1 - axis, datum)?;
-        Ok(InfluenceKernel::new(grid, Influence::Strip { periodic: axis, strip }))
+        Ok(InfluenceKernel::strips(grid, Body::HalfSpace, axis, (strip, Some(datum)), Vec::new()))
     }
 
     /// A line contact, in plane strain: a grid of N × 1 cells, and pressures that do not depend on x2,
@@ -112,11 +120,8 @@ impl InfluenceKernel {
     /// x1: a pressure would pull the surface up. If it is more than 1e120 m, or a side of a cell, or their ratio, is
     /// not in \[1e-100, 1e100\] (m).
     pub fn line(grid: &Grid, datum: f64) -> Result<InfluenceKernel> {
-        if grid.cells()[1] != 1 {
-            let field = "cells along x2 of a line contact";
-            return Err(Error::CountOutOfRange { field, value: grid.cells()[1], allowed: "1" });
-        }
-        Ok(InfluenceKernel::new(grid, Influence::Strip { periodic: 1, strip: strip(grid, 0, datum)? }))
+        check_line(grid)?;
+        InfluenceKernel::periodic_along(grid, 1, datum)
     }
 
     /// A user-defined body: `coefficient(i, j)` \[m\] is the displacement, over C, of a cell under a unit pressure
@@ -133,10 +138,10 @@ impl InfluenceKernel {
         let [n1, n2] = grid.cells();
         let layout = Layout { cells: grid.cells(), ends: [Ends::Free; 2], folded: [false; 2] };
         let coefficients = (grid.len() * size_of::<f64>()) as u128;
-        memory::check("a kernel of coefficients", 2 * coefficients + MEMORY_WHILE_MADE * layout.operator_bytes())?;
+        memory::check("a kernel of coefficients", 2 * coefficients + MEMORY_WHILE_MADE * layout.operator_bytes(None))?;
         let mut values = Vec::with_capacity(grid.len());
-        let distances = || (0..n1 as isize).flat_map(|i| (0..n2 as isize).map(move |j| (i, j)));
-        for (i, j) in distances() {
+        let distances = || indices([n1, n2]).map(|at| at.map(|index| index as isize));
+        for [i, j] in distances() {
             let value = coefficient(i, j);
             // also rejects NaN
             if !(-GREATEST..=GREATEST).contains(&value) {
@@ -146,7 +151,7 @@ impl InfluenceKernel {
             values.push(value);
         }
         let greatest = values.iter().fold(0.0_f64, |greatest, value| greatest.max(value.abs()));
-        for ((i, j), own) in distances().zip(&values) {
+        for ([i, j], own) in distances().zip(&values) {
             for at in [[-i, j], [i, -j], [-i, -j]] {
                 let value = coefficient(at[0], at[1]);
                 let equal = (value - own).abs() <= UNEQUAL * greatest;
@@ -156,12 +161,14 @@ impl InfluenceKernel {
                 }
             }
         }
-        let kernel = InfluenceKernel::new(grid, Influence::Coefficients { values: values.into(), columns: n2 });
+        let kernel = InfluenceKernel::new(grid, Body::User, [false; 2], move |[i, j]| values[i * n2 + j]);
         let whole = kernel.operator([false; 2]);
-        let symbol = kernel.influence.symbol(grid, layout, None);
-        let mut waves = (0..=layout.period(0) / 2).flat_map(|k1| (0..=layout.period(1) / 2).map(move |k2| (k1, k2)));
-        if !waves.all(|(k1, k2)| symbol(k1, k2) > 0.0) {
-            memory::check("the check that a kernel is positive definite", layout.workspace_bytes() + 3 * coefficients)?;
+        let symbol = kernel.symbol(layout, None);
+        if !indices([0, 1].map(|axis| layout.period(axis) / 2 + 1)).all(|[k1, k2]| symbol(k1, k2) > 0.0) {
+            memory::check(
+                "the check that a kernel is positive definite",
+                layout.workspace_bytes(None) + 3 * coefficients,
+            )?;
             let (least, most) = least_eigenvalue(whole, grid.len());
             let positive = least > -ROUNDING * most;
             if !positive {
@@ -199,28 +206,43 @@ impl InfluenceKernel {
     /// If the compliance of a wave is not positive, the compliance of the mean is negative, or either is more than 1e100 m; if
     /// there is not enough memory for them.
     pub fn from_spectrum(grid: &Grid, compliance: impl Fn(f64, f64) -> f64) -> Result<InfluenceKernel> {
-        let [half1, half2] = grid.cells().map(|cells| cells / 2);
+        let counts = grid.cells().map(|cells| cells / 2 + 1);
         let q = |axis: usize, k: usize| wave_number(k, grid.cells()[axis], grid.spacing()[axis]);
-        let count = (half1 + 1) as u128 * (half2 + 1) as u128;
-        memory::check("a kernel of waves", 2 * count * size_of::<f64>() as u128)?;
-        let mut values = Vec::with_capacity((half1 + 1) * (half2 + 1));
-        for k1 in 0..=half1 {
-            for k2 in 0..=half2 {
-                let value = compliance(q(0, k1), q(1, k2));
-                let mean = (k1, k2) == (0, 0);
-                if !(value <= GREATEST && (value > 0.0 || (mean && value == 0.0))) {
-                    let allowed = if mean { "in [0, 1e100] m" } else { "> 0, and at most 1e100 m" };
-                    let at = [k1 as isize, k2 as isize];
-                    return Err(KernelError::InvalidInfluence { of: "wave", at, value, allowed }.into());
-                }
-                values.push(value);
+        memory::check("a kernel of waves", 2 * size_of::<f64>() as u128 * counts[0] as u128 * counts[1] as u128)?;
+        let mut values = Vec::with_capacity(counts[0] * counts[1]);
+        for k in indices(counts) {
+            let (value, mean) = (compliance(q(0, k[0]), q(1, k[1])), k == [0, 0]);
+            if !(value <= GREATEST && (value > 0.0 || (mean && value == 0.0))) {
+                let allowed = if mean { "in [0, 1e100] m" } else { "> 0, and at most 1e100 m" };
+                let at = k.map(|index| index as isize);
+                return Err(KernelError::InvalidInfluence { of: "wave", at, value, allowed }.into());
             }
+            values.push(value);
         }
         if values.iter().all(|&value| value == 0.0) {
             let allowed = "> 0 on a grid of one cell";
             return Err(KernelError::InvalidInfluence { of: "wave", at: [0, 0], value: 0.0, allowed }.into());
         }
-        Ok(InfluenceKernel::new(grid, Influence::Waves { values: Arc::from(values), columns: half2 + 1 }))
+        let compliance = move |[k1, k2]: [usize; 2]| values[k1 * counts[1] + k2];
+        Ok(InfluenceKernel::new(grid, Body::User, [true; 2], compliance))
+    }
+
+    /// A body that is periodic along `axis`. Its response is the coefficient of a strip of a half-space for each wave along the axis,
+    /// and the addition of a layer for each wave that reaches its base.
+    pub(super) fn strips(
+        grid: &Grid,
+        body: Body,
+        axis: usize,
+        (strip, datum): (Strip, Option<f64>),
+        added: Vec<Remainder>,
+    ) -> InfluenceKernel {
+        let (cells, along, side) = (grid.cells()[axis], grid.spacing()[axis], grid.spacing()[1 - axis]);
+        let response = move |at: [usize; 2]| {
+            let (i, k) = (at[1 - axis], at[axis]);
+            let added = added.get(k).map_or(0.0, |remainder| remainder.on_line(i as f64 * side, side));
+            strip.coefficient(i, wave_number(k, cells, along)) + added
+        };
+        InfluenceKernel { datum, ..InfluenceKernel::new(grid, body, [axis == 0, axis == 1], response) }
     }
 }
 
@@ -234,6 +256,18 @@ pub(super) fn representable(grid: &Grid) -> Result<()> {
     within(field, d1 / d2, RANGE.contains(&(d1 / d2)), "in [1e-100, 1e100] for the kernel of a half-space").map(drop)
 }
 
+/// Rejects an axis that a grid does not have.
+pub(super) fn check_axis(axis: usize) -> Result<()> {
+    count_within("periodic axis", axis, axis < 2, "0 (x1) or 1 (x2)")
+}
+
+/// Rejects grids of more than one cell along x2.
+pub(super) fn check_line(grid: &Grid) -> Result<()> {
+    let cells = grid.cells()[1];
+    count_within("cells along x2 of a line contact", cells, cells == 1, "1")
+}
+
+/// The strips of a half-space on cells along `axis`.
 pub(super) fn strip(grid: &Grid, axis: usize, datum: f64) -> Result<Strip> {
     representable(grid)?;
     let reaches = datum >= grid.lengths()[axis];

@@ -1,4 +1,4 @@
-//! The spectrum of an even kernel that is given by its coefficients.
+//! The spectrum of an even kernel that is given by its coefficients, or, along periodic axes, by its waves.
 
 use std::sync::Arc;
 
@@ -17,26 +17,18 @@ pub(super) struct EvenSpectrum {
 }
 
 impl EvenSpectrum {
-    /// The spectrum of the kernel with these coefficients at the distances of the layout, and zero beyond; own columns, where
-    /// ranks share it out.
-    pub(super) fn of(
-        layout: Layout,
-        shares: Option<&Shares>,
-        coefficient: impl Fn(usize, usize) -> f64,
-    ) -> EvenSpectrum {
+    /// The spectrum of the kernel with this response: at the distances of the layout along an axis that ends, and zero beyond;
+    /// at wave numbers along a periodic one. Local columns, where ranks share it out.
+    pub(super) fn of(layout: Layout, shares: Option<&Shares>, response: &dyn Fn([usize; 2]) -> f64) -> EvenSpectrum {
         // a kernel made periodic needs half a period at most, and none beyond the cells
         let known = [0, 1].map(|axis| {
-            let cells = layout.cells[axis] * if layout.folded[axis] { 2 } else { 1 };
-            if layout.ends[axis] == Ends::Free { cells } else { cells.min(layout.period(axis) / 2 + 1) }
+            let (cells, half) = (layout.unfolded(axis), layout.period(axis) / 2 + 1);
+            if layout.ends[axis] == Ends::Free { cells } else { cells.min(half) }
         });
-        let [period1, period2] = [layout.period(0), layout.period(1)];
         let columns = shares.map_or(layout.all_columns(), |shares| shares.columns(&layout));
-        let (first, count, length) = (columns.start, columns.len(), period1 / 2 + 1);
-        let [mut across, mut down] = [EvenLine::new(period2), EvenLine::new(period1)];
-        let mut write = |i: usize, row: &mut [f64]| {
-            let values = across.transform((0..known[1]).map(|j| coefficient(i, j)));
-            row.iter_mut().zip(values).for_each(|(out, value)| *out = value);
-        };
+        let (first, count, length) = (columns.start, columns.len(), layout.period(0) / 2 + 1);
+        let [mut down, mut across] = [0, 1].map(|axis| EvenLine::new(&layout, axis));
+        let mut write = |i: usize, row: &mut [f64]| across.transform((0..known[1]).map(|j| response([i, j])), row);
         let rows = if let Some(shares) = shares {
             shares.own_columns(&layout, known[0], write)
         } else {
@@ -47,8 +39,7 @@ impl EvenSpectrum {
         // stored column by column
         let mut values = vec![0.0; length * count];
         for (k2, column) in values.chunks_exact_mut(length).enumerate() {
-            let values = down.transform(rows[k2..].iter().step_by(count).copied());
-            column.iter_mut().zip(values).for_each(|(out, value)| *out = value);
+            down.transform(rows[k2..].iter().step_by(count).copied(), column);
         }
         EvenSpectrum { values, first, length }
     }
@@ -59,29 +50,33 @@ impl EvenSpectrum {
     }
 }
 
-/// Transforms real even lines of one period.
-pub(super) struct EvenLine {
-    plan: Arc<dyn RealToComplex<f64>>,
+/// Transforms real even lines of one period, if their axis is not periodic: there they hold waves already.
+struct EvenLine {
+    plan: Option<Arc<dyn RealToComplex<f64>>>,
     line: Vec<f64>,
     transformed: Vec<Complex64>,
 }
 
 impl EvenLine {
-    pub(super) fn new(period: usize) -> EvenLine {
-        let plan = RealFftPlanner::new().plan_fft_forward(period);
+    fn new(layout: &Layout, axis: usize) -> EvenLine {
+        let period = layout.period(axis);
+        let plan = (layout.ends[axis] != Ends::Periodic).then(|| RealFftPlanner::new().plan_fft_forward(period));
         EvenLine { plan, line: vec![0.0; period], transformed: vec![Complex64::default(); period / 2 + 1] }
     }
 
-    /// The independent coefficients of the line that begins with `values` and is zero beyond them.
-    pub(super) fn transform(&mut self, values: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
+    /// Writes the independent coefficients of the line that begins with `values` and is zero beyond them.
+    fn transform(&mut self, values: impl Iterator<Item = f64>, out: &mut [f64]) {
+        let Some(plan) = &self.plan else {
+            return out.iter_mut().zip(values).for_each(|(out, value)| *out = value);
+        };
         let period = self.line.len();
         self.line.fill(0.0);
         for (i, value) in values.enumerate() {
             self.line[i] = value;
             self.line[(period - i) % period] = value;
         }
-        let transformed = self.plan.process(&mut self.line, &mut self.transformed);
+        let transformed = plan.process(&mut self.line, &mut self.transformed);
         debug_assert!(transformed.is_ok());
-        self.transformed.iter().map(|z| z.re)
+        out.iter_mut().zip(&self.transformed).for_each(|(out, z)| *out = z.re);
     }
 }

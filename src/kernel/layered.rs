@@ -1,19 +1,18 @@
 //! Constructors of the kernels of layers.
 
-use std::sync::Arc;
-
 use super::InfluenceKernel;
-use super::constructors::{representable, strip};
-use super::influence::Influence;
-use super::layer::Layer;
+use super::constructors::{check_axis, check_line, representable, strip};
+use super::influence::{Body, longest_side, magnitude};
+use super::layer::{Layer, Remainder};
 use super::line_load::{Strip, wave_number};
 use super::love::Love;
 use crate::Grid;
-use crate::error::{Error, KernelError, Result, within};
+use crate::error::{KernelError, Result, count_within, within};
 
-/// Cells may be so much longer than the layer is thick: their coefficients then have lost as many digits.
+/// Longest cell over the thickness: the coefficients have then lost as many digits.
 const LONGEST_CELL: f64 = 1e3;
-/// The same for layers that yield to a pressure only by being squeezed out, as the middle of a long cell is not.
+/// Longest cell over the thickness, for layers that yield to a pressure only by being squeezed out: the middle of a long cell is
+/// not.
 const LONGEST_SQUEEZED: f64 = 2.0;
 
 impl InfluenceKernel {
@@ -32,11 +31,14 @@ impl InfluenceKernel {
     /// too soft with cells as long as the layer is thick, 9 % with cells of twice that.
     pub fn layer(grid: &Grid, layer: Layer) -> Result<InfluenceKernel> {
         representable(grid)?;
-        let [d1, d2] = grid.spacing();
-        check_side(d1.max(d2), layer)?;
-        let last = grid.lengths()[0].hypot(grid.lengths()[1]);
-        let remainder = Arc::new(layer.remainder_of_cells(last));
-        Ok(InfluenceKernel::new(grid, Influence::Layer { layer, love: Love::new([d1, d2]), remainder }))
+        let sides = grid.spacing();
+        check_side(sides[0].max(sides[1]), layer)?;
+        let (love, added) = (Love::new(sides), Remainder::of_cells(&layer, grid.lengths()[0].hypot(grid.lengths()[1])));
+        let coefficient = move |at: [usize; 2]| {
+            let distance = [0, 1].map(|axis| at[axis] as f64 * sides[axis]);
+            love.coefficient(at) + added.on_cell(distance, sides)
+        };
+        Ok(InfluenceKernel::new(grid, Body::Layer(layer), [false; 2], coefficient))
     }
 
     /// A [`Layer`] that is periodic along both axes, the grid being one period: (2/q) L(qh) for each wave q of the
@@ -66,19 +68,18 @@ impl InfluenceKernel {
     /// their ratio, is not in \[1e-100, 1e100\] (m), or the compliance of a wave vanishes in `f64`.
     pub fn layer_periodic(grid: &Grid, layer: Layer) -> Result<InfluenceKernel> {
         representable(grid)?;
-        if layer.compliance_of_period() == 0.0 && grid.len() == 1 {
-            let allowed = "2 or more: the mean of this surface is not displaced";
-            return Err(Error::CountOutOfRange { field: "cells of a periodic grid", value: 1, allowed });
-        }
-        let kernel = InfluenceKernel::new(grid, Influence::LayerPeriodic(layer));
-        let longest =
-            (0..2).filter(|&axis| grid.cells()[axis] > 1).map(|axis| grid.lengths()[axis]).fold(0.0, f64::max);
+        let mean = layer.compliance_of_period();
+        let allowed = "2 or more: the mean of this surface is not displaced";
+        count_within("cells of a periodic grid", grid.len(), mean != 0.0 || grid.len() > 1, allowed)?;
+        let longest = longest_side(grid);
         if longest > 0.0 {
             let softness = layer.compliance(std::f64::consts::TAU / longest);
             let enough = "a normal number: the layer is too thin for this grid";
             within("compliance of the longest wave", softness, softness.is_normal(), enough)?;
         }
-        Ok(kernel)
+        let q = magnitude(grid, grid.cells());
+        let compliance = move |k: [usize; 2]| if k == [0, 0] { mean } else { layer.compliance(q(k)) };
+        Ok(InfluenceKernel::new(grid, Body::Layer(layer), [true; 2], compliance))
     }
 
     /// A [`Layer`] in line contact, in plane strain: a grid of N × 1 cells, and pressures that do not depend on x2,
@@ -91,13 +92,8 @@ impl InfluenceKernel {
     /// it is not finite, or less than the length of the grid along x1, or more than 1e120 m. As
     /// [`InfluenceKernel::layer`], of the sides along x1.
     pub fn layer_line(grid: &Grid, layer: Layer, datum: Option<f64>) -> Result<InfluenceKernel> {
-        if grid.cells()[1] != 1 {
-            let field = "cells along x2 of a line contact";
-            return Err(Error::CountOutOfRange { field, value: grid.cells()[1], allowed: "1" });
-        }
-        let strip = layer_strip(grid, layer, 0, datum)?;
-        let remainder = Arc::new(layer.remainder_of_lines(grid.lengths()[0], datum));
-        Ok(InfluenceKernel::new(grid, Influence::LayerLine { layer, strip, remainder }))
+        check_line(grid)?;
+        InfluenceKernel::layer_periodic_along(grid, layer, 1, datum)
     }
 
     /// A [`Layer`] that is periodic along `axis` (0 is x1, 1 is x2), the grid being one period, and loaded on the grid only
@@ -112,16 +108,13 @@ impl InfluenceKernel {
     /// # Errors
     /// If `axis` is neither 0 nor 1. As [`InfluenceKernel::layer_line`], of lengths and sides along the other axis.
     pub fn layer_periodic_along(grid: &Grid, layer: Layer, axis: usize, datum: Option<f64>) -> Result<InfluenceKernel> {
-        if axis > 1 {
-            return Err(Error::CountOutOfRange { field: "periodic axis", value: axis, allowed: "0 (x1) or 1 (x2)" });
-        }
+        check_axis(axis)?;
         let strip = layer_strip(grid, layer, 1 - axis, datum)?;
         let (last, cells, side) = (grid.lengths()[1 - axis], grid.cells()[axis], grid.spacing()[axis]);
-        let mut remainders = vec![layer.remainder_of_lines(last, datum)];
-        let waves = (1..=cells / 2).map(|k| layer.remainder_of_wave(last, wave_number(k, cells, side)));
-        remainders.extend(waves.map_while(|remainder| remainder));
-        let influence = Influence::LayerStrip { layer, periodic: axis, strip, remainders: remainders.into() };
-        Ok(InfluenceKernel::new(grid, influence))
+        let mut added = vec![Remainder::of_lines(&layer, last, datum)];
+        let waves = (1..=cells / 2).map(|k| Remainder::of_wave(&layer, last, wave_number(k, cells, side)));
+        added.extend(waves.map_while(|remainder| remainder));
+        Ok(InfluenceKernel::strips(grid, Body::Layer(layer), axis, (strip, datum), added))
     }
 }
 

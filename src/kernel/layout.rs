@@ -65,13 +65,9 @@ impl Layout {
         Layout { ends, ..*self }
     }
 
-    /// The coefficient \[m\] of the cell `at` cells away of the real even operator with this symbol: the mean of its waves
-    /// there.
-    pub(super) fn coefficient(&self, at: [usize; 2], symbol: impl Fn(usize, usize) -> f64) -> f64 {
-        let [period1, period2] = [self.period(0), self.period(1)];
-        let row = |k1: usize| (0..=period2 / 2).map(|k2| waves_at(at[1], k2, period2) * symbol(k1, k2)).sum::<f64>();
-        let rows = (0..=period1 / 2).map(|k1| waves_at(at[0], k1, period1) * row(k1));
-        rows.sum::<f64>() / (period1 * period2) as f64
+    /// Cells along an axis and their mirror images.
+    pub(super) fn unfolded(&self, axis: usize) -> usize {
+        self.cells[axis] * if self.folded[axis] { 2 } else { 1 }
     }
 
     /// The period of the fields \[cells\].

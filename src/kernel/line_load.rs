@@ -25,7 +25,7 @@ pub(crate) struct Strip {
     /// Length of a cell \[m\].
     side: f64,
     /// Distance from a line load at which the displacement is zero \[m\].
-    pub(super) datum: f64,
+    datum: f64,
 }
 
 impl Strip {
@@ -67,11 +67,11 @@ impl Strip {
         }
         twice * FRAC_2_PI / kappa * STEP * sum
     }
+}
 
-    /// The mean displacement of a length under a uniform pressure on it, divided by the pressure \[m\].
-    pub(crate) fn uniform(&self, length: f64) -> f64 {
-        FRAC_2_PI * length * (1.5 - (length / self.datum).ln())
-    }
+/// The mean displacement of a length under a uniform pressure on it, divided by the pressure \[m\].
+pub(super) fn uniform(length: f64, datum: f64) -> f64 {
+    FRAC_2_PI * length * (1.5 - (length / datum).ln())
 }
 
 /// (1 + z) ln(1 + z) − (1 − z) ln(1 − z) − 2z for small z: −z³/3 − z⁵/10 − …, where the closed form cancels.
@@ -154,6 +154,6 @@ mod tests {
         let (cells, strip) = (400, Strip::new(0.25, 300.0));
         let row = |i: usize| (0..cells).map(|j: usize| strip.coefficient(i.abs_diff(j), 0.0)).sum::<f64>();
         let mean = (0..cells).map(row).sum::<f64>() / cells as f64;
-        assert_abs_diff_eq!(mean / strip.uniform(100.0), 1.0, epsilon = 1e-5);
+        assert_abs_diff_eq!(mean / uniform(100.0, 300.0), 1.0, epsilon = 1e-5);
     }
 }

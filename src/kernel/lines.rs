@@ -117,7 +117,7 @@ impl Line {
     /// Transforms the values placed in `buffer` to coefficients.
     #[inline(always)]
     pub(crate) fn forward(&self, buffer: &mut [Complex64], scratch: &mut [Complex64]) {
-        self.forward.process_with_scratch(buffer, scratch);
+        self.bare_forward(buffer, scratch);
         if !self.is_folded() {
             return;
         }

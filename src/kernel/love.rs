@@ -53,7 +53,7 @@ impl Love {
     }
 
     /// The coefficient of the cell (i, j) cells away \[m\].
-    pub(crate) fn coefficient(&self, i: usize, j: usize) -> f64 {
+    pub(crate) fn coefficient(&self, [i, j]: [usize; 2]) -> f64 {
         let (along, across) = if self.long_first { (i, j) } else { (j, i) };
         let [a, b] = self.half;
         if along == 0 && across == 0 {
@@ -82,15 +82,15 @@ mod tests {
 
     #[test]
     fn a_square_cell_on_itself() {
-        assert_eq!(Love::new([0.5, 0.5]).coefficient(0, 0), 0.5 * 4.0 * 1_f64.asinh() / PI);
+        assert_eq!(Love::new([0.5, 0.5]).coefficient([0, 0]), 0.5 * 4.0 * 1_f64.asinh() / PI);
     }
 
     #[test]
     fn cells_may_be_exchanged_and_scaled() {
         let love = Love::new([1.0, 3.0]);
         for (i, j) in [(0, 0), (1, 0), (0, 1), (5, 2), (40, 700)] {
-            assert_eq!(love.coefficient(i, j), Love::new([3.0, 1.0]).coefficient(j, i));
-            assert_eq!(4.0 * love.coefficient(i, j), Love::new([4.0, 12.0]).coefficient(i, j));
+            assert_eq!(love.coefficient([i, j]), Love::new([3.0, 1.0]).coefficient([j, i]));
+            assert_eq!(4.0 * love.coefficient([i, j]), Love::new([4.0, 12.0]).coefficient([i, j]));
         }
     }
 }

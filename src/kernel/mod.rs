@@ -33,15 +33,14 @@ pub use layer::Layer;
 pub(crate) use layout::{fast_length, images};
 pub(crate) use transform::{SpectralOperator, TransformWorkspace};
 
-use std::fmt;
 use std::sync::{Arc, OnceLock};
 
 use crate::Grid;
 use crate::error::{Error, KernelError, Result, exact_length, finite};
 use crate::memory;
 use crate::parallel::Rows;
-use influence::Influence;
-use layout::{Ends, Layout};
+use influence::{Body, Response};
+use layout::Layout;
 use transform::Shares;
 
 /// Memory that making an operator takes, relative to the memory of the operator: its spectrum, and the transform that yields
@@ -70,16 +69,30 @@ const MEMORY_WHILE_MADE: u128 = 3;
 /// assert!((kp[32 * 64 + 32] / exact - 1.0).abs() < 1.0e-3);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
-#[derive(Debug, Clone)]
+#[derive(Clone)]
 pub struct InfluenceKernel {
     grid: Grid,
-    influence: Influence,
+    body: Body,
+    /// Axes along which the body and its load are periodic.
+    periodic: [bool; 2],
+    /// Distance from a line load at which the displacement is zero \[m\], where one is needed: for a half-space, and for a layer
+    /// on one, periodic along one axis.
+    datum: Option<f64>,
+    response: Response,
     /// Operators on the whole grid, for each choice of folded axes.
     operators: [OnceLock<Arc<SpectralOperator>>; 4],
-    /// The influence of a cell on itself, once it is needed.
+    facts: Arc<Facts>,
+}
+
+/// Properties of the response, each computed at its first use.
+#[derive(Debug, Default)]
+struct Facts {
+    /// The influence of a cell on itself \[m\].
     on_itself: OnceLock<f64>,
-    /// Whether a pressure raises the surface somewhere, once it is needed; common to all parts.
-    raises: Arc<OnceLock<bool>>,
+    /// Whether a pressure raises the surface somewhere.
+    raises: OnceLock<bool>,
+    /// The greatest compliance of a wave \[m\], if the mean has none.
+    softest: OnceLock<Option<f64>>,
 }
 
 /// Buffers of [`InfluenceKernel::convolve`], made by [`InfluenceKernel::workspace`].
@@ -89,17 +102,13 @@ pub struct Workspace(pub(crate) TransformWorkspace);
 /// The influence operator on a part of a grid, and on its mirror images along folded axes.
 #[derive(Debug, Clone)]
 pub(crate) struct LocalKernel {
-    /// The own rows.
+    /// On the whole grid, whose lengths are the periods of the waves.
+    kernel: InfluenceKernel,
+    /// The local rows.
     grid: Grid,
     rows: Rows,
-    /// The grid that the kernel was made for. Its lengths are the periods of the waves.
-    whole: Grid,
-    operator: Arc<SpectralOperator>,
-    influence: Influence,
     folded: [bool; 2],
-    self_influence: f64,
-    softest: Option<f64>,
-    raises: Arc<OnceLock<bool>>,
+    operator: Arc<SpectralOperator>,
 }
 
 impl InfluenceKernel {
@@ -113,7 +122,7 @@ impl InfluenceKernel {
     /// # Errors
     /// If there is not enough memory for them, or for the spectrum, which is computed here if it was not needed before.
     pub fn workspace(&self) -> Result<Workspace> {
-        memory::check("the workspace of a kernel", self.layout([false; 2]).workspace_bytes())?;
+        memory::check("the workspace of a kernel", self.layout([false; 2]).workspace_bytes(None))?;
         Ok(Workspace(self.whole_operator()?.workspace()))
     }
 
@@ -188,59 +197,51 @@ impl InfluenceKernel {
         if at[0] >= cells[0] || at[1] >= cells[1] {
             return Err(KernelError::OffsetOutsideGrid { offset, cells }.into());
         }
-        Ok(self.influence.coefficient(&self.grid, at))
+        Ok(self.coefficient_at(at))
     }
 
     /// The operator on the whole grid, without folded axes; an error if there is not enough memory for it.
     fn whole_operator(&self) -> Result<&Arc<SpectralOperator>> {
         if self.operators[index([false; 2])].get().is_none() {
             let layout = self.layout([false; 2]);
-            memory::check("the spectrum of a kernel", MEMORY_WHILE_MADE * layout.operator_bytes())?;
+            memory::check("the spectrum of a kernel", MEMORY_WHILE_MADE * layout.operator_bytes(None))?;
         }
         Ok(self.operator([false; 2]))
     }
 
-    /// Bytes of the kernel on `cells`, operator and workspace, and bytes of the approximate inverse. An operator that
+    /// Bytes of the kernel on some rows, operator and workspace, and bytes of the approximate inverse. An operator that
     /// exists already counts zero.
-    pub(crate) fn bytes_on(&self, cells: [usize; 2], folded: [bool; 2]) -> [u128; 2] {
-        let (layout, whole) = (Layout { cells, ..self.layout(folded) }, self.layout(folded));
-        let made = layout == whole && self.operators[index(folded)].get().is_some();
-        let operator = if made { 0 } else { layout.operator_bytes() };
-        let inverse = layout.wrapped();
-        [operator + layout.workspace_bytes(), inverse.operator_bytes() + inverse.workspace_bytes_beside(&layout)]
-    }
-
-    /// Like `bytes_on`, for the local rows of this rank.
-    pub(crate) fn own_bytes(&self, rows: &Rows, folded: [bool; 2]) -> [u128; 2] {
+    pub(crate) fn bytes(&self, rows: &Rows, folded: [bool; 2]) -> [u128; 2] {
         let layout = Layout { cells: rows.cells(), ..self.layout(folded) };
         let inverse = layout.wrapped();
-        let (Some(of_kernel), Some(of_inverse)) = (Shares::new(&layout, rows), Shares::new(&inverse, rows)) else {
-            return self.bytes_on(rows.cells(), folded);
-        };
-        let kernel = of_kernel.operator_bytes(&layout) + of_kernel.workspace_bytes(&layout);
-        [kernel, of_inverse.operator_bytes(&inverse) + of_inverse.workspace_bytes_beside(&inverse, &of_kernel)]
+        let [shares, of_inverse] = [layout, inverse].map(|layout| Shares::new(&layout, rows));
+        let (shares, of_inverse) = (shares.as_ref(), of_inverse.as_ref());
+        let made = self.is_whole(&layout, rows) && self.operators[index(folded)].get().is_some();
+        let operator = if made { 0 } else { layout.operator_bytes(shares) };
+        let beside = inverse.workspace_bytes(of_inverse) - inverse.lent_bytes(of_inverse, (&layout, shares));
+        [operator + layout.workspace_bytes(shares), inverse.operator_bytes(of_inverse) + beside]
+    }
+
+    /// Whether rows with this layout are all of the grid, in this process.
+    fn is_whole(&self, layout: &Layout, rows: &Rows) -> bool {
+        *layout == self.layout(layout.folded) && !rows.are_shared()
     }
 
     /// The operator on the whole grid.
     fn operator(&self, folded: [bool; 2]) -> &Arc<SpectralOperator> {
-        let layout = self.layout(folded);
-        self.operators[index(folded)].get_or_init(|| Arc::new(self.make(layout)))
+        self.operators[index(folded)].get_or_init(|| Arc::new(self.make(self.layout(folded), None)))
     }
 
     /// The layout of the whole grid, or of half or a quarter of it where axes are folded.
     fn layout(&self, folded: [bool; 2]) -> Layout {
         let cells = [0, 1].map(|axis| self.grid.cells()[axis] / if folded[axis] { 2 } else { 1 });
-        Layout { cells, ends: self.influence.ends(), folded }
+        Layout { cells, ends: self.ends(), folded }
     }
 
-    fn make(&self, layout: Layout) -> SpectralOperator {
-        SpectralOperator::from_symbol(layout, self.influence.symbol(&self.grid, layout, None))
-    }
-
-    /// An operator whose rows are shared out: each rank makes its part of the spectrum.
-    fn make_shared(&self, layout: Layout, shares: Shares) -> SpectralOperator {
-        let symbol = self.influence.symbol(&self.grid, layout, Some(&shares));
-        SpectralOperator::shared(layout, shares, symbol)
+    /// An operator of this layout; where ranks share out its rows, each makes its part of the spectrum.
+    fn make(&self, layout: Layout, shares: Option<Shares>) -> SpectralOperator {
+        let symbol = self.symbol(layout, shares.as_ref());
+        SpectralOperator::new(layout, shares, symbol)
     }
 
     /// The kernel on a part of the grid and its mirror images along folded axes. Along periodic axes the part is the
@@ -252,66 +253,28 @@ impl InfluenceKernel {
     /// Like [`InfluenceKernel::on`], where `part` is the local rows of `rows`.
     pub(crate) fn on_rows(&self, part: &Grid, folded: [bool; 2], rows: &Rows) -> LocalKernel {
         let layout = Layout { cells: rows.cells(), ..self.layout(folded) };
-        let operator = if let Some(shares) = Shares::new(&layout, rows) {
-            Arc::new(self.make_shared(layout, shares))
-        } else if layout == self.layout(folded) {
+        let operator = if self.is_whole(&layout, rows) {
             Arc::clone(self.operator(folded))
         } else {
-            Arc::new(self.make(layout))
+            Arc::new(self.make(layout, Shares::new(&layout, rows)))
         };
-        LocalKernel {
-            grid: part.clone(),
-            rows: rows.clone(),
-            whole: self.grid.clone(),
-            operator,
-            influence: self.influence.clone(),
-            folded,
-            self_influence: self.self_influence(),
-            softest: self.influence.softest_wave_if_mean_is_held(&self.grid),
-            raises: Arc::clone(&self.raises),
-        }
-    }
-
-    /// The influence of a cell on itself \[m\].
-    pub(crate) fn self_influence(&self) -> f64 {
-        *self.on_itself.get_or_init(|| self.influence.coefficient(&self.grid, [0; 2]))
+        LocalKernel { kernel: self.clone(), grid: part.clone(), rows: rows.clone(), folded, operator }
     }
 
     /// Fingerprint of the kernel among kernels of the same kind.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn mark(&self) -> Vec<f64> {
         let mut mark = vec![self.self_influence()];
-        if let Influence::Coefficients { values, columns } | Influence::Waves { values, columns } = &self.influence {
-            mark.extend(crate::sum::moments(values.iter().copied(), *columns));
+        if self.body == Body::User {
+            let (values, columns) = self.table();
+            mark.extend(crate::sum::moments(values, columns));
         }
         mark
     }
 
     /// Axes along which the bodies are periodic, the grid being one period.
     pub fn periodic_axes(&self) -> [bool; 2] {
-        self.influence.ends().map(|end| end == Ends::Periodic)
-    }
-
-    /// The layer, if the body is one: its Poisson's ratio must equal the material's.
-    pub(crate) fn layer_of(&self) -> Option<&Layer> {
-        self.influence.layer()
-    }
-
-    /// How the load continues beyond the grid, if the body is a half-space whose inside is known.
-    pub(crate) fn half_space_below(&self) -> Option<HalfSpace> {
-        self.influence.half_space(&self.grid)
-    }
-
-    /// Whether the body is a half-space, whose displacement is positive everywhere around a load.
-    pub(crate) fn is_half_space(&self) -> bool {
-        matches!(self.influence, Influence::HalfSpace(_))
-    }
-}
-
-/// The body: "half-space, periodic along x2, datum 1e0 m".
-impl fmt::Display for InfluenceKernel {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.influence.fmt(f)
+        self.periodic
     }
 }
 
@@ -320,7 +283,7 @@ fn index(folded: [bool; 2]) -> usize {
 }
 
 impl LocalKernel {
-    /// The own rows.
+    /// The local rows.
     pub(crate) fn grid(&self) -> &Grid {
         &self.grid
     }
@@ -332,33 +295,28 @@ impl LocalKernel {
 
     /// The greatest compliance of a wave \[m\], if the mean has none.
     pub(crate) fn softest_wave_if_mean_is_held(&self) -> Option<f64> {
-        self.softest
+        self.kernel.softest_wave_if_mean_is_held()
     }
 
     /// Whether the mean displacement is fixed: then the approach cannot exceed the approach of full contact.
     pub(crate) fn mean_is_held(&self) -> bool {
-        self.softest.is_some()
+        self.softest_wave_if_mean_is_held().is_some()
     }
 
     /// Whether a pressure raises the surface somewhere, so that displacements may be negative.
-    ///
-    /// Costs a line of coefficients, more where each is a sum over waves: computed at the first call.
     pub(crate) fn raises(&self) -> bool {
-        *self.raises.get_or_init(|| self.influence.raises(&self.whole))
+        self.kernel.raises()
     }
 
     /// The layer, if the body is one.
     pub(crate) fn layer(&self) -> Option<&Layer> {
-        self.influence.layer()
+        self.kernel.layer_of()
     }
 
     /// An approximate inverse, on a layout without padding.
     pub(crate) fn inverse(&self) -> SpectralOperator {
-        let (layout, symbol) = self.influence.inverse(&self.whole, self.rows.cells(), self.folded);
-        match Shares::new(&layout, &self.rows) {
-            Some(shares) => SpectralOperator::shared(layout, shares, symbol),
-            None => SpectralOperator::from_symbol(layout, symbol),
-        }
+        let (layout, symbol) = self.kernel.inverse(self.rows.cells(), self.folded);
+        SpectralOperator::new(layout, Shares::new(&layout, &self.rows), symbol)
     }
 
     /// Buffers for the [`inverse`](LocalKernel::inverse), beside the buffers of [`LocalKernel::workspace`].
@@ -368,7 +326,7 @@ impl LocalKernel {
 
     /// Axes along which the cells are one whole period.
     pub(crate) fn periodic_axes(&self) -> [bool; 2] {
-        [0, 1].map(|axis| self.influence.ends()[axis] == Ends::Periodic && !self.folded[axis])
+        [0, 1].map(|axis| self.kernel.periodic_axes()[axis] && !self.folded[axis])
     }
 
     /// Number of mirror images of each cell, itself included.
@@ -382,7 +340,7 @@ impl LocalKernel {
 
     /// The coefficient of a cell on itself \[m\].
     pub(crate) fn self_influence(&self) -> f64 {
-        self.self_influence
+        self.kernel.self_influence()
     }
 
     /// [`InfluenceKernel::convolve`] for fields of the right length.

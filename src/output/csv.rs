@@ -76,7 +76,7 @@ pub struct CsvHistory {
 }
 
 impl CsvHistory {
-    /// A new file for the history of `contact`, with `additional` columns after those of every history.
+    /// A new file for the history of `contact`, with `additional` columns after the standard ones.
     ///
     /// # Errors
     /// If the file exists ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)) or cannot be written, or the name of a column is empty, already used, or contains `#`, a
@@ -87,9 +87,7 @@ impl CsvHistory {
         contact: &ViscoelasticContact,
         additional: &[&str],
     ) -> Result<CsvHistory> {
-        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), |path| {
-            File::create_new(path).map_err(|error| failed(path, error))
-        })
+        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), false)
     }
 
     /// [`CsvHistory::create`] in the place of an earlier file, which is emptied first.
@@ -103,31 +101,34 @@ impl CsvHistory {
         contact: &ViscoelasticContact,
         additional: &[&str],
     ) -> Result<CsvHistory> {
-        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), |path| {
-            check_regular(path)?;
-            File::create(path).map_err(|error| failed(path, error))
-        })
+        CsvHistory::begin(path.as_ref(), (metadata, contact, additional), true)
     }
 
     fn begin(
         path: &Path,
         (metadata, contact, additional): (&Metadata, &ViscoelasticContact, &[&str]),
-        open: impl FnOnce(&Path) -> Result<File>,
+        replaced: bool,
     ) -> Result<CsvHistory> {
-        let path = path.to_owned();
-        contact.agreed(check_names(&path, additional))?;
+        let unusable = |error| failed(path, error);
+        contact.agreed(check_names(additional).map_err(unusable))?;
         let names: Vec<String> =
             COLUMNS.iter().map(|(name, _)| name).chain(additional).map(|name| quoted(name)).collect();
         let head = format!("# {}\n{}\n", metadata.json(contact), names.join(","));
         let file = contact.by_one_rank(|| {
-            let mut file = Appending::new(open(&path)?);
+            let file = if replaced {
+                check_regular(path)?;
+                File::create(path)
+            } else {
+                File::create_new(path)
+            };
+            let mut file = Appending::new(file.map_err(unusable)?);
             if let Err(error) = file.append(head.as_bytes()) {
-                let _ = fs::remove_file(&path); // report the error of the write instead
-                return Err(failed(&path, error));
+                let _ = fs::remove_file(path); // report the error of the write instead
+                return Err(unusable(error));
             }
             Ok(file)
         })?;
-        Ok(CsvHistory { path, file, additional: additional.len() })
+        Ok(CsvHistory { path: path.to_owned(), file, additional: additional.len() })
     }
 
     /// Appends the row of the last step, with the values of the additional columns. NaN is written as `NaN`.
@@ -141,19 +142,19 @@ impl CsvHistory {
         let cells: Vec<String> = standard.chain(additional.iter().copied().map(number)).collect();
         let row = cells.join(",") + "\n";
         let CsvHistory { path, file, .. } = self;
-        let append = |file: &mut Appending<File>| file.append(row.as_bytes()).map_err(|error| failed(path, error));
-        contact.by_one_rank(|| file.as_mut().map_or(Ok(()), append)).map(drop)
+        let appended = file.as_mut().map_or(Ok(()), |file| file.append(row.as_bytes()));
+        contact.agreed(appended.map_err(|error| failed(path, error)))
     }
 }
 
 /// Rejects names that readers would misinterpret.
-fn check_names(path: &Path, additional: &[&str]) -> Result<()> {
+fn check_names(additional: &[&str]) -> io::Result<()> {
     for (k, name) in additional.iter().enumerate() {
         let invalid = name.is_empty() || name.contains(|c: char| c == '#' || c == '"' || c.is_control());
         if invalid || COLUMNS.iter().any(|(standard, _)| standard == name) || additional[..k].contains(name) {
             let rule = "unique, not empty, and without '#', quotes and control characters";
             let reason = format!("invalid column name {name:?}: names must be {rule}");
-            return Err(failed(path, io::Error::new(io::ErrorKind::InvalidInput, reason)));
+            return Err(io::Error::new(io::ErrorKind::InvalidInput, reason));
         }
     }
     Ok(())

@@ -1,162 +1,103 @@
-//! The values of fields as files take them, whoever has them.
+//! The values of fields in the order of a file, also where ranks share out the contact.
 
 use std::fs::File;
 use std::io::{self, BufWriter};
-use std::ops::Range;
 use std::path::Path;
 
 use crate::ViscoelasticContact;
-use crate::contact::Brought;
-use crate::error::{RanksError, Result};
-use crate::file::replace;
-use crate::output::Field;
-use crate::parallel::catch_rank_loss;
+use crate::error::Result;
+use crate::output::{Field, Format};
 
-/// Cells that ranks bring at a time, or one row or some columns where they have more.
+/// Cells that ranks send at a time, or one row or some columns where they have more.
 const PIECE_CELLS: usize = 1 << 16;
-/// Least columns at a time: fewer numbers beside each other are slow to find.
-#[cfg(feature = "vtk")]
+/// Least columns at a time: shorter pieces of a row are slow to read.
 const LEAST_COLUMNS: usize = 8;
 
-/// The values of some fields, each to be taken once, in this order. Where ranks share out the contact, rank 0 takes them, and
-/// the others bring their rows, some at a time.
+/// The values of some fields, each to be taken once, in this order. Where ranks share out the contact, rank 0 takes the values,
+/// and the other ranks send their rows piece by piece.
 #[derive(Debug)]
 pub(super) struct FieldValues<'a> {
     contact: &'a ViscoelasticContact,
-    fields: &'a [Field],
-    order: Order,
-    /// For fields that the contact does not store.
+    pub(super) fields: &'a [Field],
+    format: Format,
+    /// Values of a field that the contact does not store.
     buffer: &'a mut Vec<f64>,
-    /// A rank has left: nothing can be brought any more.
-    left: Option<RanksError>,
 }
 
-/// The order in which a format has the cells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Order {
-    /// Rows one after the other: the index along x2 varies fastest.
-    #[cfg(feature = "npy")]
-    Rows,
-    /// That along x1.
-    #[cfg(feature = "vtk")]
-    Columns,
-}
-
-/// Writes a file with these fields in the place of another ([`replace`]): a call of all ranks, of which rank 0 writes. Without
-/// ranks the values come from where they are.
+/// Writes a file with these fields in the place of an earlier file. A call of all ranks, of which rank 0 writes.
 pub(super) fn write_fields(
     path: &Path,
-    (contact, fields, order): (&ViscoelasticContact, &[Field], Order),
+    (contact, fields, format): (&ViscoelasticContact, &[Field], Format),
     buffer: &mut Vec<f64>,
     write: impl FnOnce(&mut BufWriter<File>, &mut FieldValues<'_>) -> io::Result<()>,
 ) -> Result<()> {
-    let mut values = FieldValues { contact, fields, order, buffer, left: None };
-    let rows = contact.shared_rows();
-    let Some(group) = rows.group() else { return replace(path, |out| write(out, &mut values)) };
-    // whether rank 0 could begin
-    let all_begin = |begun: bool| catch_rank_loss(&rows, || Ok(!rows.any(!begun)));
-    catch_rank_loss(&rows, || {
-        if group.rank() > 0 {
-            if all_begin(true)? {
-                values.pass_over_the_rest();
-            }
-            return rows.agree(Ok(()));
-        }
-        let mut begun = false;
-        let written = replace(path, |out| {
-            begun = true;
-            all_begin(true).map_err(io::Error::other)?;
-            let written = write(out, &mut values);
-            values.pass_over_the_rest();
-            written
-        });
-        if !begun {
-            all_begin(false)?;
-        }
-        rows.agree(written)
+    let mut values = FieldValues { contact, fields, format, buffer };
+    contact.shared_rows().replace_file(path, |out| {
+        let written = out.map_or(Ok(()), |out| write(out, &mut values));
+        values.pass_over_the_rest();
+        written
     })
 }
 
 impl FieldValues<'_> {
-    /// The next field, some rows at a time.
-    #[cfg(feature = "npy")]
-    pub(super) fn by_rows(&mut self, mut take: impl FnMut(&[f64]) -> io::Result<()>) -> io::Result<()> {
-        let FieldValues { contact, fields, buffer, left, .. } = self;
-        let Some((field, rest)) = fields.split_first() else { return Ok(()) };
-        *fields = rest;
-        let values = field.values(contact, buffer).map_err(io::Error::other)?;
-        if !contact.is_shared() {
-            return take(values);
-        }
-        let [n1, n2] = contact.grid().cells();
-        let pieces = pieces(n1, (PIECE_CELLS / n2).max(1)).map(|rows| [rows, 0..n2]);
-        bring(contact, values, left, pieces, |brought, [mut rows, _]| rows.try_for_each(|row| take(brought.row(row))))
-    }
-
-    /// The next field, value by value of its columns.
-    #[cfg(feature = "vtk")]
-    pub(super) fn by_columns(&mut self, mut take: impl FnMut(f64) -> io::Result<()>) -> io::Result<()> {
-        let FieldValues { contact, fields, buffer, left, .. } = self;
+    /// Passes the next field to `take`: row by row, or for VTK column by column.
+    pub(super) fn next(&mut self, mut take: impl FnMut(&[f64]) -> io::Result<()>) -> io::Result<()> {
+        let FieldValues { contact, fields, format, buffer } = self;
         let Some((field, rest)) = fields.split_first() else { return Ok(()) };
         *fields = rest;
         let values = field.values(contact, buffer).map_err(io::Error::other)?;
         let [n1, n2] = contact.grid().cells();
-        if !contact.is_shared() {
-            return (0..n2).flat_map(|j| (0..n1).map(move |i| values[i * n2 + j])).try_for_each(take);
-        }
-        let pieces = pieces(n2, (PIECE_CELLS / n1).max(LEAST_COLUMNS)).map(|columns| [0..n1, columns]);
-        bring(contact, values, left, pieces, |brought, [rows, columns]| {
-            (0..columns.len()).try_for_each(|j| rows.clone().try_for_each(|row| take(brought.row(row)[j])))
-        })
-    }
-
-    /// Brings what was not taken, as others wait for it to be.
-    fn pass_over_the_rest(&mut self) {
-        while !self.fields.is_empty() {
-            // errors were kept
-            let _ = match self.order {
-                #[cfg(feature = "npy")]
-                Order::Rows => self.by_rows(|_| Ok(())),
-                #[cfg(feature = "vtk")]
-                Order::Columns => self.by_columns(|_| Ok(())),
+        let by_rows = format.is_by_rows();
+        let (all, most) =
+            if by_rows { (n1, (PIECE_CELLS / n2).max(1)) } else { (n2, (PIECE_CELLS / n1).max(LEAST_COLUMNS)) };
+        let (mut taken, mut column) = (Ok(()), Vec::new());
+        for start in (0..all).step_by(most) {
+            let piece = start..(start + most).min(all);
+            let [rows, columns] = if by_rows { [piece, 0..n2] } else { [0..n1, piece] };
+            let mut brought = None;
+            if contact.shared_rows().are_shared() {
+                // every rank sends all pieces, even if one could not be written; none can be sent once a rank has left
+                brought = contact.bring(values, Some(0), rows.clone(), columns.clone()).map_err(io::Error::other)?;
+                if taken.is_err() || brought.is_none() {
+                    continue;
+                }
+            } else if taken.is_err() {
+                break;
+            }
+            let row = |i: usize| match &brought {
+                Some(brought) => brought.row(i),
+                None => &values[i * n2..(i + 1) * n2][columns.clone()],
+            };
+            taken = if by_rows {
+                rows.clone().try_for_each(|i| take(row(i)))
+            } else {
+                (0..columns.len()).try_for_each(|j| {
+                    column.clear();
+                    column.extend(rows.clone().map(|i| row(i)[j]));
+                    take(&column)
+                })
             };
         }
+        taken
     }
-}
 
-/// So many things, some at a time.
-fn pieces(all: usize, most: usize) -> impl Iterator<Item = Range<usize>> {
-    (0..all).step_by(most).map(move |start| start..(start + most).min(all))
-}
-
-/// Brings rectangles of a field to rank 0, where each is taken: all of them, even if one could not be.
-fn bring(
-    contact: &ViscoelasticContact,
-    values: &[f64],
-    left: &mut Option<RanksError>,
-    rectangles: impl Iterator<Item = [Range<usize>; 2]>,
-    mut take: impl FnMut(&Brought, [Range<usize>; 2]) -> io::Result<()>,
-) -> io::Result<()> {
-    let mut taken = Ok(());
-    for [rows, columns] in rectangles {
-        if left.is_some() {
-            break;
-        }
-        match contact.bring(values, 0, rows.clone(), columns.clone()) {
-            Ok(Some(brought)) if taken.is_ok() => taken = take(&brought, [rows, columns]),
-            Ok(_) => {}
-            Err(error) => *left = Some(error),
+    /// Sends the fields that were not taken: the other ranks always, rank 0 after an error.
+    fn pass_over_the_rest(&mut self) {
+        while self.contact.shared_rows().are_shared() && !self.fields.is_empty() {
+            // the loss of a rank is read by `Rows::replace_file`
+            let _ = self.next(|_| Ok(()));
         }
     }
-    left.clone().map_or(taken, |error| Err(io::Error::other(error)))
 }
 
-#[cfg(all(test, feature = "npy", feature = "vtk"))]
+#[cfg(test)]
 mod tests {
+    #![cfg(all(feature = "npy", feature = "vtk"))]
+
     use std::fs;
 
     use super::*;
-    use crate::error::Error;
+    use crate::error::{Error, RanksError};
     use crate::parallel::Threads;
     use crate::{Grid, geometry::Sphere, load::Load, rheology::Elastic, rheology::Material};
 
@@ -166,7 +107,7 @@ mod tests {
         let folder = std::env::temp_dir().join(format!("viscocontact-field-values-{}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
         let (path, fields) = (folder.join("a"), [Field::Pressure, Field::Gap]);
-        for order in [Order::Rows, Order::Columns] {
+        for format in [Format::Npz, Format::Vtk] {
             for failing in 0..4 {
                 let written = Threads::run(3, |ranks| {
                     let mut contact = ViscoelasticContact::builder(Grid::square(256, 4.0e-3)?)
@@ -179,23 +120,19 @@ mod tests {
                     let full = |taken: usize, most: usize| {
                         if taken > most { Err(io::Error::other("full")) } else { Ok(()) }
                     };
-                    let failed = write_fields(&path, (&contact, &fields, order), &mut buffer, |_, values| {
+                    let failed = write_fields(&path, (&contact, &fields, format), &mut buffer, |_, values| {
                         let mut taken = 0;
                         for _ in fields {
-                            let mut take = |count: usize| {
-                                taken += count;
+                            values.next(|part| {
+                                taken += part.len();
                                 full(taken, failing * 40_000)
-                            };
-                            match order {
-                                Order::Rows => values.by_rows(|part| take(part.len()))?,
-                                Order::Columns => values.by_columns(|_| take(1))?,
-                            }
+                            })?;
                         }
                         Ok(())
                     });
                     let mut count = 0;
-                    write_fields(&path, (&contact, &fields, order), &mut buffer, |_, values| {
-                        values.by_rows(|part| {
+                    write_fields(&path, (&contact, &fields, format), &mut buffer, |_, values| {
+                        values.next(|part| {
                             count += part.len();
                             Ok(())
                         })

@@ -2,7 +2,6 @@
 
 use crate::ViscoelasticContact;
 use crate::output::Field;
-use crate::output::json::Object;
 
 /// Units of the values written besides the fields.
 const UNITS: [(&str, &str); 7] = [
@@ -72,35 +71,64 @@ impl Metadata {
     /// `spacing` and `lengths` \[m\]), `bodies`, `kernel`, `settings`, `material` and, if it changes, `temperature` (as
     /// Rust prints them), `units` of all values written, and `conventions`.
     pub fn json(&self, contact: &ViscoelasticContact) -> String {
-        let notes = self.notes.iter().fold(Object::default(), |notes, (key, value)| notes.text(key, value));
         let grid = contact.grid();
-        let grid = Object::default()
-            .value("cells", &format!("{:?}", grid.cells()))
-            .numbers("spacing", grid.spacing())
-            .numbers("lengths", grid.lengths());
-        let fields = Field::ALL.map(|field| (field.name(), field.unit()));
-        let units = fields.iter().chain(&UNITS).fold(Object::default(), |units, (name, unit)| units.text(name, unit));
-        let scene = Object::default()
-            .text("title", &self.title)
-            .value("notes", &notes.finish())
-            .text("crate", env!("CARGO_PKG_NAME"))
-            .text("version", env!("CARGO_PKG_VERSION"))
-            .value("grid", &grid.finish())
-            .value("bodies", &contact.bodies().to_string())
-            .text("kernel", &contact.kernel().to_string())
-            .text("settings", &format!("{:?}", contact.settings()))
-            .text("material", &format!("{:?}", contact.material()));
-        let scene = match contact.temperature() {
-            Some(temperature) => scene.text("temperature", &format!("{temperature:?}")),
-            None => scene,
-        };
-        scene.value("units", &units.finish()).text("conventions", CONVENTIONS).finish()
+        let grid = object([
+            ("cells", format!("{:?}", grid.cells())),
+            ("spacing", format!("{:?}", grid.spacing())),
+            ("lengths", format!("{:?}", grid.lengths())),
+        ]);
+        let units = Field::ALL.map(|field| (field.name(), field.unit())).into_iter().chain(UNITS);
+        let temperature = contact.temperature().map(|temperature| ("temperature", text(&format!("{temperature:?}"))));
+        let scene = [
+            ("title", text(&self.title)),
+            ("notes", object(self.notes().map(|(key, value)| (key, text(value))))),
+            ("crate", text(env!("CARGO_PKG_NAME"))),
+            ("version", text(env!("CARGO_PKG_VERSION"))),
+            ("grid", grid),
+            ("bodies", contact.bodies().to_string()),
+            ("kernel", text(&contact.kernel().to_string())),
+            ("settings", text(&format!("{:?}", contact.settings()))),
+            ("material", text(&format!("{:?}", contact.material()))),
+        ];
+        let units = ("units", object(units.map(|(name, unit)| (name, text(unit)))));
+        object(scene.into_iter().chain(temperature).chain([units, ("conventions", text(CONVENTIONS))]))
     }
+}
+
+/// A JSON object of keys and values in JSON.
+fn object<'a>(entries: impl IntoIterator<Item = (&'a str, String)>) -> String {
+    let entries: Vec<String> = entries.into_iter().map(|(key, value)| format!("{}: {value}", text(key))).collect();
+    format!("{{{}}}", entries.join(", "))
+}
+
+/// A JSON string, in which line breaks and other control characters are escaped.
+fn text(text: &str) -> String {
+    let escaped = text.chars().map(|c| match c {
+        '"' | '\\' => format!("\\{c}"),
+        '\n' => "\\n".into(),
+        '\t' => "\\t".into(),
+        c if c.is_control() => format!("\\u{:04x}", u32::from(c)),
+        c => c.into(),
+    });
+    format!("\"{}\"", escaped.collect::<String>())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn special_characters_are_escaped() {
+        assert_eq!(text("a \"b\" \\ c\nd\te\r\u{1}\u{85} µm"), r#""a \"b\" \\ c\nd\te\u000d\u0001\u0085 µm""#);
+    }
+
+    #[test]
+    fn objects_nest() {
+        let inner = object([("spacing", format!("{:?}", [1e-30, 0.5]))]);
+        assert_eq!(inner, r#"{"spacing": [1e-30, 0.5]}"#);
+        let outer = object([("a", text("b")), ("grid", inner), ("empty", object([]))]);
+        assert_eq!(outer, r#"{"a": "b", "grid": {"spacing": [1e-30, 0.5]}, "empty": {}}"#);
+    }
 
     #[test]
     fn a_note_of_the_same_key_is_replaced() {

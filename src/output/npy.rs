@@ -1,14 +1,12 @@
-//! Arrays in the NPY format of NumPy.
+//! Fields as arrays in the NPY format of NumPy.
 
-use std::io::{self, BufWriter, Write};
+use std::io::Write;
 use std::path::Path;
 
-use npyz::WriterBuilder;
-
 use crate::error::{Result, exact_length};
-use crate::file::replace;
-use crate::output::Field;
-use crate::output::field_values::{Order, write_fields};
+use crate::file::{npy, replace, write_numbers};
+use crate::output::field_values::write_fields;
+use crate::output::{Field, Format};
 use crate::{Grid, ViscoelasticContact};
 
 /// Writes a field, one value per cell of `grid`, as an NPY file: a `float64` array of the shape of the grid, so that
@@ -32,7 +30,10 @@ use crate::{Grid, ViscoelasticContact};
 /// If there is not one value per cell, or the file cannot be written.
 pub fn write_npy(path: impl AsRef<Path>, grid: &Grid, values: &[f64]) -> Result<()> {
     exact_length("field", values.len(), grid.len())?;
-    replace(path.as_ref(), |out| array(out, &grid.cells(), values))
+    replace(path.as_ref(), |out| {
+        out.write_all(&npy::header("<f8", &grid.cells()))?;
+        write_numbers(out, values.iter().copied())
+    })
 }
 
 /// Writes a field of the contact as an NPY file, like [`write_npy`]: a call of all [ranks](crate::parallel) that share out the
@@ -57,44 +58,8 @@ pub fn write_npy(path: impl AsRef<Path>, grid: &Grid, values: &[f64]) -> Result<
 /// # Errors
 /// If the file cannot be written.
 pub fn write_field_npy(path: impl AsRef<Path>, contact: &ViscoelasticContact, field: Field) -> Result<()> {
-    let (fields, mut buffer) = ([field], Vec::new());
-    write_fields(path.as_ref(), (contact, &fields, Order::Rows), &mut buffer, |out, values| {
-        array_of_pieces(out, &contact.grid().cells(), |take| values.by_rows(take))
+    write_fields(path.as_ref(), (contact, &[field], Format::Npz), &mut Vec::new(), |out, values| {
+        out.write_all(&npy::header("<f8", &contact.grid().cells()))?;
+        values.next(|part| write_numbers(out, part.iter().copied()))
     })
-}
-
-/// Writes numbers in row-major order.
-pub(super) fn array(out: impl Write, shape: &[usize], values: &[f64]) -> io::Result<()> {
-    array_of_pieces(out, shape, |take| take(values))
-}
-
-/// Takes the next numbers of an array.
-pub(super) type Take<'a> = &'a mut dyn FnMut(&[f64]) -> io::Result<()>;
-
-/// Writes numbers in row-major order, one piece per call that `give` makes.
-pub(super) fn array_of_pieces(
-    out: impl Write,
-    shape: &[usize],
-    give: impl FnOnce(Take<'_>) -> io::Result<()>,
-) -> io::Result<()> {
-    let shape: Vec<u64> = shape.iter().map(|&n| n as u64).collect();
-    let mut out = BufWriter::with_capacity(1 << 16, out);
-    let number = npyz::DType::Plain(type_string("<f8")?);
-    let mut writer = npyz::WriteOptions::new().dtype(number).shape(&shape).writer(&mut out).begin_nd()?;
-    give(&mut |values| writer.extend(values.iter().copied()))?;
-    writer.finish()?;
-    out.flush()
-}
-
-/// Writes a text as a zero-dimensional string array: `str(array)` is the text.
-pub(super) fn text(mut out: impl Write, text: &str) -> io::Result<()> {
-    let text: Vec<char> = text.chars().collect();
-    let string = npyz::DType::Plain(type_string(&format!("<U{}", text.len().max(1)))?);
-    let mut writer = npyz::WriteOptions::new().dtype(string).shape(&[]).writer(&mut out).begin_nd()?;
-    writer.push(&text[..])?;
-    writer.finish()
-}
-
-fn type_string(text: &str) -> io::Result<npyz::TypeStr> {
-    text.parse().map_err(io::Error::other)
 }

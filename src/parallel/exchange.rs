@@ -1,46 +1,24 @@
-//! Real numbers that go from rank to rank.
+//! Numbers that go from rank to rank.
 
 use std::ops::Range;
 
-use num_complex::Complex64;
-
-use super::rows::unwind_rank_loss;
-use super::{Ranks, Rows};
-use crate::error::RanksError;
-
-/// Sends each rank its piece, and returns the `count` numbers of each rank, one rank after the other. Two numbers travel as a
-/// complex one.
-///
-/// # Errors
-/// If a rank has left.
-pub(crate) fn exchange_numbers(
-    group: &dyn Ranks,
-    pieces: Vec<Vec<f64>>,
-    count: impl Fn(usize) -> usize,
-) -> Result<Vec<f64>, RanksError> {
-    let sent: Vec<usize> = pieces.iter().map(|piece| piece.len().div_ceil(2)).collect();
-    let mut send = Vec::with_capacity(sent.iter().sum());
-    for piece in pieces {
-        send.extend(piece.chunks(2).map(|pair| Complex64::new(pair[0], pair.get(1).copied().unwrap_or(0.0))));
-    }
-    let counts: Vec<usize> = (0..group.size()).map(|rank| count(rank).div_ceil(2)).collect();
-    let mut received = vec![Complex64::default(); counts.iter().sum()];
-    group.exchange(&send, &sent, &mut received, &counts)?;
-    drop(send);
-    let mut numbers = Vec::with_capacity((0..group.size()).map(&count).sum());
-    let mut rest = &received[..];
-    for (rank, pairs) in counts.into_iter().enumerate() {
-        let (own, others) = rest.split_at(pairs);
-        numbers.extend(own.iter().flat_map(|pair| [pair.re, pair.im]).take(count(rank)));
-        rest = others;
-    }
-    Ok(numbers)
-}
+use super::Rows;
 
 impl Rows {
-    /// Brings a field of own rows to those who have them of the rows `to`, which begin at the row `first` of these.
+    /// Sends each rank its piece, and returns the `count` numbers of each rank, one rank after the other: zeros if a rank is
+    /// lost. A call of all ranks.
+    pub(crate) fn exchange(&self, pieces: Vec<Vec<f64>>, count: impl Fn(usize) -> usize) -> Vec<f64> {
+        let sent: Vec<usize> = pieces.iter().map(Vec::len).collect();
+        let counts: Vec<usize> = (0..self.ranks()).map(count).collect();
+        let send = pieces.concat();
+        drop(pieces);
+        let mut received = vec![0.0; counts.iter().sum()];
+        self.exchange_into((&send, &sent), (&mut received, &counts));
+        received
+    }
+
+    /// Redistributes a field of local rows to the rows `to`, which begin at the row `first` of these rows.
     pub(crate) fn moved(&self, field: &[f64], first: usize, to: &Rows) -> Vec<f64> {
-        let Some(group) = self.group() else { return field.to_vec() };
         let columns = self.cells()[1];
         let common = |from: Range<usize>, to: Range<usize>| {
             let start = from.start.max(first + to.start);
@@ -49,15 +27,14 @@ impl Rows {
         let own = self.own();
         let pieces = (0..self.ranks()).map(|rank| {
             let rows = common(self.own(), to.of(rank));
-            // an empty piece may begin beyond the own rows
+            // an empty piece may begin beyond the local rows
             if rows.is_empty() {
                 Vec::new()
             } else {
                 field[(rows.start - own.start) * columns..(rows.end - own.start) * columns].to_vec()
             }
         });
-        exchange_numbers(&**group, pieces.collect(), |rank| common(self.of(rank), to.own()).len() * columns)
-            .unwrap_or_else(|error| unwind_rank_loss(error))
+        self.exchange(pieces.collect(), |rank| common(self.of(rank), to.own()).len() * columns)
     }
 }
 

@@ -1,5 +1,7 @@
 //! Loops over fields: compiled for the vector units of the machine that runs them, and shared between threads.
 
+use std::ops::Range;
+
 use pulp::{Arch, Simd, WithSimd};
 
 /// Work of a thread on its share of a field. `run` must be `#[inline(always)]`: only then is it compiled for vectors
@@ -9,45 +11,61 @@ pub(crate) trait Task {
     type Lane;
     type Item;
 
-    /// Computes the `k`-th share.
-    fn run(&self, k: usize, lane: &mut Self::Lane, share: &mut [Self::Item]);
+    /// Computes the share that begins at the item `start`.
+    fn run(&self, start: usize, lane: &mut Self::Lane, share: &mut [Self::Item]);
 }
 
 /// Runs `task` on the shares of `data`, `length` values each, one lane per share: in parallel if there are several
 /// lanes and the feature `rayon` is on.
-pub(crate) fn for_each_share<T: Task + Sync>(task: &T, lanes: &mut [T::Lane], data: &mut [T::Item], length: usize)
-where
+pub(crate) fn for_each_share<'a, T: Task + Sync>(
+    task: &T,
+    lanes: &'a mut [T::Lane],
+    data: &'a mut [T::Item],
+    length: usize,
+) where
     T::Lane: Send,
     T::Item: Send,
 {
     let arch = Arch::new();
-    share_out(0, lanes, data, length, &|k, lane, share| arch.dispatch(Vectorised { task, k, lane, share }));
+    let shares = lanes.len().min(data.len().div_ceil(length));
+    let cut = |(lanes, data): Shares<'a, T>, k: usize| {
+        let (lanes, data) = (lanes.split_at_mut(k), data.split_at_mut(k * length));
+        [(lanes.0, data.0), (lanes.1, data.1)]
+    };
+    fork(0..shares, true, (lanes, data), &cut, &|k, (lanes, share)| {
+        if let (Some(lane), false) = (lanes.first_mut(), share.is_empty()) {
+            arch.dispatch(Vectorised { task, start: k * length, lane, share });
+        }
+    });
 }
 
-fn share_out<L: Send, T: Send>(
-    first: usize,
-    lanes: &mut [L],
-    data: &mut [T],
-    length: usize,
-    job: &(dyn Fn(usize, &mut L, &mut [T]) + Sync),
+/// Halves the units, and the data with them, down to single ones, and calls `job` with the number of each: the halves in parallel
+/// if they are `shared`. `cut` splits data before the unit of this number, counted from the first unit of the data.
+pub(crate) fn fork<D: Send>(
+    units: Range<usize>,
+    shared: bool,
+    data: D,
+    cut: &(dyn Fn(D, usize) -> [D; 2] + Sync),
+    job: &(dyn Fn(usize, D) + Sync),
 ) {
-    if lanes.len() > 1 && data.len() > length {
-        let middle = lanes.len() / 2;
-        let (lanes, other_lanes) = lanes.split_at_mut(middle);
-        let (data, other_data) = data.split_at_mut(middle.saturating_mul(length).min(data.len()));
-        join(
-            true,
-            || share_out(first, lanes, data, length, job),
-            || share_out(first + middle, other_lanes, other_data, length, job),
-        );
-    } else if let (Some(lane), Some(share)) = (lanes.first_mut(), data.chunks_mut(length).next()) {
-        job(first, lane, share);
+    if units.len() <= 1 {
+        return job(units.start, data);
     }
+    let half = units.len() / 2;
+    let (middle, [before, after]) = (units.start + half, cut(data, half));
+    join(
+        shared,
+        || fork(units.start..middle, shared, before, cut, job),
+        || fork(middle..units.end, shared, after, cut, job),
+    );
 }
+
+/// Lanes, and the data that they share out.
+type Shares<'a, T> = (&'a mut [<T as Task>::Lane], &'a mut [<T as Task>::Item]);
 
 struct Vectorised<'a, T: Task> {
     task: &'a T,
-    k: usize,
+    start: usize,
     lane: &'a mut T::Lane,
     share: &'a mut [T::Item],
 }
@@ -57,7 +75,7 @@ impl<T: Task> WithSimd for Vectorised<'_, T> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        self.task.run(self.k, self.lane, self.share);
+        self.task.run(self.start, self.lane, self.share);
     }
 }
 
@@ -110,33 +128,22 @@ const MIN_SHARED_CELLS: usize = 1 << 15;
 /// Cells that a thread passes over at a time. Sums are taken over bands of about so many cells, whatever the number of threads.
 pub(crate) const BAND_CELLS: usize = 1 << 13;
 
-/// Where fields of so many cells are halved between threads: at the start of a band.
-pub(crate) fn middle(cells: usize) -> usize {
-    cells.div_ceil(BAND_CELLS) / 2 * BAND_CELLS
-}
-
-/// Calls `job` with each band of some fields, and the number of its first cell.
+/// Calls `job` with each band of some fields, and the number of its first cell. The first field has one value for each cell, the
+/// others may have none or several.
 pub(crate) fn for_each_band<T: Send, const M: usize>(fields: [&mut [T]; M], job: impl Fn(usize, [&mut [T]; M]) + Sync) {
     let cells = fields.first().map_or(0, |field| field.len());
-    halve([0, cells], fields, lanes(cells) > 1, &job);
+    let bands = 0..cells.div_ceil(BAND_CELLS);
+    let job = |band: usize, fields: [&mut [T]; M]| job(band * BAND_CELLS, fields);
+    fork(bands, lanes(cells) > 1, fields, &|fields, k| cut(fields, k * BAND_CELLS), &job);
 }
 
-fn halve<T: Send, const M: usize>(
-    [first, cells]: [usize; 2],
-    fields: [&mut [T]; M],
-    shared: bool,
-    job: &(dyn Fn(usize, [&mut [T]; M]) + Sync),
-) {
-    if cells <= BAND_CELLS {
-        return job(first, fields);
-    }
-    let middle = middle(cells);
-    let mut halves = fields.map(|field| field.split_at_mut(middle));
+/// Cuts fields at a cell of the first of them, which has one value for each cell.
+pub(crate) fn cut<T, const M: usize>(fields: [&mut [T]; M], at: usize) -> [[&mut [T]; M]; 2] {
+    let cells = fields.first().map_or(1, |field| field.len());
+    let mut halves = fields.map(|field| {
+        let per_cell = field.len() / cells;
+        field.split_at_mut(at * per_cell)
+    });
     let before = halves.each_mut().map(|(before, _)| std::mem::take(before));
-    let after = halves.map(|(_, after)| after);
-    join(
-        shared,
-        || halve([first, middle], before, shared, job),
-        || halve([first + middle, cells - middle], after, shared, job),
-    );
+    [before, halves.map(|(_, after)| after)]
 }

@@ -34,7 +34,10 @@
 //! [`max_pressure`](crate::ViscoelasticContact::max_pressure), [`contact_area`](crate::ViscoelasticContact::contact_area),
 //! [`lateral_force`](crate::ViscoelasticContact::lateral_force), [`profile`](crate::ViscoelasticContact::profile)), files and
 //! checkpoints. What a rank has by itself may be read by one
-//! alone: time, force, approach, tilt, contact cells, own rows.
+//! alone: time, force, approach, tilt, contact cells, local rows.
+//!
+//! If a rank leaves, the call that misses it returns [`RanksError::Left`] and leaves the contact as it was. An observation without
+//! an error to return is NaN, and the next call returns the error.
 //!
 //! | covered | refused, by [`RanksError::NotShared`] |
 //! |---|---|
@@ -45,9 +48,8 @@
 //! | snapshots in memory; checkpoints, which any number of ranks resumes | checkpoints of a window of the grid ([`Settings::window`](crate::contact::Settings::window)), or of indenters that have moved |
 //! | [files](crate::output): NPZ, NPY, VTK, histories; profiles | pictures, patches, distributions, asymmetry, stresses, [`mesh_error`](crate::ViscoelasticContact::mesh_error) |
 //!
-//! Files are written by rank 0, with the same bytes as in one process; the other ranks send it their rows a piece at a time. A
-//! checkpoint is a file with what all have in common, and beside it one for each rank with its rows, on a file system that all
-//! ranks see: `ViscoelasticContact::save`.
+//! Files and checkpoints are written by rank 0, files with the same bytes as in one process; the other ranks send it their rows a
+//! piece at a time. A checkpoint is read by all ranks: `ViscoelasticContact::resume`.
 //!
 //! No rank needs memory for the whole grid: [`Builder::ranks`](crate::contact::Builder::ranks), given before the geometry, has
 //! each evaluate it on own rows, random surfaces are made by [`Rough::shared`](crate::geometry::Rough::shared), coefficients of
@@ -58,15 +60,16 @@
 //! does not leave less.
 
 mod exchange;
+#[cfg(any(feature = "checkpoint", feature = "npy", feature = "vtk"))]
+mod file;
 mod lanes;
 mod ranks;
 mod rows;
 mod threads;
 mod tile;
 
-pub(crate) use exchange::exchange_numbers;
-pub(crate) use lanes::{BAND_CELLS, Task, for_each_band, for_each_share, in_pool, join, lanes, middle};
-pub(crate) use rows::{Rows, catch_rank_loss, part, unwind_rank_loss};
+pub(crate) use lanes::{BAND_CELLS, Task, cut, for_each_band, for_each_share, fork, in_pool, join, lanes};
+pub(crate) use rows::{Rows, part};
 pub(crate) use tile::{TILE, rows_in_a_tile};
 
 pub use crate::error::RanksError;

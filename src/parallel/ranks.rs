@@ -2,8 +2,6 @@
 
 use std::fmt::Debug;
 
-use num_complex::Complex64;
-
 use crate::error::RanksError;
 
 /// An engine that runs several ranks at once. It provides two calls, each a call of all ranks together.
@@ -11,7 +9,8 @@ use crate::error::RanksError;
 /// [`Threads`](super::Threads) is one; another, over MPI, is the crate `viscocontact-mpi`.
 ///
 /// A rank that leaves (its program ends, fails or panics) must not leave the others waiting: their calls return
-/// [`RanksError::Left`], or the engine ends them. (In a program built with `panic = "abort"`, the process ends.)
+/// [`RanksError::Left`], or the engine ends them. A call that fails is not repeated: the call of the contact that needed it
+/// returns the error.
 pub trait Ranks: Debug + Send + Sync {
     /// Which of the ranks this is, from 0.
     fn rank(&self) -> usize;
@@ -32,9 +31,9 @@ pub trait Ranks: Debug + Send + Sync {
     /// If a rank has left.
     fn exchange(
         &self,
-        send: &[Complex64],
+        send: &[f64],
         send_counts: &[usize],
-        received: &mut [Complex64],
+        received: &mut [f64],
         receive_counts: &[usize],
     ) -> Result<(), RanksError>;
 }

@@ -1,12 +1,10 @@
 //! The rows that a rank has, and sums over the rows of all.
 
 use std::ops::Range;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use super::{BAND_CELLS, Ranks, join, lanes, rows_in_a_tile};
 use crate::error::{RanksError, Result};
-use crate::parallel::Ranks;
-use crate::parallel::{BAND_CELLS, join, lanes, rows_in_a_tile};
 use crate::sum;
 
 /// The computed rows of a grid, cut into bands. This process holds all of them, or some if ranks share them out.
@@ -24,19 +22,21 @@ pub(crate) struct Rows {
     shared: Option<Arc<Shared>>,
 }
 
-/// Whether they are the same rows, of whatever group.
+/// Compares the rows, not the groups.
 impl PartialEq for Rows {
     fn eq(&self, other: &Rows) -> bool {
         (self.cells, &self.own, self.band) == (other.cells, &other.own, other.band)
     }
 }
 
-/// What joins the ranks.
+/// Connection of a rank to the group.
 #[derive(Debug)]
 struct Shared {
     group: Arc<dyn Ranks>,
-    /// Kept, so that no sum allocates that is no longer than one before.
+    /// Kept, so that no sum allocates that is no longer than an earlier one.
     buffers: Mutex<Buffers>,
+    /// Why a call of the group failed. Until that is returned ([`Rows::together`]), no other call is made.
+    lost: Mutex<Option<RanksError>>,
 }
 
 #[derive(Debug, Default)]
@@ -46,9 +46,6 @@ struct Buffers {
     counts: Vec<usize>,
 }
 
-/// With this a call ends that needs a rank that has left.
-pub(super) struct RankLoss(pub(super) RanksError);
-
 impl Rows {
     /// All rows of a field of so many cells.
     pub(crate) fn all(cells: [usize; 2]) -> Rows {
@@ -57,16 +54,16 @@ impl Rows {
         Rows { cells, own: 0..cells[0], band, shared: None }
     }
 
-    /// Those of a rank of the group.
+    /// The rows of a rank of the group.
     pub(crate) fn of_rank(cells: [usize; 2], group: Arc<dyn Ranks>) -> Rows {
-        let shared = Some(Arc::new(Shared { group, buffers: Mutex::default() }));
+        let shared = Some(Arc::new(Shared { group, buffers: Mutex::default(), lost: Mutex::default() }));
         Rows { shared, ..Rows::all(cells) }.of_cells(cells)
     }
 
     /// The rows of another field that the same ranks share out.
     pub(crate) fn of_cells(&self, cells: [usize; 2]) -> Rows {
         let mut rows = Rows { shared: self.shared.clone(), ..Rows::all(cells) };
-        rows.own = rows.of(self.group().map_or(0, |group| group.rank()));
+        rows.own = rows.of(self.rank());
         rows
     }
 
@@ -77,6 +74,11 @@ impl Rows {
 
     pub(crate) fn are_shared(&self) -> bool {
         self.shared.is_some()
+    }
+
+    /// Which of the ranks this is.
+    pub(crate) fn rank(&self) -> usize {
+        self.group().map_or(0, |group| group.rank())
     }
 
     /// Number of ranks.
@@ -99,13 +101,13 @@ impl Rows {
         self.own.clone()
     }
 
-    /// Those of a rank.
+    /// The rows of a rank.
     pub(crate) fn of(&self, rank: usize) -> Range<usize> {
         let bands = part(self.cells[0].div_ceil(self.band), rank, self.ranks());
         (bands.start * self.band).min(self.cells[0])..(bands.end * self.band).min(self.cells[0])
     }
 
-    /// Number of own bands.
+    /// Number of local bands.
     pub(crate) fn bands(&self) -> usize {
         self.own.len().div_ceil(self.band)
     }
@@ -120,31 +122,40 @@ impl Rows {
         self.band * self.cells[1]
     }
 
-    /// The cells of an own band, of a field of own rows.
+    /// The cells of a local band in a field of local rows.
     fn band(&self, band: usize) -> Range<usize> {
         let (length, cells) = (self.band_cells(), self.own.len() * self.cells[1]);
         band * length..((band + 1) * length).min(cells)
     }
 
-    /// Finds `part` in each band, and joins what is found in the bands of all ranks by halves.
+    /// Computes `part` of each band, and merges the parts of the bands of all ranks by halves.
     pub(crate) fn merge<const K: usize>(
         &self,
         part: impl Fn(Range<usize>) -> [f64; K] + Sync,
         merge: impl Fn([f64; K], [f64; K]) -> [f64; K] + Sync,
     ) -> [f64; K] {
         let in_threads = lanes(self.own.len() * self.cells[1]) > 1;
-        let Some(shared) = &self.shared else {
+        if !self.are_shared() {
             return halves(0..self.bands(), in_threads, &|band| part(self.band(band)), &merge);
-        };
+        }
         let found = (0..self.bands()).flat_map(|band| part(self.band(band)));
-        shared.gather(
-            found,
-            |rank| K * self.bands_of(rank),
-            |all| {
-                let all = all.as_chunks::<K>().0;
-                halves(0..all.len(), false, &|band: usize| all[band], &merge)
-            },
-        )
+        let join = |all: &[f64]| {
+            let all = all.as_chunks::<K>().0;
+            halves(0..all.len(), false, &|band: usize| all[band], &merge)
+        };
+        self.gather(found, |rank| K * self.bands_of(rank), join)
+    }
+
+    /// Sums K terms of each cell over the cells that have any.
+    pub(crate) fn sum_terms<const K: usize>(&self, terms: impl Fn(usize) -> Option<[f64; K]> + Sync) -> [f64; K] {
+        let part = |band: Range<usize>| {
+            let mut sums = [0.0; K];
+            for terms in band.filter_map(&terms) {
+                sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+            }
+            sums
+        };
+        self.merge(part, sum::add)
     }
 
     /// Σ part over the bands.
@@ -152,157 +163,161 @@ impl Rows {
         self.merge(|band| [part(band)], |[a], [b]| [a + b])[0]
     }
 
-    /// Σ values of a field of own rows.
+    /// Σ values of a field of local rows.
     pub(crate) fn sum(&self, values: &[f64]) -> f64 {
         self.sum_of(|band| sum::sum(&values[band]))
     }
 
-    /// Σ f(a, b) over the values of two fields of own rows.
+    /// Σ f(a, b) over the values of two fields of local rows.
     pub(crate) fn sum_of_pairs(&self, a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64 + Sync) -> f64 {
         self.sum_of(|band| sum::sum_of_pairs(&a[band.clone()], &b[band], &f))
     }
 
-    /// Joins what each rank has found by itself, in the order of the ranks: for what does not depend on how it is grouped.
+    /// Merges the numbers of the ranks in their order: for merges that do not depend on the grouping.
     pub(crate) fn join<const K: usize>(
         &self,
         own: [f64; K],
         merge: impl Fn([f64; K], [f64; K]) -> [f64; K],
     ) -> [f64; K] {
-        let Some(shared) = &self.shared else { return own };
-        shared.gather(own.into_iter(), |_| K, |all| all.as_chunks::<K>().0.iter().copied().reduce(merge).unwrap_or(own))
+        if !self.are_shared() {
+            return own;
+        }
+        self.gather(own.into_iter(), |_| K, |all| all.as_chunks::<K>().0.iter().copied().reduce(merge).unwrap_or(own))
     }
 
-    /// The greatest of what the ranks have found.
+    /// The greatest of the values of the ranks.
     pub(crate) fn greatest(&self, own: f64) -> f64 {
         self.join([own], |[a], [b]| [a.max(b)])[0]
     }
 
-    /// The least of what the ranks have found.
+    /// The least of the values of the ranks.
     pub(crate) fn least(&self, own: f64) -> f64 {
         self.join([own], |[a], [b]| [a.min(b)])[0]
     }
 
-    /// Whether any rank has found something.
+    /// Whether `own` is true on any rank.
     pub(crate) fn any(&self, own: bool) -> bool {
         if self.shared.is_none() { own } else { self.greatest(f64::from(u8::from(own))) > 0.0 }
     }
 
-    /// The number of what all ranks have found.
+    /// The sum of the counts of the ranks.
     pub(crate) fn count(&self, own: usize) -> usize {
         if self.shared.is_none() { own } else { self.join([own as f64], |[a], [b]| [a + b])[0] as usize }
     }
 
-    /// Gathers `count(rank)` numbers of each rank, and passes the numbers of all ranks to `read`.
+    /// Gathers `count(rank)` numbers of each rank, and passes the numbers of all ranks to `read`: NaN if one is lost.
     pub(crate) fn gather<R>(
         &self,
         own: impl Iterator<Item = f64>,
         count: impl Fn(usize) -> usize,
         read: impl FnOnce(&[f64]) -> R,
-    ) -> Option<R> {
-        self.shared.as_ref().map(|shared| shared.gather(own, count, read))
+    ) -> R {
+        let Some(shared) = &self.shared else { return read(&own.collect::<Vec<_>>()) };
+        let mut buffers = std::mem::take(&mut *lock(&shared.buffers));
+        let Buffers { own: sent, all, counts } = &mut buffers;
+        sent.clear();
+        sent.extend(own);
+        counts.clear();
+        counts.extend((0..self.ranks()).map(count));
+        all.resize(counts.iter().sum(), 0.0);
+        shared.gather(sent, counts, all);
+        let found = read(all);
+        *lock(&shared.buffers) = buffers;
+        found
     }
 
-    /// Gathers fields of own rows, `columns` values to a row, to one of all rows.
+    /// Gathers `of(rank)` values of each rank.
     pub(crate) fn gather_rows(&self, own: &[f64], all: &mut [f64], of: impl Fn(usize) -> usize) {
         let Some(shared) = &self.shared else { return };
-        shared.gather_into(own, of, all);
+        let mut counts = std::mem::take(&mut lock(&shared.buffers).counts);
+        counts.clear();
+        counts.extend((0..self.ranks()).map(of));
+        shared.gather(own, &counts, all);
+        lock(&shared.buffers).counts = counts;
     }
 
-    /// Goes on only where every rank does: where one has failed, all get the same error.
+    /// Sends numbers to each rank, and receives numbers from each; if a rank is lost, `received` stays as it is. A process by itself
+    /// receives what it sends.
+    pub(crate) fn exchange_into(
+        &self,
+        (send, send_counts): (&[f64], &[usize]),
+        (received, receive_counts): (&mut [f64], &[usize]),
+    ) {
+        let Some(shared) = &self.shared else { return received.copy_from_slice(send) };
+        shared.call(|group| group.exchange(send, send_counts, received, receive_counts));
+    }
+
+    /// Runs `job`, a call of all ranks. If one is lost meanwhile, that is the error, whatever `job` has found: its sums are NaN.
+    pub(crate) fn together<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<T> {
+        let done = job();
+        match self.shared.as_ref().and_then(|shared| lock(&shared.lost).take()) {
+            Some(loss) => Err(loss.into()),
+            None => done,
+        }
+    }
+
+    /// An error if a rank is lost: for what must not follow then, as a file or a state that is replaced.
+    pub(crate) fn intact(&self) -> Result<(), RanksError> {
+        self.shared.as_ref().and_then(|shared| lock(&shared.lost).clone()).map_or(Ok(()), Err)
+    }
+
+    /// Returns `own` if all ranks succeed, else the error of the first rank that failed.
     pub(crate) fn agree<T>(&self, own: Result<T>) -> Result<T> {
-        let Some(shared) = &self.shared else { return own };
+        if !self.are_shared() {
+            return own;
+        }
         let message = own.as_ref().err().map_or(String::new(), |error| format!("{error:?}"));
         // 53 bits survive as an f64
         let mark = message.bytes().fold(0_u64, |mark, byte| (mark * 31 + u64::from(byte)) % (1 << 53));
-        let found = shared.gather(
-            [message.len() as f64, mark as f64].into_iter(),
-            |_| 2,
-            |all| {
-                let all = all.as_chunks::<2>().0;
-                let failed = all.iter().position(|&[length, _]| length > 0.0).map(|rank| (rank, all[rank][0] as usize));
-                failed.filter(|_| !all.iter().all(|other| *other == all[0]))
-            },
-        );
+        let first_failed = |all: &[f64]| {
+            let all = all.as_chunks::<2>().0;
+            let failed = all.iter().position(|&[length, _]| length > 0.0).map(|rank| (rank, all[rank][0] as usize));
+            failed.filter(|_| !all.iter().all(|other| *other == all[0]))
+        };
+        let found = self.gather([message.len() as f64, mark as f64].into_iter(), |_| 2, first_failed);
+        self.intact()?;
         // nobody has failed, or all in the same way
         let Some((rank, length)) = found else { return own };
-        let own = if shared.group.rank() == rank { message.as_bytes() } else { &[] };
+        let own = if self.rank() == rank { message.as_bytes() } else { &[] };
         let bytes = own.iter().map(|&byte| f64::from(byte));
-        let message = shared.gather(
-            bytes,
-            |of| if of == rank { length } else { 0 },
-            |all| String::from_utf8_lossy(&all.iter().map(|&byte| byte as u8).collect::<Vec<_>>()).into_owned(),
-        );
-        Err(RanksError::Failed { rank, message }.into())
+        let bytes = self.gather(bytes, |of| if of == rank { length } else { 0 }, <[f64]>::to_vec);
+        self.intact()?;
+        let message = bytes.into_iter().map(|byte| byte as u8).collect::<Vec<_>>();
+        Err(RanksError::Failed { rank, message: String::from_utf8_lossy(&message).into_owned() }.into())
     }
 
     /// Rejects numbers that are not the same, bit by bit, on all ranks.
     pub(crate) fn same<const K: usize>(&self, numbers: [f64; K]) -> Result<()> {
-        let bits = numbers.map(f64::to_bits);
-        let differ = self.gather(
-            numbers.into_iter(),
-            |_| K,
-            |all| all.as_chunks::<K>().0.iter().any(|others| others.map(f64::to_bits) != bits),
-        );
-        if differ == Some(true) { Err(RanksError::Apart.into()) } else { Ok(()) }
+        if !self.are_shared() {
+            return Ok(());
+        }
+        let other = |others: &[f64; K]| others.map(f64::to_bits) != numbers.map(f64::to_bits);
+        let differ = self.gather(numbers.into_iter(), |_| K, |all| all.as_chunks().0.iter().any(other));
+        self.intact()?;
+        if differ { Err(RanksError::Apart.into()) } else { Ok(()) }
     }
 }
 
 impl Shared {
-    fn gather<R>(
-        &self,
-        own: impl Iterator<Item = f64>,
-        count: impl Fn(usize) -> usize,
-        read: impl FnOnce(&[f64]) -> R,
-    ) -> R {
-        let mut buffers = self.take();
-        buffers.own.clear();
-        buffers.own.extend(own);
-        let Buffers { own, all, counts } = &mut buffers;
-        counts.clear();
-        counts.extend((0..self.group.size()).map(count));
-        all.resize(counts.iter().sum(), 0.0);
-        self.group.gather(own, counts, all).unwrap_or_else(|error| unwind_rank_loss(error));
-        let found = read(all);
-        self.put_back(buffers);
-        found
+    /// Gathers numbers of all ranks: NaN if one is lost.
+    fn gather(&self, own: &[f64], counts: &[usize], all: &mut [f64]) {
+        if !self.call(|group| group.gather(own, counts, all)) {
+            all.fill(f64::NAN);
+        }
     }
 
-    fn gather_into(&self, own: &[f64], count: impl Fn(usize) -> usize, all: &mut [f64]) {
-        let mut buffers = self.take();
-        buffers.counts.clear();
-        buffers.counts.extend((0..self.group.size()).map(count));
-        self.group.gather(own, &buffers.counts, all).unwrap_or_else(|error| unwind_rank_loss(error));
-        self.put_back(buffers);
-    }
-
-    fn take(&self) -> Buffers {
-        std::mem::take(&mut *self.buffers.lock().unwrap_or_else(PoisonError::into_inner))
-    }
-
-    fn put_back(&self, buffers: Buffers) {
-        *self.buffers.lock().unwrap_or_else(PoisonError::into_inner) = buffers;
+    /// Makes a call of the group, unless one has failed; whether it succeeded.
+    fn call(&self, call: impl FnOnce(&dyn Ranks) -> Result<(), RanksError>) -> bool {
+        let mut lost = lock(&self.lost);
+        if lost.is_none() {
+            *lost = call(&*self.group).err();
+        }
+        lost.is_none()
     }
 }
 
-/// Ends the call at hand, up to where it is [`catch_rank_loss`]: sums have no error to return. In a program built with `panic = "abort"`
-/// it ends the process.
-pub(crate) fn unwind_rank_loss(error: RanksError) -> ! {
-    resume_unwind(Box::new(RankLoss(error)))
-}
-
-/// Runs `job`; the loss of a rank becomes `RanksError::Left`.
-pub(crate) fn catch_rank_loss<T>(rows: &Rows, job: impl FnOnce() -> Result<T>) -> Result<T> {
-    if !rows.are_shared() {
-        return job();
-    }
-    // what a step writes before it is accepted is never read
-    match catch_unwind(AssertUnwindSafe(job)) {
-        Ok(done) => done,
-        Err(panic) => match panic.downcast::<RankLoss>() {
-            Ok(departure) => Err(departure.0.into()),
-            Err(panic) => resume_unwind(panic),
-        },
-    }
+pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The part of `n` things that a rank has.
@@ -311,7 +326,7 @@ pub(crate) fn part(n: usize, rank: usize, size: usize) -> Range<usize> {
     start(rank)..start(rank + 1)
 }
 
-/// Joins what is found in some bands by halves.
+/// Merges the parts of some bands by halves.
 fn halves<const K: usize>(
     bands: Range<usize>,
     in_threads: bool,

@@ -1,13 +1,11 @@
 //! Ranks that are threads of one process.
 
 use std::fmt;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-
-use num_complex::Complex64;
+use std::panic::resume_unwind;
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
 
 use super::Ranks;
-use super::rows::RankLoss;
+use super::rows::lock;
 use crate::error::{RanksError, Result, count_within};
 
 /// Threads of one process that play ranks: for tests, and to try a program before it runs on several machines.
@@ -20,7 +18,7 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// Runs `job` on `size` threads, each with its rank; returns what each of them returned, in their order.
+    /// Runs `job` on `size` threads, each with its rank; returns the results in the order of the ranks.
     ///
     /// A rank that is done, or panics, has left: calls in which others wait for it fail with [`RanksError::Left`]. When all
     /// have ended, a panic goes on in the caller.
@@ -31,44 +29,48 @@ impl Threads {
         count_within("ranks", size, (1..=MOST).contains(&size), "1 to 1024")?;
         let meeting = Arc::new(Meeting::of(size));
         let work = |rank: usize| {
-            let ranks = Arc::new(Threads { rank, meeting: Arc::clone(&meeting) });
-            let ended = catch_unwind(AssertUnwindSafe(|| job(ranks)));
-            meeting.leave(rank);
-            ended
+            let _leaves = Leaving { rank, meeting: &meeting };
+            job(Arc::new(Threads { rank, meeting: Arc::clone(&meeting) }))
         };
         let work = &work;
         let ended = std::thread::scope(|scope| {
             let threads: Vec<_> = (0..size).map(|rank| scope.spawn(move || work(rank))).collect();
-            threads.into_iter().map(|thread| thread.join().unwrap_or_else(Err)).collect::<Vec<_>>()
+            threads.into_iter().map(|thread| thread.join()).collect::<Vec<_>>()
         });
-        let (mut done, mut panicked, mut departed) = (Vec::with_capacity(size), None, None);
-        for ended in ended {
-            match ended {
-                Ok(result) => done.push(result),
-                Err(panic) => match panic.downcast::<RankLoss>() {
-                    Ok(departure) => departed = departed.or(Some(departure.0)),
-                    Err(panic) => panicked = panicked.or(Some(panic)),
-                },
-            }
-        }
-        match (panicked, departed) {
-            (Some(panic), _) => resume_unwind(panic),
-            (None, Some(error)) => Err(error.into()),
-            (None, None) => Ok(done),
-        }
+        // a panic of the job is its caller's
+        Ok(ended.into_iter().map(|ended| ended.unwrap_or_else(|panic| resume_unwind(panic))).collect())
     }
 }
 
-/// Most threads: more help nobody.
+/// Marks a rank as gone when it is dropped, as its job ends or panics, and wakes the waiting ranks.
+struct Leaving<'a> {
+    rank: usize,
+    meeting: &'a Meeting,
+}
+
+impl Drop for Leaving<'_> {
+    fn drop(&mut self) {
+        lock(&self.meeting.gate).left.get_or_insert(self.rank);
+        self.meeting.opened.notify_all();
+    }
+}
+
+/// Upper limit of threads.
 const MOST: usize = 1024;
 
-/// Where the threads meet.
+/// Meeting point of the threads.
 struct Meeting {
-    /// What each rank brings: kept, so that no meeting allocates that is no larger than one before.
-    values: Vec<Mutex<Vec<f64>>>,
-    numbers: Vec<Mutex<(Vec<Complex64>, Vec<usize>)>>,
+    /// Numbers of each rank. The buffers are kept, so that no meeting allocates that is no larger than one before.
+    brought: Vec<Mutex<Brought>>,
     gate: Mutex<Gate>,
     opened: Condvar,
+}
+
+/// Numbers of a rank, and how many of them are for each rank: all for each, if there are no counts.
+#[derive(Default)]
+struct Brought {
+    numbers: Vec<f64>,
+    counts: Vec<usize>,
 }
 
 #[derive(Default)]
@@ -82,17 +84,8 @@ struct Gate {
 
 impl Meeting {
     fn of(size: usize) -> Meeting {
-        Meeting {
-            values: (0..size).map(|_| Mutex::default()).collect(),
-            numbers: (0..size).map(|_| Mutex::default()).collect(),
-            gate: Mutex::default(),
-            opened: Condvar::new(),
-        }
-    }
-
-    fn leave(&self, rank: usize) {
-        lock(&self.gate).left.get_or_insert(rank);
-        self.opened.notify_all();
+        let brought = (0..size).map(|_| Mutex::default()).collect();
+        Meeting { brought, gate: Mutex::default(), opened: Condvar::new() }
     }
 
     /// Waits until all ranks are here.
@@ -102,7 +95,7 @@ impl Meeting {
             return Err(RanksError::Left { rank });
         }
         gate.waiting += 1;
-        if gate.waiting == self.values.len() {
+        if gate.waiting == self.brought.len() {
             (gate.waiting, gate.openings) = (0, gate.openings + 1);
             self.opened.notify_all();
             return Ok(());
@@ -121,60 +114,57 @@ impl Meeting {
     }
 }
 
-impl Ranks for Threads {
-    fn rank(&self) -> usize {
-        self.rank
-    }
-
-    fn size(&self) -> usize {
-        self.meeting.values.len()
-    }
-
-    fn gather(&self, own: &[f64], counts: &[usize], all: &mut [f64]) -> Result<(), RanksError> {
-        refill(&mut lock(&self.meeting.values[self.rank]), own);
+impl Threads {
+    /// Brings numbers, and takes `received_counts[r]` of those that each rank r has brought for this one.
+    fn meet(
+        &self,
+        (numbers, counts): (&[f64], &[usize]),
+        received: &mut [f64],
+        received_counts: &[usize],
+    ) -> Result<(), RanksError> {
+        {
+            let own = &mut *lock(&self.meeting.brought[self.rank]);
+            refill(&mut own.numbers, numbers);
+            refill(&mut own.counts, counts);
+        }
         self.meeting.wait()?;
-        let (mut rest, mut agree) = (all, true);
-        for (values, &count) in self.meeting.values.iter().zip(counts) {
+        let (mut rest, mut agree) = (received, true);
+        for (brought, &count) in self.meeting.brought.iter().zip(received_counts) {
             let (part, others) = std::mem::take(&mut rest).split_at_mut(count);
-            let values = lock(values);
-            agree &= values.len() == count;
-            part.iter_mut().zip(&*values).for_each(|(part, &value)| *part = value);
+            let Brought { numbers, counts } = &*lock(brought);
+            let start = counts.iter().take(self.rank).sum::<usize>();
+            agree &= counts.get(self.rank).unwrap_or(&numbers.len()) == &count;
+            part.iter_mut().zip(&numbers[start..]).for_each(|(part, &number)| *part = number);
             rest = others;
         }
         // nobody may bring anything new before all have read
         self.meeting.wait()?;
         if agree { Ok(()) } else { Err(RanksError::Apart) }
     }
+}
+
+impl Ranks for Threads {
+    fn rank(&self) -> usize {
+        self.rank
+    }
+
+    fn size(&self) -> usize {
+        self.meeting.brought.len()
+    }
+
+    fn gather(&self, own: &[f64], counts: &[usize], all: &mut [f64]) -> Result<(), RanksError> {
+        self.meet((own, &[]), all, counts)
+    }
 
     fn exchange(
         &self,
-        send: &[Complex64],
+        send: &[f64],
         send_counts: &[usize],
-        received: &mut [Complex64],
+        received: &mut [f64],
         receive_counts: &[usize],
     ) -> Result<(), RanksError> {
-        {
-            let (numbers, counts) = &mut *lock(&self.meeting.numbers[self.rank]);
-            refill(numbers, send);
-            refill(counts, send_counts);
-        }
-        self.meeting.wait()?;
-        let (mut rest, mut agree) = (received, true);
-        for (numbers, &count) in self.meeting.numbers.iter().zip(receive_counts) {
-            let (part, others) = std::mem::take(&mut rest).split_at_mut(count);
-            let (numbers, counts) = &*lock(numbers);
-            let start = counts[..self.rank].iter().sum::<usize>();
-            agree &= counts[self.rank] == count;
-            part.iter_mut().zip(&numbers[start..]).for_each(|(part, &number)| *part = number);
-            rest = others;
-        }
-        self.meeting.wait()?;
-        if agree { Ok(()) } else { Err(RanksError::Apart) }
+        self.meet((send, send_counts), received, receive_counts)
     }
-}
-
-fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 fn refill<T: Copy>(kept: &mut Vec<T>, values: &[T]) {

@@ -50,7 +50,7 @@ impl Extent {
             return Ok(extent);
         }
         extent.held(|extent| {
-            let finer = scene.follow(grid_with(extent, LEAST_ACROSS)?)?.extent;
+            let finer = scene.follow(grid_with(extent, LEAST_ACROSS)?, &[])?.extent;
             // a contact may be a few cells wide on any mesh
             let width = [0, 1].map(|axis| finer.width[axis].max(MIN_NARROWING * extent.width[axis]));
             Ok(Extent { width, ..finer })
@@ -62,7 +62,7 @@ impl Extent {
         let mut extent = *self;
         for _ in 0..MAX_GROWTHS {
             match compute(&extent) {
-                Err(Error::ContactAtEdge { .. }) => extent = extent.enlarged(GROWTH),
+                Err(Error::ContactAtEdge { .. }) => extent.reach = extent.reach.map(|half| GROWTH * half),
                 other => return other,
             }
         }
@@ -76,37 +76,29 @@ struct Meshes {
     /// Differences between each mesh and the one before.
     differences: Vec<Differences>,
     finest: Run,
-    /// Cells along the longer side.
-    side: usize,
     /// Power of the cells across with which the convolutions grow.
-    growth: f64,
+    work_order: f64,
 }
 
 impl Meshes {
     /// Refines until the needed number of cells across is within the range of extrapolation.
     fn refine(scene: &Scene<'_>, extent: &Extent, base: Run, needed: impl Fn(&Meshes) -> f64) -> Result<Meshes> {
-        let mut meshes = Meshes { across: LEAST_ACROSS, differences: Vec::new(), finest: base, side: 0, growth: 0.0 };
+        let mut meshes = Meshes { across: LEAST_ACROSS, differences: Vec::new(), finest: base, work_order: 0.0 };
         loop {
-            meshes.halve(scene, extent)?;
+            meshes.across *= 2.0;
+            let grid = grid_with(extent, meshes.across)?;
+            let [n1, n2] = grid.cells();
+            let finer = scene.repeat(grid, &meshes.finest.steps)?;
+            meshes.differences.push(Differences::between(&meshes.finest.states, &finer.states));
+            let growth = relative(finer.convolutions, meshes.finest.convolutions);
+            meshes.work_order = growth.max(1.0).log2().min(MAX_WORK_ORDER);
+            meshes.finest = finer;
             let reach = if meshes.differences.len() < 2 { 1.0 } else { MAX_EXTRAPOLATION };
-            let last = meshes.across >= MOST_ACROSS || 2 * meshes.side > MOST_CELLS;
+            let last = meshes.across >= MOST_ACROSS || 2 * n1.max(n2) > MOST_CELLS;
             if last || needed(&meshes) <= reach * meshes.across {
                 return Ok(meshes);
             }
         }
-    }
-
-    fn halve(&mut self, scene: &Scene<'_>, extent: &Extent) -> Result<()> {
-        self.across *= 2.0;
-        let grid = grid_with(extent, self.across)?;
-        let [n1, n2] = grid.cells();
-        self.side = n1.max(n2);
-        let finer = scene.repeat(grid, &self.finest.steps)?;
-        self.differences.push(Differences::between(&self.finest.states, &finer.states));
-        let growth = relative(finer.convolutions, self.finest.convolutions);
-        self.growth = growth.max(1.0).log2().min(MAX_WORK_ORDER);
-        self.finest = finer;
-        Ok(())
     }
 
     /// The differences of one quantity, from the coarsest mesh to the finest.
@@ -133,8 +125,8 @@ impl Meshes {
     }
 
     fn work(&self) -> Convergence {
-        let Run { convolutions, .. } = self.finest;
-        Convergence { error: convolutions, order: -self.growth, across: self.across, converges: true }
+        let (error, order) = (self.finest.convolutions, -self.work_order);
+        Convergence { error, order, across: self.across, converges: true }
     }
 
     /// Convergence of the greatest pressure of the run, which requires that the finest mesh resolves the peak.
@@ -214,12 +206,12 @@ pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result
         work: meshes.work(),
         steps: steps.clone(),
     };
-    // a pressure on a separate domain does not determine the cells of these meshes
-    let unzoomed = |found: MeshConvergence| match zoomed {
-        Some(law) => MeshConvergence { pressure: Convergence { converges: false, ..law }, ..found },
-        None => found,
+    let needed = |meshes: &Meshes| {
+        let mut found = found(meshes);
+        // a pressure on a separate domain does not determine the cells of these meshes
+        found.pressure.converges &= zoomed.is_none();
+        found.across_for(scene.accuracy, area)
     };
-    let needed = |meshes: &Meshes| unzoomed(found(meshes)).across_for(scene.accuracy, area);
     let meshes = Meshes::refine(scene, extent, base, needed)?;
     let mut found = found(&meshes);
     if zoomed.is_none() && found.pressure.converges && !meshes.bounds_small_contacts(scene, extent)? {
@@ -235,7 +227,7 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Conver
     let (part, extent, base) = loop {
         let part = Scene { until, ..*scene };
         let (extent, base) =
-            Extent::of(&part)?.held(|extent| Ok((*extent, part.follow(grid_with(extent, LEAST_ACROSS)?)?)))?;
+            Extent::of(&part)?.held(|extent| Ok((*extent, part.follow(grid_with(extent, LEAST_ACROSS)?, &[])?)))?;
         zooms += 1;
         match part.before_growth(&base).filter(|_| zooms < MAX_ZOOMS) {
             Some(earlier) => until = earlier,

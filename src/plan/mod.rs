@@ -28,10 +28,11 @@ use crate::rheology::{Material, TemperatureHistory};
 /// small, as under a constant force on a body that creeps much, this part of the run gets coarse runs on a separate
 /// domain. The domain reaches from the origin as far as the contact does; the cells are elongated like the contact.
 ///
-/// # Promised accuracy Errors of at most twice the accuracy, relative to the greatest value of the run, of
+/// # Promised accuracy
+/// Errors of at most twice the accuracy, relative to the greatest value of the run, of
 /// * approach and force at all times,
 /// * the greatest pressure of the run, if it converges and the coarse runs resolve its peak ([`Plan::pressure_converges`]),
-/// * with [`Plan::with_area`], the contact radius wherever the contact is at least 8 cells across.
+/// * with [`PlanOptions::area`], the contact radius wherever the contact is at least 8 cells across.
 ///
 /// Other errors are estimated, not promised: [`Plan::mesh_error`] estimates the error of the area,
 /// [`Plan::pressure_error_at_all_times`] the error of the greatest pressure at each time, which steps and cells resolve
@@ -40,9 +41,8 @@ use crate::rheology::{Material, TemperatureHistory};
 /// their cells or loads shorter than their steps. A contact far from the origin takes many cells without contact: shift
 /// the shape ([`Shifted`](crate::geometry::Shifted)) and the points of the load.
 ///
-/// Planning takes as long as several runs on up to 128 cells across the contact.
-/// The plan returns a builder, which can be changed before the contact is built; the plan does not include the changes.
-/// For a changing temperature use [`Plan::with_temperature`]; layers and other kernels are not planned.
+/// Planning takes as long as several runs on up to 128 cells across the contact. The plan does not include changes to its
+/// builder. Layers and other kernels are not planned.
 ///
 /// ```
 /// use viscocontact::plan::{Accuracy, Plan};
@@ -54,35 +54,60 @@ use crate::rheology::{Material, TemperatureHistory};
 /// let plan = Plan::new(&sphere, &body, &load, 2.0, Accuracy::Standard)?;
 /// println!("{plan}");
 ///
-/// let mut contact = plan.builder().build()?;
-/// let mut run = contact.follow(&load, plan.stepping(), 2.0);
+/// let mut contact = plan.builder.build()?;
+/// let mut run = contact.follow(&load, plan.stepping, 2.0);
 /// while run.next_step()?.is_some() {}
 /// let exact = viscocontact::analytic::GrowingSphere::step(10.0e-3, &body, 1.0)?;
 /// assert!((contact.approach() / exact.approach(2.0) - 1.0).abs() < 1e-3);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Plan {
-    accuracy: Accuracy,
-    builder: Builder,
-    grid: Grid,
-    /// Half sides of the rectangle that contains the contact at all times.
-    reach: [f64; 2],
-    steps: usize,
-    /// Tolerance of the steps, and their estimated error in time.
-    tolerance: f64,
-    time_error: Option<f64>,
-    convolutions: f64,
-    error: MeshError,
-    /// Greatest error of mesh and steps of the greatest pressure at any time.
-    pressure_over_time: f64,
-    bytes: u64,
+    /// A builder with grid, geometry, material and settings; each can be replaced.
+    pub builder: Builder,
+    /// The stepping, for [`ViscoelasticContact::follow`](crate::ViscoelasticContact::follow).
+    pub stepping: Stepping,
+    /// The grid.
+    pub grid: Grid,
+    /// The accuracy.
+    pub accuracy: Accuracy,
+    /// Expected extent of the contact from the middle of the grid, along x1 and x2 \[m\].
+    pub reach: [f64; 2],
+    /// Approximate number of steps of the run.
+    pub steps: usize,
+    /// Approximate number of convolution equivalents of the run, each O(N log N) in the number of cells.
+    pub convolutions: f64,
+    /// Approximate memory of the contact \[bytes\]: [`Builder::memory`], and the fields of adaptive steps.
+    pub bytes: u64,
+    /// Expected error in time of approach and force, relative to their greatest values: the difference from a run with
+    /// shorter steps on a coarse mesh. `None` where the shorter steps are too short for `f64`.
+    pub time_error: Option<f64>,
+    /// Expected errors of the mesh, relative to the greatest values of the run: of approach and force and of the contact area
+    /// at all times, and of the greatest pressure of the run, if it converges.
+    pub mesh_error: MeshError,
+    /// Expected greatest error of mesh and steps, over all times, of the greatest pressure at that time, relative to the
+    /// greatest of the run. It may exceed the accuracy: creep leaves a narrow rim of high pressure at a growing edge, which
+    /// neither cells nor steps resolve.
+    pub pressure_error_at_all_times: f64,
+}
+
+/// What a plan considers besides the scene of [`Plan::new`].
+#[derive(Debug, Clone, Copy, Default)]
+#[expect(clippy::exhaustive_structs, reason = "written as a literal")]
+pub struct PlanOptions<'a> {
+    /// A temperature that changes ([`Builder::temperature`]): the times of the plan and of the load are times, the body creeps
+    /// in reduced time.
+    pub temperature: Option<&'a TemperatureHistory>,
+    /// Whether the mesh gives the contact radius, √(area/π), this accuracy too, at all times at which the contact is at least
+    /// 8 cells across. The radius of a growing contact errs by a fraction of a cell.
+    pub area: bool,
 }
 
 /// Most cells along a side of a plan: more exceed the memory of a workstation.
 const MOST_CELLS: usize = 1 << 13;
 /// Fewest cells across the widest contact: fewer do not resolve it.
-const LEAST_ACROSS: f64 = 14.0;
+const FEWEST_ACROSS: f64 = 14.0;
 
 impl Plan {
     /// Plans a run of one body from rest to the time `until` \[s\].
@@ -97,29 +122,13 @@ impl Plan {
         until: f64,
         accuracy: Accuracy,
     ) -> Result<Plan> {
-        Plan::made(geometry, (material, None), history, until, accuracy, false)
+        Plan::with(geometry, material, history, until, accuracy, PlanOptions::default())
     }
 
-    /// As [`Plan::new`], with a mesh on which the contact radius, √(area/π), has this accuracy too, at all times at
-    /// which the contact is at least 8 cells across. The radius of a growing contact errs by a fraction of a cell.
-    ///
-    /// # Errors
-    /// As [`Plan::new`].
-    pub fn with_area(
-        geometry: &dyn Geometry,
-        material: &Material,
-        history: &dyn LoadHistory,
-        until: f64,
-        accuracy: Accuracy,
-    ) -> Result<Plan> {
-        Plan::made(geometry, (material, None), history, until, accuracy, true)
-    }
-
-    /// As [`Plan::new`], at a temperature that changes ([`Builder::temperature`]): `until` and the load are in time, the body
-    /// creeps in reduced time.
+    /// As [`Plan::new`], with options.
     ///
     /// ```
-    /// use viscocontact::plan::{Accuracy, Plan};
+    /// use viscocontact::plan::{Accuracy, Plan, PlanOptions};
     /// use viscocontact::prelude::*;
     /// use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
     ///
@@ -127,9 +136,10 @@ impl Plan {
     /// let body = Material::incompressible(Zener::new(1.0e7, 1.0e6, 1.0e7)?);
     /// let law = TimeTemperature::wlf(17.44, 51.6, 263.15)?;
     /// let warming = TemperatureHistory::table(law, &[(0.0, 263.15), (100.0, 273.15)])?;
-    /// let plan = Plan::with_temperature(&sphere, &body, &warming, &load, 100.0, Accuracy::Coarse)?;
-    /// let mut contact = plan.builder().build()?;
-    /// let mut run = contact.follow(&load, plan.stepping(), 100.0);
+    /// let options = PlanOptions { temperature: Some(&warming), ..PlanOptions::default() };
+    /// let plan = Plan::with(&sphere, &body, &load, 100.0, Accuracy::Coarse, options)?;
+    /// let mut contact = plan.builder.build()?;
+    /// let mut run = contact.follow(&load, plan.stepping, 100.0);
     /// while run.next_step()?.is_some() {}
     /// let exact = viscocontact::analytic::GrowingSphere::step(10.0e-3, &body, 1.0)?;
     /// assert!((contact.approach() / exact.approach(contact.reduced_time()) - 1.0).abs() < 1e-2);
@@ -139,24 +149,13 @@ impl Plan {
     /// # Errors
     /// As [`Plan::new`]; for a temperature of the run as
     /// [`TimeTemperature::shift_factor`](crate::rheology::TimeTemperature::shift_factor).
-    pub fn with_temperature(
+    pub fn with(
         geometry: &dyn Geometry,
         material: &Material,
-        temperature: &TemperatureHistory,
         history: &dyn LoadHistory,
         until: f64,
         accuracy: Accuracy,
-    ) -> Result<Plan> {
-        Plan::made(geometry, (material, Some(temperature)), history, until, accuracy, false)
-    }
-
-    fn made(
-        geometry: &dyn Geometry,
-        (material, temperature): (&Material, Option<&TemperatureHistory>),
-        history: &dyn LoadHistory,
-        until: f64,
-        accuracy: Accuracy,
-        area: bool,
+        PlanOptions { temperature, area }: PlanOptions<'_>,
     ) -> Result<Plan> {
         positive("end of the run", until)?;
         Accuracy::target_of(accuracy.target())?;
@@ -166,7 +165,7 @@ impl Plan {
         let mut found = extent.held(|extent| converge(&scene, extent, area))?;
         let extent = Extent { reach: found.reach, ..extent };
         let needed = |found: &MeshConvergence| {
-            let across = found.across_for(accuracy, area).max(LEAST_ACROSS);
+            let across = found.across_for(accuracy, area).max(FEWEST_ACROSS);
             (across, [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * extent.reach[axis] / extent.width[axis]))
         };
         let (mut across, mut sides) = needed(&found);
@@ -181,77 +180,30 @@ impl Plan {
         }
         let grid = grid_with(&extent, across)?;
         let across = across * grid.cells()[0] as f64 / sides[0];
-        let converges = found.pressure_converges(accuracy);
-        let error = MeshError {
+        let mesh_error = MeshError {
             approach: found.main.at(across).max(found.singular.at(across)),
-            max_pressure: converges.then(|| found.pressure.at(across)),
+            max_pressure: found.pressure_converges(accuracy).then(|| found.pressure.at(across)),
             area: 2.0 * found.radius.at(across),
             singular: found.singular.at(across),
         };
         let builder = scene.builder(grid.clone());
         let memory = builder.memory()?;
-        let slope = 8 * memory.computed_cells as u64; // the rate stored by adaptive steps
+        let in_time = found.steps.error;
         Ok(Plan {
-            accuracy: scene.accuracy,
             builder,
+            stepping: Stepping::adaptive(found.steps.tolerance),
             grid,
+            accuracy,
             reach: extent.reach,
             steps: found.steps.run.steps.len(),
-            tolerance: found.steps.tolerance,
-            time_error: found.steps.error.map(|error| error.main),
             convolutions: found.work.at(across),
-            error,
-            pressure_over_time: found.pressure_over_time.at(across)
-                + found.steps.error.map_or(0.0, |error| error.pressure_over_time),
-            bytes: memory.total() + slope,
+            // adaptive steps keep the rate of the displacement
+            bytes: memory.total() + 8 * memory.computed_cells as u64,
+            time_error: in_time.map(|error| error.main),
+            mesh_error,
+            pressure_error_at_all_times: found.pressure_over_time.at(across)
+                + in_time.map_or(0.0, |error| error.pressure_over_time),
         })
-    }
-
-    /// A builder with grid, geometry, material and settings; each can be replaced.
-    pub fn builder(&self) -> Builder {
-        self.builder.clone()
-    }
-
-    /// The grid.
-    pub fn grid(&self) -> &Grid {
-        &self.grid
-    }
-
-    /// The stepping, for [`ViscoelasticContact::follow`](crate::ViscoelasticContact::follow).
-    pub fn stepping(&self) -> Stepping {
-        Stepping::adaptive(self.tolerance)
-    }
-
-    /// The accuracy.
-    pub fn accuracy(&self) -> Accuracy {
-        self.accuracy
-    }
-
-    /// Expected extent of the contact from the middle of the grid, along x1 and x2 \[m\].
-    pub fn reach(&self) -> [f64; 2] {
-        self.reach
-    }
-
-    /// Approximate number of steps of the run.
-    pub fn steps(&self) -> usize {
-        self.steps
-    }
-
-    /// Approximate number of convolution equivalents of the run, each O(N log N) in the number of cells.
-    pub fn convolutions(&self) -> f64 {
-        self.convolutions
-    }
-
-    /// Approximate memory of the contact \[bytes\]: [`Builder::memory`], the fields of adaptive steps, and the series
-    /// of the material.
-    pub fn bytes(&self) -> u64 {
-        self.bytes
-    }
-
-    /// Expected error in time of approach and force, relative to their greatest values: the difference from a run with
-    /// shorter steps on a coarse mesh. `None` where the shorter steps are too short for `f64`.
-    pub fn time_error(&self) -> Option<f64> {
-        self.time_error
     }
 
     /// Whether the greatest pressure of the run is promised. There are three exceptions: the pressure does not converge
@@ -259,20 +211,7 @@ impl Plan {
     /// edges of bodies that creep fast; it may have been greater while the contact was too small for the coarse runs,
     /// as under ramps on bodies that creep fast; or it would require more than 8192 cells along a side.
     pub fn pressure_converges(&self) -> bool {
-        self.error.max_pressure.is_some()
-    }
-
-    /// Expected greatest error of mesh and steps, over all times, of the greatest pressure at that time, relative to the
-    /// greatest of the run. It may exceed the accuracy: creep leaves a narrow rim of high pressure at a growing edge, which neither
-    /// cells nor steps resolve.
-    pub fn pressure_error_at_all_times(&self) -> f64 {
-        self.pressure_over_time
-    }
-
-    /// Expected errors of the mesh, relative to the greatest values of the run: of approach and force and of the contact area
-    /// at all times, and of the greatest pressure of the run, if it converges.
-    pub fn mesh_error(&self) -> MeshError {
-        self.error
+        self.mesh_error.max_pressure.is_some()
     }
 }
 
@@ -287,7 +226,7 @@ impl std::fmt::Display for Plan {
             self.steps,
             self.convolutions,
             self.bytes as f64 * 1e-6,
-            self.error
+            self.mesh_error
         )?;
         match self.time_error {
             None => write!(f, "; the error in time is unknown"),

@@ -61,7 +61,7 @@ impl Steps {
     }
 
     fn with_tolerance(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
-        let run = scene.follow(grid.clone())?;
+        let run = scene.follow(grid.clone(), &[])?;
         let finer = scene.with_shorter_steps(&run, grid.clone())?;
         let error = finer.map(|finer| Differences::between(&run.states, &finer));
         Ok(Steps { tolerance: scene.tolerance, run, error })

@@ -1,8 +1,9 @@
 //! The scene on coarse meshes: its domain, its steps, and its states.
 
 use crate::Grid;
-use crate::contact::{Builder, StepReport, Stepping, ViscoelasticContact, Warning};
+use crate::contact::{Builder, StepReport, Stepping, ViscoelasticContact, Warnings};
 use crate::error::{Error, Result};
+use crate::extent as cells;
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory};
 use crate::plan::Accuracy;
@@ -42,19 +43,12 @@ pub(super) struct Scene<'a> {
 }
 
 /// Extent of the contact during a run.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Extent {
     /// Half sides of the rectangle about the origin that contained the contact.
     pub(super) reach: [f64; 2],
     /// Greatest widths of the contact at any one time.
     pub(super) width: [f64; 2],
-}
-
-impl Extent {
-    /// The extent with its reach enlarged by `factor`.
-    pub(super) fn enlarged(&self, factor: f64) -> Extent {
-        Extent { reach: self.reach.map(|half| factor * half), ..*self }
-    }
 }
 
 /// A state at the end of a step.
@@ -74,7 +68,7 @@ pub(super) struct State {
 }
 
 /// A run on a coarse mesh.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(super) struct Run {
     pub(super) extent: Extent,
     /// Steps taken: their lengths, and the loads at their ends.
@@ -84,11 +78,6 @@ pub(super) struct Run {
 }
 
 impl Run {
-    fn new() -> Run {
-        let extent = Extent { reach: [0.0; 2], width: [0.0; 2] };
-        Run { extent, steps: Vec::new(), states: Vec::new(), convolutions: 0.0 }
-    }
-
     fn add(&mut self, contact: &ViscoelasticContact, report: &StepReport) {
         let mesh = contact.mesh_error().unwrap_or_default();
         self.convolutions += report.convolution_equivalents();
@@ -101,20 +90,15 @@ impl Run {
             pressure: contact.max_pressure(),
             peak: mesh.and_then(|error| error.max_pressure),
             singular: mesh.map_or(0.0, |error| error.singular),
-            resolved: !report.warnings.contains(Warning::FewCells),
+            resolved: !report.warnings.contains(Warnings::FEW_CELLS),
         });
-        let reach = contact.reach_of_contact();
-        let (cells, spacing) = (contact.grid().cells(), contact.grid().spacing());
-        let (mut first, mut last) = (cells, [0; 2]);
-        for (k, _) in contact.pressure().iter().enumerate().filter(|(_, p)| **p > 0.0) {
-            let cell = [k / cells[1], k % cells[1]];
-            first = [0, 1].map(|axis| first[axis].min(cell[axis]));
-            last = [0, 1].map(|axis| last[axis].max(cell[axis] + 1));
-        }
-        for axis in [0, 1] {
-            self.extent.reach[axis] = self.extent.reach[axis].max(reach[axis]);
-            let width = last[axis].saturating_sub(first[axis]) as f64 * spacing[axis];
-            self.extent.width[axis] = self.extent.width[axis].max(width);
+        let Some(cells::Extent { low, high }) = contact.extent_of_contact() else { return };
+        let grid = contact.grid();
+        let (first, last) = (grid.center(low[0], low[1]), grid.center(high[0], high[1]));
+        for axis in 0..2 {
+            let (side, Extent { reach, width }) = (grid.spacing()[axis], &mut self.extent);
+            reach[axis] = reach[axis].max(first[axis].abs().max(last[axis].abs()) + 0.5 * side);
+            width[axis] = width[axis].max((high[axis] + 1 - low[axis]) as f64 * side);
         }
     }
 }
@@ -133,7 +117,7 @@ impl Scene<'_> {
     pub(super) fn extent(&self) -> Result<Extent> {
         let mut lengths = [self.first_length()?; 2];
         for _ in 0..MAX_DOMAINS {
-            match self.follow(Grid::new([DOMAIN_CELLS; 2], lengths)?) {
+            match self.follow(Grid::new([DOMAIN_CELLS; 2], lengths)?, &[]) {
                 Err(Error::ContactAtEdge { .. }) => lengths = lengths.map(|length| 1.7 * length),
                 Err(Error::NothingToTouch { .. }) => lengths = lengths.map(|length| 0.3 * length),
                 Err(error) => return Err(error),
@@ -150,16 +134,11 @@ impl Scene<'_> {
         Err(Error::NoDomain { length: lengths[0].max(lengths[1]) })
     }
 
-    /// The run in steps as long as the scene's tolerance allows.
-    pub(super) fn follow(&self, grid: Grid) -> Result<Run> {
-        self.follow_over(grid, self.tolerance, &[])
-    }
-
-    /// The run with another tolerance of the steps, and steps that end at the given times.
-    fn follow_over(&self, grid: Grid, tolerance: f64, times: &[f64]) -> Result<Run> {
+    /// The run in steps as long as the scene's tolerance allows; steps also end at the times `stops`.
+    pub(super) fn follow(&self, grid: Grid, stops: &[f64]) -> Result<Run> {
         let mut contact = self.builder(grid).build()?;
-        let mut follow = contact.follow(self.history, Stepping::adaptive(tolerance), self.until).stop_at(times)?;
-        let mut run = Run::new();
+        let mut follow = contact.follow(self.history, Stepping::adaptive(self.tolerance), self.until).stop_at(stops)?;
+        let mut run = Run::default();
         while let Some(report) = follow.next_step()? {
             run.add(follow.contact(), &report);
         }
@@ -174,22 +153,11 @@ impl Scene<'_> {
         // splits every step of the run, since its control may have missed an event within a step
         let middles = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
         let stops: Vec<f64> = times.iter().copied().chain(middles).collect();
-        match self.follow_over(grid, tolerance, &stops) {
+        match (Scene { tolerance, ..*self }.follow(grid, &stops)) {
             Err(Error::StepTooShort { .. } | Error::NotConverged { .. }) => Ok(None),
-            other => {
-                let mut states = other?.states.into_iter().peekable();
-                // of several states at a time, the run ends with the last
-                let mut at = |time: f64| {
-                    let mut found = None;
-                    while let Some(state) = states.next_if(|state| state.time <= time) {
-                        found = Some(state);
-                        if state.time == time {
-                            break;
-                        }
-                    }
-                    found.filter(|state| state.time == time)
-                };
-                Ok(times.iter().map(|&time| at(time)).collect())
+            finer => {
+                let mut states = finer?.states.into_iter();
+                Ok(times.iter().map(|&time| states.find(|state| state.time == time)).collect())
             }
         }
     }
@@ -197,7 +165,7 @@ impl Scene<'_> {
     /// The run in given steps.
     pub(super) fn repeat(&self, grid: Grid, steps: &[(f64, Load)]) -> Result<Run> {
         let mut contact = self.builder(grid).build()?;
-        let mut run = Run::new();
+        let mut run = Run::default();
         for &(dt, load) in steps {
             let report = advance(&mut contact, dt, load, MAX_HALVINGS)?;
             run.add(&contact, &report);

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::fs::File;
 use std::io;
+use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 
 use crate::ViscoelasticContact;
@@ -40,7 +41,8 @@ use crate::plot::{Map, Picture};
 /// ```
 pub struct Animation {
     path: PathBuf,
-    part: Part,
+    /// Left where it is if the animation is dropped.
+    part: ManuallyDrop<Part>,
     file: Appending<File>,
     field: Field,
     range: [f64; 2],
@@ -73,7 +75,7 @@ impl Animation {
         let (part, file) = Part::create(&path)?;
         Ok(Animation {
             path,
-            part,
+            part: ManuallyDrop::new(part),
             file: Appending::new(file),
             field,
             range,
@@ -102,13 +104,12 @@ impl Animation {
     /// If its size differs from the first picture's, or the file cannot be written. The file then contains nothing of it.
     pub fn add_picture(&mut self, picture: &Picture) -> Result<()> {
         let size = picture.size();
-        let path = &self.path;
+        let refused = |error| failed(&self.path, io::Error::other(error));
         if self.frames == 0 {
             // a picture has at most 16384 pixels per side
             let [width, height] = size.map(|side| side as u16);
-            let mut encoder = gif::Encoder::new(Vec::new(), width, height, &self.palette.bytes())
-                .map_err(|error| failed(path, io::Error::other(error)))?;
-            encoder.set_repeat(gif::Repeat::Infinite).map_err(|error| failed(path, io::Error::other(error)))?;
+            let mut encoder = gif::Encoder::new(Vec::new(), width, height, &self.palette.bytes()).map_err(refused)?;
+            encoder.set_repeat(gif::Repeat::Infinite).map_err(refused)?;
             (self.encoder, self.size) = (Some(encoder), size);
         }
         for (axis, field) in ["width of a frame", "height of a frame"].into_iter().enumerate() {
@@ -129,8 +130,8 @@ impl Animation {
         if let Some(encoder) = &mut self.encoder {
             let encoded = encoder.write_frame(&frame);
             let piece = std::mem::take(encoder.get_mut());
-            encoded.map_err(|error| failed(path, io::Error::other(error)))?;
-            self.file.append(&piece).map_err(|error| failed(path, error))?;
+            encoded.map_err(refused)?;
+            self.file.append(&piece).map_err(|error| failed(&self.path, error))?;
         }
         self.last = pixels;
         self.frames += 1;
@@ -148,11 +149,11 @@ impl Animation {
     /// If there are no frames, or the file cannot be written.
     pub fn finish(mut self) -> Result<()> {
         let Some(encoder) = self.encoder.take().filter(|_| self.frames > 0) else {
-            self.part.remove(); // without frames the file is useless
+            drop(ManuallyDrop::into_inner(self.part)); // without frames the file is useless
             return Err(Error::WrongLength { field: "frames of an animation", len: 0, expected: 1, exact: false });
         };
-        let end = encoder.into_inner().map_err(|error| failed(&self.path, io::Error::other(error)))?;
-        self.file.append(&end).map_err(|error| failed(&self.path, error))?;
+        let end = encoder.into_inner().map_err(io::Error::other);
+        end.and_then(|end| self.file.append(&end)).map_err(|error| failed(&self.path, error))?;
         self.part.place(self.file.into_inner())
     }
 }

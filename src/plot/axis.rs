@@ -49,16 +49,17 @@ impl Axis {
             let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 17.0) as usize;
             let first = (low / step - 1e-6).ceil();
             let count = ((high / step + 1e-6).floor() - first).clamp(0.0, 20.0) as i32;
-            let texts = (0..=count).map(|k| {
+            let tick = |k: i32| {
                 let value = (first + f64::from(k)) * step;
-                ((value - low) / span, shortened(&format!("{value:.decimals$}")))
-            });
-            ticks = texts.collect();
+                let text = if value == 0.0 { "0".into() } else { format!("{value:.decimals$}").replace('-', "−") };
+                ((value - low) / span, text)
+            };
+            ticks = (0..=count).map(tick).collect::<Vec<_>>();
             if room.needed(ticks.iter().map(|tick| tick.1.as_str())) <= step / span * room.length {
                 break;
             }
         }
-        Axis { label, ticks: same_decimals(ticks), minor: Vec::new(), factor, ends: [low, high], logarithmic: false }
+        Axis { label, ticks, minor: Vec::new(), factor, ends: [low, high], logarithmic: false }
     }
 
     /// A logarithmic axis between two values in SI, which have no prefix since their powers of ten are written out.
@@ -127,20 +128,6 @@ fn round_step(least: f64) -> f64 {
     let multiple = [1.0, 2.0, 5.0].into_iter().find(|m| m * power >= 0.999_999 * least).unwrap_or(10.0);
     // a division is exact where a product is not: 3 / 10, not 3 * 0.1
     if exponent < 0.0 { multiple / 10_f64.powf(-exponent) } else { multiple * power }
-}
-
-/// The numbers of an axis with equally many decimals: 0, 0.5, 1 become 0.0, 0.5, 1.0.
-fn same_decimals(mut ticks: Vec<(f64, String)>) -> Vec<(f64, String)> {
-    let decimals = |text: &str| text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
-    let most = ticks.iter().map(|tick| decimals(&tick.1)).max().unwrap_or(0);
-    for (_, text) in ticks.iter_mut().filter(|tick| tick.1 != "0") {
-        let missing = most - decimals(text);
-        if missing == most && most > 0 {
-            text.push('.');
-        }
-        text.extend(std::iter::repeat_n('0', missing));
-    }
-    ticks
 }
 
 /// A number without trailing zeros, without the sign of a negative zero, and with a minus instead of a hyphen.

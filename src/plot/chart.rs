@@ -5,8 +5,9 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::plot::axis::{Axis, Room};
 use crate::plot::canvas::Canvas;
-use crate::plot::frame::{BELOW, Frame, label_baseline, width_beside};
-use crate::plot::legend::{self, Entry, points_along};
+use crate::plot::frame::{BELOW, Frame, width_beside};
+use crate::plot::legend::{self, points_along};
+use crate::plot::map::extremes;
 use crate::plot::quantity::{drawable, drawable_as_power};
 use crate::plot::{Color, Picture, Quantity};
 
@@ -72,11 +73,11 @@ pub enum Legend {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-struct Curve {
-    label: String,
+pub(super) struct Curve {
+    pub(super) label: String,
     points: Vec<(f64, f64)>,
-    color: Color,
-    style: Style,
+    pub(super) color: Color,
+    pub(super) style: Style,
 }
 
 /// A chart of curves over two axes.
@@ -138,9 +139,7 @@ impl Chart {
     /// If there is no point to draw, or a coordinate exceeds 1e100 in magnitude (or, on a logarithmic axis, is below
     /// 1e-100).
     pub fn draw(&self) -> Result<Picture> {
-        let labelled = self.curves.iter().filter(|curve| !curve.label.is_empty());
-        let entries: Vec<_> =
-            labelled.map(|curve| Entry { label: &curve.label, color: curve.color, style: curve.style }).collect();
+        let entries: Vec<_> = self.curves.iter().filter(|curve| !curve.label.is_empty()).collect();
         // the vertical axis grows until a legend hides nothing, at most to twice its length
         let mut frame = self.frame(0.0)?;
         for above in (0..=10).map(|tenths| 0.1 * f64::from(tenths)) {
@@ -152,13 +151,13 @@ impl Chart {
         }
         let mut canvas = Canvas::new(SIZE)?;
         frame.draw_grid(&mut canvas);
-        frame.draw(&mut canvas, &self.title, label_baseline(0.0)); // below the curves: those at zero stay visible
+        frame.draw(&mut canvas, &self.title); // below the curves: those at zero stay visible
         for curve in &self.curves {
             let pieces = self.placed(curve, &frame);
             curve.style.draw(&mut canvas, &pieces, &pieces.concat(), curve.color);
         }
         legend::draw(&mut canvas, &entries, self.legend, &frame, &self.points(&frame));
-        Picture::new(SIZE, canvas)
+        Ok(Picture::new(canvas))
     }
 
     /// The axes around all points, the vertical one longer by the share `above` of the height of the points.
@@ -200,16 +199,14 @@ impl Chart {
     fn axis(&self, axis: usize, room: Room, above: f64) -> Result<Axis> {
         let (field, quantity) = [("x of a point in a chart", &self.x), ("y of a point in a chart", &self.y)][axis];
         let logarithmic = self.scale.is_logarithmic()[axis];
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for point in self.curves.iter().flat_map(|curve| self.pieces(curve)).flatten() {
-            let value = [point.0, point.1][axis];
-            let value = if logarithmic { drawable_as_power(field, value) } else { drawable(field, value) }?;
-            (low, high) = (low.min(value), high.max(value));
-        }
+        let points = self.curves.iter().flat_map(|curve| self.pieces(curve)).flatten();
+        let [low, high] = extremes(points.map(|point| if axis == 0 { &point.0 } else { &point.1 }));
         if low > high {
             let field = "points to draw in the chart";
             return Err(Error::WrongLength { field, len: 0, expected: 1, exact: false });
         }
+        let check = if logarithmic { drawable_as_power } else { drawable };
+        let (low, high) = (check(field, low)?, check(field, high)?);
         if logarithmic {
             let [low, high] = if high < 10.0 * low {
                 // whole decades and a little more: otherwise no tick would have a number

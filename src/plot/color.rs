@@ -1,6 +1,6 @@
 //! Colours that can be distinguished without colour vision.
 
-use plotters::prelude::{RGBColor, ViridisRGB};
+use std::fmt;
 
 /// A colour: red, green and blue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -31,8 +31,30 @@ impl Color {
     /// scale is viridis (van der Walt & Smith, 2015): from dark to light, perceptually uniform and legible without
     /// colour vision.
     pub(super) fn on_scale(value: f64) -> Color {
-        let RGBColor(red, green, blue) = ViridisRGB::get_color(value.clamp(0.0, 1.0));
-        Color(red, green, blue)
+        let at = value.clamp(0.0, 1.0) * (VIRIDIS.len() - 1) as f64;
+        let [lower, upper] = [at.floor(), at.ceil()].map(|k| VIRIDIS[k as usize]);
+        let share = at.ceil() - at;
+        let mix = |low: u8, high: u8| ((1.0 - share) * f64::from(high) + share * f64::from(low)).round() as u8;
+        Color(mix(lower.0, upper.0), mix(lower.1, upper.1), mix(lower.2, upper.2))
+    }
+}
+
+/// Eight colours of viridis at equal distances; the colours between are interpolated.
+const VIRIDIS: [Color; 8] = [
+    Color(68, 1, 84),
+    Color(70, 50, 127),
+    Color(54, 92, 141),
+    Color(39, 127, 143),
+    Color(31, 162, 136),
+    Color(74, 194, 110),
+    Color(160, 219, 57),
+    Color(254, 232, 37),
+];
+
+/// The colour in hexadecimal digits, as in HTML.
+impl fmt::Display for Color {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
     }
 }
 

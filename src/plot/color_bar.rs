@@ -1,9 +1,8 @@
 //! The colour bar beside a map.
 
 use crate::plot::axis::{Axis, Room, TICK_SIZE};
-use crate::plot::canvas::Canvas;
+use crate::plot::canvas::{Anchor, Canvas};
 use crate::plot::frame::LABEL_SIZE;
-use crate::plot::shape::Anchor;
 use crate::plot::{Color, Quantity};
 
 /// Width of a colour bar with its numbers and label in pixels.
@@ -26,8 +25,8 @@ pub(super) fn draw(
     let (left, right) = (left + 10.0, left + 10.0 + WIDTH);
     let greatest = range[0].abs().max(range[1].abs());
     let axis = Axis::linear(quantity, greatest, range, Room { length: bottom - top, horizontal: false });
-    let colors = (0..256).rev().map(|k| Color::on_scale(f64::from(k) / 255.0)).collect();
-    canvas.cells([left, top, right, bottom], 1, colors);
+    let colors: Vec<Color> = (0..256).rev().map(|k| Color::on_scale(f64::from(k) / 255.0)).collect();
+    canvas.cells([left, top, right, bottom], 1, &colors);
     let middle = 0.5 * (left + right);
     let mut outline = vec![vec![[left, top], [left, bottom]], vec![[right, top], [right, bottom]]];
     for (is_beyond, end, tip, color) in

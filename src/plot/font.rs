@@ -20,31 +20,27 @@ pub(super) fn check() -> Result<()> {
 
 /// Width of a text of `size` pixels per em.
 pub(super) fn width(text: &str, size: f64) -> f64 {
-    draw(text, size, None)
+    draw(text, size, [0.0; 2], &mut |_, _, _| {})
 }
 
-/// Calls `ink` with every pixel that a text covers by half or more, relative to the start of its baseline; returns the
-/// width of the text.
-pub(super) fn draw(text: &str, size: f64, mut ink: Option<&mut dyn FnMut(i32, i32)>) -> f64 {
-    let mut left = 0.0;
+/// Calls `ink` with every pixel of a text whose baseline starts at a point, and the share of the pixel that is covered;
+/// returns the width of the text.
+pub(super) fn draw(text: &str, size: f64, [x, y]: [f64; 2], ink: &mut dyn FnMut(i32, i32, f32)) -> f64 {
+    let mut left = x as f32;
     for c in text.chars() {
         // the font lacks the superscript minus: a small raised one replaces it
         let (c, factor, raised) = if c == '⁻' { ('−', 0.62, 0.29) } else { (c, 1.0, 0.0) };
         let Some(font) = scaled(factor * size) else { break };
         let mut glyph = font.scaled_glyph(c);
         let advance = font.h_advance(glyph.id);
-        glyph.position = point(left, (-raised * size) as f32);
-        if let Some((ink, outline)) = ink.as_mut().zip(font.outline_glyph(glyph)) {
+        glyph.position = point(left, (y - raised * size) as f32);
+        if let Some(outline) = font.outline_glyph(glyph) {
             let corner = outline.px_bounds().min;
-            outline.draw(|x, y, covered| {
-                if covered >= 0.5 {
-                    ink(corner.x as i32 + x as i32, corner.y as i32 + y as i32);
-                }
-            });
+            outline.draw(|i, j, covered| ink(corner.x as i32 + i as i32, corner.y as i32 + j as i32, covered.min(1.0)));
         }
         left += advance;
     }
-    f64::from(left)
+    f64::from(left) - x
 }
 
 /// The font with `size` pixels per em.
@@ -62,13 +58,11 @@ mod tests {
         check().unwrap();
         let ink = |text: &str| {
             let (mut left, mut right, mut top, mut bottom) = (i32::MAX, i32::MIN, i32::MAX, i32::MIN);
-            draw(
-                text,
-                400.0,
-                Some(&mut |x, y| {
+            draw(text, 400.0, [0.0; 2], &mut |x, y, covered| {
+                if covered >= 0.5 {
                     (left, right, top, bottom) = (left.min(x), right.max(x + 1), top.min(y), bottom.max(y + 1));
-                }),
-            );
+                }
+            });
             [left, right, top, bottom].map(|edge| f64::from(edge) / 4.0)
         };
         let [left, right, top, bottom] = ink("H");

@@ -1,9 +1,8 @@
 //! The frame of charts and maps: axes, grid and labels around an area.
 
+use crate::plot::Color;
 use crate::plot::axis::{Axis, TICK_SIZE};
-use crate::plot::canvas::Canvas;
-use crate::plot::shape::Anchor;
-use crate::plot::{Color, font};
+use crate::plot::canvas::{Anchor, Canvas};
 
 /// Sizes of the labels of axes and of titles in pixels per em.
 pub(super) const LABEL_SIZE: f64 = 27.0;
@@ -13,6 +12,8 @@ const TICK: f64 = 8.0;
 const GAP: f64 = 6.0;
 /// Distance from the edge of a picture to the labels in pixels.
 const EDGE: f64 = 10.0;
+/// Length by which title and label may exceed a frame, half of it at each end, in pixels.
+const BESIDE: f64 = 40.0;
 /// Height of the numbers and the label below a frame in pixels.
 pub(super) const BELOW: f64 = 85.0;
 
@@ -50,19 +51,18 @@ impl Frame {
     }
 
     /// The frame with ticks, numbers, labels and a title.
-    pub(super) fn draw(&self, canvas: &mut Canvas, title: &str, label_left: f64) {
+    pub(super) fn draw(&self, canvas: &mut Canvas, title: &str) {
         let Frame { left, top, right, bottom, axes: [x, y] } = self;
         let (left, top, right, bottom) = (*left, *top, *right, *bottom);
         let middle = [0.5 * (left + right), 0.5 * (top + bottom)];
         let corners = [[left, top], [left, bottom], [right, bottom], [right, top], [left, top]];
         let mut lines = vec![corners.to_vec()];
-        for (at, long) in x.ticks.iter().map(|tick| (tick.0, 1.0)).chain(x.minor.iter().map(|&at| (at, 0.5))) {
-            let [x, y] = self.place(at, 0.0);
-            lines.push(vec![[x, y], [x, y + long * TICK]]);
-        }
-        for (at, long) in y.ticks.iter().map(|tick| (tick.0, 1.0)).chain(y.minor.iter().map(|&at| (at, 0.5))) {
-            let [x, y] = self.place(0.0, at);
-            lines.push(vec![[x, y], [x - long * TICK, y]]);
+        for (axis, place) in [(x, [1.0, 0.0]), (y, [0.0, 1.0])] {
+            let ticks = axis.ticks.iter().map(|tick| (tick.0, TICK));
+            for (at, length) in ticks.chain(axis.minor.iter().map(|&at| (at, 0.5 * TICK))) {
+                let [x, y] = self.place(at * place[0], at * place[1]);
+                lines.push(vec![[x, y], [x - length * place[1], y + length * place[0]]]);
+            }
         }
         // on whole pixels, so that no line is spread over three rows
         lines.iter_mut().flatten().flatten().for_each(|value| *value = value.round());
@@ -76,18 +76,8 @@ impl Frame {
             canvas.text(text, at, TICK_SIZE, Anchor::End, false);
         }
         let below = bottom + TICK + GAP + TICK_SIZE + GAP + LABEL_SIZE;
-        canvas.fitted_text(&x.label, [middle[0], below], LABEL_SIZE, right - left + 60.0, false);
-        canvas.fitted_text(&y.label, [label_left, middle[1]], LABEL_SIZE, bottom - top + 60.0, true);
-        canvas.fitted_text(title, [middle[0], top - 18.0], TITLE_SIZE, right - left + 70.0, false);
+        canvas.fitted_text(&x.label, [middle[0], below], LABEL_SIZE, right - left + BESIDE, false);
+        canvas.fitted_text(&y.label, [EDGE + 0.8 * LABEL_SIZE, middle[1]], LABEL_SIZE, bottom - top + 60.0, true);
+        canvas.fitted_text(title, [middle[0], top - 18.0], TITLE_SIZE, right - left + BESIDE, false);
     }
-}
-
-/// The baseline of the upright label of a frame whose numbers begin at `left`.
-pub(super) fn label_baseline(left: f64) -> f64 {
-    left + EDGE + 0.8 * LABEL_SIZE
-}
-
-/// The width of a text of the size of numbers.
-pub(super) fn text_width(text: &str) -> f64 {
-    font::width(text, TICK_SIZE)
 }

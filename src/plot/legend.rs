@@ -1,11 +1,10 @@
 //! The legend of a chart, and where it hides least.
 
 use crate::plot::axis::TICK_SIZE;
-use crate::plot::canvas::Canvas;
-use crate::plot::chart::Style;
-use crate::plot::frame::{Frame, text_width};
-use crate::plot::shape::Anchor;
-use crate::plot::{Color, Legend};
+use crate::plot::canvas::{Anchor, Canvas};
+use crate::plot::chart::Curve;
+use crate::plot::frame::Frame;
+use crate::plot::{Color, Legend, font};
 
 /// Height of an entry, length of its line, and the space around entries in pixels.
 const ENTRY: f64 = 34.0;
@@ -32,18 +31,12 @@ const ALL: [Legend; 9] = [
 impl Legend {
     /// The rectangle of a legend of this size: left, top, right and bottom.
     fn rectangle(self, [width, height]: [f64; 2], frame: &Frame) -> [f64; 4] {
-        use Legend::*;
-        let left = match self {
-            UpperLeft | MiddleLeft | LowerLeft => frame.left + INSET,
-            UpperMiddle | MiddleMiddle | LowerMiddle => 0.5 * (frame.left + frame.right - width),
-            UpperRight | MiddleRight | LowerRight => frame.right - INSET - width,
-        };
-        let top = match self {
-            UpperLeft | UpperMiddle | UpperRight => frame.top + INSET,
-            MiddleLeft | MiddleMiddle | MiddleRight => 0.5 * (frame.top + frame.bottom - height),
-            LowerLeft | LowerMiddle | LowerRight => frame.bottom - INSET - height,
-        };
-        [left.round(), top.round(), (left + width).round(), (top + height).round()]
+        // rows of positions from the top, each from the left
+        let (row, column) = (self as usize / 3, self as usize % 3);
+        let start = |low: f64, high: f64, size: f64| [low + INSET, 0.5 * (low + high - size), high - INSET - size];
+        let left = start(frame.left, frame.right, width)[column];
+        let top = start(frame.top, frame.bottom, height)[row];
+        [left, top, left + width, top + height].map(f64::round)
     }
 
     /// The rectangle of a legend that covers the fewest of `points`, and how many; at this position if no other covers
@@ -71,27 +64,19 @@ pub(super) fn points_along(line: &[[f64; 2]]) -> impl Iterator<Item = [f64; 2]> 
     })
 }
 
-/// A curve in the legend.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Entry<'a> {
-    pub(super) label: &'a str,
-    pub(super) color: Color,
-    pub(super) style: Style,
-}
-
 /// Width and height of a legend.
-fn size(entries: &[Entry]) -> [f64; 2] {
-    let widest = entries.iter().map(|entry| text_width(entry.label)).fold(0.0, f64::max);
+fn size(entries: &[&Curve]) -> [f64; 2] {
+    let widest = entries.iter().map(|entry| font::width(&entry.label, TICK_SIZE)).fold(0.0, f64::max);
     [3.0 * SPACE + LINE + widest, SPACE + ENTRY * entries.len() as f64]
 }
 
 /// How many of `points` the legend would cover.
-pub(super) fn covered(entries: &[Entry], preferred: Legend, frame: &Frame, points: &[[f64; 2]]) -> usize {
+pub(super) fn covered(entries: &[&Curve], preferred: Legend, frame: &Frame, points: &[[f64; 2]]) -> usize {
     if entries.is_empty() { 0 } else { preferred.place(size(entries), frame, points).1 }
 }
 
 /// Draws the entries where they cover the fewest of `points`.
-pub(super) fn draw(canvas: &mut Canvas, entries: &[Entry], preferred: Legend, frame: &Frame, points: &[[f64; 2]]) {
+pub(super) fn draw(canvas: &mut Canvas, entries: &[&Curve], preferred: Legend, frame: &Frame, points: &[[f64; 2]]) {
     if entries.is_empty() {
         return;
     }
@@ -99,7 +84,7 @@ pub(super) fn draw(canvas: &mut Canvas, entries: &[Entry], preferred: Legend, fr
     canvas.rectangle(area, Color::WHITE, 85);
     let outline = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
     canvas.lines(&[outline.map(|point| point.map(|value| value + 0.5)).to_vec()], 1.0, Color(190, 190, 190));
-    for (k, Entry { label, color, style }) in entries.iter().enumerate() {
+    for (k, Curve { label, color, style, .. }) in entries.iter().enumerate() {
         let (x, y) = (left + SPACE, top + 0.5 * SPACE + ENTRY * (k as f64 + 0.5));
         style.draw(canvas, &[vec![[x, y], [x + LINE, y]]], &[[x + 0.5 * LINE, y]], *color);
         canvas.text(label, [x + LINE + SPACE, y + 0.35 * TICK_SIZE], TICK_SIZE, Anchor::Start, false);
@@ -131,7 +116,7 @@ mod tests {
     }
     #[test]
     fn a_chart_grows_until_the_legend_hides_nothing() {
-        use crate::plot::{COLORS, Chart};
+        use crate::plot::{COLORS, Chart, Style};
         let blue = |label: &str| {
             let mut chart = Chart::new("", "x", "y", Legend::UpperRight);
             // zigzags through all positions

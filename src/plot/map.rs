@@ -7,8 +7,7 @@ use crate::error::{Result, exact_length, least_length};
 use crate::plot::axis::{Axis, Room};
 use crate::plot::canvas::Canvas;
 use crate::plot::color_bar::{self, BAR_WIDTH};
-use crate::plot::frame::{BELOW, Frame, label_baseline};
-use crate::plot::picture::check_side;
+use crate::plot::frame::{BELOW, Frame};
 use crate::plot::quantity::{color_scale, drawable};
 use crate::plot::{Color, Picture, Quantity};
 
@@ -72,10 +71,9 @@ impl Map {
     /// If there is not one value per cell, or a finite one is beyond ±1e100.
     pub fn new(grid: &Grid, values: Vec<f64>, quantity: impl Into<Quantity>) -> Result<Map> {
         exact_length("values of a map", values.len(), grid.len())?;
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for &value in values.iter().filter(|value| value.is_finite()) {
-            drawable("value of a map", value)?;
-            (low, high) = (low.min(value), high.max(value));
+        let [low, high] = extremes(&values);
+        if low <= high {
+            [low, high].into_iter().try_for_each(|end| drawable("value of a map", end).map(drop))?;
         }
         // a uniform or empty field still needs a scale
         let range = match low.partial_cmp(&high) {
@@ -145,73 +143,54 @@ impl Map {
     pub fn draw_row(maps: &[Map]) -> Result<Picture> {
         least_length("maps of a row", maps.len(), 1)?;
         maps.iter().try_for_each(|map| color_scale(map.range))?;
-        let (last, alone) = (&maps[maps.len() - 1], maps.len() == 1);
-        // several maps are drawn smaller
-        let longest = if alone { 730.0 } else { 460.0 };
+        let last = &maps[maps.len() - 1];
         let shared = maps.iter().all(|map| map.range == last.range && map.quantity == last.quantity);
-        let sizes: Vec<[u32; 2]> = maps
-            .iter()
-            .map(|map| {
-                let longer = map.lengths[0].max(map.lengths[1]);
-                map.lengths.map(|length| ((length / longer * longest).round() as u32).max(MIN_SIDE))
-            })
-            .collect();
-        let has_bar = |k: usize| !shared || k + 1 == maps.len();
-        let widths =
-            sizes.iter().enumerate().map(|(k, size)| LEFT + size[0] + RIGHT + if has_bar(k) { BAR_WIDTH } else { 0 });
-        let width = widths.fold(0_u32, u32::saturating_add);
-        let tallest = sizes.iter().map(|size| size[1]).max().unwrap_or(MIN_SIDE);
-        let height = tallest.max(MIN_BAR);
-        let size = [width, height + (TOP + BELOW) as u32];
-        check_side(width as usize)?;
-        let mut canvas = Canvas::new(size)?;
-        let mut left = 0.0;
-        for (k, map) in maps.iter().enumerate() {
-            map.draw_on(&mut canvas, left, sizes[k].map(f64::from));
-            left += f64::from(LEFT + sizes[k][0] + RIGHT);
-            if has_bar(k) {
+        // several maps are drawn smaller
+        let longest = if maps.len() == 1 { 730.0 } else { 460.0 };
+        let size_of = |map: &Map| {
+            let longer = map.lengths[0].max(map.lengths[1]);
+            map.lengths.map(|length| ((length / longer * longest).round() as u32).max(MIN_SIDE))
+        };
+        let tallest = maps.iter().map(|map| size_of(map)[1]).max().unwrap_or(MIN_SIDE);
+        let draw = |(k, map): (usize, &Map)| {
+            let [width, height] = size_of(map);
+            let bar = if !shared || k + 1 == maps.len() { BAR_WIDTH } else { 0 };
+            let side = LEFT + width + RIGHT;
+            let mut canvas = Canvas::new([side + bar, tallest.max(MIN_BAR) + (TOP + BELOW) as u32])?;
+            map.draw_on(&mut canvas, [width, height].map(f64::from));
+            if bar > 0 {
                 let of = if shared { maps } else { &maps[k..=k] };
-                let beyond = |is: fn(f64, [f64; 2]) -> bool| {
-                    let mut values = of.iter().flat_map(|map| &map.values);
-                    values.any(|&value| value.is_finite() && is(value, map.range))
-                };
-                let [below, above] = [beyond(|value, [low, _]| value < low), beyond(|value, [_, high]| value > high)];
-                let bar_height = if shared { tallest } else { sizes[k][1] }.max(MIN_BAR);
-                color_bar::draw(
-                    &mut canvas,
-                    [left, TOP, TOP + f64::from(bar_height)],
-                    &map.quantity,
-                    map.range,
-                    [below, above],
-                );
-                left += f64::from(BAR_WIDTH);
+                let [low, high] = extremes(of.iter().flat_map(|map| &map.values));
+                let beyond = [low < map.range[0], high > map.range[1]];
+                let bottom = TOP + f64::from(if shared { tallest } else { height }.max(MIN_BAR));
+                color_bar::draw(&mut canvas, [f64::from(side), TOP, bottom], &map.quantity, map.range, beyond);
             }
-        }
-        Picture::new(size, canvas)
+            Ok(Picture::new(canvas))
+        };
+        let pictures: Result<Vec<Picture>> = maps.iter().enumerate().map(draw).collect();
+        Picture::beside(&pictures?)
     }
 
-    /// Draws the map with its axes to the right of `start`.
-    fn draw_on(&self, canvas: &mut Canvas, start: f64, [width, height]: [f64; 2]) {
+    /// Draws the map with its axes.
+    fn draw_on(&self, canvas: &mut Canvas, [width, height]: [f64; 2]) {
         let half = self.lengths.map(|length| 0.5 * length);
         let axis = |k: usize, length: f64| {
             let [low, high] = [-half[k], half[k]].map(|end| self.middle[k] + end);
             Axis::linear(&self.axes[k], low.abs().max(high.abs()), [low, high], Room { length, horizontal: k == 0 })
         };
-        let left = start + f64::from(LEFT);
+        let left = f64::from(LEFT);
         let axes = [axis(0, width), axis(1, height)];
         let frame = Frame { left, top: TOP, right: left + width, bottom: TOP + height, axes };
-        canvas.cells([left, TOP, left + width, TOP + height], self.cells[0], self.colors());
-        let outline: Vec<_> = self.edges(half).iter().map(|ends| ends.map(|(x, y)| frame.at(x, y)).to_vec()).collect();
-        if !outline.is_empty() {
-            // black alone would vanish on the dark end of the scale
-            canvas.lines(&outline, 5.0, Color::WHITE);
-            canvas.lines(&outline, 2.0, Color::BLACK);
-        }
-        frame.draw(canvas, &self.title, label_baseline(start));
-        let lines: Vec<_> = self.lines.iter().map(|ends| ends.map(|(x, y)| frame.at(x, y)).to_vec()).collect();
-        if !lines.is_empty() {
-            canvas.lines(&lines, MARK_WIDTH, Color::BLACK);
-        }
+        canvas.cells([left, TOP, left + width, TOP + height], self.cells[0], &self.colors());
+        let placed = |lines: &[[(f64, f64); 2]]| -> Vec<_> {
+            lines.iter().map(|ends| ends.map(|(x, y)| frame.at(x, y)).to_vec()).collect()
+        };
+        let outline = placed(&self.edges(half));
+        // black alone would vanish on the dark end of the scale
+        canvas.lines(&outline, 5.0, Color::WHITE);
+        canvas.lines(&outline, 2.0, Color::BLACK);
+        frame.draw(canvas, &self.title);
+        canvas.lines(&placed(&self.lines), MARK_WIDTH, Color::BLACK);
     }
 
     /// The colours of the cells, top row first.
@@ -249,8 +228,14 @@ impl Map {
     }
 }
 
+/// The least and the greatest finite value; +∞ and −∞ if there is none.
+pub(super) fn extremes<'a>(values: impl IntoIterator<Item = &'a f64>) -> [f64; 2] {
+    let finite = values.into_iter().filter(|value| value.is_finite());
+    finite.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(*value), high.max(*value)])
+}
+
 /// The half-open ranges of indices below `n` for which `holds`.
-fn runs(n: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
+pub(super) fn runs(n: usize, holds: impl Fn(usize) -> bool) -> Vec<(usize, usize)> {
     let mut found: Vec<(usize, usize)> = Vec::new();
     for k in (0..n).filter(|&k| holds(k)) {
         match found.last_mut() {

@@ -57,8 +57,6 @@ mod palette;
 mod picture;
 mod quantity;
 mod section;
-mod shape;
-mod svg;
 
 pub use animation::Animation;
 pub use axis::scientific;

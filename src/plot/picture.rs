@@ -1,36 +1,37 @@
 //! Pictures in memory, and as PNG and SVG files.
 
 use std::fmt;
-use std::io::Write as _;
+use std::io;
 use std::path::Path;
+
+use base64::Engine as _;
+use base64::prelude::BASE64_STANDARD;
 
 use crate::error::{Error, Result, count_within, least_length};
 use crate::file::replace;
-use crate::plot::canvas::{Canvas, png_file};
-use crate::plot::shape::Shape;
-use crate::plot::svg;
+use crate::plot::canvas::{Canvas, Element, png_file};
 
-/// Greatest width or height of a picture in pixels.
+/// Greatest width of a picture in pixels.
 const MAX_SIDE: usize = 16_384;
+/// The font of the pixels, then fonts that most systems have.
+const FONTS: &str = "'Ubuntu Light', Ubuntu, Arial, Helvetica, 'Liberation Sans', sans-serif";
 
-/// A picture in memory: three bytes per pixel, red, green and blue, row by row from the top; and the same shapes to be
-/// written as SVG.
+/// A picture in memory: three bytes per pixel, red, green and blue, row by row from the top; and the same shapes as elements of
+/// an SVG document.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Picture {
     size: [u32; 2],
     rgb: Vec<u8>,
-    /// The shapes of pictures side by side, and where they begin.
-    drawn: Vec<(u32, Vec<Shape>)>,
+    /// The elements of pictures side by side, and where they begin.
+    drawn: Vec<(u32, Vec<Element>)>,
 }
 
 impl Picture {
-    /// What was drawn on a canvas of this size.
-    ///
-    /// # Errors
-    /// As [`Canvas::finish`].
-    pub(super) fn new(size: [u32; 2], canvas: Canvas) -> Result<Picture> {
-        let (rgb, shapes) = canvas.finish()?;
-        Ok(Picture { size, rgb, drawn: vec![(0, shapes)] })
+    /// The picture drawn on a canvas of this size.
+    pub(super) fn new(canvas: Canvas) -> Picture {
+        let size = canvas.size();
+        let (rgb, elements) = canvas.finish();
+        Picture { size, rgb, drawn: vec![(0, elements)] }
     }
 
     /// Pictures side by side from left to right; white fills the space below the lower pictures.
@@ -40,13 +41,13 @@ impl Picture {
     pub fn beside(pictures: &[Picture]) -> Result<Picture> {
         least_length("pictures", pictures.len(), 1)?;
         let width = pictures.iter().map(|picture| picture.size[0] as usize).sum();
-        check_side(width)?;
+        count_within("pixels along a side of a picture", width, (1..=MAX_SIDE).contains(&width), "in [1, 16384]")?;
         let height = pictures.iter().map(|picture| picture.size[1]).max().unwrap_or(1);
         let mut rgb = vec![255; 3 * width * height as usize];
         let mut drawn = Vec::new();
         let mut left = 0;
         for picture in pictures {
-            drawn.extend(picture.drawn.iter().map(|(at, shapes)| (left as u32 / 3 + at, shapes.clone())));
+            drawn.extend(picture.drawn.iter().map(|(at, elements)| (left as u32 / 3 + at, elements.clone())));
             let row = 3 * picture.size[0] as usize;
             for (to, from) in rgb.chunks_exact_mut(3 * width).zip(picture.rgb.chunks_exact(row)) {
                 to[left..left + row].copy_from_slice(from);
@@ -76,11 +77,37 @@ impl Picture {
         let path = path.as_ref();
         match check_extension(path, &["png", "svg"])? {
             0 => replace(path, |out| png_file(out, self.size, &self.rgb)),
-            _ => {
-                let document = svg::document(self.size, &self.drawn)?;
-                replace(path, |out| out.write_all(document.as_bytes()))
-            }
+            _ => replace(path, |out| self.write_svg(out)),
         }
+    }
+
+    /// Writes the SVG document. Cells are an image of a pixel each: a map takes as much as in a PNG file, where rectangles would
+    /// take a hundred bytes for each cell.
+    fn write_svg(&self, out: &mut impl io::Write) -> io::Result<()> {
+        let [width, height] = self.size;
+        writeln!(
+            out,
+            "<svg width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+             xmlns=\"http://www.w3.org/2000/svg\" xmlns:xlink=\"http://www.w3.org/1999/xlink\" \
+             stroke-linecap=\"round\" stroke-linejoin=\"round\" font-family=\"{FONTS}\">\n\
+             <rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>"
+        )?;
+        for (left, elements) in &self.drawn {
+            writeln!(out, "<g transform=\"translate({left} 0)\">")?;
+            for element in elements {
+                match element {
+                    Element::Xml(xml) => writeln!(out, "{xml}")?,
+                    Element::Cells { attributes, size, rgb } => {
+                        let mut png = Vec::new();
+                        png_file(&mut png, *size, rgb)?;
+                        let png = BASE64_STANDARD.encode(png);
+                        writeln!(out, "<image {attributes} xlink:href=\"data:image/png;base64,{png}\"/>")?;
+                    }
+                }
+            }
+            writeln!(out, "</g>")?;
+        }
+        writeln!(out, "</svg>")
     }
 }
 
@@ -97,11 +124,6 @@ impl fmt::Debug for Picture {
     }
 }
 
-/// Accepts a width or height in pixels.
-pub(super) fn check_side(value: usize) -> Result<()> {
-    count_within("pixels along a side of a picture", value, (1..=MAX_SIDE).contains(&value), "in [1, 16384]")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -110,7 +132,7 @@ mod tests {
     fn plain(size: [u32; 2], value: u8) -> Picture {
         let mut canvas = Canvas::new(size).unwrap();
         canvas.rectangle([0.0, 0.0, f64::from(size[0]), f64::from(size[1])], Color(value, value, value), 100);
-        Picture::new(size, canvas).unwrap()
+        Picture::new(canvas)
     }
 
     fn file(name: &str) -> std::path::PathBuf {

@@ -8,7 +8,7 @@ use crate::plot::axis::shortened;
 /// A quantity with a unit is given in SI and shown with the prefix for which its greatest value lies between 1 and
 /// 1000: `approach [µm]`, `contact area [mm²]`. Lengths, times and angles get no prefix above 1 (`km`, `ks`). Units
 /// that have a prefix already, or take none (`kg`, `%`, `1/Pa`, `°C`), are not changed. A plain text is a quantity
-/// without a unit. What still has many digits gets a shared power of ten: `J [10⁻⁶ 1/Pa]`.
+/// without a unit. Values that still have many digits get a shared power of ten: `J [10⁻⁶ 1/Pa]`.
 ///
 /// ```
 /// use viscocontact::plot::Quantity;
@@ -45,11 +45,6 @@ impl Quantity {
         let Some(unit) = &self.unit else { return (self.name.clone(), 1.0) };
         let (prefix, factor) = prefix(unit, greatest.abs()).unwrap_or(("", 1.0));
         (format!("{} [{prefix}{unit}]", self.name), factor)
-    }
-
-    /// The name, without the unit.
-    pub fn name(&self) -> &str {
-        &self.name
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result, exact_length, least_length};
 use crate::observe::{Axis, Stress, StressSection};
 use crate::plot::contact::time_title;
+use crate::plot::map::runs;
 use crate::plot::{Map, Quantity};
 use crate::{Grid, ViscoelasticContact};
 
@@ -64,13 +65,9 @@ impl Map {
         map.axes = [Quantity::of(label, "m"), Quantity::of("−x3", "m")];
         map.title = time_title(contact);
         let profile = contact.profile(section.along, section.at)?;
-        for (k, _) in profile.pressure.iter().enumerate().filter(|(_, p)| **p > 0.0) {
-            let ends = [positions[k] - 0.5 * side, positions[k] + 0.5 * side];
-            match map.lines.last_mut() {
-                Some([_, last]) if (last.0 - ends[0]).abs() < 0.1 * side => last.0 = ends[1],
-                _ => map.lines.push(ends.map(|x| (x, surface))),
-            }
-        }
+        let pressed = runs(positions.len(), |k| profile.pressure[k] > 0.0).into_iter();
+        let ends = pressed.map(|(from, to)| [positions[from] - 0.5 * side, positions[to - 1] + 0.5 * side]);
+        map.lines = ends.map(|ends| ends.map(|x| (x, surface))).collect();
         Ok(map)
     }
 }

@@ -136,7 +136,7 @@ pub trait Rheology: Debug + Send + Sync {
 
     /// The shortest and the longest time \[s\] of the measurement or fit of J: (0, +∞) for a formula. J is extrapolated
     /// below and, if so chosen, above; steps there have a warning
-    /// ([`Warning::Extrapolated`](crate::contact::Warning::Extrapolated)).
+    /// ([`Warnings::EXTRAPOLATED`](crate::contact::Warnings::EXTRAPOLATED)).
     fn measured(&self) -> [f64; 2] {
         [0.0, self.known_until()]
     }

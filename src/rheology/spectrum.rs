@@ -1,5 +1,7 @@
 //! Exponential series of creep and relaxation, and the exact conversion between them.
 
+use educe::Educe;
+
 use crate::error::{Result, least_length, positive, within};
 use crate::rheology::Rheology;
 use crate::rheology::interconversion::reciprocal;
@@ -34,7 +36,8 @@ pub struct CreepSpectrum {
 ///
 /// with equilibrium modulus G_∞, relaxation times τ_k and, for bodies without elastic response, the
 /// viscosity η of an immediate dashpot. Every coefficient is ≥ 0.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, PartialEq, Educe)]
+#[educe(Clone)]
 pub struct RelaxationSpectrum {
     equilibrium: f64,
     viscosity: f64,

@@ -180,9 +180,7 @@ fn join_ranks(rows: &Rows, bodies: usize, found: &mut [Found]) {
         all.enumerate().for_each(|(k, found)| sums[k % bodies].join(&found));
         sums
     });
-    if let Some(all) = all {
-        found[..bodies].copy_from_slice(&all[..bodies]);
-    }
+    found[..bodies].copy_from_slice(&all[..bodies]);
 }
 
 /// What is done to a band: its cells, its parts of the outputs, and what is found in it.

@@ -73,7 +73,9 @@ impl ResidualSums {
     /// the rounding of c K p of the guess.
     pub(crate) fn note(&mut self, problem: &Problem<'_>, penetration: f64, rounding: f64, solution: &mut Solution) {
         self.cancellation = problem.rounding(&solution.pressure) + rounding;
-        solution.residual = self.relative_residual(penetration);
+        // where a rank is lost, the sums are NaN, which ends the iterations
+        let lost = problem.rows().intact().is_err();
+        solution.residual = if lost { f64::NAN } else { self.relative_residual(penetration) };
         // a smaller residual cannot be detected; where squares of displacements vanish, none can
         solution.rounding = if self.displacement > 0.0 {
             (self.rounding() + UNDERFLOW) / self.yielding()

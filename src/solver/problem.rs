@@ -1,5 +1,7 @@
 //! The contact problem of one step, and its solution.
 
+use educe::Educe;
+
 use crate::kernel::{LocalKernel, Workspace};
 use crate::parallel::Rows;
 use crate::solver::rigid_motion::{Freedom, Line, ModeCoefficients, Modes};
@@ -27,12 +29,15 @@ pub(crate) struct Problem<'a> {
 }
 
 /// A guess on entry, the solution on return.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Solution {
     /// p \[Pa\].
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(crate) pressure: Vec<f64>,
     /// v = K p \[Pa·m\], updated together with `pressure`.
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(crate) potential: Vec<f64>,
     /// The free part of the motion of each body; on entry the motion of the last step.
     pub(crate) motions: Vec<ModeCoefficients>,
@@ -129,14 +134,6 @@ impl Solution {
             rounding: 0.0,
             trace: Trace::new(),
         }
-    }
-
-    /// Copies without reallocating.
-    pub(crate) fn copy_from(&mut self, other: &Solution) {
-        self.pressure.clone_from(&other.pressure);
-        self.potential.clone_from(&other.potential);
-        self.motions.clone_from(&other.motions);
-        (self.counts, self.residual, self.rounding) = (other.counts, other.residual, other.rounding);
     }
 
     /// Removes all pressure.

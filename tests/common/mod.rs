@@ -29,6 +29,7 @@ pub mod related;
 pub mod rolling;
 pub mod rough;
 pub mod runs;
+pub mod sealed;
 pub mod spectra;
 pub mod spheres;
 #[path = "../../examples/support/scenes/step_loaded_sphere.rs"]

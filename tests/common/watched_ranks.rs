@@ -3,13 +3,12 @@
 use std::fmt;
 use std::sync::Arc;
 
-use viscocontact::num_complex::Complex64;
 use viscocontact::parallel::{Ranks, RanksError};
 
 /// What is asked of a rank.
 pub enum Call {
     Gather,
-    /// So many complex numbers are sent to other ranks.
+    /// So many numbers are sent to other ranks.
     Exchange(usize),
 }
 
@@ -47,9 +46,9 @@ impl<F: Fn(Call) -> Result<(), RanksError> + Send + Sync> Ranks for WatchedRanks
 
     fn exchange(
         &self,
-        send: &[Complex64],
+        send: &[f64],
         send_counts: &[usize],
-        received: &mut [Complex64],
+        received: &mut [f64],
         receive_counts: &[usize],
     ) -> Result<(), RanksError> {
         (self.watch)(Call::Exchange(send_counts.iter().sum::<usize>() - send_counts[self.rank()]))?;

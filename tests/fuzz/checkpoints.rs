@@ -3,6 +3,7 @@
 use std::sync::OnceLock;
 
 use viscocontact::prelude::*;
+use viscocontact_scenes::sealed::{CHECKSUM, seal};
 
 use crate::engine::{Outcome, Target, Verdict, finite, known};
 use crate::files::Folder;
@@ -15,8 +16,6 @@ pub fn targets() -> Vec<Target> {
 
 /// How many scenes there are to save.
 const SCENES: usize = 7;
-/// Mark, version and length; then the checksum; then the state.
-const CHECKSUM: std::ops::Range<usize> = 20..24;
 
 fn build(scene: usize) -> viscocontact::Result<ViscoelasticContact> {
     let whole = Settings::default().with_window(false).with_symmetry(false);
@@ -73,13 +72,6 @@ fn sound_files() -> &'static [(usize, Vec<u8>)] {
     })
 }
 
-/// The checksum of the format: CRC-32 of IEEE 802.3, bit by bit.
-fn crc(bytes: impl Iterator<Item = u8>) -> u32 {
-    !bytes.fold(!0, |crc: u32, byte| {
-        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg()))
-    })
-}
-
 /// A file whose state is damaged, and whose length and checksum fit it.
 fn forged(file: &[u8], source: &mut Source) -> Vec<u8> {
     let mut file = if source.chance(0.2) {
@@ -87,12 +79,7 @@ fn forged(file: &[u8], source: &mut Source) -> Vec<u8> {
     } else {
         source.damage_behind(file, CHECKSUM.end)
     };
-    if file.len() >= CHECKSUM.end {
-        let length = (file.len() - CHECKSUM.end) as u64;
-        file[12..20].copy_from_slice(&length.to_le_bytes());
-        let right = crc(file[..CHECKSUM.start].iter().chain(&file[CHECKSUM.end..]).copied());
-        file[CHECKSUM].copy_from_slice(&right.to_le_bytes());
-    }
+    seal(&mut file);
     file
 }
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use viscocontact::output::{CsvHistory, Field, Metadata, NpzSeries, write_npy};
+use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata, write_npy};
 use viscocontact::prelude::*;
 
 use crate::engine::{Outcome, Target, Verdict};
@@ -112,7 +112,7 @@ fn frames(source: &mut Source) -> Verdict {
         if twice && !error.to_string().is_empty() { Ok(Outcome::Refused) } else { Err(error.to_string()) }
     };
     if source.chance(0.5) {
-        match NpzSeries::create(folder.path("npz"), &scene, &chosen) {
+        match FrameSeries::create(folder.path("npz"), Format::Npz, &scene, &chosen) {
             Ok(mut series) => {
                 let path = series.write(&contact).map_err(|error| error.to_string())?;
                 let length = std::fs::metadata(path).map_err(|error| error.to_string())?.len();
@@ -125,7 +125,7 @@ fn frames(source: &mut Source) -> Verdict {
     }
     #[cfg(feature = "vtk")]
     if source.chance(0.5) {
-        match viscocontact::output::VtkSeries::create(folder.path("vtk"), &scene, &chosen) {
+        match FrameSeries::create(folder.path("vtk"), Format::Vtk, &scene, &chosen) {
             Ok(mut series) => {
                 let path = series.write(&contact).map_err(|error| error.to_string())?;
                 let file = std::fs::read(path).map_err(|error| error.to_string())?;

@@ -21,11 +21,11 @@ fn plan(source: &mut Source) -> Verdict {
         Plan::new(&geometry, &material, &*history, source.scale(0.3, 3.0), accuracy)
     });
     judged(made, |plan| {
-        let (error, [reach1, reach2]) = (plan.mesh_error(), plan.reach());
-        let numbers = [reach1, reach2, plan.convolutions(), error.approach, error.area];
+        let (error, [reach1, reach2]) = (plan.mesh_error, plan.reach);
+        let numbers = [reach1, reach2, plan.convolutions, error.approach, error.area];
         finite("plan", numbers.into_iter().chain([error.singular]).chain(error.max_pressure))?;
         let text = plan.to_string();
-        if text.contains("NaN") || text.contains("inf") || plan.grid().len() == 0 || plan.bytes() == 0 {
+        if text.contains("NaN") || text.contains("inf") || plan.grid.len() == 0 || plan.bytes == 0 {
             return Err(format!("a plan of nothing: {text}"));
         }
         Ok(())

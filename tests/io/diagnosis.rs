@@ -2,7 +2,7 @@
 
 use crate::common::bodies::{elastic, maxwell};
 use crate::common::spheres::{builder_of, sphere_on};
-use viscocontact::contact::Warning;
+use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 use viscocontact::{Error, Trend};
 
@@ -29,7 +29,7 @@ fn contact_near_the_edge_is_warned_of_before_it_touches() {
         let (mut near, mut clear, mut force) = (0, 0, 0.1);
         loop {
             match contact.step(0.0, Load::force(force)) {
-                Ok(report) if report.warnings.contains(Warning::NearEdge) => near += 1,
+                Ok(report) if report.warnings.contains(Warnings::NEAR_EDGE) => near += 1,
                 Ok(_) => {
                     assert_eq!(near, 0, "{force} N");
                     clear += 1;
@@ -53,16 +53,16 @@ fn material_beyond_its_data_is_warned_of() {
     let mut honest = contact(48, Material::incompressible(table.clone()), Settings::default());
     honest.step(0.0, Load::force(0.1)).unwrap();
     let warnings = |contact: &mut ViscoelasticContact, dt: f64| contact.step(dt, Load::force(0.1)).unwrap().warnings;
-    assert!(warnings(&mut honest, 0.01).contains(Warning::FasterThanMaterial));
-    assert!(!warnings(&mut honest, 1.0).contains(Warning::NearEndOfMaterial));
-    assert!(warnings(&mut honest, 5.0).contains(Warning::NearEndOfMaterial));
+    assert!(warnings(&mut honest, 0.01).contains(Warnings::FASTER_THAN_MATERIAL));
+    assert!(!warnings(&mut honest, 1.0).contains(Warnings::NEAR_END_OF_MATERIAL));
+    assert!(warnings(&mut honest, 5.0).contains(Warnings::NEAR_END_OF_MATERIAL));
     assert!(matches!(honest.step(5.0, Load::force(0.1)), Err(Error::BeyondMaterial { .. })));
 
     let mut bold = contact(48, Material::incompressible(table.extrapolated()), Settings::default());
     bold.step(0.0, Load::force(0.1)).unwrap();
-    assert!(!warnings(&mut bold, 9.0).contains(Warning::Extrapolated));
+    assert!(!warnings(&mut bold, 9.0).contains(Warnings::EXTRAPOLATED));
     let later = warnings(&mut bold, 5.0);
-    assert!(later.contains(Warning::Extrapolated) && !later.contains(Warning::NearEndOfMaterial));
+    assert!(later.contains(Warnings::EXTRAPOLATED) && !later.contains(Warnings::NEAR_END_OF_MATERIAL));
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn a_step_that_rings_is_warned_of() {
     contact.step(0.0, Load::force(0.1)).unwrap();
     for (dt, rings) in [(0.5, false), (1.5, true)] {
         let report = contact.step(dt, Load::force(0.1)).unwrap();
-        assert_eq!(report.warnings.contains(Warning::Rings), rings);
+        assert_eq!(report.warnings.contains(Warnings::RINGS), rings);
     }
 }
 
@@ -112,7 +112,7 @@ fn few_cells_are_warned_of_where_errors_are_large() {
                 .build()
                 .unwrap();
             let report = contact.step(0.0, Load::force(1.0)).unwrap();
-            warned += u32::from(report.warnings.contains(Warning::FewCells));
+            warned += u32::from(report.warnings.contains(Warnings::FEW_CELLS));
             let found = [contact.approach(), contact.max_pressure(), contact.contact_area()];
             let exact = [hertz.approach(), hertz.max_pressure(), std::f64::consts::PI * a * a];
             errors = [0, 1, 2].map(|i| errors[i].max((found[i] / exact[i] - 1.0).abs()));
@@ -136,14 +136,14 @@ fn rounding_is_warned_of() {
     let held = Load::Approach { approach: 1.0e-5, tilt: [Tilt::Free { at: 0.1e-3 }, Tilt::Fixed(0.0)] };
     let force = {
         let report = contact.step(0.0, held).unwrap();
-        assert!(!report.warnings.contains(Warning::Rounding), "{report}");
+        assert!(!report.warnings.contains(Warnings::ROUNDING), "{report}");
         report.force
     };
     for dt in [5.0, 30.0] {
         let report = contact.step(dt, held).unwrap();
         let error = (report.force / (force * (-report.time).exp()) - 1.0).abs();
         println!("{report}: force errs by {error:.1e}");
-        assert_eq!(report.warnings.contains(Warning::Rounding), dt > 10.0, "{report}");
+        assert_eq!(report.warnings.contains(Warnings::ROUNDING), dt > 10.0, "{report}");
         assert!(dt > 10.0 || error < 1e-4, "{report}");
     }
 }

@@ -147,7 +147,7 @@ mod outputs {
     use std::fs;
     use std::io::ErrorKind::AlreadyExists;
 
-    use viscocontact::output::{CsvHistory, Field, Metadata, NpzSeries, VtkSeries};
+    use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata};
 
     use super::*;
     use crate::common::temporary::Temporary;
@@ -162,8 +162,8 @@ mod outputs {
         let count = |name: &str| fs::read_dir(folder.join(name)).unwrap().count();
 
         let (archives, images, table) = (folder.join("npz"), folder.join("vtk"), folder.join("history.csv"));
-        let mut first = NpzSeries::create(&archives, &metadata(), &[Field::Pressure]).unwrap();
-        let mut second = VtkSeries::create(&images, &metadata(), &[Field::Pressure]).unwrap();
+        let mut first = FrameSeries::create(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap();
+        let mut second = FrameSeries::create(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap();
         let mut third = CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap();
         for _ in 0..3 {
             first.write(&contact).unwrap();
@@ -173,8 +173,8 @@ mod outputs {
         fs::write(archives.join("notes.txt"), "kept").unwrap();
         let before = fs::read(&table).unwrap();
         for error in [
-            NpzSeries::create(&archives, &metadata(), &[Field::Pressure]).unwrap_err(),
-            VtkSeries::create(&images, &metadata(), &[Field::Pressure]).unwrap_err(),
+            FrameSeries::create(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap_err(),
+            FrameSeries::create(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap_err(),
             CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap_err(),
         ] {
             assert_eq!(error.io_kind(), Some(AlreadyExists), "{error:?}");
@@ -185,14 +185,15 @@ mod outputs {
         assert_eq!([count("npz"), count("vtk")], [4, 4]);
 
         // an invalid request removes nothing
-        let twice = NpzSeries::create_or_replace(&archives, &metadata(), &[Field::Gap; 2]).unwrap_err();
+        let twice = FrameSeries::create_or_replace(&archives, Format::Npz, &metadata(), &[Field::Gap; 2]).unwrap_err();
         assert!(messages(&twice).concat().contains("gap is requested twice"), "{:?}", messages(&twice));
         assert!(CsvHistory::create_or_replace(&table, &metadata(), &contact, &["a", "a"]).is_err());
         assert_eq!(fs::read(&table).unwrap(), before);
         assert_eq!(count("npz"), 4);
 
-        let mut first = NpzSeries::create_or_replace(&archives, &metadata(), &[Field::Pressure]).unwrap();
-        let mut second = VtkSeries::create_or_replace(&images, &metadata(), &[Field::Pressure]).unwrap();
+        let mut first =
+            FrameSeries::create_or_replace(&archives, Format::Npz, &metadata(), &[Field::Pressure]).unwrap();
+        let mut second = FrameSeries::create_or_replace(&images, Format::Vtk, &metadata(), &[Field::Pressure]).unwrap();
         CsvHistory::create_or_replace(&table, &metadata(), &contact, &[]).unwrap();
         assert_eq!([count("npz"), count("vtk")], [1, 0]);
         first.write(&contact).unwrap();

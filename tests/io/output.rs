@@ -67,7 +67,7 @@ fn text_of(path: &Path) -> String {
 mod npy {
     use std::io::Read;
 
-    use viscocontact::output::{NpzSeries, write_npy};
+    use viscocontact::output::{Format, FrameSeries, write_npy};
 
     use super::*;
 
@@ -89,12 +89,12 @@ mod npy {
 
     #[test]
     fn an_archive_of_the_stress() {
-        use viscocontact::output::write_stress_npz;
+        use viscocontact::output::write_stress;
 
         let folder = Temporary::folder("npz-stress");
         let (contact, depths, volume) = stressed();
         let path = folder.join("stress.npz");
-        write_stress_npz(&path, &contact, &volume, &scene()).unwrap();
+        write_stress(&path, Format::Npz, &contact, &volume, &scene()).unwrap();
         let mut archive = Archive(zip::ZipArchive::new(fs::File::open(&path).unwrap()).unwrap());
         assert_eq!(archive.0.len(), 14);
         assert_eq!(archive.numbers("x3"), (vec![3], depths.to_vec()));
@@ -110,14 +110,14 @@ mod npy {
             }
         }
         let smaller = sphere_on(Grid::square(8, 1.0e-3).unwrap(), maxwell(), Settings::default());
-        let error = write_stress_npz(&path, &smaller, &volume, &scene()).unwrap_err();
+        let error = write_stress(&path, Format::Npz, &smaller, &volume, &scene()).unwrap_err();
         assert!(matches!(error, Error::WrongLength { field: "stress in a volume", .. }), "{error}");
     }
 
     #[test]
     fn archives_hold_what_was_computed() {
         let folder = Temporary::folder("npz");
-        let mut series = NpzSeries::create(&folder, &scene(), &Field::ALL).unwrap();
+        let mut series = FrameSeries::create(&folder, Format::Npz, &scene(), &Field::ALL).unwrap();
         let mut contact = punch();
         run(&mut contact, |contact, _| {
             let path = series.write(contact).unwrap();
@@ -154,7 +154,7 @@ mod npy {
     #[test]
     fn a_frame_that_fails_is_not_there_and_not_counted() {
         let folder = Temporary::folder("npz-fails");
-        let mut series = NpzSeries::create(folder.join("run"), &scene(), &[Field::Pressure]).unwrap();
+        let mut series = FrameSeries::create(folder.join("run"), Format::Npz, &scene(), &[Field::Pressure]).unwrap();
         fs::remove_dir_all(folder.join("run")).unwrap();
         let error = series.write(&punch()).unwrap_err();
         assert!(matches!(&error, Error::Output(error) if error.path().ends_with("frame_000000.npz")), "{error}");
@@ -180,7 +180,7 @@ mod npy {
 
 #[cfg(feature = "vtk")]
 mod vtk {
-    use viscocontact::output::VtkSeries;
+    use viscocontact::output::{Format, FrameSeries};
 
     use super::*;
 
@@ -225,12 +225,12 @@ mod vtk {
 
     #[test]
     fn an_image_of_the_stress() {
-        use viscocontact::output::write_stress_vtk;
+        use viscocontact::output::write_stress;
 
         let folder = Temporary::folder("vtk-stress");
         let (contact, depths, volume) = stressed();
         let path = folder.join("stress.vtr");
-        write_stress_vtk(&path, &contact, &volume, &scene()).unwrap();
+        write_stress(&path, Format::Vtk, &contact, &volume, &scene()).unwrap();
         let image = Image::open(&path);
         assert_eq!(image.attribute("RectilinearGrid WholeExtent", "WholeExtent"), "0 23 0 16 0 2");
         assert_eq!(image.numbers("TimeValue"), [contact.time()]);
@@ -253,7 +253,7 @@ mod vtk {
     #[test]
     fn images_hold_what_was_computed() {
         let folder = Temporary::folder("vtk");
-        let mut series = VtkSeries::create(&folder, &scene(), &Field::ALL).unwrap();
+        let mut series = FrameSeries::create(&folder, Format::Vtk, &scene(), &Field::ALL).unwrap();
         let mut contact = punch();
         let mut listed = Vec::new();
         run(&mut contact, |contact, _| {
@@ -289,13 +289,13 @@ mod vtk {
             assert_eq!(lines.collect::<Vec<_>>(), listed);
         });
         assert_eq!(folder.names(), ["frame_000000.vti", "frame_000001.vti", "frame_000002.vti", "series.pvd"]);
-        assert!(matches!(VtkSeries::create(&folder, &scene(), &[]), Err(Error::Output(_))));
+        assert!(matches!(FrameSeries::create(&folder, Format::Vtk, &scene(), &[]), Err(Error::Output(_))));
     }
 
     #[test]
     fn fields_are_chosen() {
         let folder = Temporary::folder("vtk-few");
-        let mut series = VtkSeries::create(&folder, &scene(), &[Field::Gap]).unwrap();
+        let mut series = FrameSeries::create(&folder, Format::Vtk, &scene(), &[Field::Gap]).unwrap();
         let image = Image::open(&series.write(&punch()).unwrap());
         assert!(image.head.contains("gap [m]") && !image.head.contains("pressure"));
         assert!(image.numbers("gap [m]").contains(&f64::INFINITY));
@@ -377,12 +377,12 @@ mod csv {
 #[ignore = "tests/read_back.sh runs it"]
 fn a_run_for_other_readers() {
     use viscocontact::observe::Stress;
-    use viscocontact::output::{CsvHistory, NpzSeries, VtkSeries, write_npy, write_stress_vtk};
+    use viscocontact::output::{CsvHistory, Format, FrameSeries, write_npy, write_stress};
 
     let folder = PathBuf::from(std::env::var_os("READ_BACK_FOLDER").expect("READ_BACK_FOLDER names a folder"));
     let mut contact = punch();
-    let mut archives = NpzSeries::create(&folder, &scene(), &Field::ALL).unwrap();
-    let mut images = VtkSeries::create(&folder, &scene(), &Field::ALL).unwrap();
+    let mut archives = FrameSeries::create(&folder, Format::Npz, &scene(), &Field::ALL).unwrap();
+    let mut images = FrameSeries::create(&folder, Format::Vtk, &scene(), &Field::ALL).unwrap();
     let mut history =
         CsvHistory::create(folder.join("history.csv"), &scene(), &contact, &["twice, force [N]"]).unwrap();
     let mut frame = 0;
@@ -409,7 +409,7 @@ fn a_run_for_other_readers() {
         fs::write(folder.join("scene.json"), scene().json(contact)).unwrap();
         let depths = [1.0, 1.5, 3.5].map(|sides| sides * contact.grid().spacing()[0].max(contact.grid().spacing()[1]));
         let volume = contact.stress().unwrap().in_volume(&depths).unwrap();
-        write_stress_vtk(folder.join(format!("frame_{frame:06}.vtr")), contact, &volume, &scene()).unwrap();
+        write_stress(folder.join(format!("frame_{frame:06}.vtr")), Format::Vtk, contact, &volume, &scene()).unwrap();
         dump("depths", &depths);
         let components: Vec<f64> = volume.values.iter().flat_map(Stress::components).collect();
         dump("stress", &components);
@@ -429,7 +429,7 @@ fn a_run_for_other_readers() {
 #[test]
 #[ignore = "full_disks_leave_whole_files_and_print_nothing runs it"]
 fn a_run_without_room() {
-    use viscocontact::output::{CsvHistory, NpzSeries, VtkSeries, write_npy};
+    use viscocontact::output::{CsvHistory, Format, FrameSeries, write_npy};
 
     let folder = PathBuf::from(std::env::var_os("FULL_FOLDER").expect("FULL_FOLDER names a folder"));
     let mut contact = sphere_on(Grid::square(96, 4.0e-3).unwrap(), maxwell(), Settings::default());
@@ -442,8 +442,8 @@ fn a_run_without_room() {
     drop(history);
     fs::write(folder.join("rows"), rows.to_string()).unwrap();
     // all fields of 73 KB, and none, which is small enough
-    let mut archives = NpzSeries::create(folder.join("npz"), &scene(), &Field::ALL).unwrap();
-    let mut images = VtkSeries::create(folder.join("vtk"), &scene(), &Field::ALL).unwrap();
+    let mut archives = FrameSeries::create(folder.join("npz"), Format::Npz, &scene(), &Field::ALL).unwrap();
+    let mut images = FrameSeries::create(folder.join("vtk"), Format::Vtk, &scene(), &Field::ALL).unwrap();
     for _ in 0..2 {
         assert!(matches!(archives.write(&contact), Err(Error::Output(_))));
         assert!(matches!(images.write(&contact), Err(Error::Output(_))));
@@ -451,7 +451,7 @@ fn a_run_without_room() {
         assert!(matches!(written, Err(Error::Output(_))));
     }
     assert_eq!((archives.frames(), images.frames()), (0, 0));
-    let mut few = NpzSeries::create(folder.join("few"), &scene(), &[]).unwrap();
+    let mut few = FrameSeries::create(folder.join("few"), Format::Npz, &scene(), &[]).unwrap();
     few.write(&contact).unwrap();
 }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::common::bodies::zener;
 use crate::common::spheres::builder_on;
 use crate::common::temporary::Temporary;
-use viscocontact::output::{CsvHistory, Field, Metadata, NpzSeries, VtkSeries, write_field_npy};
+use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata, write_field_npy};
 use viscocontact::parallel::{RanksError, Threads};
 use viscocontact::prelude::*;
 
@@ -28,8 +28,8 @@ fn a_file_that_one_rank_cannot_write_is_an_error_on_all() {
         errors.push(csv.write(&contact, &report, if ranks.rank() == 2 { &[1.0] } else { &[] }).err());
         csv.write(&contact, &report, &[])?;
         let series = root.join("series");
-        let mut npz = NpzSeries::create(&series, &metadata(), &[Field::Pressure])?;
-        let mut vtk = VtkSeries::create(&series, &metadata(), &[Field::Pressure])?;
+        let mut npz = FrameSeries::create(&series, Format::Npz, &metadata(), &[Field::Pressure])?;
+        let mut vtk = FrameSeries::create(&series, Format::Vtk, &metadata(), &[Field::Pressure])?;
         // all have made theirs
         contact.moment();
         if ranks.rank() == 0 {

@@ -74,8 +74,7 @@ fn every_equation_and_figure_has_its_line() {
         let line = lines.iter().find(|line| line.name == name).unwrap_or_else(|| panic!("no line of {name}"));
         assert!(!line.sources.is_empty() && !line.tests.is_empty(), "{name}");
     }
-    // the others are not known by their content
-    for reference in ["\\[1\\]", "\\[2\\]"] {
+    for reference in (1..=16).map(|number| format!("\\[{number}\\]")) {
         assert!(lines.iter().any(|line| line.name == reference), "{reference}");
     }
 }
@@ -152,9 +151,9 @@ macro_rules! items {
 fn items_of_the_page_exist() {
     let known = items!(
         import
-            analytic::GrowingSphere, analytic::Hertz, analytic::RigidPunch, contact::Solver::ActiveSet,
+            analytic::AxisymmetricContact, analytic::GrowingSphere, analytic::Hertz, analytic::RigidPunch, contact::Solver::ActiveSet,
             contact::Solver::PolonskyKeer, contact::TimeRule, contact::TimeRule::Exponential, contact::TimeRule::Rectangle, contact::TimeRule::RectangleUncached,
-            load::Sinusoid, rheology::Material, rheology::Maxwell, rheology::RelaxationSpectrum, rheology::Zener, rheology::library::find;
+            geometry::Geometry, load::Sinusoid, rheology::Material, rheology::Maxwell, rheology::RelaxationSpectrum, rheology::Zener, rheology::library::find;
         functions
             InfluenceKernel::coefficient, InfluenceKernel::convolve, InfluenceKernel::half_space,
             ViscoelasticContact::contact_area, ViscoelasticContact::contact_cells, ViscoelasticContact::displacement,

@@ -4,7 +4,7 @@
 use crate::common::environment::from_environment;
 use crate::common::noise::{noise, uniform};
 use crate::common::spheres::sphere_on;
-use viscocontact::contact::Warning;
+use viscocontact::contact::Warnings;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSpectrum, FitReport, FitWarning, RelaxationSpectrum};
 
@@ -251,7 +251,7 @@ fn contacts_warn_of_doubtful_tables() {
         let mut contact =
             sphere_on(Grid::square(24, 4.0e-3).unwrap(), Material::incompressible(table.clone()), Settings::default());
         contact.step(0.0, Load::force(0.1)).unwrap();
-        contact.step(1.0, Load::force(0.1)).unwrap().warnings.contains(Warning::UncertainMaterial)
+        contact.step(1.0, Load::force(0.1)).unwrap().warnings.contains(Warnings::UNCERTAIN_MATERIAL)
     };
     let table = |decades: f64, rows, creep: &dyn Fn(f64) -> f64| {
         let times = log_spaced(decades, rows);

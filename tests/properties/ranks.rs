@@ -9,7 +9,7 @@ use crate::common::any_scene::{AnyScene, Course, Stepper};
 use crate::common::chosen_scenes;
 use crate::common::environment::from_environment;
 use crate::common::temporary::Temporary;
-use viscocontact::output::{CsvHistory, Field, Metadata, NpzSeries, VtkSeries, write_field_npy};
+use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata, write_field_npy};
 use viscocontact::parallel::Threads;
 use viscocontact::prelude::*;
 
@@ -82,8 +82,9 @@ fn restored_snapshots_are_the_same_on_all_ranks() {
 fn write(scene: &AnyScene, mut contact: ViscoelasticContact, folder: &Path) -> Result<Vec<f64>, Error> {
     fs::create_dir_all(folder).unwrap();
     let metadata = || Metadata::new("Ranks").note("batch", "7");
-    let mut npz = NpzSeries::create(folder.join("npz"), &metadata(), &Field::ALL)?;
-    let mut vtk = VtkSeries::create_or_replace(folder.join("vtk"), &metadata(), &[Field::Gap, Field::Pressure])?;
+    let mut npz = FrameSeries::create(folder.join("npz"), Format::Npz, &metadata(), &Field::ALL)?;
+    let mut vtk =
+        FrameSeries::create_or_replace(folder.join("vtk"), Format::Vtk, &metadata(), &[Field::Gap, Field::Pressure])?;
     let mut csv = CsvHistory::create(folder.join("history.csv"), &metadata(), &contact, &["twice [N]"])?;
     let mut areas = Vec::new();
     let (_, error) = scene.drive(&mut contact, 0, &mut |stepper, report| {

@@ -5,7 +5,7 @@ use crate::common::noise::uniform;
 use crate::common::spheres::{RADIUS, builder_of, builder_on, contact_of, sphere};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
-use viscocontact::contact::Warning;
+use viscocontact::contact::Warnings;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
@@ -37,7 +37,7 @@ fn every_length_of_step_errs_by_no_more_than_its_rule() {
                     Ok(report) => {
                         worst = worst.max((report.approach / held(&maxwell, 1.0, report.time) - 1.0).abs());
                         // what a step would ring at is said
-                        let rings = report.warnings.contains(Warning::Rings);
+                        let rings = report.warnings.contains(Warnings::RINGS);
                         assert_eq!(rings, time_rule == TimeRule::Rectangle && exponent >= 0);
                     }
                     Err(_) => worst = f64::INFINITY,

@@ -108,7 +108,7 @@ fn uncached_sums_are_refused_where_cached_ones_are() {
     // a step longer than the relaxation time is warned of, and the third increment does not fit
     let mut contact = build(maxwell(), uncached.with_history_limit(2 * 24 * 20 * 8)).unwrap();
     contact.step(0.0, Load::force(0.1)).unwrap();
-    assert!(contact.step(1.5, Load::force(0.1)).unwrap().warnings.contains(Warning::Rings));
+    assert!(contact.step(1.5, Load::force(0.1)).unwrap().warnings.contains(Warnings::RINGS));
     assert!(matches!(contact.step(0.1, Load::force(0.1)), Err(Error::HistoryFull { steps: 2, .. })));
     // a field more than the cached sum
     let memory = |rule| sphere(maxwell(), paper(rule)).memory().unwrap();

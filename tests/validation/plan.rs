@@ -36,8 +36,8 @@ fn run(
     until: f64,
     mut exact: impl FnMut(f64, f64) -> (f64, Option<f64>),
 ) -> Outcome {
-    let mut contact = plan.builder().build().unwrap();
-    let mut run = contact.follow(history, plan.stepping(), until);
+    let mut contact = plan.builder.clone().build().unwrap();
+    let mut run = contact.follow(history, plan.stepping, until);
     let (mut errors, mut greatest, mut work, mut steps) = ([0.0_f64; 2], [0.0_f64; 2], 0.0, 0);
     while let Some(report) = run.next_step().unwrap() {
         let grid = run.contact().grid();
@@ -53,7 +53,7 @@ fn run(
         work += report.convolution_equivalents() * grid.len() as f64;
         steps += 1;
     }
-    assert!(steps <= 2 * plan.steps() && plan.steps() <= 2 * steps, "{steps} steps, {} planned", plan.steps());
+    assert!(steps <= 2 * plan.steps && plan.steps <= 2 * steps, "{steps} steps, {} planned", plan.steps);
     let relative = |which: usize| if greatest[which] > 0.0 { errors[which] / greatest[which] } else { 0.0 };
     Outcome { approach: relative(0), pressure: relative(1), work, plan }
 }
@@ -76,8 +76,11 @@ fn warming_spheres_are_as_accurate_as_planned() {
     let law = TimeTemperature::wlf(17.44, 51.6, 263.15).unwrap();
     let warming = TemperatureHistory::table(law, &[(1.0, 263.15), (5.0, 293.15)]).unwrap();
     let exact = GrowingSphere::step(RADIUS, &body, 1.0).unwrap();
+    fn at(temperature: &TemperatureHistory) -> PlanOptions<'_> {
+        PlanOptions { temperature: Some(temperature), ..PlanOptions::default() }
+    }
     for accuracy in PRESETS {
-        let plan = Plan::with_temperature(&sphere, &body, &warming, &load, 6.0, accuracy).unwrap();
+        let plan = Plan::with(&sphere, &body, &load, 6.0, accuracy, at(&warming)).unwrap();
         let mut last = 0.0;
         let outcome = run(plan, &load, 6.0, |reduced, r| {
             last = reduced;
@@ -88,7 +91,7 @@ fn warming_spheres_are_as_accurate_as_planned() {
     }
     // below the end of the law
     let cold = TemperatureHistory::function(law, |t| 263.15 - 20.0 * t, &[]).unwrap();
-    let refused = Plan::with_temperature(&sphere, &body, &cold, &load, 6.0, Accuracy::Coarse).unwrap_err();
+    let refused = Plan::with(&sphere, &body, &load, 6.0, Accuracy::Coarse, at(&cold)).unwrap_err();
     assert!(matches!(refused, Error::OutOfRange { field: "temperature", .. }), "{refused}");
 }
 
@@ -187,20 +190,20 @@ fn plans_find_the_domain_whatever_its_size() {
         let force = force.min(modulus * scale * scale * 1e-2);
         let radius = (0.75 * scale * force * material.contact_compliance(0.0)).cbrt();
         let plan = Plan::new(&sphere, &material, &load(force), 1.0, Accuracy::Coarse).unwrap();
-        let [half, _] = plan.reach();
+        let [half, _] = plan.reach;
         assert!((half / radius - 1.0).abs() < 0.12, "{scale:e}: {half:e} {radius:e}");
     }
     // an ellipse gets a domain of its own shape
     let ellipsoid = Ellipsoid::new(10.0e-3, 160.0e-3).unwrap();
     let material = elastic();
     let plan = Plan::new(&ellipsoid, &material, &load(1.0), 1.0, Accuracy::Coarse).unwrap();
-    let [l1, l2] = plan.grid().lengths();
+    let [l1, l2] = plan.grid.lengths();
     assert!(l2 > 3.0 * l1, "{l1} {l2}");
     // a driven approach, and one that never touches
     let sphere = Sphere::new(RADIUS).unwrap();
     let driven = StepLoad::new(Load::approach(1.0e-4)).unwrap();
     let plan = Plan::new(&sphere, &material, &driven, 1.0, Accuracy::Coarse).unwrap();
-    assert_abs_diff_eq!(plan.reach()[0] / (RADIUS * 1.0e-4).sqrt(), 1.0, epsilon = 0.12);
+    assert_abs_diff_eq!(plan.reach[0] / (RADIUS * 1.0e-4).sqrt(), 1.0, epsilon = 0.12);
     let apart = StepLoad::new(Load::approach(-1.0e-4)).unwrap();
     assert!(matches!(Plan::new(&sphere, &material, &apart, 1.0, Accuracy::Coarse), Err(Error::NoDomain { .. })));
     for until in [0.0, -1.0, f64::NAN, f64::INFINITY] {
@@ -220,7 +223,7 @@ fn plans_give_the_times_over_which_a_body_is_wanted() {
     let material = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
     let (sphere, load) = (Sphere::new(RADIUS).unwrap(), StepLoad::new(Load::force(1.0)).unwrap());
     let plan = Plan::new(&sphere, &material, &load, 10.0, Accuracy::Coarse).unwrap();
-    let contact = plan.builder().build().unwrap();
+    let contact = plan.builder.clone().build().unwrap();
     let [first, last] = contact.material().fit_reports().next().unwrap().range().unwrap();
     assert!(first < 0.1, "{first:e}");
     assert_abs_diff_eq!(last / 10.0, 1.0, epsilon = 1e-12);

@@ -230,7 +230,7 @@ fn of_foundation(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
 /// By a run on cells of half the side or a third, in finer steps.
 fn of_finer_run(scene: &Scene, plan: &Plan, times: &[f64]) -> Result<Truth, Error> {
     let finer = if scene.by_force { 3 } else { 2 };
-    let grid = Grid::new(plan.grid().cells().map(|cells| finer * cells), plan.grid().lengths()).unwrap();
+    let grid = Grid::new(plan.grid.cells().map(|cells| finer * cells), plan.grid.lengths()).unwrap();
     let builder = builder_of(&scene.geometry, grid, scene.material.clone());
     let mut contact = builder.settings(Settings::default().with_tolerance(1e-7)).build()?;
     let stepping = Stepping::adaptive(0.036 * scene.accuracy.target());
@@ -259,16 +259,16 @@ struct Outcome {
 fn deliver(scene: &Scene) -> Result<Outcome, Error> {
     let Scene { geometry, material, history, until, accuracy, .. } = scene;
     let started = Instant::now();
-    let made = if scene.area { Plan::with_area } else { Plan::new };
-    let plan = made(geometry, material, history, *until, *accuracy)?;
+    let options = PlanOptions { area: scene.area, ..PlanOptions::default() };
+    let plan = Plan::with(geometry, material, history, *until, *accuracy, options)?;
     let planning = started.elapsed().as_secs_f64();
     let limit = from_environment("PLANS_CELLS", 150) as usize;
     let note = format!("{plan}; planned in {planning:.2} s");
-    if plan.grid().len() > limit * limit {
+    if plan.grid.len() > limit * limit {
         return Ok(Outcome { over: [None; 3], note });
     }
-    let mut contact = plan.builder().build()?;
-    let mut run = contact.follow(history, plan.stepping(), *until);
+    let mut contact = plan.builder.clone().build()?;
+    let mut run = contact.follow(history, plan.stepping, *until);
     let (mut times, mut states, mut highest) = (vec![], vec![], 0.0_f64);
     while let Some(report) = run.next_step()? {
         // of several states at a time, the last
@@ -279,7 +279,7 @@ fn deliver(scene: &Scene) -> Result<Outcome, Error> {
         }
         let [main, radius] = observed(scene, run.contact());
         // the radius of a few cells is not known
-        states.push([main, radius.filter(|_| !report.warnings.contains(Warning::FewCells))]);
+        states.push([main, radius.filter(|_| !report.warnings.contains(Warnings::FEW_CELLS))]);
         highest = highest.max(run.contact().max_pressure());
     }
     let (truth, peak) = match scene.shape {
@@ -287,8 +287,8 @@ fn deliver(scene: &Scene) -> Result<Outcome, Error> {
         None => of_finer_run(scene, &plan, &times)?,
     };
     assert_eq!(truth.len(), states.len());
-    let asked = accuracy.target().max(plan.time_error().unwrap_or(0.0));
-    let promised = [asked, asked.max(0.5 * plan.mesh_error().area)];
+    let asked = accuracy.target().max(plan.time_error.unwrap_or(0.0));
+    let promised = [asked, asked.max(0.5 * plan.mesh_error.area)];
     let error = |which: usize| {
         let greatest = truth.iter().filter_map(|truth| truth[which]).map(f64::abs).fold(0.0, f64::max);
         let pairs = states.iter().zip(&truth).filter_map(|(state, truth)| Some((state[which]?, truth[which]?)));

@@ -1,6 +1,6 @@
 //! A ball and a box on a creeping floor: rigid bodies moved by the engine `rapier3d`, at 1 kHz, on a contact of this crate.
 //!
-//! The engine has weight, inertia and the collision of ball and box, and knows of no floor. After each of its steps the
+//! The engine has weight, inertia and the collision of ball and box, but no floor. After each of its steps the
 //! poses of the bodies are the approaches and the tilt of two indenters on one floor, which returns force and moments;
 //! these act on the bodies in its next step. The floor, an incompressible standard solid, creeps to four times its
 //! elastic compliance. Its pressure has no friction but that of its own loss under the moving ball; Coulomb's
@@ -75,7 +75,7 @@ const GRAVITY: f64 = 9.81;
 const TILT: f64 = 5.0e-3;
 /// Where ball and box start along x1, from the middle of the grid [m].
 const START: [f64; 2] = [-45.0e-3, 30.0e-3];
-/// Sides of the grid over that of the box.
+/// Sides of the grid over the side of the box.
 const GRID: [f64; 2] = [2.4, 1.2];
 
 fn main() {
@@ -149,7 +149,7 @@ impl Scene {
     fn new(args: &Args) -> Result<Scene, Box<dyn Error>> {
         let mut world = PhysicsWorld { gravity: -GRAVITY * Vector::Z, ..PhysicsWorld::default() };
         let parameters = &mut world.integration_parameters;
-        // one force per step, that of its start
+        // one force per step: the force at its start
         (parameters.dt, parameters.num_solver_iterations, parameters.length_unit) = (args.dt, 1, RADIUS);
         let ball = RigidBodyBuilder::dynamic()
             .translation(Vector::new(START[0], 0.0, RADIUS + args.drop))
@@ -343,7 +343,7 @@ fn check(args: &Args, all: &[Moment], weights: [f64; 2]) -> Result<(), Box<dyn E
     Ok(())
 }
 
-/// What a step costs, in the time of the wall clock.
+/// Wall-clock time of a step.
 fn costs(args: &Args, scene: &Scene) {
     let [n1, n2] = scene.floor.grid().cells();
     let [engine, floor, longest] = scene.spent.map(|spent| spent.as_secs_f64() * 1e3);

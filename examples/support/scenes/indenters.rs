@@ -12,7 +12,7 @@ pub struct Indenters {
     pub punch: f64,
     /// Radius of the sphere \[m\].
     pub sphere: f64,
-    /// From the centre of each punch to that of the sphere \[m\].
+    /// From the centre of each punch to the centre of the sphere \[m\].
     pub distance: f64,
     /// Along each side of the grid.
     pub cells: usize,

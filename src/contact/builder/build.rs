@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::contact::builder::memory::{Computed, Footprint, Memory, symmetry_of};
+use crate::contact::builder::memory::{Footprint, Memory, symmetry_of};
 use crate::contact::builder::{Builder, OwnGap};
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::scene_fingerprint::Built;
@@ -16,10 +16,9 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::{Error, KernelError, RanksError, Result, count_within};
 use crate::geometry::Gap;
-use crate::hereditary;
 use crate::hereditary::{History, Weighting};
 use crate::kernel::InfluenceKernel;
-use crate::parallel::{Ranks, Rows, catch_rank_loss};
+use crate::parallel::{Ranks, Rows};
 use crate::rheology::Material;
 
 impl Builder {
@@ -42,21 +41,55 @@ impl Builder {
     /// If [`Builder::ranks`] share out the rows: an error of one of them is an error on all, [`RanksError::Failed`]; so is what
     /// cannot be shared out ([`RanksError::NotShared`]).
     pub fn build(mut self) -> Result<ViscoelasticContact> {
-        let Some(group) = &self.ranks else { return Ok(self.prepare()?.finish()) };
+        let Some(group) = &self.ranks else {
+            self.validate()?;
+            let gaps: Vec<_> = std::mem::take(&mut self.gaps).into_iter().map(|(_, gap)| gap).collect::<Result<_>>()?;
+            let bodies = gaps.len();
+            let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
+            let parts = self.parts()?;
+            let folded = if self.settings.symmetry { indenter.even_axes(&self.grid) } else { [false; 2] };
+            let region = if parts.are_windowed() {
+                // without load, each body is above the cell that it would touch first
+                Region::first_touched(&self.grid, folded, indenter.gap(), bodies)
+            } else {
+                Region::whole(&self.grid, folded)
+            };
+            parts.footprint(bodies).check(&region, 0)?;
+            return Ok(self.assemble(parts, indenter, region));
+        };
         let rows = self.agreed_rows(group)?;
         let gaps = std::mem::take(&mut self.gaps);
-        catch_rank_loss(&rows, || {
-            let prepared = self.prepare_shared(&gaps, &rows)?;
+        rows.together(|| {
+            let (parts, gap, even, region) = self.shared_parts(&gaps, &rows)?;
+            rows.agree(parts.footprint(1).check(&region, 0))?;
+            let indenter = gap.on(&region, &self.grid, even);
             drop(gaps);
-            Ok(prepared.finish())
+            Ok(self.assemble(parts, indenter, region))
         })
+    }
+
+    /// The contact of these parts; nothing here can fail. A call of all ranks that share out the region.
+    fn assemble(self, parts: Parts, indenter: Indenter, region: Region) -> ViscoelasticContact {
+        let (Builder { grid, temperature, .. }, Parts { settings, material, kernel, history }) = (self, parts);
+        let scene = Scene {
+            #[cfg(feature = "checkpoint")]
+            built: Built::new(indenter.gap(), &region.of_gap()),
+            bodies: indenter.bodies(),
+            grid,
+            kernel,
+            material,
+            settings,
+            temperature,
+        };
+        let computation = Computation::new(&scene, State::at_rest(Arc::new(indenter), region, &history));
+        ViscoelasticContact::new(scene, computation)
     }
 
     /// The rows of the whole grid that ranks share out, after they have agreed that they can. A call of all ranks.
     fn agreed_rows(&self, group: &Arc<dyn Ranks>) -> Result<Rows> {
         // what is agreed upon before there are rows to share
         let anything = Rows::of_rank([1, 1], Arc::clone(group));
-        catch_rank_loss(&anything, || {
+        anything.together(|| {
             anything.agree(self.may_be_shared())?;
             let ([n1, n2], [side1, side2]) = (self.grid.cells(), self.grid.spacing());
             let Settings { tolerance, symmetry, .. } = self.settings;
@@ -67,8 +100,7 @@ impl Builder {
 
     /// Rejects what ranks cannot share out, and what has to be valid before it is.
     fn may_be_shared(&self) -> Result<()> {
-        self.settings.validate()?;
-        self.bodies()?;
+        self.validate()?;
         let Settings { solver, time_rule, frame, .. } = self.settings;
         let refused = [
             (self.gaps.len() > 1, "a contact of several rigid bodies"),
@@ -82,60 +114,13 @@ impl Builder {
         }
     }
 
-    /// Everything that may fail.
-    fn prepare(mut self) -> Result<Prepared> {
-        self.settings.validate()?;
-        let bodies = self.bodies()?;
-        let gaps = std::mem::take(&mut self.gaps).into_iter().map(|(_, gap)| gap).collect::<Result<_>>()?;
-        let indenter = Indenter::new(Gap::new(gaps, &self.grid)?, bodies);
-        let (material, kernel, history) = self.parts()?;
-        let Builder { grid, settings, temperature, .. } = self;
-        let folded = if settings.symmetry { indenter.even_axes(&grid) } else { [false; 2] };
-        let region = if windowed(&settings, &history, &kernel) {
-            // without load, each body is above the cell that it would touch first
-            Region::first_touched(&grid, folded, indenter.gap(), bodies)
-        } else {
-            Region::whole(&grid, folded)
-        };
-        let all = grid.len();
-        Footprint { all, bodies, settings: &settings, kernel: &kernel, history: &history }
-            .check(&Computed::on(&region), 0)?;
-        let scene = Scene {
-            #[cfg(feature = "checkpoint")]
-            built: Built::new(indenter.gap(), grid.cells()),
-            grid,
-            kernel,
-            material,
-            settings,
-            temperature,
-            bodies,
-        };
-        Ok(Prepared { scene, indenter, region, history })
-    }
-
-    /// Everything that may fail of a contact whose rows ranks share out. A call of all ranks.
-    fn prepare_shared(self, gaps: &[OwnGap], rows: &Rows) -> Result<Prepared> {
-        let (material, kernel, history) = rows.agree(self.parts())?;
+    /// Parts, gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
+    fn shared_parts<'a>(&self, gaps: &'a [OwnGap], rows: &Rows) -> Result<(Parts, SharedGap<'a>, [bool; 2], Region)> {
+        let parts = rows.agree(self.parts())?;
         let gap = SharedGap::new(rows.agree(own_gap(gaps, rows))?, &self.grid, rows)?;
-        let Builder { grid, settings, temperature, .. } = self;
         let even = gap.even_axes();
-        let folded = even.map(|even| even && settings.symmetry);
-        let region = Region::shared(&grid, folded, rows);
-        let all = region.shown_len();
-        let footprint = Footprint { all, bodies: 1, settings: &settings, kernel: &kernel, history: &history };
-        rows.agree(footprint.check(&Computed::on(&region), 0))?;
-        let indenter = gap.on(&region, &grid, even);
-        let scene = Scene {
-            #[cfg(feature = "checkpoint")]
-            built: Built::of_own_rows(indenter.gap(), &region),
-            grid,
-            kernel,
-            material,
-            settings,
-            temperature,
-            bodies: 1,
-        };
-        Ok(Prepared { scene, indenter, region, history })
+        let region = Region::shared(&self.grid, even.map(|even| even && self.settings.symmetry), rows);
+        Ok((parts, gap, even, region))
     }
 
     /// The memory that the contact will take; no field is allocated to find out. The cells that are computed follow from the
@@ -168,39 +153,31 @@ impl Builder {
     /// As [`Builder::build`], except for invalid gaps and for memory.
     pub fn memory(&self) -> Result<Memory> {
         if let Some(group) = &self.ranks {
-            let rows = &self.agreed_rows(group)?;
-            return catch_rank_loss(rows, || {
-                let (_, kernel, history) = rows.agree(self.parts())?;
-                let gap = SharedGap::new(rows.agree(own_gap(&self.gaps, rows))?, &self.grid, rows)?;
-                let folded = gap.even_axes().map(|even| even && self.settings.symmetry);
-                let region = Region::shared(&self.grid, folded, rows);
-                let (all, settings) = (region.shown_len(), &self.settings);
-                let footprint = Footprint { all, bodies: 1, settings, kernel: &kernel, history: &history };
-                Ok(footprint.on(&Computed::on(&region)))
+            let rows = self.agreed_rows(group)?;
+            return rows.together(|| {
+                let (parts, _, _, region) = self.shared_parts(&self.gaps, &rows)?;
+                Ok(parts.footprint(1).on(&region))
             });
         }
-        self.settings.validate()?;
-        let bodies = self.bodies()?;
-        let (_, kernel, history) = self.parts()?;
-        let (settings, cells) = (&self.settings, self.grid.cells());
+        self.validate()?;
+        let (parts, cells) = (self.parts()?, self.grid.cells());
         let gaps: Option<Vec<_>> = self.gaps.iter().map(|(_, gap)| gap.as_ref().ok()).collect();
-        let folded = gaps.filter(|_| settings.symmetry).map_or([false; 2], |gaps| symmetry_of(&gaps, cells));
-        let footprint = Footprint { all: self.grid.len(), bodies, settings, kernel: &kernel, history: &history };
-        Ok(footprint.most(cells, folded, windowed(settings, &history, &kernel)))
+        let folded = gaps.filter(|_| self.settings.symmetry).map_or([false; 2], |gaps| symmetry_of(&gaps, cells));
+        Ok(parts.footprint(self.gaps.len()).most(&self.grid, folded, parts.are_windowed()))
     }
 
-    /// Number of rigid bodies.
-    fn bodies(&self) -> Result<usize> {
+    /// Rejects settings out of range, and no rigid body or too many.
+    fn validate(&self) -> Result<()> {
+        self.settings.validate()?;
         let bodies = self.gaps.len();
         if bodies == 0 {
             return Err(Error::Missing { part: "geometry" });
         }
-        count_within("rigid bodies", bodies, u16::try_from(bodies).is_ok(), "65535 at most")?;
-        Ok(bodies)
+        count_within("rigid bodies", bodies, u16::try_from(bodies).is_ok(), "65535 at most")
     }
 
-    /// Material, kernel, and the memory of the bodies on no cells yet.
-    fn parts(&self) -> Result<(Material, Arc<InfluenceKernel>, hereditary::History)> {
+    /// Material, kernel and history.
+    fn parts(&self) -> Result<Parts> {
         let mut material = self.material.clone().ok_or(Error::Missing { part: "material" })?;
         if let Some(other) = self.counter_body.clone() {
             material = material.against(other);
@@ -223,7 +200,7 @@ impl Builder {
             material = times.fit(&material, self.temperature.as_ref(), self.settings.series_tolerance)?;
         }
         let history = history_by(&self.settings, &material, kernel.periodic_axes())?;
-        Ok((material, kernel, history))
+        Ok(Parts { settings: self.settings, material, kernel, history })
     }
 }
 
@@ -238,21 +215,22 @@ fn own_gap<'a>(gaps: &'a [OwnGap], rows: &Rows) -> Result<&'a [f64]> {
     }
 }
 
-/// The parts of a contact that is about to be made.
-struct Prepared {
-    scene: Scene,
-    indenter: Indenter,
-    region: Region,
-    history: hereditary::History,
+/// The parts of a contact that do not depend on its gap.
+struct Parts {
+    settings: Settings,
+    material: Material,
+    kernel: Arc<InfluenceKernel>,
+    /// On no cells yet.
+    history: History,
 }
 
-impl Prepared {
-    fn finish(self) -> ViscoelasticContact {
-        let Prepared { scene, indenter, region, history } = self;
-        let history = history.undisturbed_on(region.cells(), !region.covers());
-        let state = State::at_rest(Arc::new(indenter), region, history);
-        let computation = Computation::new(&scene, state);
-        ViscoelasticContact::new(scene, computation)
+impl Parts {
+    fn are_windowed(&self) -> bool {
+        windowed(&self.settings, &self.history, &self.kernel)
+    }
+
+    fn footprint(&self, bodies: usize) -> Footprint<'_> {
+        Footprint { bodies, settings: &self.settings, kernel: &self.kernel, history: &self.history }
     }
 }
 
@@ -263,7 +241,7 @@ pub(in crate::contact) fn windowed(settings: &Settings, history: &History, kerne
 }
 
 /// The history of bodies of `material` by the time rule of the settings, on no cells yet.
-pub(in crate::contact) fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> Result<History> {
+fn history_by(settings: &Settings, material: &Material, periodic: [bool; 2]) -> Result<History> {
     let glassy = material.checked_compliance(0.0, (0.0, 0.0))?;
     match settings.time_rule {
         TimeRule::Exponential | TimeRule::ExponentialLinear => {

@@ -1,13 +1,18 @@
 //! The memory that a contact takes, computed before it is built.
 
 use std::fmt;
+use std::sync::Arc;
 
-use crate::contact::indenter::even_axes;
+use crate::Grid;
+use crate::contact::indenter::{Indenter, even_axes};
 use crate::contact::settings::{Settings, Solver};
+use crate::contact::state::State;
+use crate::contact::step::request::Trial;
 use crate::contact::window::placement::MAX_WINDOW_FRACTION;
 use crate::contact::window::region::Region;
 use crate::error::{Result, count_within};
-use crate::hereditary;
+use crate::geometry::Gap;
+use crate::hereditary::History;
 use crate::kernel::InfluenceKernel;
 use crate::memory;
 use crate::parallel::Rows;
@@ -85,68 +90,45 @@ impl fmt::Display for Memory {
     }
 }
 
-/// What the memory of a contact depends on, besides the cells that are computed.
+/// What the memory of a contact depends on, besides the region that is computed.
 pub(in crate::contact) struct Footprint<'a> {
-    /// Cells of the whole grid.
-    pub(in crate::contact) all: usize,
     pub(in crate::contact) bodies: usize,
     pub(in crate::contact) settings: &'a Settings,
     pub(in crate::contact) kernel: &'a InfluenceKernel,
-    /// The time rule of the history.
-    pub(in crate::contact) history: &'a hereditary::History,
-}
-
-/// Cells that a contact is computed on.
-pub(in crate::contact) struct Computed {
-    pub(in crate::contact) cells: [usize; 2],
-    pub(in crate::contact) folded: [bool; 2],
-    /// Whether the cells and their mirror images are the whole grid.
-    pub(in crate::contact) covers: bool,
-    /// The rows of all ranks that share them out; the cells are the local ones.
-    pub(in crate::contact) shared: Option<Rows>,
-}
-
-impl Computed {
-    pub(in crate::contact) fn on(region: &Region) -> Computed {
-        // a rank without rows has about as little as one row takes
-        let cells = region.cells().map(|count| count.max(1));
-        let shared = region.is_shared().then(|| region.rows());
-        Computed { cells, folded: region.folded(), covers: region.covers(), shared }
-    }
+    /// The history, whose time rule counts.
+    pub(in crate::contact) history: &'a History,
 }
 
 impl Footprint<'_> {
-    /// Bytes of a contact that is computed on these cells.
-    pub(in crate::contact) fn on(&self, computed: &Computed) -> Memory {
-        let &Computed { cells, folded, covers, ref shared } = computed;
-        let count = cells[0].saturating_mul(cells[1]);
-        let (all, n, bodies) = (self.all as u128, count as u128, self.bodies as u128);
-        let gap = if bodies > 1 { 10 } else { 8 };
-        // the whole of it, which ranks do not have, what is computed of it, and the pressure that is shown
-        let whole = if shared.is_some() { 0 } else { gap * all };
-        let grid = if count == self.all { gap * n } else { whole + 8 * all + gap * n };
-        // of the far field of a window two fields, and one for each relaxation time
-        let history = self.history.bytes_per_cell() as u128 * n;
-        let far = if covers { 0 } else { 16 * n + history };
-        let [kernel, inverse] = match shared {
-            Some(rows) => self.kernel.own_bytes(rows, folded),
-            None => self.kernel.bytes_on(cells, folded),
-        };
-        let rows = shared.clone().unwrap_or_else(|| Rows::all(cells));
-        let sums = Bands::bytes(&Rows::all(cells), self.bodies) as u128;
+    /// Bytes of a contact that is computed on a region.
+    pub(in crate::contact) fn on(&self, region: &Region) -> Memory {
+        // a rank without rows is counted as one row
+        let cells = region.cells().map(|count| count.max(1));
+        let (count, shown) = (cells[0].saturating_mul(cells[1]), region.shown_len());
+        let (all, n) = (shown as u128, count as u128);
+        let gap = if self.bodies > 1 { 10 } else { 8 };
+        // the whole gap, which ranks do not have; its computed part; the pressure on the grid
+        let whole = if region.is_shared() { 0 } else { gap * all };
+        let grid = if count == shown { gap * n } else { whole + 8 * all + gap * n };
+        let no_gap = Gap { datum: 0.0, above: Vec::new(), owner: None };
+        let indenter = Arc::new(Indenter::new(no_gap, self.bodies));
+        let per_cell = 8 * State::layout(indenter, region.clone(), self.history).values_per_cell();
+        // the displacement at both ends of a step counts as state
+        let of_history = 8 * (self.history.values_per_cell(!region.covers()) - 2);
+        let rows = if region.is_shared() { region.rows() } else { Rows::all(cells) };
+        let [kernel, inverse] = self.kernel.bytes(&rows, region.folded());
+        // three fields, a mark, and runs of cells
+        let own = (24 + 1 + 4) * n + Bands::bytes(&Rows::all(cells), self.bodies) as u128;
         let solver = match self.settings.solver {
-            // three fields, a mark, and runs of cells
-            Solver::ActiveSet => (24 + 1 + 4) * n + sums + inverse + Extension::bytes(&rows),
-            // three fields, a mark, and runs of cells
-            Solver::PolonskyKeer => (24 + 1 + 4) * n + sums,
+            Solver::ActiveSet => own + inverse + Extension::bytes(&rows),
+            Solver::PolonskyKeer => own,
         };
         let saturated = |bytes: u128| u64::try_from(bytes).unwrap_or(u64::MAX);
         Memory {
             computed_cells: count,
             grid: saturated(grid),
-            // pressure and K p now, before and tried; displacement now and before; the gap
-            state: saturated(73 * n),
-            history: saturated(history + far),
+            state: saturated((per_cell - of_history + Trial::BYTES_PER_CELL) as u128 * n),
+            history: saturated(of_history as u128 * n),
             solver: saturated(solver),
             kernel: saturated(kernel),
             each_step: if self.history.grows() { saturated(8 * n) } else { 0 },
@@ -154,8 +136,8 @@ impl Footprint<'_> {
     }
 
     /// Rejects more cells than solvers can number, and more memory than there is, `besides` included \[bytes\].
-    pub(in crate::contact) fn check(&self, computed: &Computed, besides: u64) -> Result<()> {
-        let memory = self.on(computed);
+    pub(in crate::contact) fn check(&self, region: &Region, besides: u64) -> Result<()> {
+        let memory = self.on(region);
         let cells = memory.computed_cells;
         let allowed = "4294967295 at most: take fewer cells, or let symmetry and window of the Settings compute fewer";
         count_within("cells that are computed", cells, u32::try_from(cells).is_ok(), allowed)?;
@@ -163,15 +145,16 @@ impl Footprint<'_> {
     }
 
     /// The most bytes that the contact can take while the axes `folded` stay so.
-    pub(in crate::contact) fn most(&self, cells: [usize; 2], folded: [bool; 2], windowed: bool) -> Memory {
-        let cells = [0, 1].map(|axis| if folded[axis] { cells[axis] / 2 } else { cells[axis] });
-        let whole = self.on(&Computed { cells, folded, covers: true, shared: None });
+    pub(in crate::contact) fn most(&self, grid: &Grid, folded: [bool; 2], windowed: bool) -> Memory {
+        let all = Region::whole(grid, folded);
+        let whole = self.on(&all);
         if !windowed {
             return whole;
         }
         // the largest window, beyond which it is all of the grid
-        let part = (cells[0] as f64 * MAX_WINDOW_FRACTION).ceil() as usize;
-        let window = self.on(&Computed { cells: [part, cells[1]], folded, covers: false, shared: None });
+        let [rows, columns] = all.cells();
+        let rows = (rows as f64 * MAX_WINDOW_FRACTION).ceil() as usize;
+        let window = self.on(&Region::of_size(grid, folded, [rows, columns]));
         if window.total() > whole.total() { window } else { whole }
     }
 }
@@ -193,7 +176,6 @@ pub(in crate::contact) fn symmetry_of(gaps: &[&Vec<f64>], cells: [usize; 2]) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Grid;
     use crate::error::Error;
     use crate::rheology::CreepSpectrum;
 
@@ -201,16 +183,16 @@ mod tests {
     #[test]
     fn no_more_cells_are_computed_than_can_be_numbered() {
         let creep = CreepSpectrum::new(1.0, 1.0, &[]).unwrap();
-        let (settings, history) = (Settings::default(), hereditary::History::exponential(&creep));
+        let (settings, history) = (Settings::default(), History::exponential(&creep));
         for cells in [[65536, 65536], [1 << 32, 1], [131072, 65536]] {
-            let kernel = InfluenceKernel::half_space(&Grid::new(cells, [1.0, 1.0]).unwrap()).unwrap();
+            let grid = Grid::new(cells, [1.0, 1.0]).unwrap();
+            let kernel = InfluenceKernel::half_space(&grid).unwrap();
             let all = cells[0] * cells[1];
-            let footprint = Footprint { all, bodies: 1, settings: &settings, kernel: &kernel, history: &history };
-            let whole = Computed { cells, folded: [false; 2], covers: true, shared: None };
-            let refused = footprint.check(&whole, 0).unwrap_err();
+            let footprint = Footprint { bodies: 1, settings: &settings, kernel: &kernel, history: &history };
+            let refused = footprint.check(&Region::whole(&grid, [false; 2]), 0).unwrap_err();
             assert!(matches!(refused, Error::CountOutOfRange { value, .. } if value == all), "{refused}");
             // a small part of them may be, in the memory of gap and pressure
-            let part = Computed { cells: [64, 1], folded: [false; 2], covers: false, shared: None };
+            let part = Region::of_size(&grid, [false; 2], [64, 1]);
             assert!((16 * all as u64..16 * all as u64 + 100_000).contains(&footprint.on(&part).total()));
         }
     }

@@ -40,12 +40,6 @@ pub(super) type OwnGap = (Range<usize>, Result<Vec<f64>>);
 impl ViscoelasticContact {
     /// A builder for a contact on `grid`.
     pub fn builder(grid: Grid) -> Builder {
-        Builder::new(grid)
-    }
-}
-
-impl Builder {
-    fn new(grid: Grid) -> Builder {
         Builder {
             grid,
             gaps: Vec::new(),
@@ -58,7 +52,9 @@ impl Builder {
             ranks: None,
         }
     }
+}
 
+impl Builder {
     /// The shape of the rigid body: the gap before the bodies deform. Required; evaluated here, errors are
     /// reported by [`Builder::build`]. Replaces what was given before.
     pub fn geometry(mut self, geometry: &dyn Geometry) -> Builder {

@@ -6,7 +6,6 @@ use std::time::Duration;
 use crate::contact::run::follow::Follow;
 use crate::contact::run::progress::Autosave;
 use crate::error::Result;
-use crate::parallel::catch_rank_loss;
 
 impl Follow<'_> {
     /// Saves the run to `path` whenever `every` has passed, after the step under way then, and at its end: no more is lost with
@@ -57,7 +56,7 @@ impl Follow<'_> {
         let Some(autosave) = &self.autosave else { return Ok(()) };
         let (due, rows) = (over || autosave.is_due(), self.contact.computation.state.region.rows());
         // clocks differ: where it is due on one rank, it is on all
-        if !catch_rank_loss(&rows, || Ok(rows.any(due)))? {
+        if !rows.together(|| Ok(rows.any(due)))? {
             return Ok(());
         }
         let path = autosave.path.clone();

@@ -7,24 +7,14 @@ use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 
 use crc32fast::Hasher;
-use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::error::CheckpointError;
+use crate::parallel::{Rows, part};
 
-/// What a file holds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
-    /// The state of one process.
-    Whole,
-    /// What several ranks have in common, and the names of the files with their rows.
-    Ranks,
-    /// The rows of one of them.
-    Rows,
-}
-
-/// Raised whenever what is saved changes.
-pub(super) const VERSION: u32 = 7;
+const MAGIC: &[u8; 8] = b"VISCOCHK";
+/// Raised with every change of the contents.
+pub(super) const VERSION: u32 = 8;
 /// Magic number, version, length, checksum of all but itself.
 const HEADER: usize = 24;
 const CHECKSUM: usize = 20;
@@ -33,142 +23,147 @@ const PIECE: usize = 1 << 16;
 /// The longest text that a file may hold.
 const TEXT: u64 = 1 << 24;
 
-impl Kind {
-    const ALL: [Kind; 3] = [Kind::Whole, Kind::Ranks, Kind::Rows];
-
-    fn magic(self) -> [u8; 8] {
-        match self {
-            Kind::Whole => *b"VISCOCHK",
-            Kind::Ranks => *b"VISCORKS",
-            Kind::Rows => *b"VISCOROW",
-        }
-    }
-}
-
-/// Writes a file, and returns its checksum.
-pub(super) fn write(out: &mut BufWriter<File>, kind: Kind, contents: &impl Serialize) -> io::Result<u32> {
-    out.write_all(&[0; HEADER])?;
-    let mut stream = Hashing { out, piece: Vec::with_capacity(PIECE), hasher: Hasher::new(), length: 0 };
-    let serialized = postcard::to_io(contents, &mut stream).map(drop);
-    // an error of the medium is still there when the rest of the piece is written
-    stream.spill()?;
-    serialized.map_err(io::Error::other)?;
-    let Hashing { hasher, length, .. } = stream;
-    let mut header = Vec::with_capacity(HEADER);
-    header.extend(kind.magic());
-    header.extend(VERSION.to_le_bytes());
-    header.extend(length.to_le_bytes());
-    let mut all = Hasher::new();
-    all.update(&header);
-    all.combine(&hasher);
-    let checksum = all.finalize();
-    header.extend(checksum.to_le_bytes());
-    out.seek(SeekFrom::Start(0))?;
-    out.write_all(&header)?;
-    Ok(checksum)
-}
-
-/// Hashes what it writes.
-struct Hashing<'a> {
+/// A file that is being written: hashes what goes into it.
+pub(super) struct Output<'a> {
     out: &'a mut BufWriter<File>,
-    piece: Vec<u8>,
     hasher: Hasher,
     length: u64,
 }
 
-impl Hashing<'_> {
-    fn spill(&mut self) -> io::Result<()> {
-        self.out.write_all(&self.piece)?;
-        self.hasher.update(&self.piece);
-        self.length += self.piece.len() as u64;
-        self.piece.clear();
-        Ok(())
+impl<'a> Output<'a> {
+    pub(super) fn begin(out: &'a mut BufWriter<File>) -> io::Result<Output<'a>> {
+        out.write_all(&[0; HEADER])?;
+        Ok(Output { out, hasher: Hasher::new(), length: 0 })
+    }
+
+    /// Writes the header, once all contents are there.
+    pub(super) fn finish(self) -> io::Result<()> {
+        let mut header = Vec::with_capacity(HEADER);
+        header.extend(MAGIC);
+        header.extend(VERSION.to_le_bytes());
+        header.extend(self.length.to_le_bytes());
+        let mut all = Hasher::new();
+        all.update(&header);
+        all.combine(&self.hasher);
+        header.extend(all.finalize().to_le_bytes());
+        self.out.seek(SeekFrom::Start(0))?;
+        self.out.write_all(&header)
     }
 }
 
-impl Write for Hashing<'_> {
+impl Write for Output<'_> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.piece.len() + bytes.len() > PIECE {
-            self.spill()?;
-        }
-        self.piece.extend_from_slice(bytes);
+        self.out.write_all(bytes)?;
+        self.hasher.update(bytes);
+        self.length += bytes.len() as u64;
         Ok(bytes.len())
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        Ok(())
+        self.out.flush()
     }
 }
 
-/// What a file begins like, if it is one of these.
-pub(super) fn kind_at(path: &Path) -> Option<Kind> {
-    let mut magic = [0; 8];
-    File::open(path).and_then(|mut file| file.read_exact(&mut magic)).ok()?;
-    Kind::ALL.into_iter().find(|kind| kind.magic() == magic)
-}
-
-/// A file that was found to be whole.
+/// A file that is being read.
 #[derive(Debug)]
-pub(super) struct Whole {
-    file: File,
-    pub(super) kind: Kind,
-    pub(super) checksum: u32,
+pub(super) struct Input {
+    file: BufReader<File>,
+    header: [u8; HEADER],
+    /// Bytes of the contents.
     length: u64,
+    /// Where the values begin, once the contents before them were read.
+    values: u64,
 }
 
-impl Whole {
-    /// Opens a file of this format, and checks its checksum.
-    pub(super) fn open(path: &Path) -> Result<Whole, CheckpointError> {
+impl Input {
+    /// Opens a file of this format and of the length that it states.
+    pub(super) fn open(path: &Path) -> Result<Input, CheckpointError> {
         let mut file = File::open(path).map_err(unreadable)?;
         let found = file.metadata().map_err(unreadable)?.len();
         let mut header = Vec::with_capacity(HEADER);
-        (&file).take(HEADER as u64).read_to_end(&mut header).map_err(unreadable)?;
-        let begins = |kind: &Kind| kind.magic().starts_with(&header[..header.len().min(8)]);
-        let Some(kind) = Kind::ALL.into_iter().find(begins).filter(|_| !header.is_empty()) else {
+        (&mut file).take(HEADER as u64).read_to_end(&mut header).map_err(unreadable)?;
+        if header.is_empty() || !MAGIC.starts_with(&header[..header.len().min(MAGIC.len())]) {
             return Err(CheckpointError::Foreign);
-        };
-        let Some(header) = header.first_chunk::<HEADER>() else {
+        }
+        let Some(&header) = header.first_chunk::<HEADER>() else {
             return Err(CheckpointError::Size { found, expected: HEADER as u64 });
         };
-        let number =
-            |from: usize| u32::from_le_bytes([header[from], header[from + 1], header[from + 2], header[from + 3]]);
-        let version = number(8);
+        let version = number(&header, 8);
         match version.cmp(&VERSION) {
             Ordering::Greater => return Err(CheckpointError::Newer { found: version, known: VERSION }),
             Ordering::Less => return Err(CheckpointError::Older { found: version, known: VERSION }),
             Ordering::Equal => {}
         }
-        let length = u64::from(number(12)) | u64::from(number(16)) << 32;
+        let length = u64::from(number(&header, 12)) | u64::from(number(&header, 16)) << 32;
         let expected = length.saturating_add(HEADER as u64);
         if expected != found {
             return Err(CheckpointError::Size { found, expected });
         }
-        let mut hasher = Hasher::new();
-        hasher.update(&header[..CHECKSUM]);
-        let mut piece = vec![0; PIECE];
-        loop {
-            match file.read(&mut piece) {
-                Ok(0) => break,
-                Ok(count) => hasher.update(&piece[..count]),
-                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-                Err(error) => return Err(unreadable(error)),
-            }
-        }
-        let (found, expected) = (hasher.finalize(), number(CHECKSUM));
-        if found != expected {
-            return Err(CheckpointError::Damaged { found, expected });
-        }
-        Ok(Whole { file, kind, checksum: expected, length })
+        Ok(Input { file: BufReader::with_capacity(PIECE, file), header, length, values: 0 })
     }
 
-    /// What it holds.
-    pub(super) fn contents<T: DeserializeOwned>(mut self) -> Result<T, CheckpointError> {
+    /// The checksum that the file states.
+    pub(super) fn stated_checksum(&self) -> u32 {
+        number(&self.header, CHECKSUM)
+    }
+
+    /// The checksum of the part of the contents that a rank reads, and the number of its bytes.
+    pub(super) fn checksum_of_part(&mut self, rows: &Rows) -> Result<[f64; 2], CheckpointError> {
+        let bytes = part(self.length as usize, rows.rank(), rows.ranks());
+        self.file.seek(SeekFrom::Start((HEADER + bytes.start) as u64)).map_err(unreadable)?;
+        let (mut hasher, mut piece) = (Hasher::new(), vec![0; PIECE]);
+        for start in bytes.clone().step_by(PIECE) {
+            let piece = &mut piece[..PIECE.min(bytes.end - start)];
+            self.file.read_exact(piece).map_err(unreadable)?;
+            hasher.update(piece);
+        }
+        Ok([f64::from(hasher.finalize()), bytes.len() as f64])
+    }
+
+    /// Compares the checksum stated with the checksum found, of the parts of all ranks. A call of all ranks.
+    pub(super) fn require_checksum(&self, rows: &Rows, of_part: [f64; 2]) -> Result<(), CheckpointError> {
+        let hasher = |[checksum, length]: [f64; 2]| Hasher::new_with_initial_len(checksum as u32, length as u64);
+        let joined = |before: [f64; 2], after: [f64; 2]| {
+            let mut all = hasher(before);
+            all.combine(&hasher(after));
+            [f64::from(all.finalize()), before[1] + after[1]]
+        };
+        let mut header = Hasher::new();
+        header.update(&self.header[..CHECKSUM]);
+        header.combine(&hasher(rows.join(of_part, joined)));
+        let (found, expected) = (header.finalize(), self.stated_checksum());
+        if found == expected { Ok(()) } else { Err(CheckpointError::Damaged { found, expected }) }
+    }
+
+    /// Reads what the file begins with.
+    pub(super) fn contents<T: DeserializeOwned>(&mut self) -> Result<T, CheckpointError> {
         self.file.seek(SeekFrom::Start(HEADER as u64)).map_err(unreadable)?;
         let mut text = vec![0; self.length.min(TEXT) as usize];
-        let stream = BufReader::with_capacity(PIECE, self.file.take(self.length));
-        let read = postcard::from_io((stream, &mut text[..])).map(|(contents, _)| contents);
-        read.map_err(|error| CheckpointError::Malformed { what: error.to_string() })
+        let read = postcard::from_io((&mut self.file, &mut text[..])).map(|(contents, _)| contents);
+        let contents = read.map_err(|error| CheckpointError::Malformed { what: error.to_string() })?;
+        self.values = self.file.stream_position().map_err(unreadable)?;
+        Ok(contents)
     }
+
+    /// Whether so many values follow what the file begins with.
+    pub(super) fn has_values(&self, count: u64) -> bool {
+        count.checked_mul(8).and_then(|bytes| bytes.checked_add(self.values)) == Some(self.length + HEADER as u64)
+    }
+
+    /// Reads `count` values after the first `skipped` ones.
+    pub(super) fn values(&mut self, skipped: u64, count: usize) -> Result<Vec<f64>, CheckpointError> {
+        self.file.seek(SeekFrom::Start(self.values + 8 * skipped)).map_err(unreadable)?;
+        let (mut values, mut bytes) = (Vec::with_capacity(count), [0; 8]);
+        for _ in 0..count {
+            self.file.read_exact(&mut bytes).map_err(unreadable)?;
+            values.push(f64::from_le_bytes(bytes));
+        }
+        Ok(values)
+    }
+}
+
+fn number(header: &[u8; HEADER], from: usize) -> u32 {
+    u32::from_le_bytes([header[from], header[from + 1], header[from + 2], header[from + 3]])
 }
 
 fn unreadable(error: io::Error) -> CheckpointError {

@@ -1,24 +1,29 @@
 //! Checkpoint and resume: the state of a contact in a file, and on from there.
 
 pub(in crate::contact) mod autosave;
-mod distributed;
+mod fields;
 mod format;
-mod redistribution;
 mod saved;
 pub(in crate::contact) mod scene_fingerprint;
 
+use std::borrow::Cow;
+use std::io;
 use std::path::Path;
+use std::sync::Arc;
 
 use crate::contact::computation::Computation;
+use crate::contact::indenter::Indenter;
 use crate::contact::run::progress::Progress;
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
+use crate::contact::window::region::Region;
 use crate::error::{CheckpointError, Error, Result};
-use crate::file::replace;
-use crate::parallel::catch_rank_loss;
-use distributed::Common;
-use format::{Kind, Whole};
+use crate::geometry::Gap;
+use crate::parallel::Rows;
+use fields::{FieldReader, FieldWriter};
+use format::{Input, Output};
 use saved::Saved;
+use scene_fingerprint::{Built, difference};
 
 impl ViscoelasticContact {
     /// Saves the whole state to a file: a contact that is built like this one and continues from it
@@ -28,7 +33,7 @@ impl ViscoelasticContact {
     ///
     /// The file is complete and on the medium when this returns; until then, what was there before is not touched. It carries the version
     /// of its format, its length and a checksum. About 50 bytes per computed cell, 8 more for each relaxation time, and 8 per cell of the
-    /// whole grid.
+    /// whole grid, or of its computed part where the gap is symmetric.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -56,12 +61,9 @@ impl ViscoelasticContact {
     /// Contacts may save to one path at once: the file always belongs to one of them, in the end to the last to finish. Where the path
     /// is a link, the file that it leads to is replaced.
     ///
-    /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them. Each writes its rows to a file of its own
-    /// beside `path`, whose name continues with a mark of the save and a number; the folder must be common to all. Then the file at `path`,
-    /// which names them, is replaced, and the files of the previous save are removed. Whenever ranks are lost, it leads to all
-    /// files of one save. What they had begun to write is left, and removed with the save after the next; so only one group may
-    /// save to a path at a time. Any number of ranks can resume from it, one process too, and any number of ranks from the file
-    /// of one process.
+    /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them: rank 0 writes the file, and the others
+    /// send it their rows, some at a time. Any number of ranks can resume from it, one process too, and any number of ranks from
+    /// the file of one process.
     ///
     /// # Errors
     /// If the file cannot be written, or there is something other than a file at `path` ([`Error::NotAFile`]).
@@ -71,14 +73,26 @@ impl ViscoelasticContact {
 
     /// [`ViscoelasticContact::save`] with how far a run along a history has come.
     pub(super) fn save_with(&self, path: &Path, progress: Option<&Progress>) -> Result<()> {
-        let rows = self.computation.state.region.rows();
-        if let Some(group) = rows.group() {
-            return catch_rank_loss(&rows, || distributed::save(self, path, progress, (&rows, &**group)));
-        }
-        let old = distributed::mark_at(path);
-        replace(path, |out| format::write(out, Kind::Whole, &Saved::of(self, progress)).map(drop))?;
-        old.into_iter().for_each(|old| distributed::remove_until(path, old));
-        Ok(())
+        let State { region, indenter, .. } = &self.computation.state;
+        let (rows, above) = (region.rows(), &indenter.gap().above);
+        rows.replace_file(path, |out| {
+            let saved = Saved::of(self, progress);
+            let begun = out.map(|out| {
+                let mut out = Output::begin(out)?;
+                postcard::to_io(&saved, &mut out).map_err(io::Error::other)?;
+                Ok(out)
+            });
+            let mut fields = FieldWriter::new(begun);
+            fields.state(&self.computation.state);
+            let (gap, n2) = (saved.gap_region(self), self.scene.grid.cells()[1]);
+            if rows.are_shared() {
+                fields.rows(&rows, |cells| above[cells].iter().copied());
+            } else {
+                let value = |k| gap.cell(k);
+                fields.rows(&gap.rows(), |cells| cells.map(value).map(|[i, j]| above[i * n2 + j]));
+            }
+            fields.finish()
+        })
     }
 
     /// Puts a saved state in the place of this one. The contact must be built as the one was that was saved: same grid, bodies,
@@ -94,41 +108,77 @@ impl ViscoelasticContact {
     ///
     /// # Errors
     /// If the file cannot be read, is no checkpoint, is of a newer or older format, cut short, damaged, or of another scene
-    /// ([`Error::Checkpoint`]); the contact is then as it was. If ranks saved it, and one of their files is missing, damaged or of
-    /// another save ([`CheckpointError::Rows`]).
+    /// ([`Error::Checkpoint`]); the contact is then as it was.
     ///
-    /// Where [ranks](crate::parallel) share out the contact, each reads what holds its rows, one file at a time; all must be
-    /// able to go on ([`RanksError::Failed`](crate::parallel::RanksError::Failed)). They can not from a window of the grid
-    /// ([`Settings::window`](crate::contact::Settings::window)), nor from where an indenter has moved
+    /// Where [ranks](crate::parallel) share out the contact, it is a call of all of them, which must all see the file. Each rank
+    /// reads its rows and checks its part of the file. An error of one rank is an error on all
+    /// ([`RanksError::Failed`](crate::parallel::RanksError::Failed)). Ranks cannot resume from a window of the grid
+    /// ([`Settings::window`](crate::contact::Settings::window)), nor after an indenter has moved
     /// ([`CheckpointError::OtherScene`]).
     pub fn resume(&mut self, path: impl AsRef<Path>) -> Result<()> {
         let (path, rows) = (path.as_ref(), self.computation.state.region.rows());
-        catch_rank_loss(&rows, || {
-            let read = self.read(path).map_err(|source| Error::Checkpoint { path: path.to_owned(), source });
-            let (mut state, progress, checksum) = rows.agree(read)?;
-            // not one save on one rank and the next on another
-            rows.same([f64::from(checksum)])?;
+        rows.together(|| {
+            let (mut state, progress) = self.read(path, &rows)?;
             state.sum_up();
             if state.indenter_is_new {
                 // the indenter of the last step is not saved
                 state.history.forget_start();
             }
-            self.computation = Computation::new(&self.scene, state);
+            let computation = Computation::new(&self.scene, state);
+            rows.intact()?;
+            self.computation = computation;
             self.view.refresh(&self.computation.state);
             self.progress = progress.map(Box::new);
             Ok(())
         })
     }
 
-    /// The state in a file on the rows of this contact, how far a run had come, and the checksum of the file.
-    fn read(&self, path: &Path) -> Result<(State, Option<Progress>, u32), CheckpointError> {
-        let file = Whole::open(path)?;
-        let checksum = file.checksum;
-        let (state, progress) = match file.kind {
-            Kind::Whole => file.contents::<Saved<'_>>()?.state_for(self)?,
-            Kind::Ranks => file.contents::<Common<'_>>()?.state_for(self, path)?,
-            Kind::Rows => return Err(CheckpointError::RowsAlone),
+    /// The state in a file on the rows of this contact, and how far a run had come. A call of all ranks.
+    fn read(&self, path: &Path, rows: &Rows) -> Result<(State, Option<Progress>)> {
+        let all = Agreement { path, rows };
+        let mut file = all.of(Input::open(path))?;
+        // not one save on one rank and the next on another
+        rows.same([f64::from(file.stated_checksum())])?;
+        let of_part = all.of(file.checksum_of_part(rows))?;
+        all.of(file.require_checksum(rows, of_part))?;
+        let saved = file.contents::<Saved<'_>>().and_then(|saved| saved.check(self).map(|()| saved));
+        let saved = all.of(saved)?;
+        let (values, gap_region) = (saved.values(self), saved.gap_region(self));
+        all.of(if file.has_values(values) { Ok(()) } else { saved::malformed("fields that do not fit its region") })?;
+
+        let (grid, own, folded) = (&self.scene.grid, &self.computation.state, saved.state.region.folded());
+        let shared = own.region.is_shared();
+        let region = if shared { Region::shared(grid, folded, &own.region.rows()) } else { saved.state.region.clone() };
+        let gap_region = if shared { &region } else { &gap_region };
+        let mut fields = FieldReader::new(file);
+        let read = fields.state(&saved.state, &region).and_then(|state| {
+            let Gap { datum, owner, .. } = saved.state.indenter.gap().clone();
+            let gap = Gap { datum, owner, above: fields.rows(&gap_region.rows())? };
+            saved::check_fields(&state, &gap).map(|()| (state, gap))
+        });
+        let (state, mut gap) = all.of(read)?;
+        let indenter = if shared {
+            let moved = difference(&Built::new(&gap, &region).shape, &self.scene.built.shape).is_some();
+            all.of(if moved { Err(saved::moved_indenter()) } else { Ok(()) })?;
+            own.indenter.with_gap_on(&region, gap)
+        } else {
+            let mut whole = vec![0.0; grid.len()];
+            gap_region.show(&gap.above, &mut whole);
+            gap.above = whole;
+            Indenter::new(gap, self.scene.bodies)
         };
-        Ok((state, progress, checksum))
+        Ok((State { indenter: Arc::new(indenter), ..state }, saved.progress.map(Cow::into_owned)))
+    }
+}
+
+/// Makes an error of one rank that reads a file an error of all.
+struct Agreement<'a> {
+    path: &'a Path,
+    rows: &'a Rows,
+}
+
+impl Agreement<'_> {
+    fn of<T>(&self, own: Result<T, CheckpointError>) -> Result<T> {
+        self.rows.agree(own.map_err(|source| Error::Checkpoint { path: self.path.to_owned(), source }))
     }
 }

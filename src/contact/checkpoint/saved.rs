@@ -1,11 +1,10 @@
-//! The content of a checkpoint of one process, and its checks.
+//! The content of a checkpoint but for its fields, and the checks of both.
 
 use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::redistribution::Assembled;
-use super::scene_fingerprint::{Built, Fingerprint, difference};
+use super::scene_fingerprint::Fingerprint;
 use crate::contact::builder::build::windowed;
 use crate::contact::run::progress::Progress;
 use crate::contact::scene::Scene;
@@ -13,56 +12,76 @@ use crate::contact::state::{Clock, Equilibrium, State};
 use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::CheckpointError;
+use crate::geometry::Gap;
+use crate::hereditary::Role;
 
-/// A state, and the fingerprint of its scene; borrowed from a contact or read from a file.
+/// A state on no cells, and the fingerprint of its scene.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Saved<'a> {
-    scene: Fingerprint,
-    state: Cow<'a, State>,
-    progress: Option<Cow<'a, Progress>>,
+    pub(super) scene: Fingerprint,
+    /// On the region of all ranks, without values.
+    pub(super) state: State,
+    /// Axes along which the gap is even: the file has one half of it.
+    pub(super) gap_folded: [bool; 2],
+    pub(super) progress: Option<Cow<'a, Progress>>,
 }
 
 impl<'a> Saved<'a> {
-    pub(super) fn of(contact: &'a ViscoelasticContact, progress: Option<&'a Progress>) -> Saved<'a> {
+    pub(super) fn of(contact: &ViscoelasticContact, progress: Option<&'a Progress>) -> Saved<'a> {
+        let (state, grid) = (&contact.computation.state, &contact.scene.grid);
         Saved {
             scene: Fingerprint::of(&contact.scene),
-            state: Cow::Borrowed(&contact.computation.state),
+            state: state.map(&state.region.of_all_ranks(), &mut |_| Vec::new()),
+            gap_folded: state.indenter.keeps_folded(state.region.folded(), grid),
             progress: progress.map(Cow::Borrowed),
         }
     }
 
-    /// The state, if a contact of this scene can go on from it, on the rows that it has.
-    pub(super) fn state_for(self, contact: &ViscoelasticContact) -> Result<(State, Option<Progress>), CheckpointError> {
+    /// The part of the grid that the gap is saved on.
+    pub(super) fn gap_region(&self, contact: &ViscoelasticContact) -> Region {
+        Region::whole(&contact.scene.grid, self.gap_folded)
+    }
+
+    /// Number of values that a file has after this.
+    pub(super) fn values(&self, contact: &ViscoelasticContact) -> u64 {
+        let mut per_cell = 0;
+        self.state.each(&mut |field| {
+            if !matches!(field.role, Role::Work) {
+                per_cell += field.per_cell;
+            }
+        });
+        (per_cell as u64).saturating_mul(self.state.region.len() as u64) + self.gap_region(contact).len() as u64
+    }
+
+    /// Rejects what a contact cannot go on from.
+    pub(super) fn check(&self, contact: &ViscoelasticContact) -> Result<(), CheckpointError> {
         self.scene.require(&Fingerprint::of(&contact.scene))?;
-        check(&self.state, contact, None)?;
+        check(&self.state, contact)?;
+        let (cells, region) = (contact.scene.grid.cells(), &self.state.region);
+        if (0..2).any(|axis| self.gap_folded[axis] && !cells[axis].is_multiple_of(2)) {
+            return malformed("a symmetry that its grid cannot have");
+        }
         check_run(&self.state.clock, self.progress.as_deref(), &contact.scene)?;
-        let state = self.state.into_owned();
-        let state = if contact.computation.state.region.is_shared() {
-            require_whole(&state, &self.scene, contact)?;
-            let mut own = Assembled::on_rows_of(contact, &state);
-            own.copy(&state, &state.region.cut(&state.indenter.gap().above));
-            own.finish(contact)
-        } else {
-            state
-        };
-        Ok((state, self.progress.map(Cow::into_owned)))
+        if contact.computation.state.region.is_shared() {
+            if !region.covers() {
+                let saved = "a window of the grid (set Settings::window to false before it is saved)";
+                return Err(other_scene("computed region", saved, "the whole grid, which ranks share out"));
+            }
+            if self.gap_folded != region.folded() {
+                return Err(moved_indenter());
+            }
+        }
+        Ok(())
     }
 }
 
-/// Rejects a state that ranks cannot share out: on a window of the grid, or with an indenter that has moved.
-fn require_whole(state: &State, scene: &Fingerprint, contact: &ViscoelasticContact) -> Result<(), CheckpointError> {
-    let differ = |what: &'static str, saved: &str, built: &str| {
-        Err(CheckpointError::OtherScene { what, saved: saved.into(), built: built.into() })
-    };
-    if !state.region.covers() {
-        let saved = "a window of the grid (set Settings::window to false before it is saved)";
-        return differ("computed region", saved, "the whole grid, which ranks share out");
-    }
-    let now = Built::new(state.indenter.gap(), contact.scene.grid.cells());
-    if difference(&now.shape, &scene.shape).is_some() {
-        return differ("indenter", "one that has moved or changed", "where it was built, as ranks need it");
-    }
-    Ok(())
+fn other_scene(what: &'static str, saved: &str, built: &str) -> CheckpointError {
+    CheckpointError::OtherScene { what, saved: saved.into(), built: built.into() }
+}
+
+/// The error of ranks, which cannot go on with another gap than they have.
+pub(super) fn moved_indenter() -> CheckpointError {
+    other_scene("indenter", "one that has moved or changed", "where it was built, as ranks need it")
 }
 
 /// Both clocks of a checkpoint must agree to this part: closures of a temperature have no other mark.
@@ -84,62 +103,53 @@ pub(super) fn check_run(clock: &Clock, run: Option<&Progress>, scene: &Scene) ->
     Ok(())
 }
 
-/// Rejects fields that do not fit a whole contact, or its `rows`.
-pub(super) fn check(
-    state: &State,
-    contact: &ViscoelasticContact,
-    rows: Option<&Region>,
-) -> Result<(), CheckpointError> {
+/// Rejects a state on no cells that is not one of the contact.
+fn check(state: &State, contact: &ViscoelasticContact) -> Result<(), CheckpointError> {
     let (scene, built) = (&contact.scene, &contact.computation.state.history);
     let State { clock, loads, indenter, region, history, current, previous, start, .. } = state;
-    let (bodies, gap, cells) = (scene.bodies, indenter.gap(), region.len());
-    let covers = rows.is_some() || region.covers();
-    let allowed = match rows {
-        Some(rows) => region == rows,
-        None => region.is_of(&scene.grid) && (covers || windowed(&scene.settings, built, &scene.kernel)),
-    };
-    if !allowed {
+    let (bodies, gap, covers) = (scene.bodies, indenter.gap(), region.covers());
+    if !region.is_of(&scene.grid) || !(covers || windowed(&scene.settings, built, &scene.kernel)) {
         return malformed("its region is not part of the grid");
     }
-    let gap_cells = if rows.is_some() { cells } else { scene.grid.len() };
-    let complete = |Equilibrium { solution, motions, .. }: &Equilibrium| {
-        [solution.pressure.len(), solution.potential.len()] == [cells; 2]
-            && [solution.motions.len(), motions.len()] == [bodies; 2]
-    };
+    let motions = |Equilibrium { solution, motions, .. }: &Equilibrium| [solution.motions.len(), motions.len()];
     let of_a_body = |&owner: &_| usize::from(owner) < bodies;
     let owners = match &gap.owner {
-        Some(owner) => bodies > 1 && owner.len() == gap_cells && owner.iter().all(of_a_body),
+        Some(owner) => bodies > 1 && owner.len() == scene.grid.len() && owner.iter().all(of_a_body),
         None => bodies == 1,
     };
     let fits = [loads.len(), start.loads.len(), indenter.bodies()] == [bodies; 3]
-        && complete(current)
-        && complete(previous)
-        && gap.above.len() == gap_cells
+        && [motions(current), motions(previous)] == [[bodies; 2]; 2]
         && owners
         && history.fits(built, region.cells(), !covers);
     if !fits {
         return malformed("fields that do not fit its region, or another time rule");
     }
-    let finite = |fields: &[&[f64]]| fields.iter().all(|field| field.iter().all(|value| value.is_finite()));
     let times_of =
         |clock: &Clock| [clock.time, clock.last_length, clock.reduced_time, clock.undisturbed_until, clock.last_dt];
-    let times = [times_of(clock), times_of(&start.clock)].concat();
-    let sound = |Equilibrium { solution, motions, .. }: &Equilibrium| {
-        finite(&[&solution.pressure, &solution.potential])
-            && motions.iter().all(|motion| finite(&[&[motion.approach], &motion.tilt]))
-    };
-    let start_of_step = if history.start_is_kept() { history.trial() } else { &[] };
-    let sound = finite(&[&times, &[gap.datum], history.displacement(), start_of_step])
-        && sound(current)
-        && sound(previous)
+    let motions = [current, previous].into_iter().flat_map(|of| &of.motions);
+    let sound = [times_of(clock), times_of(&start.clock)].as_flattened().iter().all(|&t| t >= 0.0 && t.is_finite())
+        && gap.datum.is_finite()
+        && motions.flat_map(|motion| [motion.approach, motion.tilt[0], motion.tilt[1]]).all(f64::is_finite)
         && start.clock.time <= clock.time
-        && start.loads.iter().all(|load| load.validate().is_ok())
-        && current.solution.pressure.iter().all(|&p| p >= 0.0)
-        && gap.above.iter().all(|&gap| gap >= 0.0)
-        && times.iter().all(|&time| time >= 0.0);
-    if sound { Ok(()) } else { malformed("non-finite or negative numbers") }
+        && start.loads.iter().all(|load| load.validate().is_ok());
+    if sound { Ok(()) } else { unsound() }
 }
 
-fn malformed<T>(what: &str) -> Result<T, CheckpointError> {
+/// Rejects fields of a state, and a gap, that no contact has.
+pub(super) fn check_fields(state: &State, gap: &Gap) -> Result<(), CheckpointError> {
+    let mut finite = true;
+    state.each(&mut |field| {
+        let counts = matches!(field.role, Role::Lasting { .. }) || state.history.start_is_kept();
+        finite &= !counts || field.values.iter().all(|value| value.is_finite());
+    });
+    let pressures = state.current.solution.pressure.iter().all(|&p| p >= 0.0);
+    if finite && pressures && gap.above.iter().all(|&gap| gap >= 0.0) { Ok(()) } else { unsound() }
+}
+
+fn unsound() -> Result<(), CheckpointError> {
+    malformed("non-finite or negative numbers")
+}
+
+pub(super) fn malformed<T>(what: &str) -> Result<T, CheckpointError> {
     Err(CheckpointError::Malformed { what: what.into() })
 }

@@ -1,5 +1,6 @@
 //! Fingerprints of the scene: gap and material as built, and their comparison.
 
+use std::mem::discriminant;
 use std::sync::OnceLock;
 
 use crc32fast::Hasher;
@@ -11,7 +12,7 @@ use crate::contact::window::region::Region;
 use crate::error::CheckpointError;
 use crate::geometry::Gap;
 use crate::rheology::Material;
-use crate::sum::{MOMENTS, add_to_moments, moments};
+use crate::sum::{MOMENTS, add_to_moments};
 
 /// Numbers of two scenes are the same if they differ by no more than this part: mathematical libraries round differently.
 const RELATIVE_TOLERANCE: f64 = 1e-9;
@@ -25,40 +26,26 @@ const DECADES: i32 = 12;
 pub(crate) struct Built {
     /// Sums over the gap.
     pub(super) shape: Vec<f64>,
-    pub(super) owners: Owners,
+    /// How many cells each rigid body has, and a checksum of whose they are.
+    owners: String,
     /// Computed at the first call: it may take many evaluations.
-    creep: OnceLock<Creep>,
+    creep: OnceLock<Mark>,
 }
 
-/// Which rigid body each cell belongs to.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Owners {
-    /// Cells of each body.
-    cells: Vec<u64>,
-    checksum: u32,
-}
-
-/// The contact compliance of a material, by numbers.
+/// What a property of a scene is compared by.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(super) enum Creep {
-    /// Elastic part, fluidity, and strength and time of each term.
+enum Mark {
+    Text(String),
+    Numbers(Vec<f64>),
+    /// A contact compliance: elastic part, fluidity, and strength and time of each term.
     Series(Vec<f64>),
-    /// Its values at some times.
+    /// A contact compliance at some times.
     Values(Vec<f64>),
 }
 
 impl Built {
-    pub(crate) fn new(gap: &Gap, cells: [usize; 2]) -> Built {
-        let known = gap.above.iter().map(|h| if h.is_finite() { *h } else { 0.0 });
-        let open = gap.above.iter().map(|h| f64::from(h.is_infinite()));
-        let mut shape = moments(known, cells[1]);
-        shape.extend(moments(open, cells[1]));
-        shape.push(gap.datum);
-        Built { shape, owners: Owners::of(gap), creep: OnceLock::new() }
-    }
-
-    /// The same of a single body whose gap on a region of own rows is shared out: a call of all ranks.
-    pub(crate) fn of_own_rows(gap: &Gap, region: &Region) -> Built {
+    /// Of a gap on the whole grid, or on a region of local rows: a call of all ranks.
+    pub(crate) fn new(gap: &Gap, region: &Region) -> Built {
         let (mut known, mut open, mut touchable) = ([0.0; MOMENTS], [0.0; MOMENTS], 0);
         let [_, n2] = region.whole_cells();
         for (k, &h) in gap.above.iter().enumerate() {
@@ -71,59 +58,36 @@ impl Built {
         }
         let rows = region.rows();
         let [known, open] = [known, open].map(|own| rows.join(own, |a, b| std::array::from_fn(|n| a[n] + b[n])));
-        let shape = known.into_iter().chain(open).chain([gap.datum]).collect();
-        Built { shape, owners: Owners::of_one_body(rows.count(touchable)), creep: OnceLock::new() }
+        let owners = match &gap.owner {
+            None => format!("{} cells of one body", rows.count(touchable)),
+            Some(owner) => owners_of(gap, owner),
+        };
+        Built { shape: known.into_iter().chain(open).chain([gap.datum]).collect(), owners, creep: OnceLock::new() }
     }
 
-    pub(super) fn creep(&self, material: &Material) -> &Creep {
+    fn creep(&self, material: &Material) -> &Mark {
         self.creep.get_or_init(|| match material.contact_spectrum() {
             Ok(Some(series)) => {
                 let terms = series.terms().iter().flat_map(|&(c, lambda)| [c, lambda]);
-                Creep::Series([series.glassy(), series.fluidity()].into_iter().chain(terms).collect())
+                Mark::Series([series.glassy(), series.fluidity()].into_iter().chain(terms).collect())
             }
             _ => {
                 let known = times().take_while(|&t| t <= material.known_until());
-                Creep::Values(known.map(|t| material.contact_compliance(t)).collect())
+                Mark::Values(known.map(|t| material.contact_compliance(t)).collect())
             }
         })
     }
 }
 
-impl Owners {
-    fn of(gap: &Gap) -> Owners {
-        let (mut cells, mut hasher) = (Vec::new(), Hasher::new());
-        // cells without anything to touch belong to no body
-        for k in (0..gap.above.len()).filter(|&k| gap.above[k].is_finite()) {
-            let body = gap.owner(k);
-            cells.resize(cells.len().max(body + 1), 0);
-            cells[body] += 1;
-            hasher.update(&(body as u16).to_le_bytes());
-        }
-        Owners { cells, checksum: hasher.finalize() }
+/// The cells of several bodies in words; cells without anything to touch belong to no body.
+fn owners_of(gap: &Gap, owner: &[u16]) -> String {
+    let (mut cells, mut hasher) = (Vec::new(), Hasher::new());
+    for (body, _) in owner.iter().zip(&gap.above).filter(|(_, h)| h.is_finite()) {
+        cells.resize(cells.len().max(usize::from(*body) + 1), 0);
+        cells[usize::from(*body)] += 1;
+        hasher.update(&body.to_le_bytes());
     }
-
-    /// Those of a single body.
-    fn of_one_body(cells: usize) -> Owners {
-        // the checksum of as many zeros, from the checksums of powers of two
-        let (mut hasher, mut zeros) = (Hasher::new(), Hasher::new());
-        zeros.update(&0_u16.to_le_bytes());
-        for bit in 0..usize::BITS - cells.leading_zeros() {
-            if cells >> bit & 1 == 1 {
-                hasher.combine(&zeros);
-            }
-            zeros.combine(&zeros.clone());
-        }
-        Owners { cells: vec![cells as u64; usize::from(cells > 0)], checksum: hasher.finalize() }
-    }
-
-    /// The cells of the first body that differs from `other`, in words.
-    pub(super) fn difference(&self, other: &Owners) -> [String; 2] {
-        let body = self.cells.iter().zip(&other.cells).position(|(one, two)| one != two);
-        [self, other].map(|owners| match body {
-            Some(body) => format!("{} to body {body}", owners.cells[body]),
-            None => format!("one with checksum {:08x}", owners.checksum),
-        })
-    }
+    format!("{cells:?} cells of each body, with checksum {:08x}", hasher.finalize())
 }
 
 fn times() -> impl Iterator<Item = f64> {
@@ -140,32 +104,44 @@ pub(super) fn difference(saved: &[f64], built: &[f64]) -> Option<usize> {
     differing.or_else(|| (saved.len() != built.len()).then(|| saved.len().min(built.len())))
 }
 
-impl Creep {
-    pub(super) fn difference(&self, other: &Creep) -> Option<usize> {
-        match (self, other) {
-            (Creep::Series(saved), Creep::Series(built)) | (Creep::Values(saved), Creep::Values(built)) => {
-                difference(saved, built)
-            }
-            _ => Some(0),
+impl Mark {
+    fn numbers(&self) -> &[f64] {
+        match self {
+            Mark::Text(_) => &[],
+            Mark::Numbers(numbers) | Mark::Series(numbers) | Mark::Values(numbers) => numbers,
         }
     }
 
-    /// One of its numbers, in words.
-    pub(super) fn entry(&self, entry: usize) -> String {
-        let (Creep::Series(numbers) | Creep::Values(numbers)) = self;
+    /// The first entry that differs.
+    fn difference(&self, other: &Mark) -> Option<usize> {
+        match (self, other) {
+            (Mark::Text(saved), Mark::Text(built)) => (saved != built).then_some(0),
+            _ if discriminant(self) != discriminant(other) => Some(0),
+            _ => difference(self.numbers(), other.numbers()),
+        }
+    }
+
+    /// One of its entries, in words.
+    fn entry(&self, entry: usize) -> String {
+        if let Mark::Text(text) = self {
+            return text.clone();
+        }
+        let numbers = self.numbers();
         let Some(number) = numbers.get(entry) else { return format!("known by {} numbers", numbers.len()) };
         match self {
-            Creep::Values(_) => format!("{number:e} 1/Pa at {:.3e} s", times().nth(entry).unwrap_or(f64::NAN)),
-            Creep::Series(_) if entry == 0 => format!("{number:e} 1/Pa at 0 s"),
-            Creep::Series(_) if entry == 1 => format!("one that flows by {number:e} 1/(Pa s)"),
-            Creep::Series(_) if entry.is_multiple_of(2) => format!("{number:e} 1/Pa in term {}", entry / 2),
-            Creep::Series(_) => format!("one with a time of {number:e} s in term {}", entry / 2),
+            Mark::Values(_) => format!("{number:e} 1/Pa at {:.3e} s", times().nth(entry).unwrap_or(f64::NAN)),
+            Mark::Series(_) if entry == 0 => format!("{number:e} 1/Pa at 0 s"),
+            Mark::Series(_) if entry == 1 => format!("one that flows by {number:e} 1/(Pa s)"),
+            Mark::Series(_) if entry.is_multiple_of(2) => format!("{number:e} 1/Pa in term {}", entry / 2),
+            Mark::Series(_) => format!("one with a time of {number:e} s in term {}", entry / 2),
+            _ => format!("one of {number:e}"),
         }
     }
 }
 
-/// What is compared in words.
-const CHOICES: [&str; 8] = [
+/// What is compared.
+const PROPERTIES: [&str; 13] = [
+    "grid",
     "number of rigid bodies",
     "kernel",
     "Settings::time_rule",
@@ -174,72 +150,46 @@ const CHOICES: [&str; 8] = [
     "Settings::window",
     "Settings::series_tolerance",
     "temperature",
+    "influence",
+    "contact compliance",
+    "geometry",
+    "assignment of cells to rigid bodies",
 ];
 
 /// A scene, as far as it must not change. Solver, tolerance and limits may.
 #[derive(Serialize, Deserialize)]
-pub(super) struct Fingerprint {
-    cells: [usize; 2],
-    spacing: [f64; 2],
-    choices: [String; 8],
-    /// Sums over the influence of the kernel.
-    influence: Vec<f64>,
-    creep: Creep,
-    /// Sums over the gap.
-    pub(super) shape: Vec<f64>,
-    owners: Owners,
-}
+pub(super) struct Fingerprint([Mark; PROPERTIES.len()]);
 
 impl Fingerprint {
     pub(super) fn of(scene: &Scene) -> Fingerprint {
         let Settings { time_rule, frame, symmetry, window, series_tolerance, .. } = scene.settings;
-        Fingerprint {
-            cells: scene.grid.cells(),
-            spacing: scene.grid.spacing(),
-            choices: [
-                scene.bodies.to_string(),
-                scene.kernel.to_string(),
-                format!("{time_rule:?}"),
-                format!("{frame:?}"),
-                symmetry.to_string(),
-                window.to_string(),
-                format!("{series_tolerance:e}"),
-                format!("{:?}", scene.temperature),
-            ],
-            influence: scene.kernel.mark(),
-            creep: scene.built.creep(&scene.material).clone(),
-            shape: scene.built.shape.clone(),
-            owners: scene.built.owners.clone(),
-        }
+        let ([n1, n2], [d1, d2]) = (scene.grid.cells(), scene.grid.spacing());
+        Fingerprint([
+            Mark::Text(format!("{n1} × {n2} cells of {d1:e} m × {d2:e} m")),
+            Mark::Text(scene.bodies.to_string()),
+            Mark::Text(scene.kernel.to_string()),
+            Mark::Text(format!("{time_rule:?}")),
+            Mark::Text(format!("{frame:?}")),
+            Mark::Text(symmetry.to_string()),
+            Mark::Text(window.to_string()),
+            Mark::Text(format!("{series_tolerance:e}")),
+            Mark::Text(format!("{:?}", scene.temperature)),
+            Mark::Numbers(scene.kernel.mark()),
+            scene.built.creep(&scene.material).clone(),
+            Mark::Numbers(scene.built.shape.clone()),
+            Mark::Text(scene.built.owners.clone()),
+        ])
     }
 
     /// Rejects another scene, and reports the first difference.
     pub(super) fn require(&self, built: &Fingerprint) -> Result<(), CheckpointError> {
-        let differ =
-            |what: &'static str, [saved, built]: [String; 2]| Err(CheckpointError::OtherScene { what, saved, built });
-        let numbers = |what: &'static str, saved: &[f64], built: &[f64]| {
-            let Some(k) = difference(saved, built) else { return Ok(()) };
-            let entry = |numbers: &[f64]| numbers.get(k).map_or("another".into(), |x| format!("one of {x:e}"));
-            differ(what, [saved, built].map(entry))
-        };
-        if self.cells != built.cells || difference(&self.spacing, &built.spacing).is_some() {
-            let grid = |Fingerprint { cells: [n1, n2], spacing: [d1, d2], .. }: &Fingerprint| {
-                format!("{n1} × {n2} cells of {d1:e} m × {d2:e} m")
-            };
-            return differ("grid", [self, built].map(grid));
+        for (what, (saved, built)) in PROPERTIES.into_iter().zip(self.0.iter().zip(&built.0)) {
+            if let Some(entry) = saved.difference(built) {
+                let [saved, built] = [saved, built].map(|mark| mark.entry(entry));
+                return Err(CheckpointError::OtherScene { what, saved, built });
+            }
         }
-        if let Some(k) = (0..CHOICES.len()).find(|&k| self.choices[k] != built.choices[k]) {
-            return differ(CHOICES[k], [self, built].map(|scene| scene.choices[k].clone()));
-        }
-        numbers("influence", &self.influence, &built.influence)?;
-        if let Some(entry) = self.creep.difference(&built.creep) {
-            return differ("contact compliance", [self, built].map(|scene| scene.creep.entry(entry)));
-        }
-        numbers("geometry", &self.shape, &built.shape)?;
-        if self.owners == built.owners {
-            return Ok(());
-        }
-        differ("assignment of cells to rigid bodies", self.owners.difference(&built.owners))
+        Ok(())
     }
 }
 
@@ -261,23 +211,19 @@ mod tests {
                 if h > 4.0e-6 { f64::INFINITY } else { h }
             });
             let gap = Gap { datum: 1.0e-6, above: above.collect(), owner: None };
-            let expected = Built::new(&gap, grid.cells());
+            let expected = Built::new(&gap, &Region::whole(&grid, [false; 2]));
             assert!(expected.shape[5] > 0.0);
             for size in [1, 3, 5] {
                 let found = Threads::run(size, |ranks| {
                     let region = Region::shared(&grid, folded, &Rows::of_rank(grid.cells(), ranks));
                     let own = Gap { datum: 1.0e-6, above: region.cut(&gap.above), owner: None };
-                    Built::of_own_rows(&own, &region)
+                    Built::new(&own, &region)
                 });
                 for found in found.unwrap() {
                     assert_eq!(found.owners, expected.owners);
                     assert_eq!(difference(&found.shape, &expected.shape), None, "{folded:?} {size}");
                 }
             }
-        }
-        for cells in [0, 1, 2, 3, 1000, 4097] {
-            let gap = Gap { datum: 0.0, above: vec![0.0; cells], owner: None };
-            assert_eq!(Owners::of_one_body(cells), Owners::of(&gap));
         }
     }
 }

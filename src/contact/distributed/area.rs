@@ -6,7 +6,7 @@ use std::ops::Range;
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::observe::area::{Pressed, REACH};
-use crate::parallel::{Ranks, exchange_numbers, unwind_rank_loss};
+use crate::parallel::Rows;
 
 /// Rows that are looked at together.
 const PIECE: usize = 64;
@@ -19,9 +19,8 @@ impl ViscoelasticContact {
     pub(in crate::contact) fn shared_area(&self) -> f64 {
         let State { region, current, .. } = &self.computation.state;
         let (rows, [n1, n2]) = (region.rows(), self.grid().cells());
-        let Some(group) = rows.group() else { return 0.0 };
         let extent = region.reach(&current.solution.pressure);
-        let beside = self.rows_beside(&**group);
+        let beside = self.rows_beside(&rows);
         // squares whose upper corners are in some rows; the last rows have those across the end, too
         let squares = |rows: Range<usize>| {
             let beyond = usize::from(rows.end == n1 && !rows.is_empty());
@@ -55,7 +54,7 @@ impl ViscoelasticContact {
         covered * self.grid().cell_area()
     }
 
-    /// The computed row that a row is, or is the image of; none beyond a grid that ends.
+    /// The computed row of a row or of its mirror image; none beyond a grid that ends.
     fn computed_row(&self, row: isize) -> Option<usize> {
         let (n1, folded) = (self.grid().cells()[0], self.computation.state.region.folded()[0]);
         let row = if self.scene.kernel.periodic_axes()[0] { row.rem_euclid(n1 as isize) } else { row };
@@ -78,7 +77,7 @@ impl ViscoelasticContact {
     }
 
     /// Halo: rows of other ranks that are near enough to the local rows to matter.
-    fn rows_beside(&self, group: &dyn Ranks) -> BTreeMap<usize, Vec<f64>> {
+    fn rows_beside(&self, shared: &Rows) -> BTreeMap<usize, Vec<f64>> {
         let reach = 1 + REACH as isize;
         let wanted = |rank: usize| {
             let own = self.rows_of(rank);
@@ -87,16 +86,16 @@ impl ViscoelasticContact {
             near.filter_map(|row| self.computed_row(row)).filter(|row| !own.contains(row)).collect::<BTreeSet<_>>()
         };
         let n2 = self.grid().cells()[1];
-        let own = self.rows_of(group.rank());
-        let pieces = (0..group.size()).map(|rank| {
+        let own = self.rows_of(shared.rank());
+        let pieces = (0..shared.ranks()).map(|rank| {
             let sent = wanted(rank).into_iter().filter(|row| own.contains(row)).collect::<Vec<_>>();
             let mut piece = vec![0.0; sent.len() * n2];
             sent.into_iter().zip(piece.chunks_exact_mut(n2)).for_each(|(row, out)| self.marked_row(row, out));
             piece
         });
-        let rows = wanted(group.rank());
+        let rows = wanted(shared.rank());
         let count = |rank: usize| n2 * rows.range(self.rows_of(rank)).count();
-        let received = exchange_numbers(group, pieces.collect(), count).unwrap_or_else(|error| unwind_rank_loss(error));
+        let received = shared.exchange(pieces.collect(), count);
         let fields = received.chunks_exact(n2).map(<[f64]>::to_vec).collect::<Vec<_>>();
         rows.into_iter().zip(fields).collect()
     }

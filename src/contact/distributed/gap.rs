@@ -1,5 +1,5 @@
-//! The gap of a contact whose rows ranks share out. Each rank has it on own rows of the whole grid; what follows from all of it
-//! they find together.
+//! The gap of a contact whose rows ranks share out. Each rank has the local rows of the whole grid; symmetry, datum and hull follow
+//! from the rows of all ranks.
 
 use std::hash::{DefaultHasher, Hasher};
 use std::ops::Range;
@@ -11,9 +11,9 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::{Error, RanksError, Result};
 use crate::geometry::Gap;
-use crate::parallel::{Rows, exchange_numbers};
+use crate::parallel::Rows;
 
-/// The gap of a single body on own rows of the whole grid.
+/// The gap of a single body on the local rows of the whole grid.
 pub(in crate::contact) struct SharedGap<'a> {
     rows: Rows,
     heights: &'a [f64],
@@ -22,7 +22,7 @@ pub(in crate::contact) struct SharedGap<'a> {
 }
 
 impl SharedGap<'_> {
-    /// Checks the gap on own rows, and finds the lowest of all. A call of all ranks, which get the same error.
+    /// Checks the gap on the local rows, and finds the lowest gap of all rows. A call of all ranks, which get the same error.
     pub(in crate::contact) fn new<'a>(heights: &'a [f64], grid: &Grid, rows: &Rows) -> Result<SharedGap<'a>> {
         let n2 = grid.cells()[1];
         let invalid = heights.iter().position(|h| h.is_nan() || *h == f64::NEG_INFINITY);
@@ -61,7 +61,7 @@ impl SharedGap<'_> {
                     let marks = all.as_chunks::<2>().0;
                     (0..n1 / 2).all(|i| marks[i] == marks[n1 - 1 - i])
                 },
-            ) == Some(true);
+            );
         [even1, even2]
     }
 
@@ -91,15 +91,14 @@ impl SharedGap<'_> {
             let ends = all.as_chunks::<2>().0;
             Hull::of_rows(grid, |i| (!ends[i][0].is_nan()).then(|| ends[i].map(|j| j as usize)))
         };
-        let hull = rows.gather(ends, |rank| 2 * rows.of(rank).len(), of_all);
-        hull.unwrap_or_else(|| Hull::new(grid, |k| heights[k].is_finite()))
+        rows.gather(ends, |rank| 2 * rows.of(rank).len(), of_all)
     }
 }
 
 /// A rectangle of cells of the whole grid.
 #[derive(Debug)]
 pub(crate) struct Brought {
-    /// The rows that came, which are computed ones.
+    /// Indices of the received rows, of the computed half where rows are folded.
     rows: Range<usize>,
     columns: Range<usize>,
     values: Vec<f64>,
@@ -117,38 +116,35 @@ impl Brought {
 }
 
 impl ViscoelasticContact {
-    /// Brings a rectangle of a field of own rows to the rank `to`; none on others, nor without ranks. A call of all ranks.
+    /// Brings a rectangle of a field of local rows to the rank `to`, or to all; none on others. A call of all ranks.
     pub(crate) fn bring(
         &self,
         field: &[f64],
-        to: usize,
+        to: Option<usize>,
         rows: Range<usize>,
         columns: Range<usize>,
     ) -> Result<Option<Brought>, RanksError> {
         let (region, [n1, n2]) = (&self.computation.state.region, self.grid().cells());
         let all = region.rows();
-        let first = n1 - all.cells()[0];
         // images of the first half
+        let first = if region.is_shared() { n1 - all.cells()[0] } else { 0 };
         let rows = match (rows.end <= first, rows.start < first) {
             (true, _) => n1 - rows.end..n1 - rows.start,
             (_, true) => first..rows.end.max(n1 - rows.start),
             _ => rows,
         };
         let of = |rank: usize| {
-            let own = all.of(rank);
-            (first + own.start).max(rows.start)..(first + own.end).min(rows.end)
+            let own = self.rows_of(rank);
+            own.start.max(rows.start)..own.end.min(rows.end)
         };
-        let whole = Brought { rows: rows.clone(), columns: columns.clone(), values: Vec::new(), folded: 2 * first };
-        let Some(group) = all.group() else { return Ok(None) };
-        let (own_rank, start) = (group.rank(), first + all.own().start);
-        let own = of(own_rank).flat_map(|row| &field[(row - start) * n2..(row - start + 1) * n2][columns.clone()]);
-        let mut pieces = vec![Vec::new(); all.ranks()];
-        pieces[to] = own.copied().collect();
-        let count = |rank: usize| if own_rank == to { of(rank).len() * columns.len() } else { 0 };
-        let values = exchange_numbers(&**group, pieces, count)?;
-        if own_rank != to {
-            return Ok(None);
-        }
-        Ok(Some(Brought { values, ..whole }))
+        let start = self.rows().start;
+        let own = of(all.rank()).flat_map(|row| &field[(row - start) * n2..][..n2][columns.clone()]);
+        let own: Vec<f64> = own.copied().collect();
+        let gets = |rank: usize| to.is_none_or(|to| to == rank);
+        let pieces = (0..all.ranks()).map(|rank| if gets(rank) { own.clone() } else { Vec::new() });
+        let count = |rank: usize| if gets(all.rank()) { of(rank).len() * columns.len() } else { 0 };
+        let values = all.exchange(pieces.collect(), count);
+        all.intact()?;
+        Ok(gets(all.rank()).then_some(Brought { rows, columns, values, folded: 2 * first }))
     }
 }

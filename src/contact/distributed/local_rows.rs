@@ -1,4 +1,4 @@
-//! What a rank has of a contact that ranks share out.
+//! Local rows of a contact that ranks share out, and calls of all ranks.
 
 use std::ops::Range;
 
@@ -8,7 +8,7 @@ use crate::error::{RanksError, Result, count_within, exact_length};
 use crate::observe::Axis;
 #[cfg(any(feature = "npy", feature = "vtk"))]
 use crate::parallel::Rows;
-use crate::parallel::catch_rank_loss;
+use crate::sum;
 
 impl ViscoelasticContact {
     /// The rows (indices along x1) that [`pressure`](ViscoelasticContact::pressure) and all other fields hold: all of the
@@ -46,48 +46,29 @@ impl ViscoelasticContact {
         let State { region, .. } = &self.computation.state;
         let rows = region.rows();
         count_within("rank", to, to < rows.ranks(), "less than the number of ranks")?;
-        let checked = exact_length("field", field.len(), region.shown_len());
-        if !rows.are_shared() {
-            return checked.map(|()| Some(field.to_vec()));
-        }
-        catch_rank_loss(&rows, || {
-            rows.agree(checked)?;
+        rows.together(|| {
+            rows.agree(exact_length("field", field.len(), region.shown_len()))?;
             let [n1, n2] = self.grid().cells();
-            let brought = self.bring(field, to, 0..n1, 0..n2)?;
+            let brought = self.bring(field, Some(to), 0..n1, 0..n2)?;
             Ok(brought.map(|whole| (0..n1).flat_map(|row| whole.row(row)).copied().collect()))
         })
     }
 
     /// The values of a field along a line of cells, of all ranks.
-    pub(in crate::contact) fn line_of(&self, field: &[f64], along: Axis, line: usize) -> Vec<f64> {
-        let ([n1, n2], rows) = (self.grid().cells(), self.computation.state.region.rows());
-        if !rows.are_shared() {
-            let cell = |k: usize| if along == Axis::X1 { k * n2 + line } else { line * n2 + k };
-            let length = if along == Axis::X1 { n1 } else { n2 };
-            return (0..length).map(|k| field[cell(k)]).collect();
-        }
-        let first = n1 - rows.cells()[0];
-        let computed = |row: usize| if row < first { n1 - 1 - row - first } else { row - first };
-        let gathered = match along {
-            Axis::X1 => {
-                let own = field.iter().skip(line).step_by(n2).copied();
-                let all = |all: &[f64]| (0..n1).map(|row| all[computed(row)]).collect();
-                rows.gather(own, |rank| rows.of(rank).len(), all)
-            }
-            Axis::X2 => {
-                let (row, own) = (computed(line), rows.own());
-                let start = if own.contains(&row) { (row - own.start) * n2 } else { field.len() };
-                let count = |rank: usize| if rows.of(rank).contains(&row) { n2 } else { 0 };
-                rows.gather(field[start..].iter().take(n2).copied(), count, <[f64]>::to_vec)
-            }
-        };
-        gathered.unwrap_or_default()
+    pub(in crate::contact) fn line_of(&self, field: &[f64], along: Axis, line: usize) -> Result<Vec<f64>> {
+        let [n1, n2] = self.grid().cells();
+        let [rows, columns] = if along == Axis::X1 { [0..n1, line..line + 1] } else { [line..line + 1, 0..n2] };
+        let brought = self.bring(field, None, rows.clone(), columns)?;
+        Ok(brought.iter().flat_map(|line| rows.clone().flat_map(|row| line.row(row))).copied().collect())
     }
 
-    /// The computed rows of a rank, as rows of the whole grid.
+    /// The rows of the whole grid that fields of a rank hold.
     pub(in crate::contact) fn rows_of(&self, rank: usize) -> Range<usize> {
         let region = &self.computation.state.region;
         let rows = region.rows();
+        if !region.is_shared() {
+            return region.shown_rows();
+        }
         let (first, of) = (region.computed_rows().start - rows.own().start, rows.of(rank));
         first + of.start..first + of.end
     }
@@ -99,28 +80,23 @@ impl ViscoelasticContact {
         [rows, images]
     }
 
-    /// Σ of what each rank has `found` in the rows at its `places`, in the order of the rows. A call of all ranks.
+    /// Σ of the values `found` by all ranks in the rows at their `places`, in the order of the rows. A call of all ranks.
     pub(in crate::contact) fn sum_in_order<const K: usize>(
         &self,
         found: impl Iterator<Item = [f64; K]>,
         places: impl Fn(usize) -> [Range<usize>; 2],
     ) -> [f64; K] {
         let (rows, n1) = (self.computation.state.region.rows(), self.grid().cells()[0]);
-        let add = |a: [f64; K], b: [f64; K]| std::array::from_fn(|n| a[n] + b[n]);
-        if !rows.are_shared() {
-            return found.fold([0.0; K], add);
-        }
         let count = |rank: usize| K * places(rank).iter().map(ExactSizeIterator::len).sum::<usize>();
-        let sum = rows.gather(found.flatten(), count, |all| {
+        rows.gather(found.flatten(), count, |all| {
             let (mut in_order, mut rest) = (vec![[0.0; K]; n1 + 1], all.as_chunks::<K>().0);
             for place in (0..rows.ranks()).flat_map(&places) {
                 let (own, others) = rest.split_at(place.len());
                 in_order[place].copy_from_slice(own);
                 rest = others;
             }
-            in_order.into_iter().fold([0.0; K], add)
-        });
-        sum.unwrap_or([0.0; K])
+            in_order.into_iter().fold([0.0; K], sum::add)
+        })
     }
 
     /// Σ over all rows of the whole grid, in their order, of what `of_row` finds in the pressure of a row, given its number. A
@@ -136,34 +112,27 @@ impl ViscoelasticContact {
         self.sum_in_order(found, |rank| self.with_images(self.rows_of(rank)))
     }
 
-    /// Goes on where every rank does.
-    #[cfg(any(feature = "csv", feature = "vtk"))]
+    /// Returns `own` if all ranks succeed, else an error on every rank.
+    #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn agreed<T>(&self, own: Result<T>) -> Result<T> {
         let rows = self.computation.state.region.rows();
-        catch_rank_loss(&rows, || rows.agree(own))
+        rows.together(|| rows.agree(own))
     }
 
-    /// Does on rank 0 what is not for each of them, and goes on where that is done; the others get no result.
-    #[cfg(any(feature = "csv", feature = "vtk"))]
+    /// Runs `job` on rank 0 alone; all ranks wait for it and share its error.
+    #[cfg(any(feature = "csv", feature = "npy", feature = "vtk"))]
     pub(crate) fn by_one_rank<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<Option<T>> {
         let rows = self.computation.state.region.rows();
-        let first = rows.group().is_none_or(|group| group.rank() == 0);
-        self.agreed(if first { job().map(Some) } else { Ok(None) })
+        self.agreed(if rows.rank() == 0 { job().map(Some) } else { Ok(None) })
     }
 
-    /// The rows of all ranks, and what joins them.
+    /// The local rows, with the reductions over all ranks.
     #[cfg(any(feature = "npy", feature = "vtk"))]
     pub(crate) fn shared_rows(&self) -> Rows {
         self.computation.state.region.rows()
     }
 
-    /// Whether ranks share it out.
-    #[cfg(any(feature = "npy", feature = "vtk"))]
-    pub(crate) fn is_shared(&self) -> bool {
-        self.computation.state.region.is_shared()
-    }
-
-    /// Rejects what needs the whole of a contact where ranks share it out.
+    /// Rejects a request that needs the whole contact, where ranks share it out.
     pub(crate) fn not_shared(&self, what: &'static str) -> Result<()> {
         if self.computation.state.region.is_shared() { Err(RanksError::NotShared { what }.into()) } else { Ok(()) }
     }

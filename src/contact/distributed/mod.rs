@@ -1,4 +1,4 @@
-//! What a contact does for ranks that share out its rows.
+//! Operations of a contact whose rows ranks share out.
 
 pub(in crate::contact) mod area;
 pub(in crate::contact) mod gap;

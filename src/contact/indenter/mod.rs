@@ -47,7 +47,6 @@ impl Indenter {
     }
 
     /// Number of rigid bodies.
-    #[cfg(feature = "checkpoint")]
     pub(crate) fn bodies(&self) -> usize {
         self.bodies
     }
@@ -123,7 +122,7 @@ fn next_id() -> u64 {
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
-/// Indenters in checkpoints: their gap, and how many bodies there are.
+/// Indenters in checkpoints: their gap without its heights, and how many bodies there are.
 #[cfg(feature = "checkpoint")]
 pub(crate) mod saved {
     use std::sync::Arc;

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use crate::Grid;
 use crate::contact::indenter::Indenter;
 use crate::contact::read::report::StepReport;
 use crate::contact::settings::Frame;
@@ -12,9 +11,9 @@ use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result, non_negative};
 use crate::geometry::Gap;
 use crate::load::Load;
-use crate::memory;
 use crate::motion::Travel;
 use crate::solver::RigidMotion;
+use crate::{Grid, memory};
 
 /// A step along a path.
 #[derive(Debug, Clone, Copy, PartialEq)]

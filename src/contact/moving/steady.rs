@@ -4,6 +4,7 @@ use crate::contact::read::report::StepReport;
 use crate::contact::settings::Frame;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, Result, count_within, finite, within};
+use crate::extent::Extent;
 use crate::load::Load;
 
 /// Least number of the longest strides per contact length.
@@ -198,11 +199,8 @@ impl TowardSteady<'_> {
 
     /// Cells between the ends of the contact along the axis of the motion.
     fn length_of_contact(&self) -> usize {
-        let n2 = self.contact.grid().cells()[1];
-        let touched = self.contact.pressure().iter().enumerate().filter(|(_, p)| **p > 0.0);
-        let along = touched.map(|(k, _)| [k / n2, k % n2][self.motion.axis]);
-        let (low, high) = along.fold((usize::MAX, 0), |(low, high), i| (low.min(i), high.max(i)));
-        (high + 1).saturating_sub(low).max(1)
+        let along = |Extent { low, high }| high[self.motion.axis] + 1 - low[self.motion.axis];
+        self.contact.extent_of_contact().map_or(1, along)
     }
 }
 

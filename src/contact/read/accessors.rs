@@ -5,7 +5,6 @@ use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
-use crate::Grid;
 use crate::contact::read::report::BodyState;
 use crate::contact::scene::Scene;
 use crate::contact::settings::Settings;
@@ -13,12 +12,12 @@ use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::contact::window::region::Region;
 use crate::error::{Result, exact_length};
+use crate::extent::Extent;
 use crate::kernel::InfluenceKernel;
 use crate::load::Load;
-use crate::memory;
 use crate::rheology::{Material, TemperatureHistory};
 use crate::solver::RigidMotion;
-use crate::sum;
+use crate::{Grid, memory, sum};
 
 impl ViscoelasticContact {
     /// Time \[s\], initially 0.
@@ -93,7 +92,7 @@ impl ViscoelasticContact {
         }
         if !self.view.has_displacement(state) {
             let whole = Region::whole(grid, state.region.folded());
-            let [kernel, _] = kernel.bytes_on(whole.cells(), whole.folded());
+            let [kernel, _] = kernel.bytes(&whole.rows(), whole.folded());
             let fields = 8 * (grid.len() + 2 * whole.len()) as u128;
             memory::check("the displacement on the whole grid", kernel + fields)?;
         }
@@ -142,15 +141,10 @@ impl ViscoelasticContact {
         self.computation.state.current.contact_cells
     }
 
-    /// Greatest distance of the outer sides of cells in contact from the origin, along x1 and x2 \[m\].
-    pub(crate) fn reach_of_contact(&self) -> [f64; 2] {
-        let n2 = self.scene.grid.cells()[1];
-        let half = self.scene.grid.spacing().map(|side| 0.5 * side);
-        let touched = self.pressure().iter().enumerate().filter(|(_, p)| **p > 0.0);
-        touched.fold([0.0; 2], |reach: [f64; 2], (k, _)| {
-            let center = self.scene.grid.center(k / n2, k % n2);
-            [0, 1].map(|axis| reach[axis].max(center[axis].abs() + half[axis]))
-        })
+    /// The smallest rectangle of cells of the whole grid that holds the contact; `None` without contact.
+    pub(crate) fn extent_of_contact(&self) -> Option<Extent> {
+        let State { region, current, .. } = &self.computation.state;
+        region.reach(&current.solution.pressure)
     }
 
     /// Number of rigid bodies.
@@ -276,8 +270,8 @@ pub(in crate::contact) fn on_the_whole_grid<'a>(
         let all = Region::whole(&scene.grid, region.folded());
         let kernel = scene.kernel.on(all.grid(), all.folded());
         let mut far = vec![0.0; all.len()];
-        kernel.apply(&region.carry(source, &all, |_| 0.0), &mut far, &mut kernel.workspace());
-        all.spread(&far, &mut whole);
+        kernel.apply(&region.transfer(source, &all, |_| 0.0), &mut far, &mut kernel.workspace());
+        all.show(&far, &mut whole);
     }
     region.show(own, &mut whole);
     Cow::Owned(whole)

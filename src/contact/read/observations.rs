@@ -8,7 +8,6 @@ use crate::memory;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
 use crate::observe::{Asymmetry, Axis, Distribution, LineProfile, Patches};
-use crate::parallel::catch_rank_loss;
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
 
 impl ViscoelasticContact {
@@ -97,7 +96,7 @@ impl ViscoelasticContact {
         if kernel.mean_is_held() && current.contact_cells == self.grid().len() {
             return Ok(f64::INFINITY);
         }
-        match catch_rank_loss(kernel.rows(), || Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0)))? {
+        match kernel.rows().together(|| Ok(flat_punch(kernel, |k| current.solution.pressure[k] > 0.0)))? {
             Ok(sum) => Ok(sum * self.grid().cell_area() * region.images() as f64),
             Err((iterations, residual)) => {
                 let (time, dt, tolerance) = (clock.time, clock.last_length, FLAT_PUNCH_TOLERANCE);
@@ -182,9 +181,9 @@ impl ViscoelasticContact {
     pub fn profile(&self, along: Axis, at: f64) -> Result<LineProfile> {
         LineProfile::new(self.grid(), along, at, |line| {
             let gap = self.gap()?;
-            let fields = [self.pressure(), self.displacement(), &gap];
             let rows = self.computation.state.region.rows();
-            catch_rank_loss(&rows, || Ok(fields.map(|field| self.line_of(field, along, line))))
+            let line_of = |field| self.line_of(field, along, line);
+            rows.together(|| Ok([line_of(self.pressure())?, line_of(self.displacement())?, line_of(&gap)?]))
         })
     }
 

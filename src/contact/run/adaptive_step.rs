@@ -76,6 +76,7 @@ impl Follow<'_> {
             let end = scene.reduced_time(&computation.state.clock, corner.min(self.until))?;
             let outlook = control.outlook(scene, &loads[0], [time, age, end]);
             let mut error = error_in_time(scene, computed, &step, outlook);
+            computed.state.region.rows().intact()?;
             // the path of bodies that stay apart does not matter
             if !parted || computed.state.region.is_positive_anywhere(&computed.trial.solution.pressure) {
                 error.relative = error.relative.max(straying);
@@ -86,7 +87,7 @@ impl Follow<'_> {
                 let is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
                 control.include(computed.state.history.exponential_rule(), step.interval.dt, &error, is_given);
                 control.accept(step.interval.reduced, loads[0], [reduced, step.interval.dt], time == corner, order);
-                let mut report = self.contact.accept(attempt, step, error);
+                let mut report = self.contact.accept(attempt, step, error)?;
                 if time == corner {
                     self.contact.computation.state.history.reset_differences();
                 }

@@ -11,7 +11,6 @@ use crate::contact::step::error_in_time::StepContext;
 use crate::contact::stepper::ViscoelasticContact;
 use crate::error::{Error, LoadError, Result, finite, positive, within};
 use crate::load::{Load, LoadHistory};
-use crate::parallel::catch_rank_loss;
 
 /// Two times closer than this fraction of a step are the same time.
 const SAME_TIME: f64 = 1e-6;
@@ -198,7 +197,7 @@ impl<'a> Follow<'a> {
         let corner = corner.min(self.contact.scene.next_temperature_corner(now));
         if let Some(mut control) = self.progress.control.take() {
             let rows = self.contact.computation.state.region.rows();
-            let report = catch_rank_loss(&rows, || self.adaptive_step(&mut control, corner));
+            let report = rows.together(|| self.adaptive_step(&mut control, corner));
             self.progress.control = Some(control);
             return report.map(Some);
         }
@@ -217,7 +216,7 @@ impl<'a> Follow<'a> {
         let tolerance = self.solver_tolerance();
         let loads = [load];
         let rows = self.contact.computation.state.region.rows();
-        catch_rank_loss(&rows, || {
+        rows.together(|| {
             let step = self.contact.request(time, dt, &loads, tolerance)?;
             let ViscoelasticContact { scene, computation, .. } = &*self.contact;
             if self.progress.scale.is_none() {

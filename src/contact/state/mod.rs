@@ -5,16 +5,19 @@ pub(in crate::contact) mod snapshot;
 
 use std::sync::Arc;
 
+use educe::Educe;
+
 use crate::contact::indenter::Indenter;
 use crate::contact::state::extrapolation::Extrapolation;
 use crate::contact::window::region::Region;
-use crate::hereditary::{History, Interpolant, Interval};
+use crate::hereditary::{Field, History, Interpolant, Interval, Role};
 use crate::load::Load;
 use crate::solver::{RigidMotion, Solution};
 
 /// The state of a contact between two steps. A clone of it is a snapshot, its bytes are a checkpoint, and a step that is
 /// tried on a larger region changes a copy.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct State {
     pub(super) clock: Clock,
@@ -69,7 +72,8 @@ impl Clock {
 }
 
 /// Pressure and motions in equilibrium with the loads.
-#[derive(Debug, Clone)]
+#[derive(Debug, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Equilibrium {
     pub(super) solution: Solution,
@@ -83,7 +87,8 @@ pub(crate) struct Equilibrium {
 }
 
 /// The start of the last step, besides `previous` and the fields that the history keeps.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default, Educe)]
+#[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct StepStart {
     pub(super) clock: Clock,
@@ -97,37 +102,39 @@ pub(crate) struct StepStart {
     pub(super) replaced: Option<Arc<Indenter>>,
 }
 
-impl StepStart {
-    /// Copies another without reallocating.
-    fn copy_from(&mut self, other: &StepStart) {
-        let StepStart { clock, loads, interpolant, indenter_was_new, replaced } = self;
-        (*clock, *interpolant, *indenter_was_new) = (other.clock, other.interpolant, other.indenter_was_new);
-        loads.clone_from(&other.loads);
-        replaced.clone_from(&other.replaced);
-    }
-}
-
 impl State {
-    /// Bodies without load, where they just touch.
-    pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, history: History) -> State {
+    /// Bodies without load, where they just touch, by the time rule of a history; without values.
+    pub(super) fn layout(indenter: Arc<Indenter>, region: Region, history: &History) -> State {
         let motions = indenter.first_touch();
-        let bodies = motions.len();
-        let current =
-            Equilibrium { solution: Solution::zero(region.len(), bodies), motions, contact_cells: 0, sum: 0.0 };
+        let (loads, solution) = (vec![Load::force(0.0); motions.len()], Solution::zero(0, motions.len()));
+        let current = Equilibrium { solution, motions, contact_cells: 0, sum: 0.0 };
         State {
             clock: Clock::default(),
-            loads: vec![Load::force(0.0); bodies],
+            start: StepStart { loads: loads.clone(), ..StepStart::default() },
+            loads,
             indenter,
             indenter_is_new: false,
+            history: history.layout(!region.covers()),
             region,
             region_is_placed: false,
-            history,
             previous: current.clone(),
             current,
-            start: StepStart { loads: vec![Load::force(0.0); bodies], ..StepStart::default() },
             extrapolation: Extrapolation::default(),
             greatest: [0.0; 2],
         }
+    }
+
+    /// Bodies without load, where they just touch, by the time rule of a history.
+    pub(super) fn at_rest(indenter: Arc<Indenter>, region: Region, history: &History) -> State {
+        let cells = region.len();
+        State::layout(indenter, region.clone(), history).map(&region, &mut |field| vec![0.0; cells * field.per_cell])
+    }
+
+    /// How many values the state has for each cell.
+    pub(super) fn values_per_cell(&self) -> usize {
+        let mut values = 0;
+        self.each(&mut |field| values += field.per_cell);
+        values
     }
 
     /// Normal force on all bodies together \[N\].
@@ -135,8 +142,39 @@ impl State {
         equilibrium.sum * self.region.grid().cell_area() * self.region.images() as f64
     }
 
-    /// Finds the sums that are not saved.
-    #[cfg(feature = "checkpoint")]
+    /// A copy on `region`; `map` gives its fields, one for each field here. Its sums are to be found anew.
+    pub(super) fn map(&self, region: &Region, map: &mut impl FnMut(Field<'_>) -> Vec<f64>) -> State {
+        let [current, previous] = [&self.current, &self.previous].map(|of| {
+            let Solution { pressure, potential, motions, .. } = &of.solution;
+            let solution = Solution {
+                pressure: map(Field::single(pressure, Role::Lasting { source: None })),
+                potential: map(Field::single(potential, Role::Lasting { source: Some(pressure) })),
+                motions: motions.clone(),
+                ..of.solution
+            };
+            Equilibrium { solution, motions: of.motions.clone(), ..*of }
+        });
+        State {
+            loads: self.loads.clone(),
+            indenter: Arc::clone(&self.indenter),
+            region: region.clone(),
+            history: self.history.map(region.cells(), !region.covers(), map),
+            current,
+            previous,
+            start: self.start.clone(),
+            ..*self
+        }
+    }
+
+    /// Visits all fields.
+    pub(super) fn each(&self, visit: &mut impl FnMut(Field<'_>)) {
+        self.map(&self.region, &mut |field| {
+            visit(field);
+            Vec::new()
+        });
+    }
+
+    /// Finds the sums that neither transfer nor file has.
     pub(super) fn sum_up(&mut self) {
         let rows = self.region.rows();
         for equilibrium in [&mut self.current, &mut self.previous] {
@@ -154,7 +192,7 @@ impl State {
     /// Returns to the start of the last step, which the history must still keep.
     pub(super) fn roll_back(&mut self) {
         self.history.roll_back(!self.is_undisturbed());
-        self.current.copy_from(&self.previous);
+        self.current.clone_from(&self.previous);
         self.clock = self.start.clock;
         self.loads.copy_from_slice(&self.start.loads);
         if let Some(replaced) = self.start.replaced.take() {
@@ -167,44 +205,5 @@ impl State {
     /// Whether no pressure has ever acted.
     pub(super) fn is_undisturbed(&self) -> bool {
         self.clock.age() == 0.0 && self.current.contact_cells == 0
-    }
-
-    /// Copies another without reallocating where the regions are the same and no direct sum grows.
-    pub(super) fn copy_from(&mut self, other: &State) {
-        if self.region != other.region {
-            *self = other.clone();
-            return;
-        }
-        // all are named, so that none that is added can be forgotten
-        let State {
-            clock,
-            loads,
-            indenter,
-            indenter_is_new,
-            region: _,
-            region_is_placed,
-            history,
-            current,
-            previous,
-            start,
-            extrapolation,
-            greatest,
-        } = self;
-        (*clock, *extrapolation, *greatest) = (other.clock, other.extrapolation, other.greatest);
-        (*indenter_is_new, *region_is_placed) = (other.indenter_is_new, other.region_is_placed);
-        loads.clone_from(&other.loads);
-        indenter.clone_from(&other.indenter);
-        history.copy_from(&other.history);
-        current.copy_from(&other.current);
-        previous.copy_from(&other.previous);
-        start.copy_from(&other.start);
-    }
-}
-
-impl Equilibrium {
-    fn copy_from(&mut self, other: &Equilibrium) {
-        self.solution.copy_from(&other.solution);
-        self.motions.clone_from(&other.motions);
-        (self.contact_cells, self.sum) = (other.contact_cells, other.sum);
     }
 }

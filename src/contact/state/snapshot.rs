@@ -64,7 +64,7 @@ impl ViscoelasticContact {
     /// same and no direct sum grows.
     pub fn snapshot_into(&self, snapshot: &mut Snapshot) {
         if Arc::ptr_eq(&snapshot.scene, &self.scene) {
-            snapshot.state.copy_from(&self.computation.state);
+            snapshot.state.clone_from(&self.computation.state);
         } else {
             *snapshot = self.snapshot();
         }
@@ -88,8 +88,8 @@ impl ViscoelasticContact {
 }
 
 impl ViscoelasticContact {
-    /// The contact at a time within the last step, its ends included. So the times at which a user looks need not be those at
-    /// which a step ends.
+    /// The contact at a time within the last step, its ends included. So a user may look at other times than the ends of
+    /// steps.
     ///
     /// It is the contact at the start of the step, advanced by a shorter step of the same rule: its state is as exact as one at
     /// the end of a step. This contact stays as it is. The load is taken to be linear between the ends of the step; a run has
@@ -150,7 +150,7 @@ impl ViscoelasticContact {
             let mut step = contact.request(time, time - from, &loads, tolerance)?;
             step.interval.interpolant = state.start.interpolant;
             let attempt = contact.attempt(&step)?;
-            contact.adopt(attempt, step, [0.0; 2]);
+            contact.adopt(attempt, step, [0.0; 2])?;
         }
         Ok(contact)
     }

@@ -1,7 +1,7 @@
 //! A step that was computed becomes the state, and leaves its warnings.
 
 use crate::contact::computation::Computation;
-use crate::contact::read::report::{Warning, Warnings};
+use crate::contact::read::report::Warnings;
 use crate::contact::scene::Scene;
 use crate::contact::settings::{Edge, TimeRule};
 use crate::contact::state::State;
@@ -11,13 +11,17 @@ use crate::rheology::is_known;
 use crate::solver::RigidMotion;
 
 impl Computation {
-    /// Makes the trial the state; `sum` is Σ p, and `sizes` are the means of displacement and v in
-    /// contact.
-    pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, sizes: [f64; 2]) {
+    /// Number of cells of the region that are pressed in the trial, and the rectangle of the grid that holds them: of all ranks.
+    pub(super) fn pressed(&self) -> (usize, Option<Extent>) {
+        let (region, pressure) = (&self.state.region, &self.trial.solution.pressure);
+        (region.rows().count(pressure.iter().filter(|&&p| p > 0.0).count()), region.reach(pressure))
+    }
+
+    /// Makes the trial the state; `sum` is Σ p, `contact_cells` is the number of pressed cells of the region, and `sizes` are the
+    /// means of displacement and v in contact.
+    pub(super) fn accept(&mut self, step: Step<'_>, sum: f64, contact_cells: usize, sizes: [f64; 2]) {
         let Computation { state, trial, .. } = self;
         let (interval, datum) = (step.interval, step.indenter.gap().datum);
-        let pressed = trial.solution.pressure.iter().filter(|&&p| p > 0.0).count();
-        let contact_cells = state.region.rows().count(pressed);
         let touched = !state.is_undisturbed() || contact_cells > 0;
         let (before, after) = (&state.current.solution, &trial.solution);
         let pressed = [[&before.pressure[..], &after.pressure], [&before.potential, &after.potential]];
@@ -51,13 +55,13 @@ const EDGE_MARGIN: usize = 2;
 const MIN_CELLS_ACROSS: usize = 8;
 const MIN_CELLS: usize = 50;
 
-/// The warnings of the step accepted last.
-pub(super) fn collect_warnings(scene: &Scene, state: &State) -> Warnings {
+/// The warnings of the step accepted last, with all pressed cells in `reach`.
+pub(super) fn collect_warnings(scene: &Scene, state: &State, reach: Option<Extent>) -> Warnings {
     let (axes, periodic) = (scene.grid.cells(), scene.kernel.periodic_axes());
     let (dt, material) = (state.clock.last_dt, &scene.material);
     let (solution, contact_cells) = (&state.current.solution, state.current.contact_cells);
     let (mut near, mut few) = (false, false);
-    if let Some(Extent { low, high }) = state.region.reach(&solution.pressure) {
+    if let Some(Extent { low, high }) = reach {
         let all_in_touch = contact_cells == scene.grid.len();
         let mut line = false;
         for axis in 0..2 {
@@ -77,14 +81,16 @@ pub(super) fn collect_warnings(scene: &Scene, state: &State) -> Warnings {
     // the rectangle rule oscillates where the bodies creep by more in a step than they yield at once
     let oscillates = matches!(scene.settings.time_rule, TimeRule::Rectangle | TimeRule::RectangleUncached)
         && material.contact_compliance(dt) > 2.0 * material.contact_compliance(0.0);
-    Warnings::default()
-        .with(Warning::NearEdge, near && scene.settings.edge == Edge::Refuse)
-        .with(Warning::FewCells, few)
-        .with(Warning::Extrapolated, has_memory && !is_known(age, until))
-        .with(Warning::FasterThanMaterial, has_memory && dt > 0.0 && dt < from)
-        .with(Warning::NearEndOfMaterial, has_memory && dt > 0.0 && !is_known(age + dt, material.known_until()))
-        .with(Warning::Rings, oscillates)
-        .with(Warning::FallBack, solution.counts.fallback_iterations > 0)
-        .with(Warning::UncertainMaterial, has_memory && uncertain)
-        .with(Warning::Rounding, solution.rounding > scene.settings.tolerance)
+    let reasons = [
+        (Warnings::NEAR_EDGE, near && scene.settings.edge == Edge::Refuse),
+        (Warnings::FEW_CELLS, few),
+        (Warnings::EXTRAPOLATED, has_memory && !is_known(age, until)),
+        (Warnings::FASTER_THAN_MATERIAL, has_memory && dt > 0.0 && dt < from),
+        (Warnings::NEAR_END_OF_MATERIAL, has_memory && dt > 0.0 && !is_known(age + dt, material.known_until())),
+        (Warnings::RINGS, oscillates),
+        (Warnings::FALL_BACK, solution.counts.fallback_iterations > 0),
+        (Warnings::UNCERTAIN_MATERIAL, has_memory && uncertain),
+        (Warnings::ROUNDING, solution.rounding > scene.settings.tolerance),
+    ];
+    reasons.into_iter().filter(|(_, applies)| *applies).map(|(warning, _)| warning).collect()
 }

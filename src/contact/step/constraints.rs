@@ -11,7 +11,7 @@ use crate::error::{Convergence, Error, Result};
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
 use crate::rheology::is_known;
-use crate::solver::{Counts, Freedom, Outcome, RigidMotion, Solution};
+use crate::solver::{Counts, Freedom, Outcome, Solution};
 
 /// Rejects loads that no pressure can balance.
 pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
@@ -63,58 +63,6 @@ fn freedom(load: &Load, grid: &Grid) -> Freedom {
     Freedom { translation, tilt, point, total }
 }
 
-/// The motions that a step prescribes, and where the bodies were at its start.
-#[derive(Clone, Copy)]
-pub(super) struct Prescribed<'a> {
-    step: &'a Step<'a>,
-    /// Loads and motions at the start of the step, where hi + u in contact is known to be the motion there.
-    start: Option<(&'a [Load], &'a [RigidMotion])>,
-}
-
-impl<'a> Prescribed<'a> {
-    /// For a step from a state with such loads and motions; `exact` where hi + u in contact is known to be the latter.
-    pub(super) fn new(step: &'a Step<'a>, exact: bool, loads: &'a [Load], motions: &'a [RigidMotion]) -> Self {
-        Prescribed { step, start: exact.then_some((loads, motions)) }
-    }
-
-    /// Number of rigid bodies.
-    pub(super) fn bodies(&self) -> usize {
-        self.step.loads.len()
-    }
-
-    /// What is prescribed of a body's motion, from the datum of the gap.
-    pub(super) fn motion(&self, body: usize) -> RigidMotion {
-        self.step.prescribed(body)
-    }
-
-    /// By how much a body is retracted in a step that prescribes all of its motion: by nothing if it is held. Known only
-    /// where hi + u in contact is its motion at the start.
-    pub(super) fn retraction(&self, body: usize) -> Option<RigidMotion> {
-        let load = self.step.loads[body];
-        let Load::Approach { approach, tilt: [Tilt::Fixed(tilt1), Tilt::Fixed(tilt2)] } = load else { return None };
-        let (loads, motions) = self.start?;
-        if load == loads[body] {
-            return Some(RigidMotion::default());
-        }
-        let start = motions[body];
-        Some(RigidMotion { approach: start.approach - approach, tilt: [start.tilt[0] - tilt1, start.tilt[1] - tilt2] })
-    }
-
-    /// The greatest prescribed |ω + α·x| on the grid, as far as it is taken from the gap: where [`Self::retraction`] is
-    /// known, that is instead.
-    pub(super) fn greatest(&self, grid: &Grid) -> f64 {
-        let [l1, l2] = grid.lengths();
-        let motions = (0..self.bodies()).map(|body| self.retraction(body).unwrap_or(self.motion(body)));
-        let reach = |m: RigidMotion| m.approach.abs() + 0.5 * (m.tilt[0].abs() * l1 + m.tilt[1].abs() * l2);
-        motions.map(reach).fold(0.0, f64::max)
-    }
-}
-
-/// Whether hi + u in contact is the motion of a body whose motion was prescribed, to the last bit.
-pub(super) fn surface_follows_bodies(step: &Step<'_>, state: &State) -> bool {
-    state.history.follows_body_exactly() && !step.has_new_indenter(state)
-}
-
 /// Rejects a step whose loading time is longer than the material is known for, if the bodies are `touched`: what
 /// was never touched has no history.
 pub(super) fn material_is_known(scene: &Scene, state: &State, step: &Step<'_>, touched: bool) -> Result<()> {
@@ -151,14 +99,12 @@ pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, st
         Outcome::Converged => Ok(()),
         Outcome::NotANumber => Err(Error::Overflow { time, what: "the residual of the contact problem" }),
         Outcome::Unbalanced(body) => {
-            let at = step.loads[body].tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
+            let at = freedom(&step.loads[body], &scene.grid).point;
             Err(Error::LoadOutsideHull { time, body, at })
         }
         Outcome::OutOfIterations | Outcome::Stagnated => {
-            let stagnated = outcome == Outcome::Stagnated;
-            let convergence =
-                Convergence::new(trace.samples(), tolerance, scene.settings.solver == Solver::ActiveSet, stagnated)
-                    .into();
+            let (active_set, stagnated) = (scene.settings.solver == Solver::ActiveSet, outcome == Outcome::Stagnated);
+            let convergence = Convergence::new(trace.samples(), tolerance, active_set, stagnated).into();
             Err(Error::NotConverged { time, dt, iterations, residual, tolerance, convergence })
         }
     }
@@ -166,31 +112,26 @@ pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, st
 
 /// Rejects results that left the range of numbers, and contact at the edge of the grid; returns Σ p.
 pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Step<'_>) -> Result<f64> {
-    let time = step.interval.time;
-    let overflow = |what: &'static str| Err(Error::Overflow { time, what });
     let (Solution { pressure, motions, .. }, rows) = (&trial.solution, state.region.rows());
-    if !motions.iter().flat_map(|motion| motion.0).all(f64::is_finite) {
-        return overflow("the approach");
-    }
     let sum_of_pressure = rows.sum(pressure);
     let pressures = state.region.images() as f64 * sum_of_pressure;
     let force = scene.grid.cell_area() * pressures;
-    if !force.is_finite() {
-        return overflow("the force");
-    }
     // no moment is greater than the moment of the whole force at the end of the longer side
     let arm = scene.grid.lengths().into_iter().fold(0.0, f64::max);
-    if !(arm * pressures.max(force)).is_finite() {
-        return overflow("the moment of the force");
+    let greatest_moment = arm * pressures.max(force);
+    let (time, edge) = (step.interval.time, scene.settings.edge);
+    let within_range = [
+        (motions.iter().flat_map(|motion| motion.0).all(f64::is_finite), "the approach"),
+        (force.is_finite(), "the force"),
+        (greatest_moment.is_finite(), "the moment of the force"),
+        (rows.sum(state.history.trial()).is_finite(), "the displacement"),
+    ];
+    if let Some((_, what)) = within_range.into_iter().find(|(is_finite, _)| !is_finite) {
+        return Err(Error::Overflow { time, what });
     }
-    if scene.settings.edge == Edge::Refuse {
-        let cells = state.region.positive_on_edge(pressure, scene.kernel.periodic_axes());
-        if cells > 0 {
-            return Err(Error::ContactAtEdge { time, cells });
-        }
+    let on_edge = || state.region.positive_on_edge(pressure, scene.kernel.periodic_axes());
+    match if edge == Edge::Refuse { on_edge() } else { 0 } {
+        0 => Ok(sum_of_pressure),
+        cells => Err(Error::ContactAtEdge { time, cells }),
     }
-    if !rows.sum(state.history.trial()).is_finite() {
-        return overflow("the displacement");
-    }
-    Ok(sum_of_pressure)
 }

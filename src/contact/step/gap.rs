@@ -1,53 +1,75 @@
 //! The gap of a step before any pressure, and the surface after it.
 
-use crate::contact::step::constraints::Prescribed;
-use crate::contact::step::request::Trial;
+use crate::Grid;
+use crate::contact::step::request::{Step, Trial};
 use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 use crate::hereditary::History;
+use crate::load::{Load, Tilt};
 use crate::parallel::for_each_band;
 use crate::solver::{Freedom, RigidMotion};
 
-/// The rigid bodies over the region of a step.
+/// The rigid bodies over the region of a step, and the motions that its loads prescribe.
 #[derive(Clone, Copy)]
 pub(super) struct RigidBodies<'a> {
+    pub(super) step: &'a Step<'a>,
     pub(super) region: &'a Region,
-    /// Their gap there, hi.
-    pub(super) initial: &'a Gap,
-    pub(super) prescribed: Prescribed<'a>,
+    /// Loads and motions at the start of the step, if hi + u in contact is the motion there to the last bit.
+    pub(super) start: Option<(&'a [Load], &'a [RigidMotion])>,
 }
 
 impl RigidBodies<'_> {
+    /// By how much a body is retracted in a step that prescribes all of its motion: by nothing if it is held. Known only
+    /// where hi + u in contact is its motion at the start.
+    fn retraction(&self, body: usize) -> Option<RigidMotion> {
+        let load = self.step.loads[body];
+        let Load::Approach { approach, tilt: [Tilt::Fixed(tilt1), Tilt::Fixed(tilt2)] } = load else { return None };
+        let (loads, motions) = self.start?;
+        if load == loads[body] {
+            return Some(RigidMotion::default());
+        }
+        let start = motions[body];
+        Some(RigidMotion { approach: start.approach - approach, tilt: [start.tilt[0] - tilt1, start.tilt[1] - tilt2] })
+    }
+
+    /// The bodies whose retraction is known.
+    fn retractions(&self) -> impl Iterator<Item = (usize, RigidMotion)> {
+        (0..self.step.loads.len()).filter_map(|body| Some((body, self.retraction(body)?)))
+    }
+
+    /// The greatest |ω + α·x| on the grid that is taken from a gap: of the retraction where it is known, else of the
+    /// prescribed motion.
+    pub(super) fn greatest_motion(&self, grid: &Grid) -> f64 {
+        let [l1, l2] = grid.lengths();
+        let taken = |body: usize| self.retraction(body).unwrap_or(self.step.prescribed(body));
+        let reach = |m: RigidMotion| m.approach.abs() + 0.5 * (m.tilt[0].abs() * l1 + m.tilt[1].abs() * l2);
+        (0..self.step.loads.len()).map(|body| reach(taken(body))).fold(0.0, f64::max)
+    }
+
     /// The gap before any pressure and free motion, hi + u_old − what is prescribed of ω + α·x (Eq. 1 of the paper).
-    pub(super) fn fill_gap(&self, u_old: &[f64], gap: &mut [f64]) {
-        let bodies = self.prescribed.bodies();
-        let upright = bodies == 1 && self.prescribed.motion(0).tilt == [0.0; 2];
-        let approach = if upright { self.prescribed.motion(0).approach } else { 0.0 };
+    ///
+    /// In contact under bodies whose motion is prescribed, hi + u is their motion at the start of the step. The gap there is
+    /// their retraction less u − u_old, by how much the surface recedes. Computed as a part of hi + u_old − ω, that would be
+    /// lost in rounding once the pressure has relaxed by many decades.
+    pub(super) fn fill_gap(&self, initial: &Gap, history: &History, pressure: &[f64], gap: &mut [f64]) {
+        let (bodies, u_old, first) = (self.step.loads.len(), history.trial(), self.step.prescribed(0));
+        let upright = bodies == 1 && first.tilt == [0.0; 2];
+        let approach = if upright { first.approach } else { 0.0 };
         for_each_band([&mut *gap], |first, [gap]| {
-            for ((gap, &initial), &u_old) in gap.iter_mut().zip(&self.initial.above[first..]).zip(&u_old[first..]) {
+            for ((gap, &initial), &u_old) in gap.iter_mut().zip(&initial.above[first..]).zip(&u_old[first..]) {
                 *gap = (initial + u_old) - approach;
             }
         });
-        if upright {
-            return;
-        }
-        for body in 0..bodies {
-            let motion = self.prescribed.motion(body);
+        for body in if upright { 0..0 } else { 0..bodies } {
+            let motion = self.step.prescribed(body);
             if motion != RigidMotion::default() {
-                for k in (0..gap.len()).filter(|&k| self.initial.owner(k) == body) {
+                for k in (0..gap.len()).filter(|&k| initial.owner(k) == body) {
                     gap[k] -= motion.at(self.region.center(k));
                 }
             }
         }
-    }
-
-    /// The gap in contact under bodies whose motion is prescribed: hi + u is their motion at the start of the step, so that
-    /// the gap is their retraction less u − u_old, by how much the surface recedes. Computed as a part of
-    /// hi + u_old − ω, that would be lost in rounding once the pressure has relaxed by many decades.
-    pub(super) fn refine_gap(&self, history: &History, pressure: &[f64], gap: &mut [f64]) {
-        for body in 0..self.prescribed.bodies() {
-            let Some(retraction) = self.prescribed.retraction(body) else { continue };
-            let pressed = |k: usize| pressure[k] > 0.0 && self.initial.owner(k) == body;
+        for (body, retraction) in self.retractions() {
+            let pressed = |k: usize| pressure[k] > 0.0 && initial.owner(k) == body;
             history.recovery(pressed, |k, recovery| gap[k] = retraction.at(self.region.center(k)) - recovery);
         }
     }
@@ -55,7 +77,7 @@ impl RigidBodies<'_> {
     /// u = u_old + c K p. Where the displacement is `integrated`, the surface in contact is then laid on the rigid body:
     /// the residual of this step would otherwise stay in u, and count many times over when a later step is much stiffer than
     /// this one, as a jump after a long hold is.
-    pub(super) fn displace(&self, c: f64, integrated: bool, trial: &Trial, u: &mut [f64]) {
+    pub(super) fn displace(&self, initial: &Gap, c: f64, integrated: bool, trial: &Trial, u: &mut [f64]) {
         let Trial { solution, gap, free, .. } = trial;
         if let (true, &[Freedom { tilt: [false, false], .. }]) = (integrated, &free[..]) {
             let motion = self.region.modes(free[0]).displacement(solution.motions[0], 0);
@@ -77,7 +99,7 @@ impl RigidBodies<'_> {
         }
         for (body, &freedom) in free.iter().enumerate() {
             let (modes, motion) = (self.region.modes(freedom), solution.motions[body]);
-            for k in (0..gap.len()).filter(|&k| self.initial.owner(k) == body && gap[k].is_finite()) {
+            for k in (0..gap.len()).filter(|&k| initial.owner(k) == body && gap[k].is_finite()) {
                 // u_old + c v with the gap h less the same: gap = hi + u_old − prescribed
                 let h = gap[k] + c * solution.potential[k] - modes.displacement(motion, k);
                 if solution.pressure[k] > 0.0 || h < 0.0 {
@@ -89,12 +111,11 @@ impl RigidBodies<'_> {
 
     /// Lets the surface in contact follow bodies whose motion is prescribed to the last bit, from the displacement `before`:
     /// its rounding would feed the branches of the past, and outlive the pressure.
-    pub(super) fn follow_prescribed(&self, [old, new]: [&[f64]; 2], before: &[f64], u: &mut [f64]) {
-        for body in 0..self.prescribed.bodies() {
-            let Some(retraction) = self.prescribed.retraction(body) else { continue };
+    pub(super) fn follow_prescribed(&self, initial: &Gap, [old, new]: [&[f64]; 2], before: &[f64], u: &mut [f64]) {
+        for (body, retraction) in self.retractions() {
             let displacements = u.iter_mut().zip(before);
             for (k, ((u, &before), (&old, &new))) in displacements.zip(old.iter().zip(new)).enumerate() {
-                if old > 0.0 && new > 0.0 && self.initial.owner(k) == body {
+                if old > 0.0 && new > 0.0 && initial.owner(k) == body {
                     *u = before - retraction.at(self.region.center(k));
                 }
             }

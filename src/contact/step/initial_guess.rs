@@ -4,11 +4,9 @@ use std::ops::Range;
 
 use crate::contact::state::extrapolation::MAX_REACH;
 use crate::contact::state::{Equilibrium, State};
-use crate::contact::step::request::Step;
-use crate::contact::step::request::Trial;
+use crate::contact::step::request::{Step, Trial};
 use crate::contact::window::window::Window;
-use crate::parallel::Rows;
-use crate::parallel::for_each_band;
+use crate::parallel::{Rows, for_each_band};
 use crate::solver::{Counts, Freedom, RigidMotion};
 use crate::sum;
 
@@ -35,12 +33,7 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
     let held = trial.free.iter().all(|freedom| !freedom.translation);
     let given = held && trial.free.iter().all(|freedom| freedom.tilt == [false; 2]);
     if given && let Some(share) = share_left(state, trial, c) {
-        let scale = |trial: &mut [f64], field: &[f64]| {
-            trial.iter_mut().zip(field).for_each(|(trial, &value)| *trial = share * value);
-        };
-        scale(&mut trial.solution.pressure, &now.pressure);
-        scale(&mut trial.solution.potential, &now.potential);
-        return refresh_if_due(state, window, trial);
+        return fill_guess(state, window, trial, |now, _| share * now);
     }
     let mut reach = state.extrapolation.reach(step.interval.dt);
     if let [Freedom { translation: true, tilt: [false, false], total, .. }] = trial.free[..]
@@ -70,7 +63,7 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
         // another load altogether: the last contact is no guide, the solver starts afresh
         return trial.solution.release();
     }
-    extrapolate(state, window, trial, reach);
+    fill_guess(state, window, trial, |now, before| now + reach * (now - before));
     if reach > 0.0 && window.needs_potential() && step.interval.stride == [0; 2] {
         trial.foreseen = foresee_contact(state, window, trial, step, c);
     }
@@ -125,16 +118,10 @@ fn foresee_contact(state: &State, window: &mut Window, trial: &mut Trial, step: 
     for_each_band([&mut trial.likely], |first, [likely]| {
         likely.iter_mut().zip(first..).for_each(|(likely, k)| *likely = is_likely(k));
     });
-    let count = |cells: Range<usize>| {
-        let mut counts = [0; 3];
-        for k in cells {
-            let (touching, likely) = (now.solution.pressure[k] > 0.0, trial.likely[k]);
-            let adds = [touching, likely, touching && likely];
-            counts.iter_mut().zip(adds).for_each(|(count, adds)| *count += usize::from(adds));
-        }
-        counts.map(|count: usize| count as f64)
-    };
-    let [touching, likely, staying] = rows.merge(count, sum::add);
+    let [touching, likely, staying] = rows.sum_terms(|k| {
+        let (touching, likely) = (now.solution.pressure[k] > 0.0, trial.likely[k]);
+        (touching || likely).then(|| [touching, likely, touching && likely].map(|counts| f64::from(u8::from(counts))))
+    });
     staying >= MIN_SHARE_STAYING * touching.max(likely)
 }
 
@@ -167,19 +154,16 @@ fn edge_speed(rows: &Rows, now: &Equilibrium, before: &Equilibrium, beyond: Opti
 /// relaxation time leaves exactly that, and so does a punch that is retracted from an elastic body.
 fn share_left(state: &State, trial: &Trial, c: f64) -> Option<f64> {
     let (now, rows) = (&state.current.solution, state.region.rows());
-    let pressed = |cells: Range<usize>| cells.filter(|&k| now.pressure[k] > 0.0);
+    let pressed = |k: usize| now.pressure[k] > 0.0;
     // a pressure that has relaxed by many decades has no square
-    let displacements = pressed(0..trial.gap.len()).map(|k| (c * now.potential[k]).abs());
+    let displacements = (0..trial.gap.len()).filter(|&k| pressed(k)).map(|k| (c * now.potential[k]).abs());
     let greatest = rows.greatest(displacements.fold(f64::MIN_POSITIVE, f64::max));
-    let part = |cells: Range<usize>| {
-        let (mut overlap, mut square) = (0.0, 0.0);
-        for k in pressed(cells) {
+    let [overlap, square] = rows.sum_terms(|k| {
+        pressed(k).then(|| {
             let (u, gap) = (c * now.potential[k] / greatest, trial.gap[k] / greatest);
-            (overlap, square) = (overlap - gap * u, square + u * u);
-        }
-        [overlap, square]
-    };
-    let [overlap, square] = rows.merge(part, sum::add);
+            [-gap * u, u * u]
+        })
+    });
     let share = overlap / square;
     (share < MAX_SHARE_LEFT).then_some(share.max(0.0))
 }
@@ -188,25 +172,16 @@ fn share_left(state: &State, trial: &Trial, c: f64) -> Option<f64> {
 /// no convolution, K p₀ and K p₁ being known, and follows a creep that slows down better than the length of the step does.
 fn best_reach(state: &State, gap: &[f64], c: f64, wanted: f64) -> Option<f64> {
     let (now, before) = (&state.current.solution, &state.previous.solution);
-    let part = |cells: Range<usize>| {
-        let mut sums = [0.0; 7];
-        for k in cells {
-            let (p, v) = (now.pressure[k], now.potential[k]);
-            let (dp, dv) = (p - before.pressure[k], v - before.potential[k]);
-            // outside a punch, where the gap is infinite, nothing presses
-            if p != 0.0 || dp != 0.0 {
-                let terms = [p, dp, gap[k] * p, gap[k] * dp, p * v, p * dv, dp * dv];
-                sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
-            }
-        }
-        sums
-    };
-    let [p, dp, gap_p, gap_dp, pv, pdv, dpdv] = state.region.rows().merge(part, sum::add);
-    let (sums, gaps, energies) = ([p, dp], [gap_p, gap_dp], [pv, pdv, dpdv]);
+    let [p, dp, gap_p, gap_dp, pv, pdv, dpdv] = state.region.rows().sum_terms(|k| {
+        let (p, v) = (now.pressure[k], now.potential[k]);
+        let (dp, dv) = (p - before.pressure[k], v - before.potential[k]);
+        // outside a punch, where the gap is infinite, nothing presses
+        (p != 0.0 || dp != 0.0).then(|| [p, dp, gap[k] * p, gap[k] * dp, p * v, p * dv, dp * dv])
+    });
     // the direction is p₀ − p₁ less so much of p₀ that it carries no force
-    let (scale, share) = (wanted / sums[0], sums[1] / sums[0]);
-    let slope = gaps[1] - share * gaps[0] + c * scale * (energies[1] - share * energies[0]);
-    let curvature = c * (energies[2] - share * (2.0 * energies[1] - share * energies[0]));
+    let (scale, share) = (wanted / p, dp / p);
+    let slope = gap_dp - share * gap_p + c * scale * (pdv - share * pv);
+    let curvature = c * (dpdv - share * (2.0 * pdv - share * pv));
     let best = -slope / curvature;
     best.is_finite().then_some(best.clamp(0.0, MAX_REACH))
 }
@@ -225,28 +200,28 @@ pub(super) fn begin(state: &State, trial: &mut Trial, step: &Step<'_>) {
     }
 }
 
-/// Writes p and K p to the trial, `reach` times the last step ahead; K p computed afresh where that is due.
-pub(super) fn extrapolate(state: &State, window: &mut Window, trial: &mut Trial, reach: f64) {
-    let (now, before) = (&state.current.solution, &state.previous.solution);
-    let extrapolate = |trial: &mut [f64], now: &[f64], before: &[f64]| {
-        for_each_band([trial], |first, [guesses]| {
+/// Writes p and K p of the guess, each a `prediction` from its values now and before the last step. Where that is due, K p is
+/// computed afresh, unless the solver does so itself.
+pub(super) fn fill_guess(
+    state: &State,
+    window: &mut Window,
+    trial: &mut Trial,
+    prediction: impl Fn(f64, f64) -> f64 + Sync,
+) {
+    let (now, before, guess) = (&state.current.solution, &state.previous.solution, &mut trial.solution);
+    let fill = |guess: &mut [f64], now: &[f64], before: &[f64]| {
+        for_each_band([guess], |first, [guesses]| {
             for ((guess, &now), &before) in guesses.iter_mut().zip(&now[first..]).zip(&before[first..]) {
-                *guess = now + reach * (now - before);
+                *guess = prediction(now, before);
             }
         });
     };
-    extrapolate(&mut trial.solution.pressure, &now.pressure, &before.pressure);
+    fill(&mut guess.pressure, &now.pressure, &before.pressure);
     if !state.extrapolation.refresh_is_due() {
-        extrapolate(&mut trial.solution.potential, &now.potential, &before.potential);
-    }
-    refresh_if_due(state, window, trial);
-}
-
-/// Computes K p of the guess afresh where that is due, and the solver does not do so itself.
-fn refresh_if_due(state: &State, window: &mut Window, trial: &mut Trial) {
-    if state.extrapolation.refresh_is_due() && window.needs_potential() {
+        fill(&mut guess.potential, &now.potential, &before.potential);
+    } else if window.needs_potential() {
         let (kernel, work) = window.kernel_and_work();
-        kernel.apply(&trial.solution.pressure, &mut trial.solution.potential, work);
-        trial.solution.counts.convolutions += 1;
+        kernel.apply(&guess.pressure, &mut guess.potential, work);
+        guess.counts.convolutions += 1;
     }
 }

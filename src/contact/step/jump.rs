@@ -3,9 +3,8 @@
 use std::ops::Range;
 
 use crate::contact::state::State;
-use crate::contact::step::initial_guess::{begin, extrapolate};
-use crate::contact::step::request::Step;
-use crate::contact::step::request::Trial;
+use crate::contact::step::initial_guess::{begin, fill_guess};
+use crate::contact::step::request::{Step, Trial};
 use crate::contact::window::window::Window;
 use crate::error::{Error, Result};
 use crate::geometry::Gap;
@@ -31,7 +30,7 @@ pub(super) fn jump_without_response(
     };
     let as_it_is = greatest(true);
     if as_it_is <= step.tolerance {
-        extrapolate(state, window, trial, 0.0);
+        fill_guess(state, window, trial, |now, _| now);
         trial.solution.residual = as_it_is;
     } else if greatest(false) <= step.tolerance {
         trial.solution.release();

@@ -28,22 +28,21 @@ use std::sync::Arc;
 use crate::contact::computation::Computation;
 use crate::contact::read::report::StepReport;
 use crate::contact::scene::Scene;
-use crate::contact::state::State;
+use crate::contact::state::{Equilibrium, State};
 use crate::contact::step::request::Step;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::contact::window::placement::outgrown;
-use crate::contact::window::placement::region_for;
+use crate::contact::window::placement::{outgrown, region_for};
 use crate::contact::window::region::Region;
 use crate::error::{Error, Result, non_negative};
 use crate::events;
+use crate::extent::Extent;
 use crate::hereditary::{Interval, TimeError};
 use crate::load::Load;
-use crate::parallel::catch_rank_loss;
 use crate::parallel::in_pool;
-use crate::solver::Stop;
+use crate::solver::{Solution, Stop};
 use accept::collect_warnings;
-use constraints::{Prescribed, find_free_motions, surface_follows_bodies, validate_loads};
 use constraints::{acceptable, below_full_contact, compliance_is_usable, converged, material_is_known};
+use constraints::{find_free_motions, validate_loads};
 use error_in_time::{StepContext, error_in_time};
 use gap::RigidBodies;
 use initial_guess::initial_guess;
@@ -81,7 +80,7 @@ impl ViscoelasticContact {
     /// As [`ViscoelasticContact::step`], or if there is not one load per body.
     pub fn step_each(&mut self, dt: f64, loads: &[Load]) -> Result<StepReport> {
         let rows = self.computation.state.region.rows();
-        catch_rank_loss(&rows, || {
+        rows.together(|| {
             let requested = non_negative("time step", dt)
                 .and_then(|dt| self.request(self.time() + dt, dt, loads, self.settings().tolerance));
             let requested = requested.and_then(|step| validate_loads(&self.scene, &step).map(|()| step));
@@ -120,7 +119,7 @@ impl ViscoelasticContact {
     ) -> Result<(StepReport, TimeError)> {
         let attempt = self.attempt(&step)?;
         let error = error_in_time(&self.scene, attempt.computation(&self.computation), &step, outlook);
-        Ok((self.accept(attempt, step, error), error))
+        Ok((self.accept(attempt, step, error)?, error))
     }
 
     /// Computes a step. The state stays as it is.
@@ -129,7 +128,7 @@ impl ViscoelasticContact {
         let (rows, from) = (region.rows(), region.cells());
         // ranks wait for each other, which they must not do on threads that all of them need
         let cells = if region.is_shared() { 0 } else { region.len() };
-        let tried = catch_rank_loss(&rows, || {
+        let tried = rows.together(|| {
             rows.same(marks(step))?;
             in_pool(cells, || compute(&self.scene, &mut self.computation, &mut larger, step))
         });
@@ -145,44 +144,55 @@ impl ViscoelasticContact {
         tried.map(|sum| Attempt { larger, sum })
     }
 
-    /// Makes an attempt the state. Nothing here can fail.
-    pub(in crate::contact) fn accept(&mut self, attempt: Attempt, step: Step<'_>, error: TimeError) -> StepReport {
+    /// Makes an attempt the state; an error, which leaves the state as it is, if a rank is lost.
+    pub(in crate::contact) fn accept(
+        &mut self,
+        attempt: Attempt,
+        step: Step<'_>,
+        error: TimeError,
+    ) -> Result<StepReport> {
         // lengths beyond 1e154 m have no squares, and so no estimate
         let estimated = step.interval.stride == [0; 2] && error.relative.is_finite();
-        self.adopt(attempt, step, error.sizes);
-        let report = StepReport { time_error: estimated.then_some(error.relative), ..self.report() };
-        report.emit();
-        report
-    }
-
-    /// Makes an attempt the state, without a report; `sizes` are the means of displacement and v in contact.
-    pub(in crate::contact) fn adopt(&mut self, attempt: Attempt, step: Step<'_>, sizes: [f64; 2]) {
-        if let Some(larger) = attempt.larger {
-            self.computation = *larger;
-        }
-        self.computation.accept(step, attempt.sum, sizes);
-        self.view.refresh(&self.computation.state);
-    }
-
-    fn report(&self) -> StepReport {
-        let state = &self.computation.state;
-        let counts = state.current.solution.counts;
-        StepReport {
+        let reach = self.adopt(attempt, step, error.sizes)?;
+        let (scene, state) = (&self.scene, &self.computation.state);
+        let Equilibrium { contact_cells, solution: Solution { counts, residual, .. }, .. } = state.current;
+        let report = StepReport {
             time: state.clock.time,
             force: self.force(),
             approach: self.approach(),
-            area: state.current.contact_cells as f64 * self.scene.grid.cell_area(),
-            contact_cells: state.current.contact_cells,
+            area: contact_cells as f64 * scene.grid.cell_area(),
+            contact_cells,
             tilt: self.tilt(),
             dt: state.clock.last_length,
-            time_error: None,
-            warnings: collect_warnings(&self.scene, state),
+            time_error: estimated.then_some(error.relative),
+            warnings: collect_warnings(scene, state, reach),
             iterations: counts.iterations,
             fallback_iterations: counts.fallback_iterations,
             convolutions: counts.convolutions,
             preconditioner_applications: counts.preconditioner_applications,
-            residual: state.current.solution.residual,
+            residual,
+        };
+        report.emit();
+        Ok(report)
+    }
+
+    /// Makes an attempt the state, without a report; `sizes` are the means of displacement and v in contact. Returns the rectangle
+    /// that holds all pressed cells.
+    pub(in crate::contact) fn adopt(
+        &mut self,
+        attempt: Attempt,
+        step: Step<'_>,
+        sizes: [f64; 2],
+    ) -> Result<Option<Extent>> {
+        // nothing is asked of other ranks once the state changes
+        let (contact_cells, reach) = attempt.computation(&self.computation).pressed();
+        self.computation.state.region.rows().intact()?;
+        if let Some(larger) = attempt.larger {
+            self.computation = *larger;
         }
+        self.computation.accept(step, attempt.sum, contact_cells, sizes);
+        self.view.refresh(&self.computation.state);
+        Ok(reach)
     }
 }
 
@@ -211,8 +221,8 @@ fn compute(
 ) -> Result<f64> {
     validate_loads(scene, step)?;
     if let Some((region, placed)) = region_for(scene, &own.state, step)? {
-        let carried = larger.insert(own.carried_to(scene, region, &step.indenter)?);
-        carried.state.region_is_placed = placed;
+        let transferred = larger.insert(own.transferred_to(scene, region, &step.indenter)?);
+        transferred.state.region_is_placed = placed;
     }
     loop {
         let at = larger.as_deref_mut().unwrap_or(&mut *own);
@@ -225,7 +235,7 @@ fn compute(
             Err(error) => return Err(error),
         };
         let Some(region) = grown else { return acceptable(scene, &at.state, &at.trial, step) };
-        *larger = Some(at.carried_to(scene, region, &step.indenter)?);
+        *larger = Some(at.transferred_to(scene, region, &step.indenter)?);
     }
 }
 
@@ -243,12 +253,11 @@ impl Computation {
         compliance_is_usable(c, step)?;
 
         // h = hi + u_old + c K p − ω − α·x, what is prescribed of ω and α included
-        let prescribed =
-            Prescribed::new(step, surface_follows_bodies(step, state), &state.loads, &state.current.motions);
-        let bodies = RigidBodies { region: &state.region, initial: window.gap(&step.indenter), prescribed };
-        bodies.fill_gap(state.history.trial(), &mut trial.gap);
-        bodies.refine_gap(&state.history, &state.current.solution.pressure, &mut trial.gap);
-        let greatest = prescribed.greatest(&scene.grid);
+        let on_bodies = state.history.follows_body_exactly() && !step.has_new_indenter(state);
+        let start = on_bodies.then_some((&state.loads[..], &state.current.motions[..]));
+        let bodies = RigidBodies { step, region: &state.region, start };
+        let before = &state.current.solution.pressure;
+        bodies.fill_gap(window.gap(&step.indenter), &state.history, before, &mut trial.gap);
         below_full_contact(window, trial, step)?;
 
         // p ≥ 0, h ≥ 0, p h = 0, with force and moments in balance
@@ -258,7 +267,7 @@ impl Computation {
             initial_guess(state, window, trial, step, c);
         }
         let stop = Stop { tolerance: step.tolerance, max_iterations: scene.settings.max_iterations };
-        let outcome = window.solve(&step.indenter, [c, greatest], stop, trial);
+        let outcome = window.solve(&step.indenter, [c, bodies.greatest_motion(&scene.grid)], stop, trial);
         converged(outcome, scene, &trial.solution, step)?;
         trial.solution.counts.convolutions += convolutions;
         let pressure = &trial.solution.pressure;
@@ -266,11 +275,10 @@ impl Computation {
         material_is_known(scene, state, step, touched)?;
 
         // the history of the bodies
-        let (integrated, before) = (state.history.integrates_displacement(), &state.current.solution.pressure);
-        let bodies = RigidBodies { region: &state.region, initial: window.gap(&step.indenter), prescribed };
+        let (initial, integrated) = (window.gap(&step.indenter), state.history.integrates_displacement());
         state.history.respond(c, [pressure, &trial.solution.potential], |now, u| {
-            bodies.displace(c, integrated, trial, u);
-            bodies.follow_prescribed([before, pressure], now, u);
+            bodies.displace(initial, c, integrated, trial, u);
+            bodies.follow_prescribed(initial, [before, pressure], now, u);
         });
         Ok(())
     }

@@ -54,6 +54,9 @@ pub(crate) struct Trial {
 }
 
 impl Trial {
+    /// Two fields of the solution, the gap, and a mark.
+    pub(in crate::contact) const BYTES_PER_CELL: usize = 8 + 8 + 8 + 1;
+
     pub(in crate::contact) fn new(cells: usize, bodies: usize) -> Trial {
         let nothing_free = Freedom { translation: false, tilt: [false; 2], point: [0.0; 2], total: 0.0 };
         Trial {

@@ -2,14 +2,12 @@
 
 use crate::contact::indenter::Indenter;
 use crate::contact::scene::Scene;
-use crate::contact::state::{Equilibrium, State};
+use crate::contact::state::State;
 use crate::contact::window::region::Region;
 use crate::contact::window::window::Window;
 use crate::extent::Extent;
 use crate::geometry::Gap;
-use crate::hereditary::Transfer;
-use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::Solution;
+use crate::hereditary::Role;
 
 impl Region {
     /// The part of a field on the whole grid that belongs to the region.
@@ -20,9 +18,11 @@ impl Region {
     /// Overwrites a gap with the part of another that belongs to the region.
     pub(crate) fn cut_gap_into(&self, gap: &Gap, own: &mut Gap) {
         own.datum = gap.datum;
-        own.above.iter_mut().zip(self.part(&gap.above)).for_each(|(own, value)| *own = value);
+        own.above.clear();
+        own.above.extend(self.part(&gap.above));
         if let (Some(own), Some(owner)) = (&mut own.owner, &gap.owner) {
-            own.iter_mut().zip(self.part(owner)).for_each(|(own, value)| *own = value);
+            own.clear();
+            own.extend(self.part(owner));
         }
     }
 
@@ -41,27 +41,15 @@ impl Region {
         })
     }
 
-    /// Writes a field of the region to the cells that are shown, and what is outside it and its mirror images stays as it is.
+    /// Writes a field of the region, and its mirror images, over the cells that are shown; others stay as they are.
     pub(crate) fn show(&self, own: &[f64], shown: &mut [f64]) {
-        if !self.is_shared() {
-            return self.spread(own, shown);
-        }
-        let ([_, n2], [_, m2]) = (self.whole.cells(), self.cells());
-        for (row, line) in own.chunks_exact(m2).zip(shown.chunks_exact_mut(n2)) {
-            let (mirrored, computed) = line.split_at_mut(n2 - m2);
-            computed.copy_from_slice(row);
-            mirrored.iter_mut().rev().zip(row).for_each(|(out, &value)| *out = value);
-        }
-    }
-
-    /// Writes a field of the region over its cells, and their mirror images, of the whole grid.
-    pub(crate) fn spread(&self, own: &[f64], whole: &mut [f64]) {
-        let ([n1, n2], [_, m2]) = (self.whole.cells(), self.cells());
+        let ([n1, n2], [_, m2], rows) = (self.whole.cells(), self.cells(), self.shown_rows());
         for (i, row) in own.chunks_exact(m2).enumerate() {
             let i = self.first[0] + i;
-            let images = [Some(i), self.folded[0].then_some(n1 - 1 - i)];
+            // of shared rows no rank has the images
+            let images = [Some(i), (self.folded[0] && !self.is_shared()).then_some(n1 - 1 - i)];
             for i in images.into_iter().flatten() {
-                let line = &mut whole[i * n2..(i + 1) * n2];
+                let line = &mut shown[(i - rows.start) * n2..][..n2];
                 line[self.first[1]..self.first[1] + m2].copy_from_slice(row);
                 if self.folded[1] {
                     let start = n2 - self.first[1] - m2;
@@ -73,7 +61,7 @@ impl Region {
 
     /// A field of the region on another one of the same grid; `elsewhere` gives its values on cells that are neither in this
     /// region nor mirror images of it.
-    pub(crate) fn carry<V: Copy>(&self, own: &[V], other: &Region, elsewhere: impl Fn(usize) -> V) -> Vec<V> {
+    pub(crate) fn transfer(&self, own: &[f64], other: &Region, elsewhere: impl Fn(usize) -> f64) -> Vec<f64> {
         (0..other.len()).map(|k| self.find(other.cell(k)).map_or_else(|| elsewhere(k), |own_k| own[own_k])).collect()
     }
 
@@ -136,42 +124,10 @@ impl Region {
     }
 }
 
-/// Carries fields from one region to another. What is not known there is the convolution of a source: with u = K U, all
-/// that the displacement depends on transfers with U.
-struct Carry<'a> {
-    from: &'a Region,
-    to: &'a Region,
-    kernel: &'a LocalKernel,
-    work: &'a mut Workspace,
-}
-
-impl Transfer for Carry<'_> {
-    fn cells(&self) -> [usize; 2] {
-        self.to.cells()
-    }
-
-    fn covers(&self) -> bool {
-        self.to.covers()
-    }
-
-    fn confined(&self, own: &[f64]) -> Vec<f64> {
-        self.from.carry(own, self.to, |_| 0.0)
-    }
-
-    fn induced(&mut self, own: &[f64], source: Option<&[f64]>) -> Vec<f64> {
-        let mut far = vec![0.0; self.to.len()];
-        // nothing is unknown where the images of a region cover the grid
-        let source = source.filter(|source| !self.from.covers() && source.iter().any(|&s| s != 0.0));
-        if let Some(source) = source {
-            self.kernel.apply(&self.confined(source), &mut far, self.work);
-        }
-        self.from.carry(own, self.to, |k| far[k])
-    }
-}
-
-/// A copy of the state on another region, and the window that computes there under `indenter`. The state itself stays what
-/// it is.
-pub(in crate::contact) fn carried(
+/// A copy of the state on another region, and the window that computes there under `indenter`. The state loses the start of
+/// its last step, and is otherwise the same. With u = K U, a displacement outside the old region is the convolution of its
+/// source; nothing is unknown where the images of the region cover the grid.
+pub(in crate::contact) fn transferred(
     scene: &Scene,
     state: &mut State,
     region: Region,
@@ -179,28 +135,19 @@ pub(in crate::contact) fn carried(
 ) -> (State, Window) {
     let mut window = Window::new(scene, &region, indenter);
     let (kernel, work) = window.kernel_and_work();
-    let mut carry = Carry { from: &state.region, to: &region, kernel, work };
-    let history = state.history.carried(&mut carry);
-    let [current, previous] = [&state.current, &state.previous].map(|old| {
-        let Solution { pressure, potential, motions, .. } = &old.solution;
-        let solution = Solution {
-            potential: carry.induced(potential, Some(pressure)),
-            pressure: carry.confined(pressure),
-            motions: motions.clone(),
-            ..old.solution
-        };
-        let sum = region.rows().sum(&solution.pressure);
-        Equilibrium { solution, motions: old.motions.clone(), contact_cells: old.contact_cells, sum }
-    });
-    let carried = State {
-        loads: state.loads.clone(),
-        start: state.start.clone(),
-        indenter: state.indenter.clone(),
-        region,
-        history,
-        current,
-        previous,
-        ..*state
+    state.history.apply_pending_step();
+    let (from, cells) = (&state.region, region.len());
+    let mut one = |own: &[f64], source: Option<&[f64]>| {
+        let source = source.filter(|source| !from.covers() && source.iter().any(|&s| s != 0.0));
+        let Some(source) = source else { return from.transfer(own, &region, |_| 0.0) };
+        let mut far = vec![0.0; cells];
+        kernel.apply(&from.transfer(source, &region, |_| 0.0), &mut far, work);
+        from.transfer(own, &region, |k| far[k])
     };
-    (carried, window)
+    let mut transferred = state.map(&region, &mut |field| match field.role {
+        Role::Lasting { source } => field.transferred(source, cells, &mut one),
+        Role::OfStep | Role::Work => vec![0.0; cells * field.per_cell],
+    });
+    transferred.sum_up();
+    (transferred, window)
 }

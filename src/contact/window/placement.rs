@@ -59,7 +59,12 @@ fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Regi
         let motion = match *load {
             Load::Force { normal: 0.0, .. } => continue,
             _ if free_tilt(0) || free_tilt(1) => RigidMotion { approach: f64::INFINITY, tilt: [0.0; 2] },
-            Load::Force { normal, .. } => RigidMotion { approach: depth(scene, step, body, normal), ..prescribed },
+            Load::Force { normal, .. } => {
+                let force = scene.material.contact_compliance(step.interval.dt) * normal;
+                let [lowest, rest] = level(scene, &region.of_gap(), &step.indenter, body, force);
+                // twice the depth of the level at which the gap has risen by a²/2R, see the cold start of the solver
+                RigidMotion { approach: lowest + 2.0 * rest, ..prescribed }
+            }
             Load::Approach { .. } => prescribed,
         };
         let below = cells_below(&scene.grid, region.folded(), step.indenter.gap(), body, motion, |_, _| true);
@@ -69,24 +74,10 @@ fn first_contact(scene: &Scene, region: &Region, step: &Step<'_>) -> Option<Regi
     touched.map(|touched| region_holding(&scene.grid, region.folded(), lowest.with(touched)))
 }
 
-/// A depth at which a body pressed by `normal` about comes to rest, above the datum: twice the depth of the level at which the
-/// gap has risen by a²/2R, see the cold start of the solver.
-fn depth(scene: &Scene, step: &Step<'_>, body: usize, normal: f64) -> f64 {
-    let [lowest, rest] = level(
-        scene,
-        &Region::whole(&scene.grid, [false; 2]),
-        &step.indenter,
-        body,
-        scene.material.contact_compliance(step.interval.dt) * normal,
-    );
-    lowest + 2.0 * rest
-}
-
 /// The depth below first touch at which the first body about comes to rest, under the product of a force and a contact
 /// compliance.
 pub(in crate::contact) fn resting_depth(scene: &Scene, state: &State, force_times_compliance: f64) -> f64 {
-    let all = if state.region.is_shared() { state.region.clone() } else { Region::whole(&scene.grid, [false; 2]) };
-    level(scene, &all, &state.indenter, 0, force_times_compliance)[1]
+    level(scene, &state.region.of_gap(), &state.indenter, 0, force_times_compliance)[1]
 }
 
 /// The lowest gap of a body, above the datum, and how far above it the level lies at which the gap has risen by a²/2R; `all`

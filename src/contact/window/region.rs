@@ -40,6 +40,11 @@ impl Region {
         Region::new(grid, folded, first, [0, 1].map(|axis| all[axis] - first[axis]))
     }
 
+    /// A part of [`Region::whole`] with so many cells.
+    pub(crate) fn of_size(grid: &Grid, folded: [bool; 2], cells: [usize; 2]) -> Region {
+        Region::new(grid, folded, Region::whole(grid, folded).first, cells)
+    }
+
     /// All of `grid`, as [`Region::whole`], its rows shared out between the ranks of the grid.
     pub(crate) fn shared(grid: &Grid, folded: [bool; 2], rows: &Rows) -> Region {
         let Region { first: [start, first], grid: part, .. } = Region::whole(grid, folded);
@@ -49,11 +54,15 @@ impl Region {
         Region { shared: Some(rows), ..own }
     }
 
-    /// Some rows of all of `grid`, as [`Region::whole`].
+    /// The region whose rows ranks share out, or the region itself.
     #[cfg(feature = "checkpoint")]
-    pub(crate) fn of_rows(grid: &Grid, folded: [bool; 2], rows: Range<usize>) -> Region {
-        let Region { first: [_, first], grid: part, .. } = Region::whole(grid, folded);
-        Region::new(grid, folded, [rows.start, first], [rows.len(), part.cells()[1]])
+    pub(crate) fn of_all_ranks(&self) -> Region {
+        if self.is_shared() { Region::whole(&self.whole, self.folded) } else { self.clone() }
+    }
+
+    /// The region that the gap of an indenter is on: the whole grid, or the local rows of ranks.
+    pub(crate) fn of_gap(&self) -> Region {
+        if self.is_shared() { self.clone() } else { Region::whole(&self.whole, [false; 2]) }
     }
 
     /// A region of suitable size that holds these cells of the whole grid, and a fraction `margin` more along each axis.
@@ -94,7 +103,7 @@ impl Region {
         Extent::hull(lowest.map(|k| Extent::of([k / n2, k % n2]))).unwrap_or(Extent::of([0; 2]))
     }
 
-    /// The same cells, and their images along axes that are no longer folded.
+    /// A region of these cells and their images along axes that are no longer folded.
     pub(crate) fn unfolded(&self, still_folded: [bool; 2]) -> Region {
         if self.covers() {
             return Region::whole(&self.whole, still_folded);

@@ -47,7 +47,7 @@ fn regions_know_their_cells() {
                 assert_eq!((region.find(region.cell(k)), value), (Some(k), even(region.cell(k))));
             }
             let mut spread = vec![f64::NAN; 600];
-            region.spread(&own, &mut spread);
+            region.show(&own, &mut spread);
             for k in 0..600 {
                 let cell = [k / 30, k % 30];
                 assert!(if region.find(cell).is_some() { spread[k] == field[k] } else { spread[k].is_nan() });
@@ -58,7 +58,7 @@ fn regions_know_their_cells() {
                 let mut one = vec![0.0; region.len()];
                 one[k] = 1.0;
                 let mut images = vec![0.0; 600];
-                region.spread(&one, &mut images);
+                region.show(&one, &mut images);
                 let of = |axis: usize| {
                     let along = |k: usize| [k / 30, k % 30][axis];
                     let touched = || (0..600).filter(|&k| images[k] > 0.0).map(along);
@@ -68,8 +68,8 @@ fn regions_know_their_cells() {
                 assert_eq!([(low[0], high[0]), (low[1], high[1])], [of(0), of(1)], "{cell:?} {folded:?}");
             }
             assert_eq!(region.reach(&vec![0.0; region.len()]), None);
-            let carried = region.carry(&own, &Region::whole(&whole, [false; 2]), |_| f64::NAN);
-            assert!(carried.iter().zip(&spread).all(|(a, b)| a == b || (a.is_nan() && b.is_nan())));
+            let transferred = region.transfer(&own, &Region::whole(&whole, [false; 2]), |_| f64::NAN);
+            assert!(transferred.iter().zip(&spread).all(|(a, b)| a == b || (a.is_nan() && b.is_nan())));
         }
     }
 }

@@ -43,10 +43,8 @@ impl Window {
             }
         };
         let rows = region.rows();
-        let beside = rows.group().map(|group| {
-            let ghosts = Ghosts::beside(&rows, |rank| rows.of(rank), rows.cells(), false);
-            (HaloExchange::new(group, rows.cells()[1]), ghosts)
-        });
+        let beside = HaloExchange::new(&rows, rows.cells()[1])
+            .map(|exchange| (exchange, Ghosts::beside(&rows, |rank| rows.of(rank), rows.cells(), false)));
         Window {
             beside,
             work,

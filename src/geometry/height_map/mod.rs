@@ -209,10 +209,6 @@ impl Geometry for HeightMap {
         }
     }
 
-    fn fill_gap(&self, grid: &Grid, gap: &mut [f64]) {
-        self.fill_gap_at(grid, [0.0; 2], gap);
-    }
-
     fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
         if self.periodic && self.missing == 0 && self.has_spacing_of(grid) && by.iter().all(|b| b.is_finite()) {
             assert_eq!(gap.len(), grid.len(), "gap must have one value per cell");

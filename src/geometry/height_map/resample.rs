@@ -2,11 +2,9 @@
 
 use super::HeightMap;
 use crate::Grid;
-use crate::error::Result;
+use crate::error::{Error, MapError, Result};
+use crate::geometry::statistics::FLAT;
 use crate::memory;
-
-/// An rms height below this, relative to the mean, is rounding.
-const FLAT: f64 = 1e-14;
 
 /// A map interpolated onto another grid, and the error of the interpolation.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,7 +76,7 @@ impl HeightMap {
         };
         let count = pairs().count() as f64;
         if count == 0.0 {
-            return Err(crate::Error::Map(crate::error::MapError::NothingKnown));
+            return Err(Error::Map(MapError::NothingKnown));
         }
         let mean = pairs().map(|(z, _)| z / count).sum::<f64>();
         // in units of a power of two near the greatest height, squares stay in range without rounding
@@ -99,8 +97,7 @@ mod tests {
 
     use super::super::tests::{map_of, waves};
     use super::*;
-    use crate::error::Error;
-    use crate::geometry::{Geometry, MapError};
+    use crate::geometry::Geometry;
 
     #[test]
     fn resampling_on_the_same_grid_changes_nothing() {

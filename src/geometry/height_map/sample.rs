@@ -5,9 +5,8 @@ use super::{HeightMap, ROUNDING};
 /// The points along one axis that an interpolated value depends on, with their weights.
 struct Stencil {
     index: [usize; 4],
-    weight: [f64; 4],
-    /// Derivatives of the weights with respect to the index.
-    slope: [f64; 4],
+    /// The weights, and their derivatives with respect to the index.
+    weights: [[f64; 4]; 2],
 }
 
 /// Weights of the four points around a position that lies `t` after the second (Keys 1981, a = −1/2).
@@ -38,25 +37,26 @@ impl Stencil {
     /// The stencil around the fractional `index` among `n` points.
     fn new(index: f64, n: usize, periodic: bool) -> Stencil {
         let (before, t) = split(index);
-        let (weights, slopes) = (cubic(t), cubic_slope(t));
+        let weights = [cubic(t), cubic_slope(t)];
         if periodic {
             let first = before.rem_euclid(n as f64) as usize + n - 1;
-            return Stencil { index: [0, 1, 2, 3].map(|k| (first + k) % n), weight: weights, slope: slopes };
+            return Stencil { index: [0, 1, 2, 3].map(|k| (first + k) % n), weights };
         }
         // Linear extrapolation: a point d beyond the end is (1 + d) times the last minus d times the last but one.
         let (before, last) = (before as isize, n as isize - 1);
         let window = (before - 1).clamp(0, (last - 3).max(0));
-        let mut stencil =
-            Stencil { index: [0, 1, 2, 3].map(|k| (window + k).min(last) as usize), weight: [0.0; 4], slope: [0.0; 4] };
-        for (k, (weight, slope)) in weights.into_iter().zip(slopes).enumerate() {
+        let index = [0, 1, 2, 3].map(|k| (window + k).min(last) as usize);
+        let mut stencil = Stencil { index, weights: [[0.0; 4]; 2] };
+        for k in 0..4 {
             let node = before - 1 + k as isize;
             let end = node.clamp(0, last);
             let next = if node < 0 { 1.min(last) } else { (last - 1).max(0) };
             let beyond = (node - end).unsigned_abs() as f64;
             for (to, part) in [(end, 1.0 + beyond), (next, -beyond)] {
                 if part != 0.0 {
-                    stencil.weight[(to - window) as usize] += part * weight;
-                    stencil.slope[(to - window) as usize] += part * slope;
+                    for (sum, weights) in stencil.weights.iter_mut().zip(&weights) {
+                        sum[(to - window) as usize] += part * weights[k];
+                    }
                 }
             }
         }
@@ -92,33 +92,31 @@ impl HeightMap {
     /// Interpolated bicubically, exact at the points of the map. Next to masked points the height is interpolated linearly
     /// between the known points; it is missing if the nearest point is missing. Next to undecided points it is missing.
     pub fn height_at(&self, x1: f64, x2: f64) -> Option<f64> {
-        let [u1, u2] = self.indices(x1, x2)?;
-        let (along1, along2) = self.stencils(u1, u2);
-        let height = self.weighted(&along1.index, &along1.weight, &along2.index, &along2.weight);
-        if height.is_nan() && self.masked { self.linear_of_known(u1, u2) } else { Some(height).filter(|z| !z.is_nan()) }
+        let at = self.indices(x1, x2)?;
+        let height = self.weighted(&self.stencils(at), [0, 0]);
+        if height.is_nan() && self.masked { self.linear_of_known(at) } else { Some(height).filter(|z| !z.is_nan()) }
     }
 
     /// Slopes ∂z/∂x1 and ∂z/∂x2 of [`HeightMap::height_at`] at the point (x1, x2); `None` outside the map and where one
     /// of the sixteen points around is missing.
     pub fn slope_at(&self, x1: f64, x2: f64) -> Option<[f64; 2]> {
-        let [u1, u2] = self.indices(x1, x2)?;
-        let (along1, along2) = self.stencils(u1, u2);
-        let slope = [
-            self.weighted(&along1.index, &along1.slope, &along2.index, &along2.weight) / self.spacing[0],
-            self.weighted(&along1.index, &along1.weight, &along2.index, &along2.slope) / self.spacing[1],
-        ];
+        let stencils = self.stencils(self.indices(x1, x2)?);
+        let slope =
+            [self.weighted(&stencils, [1, 0]) / self.spacing[0], self.weighted(&stencils, [0, 1]) / self.spacing[1]];
         Some(slope).filter(|slope| slope.iter().all(|s| !s.is_nan()))
     }
 
-    fn stencils(&self, u1: f64, u2: f64) -> (Stencil, Stencil) {
-        (Stencil::new(u1, self.cells[0], self.periodic), Stencil::new(u2, self.cells[1], self.periodic))
+    fn stencils(&self, at: [f64; 2]) -> [Stencil; 2] {
+        [0, 1].map(|axis| Stencil::new(at[axis], self.cells[axis], self.periodic))
     }
 
-    /// Weighted sum of sixteen heights; NaN if one with a nonzero weight is missing.
-    fn weighted(&self, rows: &[usize; 4], of_rows: &[f64; 4], columns: &[usize; 4], of_columns: &[f64; 4]) -> f64 {
+    /// Sum of sixteen heights with their weights, or for `derivatives` of 1 along an axis the derivatives of these; NaN if a
+    /// height with a nonzero weight is missing.
+    fn weighted(&self, [rows, columns]: &[Stencil; 2], derivatives: [usize; 2]) -> f64 {
+        let (of_rows, of_columns) = (&rows.weights[derivatives[0]], &columns.weights[derivatives[1]]);
         let mut sum = 0.0;
-        for (i, a) in rows.iter().zip(of_rows).filter(|(_, a)| **a != 0.0) {
-            for (j, b) in columns.iter().zip(of_columns).filter(|(_, b)| **b != 0.0) {
+        for (i, a) in rows.index.iter().zip(of_rows).filter(|(_, a)| **a != 0.0) {
+            for (j, b) in columns.index.iter().zip(of_columns).filter(|(_, b)| **b != 0.0) {
                 sum += a * b * self.heights[i * self.cells[1] + j];
             }
         }
@@ -126,8 +124,8 @@ impl HeightMap {
     }
 
     /// Linear interpolation between the known heights among the four neighbours; `None` if the nearest is missing.
-    fn linear_of_known(&self, u1: f64, u2: f64) -> Option<f64> {
-        let ((b1, t1), (b2, t2)) = (split(u1), split(u2));
+    fn linear_of_known(&self, at: [f64; 2]) -> Option<f64> {
+        let [(b1, t1), (b2, t2)] = at.map(split);
         let (mut sum, mut weights) = (0.0, 0.0);
         for (d1, w1) in [(0.0, 1.0 - t1), (1.0, t1)] {
             for (d2, w2) in [(0.0, 1.0 - t2), (1.0, t2)] {

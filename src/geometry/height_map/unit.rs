@@ -47,35 +47,31 @@ impl LengthUnit {
 
     /// Number of units per metre.
     fn per_metre(self) -> f64 {
-        match self {
-            LengthUnit::Metre => 1.0,
-            LengthUnit::Centimetre => 1e2,
-            LengthUnit::Millimetre => 1e3,
-            LengthUnit::Micrometre => 1e6,
-            LengthUnit::Nanometre => 1e9,
-            LengthUnit::Angstrom => 1e10,
-            LengthUnit::Picometre => 1e12,
-        }
+        UNITS[self as usize].1
     }
 }
+
+/// The units, their number per metre, and their symbols.
+const UNITS: [(LengthUnit, f64, &[&str]); 7] = [
+    (LengthUnit::Metre, 1.0, &["m"]),
+    (LengthUnit::Centimetre, 1e2, &["cm"]),
+    (LengthUnit::Millimetre, 1e3, &["mm"]),
+    // micro sign, Greek letter, and the ASCII substitute
+    (LengthUnit::Micrometre, 1e6, &["\u{b5}m", "\u{3bc}m", "um"]),
+    (LengthUnit::Nanometre, 1e9, &["nm"]),
+    // letter, ångström sign, and the ASCII substitute
+    (LengthUnit::Angstrom, 1e10, &["\u{c5}", "\u{212b}", "A"]),
+    (LengthUnit::Picometre, 1e12, &["pm"]),
+];
 
 impl FromStr for LengthUnit {
     type Err = Error;
 
     /// The unit of a symbol: m, cm, mm, µm (um), nm, Å (A), pm. Case matters: Mm is not a millimetre.
     fn from_str(symbol: &str) -> Result<LengthUnit> {
-        match symbol.trim() {
-            "m" => Ok(LengthUnit::Metre),
-            "cm" => Ok(LengthUnit::Centimetre),
-            "mm" => Ok(LengthUnit::Millimetre),
-            // micro sign, Greek letter, and the ASCII substitute
-            "\u{b5}m" | "\u{3bc}m" | "um" => Ok(LengthUnit::Micrometre),
-            "nm" => Ok(LengthUnit::Nanometre),
-            // letter, ångström sign, and the ASCII substitute
-            "\u{c5}" | "\u{212b}" | "A" => Ok(LengthUnit::Angstrom),
-            "pm" => Ok(LengthUnit::Picometre),
-            other => Err(MapError::Unit { symbol: other.to_owned() }.into()),
-        }
+        let symbol = symbol.trim();
+        let known = UNITS.iter().find(|(.., symbols)| symbols.contains(&symbol));
+        known.map(|unit| unit.0).ok_or_else(|| MapError::Unit { symbol: symbol.to_owned() }.into())
     }
 }
 

@@ -86,15 +86,7 @@ impl HeightMap {
     /// If writing fails.
     #[cfg(feature = "npy")]
     pub fn write_npy(&self, writer: impl Write) -> Result<()> {
-        use crate::geometry::height_map::read::npy;
-        let [n1, n2] = self.cells;
-        let mut header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({n1}, {n2}), }}");
-        // magic number, version, length and header together have a multiple of 64 bytes and end with a line feed
-        let before = npy::MAGIC.len() + 4;
-        let length = (before + header.len() + 1).next_multiple_of(64) - before;
-        header += &" ".repeat(length - 1 - header.len());
-        header.push('\n');
-        let mut file = [npy::MAGIC, &[1, 0], &(length as u16).to_le_bytes(), header.as_bytes()].concat();
+        let mut file = crate::file::npy::header("<f8", &self.cells);
         file.extend(self.heights.iter().flat_map(|height| height.to_le_bytes()));
         save(writer, "NPY", &file)
     }

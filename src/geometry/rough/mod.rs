@@ -14,10 +14,11 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::Grid;
-use crate::error::{Error, Result, within};
+use crate::error::{Error, MapError, Result, within};
 use crate::geometry::height_spectrum::{HeightSpectrum, wave_numbers};
 use crate::geometry::{Geometry, HeightMap};
 use crate::memory;
+use crate::parallel::{Rows, part};
 
 /// A self-affine random surface: a sum of waves with Gaussian random amplitudes and the spectrum of a [`RoughSpec`].
 ///
@@ -51,15 +52,9 @@ impl Rough {
     /// If a value of the spec is out of range, the shortest wavelength is below two cells, or no wave of the spectrum
     /// fits the lengths. If there is no memory for waves and heights, 16 bytes per cell.
     pub fn new(grid: &Grid, spec: RoughSpec) -> Result<Rough> {
-        let (cells, spacing) = (grid.cells(), grid.spacing());
-        spec.validate_on(grid)?;
-        memory::check("a rough surface", HeightSpectrum::bytes(cells) + 8 * grid.len() as u128)?;
-        let Waves { mut spectrum, sums } = Waves::of(grid, &spec, 0..cells[1] / 2 + 1);
-        spectrum.scale(scale(&spec, &sums)?);
-        let map = HeightMap::on(&Grid::of_spacing(cells, spacing), spectrum.heights());
-        if let Some((entry, &value)) = map.heights().iter().enumerate().find(|(_, z)| !z.is_finite()) {
-            return Err(Error::Map(super::MapError::NotFinite { entry, value }));
-        }
+        let bytes = HeightSpectrum::bytes(grid.cells()) + 8 * grid.len() as u128;
+        let heights = heights(grid, &spec, &Rows::all(grid.cells()), bytes)?;
+        let map = HeightMap::on(&Grid::of_spacing(grid.cells(), grid.spacing()), heights);
         Ok(Rough { spec, map: map.periodic() })
     }
 
@@ -97,59 +92,65 @@ impl Geometry for Rough {
         self.map.initial_gap(x1, x2)
     }
 
-    fn fill_gap(&self, grid: &Grid, gap: &mut [f64]) {
-        self.map.fill_gap(grid, gap);
-    }
-
     fn fill_gap_at(&self, grid: &Grid, by: [f64; 2], gap: &mut [f64]) {
         self.map.fill_gap_at(grid, by, gap);
     }
 }
 
-/// Random waves before they are scaled to the specified roughness.
-struct Waves {
-    spectrum: HeightSpectrum,
-    /// Mean squares of height and slope of the waves of each k2.
-    sums: Vec<[f64; 2]>,
+/// The heights of the local rows, for which `bytes` are needed.
+fn heights(grid: &Grid, spec: &RoughSpec, rows: &Rows, bytes: u128) -> Result<Vec<f64>> {
+    let [_, n2] = grid.cells();
+    let columns = |rank: usize| part(n2 / 2 + 1, rank, rows.ranks());
+    rows.agree(spec.validate_on(grid).and_then(|()| memory::check("a rough surface", bytes)))?;
+    let (mut spectrum, sums) = waves(grid, spec, columns(rows.rank()));
+    let count = |rank: usize| 2 * columns(rank).len();
+    spectrum.scale(rows.gather(sums.into_iter().flatten(), count, |all| scale(spec, all.as_chunks::<2>().0))?);
+    let heights = spectrum.local_heights(rows);
+    let invalid = heights.iter().position(|z| !z.is_finite());
+    let own = invalid.map_or([f64::INFINITY, 0.0], |k| [(rows.own().start * n2 + k) as f64, heights[k]]);
+    let [entry, value] = rows.join(own, |a, b| if b[0] < a[0] { b } else { a });
+    if entry.is_finite() {
+        return Err(Error::Map(MapError::NotFinite { entry: entry as usize, value }));
+    }
+    Ok(heights)
 }
 
-impl Waves {
-    /// The waves of the k2 in `columns`.
-    fn of(grid: &Grid, spec: &RoughSpec, columns: Range<usize>) -> Waves {
-        let (cells, lengths) = (grid.cells(), grid.lengths());
-        let line = cells[0] == 1 || cells[1] == 1;
-        // Highest wave along each axis: within the spectrum and below the Nyquist wave of the grid.
-        let highest = [0, 1].map(|axis| {
-            let resolved = (cells[axis] as i64 - 1) / 2;
-            resolved.min((lengths[axis] / spec.shortest).ceil() as i64)
-        });
-        let origin = grid.center(0, 0);
-        let mut random = ChaCha8Rng::seed_from_u64(spec.seed);
-        let mut sums = vec![[0.0; 2]; columns.len()];
-        let first = columns.start as i64;
-        let mut spectrum = HeightSpectrum::zero(cells, columns);
-        for k1 in -highest[0]..=highest[0] {
-            // The position in the random stream depends on the wave alone, so that it is the same on every mesh.
-            random.set_stream(if k1 < 0 { -2 * k1 - 1 } else { 2 * k1 } as u64);
-            random.set_word_pos(WORDS_OF_A_WAVE * first as u128);
-            for (k2, sums) in (first..=highest[1]).zip(&mut sums) {
-                let amplitude = gaussian(&mut random);
-                if k2 == 0 && k1 <= 0 {
-                    continue; // conjugates of waves with k1 > 0, and the mean
-                }
-                let q = wave_numbers([k1, k2], lengths);
-                let density = spec.density(q, line);
-                if density > 0.0 {
-                    // The phase is relative to the middle of the grid.
-                    let amplitude = amplitude * density.sqrt() * Complex64::cis(q[0] * origin[0] + q[1] * origin[1]);
-                    spectrum.set([k1, k2], amplitude);
-                    sums[0] += 2.0 * amplitude.norm_sqr();
-                    sums[1] += 2.0 * amplitude.norm_sqr() * (q[0] * q[0] + q[1] * q[1]);
-                }
+/// Random waves of the k2 in `columns` before they are scaled to the specified roughness, and the mean squares of height and
+/// slope of the waves of each k2.
+fn waves(grid: &Grid, spec: &RoughSpec, columns: Range<usize>) -> (HeightSpectrum, Vec<[f64; 2]>) {
+    let (cells, lengths) = (grid.cells(), grid.lengths());
+    let line = cells[0] == 1 || cells[1] == 1;
+    // Highest wave along each axis: within the spectrum and below the Nyquist wave of the grid.
+    let highest = [0, 1].map(|axis| {
+        let resolved = (cells[axis] as i64 - 1) / 2;
+        resolved.min((lengths[axis] / spec.shortest).ceil() as i64)
+    });
+    let origin = grid.center(0, 0);
+    let mut random = ChaCha8Rng::seed_from_u64(spec.seed);
+    let mut sums = vec![[0.0; 2]; columns.len()];
+    let first = columns.start as i64;
+    let mut spectrum = HeightSpectrum::zero(cells, columns);
+    for k1 in -highest[0]..=highest[0] {
+        // The position in the random stream depends on the wave alone, so that it is the same on every mesh.
+        random.set_stream(if k1 < 0 { -2 * k1 - 1 } else { 2 * k1 } as u64);
+        random.set_word_pos(WORDS_OF_A_WAVE * first as u128);
+        for (k2, sums) in (first..=highest[1]).zip(&mut sums) {
+            let amplitude = gaussian(&mut random);
+            if k2 == 0 && k1 <= 0 {
+                continue; // conjugates of waves with k1 > 0, and the mean
+            }
+            let q = wave_numbers([k1, k2], lengths);
+            let density = spec.density(q, line);
+            if density > 0.0 {
+                // The phase is relative to the middle of the grid.
+                let amplitude = amplitude * density.sqrt() * Complex64::cis(q[0] * origin[0] + q[1] * origin[1]);
+                spectrum.set([k1, k2], amplitude);
+                sums[0] += 2.0 * amplitude.norm_sqr();
+                sums[1] += 2.0 * amplitude.norm_sqr() * (q[0] * q[0] + q[1] * q[1]);
             }
         }
-        Waves { spectrum, sums }
     }
+    (spectrum, sums)
 }
 
 /// The factor that scales waves of these mean squares to the specified roughness.

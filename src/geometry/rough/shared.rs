@@ -2,12 +2,11 @@
 
 use std::sync::Arc;
 
-use super::{Rough, RoughSpec, Waves, scale};
+use super::{Rough, RoughSpec, heights};
 use crate::Grid;
-use crate::error::{Error, MapError, Result};
+use crate::error::Result;
 use crate::geometry::Geometry;
-use crate::memory;
-use crate::parallel::{Ranks, Rows, catch_rank_loss, part};
+use crate::parallel::{Ranks, Rows, part};
 
 /// Distances from a cell centre below this, in cells, are rounding errors.
 const ROUNDING: f64 = 1e-6;
@@ -58,24 +57,11 @@ impl Rough {
     pub fn shared(grid: &Grid, spec: RoughSpec, ranks: &Arc<dyn Ranks>) -> Result<SharedRough> {
         let [n1, n2] = grid.cells();
         let rows = Rows::of_rank([n1, n2], Arc::clone(ranks));
-        catch_rank_loss(&rows, || {
+        rows.together(|| {
             let columns = part(n2 / 2 + 1, ranks.rank(), ranks.size());
             let bytes = 40 * n2.max(2) as u128 * (n1 * columns.len() / (n2 / 2 + 1)).max(rows.own().len()) as u128;
-            rows.agree(spec.validate_on(grid).and_then(|()| memory::check("a rough surface", bytes)))?;
-            let Waves { mut spectrum, sums } = Waves::of(grid, &spec, columns);
-            let count = |rank| 2 * part(n2 / 2 + 1, rank, ranks.size()).len();
-            let factor = rows
-                .gather(sums.into_iter().flatten(), count, |all| scale(&spec, all.as_chunks::<2>().0))
-                .unwrap_or(Err(Error::Missing { part: "ranks" }))?;
-            spectrum.scale(factor);
-            let heights = spectrum.local_heights(&rows);
+            let heights = heights(grid, &spec, &rows, bytes)?;
             let highest = rows.greatest(heights.iter().copied().fold(f64::NEG_INFINITY, f64::max));
-            let invalid = heights.iter().position(|z| !z.is_finite());
-            let own = invalid.map_or([f64::INFINITY, 0.0], |k| [(rows.own().start * n2 + k) as f64, heights[k]]);
-            let [entry, value] = rows.join(own, |a, b| if b[0] < a[0] { b } else { a });
-            if entry.is_finite() {
-                return Err(Error::Map(MapError::NotFinite { entry: entry as usize, value }));
-            }
             let grid = Grid::of_spacing([n1, n2], grid.spacing()).part([rows.own().start, 0], [rows.own().len(), n2]);
             Ok(SharedRough { spec, grid, heights, highest })
         })

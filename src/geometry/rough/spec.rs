@@ -107,16 +107,6 @@ impl RoughSpec {
 
     /// Rejects values out of range or out of order, and waves that the grid does not resolve.
     pub(super) fn validate_on(&self, grid: &Grid) -> Result<()> {
-        self.validate()?;
-        let (cells, spacing) = (grid.cells(), grid.spacing());
-        for axis in (0..2).filter(|&axis| cells[axis] > 1) {
-            let resolved = self.shortest >= 2.0 * spacing[axis] * (1.0 - 1e-12);
-            within("shortest wavelength", self.shortest, resolved, "at least two cells of the grid")?;
-        }
-        Ok(())
-    }
-
-    fn validate(&self) -> Result<()> {
         within("Hurst exponent", self.hurst, self.hurst > 0.0 && self.hurst <= 1.0, "in (0, 1]")?;
         positive("shortest wavelength", self.shortest)?;
         let in_order = self.roll_off >= self.shortest;
@@ -130,6 +120,11 @@ impl RoughSpec {
             Roughness::RmsHeight(height) => positive("rms height", height)?,
             Roughness::RmsSlope(slope) => positive("rms slope", slope)?,
         };
+        let (cells, spacing) = (grid.cells(), grid.spacing());
+        for axis in (0..2).filter(|&axis| cells[axis] > 1) {
+            let resolved = self.shortest >= 2.0 * spacing[axis] * (1.0 - 1e-12);
+            within("shortest wavelength", self.shortest, resolved, "at least two cells of the grid")?;
+        }
         Ok(())
     }
 

@@ -36,13 +36,8 @@ impl Foundation {
 
     /// The answer: the approach to a force, the force to an approach.
     pub fn step(&mut self, dt: f64, given: Given) -> f64 {
-        self.field.predict_non_negative(
-            &mut self.rule,
-            (dt, self.interpolant),
-            0.0,
-            &Rows::all([self.load.len(), 1]),
-            || true,
-        );
+        self.rule.compute_weights(dt, self.interpolant);
+        self.field.predict_non_negative(&mut self.rule, 0.0, &Rows::all([self.load.len(), 1]), || true);
         let c = self.rule.compliance();
         let touch: Vec<f64> = self.gap.iter().zip(self.field.trial()).map(|(g, u_old)| g + u_old).collect();
         let approach = match given {

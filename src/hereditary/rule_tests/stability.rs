@@ -35,13 +35,12 @@ impl Free {
     fn parts(&mut self, mut change: impl FnMut(usize, f64, &mut [f64])) {
         self.field.apply_pending_step(&self.rule);
         let (cells, branches) = (self.field.now.len(), self.rule.branches());
-        change(0, 1.0, &mut self.field.now);
         let (mut part, modulus) = (0, self.modulus);
-        self.field.past.change(&mut vec![0.0; cells], |own| {
+        self.field.change_start(&mut vec![0.0; cells], |own| {
+            change(part, if (1..=branches).contains(&part) { modulus } else { 1.0 }, own);
             part += 1;
-            change(part, if part <= branches { modulus } else { 1.0 }, own);
         });
-        assert_eq!(part + 1, cells);
+        assert_eq!(part, cells);
     }
 
     fn begin(&mut self) {

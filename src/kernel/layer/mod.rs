@@ -160,8 +160,8 @@ impl Layer {
         }
     }
 
-    /// What a uniform pressure moves the mean of a period by: nothing where the mean is the datum, for an incompressible layer,
-    /// and on a half-space.
+    /// Displacement of the mean of a period under a uniform unit pressure: zero for an incompressible layer and on a half-space,
+    /// where the mean is the datum.
     pub(super) fn compliance_of_period(&self) -> f64 {
         if self.is_on_rigid() { self.mean() } else { 0.0 }
     }
@@ -173,7 +173,7 @@ impl Layer {
 
     /// How much softer than the half-space of its own material it is for the longest waves: zero on a rigid base.
     pub(crate) fn longest_over_half_space(&self) -> f64 {
-        self.response().longest()
+        self.response().at(0.0)
     }
 
     /// Whether the layer yields to long waves only by being squeezed out.
@@ -187,21 +187,6 @@ impl Layer {
             Base::Frictionless => Response::Frictionless,
             Base::HalfSpace { shear_ratio, poisson } => Response::bonded(self.poisson, poisson, shear_ratio),
         }
-    }
-
-    /// What the layer adds to a half-space, for distances up to `last` \[m\].
-    pub(super) fn remainder_of_cells(&self, last: f64) -> Remainder {
-        Remainder::of_cells(self.response(), self.thickness, last)
-    }
-
-    /// The same in plane strain; `datum` \[m\] for a base that is a half-space.
-    pub(super) fn remainder_of_lines(&self, last: f64, datum: Option<f64>) -> Remainder {
-        Remainder::of_lines(self.response(), self.thickness, last, datum)
-    }
-
-    /// The same for a wave along the line.
-    pub(super) fn remainder_of_wave(&self, last: f64, kappa: f64) -> Option<Remainder> {
-        Remainder::of_wave(self.response(), self.thickness, last, kappa)
     }
 
     /// Rejects a material whose Poisson's ratio differs from the layer's: `nu` for each body of a contact, none where

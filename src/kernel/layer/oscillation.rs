@@ -13,7 +13,7 @@ use crate::quadrature::GaussLegendre;
 const END: f64 = 24.0;
 /// Longest piece of f.
 const LONGEST: f64 = 0.5;
-/// Half-waves that are integrated one by one before their series is extrapolated, and those it is extrapolated from.
+/// Half-waves that are integrated before the series is extrapolated, and half-waves that it is extrapolated from.
 const FIRST: usize = 12;
 const EXTRAPOLATED: usize = 28;
 /// Points on a piece.
@@ -86,7 +86,7 @@ impl<F: Fn(f64) -> f64> Oscillation<F> {
         sums[0]
     }
 
-    /// The same between two limits.
+    /// ∫ f(t) w(xt) dt between two limits.
     fn between(&self, from: f64, to: f64, x: f64) -> f64 {
         let inside = |end: f64| end.min(to);
         let first = self.pieces.partition_point(|&end| end <= from);

@@ -1,4 +1,4 @@
-//! What a layer adds to the influence coefficients of a half-space.
+//! The addition of a layer to the influence coefficients of a half-space.
 //!
 //! Of the compliance (2/q) L(qh), the half-space has (2/q), in closed form: Love's, or a line's. The rest is
 //! smooth on the scale h: a point load adds, at the distance r,
@@ -19,9 +19,9 @@
 
 use std::f64::consts::{FRAC_2_PI, PI};
 
+use super::Layer;
 use super::oscillation::{Oscillation, Weight};
 use super::table::Table;
-use super::wave::Response;
 use crate::quadrature::GaussLegendre;
 
 /// Error of the integral over a cell, relative to the integrand: digits of the rule with n points on a piece whose
@@ -32,7 +32,7 @@ const MOST_POINTS: usize = 10;
 
 /// κh of a wave that leaves e^(−2κh) of itself at the base: rounding.
 const DEEPEST_WAVE: f64 = 20.0;
-/// κx of one that has decayed to rounding.
+/// κx of a wave that has decayed to rounding.
 const FARTHEST_WAVE: f64 = 40.0;
 
 /// The remainder of a layer, by distance.
@@ -40,8 +40,8 @@ const FARTHEST_WAVE: f64 = 40.0;
 pub(in crate::kernel) struct Remainder {
     thickness: f64,
     table: Table,
-    /// 1 − L(0) for lines, which have a logarithm beside the table.
-    log: Option<f64>,
+    /// 1 − L(0) for lines, which have a logarithm beside the table, else 0.
+    log: f64,
     /// w at the datum, where it counts as zero.
     datum: f64,
     /// Rules of 1, 2, … points.
@@ -49,31 +49,31 @@ pub(in crate::kernel) struct Remainder {
 }
 
 impl Remainder {
-    /// That of a load on a cell, for distances up to `last` \[m\].
-    pub(super) fn of_cells(response: Response, thickness: f64, last: f64) -> Remainder {
+    /// The remainder of a load on a cell, for distances up to `last` \[m\].
+    pub(in crate::kernel) fn of_cells(layer: &Layer, last: f64) -> Remainder {
+        let response = layer.response();
         let hankel = Oscillation::new(Weight::Bessel, response.least_scale(), |t| response.less_one(t));
-        Remainder::new(thickness, Table::new(last / thickness, |x| hankel.integral(x)), None)
+        Remainder::new(layer, last, |x| hankel.integral(x))
     }
 
-    /// That of a load on a line; `datum` \[m\] is where the displacement on a base that is a half-space is zero.
-    pub(super) fn of_lines(response: Response, thickness: f64, last: f64, datum: Option<f64>) -> Remainder {
-        let longest = response.longest();
+    /// The remainder of a load on a line; `datum` \[m\] is where the displacement on a base that is a half-space is zero.
+    pub(in crate::kernel) fn of_lines(layer: &Layer, last: f64, datum: Option<f64>) -> Remainder {
+        let (response, longest) = (layer.response(), layer.longest_over_half_space());
         let fourier = Oscillation::new(Weight::Cosine, response.least_scale(), |t: f64| {
             ((response.at(t) - longest) + (1.0 - longest) * (-2.0 * t).exp_m1()) / t
         });
-        let log = Some(1.0 - longest);
-        let mut remainder = Remainder::new(thickness, Table::new(last / thickness, |x| fourier.integral(x)), log);
-        if let Some(datum) = datum {
-            let x = datum / thickness;
-            remainder.datum = FRAC_2_PI * (fourier.integral(x) + logarithm(1.0 - longest, x));
-        }
-        remainder
+        let log = 1.0 - longest;
+        let at_datum = datum.map_or(0.0, |datum| {
+            let x = datum / layer.thickness;
+            FRAC_2_PI * (fourier.integral(x) + logarithm(log, x))
+        });
+        Remainder { log, datum: at_datum, ..Remainder::new(layer, last, |x| fourier.integral(x)) }
     }
 
-    /// That of a load on a line that varies as a wave of wave number `kappa` \[1/m\] > 0 along it; `None` where the wave does
-    /// not reach the base.
-    pub(super) fn of_wave(response: Response, thickness: f64, last: f64, kappa: f64) -> Option<Remainder> {
-        let k = kappa * thickness;
+    /// The remainder of a load on a line that varies as a wave of wave number `kappa` \[1/m\] > 0 along it; `None` where the wave
+    /// does not reach the base.
+    pub(in crate::kernel) fn of_wave(layer: &Layer, last: f64, kappa: f64) -> Option<Remainder> {
+        let (response, k) = (layer.response(), kappa * layer.thickness);
         if k > DEEPEST_WAVE {
             return None;
         }
@@ -83,13 +83,13 @@ impl Remainder {
             response.less_one(tau) / tau
         });
         // far along the surface the wave is gone, with and without the layer
-        let added = |x: f64| if k * x > FARTHEST_WAVE { 0.0 } else { fourier.integral(x) };
-        Some(Remainder::new(thickness, Table::new(last / thickness, added), None))
+        Some(Remainder::new(layer, last, |x| if k * x > FARTHEST_WAVE { 0.0 } else { fourier.integral(x) }))
     }
 
-    fn new(thickness: f64, table: Table, log: Option<f64>) -> Remainder {
-        let rules = (1..=MOST_POINTS).map(GaussLegendre::new).collect();
-        Remainder { thickness, table, log, datum: 0.0, rules }
+    /// `added` is the addition at a distance in units of the thickness.
+    fn new(layer: &Layer, last: f64, added: impl Fn(f64) -> f64) -> Remainder {
+        let (thickness, rules) = (layer.thickness, (1..=MOST_POINTS).map(GaussLegendre::new).collect());
+        Remainder { thickness, table: Table::new(last / thickness, added), log: 0.0, datum: 0.0, rules }
     }
 
     /// The displacement \[m\] under a unit pressure on the rectangle of these sides \[m\] around a point `at` \[m\].
@@ -99,7 +99,7 @@ impl Remainder {
         self.over(at, sides) * self.thickness / PI
     }
 
-    /// The same on a strip, in plane strain.
+    /// The displacement \[m\] under a unit pressure on a strip of this width \[m\] at a distance \[m\], in plane strain.
     pub(in crate::kernel) fn on_line(&self, at: f64, side: f64) -> f64 {
         let [at, side] = [at, side].map(|length| length / self.thickness);
         FRAC_2_PI * self.along(at, side) * self.thickness - self.datum * side * self.thickness
@@ -127,19 +127,18 @@ impl Remainder {
         0.25 * sides[0] * sides[1] * rules[0].sum(|x| row(at[0] + 0.5 * sides[0] * x))
     }
 
-    /// ∫ over an interval, of what a line adds.
+    /// ∫ of the addition of a line over an interval.
     fn along(&self, at: f64, side: f64) -> f64 {
         let distance = (at.abs() - 0.5 * side).max(0.0).hypot(2.0);
         let points = points(side, distance);
         if points > MOST_POINTS {
             return self.along(at - 0.25 * side, 0.5 * side) + self.along(at + 0.25 * side, 0.5 * side);
         }
-        let log = self.log.unwrap_or(0.0);
         let rule = &self.rules[points - 1];
         0.5 * side
             * rule.sum(|s| {
                 let x = (at + 0.5 * side * s).abs();
-                self.table.at(x) + logarithm(log, x)
+                self.table.at(x) + logarithm(self.log, x)
             })
     }
 }

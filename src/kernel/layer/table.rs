@@ -14,13 +14,13 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// That of `function` for distances from 0 to `last`.
+    /// The table of `function` for distances from 0 to `last`.
     pub(super) fn new(last: f64, function: impl Fn(f64) -> f64) -> Table {
         let count = if last <= 1.0 { 1 } else { interval(last) + 1 };
         Table { series: (0..count).map(|n| chebyshev(ends(n), &function)).collect() }
     }
 
-    /// The function at the distance `x`, at most that which it was made for.
+    /// The function at the distance `x`, at most the last distance of the table.
     pub(super) fn at(&self, x: f64) -> f64 {
         let n = interval(x).min(self.series.len() - 1);
         let [from, to] = ends(n);

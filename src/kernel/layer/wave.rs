@@ -103,11 +103,6 @@ impl Response {
         }
     }
 
-    /// L(0): the compliance of a base that is a half-space, relative to the layer; zero on a rigid base.
-    pub(super) fn longest(&self) -> f64 {
-        self.at(0.0)
-    }
-
     /// The least t at which L changes its course: soft bases dominate for waves much longer than the layer is thick.
     pub(super) fn least_scale(&self) -> f64 {
         match self {

@@ -5,19 +5,15 @@ use num_complex::Complex64;
 use super::workspace::CACHE_LINE;
 use super::{AREA, Shares, TILE};
 use crate::kernel::layout::Layout;
-use crate::parallel::lanes;
+use crate::parallel::{lanes, rows_in_a_tile};
 
 const REAL: u128 = size_of::<f64>() as u128;
 const COMPLEX: u128 = size_of::<Complex64>() as u128;
 
 impl Layout {
-    /// Bytes of an operator: its spectrum, and the tables of its transforms.
-    pub(crate) fn operator_bytes(&self) -> u128 {
-        self.operator_bytes_of(self.independent(1))
-    }
-
-    /// Bytes of an operator with so many columns of the spectrum.
-    fn operator_bytes_of(&self, columns: usize) -> u128 {
+    /// Bytes of an operator: its spectrum, of which ranks that share it out have some columns, and the tables of its transforms.
+    pub(crate) fn operator_bytes(&self, shares: Option<&Shares>) -> u128 {
+        let columns = shares.map_or(self.independent(1), |shares| shares.columns(self).len());
         let spectrum = REAL * self.independent(0) as u128 * columns as u128;
         let tables = [0, 1].map(|axis| {
             // forward and inverse: about one complex number each per number of the line
@@ -29,42 +25,42 @@ impl Layout {
         spectrum + tables[0] + tables[1] + column
     }
 
-    /// Bytes of the buffers of an operator, for as many threads as pay off for this size.
-    pub(crate) fn workspace_bytes(&self) -> u128 {
-        let lanes = lanes(self.cells[0].saturating_mul(self.cells[1])) as u128;
-        self.workspace_bytes_of(lanes, self.tiles() * if lanes > 1 { 2 } else { 1 })
-    }
-
-    /// Bytes of the buffers of so many threads, with so many values between the passes.
-    fn workspace_bytes_of(&self, lanes: u128, tiles: u128) -> u128 {
+    /// Bytes of the buffers of an operator, for as many threads as pay off for this size, or for the one of a rank.
+    pub(crate) fn workspace_bytes(&self, shares: Option<&Shares>) -> u128 {
         let [lines, columns] = [self.line(1) as u128, self.line(0) as u128];
         if self.is_single_column() {
-            let (real, scratch) = if self.folded[0] { (0, columns) } else { (REAL * columns, columns / 2) };
-            return real + COMPLEX * (self.waves() as u128 + scratch);
+            let (real, scratch) = if self.folded[0] { (0, columns) } else { (columns, columns / 2) };
+            let all = if shares.is_some() { self.cells[0] as u128 } else { 0 };
+            return REAL * (real + all) + COMPLEX * (self.waves() as u128 + scratch);
         }
         let slack = (CACHE_LINE / size_of::<Complex64>()) as u128;
         let stride = columns.next_multiple_of(TILE as u128) + TILE as u128;
         let lane = lines + TILE as u128 * stride + lines.max(columns) + 3 * slack;
-        COMPLEX * (tiles + lanes * lane)
+        COMPLEX * (self.between(shares) + self.lanes(shares) as u128 * lane)
     }
 
-    /// Bytes of the buffers of an operator beside one of this layout.
-    pub(crate) fn workspace_bytes_beside(&self, lender: &Layout) -> u128 {
-        let lanes = lanes(self.cells[0].saturating_mul(self.cells[1]));
-        let lent = COMPLEX * self.tiles() * if lanes > 1 { 2 } else { 1 };
-        self.workspace_bytes() - if lender.lends_to(self) { lent } else { 0 }
+    /// Bytes of the buffers that an operator of another layout, on the same cells, lends to one of this layout.
+    pub(crate) fn lent_bytes(&self, shares: Option<&Shares>, (lender, lending): (&Layout, Option<&Shares>)) -> u128 {
+        let lends =
+            !self.is_single_column() && !lender.is_single_column() && lender.tiles(lending) >= self.tiles(shares);
+        if lends { COMPLEX * self.between(shares) } else { 0 }
     }
 
-    /// Whether the buffers of an operator of this layout suffice for one of another, on the same cells.
-    pub(super) fn lends_to(&self, other: &Layout) -> bool {
-        !self.is_single_column() && !other.is_single_column() && self.tiles() >= other.tiles()
+    /// As many threads as pay off for this size; one for each rank, if ranks share it.
+    pub(super) fn lanes(&self, shares: Option<&Shares>) -> usize {
+        if shares.is_some() { 1 } else { lanes(self.cells[0].saturating_mul(self.cells[1])) }
+    }
+
+    /// Number of complex values that the buffers hold between the passes.
+    fn between(&self, shares: Option<&Shares>) -> u128 {
+        self.tiles(shares) * if shares.is_some() || self.lanes(shares) > 1 { 2 } else { 1 }
     }
 
     /// Number of values that the buffers hold between the passes: it differs between workspaces of different sizes.
     pub(crate) fn numbers(&self) -> usize {
         let numbers = match self.is_single_column() {
             true => 2 * self.waves() as u128 + if self.folded[0] { 0 } else { self.line(0) as u128 },
-            false => 2 * self.tiles(),
+            false => 2 * self.tiles(None),
         };
         usize::try_from(numbers).unwrap_or(usize::MAX)
     }
@@ -79,28 +75,10 @@ impl Layout {
         if self.folded[0] { self.line(0) } else { self.independent(0) }
     }
 
-    /// Number of complex values in all tiles.
-    fn tiles(&self) -> u128 {
-        let high = if self.folded[1] { 2 * TILE } else { TILE };
-        self.independent(1).div_ceil(TILE) as u128 * AREA as u128 * self.cells[0].div_ceil(high) as u128
-    }
-}
-
-impl Shares {
-    /// Bytes of an operator that ranks share out: of own columns.
-    pub(crate) fn operator_bytes(&self, layout: &Layout) -> u128 {
-        layout.operator_bytes_of(self.columns(layout).len())
-    }
-
-    /// Bytes of its buffers: buffers of one thread, and of sent and received numbers.
-    pub(crate) fn workspace_bytes(&self, layout: &Layout) -> u128 {
-        let whole = if layout.is_single_column() { REAL * layout.cells[0] as u128 } else { 0 };
-        whole + layout.workspace_bytes_of(1, 2 * self.most() as u128)
-    }
-
-    /// Bytes of buffers beside another operator, whose buffers are borrowed where they suffice.
-    pub(crate) fn workspace_bytes_beside(&self, layout: &Layout, lender: &Shares) -> u128 {
-        let lends = !layout.is_single_column() && lender.most() >= self.most();
-        self.workspace_bytes(layout) - if lends { COMPLEX * 2 * self.most() as u128 } else { 0 }
+    /// Number of complex values in all tiles, or the most that a rank has of them at a time.
+    pub(super) fn tiles(&self, shares: Option<&Shares>) -> u128 {
+        let high = rows_in_a_tile(self.folded);
+        let all = || self.independent(1).div_ceil(TILE) as u128 * AREA as u128 * self.cells[0].div_ceil(high) as u128;
+        shares.map_or_else(all, |shares| shares.most() as u128)
     }
 }

@@ -42,23 +42,18 @@ pub(crate) struct SpectralOperator {
     spectrum: Vec<f64>,
     /// The transform of a single column, which has no tiles.
     column: Option<Column>,
-    /// Who has which tiles of rows and panels of columns, if ranks share them out; `spectrum` holds the local columns.
+    /// Shares of the ranks, if they share out the rows; `spectrum` holds the local columns.
     shares: Option<Shares>,
 }
 
 impl SpectralOperator {
     /// Multiplication of the Fourier coefficients on [`Layout::period`] by `symbol(k1, k2)`, for wave numbers
-    /// 0 … period/2 along each axis.
-    pub(crate) fn from_symbol(layout: Layout, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator {
-        SpectralOperator::new(layout, None, symbol)
-    }
-
-    /// The same where ranks share out the rows; `symbol` is called for local columns k2 alone.
-    pub(crate) fn shared(layout: Layout, shares: Shares, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator {
-        SpectralOperator::new(layout, Some(shares), symbol)
-    }
-
-    fn new(layout: Layout, shares: Option<Shares>, symbol: impl Fn(usize, usize) -> f64) -> SpectralOperator {
+    /// 0 … period/2 along each axis; where ranks share out the rows, for local columns k2 alone.
+    pub(crate) fn new(
+        layout: Layout,
+        shares: Option<Shares>,
+        symbol: impl Fn(usize, usize) -> f64,
+    ) -> SpectralOperator {
         let [columns, rows] = [0, 1].map(|axis| Line::new(layout.line(axis), layout.folded[axis]));
         let scale = 1.0 / (rows.norm() * columns.norm());
         let own = shares.as_ref().map_or(0..rows.independent(), |shares| shares.columns(&layout));
@@ -77,7 +72,7 @@ impl SpectralOperator {
 
     /// Number of complex values in all tiles, or the most that a rank has of them at a time.
     fn tiles(&self) -> usize {
-        self.shares.as_ref().map_or(self.across() * self.down() * AREA, Shares::most)
+        self.layout.tiles(self.shares.as_ref()) as usize
     }
 
     /// Number of tiles below each other.
@@ -133,7 +128,7 @@ impl SpectralOperator {
             return self.convolve_column(column, input, &mut work.column);
         }
         let share = self.down().div_ceil(work.lanes.len());
-        let task = RowsForward { operator: self, input, share };
+        let task = RowsForward { operator: self, input };
         // buffers that are lent may be longer
         let tiles = &mut work.tiles[..self.tiles()];
         for_each_share(&task, &mut work.lanes, tiles, share * self.across() * AREA);
@@ -142,7 +137,7 @@ impl SpectralOperator {
             return for_each_share(&task, std::slice::from_mut(lane), tiles, usize::MAX);
         }
         let share = self.across().div_ceil(work.lanes.len());
-        let task = Columns { operator: self, tiles, share };
+        let task = Columns { operator: self, tiles };
         for_each_share(&task, &mut work.lanes, &mut work.result[..self.tiles()], share * self.down() * AREA);
     }
 
@@ -150,14 +145,14 @@ impl SpectralOperator {
     fn read(&self, output: &mut [f64], work: &mut TransformWorkspace) {
         if let Some(column) = &self.column {
             return match &self.shares {
-                Some(shares) => self.read_own_of_column(column, shares, &mut work.column, output),
+                Some(shares) => output.copy_from_slice(&work.column.all[shares.rows.own()]),
                 None => self.read_column(column, &work.column, output),
             };
         }
         let share = self.down().div_ceil(work.lanes.len());
         let in_place = work.lanes.len() == 1;
         let tiles = if in_place { &work.tiles } else { &work.result };
-        let task = RowsInverse { operator: self, tiles, in_place, share };
+        let task = RowsInverse { operator: self, tiles, in_place };
         for_each_share(&task, &mut work.lanes, output, share * self.rows_in_a_tile() * self.layout.cells[1]);
     }
 
@@ -215,8 +210,8 @@ mod tests {
         /// Convolution with the even kernel whose coefficient at distance (i, j) is `coefficient(i, j)`; called for
         /// distances below the number of cells (twice that along a folded axis), taken as zero beyond.
         pub(crate) fn from_coefficients(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> SpectralOperator {
-            let spectrum = EvenSpectrum::of(layout, None, coefficient);
-            SpectralOperator::from_symbol(layout, |k1, k2| spectrum.at(k1, k2))
+            let spectrum = EvenSpectrum::of(layout, None, &|[i, j]| coefficient(i, j));
+            SpectralOperator::new(layout, None, |k1, k2| spectrum.at(k1, k2))
         }
     }
 
@@ -265,7 +260,7 @@ mod tests {
                 let input = signal(cells);
                 let mut output = vec![f64::NAN; input.len()];
                 // many times: what remains in the workspace must not grow
-                let mut work = operator.workspace_for(1);
+                let mut work = operator.buffers(1, operator.tiles());
                 for _ in 0..500 {
                     operator.apply(&input, &mut output, &mut work);
                 }
@@ -273,7 +268,7 @@ mod tests {
                     let exact = sum(layout, &input, [k / cells[1], k % cells[1]], coefficient);
                     assert!((value - exact).abs() < 1e-12, "{cells:?} {folded:?} {k}: {value} {exact}");
                 }
-                let (mut threaded, mut work) = (vec![f64::NAN; input.len()], operator.workspace_for(3));
+                let (mut threaded, mut work) = (vec![f64::NAN; input.len()], operator.buffers(3, operator.tiles()));
                 for _ in 0..500 {
                     operator.apply(&input, &mut threaded, &mut work);
                 }
@@ -291,7 +286,7 @@ mod tests {
         for n in [64, 128, 256, 512, 1024] {
             let time = |layout: Layout, input: &mut [f64]| {
                 let operator = SpectralOperator::from_coefficients(layout, kernel);
-                let mut work = operator.workspace_for(1);
+                let mut work = operator.buffers(1, operator.tiles());
                 let best = |seconds: f64, _| {
                     let start = Instant::now();
                     operator.apply_in_place(input, &mut work);
@@ -321,7 +316,7 @@ mod tests {
             let layout = Layout { cells: [12, 16], ends: [Ends::Periodic; 2], folded };
             let period = [layout.period(0), layout.period(1)];
             for k in [[0, 0], [2, 3], [0, 5], [6, 0], [5, 4]] {
-                let operator = SpectralOperator::from_symbol(layout, |k1, k2| (1 + k1 + 10 * k2) as f64);
+                let operator = SpectralOperator::new(layout, None, |k1, k2| (1 + k1 + 10 * k2) as f64);
                 let wave = |axis: usize, n: usize| {
                     let shift = if folded[axis] { 0.5 } else { 0.0 };
                     (std::f64::consts::TAU * k[axis] as f64 * (n as f64 + shift) / period[axis] as f64).cos()

@@ -12,7 +12,6 @@ use crate::parallel::Task;
 pub(super) struct RowsForward<'a> {
     pub(super) operator: &'a SpectralOperator,
     pub(super) input: &'a [f64],
-    pub(super) share: usize,
 }
 
 impl Task for RowsForward<'_> {
@@ -20,12 +19,12 @@ impl Task for RowsForward<'_> {
     type Item = Complex64;
 
     #[inline(always)]
-    fn run(&self, k: usize, lane: &mut Lane, tiles: &mut [Complex64]) {
+    fn run(&self, start: usize, lane: &mut Lane, tiles: &mut [Complex64]) {
         let (cells, line) = (self.operator.layout.cells[1], &self.operator.rows);
         let (run, high) = (self.operator.across() * AREA, self.operator.rows_in_a_tile());
         let (buffer, scratch) = (lane.line.get(), lane.scratch.get());
         for (block, tiles) in tiles.chunks_exact_mut(run).enumerate() {
-            let first = (k * self.share + block) * high * cells;
+            let first = (start / run + block) * high * cells;
             let rows = &self.input[first..self.input.len().min(first + high * cells)];
             for (i, pair) in rows.chunks(2 * cells).enumerate() {
                 let (first, second) = pair.split_at(cells);
@@ -89,7 +88,6 @@ impl Task for ColumnsInPlace<'_> {
 pub(super) struct Columns<'a> {
     pub(super) operator: &'a SpectralOperator,
     pub(super) tiles: &'a [Complex64],
-    pub(super) share: usize,
 }
 
 impl Task for Columns<'_> {
@@ -97,10 +95,10 @@ impl Task for Columns<'_> {
     type Item = Complex64;
 
     #[inline(always)]
-    fn run(&self, k: usize, lane: &mut Lane, result: &mut [Complex64]) {
+    fn run(&self, start: usize, lane: &mut Lane, result: &mut [Complex64]) {
         let (across, down) = (self.operator.across(), self.operator.down());
         for (panel, result) in result.chunks_exact_mut(down * AREA).enumerate() {
-            let panel = k * self.share + panel;
+            let panel = start / (down * AREA) + panel;
             self.operator.gather(self.tiles, |tile| (tile * across + panel) * AREA, lane.block.get());
             self.operator.convolve_panel(panel, lane);
             self.operator.scatter(lane.block.get(), result, |tile| tile * AREA);
@@ -113,7 +111,6 @@ pub(super) struct RowsInverse<'a> {
     pub(super) operator: &'a SpectralOperator,
     pub(super) tiles: &'a [Complex64],
     pub(super) in_place: bool,
-    pub(super) share: usize,
 }
 
 impl Task for RowsInverse<'_> {
@@ -121,12 +118,12 @@ impl Task for RowsInverse<'_> {
     type Item = f64;
 
     #[inline(always)]
-    fn run(&self, k: usize, lane: &mut Lane, output: &mut [f64]) {
+    fn run(&self, start: usize, lane: &mut Lane, output: &mut [f64]) {
         let (cells, line) = (self.operator.layout.cells[1], &self.operator.rows);
         let (across, down, high) = (self.operator.across(), self.operator.down(), self.operator.rows_in_a_tile());
         let (buffer, scratch) = (lane.line.get(), lane.scratch.get());
         for (block, rows) in output.chunks_mut(high * cells).enumerate() {
-            let tile = k * self.share + block;
+            let tile = start / (high * cells) + block;
             let at = |panel: usize| if self.in_place { tile * across + panel } else { panel * down + tile };
             for (i, pair) in rows.chunks_mut(2 * cells).enumerate() {
                 let (first, second) = pair.split_at_mut(cells);

@@ -7,7 +7,6 @@ use num_complex::Complex64;
 use super::column::ColumnWorkspace;
 use super::{SpectralOperator, TILE};
 use crate::kernel::layout::Layout;
-use crate::parallel::lanes;
 
 /// Buffers of a [`SpectralOperator`]: made once, used by every application.
 #[derive(Clone)]
@@ -59,31 +58,22 @@ impl Buffer {
 impl SpectralOperator {
     /// Buffers for [`SpectralOperator::apply`], for as many threads as pay off for this size.
     pub(crate) fn workspace(&self) -> TransformWorkspace {
-        self.workspace_for(self.lanes())
+        self.buffers(self.lanes(), self.tiles())
     }
 
-    /// As many threads as pay off for this size; one for each rank, if ranks share it.
     fn lanes(&self) -> usize {
-        if self.shares.is_some() { 1 } else { lanes(self.layout.cells[0] * self.layout.cells[1]) }
+        self.layout.lanes(self.shares.as_ref())
     }
 
-    /// Buffers for [`SpectralOperator::apply_beside`] an operator of the same cells, which lends its tiles if they suffice.
+    /// Buffers for [`SpectralOperator::apply_beside`] an operator of the same cells, which lends its tiles if they suffice. (On a
+    /// rank the smaller operator may have more tiles.)
     pub(crate) fn workspace_beside(&self, lender: &SpectralOperator) -> TransformWorkspace {
-        let lends = match (&self.shares, &lender.shares) {
-            (None, None) => lender.layout.lends_to(&self.layout),
-            // by chance of who has which, the smaller operator may have more of them on a rank
-            _ => self.column.is_none() && lender.column.is_none() && lender.tiles() >= self.tiles(),
-        };
+        let lends = self.column.is_none() && lender.column.is_none() && lender.tiles() >= self.tiles();
         self.buffers(self.lanes(), if lends { 0 } else { self.tiles() })
     }
 
-    /// Buffers for `lanes` threads.
-    pub(crate) fn workspace_for(&self, lanes: usize) -> TransformWorkspace {
-        self.buffers(lanes, self.tiles())
-    }
-
     /// Buffers for `lanes` threads, `tiles` values between the passes.
-    fn buffers(&self, lanes: usize, tiles: usize) -> TransformWorkspace {
+    pub(super) fn buffers(&self, lanes: usize, tiles: usize) -> TransformWorkspace {
         let layout = self.layout;
         if let Some(column) = &self.column {
             let mut column = column.workspace(&self.columns);
@@ -105,7 +95,7 @@ impl SpectralOperator {
 }
 
 impl TransformWorkspace {
-    /// Exchanges what is stored between the passes.
+    /// Swaps the buffers between the passes.
     pub(super) fn trade_tiles(&mut self, other: &mut TransformWorkspace) {
         std::mem::swap(&mut self.tiles, &mut other.tiles);
         std::mem::swap(&mut self.result, &mut other.result);

@@ -180,7 +180,7 @@ impl FitReport {
     }
 
     /// The warning, if any; for measurements only. Steps of a contact with such a material have
-    /// [`Warning::UncertainMaterial`](crate::contact::Warning::UncertainMaterial).
+    /// [`Warnings::UNCERTAIN_MATERIAL`](crate::contact::Warnings::UNCERTAIN_MATERIAL).
     pub fn warning(&self) -> Option<FitWarning> {
         self.warning
     }

@@ -65,7 +65,7 @@ macro_rules! tabulated {
 /// Over four to eight decades of smooth creep without noise, the error of J at and between the rows is below 0.1 % with
 /// two rows per decade or more. With fewer it is below 0.3 % in most cases, and several percent at worst. Where the
 /// rows do not determine J between them, [`FitReport::warning`] reports it, as do the steps of a contact
-/// ([`Warning::UncertainMaterial`](crate::contact::Warning::UncertainMaterial)).
+/// ([`Warnings::UNCERTAIN_MATERIAL`](crate::contact::Warnings::UNCERTAIN_MATERIAL)).
 ///
 /// Outside the data: creep before the first time counts as elastic (the compliance is between J_g of the fit and its
 /// value there). After the last time J is NaN, and a step of a contact fails with
@@ -108,7 +108,7 @@ tabulated!(TabulatedCreep, CREEP);
 /// as long: after a drop to a tenth, creep is uncertain by a factor of two at the first time, and by 5 % at five times as
 /// long or more. [`FitReport::uncertainties`] includes it, and [`Rheology::measured`](crate::rheology::Rheology::measured) begins
 /// where it is below 5 %, so that shorter steps of a contact warn by
-/// [`Warning::FasterThanMaterial`](crate::contact::Warning::FasterThanMaterial).
+/// [`Warnings::FASTER_THAN_MATERIAL`](crate::contact::Warnings::FASTER_THAN_MATERIAL).
 ///
 /// ```
 /// use viscocontact::rheology::{Rheology, TabulatedRelaxation};

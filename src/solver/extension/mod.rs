@@ -128,7 +128,7 @@ impl Extension {
             local,
             own: vec![0.0; own],
             ghosts: Ghosts::beside(rows, |rank| rows.of(rank), cells, periodic[0]),
-            neighbours: rows.group().map(|group| HaloExchange::new(group, cells[1])),
+            neighbours: HaloExchange::new(rows, cells[1]),
             rows: rows.clone(),
         }
     }
@@ -290,7 +290,7 @@ fn raise<T: Task<Lane = RowBuffers, Item = f64> + Sync>(
         return run(task, buffers, &mut level.value, level.kept.start, columns);
     };
     let of = |rank: usize| blocks_of(rows.of(rank), height);
-    let first = of(rows.group().map_or(0, |group| group.rank())).start;
+    let first = of(rows.rank()).start;
     run(task, buffers, own, first, columns);
     rows.gather_rows(own, &mut level.value, |rank| columns * of(rank).len());
 }

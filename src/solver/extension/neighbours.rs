@@ -1,11 +1,8 @@
 //! Rows of neighbours, where ranks share out the rows of a field.
 
 use std::ops::Range;
-use std::sync::Arc;
 
-use num_complex::Complex64;
-
-use crate::parallel::{Ranks, Rows, unwind_rank_loss};
+use crate::parallel::Rows;
 use crate::solver::extension::passes::{NOTHING_KNOWN, weight};
 
 /// Halo rows of a level: the row before the local rows and the row after them, where another rank has these.
@@ -29,15 +26,17 @@ impl Ghosts {
         [n1, n2]: [usize; 2],
         periodic: bool,
     ) -> Ghosts {
-        let Some(group) = rows.group() else { return Ghosts::default() };
-        let own = of(group.rank());
+        if !rows.are_shared() {
+            return Ghosts::default();
+        }
+        let own = of(rows.rank());
         if own.is_empty() {
             return Ghosts::default();
         }
         let before = own.start.checked_sub(1).or(periodic.then_some(n1 - 1));
         let after = Some(own.end).filter(|&row| row < n1).or(periodic.then_some(0));
         let beside = [before, after].map(|row| row.filter(|row| !own.contains(row)));
-        let owner = |row: usize| (0..group.size()).find(|&rank| of(rank).contains(&row));
+        let owner = |row: usize| (0..rows.ranks()).find(|&rank| of(rank).contains(&row));
         let field = |row: Option<usize>| vec![0.0; if row.is_some() { n2 } else { 0 }];
         debug_assert_eq!(weight(NOTHING_KNOWN), 0.0);
         Ghosts {
@@ -73,57 +72,48 @@ impl Ghosts {
 /// Fetches rows from neighbours.
 #[derive(Debug, Clone)]
 pub(crate) struct HaloExchange {
-    group: Arc<dyn Ranks>,
-    row: Vec<f64>,
-    send: Vec<Complex64>,
-    received: Vec<Complex64>,
+    rows: Rows,
+    send: Vec<f64>,
+    received: Vec<f64>,
     counts: Vec<usize>,
 }
 
 impl HaloExchange {
-    /// For rows of at most so many columns.
-    pub(crate) fn new(group: &Arc<dyn Ranks>, columns: usize) -> HaloExchange {
-        let two_rows = vec![Complex64::default(); 2 * columns.div_ceil(2)];
-        let counts = vec![0; group.size()];
-        HaloExchange {
-            group: Arc::clone(group),
-            row: vec![0.0; columns],
+    /// For rows of at most so many columns, if ranks share them out.
+    pub(crate) fn new(rows: &Rows, columns: usize) -> Option<HaloExchange> {
+        let two_rows = vec![0.0; 2 * columns];
+        let counts = vec![0; rows.ranks()];
+        rows.are_shared().then(|| HaloExchange {
+            rows: rows.clone(),
             send: two_rows.clone(),
             received: two_rows,
             counts,
-        }
+        })
     }
 
     /// Fills the halo rows, `columns` long; `write` gives the first local row, and the last.
     pub(crate) fn fetch(&mut self, ghosts: &mut Ghosts, columns: usize, own: usize, write: impl Fn(usize, &mut [f64])) {
-        let HaloExchange { group, row, send, received, counts } = self;
-        let (row, length) = (&mut row[..columns], columns.div_ceil(2));
-        let asked_by = |rank: usize, which: usize| ghosts.partners[which] == Some(rank);
+        let HaloExchange { rows, send, received, counts } = self;
         let mut sent = 0;
         for (rank, count) in counts.iter_mut().enumerate() {
             *count = 0;
             // who has the row before mine needs my first, who has the one behind mine my last
             for (which, k) in [(0, 0), (1, own.saturating_sub(1))] {
-                if asked_by(rank, which) {
-                    write(k, row);
-                    let pairs = row.chunks(2).map(|pair| Complex64::new(pair[0], pair.get(1).copied().unwrap_or(0.0)));
-                    send[sent..sent + length].iter_mut().zip(pairs).for_each(|(z, pair)| *z = pair);
-                    (sent, *count) = (sent + length, *count + length);
+                if ghosts.partners[which] == Some(rank) {
+                    write(k, &mut send[sent..sent + columns]);
+                    (sent, *count) = (sent + columns, *count + columns);
                 }
             }
         }
-        group
-            .exchange(&send[..sent], counts, &mut received[..sent], counts)
-            .unwrap_or_else(|error| unwind_rank_loss(error));
-        let mut next = received.chunks_exact(length);
+        rows.exchange_into((&send[..sent], counts), (&mut received[..sent], counts));
+        let mut next = received.chunks_exact(columns);
         for rank in 0..counts.len() {
             // of one that has both, its first row, which lies behind mine, comes first
             for which in [1, 0] {
                 if ghosts.partners[which] == Some(rank)
                     && let Some(values) = next.next()
                 {
-                    let pairs = ghosts.values[which].chunks_mut(2).zip(values);
-                    pairs.for_each(|(out, z)| out.iter_mut().zip([z.re, z.im]).for_each(|(out, part)| *out = part));
+                    ghosts.values[which].copy_from_slice(values);
                 }
             }
         }

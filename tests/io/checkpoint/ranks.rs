@@ -1,13 +1,14 @@
-//! Checkpoints of contacts that ranks share out: which files are refused, and which file remains when a rank is lost. That the steps after a
-//! checkpoint are the same on any number of ranks is in `properties::ranks`.
+//! Checkpoints of contacts that ranks share out: which files are refused, and which file remains when a rank is lost. That the
+//! steps after a checkpoint are the same on any number of ranks is in `properties::ranks`.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Duration;
 
 use crate::common::bodies::zener;
+use crate::common::sealed::seal;
 use crate::common::spheres::builder_on;
 use crate::common::temporary::Temporary;
 use crate::common::watched_ranks::WatchedRanks;
@@ -26,13 +27,6 @@ fn on<T: Send>(
         None => vec![build().and_then(Builder::build).and_then(job)],
         Some(size) => Threads::run(size, |ranks| job(build()?.ranks(ranks).build()?)).unwrap(),
     }
-}
-
-fn rows_files(folder: &Path) -> Vec<PathBuf> {
-    let paths = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let mut files: Vec<_> = paths.filter(|path| path.file_name().unwrap() != "run.checkpoint").collect();
-    files.sort();
-    files
 }
 
 fn sphere() -> Result<Builder, Error> {
@@ -62,64 +56,49 @@ fn save(size: Option<usize>, path: &Path, force: f64) {
     saved.into_iter().for_each(Result::unwrap);
 }
 
-/// The message of the cause, on whichever rank it is.
-fn told(error: &Error) -> String {
-    match error {
-        Error::Checkpoint { source: CheckpointError::Rows { source, .. }, .. } => source.to_string(),
-        Error::Ranks(RanksError::Failed { message, .. }) => message.clone(),
-        other => panic!("unexpected {other:?}"),
-    }
-}
-
+/// Whoever wrote the file and whoever reads it: all ranks see the same cause.
 #[test]
-fn incomplete_sets_of_files_are_refused() {
+fn files_that_are_not_whole_are_refused_by_all_ranks_alike() {
     let folder = Temporary::folder("ranks-torn");
     let (path, other) = (folder.join("run.checkpoint"), folder.join("other"));
-    save(Some(2), &path, 1.0);
-    let files = rows_files(&folder);
-    assert_eq!(files.len(), 2);
-    let sound = fs::read(&files[1]).unwrap();
-    for size in [None, Some(2), Some(3)] {
-        // missing
-        fs::remove_file(&files[1]).unwrap();
-        let error = refused(size, &path);
-        assert!(told(&error).contains("cannot be read"), "{error:?}");
-        // cut short, damaged, foreign
-        for (bytes, expected) in [
-            (&sound[..sound.len() - 9], "truncated"),
-            (&[&sound[..sound.len() / 2], &[1, 2, 3], &sound[sound.len() / 2 + 3..]].concat()[..], "checksum"),
-            (b"something else", "magic number"),
-        ] {
-            fs::write(&files[1], bytes).unwrap();
-            let error = refused(size, &path);
-            assert!(told(&error).contains(expected), "{error:?}");
+    for saved_by in [None, Some(2)] {
+        save(saved_by, &path, 1.0);
+        let sound = fs::read(&path).unwrap();
+        let damaged = |at: usize| [&sound[..at], &[sound[at] ^ 4], &sound[at + 1..]].concat();
+        for size in [None, Some(2), Some(3)] {
+            let cause = |bytes: &[u8]| {
+                fs::write(&other, bytes).unwrap();
+                match refused(size, &other) {
+                    Error::Checkpoint { source, .. } => source,
+                    other => panic!("unexpected {other:?}"),
+                }
+            };
+            // cut short, longer, foreign
+            for length in [10, 30, sound.len() / 2, sound.len() - 9] {
+                assert!(matches!(cause(&sound[..length]), CheckpointError::Size { .. }));
+            }
+            assert!(matches!(cause(&[&sound[..], &[0; 8]].concat()), CheckpointError::Size { .. }));
+            assert_eq!(cause(b"something else"), CheckpointError::Foreign);
+            // damaged in the part of any rank
+            for at in [21, 40, sound.len() / 4, sound.len() / 2, 3 * sound.len() / 4, sound.len() - 1] {
+                assert!(matches!(cause(&damaged(at)), CheckpointError::Damaged { .. }), "{at}");
+            }
+            // a value of one rank that no contact has, and a right checksum
+            let mut forged = sound.clone();
+            let last = forged.len() - 8;
+            forged[last..].copy_from_slice(&(-1.0_f64).to_le_bytes());
+            seal(&mut forged);
+            fs::write(&other, &forged).unwrap();
+            let error = refused(size, &other);
+            let message = match &error {
+                Error::Checkpoint { source, .. } => source.to_string(),
+                Error::Ranks(RanksError::Failed { message, .. }) => message.clone(),
+                other => panic!("unexpected {other:?}"),
+            };
+            assert!(message.contains("negative"), "{error:?}");
+            let error = refused(size, &folder.join("nowhere"));
+            assert_eq!(error.io_kind(), Some(std::io::ErrorKind::NotFound), "{error:?}");
         }
-        fs::write(&files[1], &sound).unwrap();
-    }
-    // of another save of the same path
-    let kept: Vec<_> = files.iter().map(|file| fs::read(file).unwrap()).collect();
-    save(Some(2), &path, 1.2);
-    let newer = rows_files(&folder);
-    assert!(newer.len() == 2 && newer.iter().all(|file| !files.contains(file)), "{newer:?}");
-    fs::write(&newer[0], &kept[0]).unwrap();
-    for size in [None, Some(2), Some(3)] {
-        let error = refused(size, &path);
-        assert!(told(&error).contains("another save"), "{error:?}");
-    }
-    // a file with rows by itself
-    for size in [None, Some(2)] {
-        let error = refused(size, &newer[1]);
-        assert!(matches!(error, Error::Checkpoint { source: CheckpointError::RowsAlone, .. }), "{error:?}");
-    }
-    // a common file that is damaged, and none: all ranks see that alike
-    let mut common = fs::read(&path).unwrap();
-    common[40] ^= 4;
-    fs::write(&other, &common).unwrap();
-    for size in [None, Some(3)] {
-        let error = refused(size, &other);
-        assert!(matches!(error, Error::Checkpoint { source: CheckpointError::Damaged { .. }, .. }), "{error:?}");
-        let error = refused(size, &folder.join("nowhere"));
-        assert_eq!(error.io_kind(), Some(std::io::ErrorKind::NotFound), "{error:?}");
     }
 }
 
@@ -219,10 +198,8 @@ fn a_rank_that_is_lost_during_a_save_spoils_nothing() {
         }
     }
     assert!(cut_off > 9, "{cut_off}");
-    // what the lost ones left is removed by the saves that follow
-    save(Some(3), &path, 1.0);
-    save(Some(3), &path, 1.0);
-    assert_eq!(rows_files(&folder).iter().filter(|file| !file.to_string_lossy().ends_with("part")).count(), 2);
+    // nothing is left of the saves that were cut off
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
 }
 
 /// Saved on its way by ranks whose clocks differ.

@@ -58,7 +58,7 @@ fn from_gsf(reader: impl Read, fallback: Option<LengthUnit>) -> Result<HeightMap
     };
     // titles may contain any bytes
     let lines = String::from_utf8_lossy(&rest[..end]);
-    let header = Header::new(FORMAT, &lines);
+    let header = Header::of_lines(FORMAT, &lines);
     let unit = |key: &'static str| match (header.get(key), fallback) {
         (Some(symbol), _) => symbol.parse(),
         (None, Some(unit)) => Ok(unit),

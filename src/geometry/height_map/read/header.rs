@@ -1,37 +1,50 @@
-//! Text headers of lines `key = value`.
+//! Headers of entries that are found by their keys.
 
-use crate::error::{MapError, Result, positive};
+use crate::error::{MapError, Result, finite, positive};
 
 /// The entries of a header.
-#[derive(Debug)]
 pub(super) struct Header<'a> {
     format: &'static str,
-    entries: Vec<(&'a str, &'a str)>,
+    find: Box<dyn Fn(&str) -> Option<&'a str> + 'a>,
 }
 
 impl<'a> Header<'a> {
-    pub(super) fn new(format: &'static str, lines: &'a str) -> Header<'a> {
+    /// A header whose entries `find` returns by their keys.
+    pub(super) fn new(format: &'static str, find: impl Fn(&str) -> Option<&'a str> + 'a) -> Header<'a> {
+        Header { format, find: Box::new(find) }
+    }
+
+    /// A header of lines `key = value`.
+    pub(super) fn of_lines(format: &'static str, lines: &'a str) -> Header<'a> {
         let entry = |line: &'a str| {
             let line = line.trim();
             let end = line.find(|c: char| c == '=' || c.is_whitespace())?;
             let value = line[end..].trim_start();
-            Some((&line[..end], value.strip_prefix('=').unwrap_or(value).trim()))
+            Some((&line[..end], value.strip_prefix('=').unwrap_or(value)))
         };
-        Header { format, entries: lines.lines().filter_map(entry).collect() }
+        let entries: Vec<_> = lines.lines().filter_map(entry).collect();
+        Header::new(format, move |key| {
+            entries.iter().find(|(name, _)| name.eq_ignore_ascii_case(key)).map(|(_, value)| *value)
+        })
     }
 
     /// The value of the entry `key`, if it exists and is not empty.
     pub(super) fn get(&self, key: &'static str) -> Option<&'a str> {
-        let &(_, value) = self.entries.iter().find(|(name, _)| name.eq_ignore_ascii_case(key))?;
-        (!value.is_empty()).then_some(value)
+        (self.find)(key).map(str::trim).filter(|value| !value.is_empty())
     }
 
-    fn require(&self, key: &'static str) -> Result<&'a str> {
+    pub(super) fn require(&self, key: &'static str) -> Result<&'a str> {
         self.get(key).ok_or_else(|| MapError::Missing { format: self.format, key }.into())
     }
 
+    /// The error of an entry that has another value than allowed.
     pub(super) fn error(&self, key: &'static str, text: &str, allowed: &'static str) -> MapError {
         MapError::Entry { format: self.format, key, text: text.to_owned(), allowed }
+    }
+
+    pub(super) fn must_be(&self, key: &'static str, allowed: &'static str) -> Result<()> {
+        let text = self.require(key)?;
+        if text == allowed { Ok(()) } else { Err(self.error(key, text, allowed).into()) }
     }
 
     /// A whole number. The grid checks the range of numbers of cells.
@@ -40,9 +53,12 @@ impl<'a> Header<'a> {
         text.parse().map_err(|_| self.error(key, text, "a whole number").into())
     }
 
-    /// A positive number.
-    pub(super) fn positive(&self, key: &'static str) -> Result<f64> {
+    pub(super) fn finite(&self, key: &'static str) -> Result<f64> {
         let text = self.require(key)?;
-        positive(key, text.parse().map_err(|_| self.error(key, text, "a number"))?)
+        finite(key, text.parse().map_err(|_| self.error(key, text, "a number"))?)
+    }
+
+    pub(super) fn positive(&self, key: &'static str) -> Result<f64> {
+        positive(key, self.finite(key)?)
     }
 }

@@ -4,14 +4,15 @@
 
 use std::io::Read;
 
+use super::header::Header;
 use super::number::{Kind, Number};
 use super::{bytes, wrong_size};
 use crate::Grid;
 use crate::error::{MapError, Result};
+use crate::file::npy::MAGIC;
 use crate::geometry::{HeightMap, LengthUnit};
 use crate::memory;
 
-pub(in crate::geometry::height_map) const MAGIC: &[u8] = b"\x93NUMPY";
 const FORMAT: &str = "NPY";
 
 impl HeightMap {
@@ -29,13 +30,32 @@ impl HeightMap {
     pub fn from_npy(reader: impl Read, lengths: [f64; 2], unit: LengthUnit) -> Result<HeightMap> {
         let file = bytes(reader, FORMAT)?;
         let (header, data) = split(&file)?;
-        let array = Array::new(&header)?;
-        let count = Grid::new(array.cells, lengths)?.len();
-        let stored = array.number.decode_all(FORMAT, data, count, true)?;
-        let [n1, n2] = array.cells;
-        let index = |i: usize, j: usize| if array.fortran { j * n1 + i } else { i * n2 + j };
+        // the text of an entry ends where the next one begins
+        let entry = |key: &str| {
+            let (_, rest) = header.split_once(&format!("'{key}'"))?;
+            let rest = rest.trim_start().strip_prefix(':').unwrap_or_default();
+            Some(rest.split(", '").next()?.split(",'").next()?.split('}').next()?.trim_end_matches([',', ' ', '\n']))
+        };
+        let header = Header::new(FORMAT, entry);
+        let text = header.require("descr")?;
+        let allowed = "a float of 4 or 8 bytes or an integer, such as '<f8'";
+        let descr = text.strip_prefix('\'').and_then(|text| text.strip_suffix('\''));
+        let number = descr.and_then(number).ok_or_else(|| header.error("descr", text, allowed))?;
+        let fortran = match header.require("fortran_order")? {
+            "True" => true,
+            "False" => false,
+            text => return Err(header.error("fortran_order", text, "True or False").into()),
+        };
+        let text = header.require("shape")?;
+        let sides = text.strip_prefix('(').and_then(|text| text.split_once(')')).map_or("", |(sides, _)| sides);
+        let sides = sides.split(',').map(str::trim).filter(|side| !side.is_empty());
+        let sides: Result<Vec<usize>, _> = sides.map(str::parse).collect();
+        let Ok(&[n1, n2]) = sides.as_deref() else { return Err(header.error("shape", text, "two numbers").into()) };
+        let count = Grid::new([n1, n2], lengths)?.len();
+        let stored = number.decode_all(FORMAT, data, count, true)?;
+        let index = |i: usize, j: usize| if fortran { j * n1 + i } else { i * n2 + j };
         let heights = (0..n1).flat_map(|i| (0..n2).map(move |j| index(i, j))).map(|k| unit.to_metres(stored[k]));
-        HeightMap::new(array.cells, lengths, memory::collect("the heights of a file", count, heights)?)
+        HeightMap::new([n1, n2], lengths, memory::collect("the heights of a file", count, heights)?)
     }
 }
 
@@ -62,45 +82,6 @@ fn split(file: &[u8]) -> Result<(String, &[u8])> {
     Ok((String::from_utf8_lossy(header).replace('"', "'"), data))
 }
 
-/// The entries of the header.
-struct Array {
-    number: Number,
-    fortran: bool,
-    cells: [usize; 2],
-}
-
-impl Array {
-    fn new(header: &str) -> Result<Array> {
-        let entry = |key: &'static str| {
-            let (_, rest) = header.split_once(&format!("'{key}'")).ok_or(MapError::Missing { format: FORMAT, key })?;
-            Ok::<_, MapError>(rest.trim_start().strip_prefix(':').unwrap_or_default().trim_start())
-        };
-        let refuse = |key: &'static str, text: &str, allowed: &'static str| {
-            // the text up to the next entry
-            let text = text.split(", '").next().unwrap_or_default().split('}').next().unwrap_or_default();
-            MapError::Entry { format: FORMAT, key, text: text.trim_end_matches([',', ' ', '\n']).to_owned(), allowed }
-        };
-        let text = entry("descr")?;
-        let number = text.strip_prefix('\'').and_then(|text| number(text.split('\'').next()?));
-        let number =
-            number.ok_or_else(|| refuse("descr", text, "a float of 4 or 8 bytes or an integer, such as '<f8'"))?;
-        let text = entry("fortran_order")?;
-        let fortran = match text {
-            _ if text.starts_with("True") => true,
-            _ if text.starts_with("False") => false,
-            _ => return Err(refuse("fortran_order", text, "True or False").into()),
-        };
-        let text = entry("shape")?;
-        let sides = text.strip_prefix('(').and_then(|text| text.split_once(')')).map_or("", |(sides, _)| sides);
-        let sides: Vec<_> = sides.split(',').map(str::trim).filter(|side| !side.is_empty()).collect();
-        let sides: Result<Vec<usize>, _> = sides.iter().map(|side| side.parse()).collect();
-        match sides.as_deref() {
-            Ok(&[n1, n2]) => Ok(Array { number, fortran, cells: [n1, n2] }),
-            _ => Err(refuse("shape", text, "two numbers").into()),
-        }
-    }
-}
-
 /// The number type of a description such as `<f8`.
 fn number(descr: &str) -> Option<Number> {
     let (order, rest) = descr.split_at_checked(1)?;
@@ -122,12 +103,12 @@ fn number(descr: &str) -> Option<Number> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
     use crate::Error;
 
     /// A file as written by `numpy.save`, but without padding.
-    pub(in super::super) fn file(header: &str, data: &[u8]) -> Vec<u8> {
+    fn file(header: &str, data: &[u8]) -> Vec<u8> {
         [MAGIC, &[1, 0], &(header.len() as u16).to_le_bytes(), header.as_bytes(), data].concat()
     }
 

@@ -10,7 +10,7 @@ use std::io::Read;
 use super::header::Header;
 use super::number::{Kind, Number};
 use super::{First, bytes, count, listed, wrong_size};
-use crate::error::{MapError, Result, positive};
+use crate::error::{MapError, Result};
 use crate::geometry::HeightMap;
 
 const FORMAT: &str = "SDF";
@@ -51,24 +51,25 @@ impl HeightMap {
     }
 }
 
-/// Accepts only data without compression or checksum, which have type 0.
-fn require_none(key: &'static str, value: usize) -> Result<()> {
-    match value {
-        0 => Ok(()),
-        _ => Err(MapError::Entry { format: FORMAT, key, text: value.to_string(), allowed: "0 (none)" }.into()),
+/// Numbers of points, spacing and scale of the heights by the header. Neither compression nor a checksum is allowed.
+fn described(header: &Header<'_>) -> Result<([usize; 2], [f64; 2], f64)> {
+    let cells = [header.count("NumPoints")?, header.count("NumProfiles")?];
+    let spacing = [header.positive("Xscale")?, header.positive("Yscale")?];
+    let scale = header.positive("Zscale")?;
+    for key in ["Compression", "CheckType"] {
+        if header.count(key)? != 0 {
+            return Err(header.error(key, header.require(key)?, "0 (none)").into());
+        }
     }
+    Ok((cells, spacing, scale))
 }
 
 fn from_text(text: &str) -> Result<HeightMap> {
     let Some((head, rest)) = text.split_once("\n*") else {
         return Err(MapError::Missing { format: FORMAT, key: "line * after the header" }.into());
     };
-    let header = Header::new(FORMAT, head);
-    let cells = [header.count("NumPoints")?, header.count("NumProfiles")?];
-    let spacing = [header.positive("Xscale")?, header.positive("Yscale")?];
-    let scale = header.positive("Zscale")?;
-    require_none("Compression", header.count("Compression")?)?;
-    require_none("CheckType", header.count("CheckType")?)?;
+    let header = Header::of_lines(FORMAT, head);
+    let (cells, spacing, scale) = described(&header)?;
     let count = count(cells, spacing)?;
     let area = rest.split('*').next().unwrap_or_default();
     let refuse = |word: &str| header.error("height", word, "a finite number or BAD");
@@ -77,28 +78,27 @@ fn from_text(text: &str) -> Result<HeightMap> {
 }
 
 fn from_binary(file: &[u8]) -> Result<HeightMap> {
-    if file.len() < BINARY_HEADER {
+    let Some((binary, mut data)) = file.split_at_checked(BINARY_HEADER) else {
         return Err(wrong_size(FORMAT, "bytes of header", file.len(), BINARY_HEADER).into());
-    }
-    let (header, mut data) = file.split_at(BINARY_HEADER);
-    let u16_at = |at: usize| usize::from(u16::from_le_bytes([header[at], header[at + 1]]));
-    let f64_at = |at: usize| f64::from_le_bytes(std::array::from_fn(|k| header[at + k]));
-    let cells = [u16_at(42), u16_at(44)];
-    let spacing = [positive("Xscale", f64_at(46))?, positive("Yscale", f64_at(54))?];
-    let scale = positive("Zscale", f64_at(62))?;
-    let [compression, data_type, check] = [78, 79, 80].map(|at| usize::from(header[at]));
-    require_none("Compression", compression)?;
-    require_none("CheckType", check)?;
-    let number = match data_type {
-        3 => Number::little(Kind::Float, 4),
-        4 => Number::little(Kind::Signed, 1),
-        5 => Number::little(Kind::Signed, 2),
-        6 => Number::little(Kind::Signed, 4),
-        7 => Number::little(Kind::Float, 8),
-        _ => {
-            let (text, allowed) = (data_type.to_string(), "3, 4, 5, 6 or 7 (signed)");
-            return Err(MapError::Entry { format: FORMAT, key: "DataType", text, allowed }.into());
-        }
+    };
+    let u16_at = |at: usize| u16::from_le_bytes([binary[at], binary[at + 1]]);
+    let f64_at = |at: usize| f64::from_le_bytes(std::array::from_fn(|k| binary[at + k]));
+    let ([n1, n2], [x, y, z]) = ([42, 44].map(u16_at), [46, 54, 62].map(f64_at));
+    let [compression, data_type, check] = [78, 79, 80].map(|at| binary[at]);
+    // the header that a text file has
+    let lines = format!(
+        "NumPoints {n1}\nNumProfiles {n2}\nXscale {x:e}\nYscale {y:e}\nZscale {z:e}\n\
+         Compression {compression}\nDataType {data_type}\nCheckType {check}"
+    );
+    let header = Header::of_lines(FORMAT, &lines);
+    let (cells, spacing, scale) = described(&header)?;
+    let number = match header.require("DataType")? {
+        "3" => Number::little(Kind::Float, 4),
+        "4" => Number::little(Kind::Signed, 1),
+        "5" => Number::little(Kind::Signed, 2),
+        "6" => Number::little(Kind::Signed, 4),
+        "7" => Number::little(Kind::Float, 8),
+        other => return Err(header.error("DataType", other, "3, 4, 5, 6 or 7 (signed)").into()),
     };
     let count = count(cells, spacing)?;
     if data.len() as u64 == count as u64 * number.size as u64 + 8 {
@@ -110,23 +110,14 @@ fn from_binary(file: &[u8]) -> Result<HeightMap> {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
+    use super::super::tests::binary_sdf as binary;
     use super::*;
     use crate::Error;
 
     const TEXT: &str = "aISO-1.0\r\nManufacID = Nobody\r\nCreateDate = 010120240000\r\nModDate = 010120240000\r\n\
         NumPoints = 3\r\nNumProfiles = 2\r\nXscale = 1e-6\r\nYscale = 2.5E-06\r\nZscale = 1e-9\r\nZresolution = -1\r\n\
         Compression = 0\r\nDataType = 7\r\nCheckType = 0\r\n*\r\n1 2 BAD\r\n4 5.5\r\n-6\r\n*\r\nNote = * and 7\r\n*\r\n";
-
-    /// A binary file of 3 × 2 points.
-    pub(in super::super) fn binary(data_type: u8, data: &[u8]) -> Vec<u8> {
-        let mut file = b"bISO-1.0Nobody    010120240000010120240000".to_vec();
-        file.extend([3, 0, 2, 0]);
-        file.extend([1e-6_f64, 2.5e-6, 1e-9, -1.0].iter().flat_map(|scale| scale.to_le_bytes()));
-        file.extend([0, data_type, 0]);
-        file.extend(data);
-        file
-    }
 
     fn expected(map: &HeightMap) {
         assert_eq!((map.cells, map.spacing), ([3, 2], [1e-6, 2.5e-6]));

@@ -18,7 +18,7 @@ fn files() -> Vec<(&'static str, Vec<u8>, Reader)> {
     let mut files: Vec<(_, _, Reader)> = vec![
         ("gsf", gsf, |file| HeightMap::from_gsf(file)),
         ("sdf", sdf, |file| HeightMap::from_sdf(file)),
-        ("binary sdf", sdf::tests::binary(5, &[1; 12]), |file| HeightMap::from_sdf(file)),
+        ("binary sdf", binary_sdf(5, &[1; 12]), |file| HeightMap::from_sdf(file)),
         ("text", b"# a\n1, 2, 3\n4, bad, 6\n".to_vec(), |file| HeightMap::from_text(file, [1.0; 2], LengthUnit::Metre)),
         ("xyz", xyz, |file| HeightMap::from_xyz(file, LengthUnit::Metre, LengthUnit::Metre)),
     ];
@@ -30,15 +30,56 @@ fn files() -> Vec<(&'static str, Vec<u8>, Reader)> {
     }
     #[cfg(feature = "x3p")]
     {
-        let xml = x3p::tests::xml("F</DataType>", x3p::tests::LINK);
-        let x3p = x3p::tests::archive(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &[1; 24])]);
+        let xml = x3p::xml("F</DataType>", x3p::LINK);
+        let x3p = x3p::archive(&[("main.xml", xml.as_bytes()), ("bindata/data.bin", &[1; 24])]);
         files.push(("x3p", x3p, |file| HeightMap::from_x3p(file)));
         // damage in the XML itself, which the checksum of the archive does not detect
         files.push(("x3p, xml", xml.into_bytes(), |file| {
-            HeightMap::from_x3p(&x3p::tests::archive(&[("main.xml", file), ("bindata/data.bin", &[1; 24])])[..])
+            HeightMap::from_x3p(&x3p::archive(&[("main.xml", file), ("bindata/data.bin", &[1; 24])])[..])
         }));
     }
     files
+}
+
+/// A binary SDF of 3 × 2 points.
+pub(super) fn binary_sdf(data_type: u8, data: &[u8]) -> Vec<u8> {
+    let mut file = b"bISO-1.0Nobody    010120240000010120240000".to_vec();
+    file.extend([3, 0, 2, 0]);
+    file.extend([1e-6_f64, 2.5e-6, 1e-9, -1.0].iter().flat_map(|scale| scale.to_le_bytes()));
+    file.extend([0, data_type, 0]);
+    file.extend(data);
+    file
+}
+
+/// Archives of X3P.
+#[cfg(feature = "x3p")]
+pub(super) mod x3p {
+    use std::io::{Cursor, Write};
+
+    use zip::write::{SimpleFileOptions, ZipWriter};
+
+    pub(in super::super) const LINK: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>";
+
+    pub(in super::super) fn xml(height: &str, data: &str) -> String {
+        format!(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?><p:ISO5436_2 xmlns:p=\"http://www.opengps.eu/2008/ISO5436_2\">\
+             <Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>\
+             <CX><AxisType>I</AxisType><DataType>D</DataType><Increment>1e-6</Increment><Offset>0</Offset></CX>\
+             <CY><AxisType>I</AxisType><DataType>D</DataType><Increment>2.5E-6</Increment><Offset>0</Offset></CY>\
+             <CZ><AxisType>A</AxisType><DataType>{height}</CZ></Axes></Record1>\
+             <Record3><MatrixDimension><SizeX> 3 </SizeX><SizeY>2</SizeY><SizeZ>1</SizeZ></MatrixDimension>{data}</Record3>\
+             </p:ISO5436_2>"
+        )
+    }
+
+    pub(in super::super) fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
+        let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+        for (name, content) in files {
+            archive.start_file(*name, SimpleFileOptions::default()).unwrap();
+            archive.write_all(content).unwrap();
+        }
+        archive.finish().unwrap().into_inner()
+    }
 }
 
 /// Splitmix64.

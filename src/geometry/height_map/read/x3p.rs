@@ -8,9 +8,10 @@ use std::io::{Cursor, Read};
 use roxmltree::{Document, Node, ParsingOptions};
 use zip::ZipArchive;
 
+use super::header::Header;
 use super::number::{Kind, Number};
 use super::{First, bytes, count, listed, wrong_size};
-use crate::error::{MapError, Result, finite, positive};
+use crate::error::{MapError, Result};
 use crate::geometry::HeightMap;
 
 const FORMAT: &str = "X3P";
@@ -25,7 +26,6 @@ const INCREMENT: &str = "Record1/Axes/CZ/Increment";
 const OFFSET: &str = "Record1/Axes/CZ/Offset";
 const POINTS: &str = "Record3/DataLink/PointDataLink";
 const VALID: &str = "Record3/DataLink/ValidPointsLink";
-const LIST: &str = "Record3/DataList";
 
 impl HeightMap {
     /// Reads an X3P archive of ISO 25178-72, in m: a surface (`SUR`) whose points are a matrix, equally spaced along x
@@ -54,7 +54,7 @@ impl HeightMap {
         let options = ParsingOptions { nodes_limit: MAX_NODES, ..ParsingOptions::default() };
         let document = Document::parse_with_options(xml.trim_start_matches('\u{feff}'), options)
             .map_err(|error| unreadable(&format!("main.xml: {error}")))?;
-        Header { root: document.root_element() }.map(&mut archive)
+        map(document.root_element(), &mut archive)
     }
 }
 
@@ -79,154 +79,93 @@ fn member(archive: &mut Archive, name: &str, what: &'static str, most: u64) -> R
     Ok(bytes)
 }
 
-/// The contents of `main.xml`.
-struct Header<'a, 'i> {
-    root: Node<'a, 'i>,
+/// The descendant of a node at a path of names.
+fn descendant<'a, 'i>(node: Node<'a, 'i>, path: &str) -> Option<Node<'a, 'i>> {
+    let child = |node: Node<'a, 'i>, name| node.children().find(|child| child.tag_name().name() == name);
+    path.split('/').try_fold(node, child)
 }
 
-impl<'a, 'i> Header<'a, 'i> {
-    fn node(&self, path: &str) -> Option<Node<'a, 'i>> {
-        let child = |node: Node<'a, 'i>, name| node.children().find(|child| child.tag_name().name() == name);
-        path.split('/').try_fold(self.root, child)
+/// The map that the root of `main.xml` describes.
+fn map(root: Node<'_, '_>, archive: &mut Archive) -> Result<HeightMap> {
+    let header = Header::new(FORMAT, |path| descendant(root, path)?.text());
+    header.must_be("Record1/FeatureType", "SUR")?;
+    header.must_be("Record1/Axes/CX/AxisType", "I")?;
+    header.must_be("Record1/Axes/CY/AxisType", "I")?;
+    header.must_be("Record1/Axes/CZ/AxisType", "A")?;
+    require_unrotated(root, &header)?;
+    let spacing = [header.positive("Record1/Axes/CX/Increment")?, header.positive("Record1/Axes/CY/Increment")?];
+    let text = header.require(HEIGHT_TYPE)?;
+    let number = match text {
+        "I" => Number::little(Kind::Signed, 2),
+        "L" => Number::little(Kind::Signed, 4),
+        "F" => Number::little(Kind::Float, 4),
+        "D" => Number::little(Kind::Float, 8),
+        _ => return Err(header.error(HEIGHT_TYPE, text, "I, L, F or D").into()),
+    };
+    // integers have no scale without it
+    let scale = match header.get(INCREMENT) {
+        None if number.kind == Kind::Float => 1.0,
+        _ => header.positive(INCREMENT)?,
+    };
+    let offset = header.get(OFFSET).map_or(Ok(0.0), |_| header.finite(OFFSET))?;
+    let cells = [header.count("Record3/MatrixDimension/SizeX")?, header.count("Record3/MatrixDimension/SizeY")?];
+    header.must_be("Record3/MatrixDimension/SizeZ", "1")?;
+    let count = count(cells, spacing)?;
+    let mut rows = match header.get(POINTS) {
+        Some(name) => {
+            let expected = count.saturating_mul(number.size);
+            if expected > MAX_DATA {
+                return Err(wrong_size(FORMAT, "bytes of heights at most", expected, MAX_DATA).into());
+            }
+            let data = member(archive, name, "bytes of heights", expected as u64)?;
+            number.decode_all(FORMAT, &data, count, true)?
+        }
+        None => {
+            let missing = MapError::Missing { format: FORMAT, key: "PointDataLink or DataList" };
+            let list = descendant(root, "Record3/DataList").ok_or(missing)?;
+            // the last number of each datum, after x and y if they are present
+            let data = list.children().filter(|child| child.tag_name().name() == "Datum");
+            let heights =
+                data.map(|datum| datum.text().and_then(|text| text.rsplit(';').next()).unwrap_or_default().trim());
+            let refuse = |text: &str| header.error("Datum", text, "a finite number or empty");
+            listed(heights, str::is_empty, count, FORMAT, refuse)?
+        }
+    };
+    if let Some(name) = header.get(VALID) {
+        let (expected, what) = (count.div_ceil(8), "bytes of valid points");
+        let valid = member(archive, name, what, expected as u64)?;
+        if valid.len() < expected {
+            return Err(wrong_size(FORMAT, what, valid.len(), expected).into());
+        }
+        // one bit per point, the lowest of a byte first
+        let missing = |k: &usize| valid[k / 8] >> (k % 8) & 1 == 0;
+        (0..count).filter(missing).for_each(|k| rows[k] = f64::NAN);
     }
+    HeightMap::from_rows(cells, spacing, &rows, First::Bottom, |height| height * scale + offset)
+}
 
-    /// The text of an element, if it exists and is not empty.
-    fn get(&self, path: &'static str) -> Option<&'a str> {
-        self.node(path).and_then(|node| node.text()).map(str::trim).filter(|text| !text.is_empty())
-    }
-
-    fn require(&self, path: &'static str) -> Result<&'a str> {
-        self.get(path).ok_or_else(|| MapError::Missing { format: FORMAT, key: path }.into())
-    }
-
-    fn error(path: &'static str, text: &str, allowed: &'static str) -> MapError {
-        MapError::Entry { format: FORMAT, key: path, text: text.to_owned(), allowed }
-    }
-
-    fn number(&self, path: &'static str) -> Result<f64> {
-        let text = self.require(path)?;
-        finite(path, text.parse().map_err(|_| Self::error(path, text, "a number"))?)
-    }
-
-    fn count(&self, path: &'static str) -> Result<usize> {
-        let text = self.require(path)?;
-        text.parse().map_err(|_| Self::error(path, text, "a whole number").into())
-    }
-
-    fn must_be(&self, path: &'static str, allowed: &'static str) -> Result<()> {
-        match self.require(path)? {
-            text if text == allowed => Ok(()),
-            text => Err(Self::error(path, text, allowed).into()),
+/// Rejects rotated axes.
+fn require_unrotated(root: Node<'_, '_>, header: &Header<'_>) -> Result<()> {
+    const ROTATION: &str = "Record1/Axes/Rotation";
+    let entries = descendant(root, ROTATION).into_iter().flat_map(|rotation| rotation.children());
+    for entry in entries.filter(Node::is_element) {
+        let text = entry.text().unwrap_or_default().trim();
+        let identity = if ["r11", "r22", "r33"].contains(&entry.tag_name().name()) { 1.0 } else { 0.0 };
+        if !text.parse().is_ok_and(|value: f64| (value - identity).abs() < 1e-9) {
+            return Err(header.error(ROTATION, text, "none (1 on the diagonal, 0 off it)").into());
         }
     }
-
-    fn map(&self, archive: &mut Archive) -> Result<HeightMap> {
-        self.must_be("Record1/FeatureType", "SUR")?;
-        self.must_be("Record1/Axes/CX/AxisType", "I")?;
-        self.must_be("Record1/Axes/CY/AxisType", "I")?;
-        self.must_be("Record1/Axes/CZ/AxisType", "A")?;
-        self.require_unrotated()?;
-        let increment = |path| positive(path, self.number(path)?);
-        let spacing = [increment("Record1/Axes/CX/Increment")?, increment("Record1/Axes/CY/Increment")?];
-        let text = self.require(HEIGHT_TYPE)?;
-        let number = match text {
-            "I" => Number::little(Kind::Signed, 2),
-            "L" => Number::little(Kind::Signed, 4),
-            "F" => Number::little(Kind::Float, 4),
-            "D" => Number::little(Kind::Float, 8),
-            _ => return Err(Self::error(HEIGHT_TYPE, text, "I, L, F or D").into()),
-        };
-        // integers have no scale without it
-        let scale = match self.get(INCREMENT) {
-            None if number.kind == Kind::Float => 1.0,
-            _ => increment(INCREMENT)?,
-        };
-        let offset = self.get(OFFSET).map_or(Ok(0.0), |_| self.number(OFFSET))?;
-        let cells = ["Record3/MatrixDimension/SizeX", "Record3/MatrixDimension/SizeY"];
-        let cells = [self.count(cells[0])?, self.count(cells[1])?];
-        self.must_be("Record3/MatrixDimension/SizeZ", "1")?;
-        let count = count(cells, spacing)?;
-        let mut rows = match self.get(POINTS) {
-            Some(name) => {
-                let expected = count.saturating_mul(number.size);
-                if expected > MAX_DATA {
-                    return Err(wrong_size(FORMAT, "bytes of heights at most", expected, MAX_DATA).into());
-                }
-                let data = member(archive, name, "bytes of heights", expected as u64)?;
-                number.decode_all(FORMAT, &data, count, true)?
-            }
-            None => self.listed(count)?,
-        };
-        if let Some(name) = self.get(VALID) {
-            let (expected, what) = (count.div_ceil(8), "bytes of valid points");
-            let valid = member(archive, name, what, expected as u64)?;
-            if valid.len() < expected {
-                return Err(wrong_size(FORMAT, what, valid.len(), expected).into());
-            }
-            // one bit per point, the lowest of a byte first
-            let missing = |k: &usize| valid[k / 8] >> (k % 8) & 1 == 0;
-            (0..count).filter(missing).for_each(|k| rows[k] = f64::NAN);
-        }
-        HeightMap::from_rows(cells, spacing, &rows, First::Bottom, |height| height * scale + offset)
-    }
-
-    /// Rejects rotated axes.
-    fn require_unrotated(&self) -> Result<()> {
-        const ROTATION: &str = "Record1/Axes/Rotation";
-        let Some(rotation) = self.node(ROTATION) else { return Ok(()) };
-        for entry in rotation.children().filter(Node::is_element) {
-            let text = entry.text().unwrap_or_default().trim();
-            let identity = if ["r11", "r22", "r33"].contains(&entry.tag_name().name()) { 1.0 } else { 0.0 };
-            if !text.parse().is_ok_and(|value: f64| (value - identity).abs() < 1e-9) {
-                return Err(Self::error(ROTATION, text, "none (1 on the diagonal, 0 off it)").into());
-            }
-        }
-        Ok(())
-    }
-
-    /// The heights in the XML itself: the last number of each datum, after x and y if they are present.
-    fn listed(&self, count: usize) -> Result<Vec<f64>> {
-        let list = self.node(LIST).ok_or(MapError::Missing { format: FORMAT, key: "PointDataLink or DataList" })?;
-        let data = list.children().filter(|child| child.tag_name().name() == "Datum");
-        let heights = data.map(|datum| datum.text().unwrap_or_default().rsplit(';').next().unwrap_or_default().trim());
-        let refuse = |text: &str| Self::error("Datum", text, "a finite number or empty");
-        listed(heights, str::is_empty, count, FORMAT, refuse)
-    }
+    Ok(())
 }
 
 #[cfg(test)]
-pub(super) mod tests {
-    use std::io::Write;
-
-    use zip::write::{SimpleFileOptions, ZipWriter};
-
+mod tests {
+    use super::super::tests::x3p::{LINK, archive, xml};
     use super::*;
     use crate::Error;
 
-    pub(in super::super) const LINK: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>";
     const MASK: &str = "<DataLink><PointDataLink>bindata/data.bin</PointDataLink>\
         <ValidPointsLink>bindata/valid.bin</ValidPointsLink></DataLink>";
-
-    pub(in super::super) fn xml(height: &str, data: &str) -> String {
-        format!(
-            "<?xml version=\"1.0\" encoding=\"UTF-8\"?><p:ISO5436_2 xmlns:p=\"http://www.opengps.eu/2008/ISO5436_2\">\
-             <Record1><Revision>ISO5436 - 2000</Revision><FeatureType>SUR</FeatureType><Axes>\
-             <CX><AxisType>I</AxisType><DataType>D</DataType><Increment>1e-6</Increment><Offset>0</Offset></CX>\
-             <CY><AxisType>I</AxisType><DataType>D</DataType><Increment>2.5E-6</Increment><Offset>0</Offset></CY>\
-             <CZ><AxisType>A</AxisType><DataType>{height}</CZ></Axes></Record1>\
-             <Record3><MatrixDimension><SizeX> 3 </SizeX><SizeY>2</SizeY><SizeZ>1</SizeZ></MatrixDimension>{data}</Record3>\
-             </p:ISO5436_2>"
-        )
-    }
-
-    pub(in super::super) fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
-        let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
-        for (name, content) in files {
-            archive.start_file(*name, SimpleFileOptions::default()).unwrap();
-            archive.write_all(content).unwrap();
-        }
-        archive.finish().unwrap().into_inner()
-    }
 
     fn read(xml: &str, data: &[u8]) -> Result<HeightMap> {
         let files = [("main.xml", xml.as_bytes()), ("bindata/data.bin", data), ("bindata/valid.bin", &[0b10_1111])];

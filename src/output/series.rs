@@ -1,0 +1,207 @@
+//! A run as a folder of frames.
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use crate::ViscoelasticContact;
+use crate::error::Result;
+use crate::file::{check_regular, failed, replace};
+use crate::output::field_values::write_fields;
+#[cfg(feature = "npy")]
+use crate::output::npz;
+#[cfg(feature = "vtk")]
+use crate::output::vtk;
+use crate::output::{Field, Metadata};
+
+/// Name of the file that lists the frames of VTK.
+const COLLECTION: &str = "series.pvd";
+
+/// The format of files of fields, such as the frames of a [`FrameSeries`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Format {
+    /// NPZ archives of NumPy. Needs the feature `npy`.
+    ///
+    /// Frames are `frame_000000.npz` and so on. They contain `time` \[s\], the cell centres `x1` and `x2` \[m\], the chosen
+    /// fields as arrays of shape (n1, n2), `approach` \[m\], `force` \[N\], `tilt` \[rad\] and `contact_area` \[m²\], all in
+    /// double precision and uncompressed, and the [`Metadata`] as the JSON text `metadata`. In Python, without pickle:
+    ///
+    /// ```python
+    /// frame = numpy.load("run/frame_000012.npz")
+    /// matplotlib.pyplot.pcolormesh(frame["x1"], frame["x2"], frame["pressure"].T)
+    /// units = json.loads(str(frame["metadata"]))["units"]
+    /// ```
+    #[cfg(feature = "npy")]
+    Npz,
+    /// Files of VTK. Needs the feature `vtk`.
+    ///
+    /// Frames are images `frame_000000.vti` and so on, and `series.pvd` lists them with their times. Open this file in
+    /// ParaView, even while the run continues. An image is a flat sheet of n1 × n2 cells in the plane of contact, with x1
+    /// along its x. The chosen fields are cell data in double precision, named with their units, such as `pressure [Pa]`.
+    /// `TimeValue` \[s\], `approach [m]`, `force [N]`, `tilt [rad]`, `contact area [m2]` and the [`Metadata`] as the JSON
+    /// text `metadata` are field data. The gap is +∞ where the initial gap is infinite: rescale the colours to the finite
+    /// range.
+    ///
+    /// Two frames of the same time, such as before and after a jump of the load, are both written and listed; ParaView
+    /// shows one of them.
+    #[cfg(feature = "vtk")]
+    Vtk,
+}
+
+impl Format {
+    fn extension(self) -> &'static str {
+        if self.is_by_rows() { "npz" } else { "vti" }
+    }
+
+    /// Whether the index along x2 varies fastest; in VTK it is the index along x1.
+    pub(super) fn is_by_rows(self) -> bool {
+        match self {
+            #[cfg(feature = "npy")]
+            Format::Npz => true,
+            #[cfg(feature = "vtk")]
+            Format::Vtk => false,
+        }
+    }
+}
+
+/// A run as a folder of files, one per frame, with the same fields and metadata in each.
+///
+/// Needs the feature `npy` or `vtk`.
+///
+/// ```
+/// # #[cfg(feature = "npy")] {
+/// use viscocontact::{output::{Field, Format, FrameSeries, Metadata}, prelude::*};
+///
+/// let mut contact = ViscoelasticContact::builder(Grid::square(16, 4.0e-3)?)
+///     .geometry(&Sphere::new(10.0e-3)?)
+///     .material(Material::incompressible(Maxwell::new(1.0e6, 1.0e6)?))
+///     .build()?;
+/// # let folder = std::env::temp_dir().join(format!("viscocontact-doc-series-{}", std::process::id()));
+/// let metadata = Metadata::new("Ball on rubber");
+/// let mut series = FrameSeries::create(&folder, Format::Npz, &metadata, &[Field::Pressure])?;
+/// contact.step(0.0, Load::force(0.5))?;
+/// for _ in 0..3 {
+///     contact.step(0.1, Load::force(0.5))?;
+///     series.write(&contact)?;
+/// }
+/// assert!(folder.join("frame_000002.npz").exists());
+/// # std::fs::remove_dir_all(&folder).unwrap();
+/// # }
+/// # Ok::<(), viscocontact::Error>(())
+/// ```
+#[derive(Debug)]
+pub struct FrameSeries {
+    folder: PathBuf,
+    format: Format,
+    metadata: Metadata,
+    fields: Vec<Field>,
+    /// Number of frames written.
+    written: usize,
+    /// The entries of the collection, one per line.
+    entries: String,
+    /// Values of a field that the contact does not store.
+    buffer: Vec<f64>,
+}
+
+impl FrameSeries {
+    /// A new series in `folder`, which is created if it does not exist.
+    ///
+    /// # Errors
+    /// If the folder cannot be used or contains frames already ([`AlreadyExists`](std::io::ErrorKind::AlreadyExists)), or a
+    /// field is requested twice.
+    pub fn create(
+        folder: impl AsRef<Path>,
+        format: Format,
+        metadata: &Metadata,
+        fields: &[Field],
+    ) -> Result<FrameSeries> {
+        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), false)
+    }
+
+    /// [`FrameSeries::create`] in the place of an earlier series, whose frames are removed first.
+    ///
+    /// # Errors
+    /// If the folder or its frames cannot be used, or a field is requested twice.
+    pub fn create_or_replace(
+        folder: impl AsRef<Path>,
+        format: Format,
+        metadata: &Metadata,
+        fields: &[Field],
+    ) -> Result<FrameSeries> {
+        FrameSeries::begin(folder.as_ref(), format, (metadata, fields), true)
+    }
+
+    fn begin(
+        folder: &Path,
+        format: Format,
+        (metadata, fields): (&Metadata, &[Field]),
+        replaced: bool,
+    ) -> Result<FrameSeries> {
+        let unusable = |error: io::Error| failed(folder, error);
+        let refused = |kind, reason: String| Err(unusable(io::Error::new(kind, reason)));
+        if let Some(k) = (1..fields.len()).find(|&k| fields[..k].contains(&fields[k])) {
+            let reason = format!("the field {} is requested twice", fields[k].name());
+            return refused(io::ErrorKind::InvalidInput, reason);
+        }
+        fs::create_dir_all(folder).map_err(unusable)?;
+        for entry in fs::read_dir(folder).map_err(unusable)? {
+            let path = entry.map_err(unusable)?.path();
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let is_frame = name.starts_with("frame_") && name.ends_with(&format!(".{}", format.extension()));
+            if is_frame && !replaced {
+                return refused(io::ErrorKind::AlreadyExists, format!("the folder contains {name} of another run"));
+            }
+            if is_frame || replaced && !format.is_by_rows() && name == COLLECTION {
+                check_regular(&path)?;
+                match fs::remove_file(&path) {
+                    // another rank may have removed it
+                    Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(failed(&path, error)),
+                    _ => {}
+                }
+            }
+        }
+        let (folder, metadata, fields) = (folder.to_owned(), metadata.clone(), fields.to_vec());
+        Ok(FrameSeries { folder, format, metadata, fields, written: 0, entries: String::new(), buffer: Vec::new() })
+    }
+
+    /// Writes the current state of the contact as the next frame and returns its path; a frame of VTK is listed in
+    /// `series.pvd`.
+    ///
+    /// # Errors
+    /// If a file cannot be written. Then the frame is not listed, and the next call uses the same number.
+    pub fn write(&mut self, contact: &ViscoelasticContact) -> Result<PathBuf> {
+        let FrameSeries { folder, format, metadata, fields, buffer, .. } = self;
+        let name = format!("frame_{:06}.{}", self.written, format.extension());
+        let path = folder.join(&name);
+        let area = contact.contact_area();
+        write_fields(&path, (contact, fields, *format), buffer, |out, values| match format {
+            #[cfg(feature = "npy")]
+            Format::Npz => npz::write_frame(out, (contact, area), metadata, values),
+            #[cfg(feature = "vtk")]
+            Format::Vtk => vtk::write_frame(out, (contact, area), metadata, values),
+        })?;
+        if !format.is_by_rows() {
+            let time = contact.time();
+            let entry = format!("    <DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{name}\"/>\n");
+            let entries = format!("{}{entry}", self.entries);
+            contact.by_one_rank(|| {
+                replace(&folder.join(COLLECTION), |out| {
+                    write!(
+                        out,
+                        "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n\
+                         {entries}  </Collection>\n</VTKFile>\n"
+                    )
+                })
+            })?;
+            self.entries = entries;
+        }
+        self.written += 1;
+        Ok(path)
+    }
+
+    /// Number of frames written.
+    pub fn frames(&self) -> usize {
+        self.written
+    }
+}
