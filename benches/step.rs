@@ -109,7 +109,9 @@ fn fits(c: &mut Criterion) {
     let times: Vec<f64> = (0..=160).map(|k| 10f64.powf(-4.0 + 0.05 * f64::from(k))).collect();
     let rough = |(k, &t): (usize, &f64)| power.creep_compliance(t) * (1.0 + 0.02 * (7.0 * k as f64).sin());
     let values: Vec<f64> = times.iter().enumerate().map(rough).collect();
-    group.bench_function("table", |b| b.iter(|| TabulatedCreep::new(&times, &values).unwrap()));
+    group.bench_function("table", |b| {
+        b.iter(|| Measurements::creep(&times, &values).and_then(|table| table.fit()).unwrap())
+    });
     group.finish();
 }
 

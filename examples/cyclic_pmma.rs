@@ -85,7 +85,7 @@ struct Body {
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&args.output)?;
     let published = library::find("PMMA")?;
-    println!("{}: {}\n({})", published.name(), published.reference(), published.remark());
+    println!("{}: {}\n({})", published.name, published.reference, published.remark);
     let material = published.material(args.poisson)?;
     let creep = material.contact_spectrum()?.ok_or("a Prony series has a spectrum")?;
     let body = Body { material, creep };

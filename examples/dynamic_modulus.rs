@@ -18,7 +18,7 @@ use noise::noise;
 use viscocontact::Result;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
-use viscocontact::rheology::{Isotherm, MasterCurve, MaterialFunction, library};
+use viscocontact::rheology::{CreepSeries, Isotherm, MasterCurve, MaterialFunction, library};
 
 /// A master curve of a real adhesive, and what it means in contact.
 #[derive(Parser)]
@@ -50,9 +50,9 @@ fn main() {
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     fs::create_dir_all(&args.output)?;
     let published = library::find("adhesive")?;
-    println!("{}: {}", published.description(), published.reference());
+    println!("{}: {}", published.description, published.reference);
     let law = published.time_temperature().ok_or("the adhesive has a WLF law")?;
-    let nu = published.poisson().ok_or("the adhesive has a Poisson's ratio")?;
+    let nu = published.poisson.ok_or("the adhesive has a Poisson's ratio")?;
     let truth = published.rheology(nu)?.creep_spectrum().ok_or("a Prony series has a spectrum")?.relaxation();
 
     // what a rheometer would give: 0.1 to 100 rad/s at nine temperatures
@@ -67,10 +67,10 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         };
         let storage = measured(&|omega| truth.storage_modulus(omega));
         let loss = measured(&|omega| truth.loss_modulus(omega));
-        Isotherm::dynamic(temperature, &omega, &storage, &loss)
+        Isotherm::new(temperature, Measurements::dynamic(&omega, &storage, &loss)?)
     });
     let master = MasterCurve::new(reference, isotherms.collect::<Result<_>>()?)?;
-    let body = master.dynamic()?;
+    let body = master.fit()?;
     println!("master curve at {reference} K: {}", body.report());
     let fitted = master.wlf()?;
     let apart = |(temperature, factor): (f64, f64)| -> Result<f64> {
@@ -110,7 +110,7 @@ fn decades(master: &MasterCurve) -> f64 {
 /// A ball pressed on for an hour at several temperatures.
 fn contact_at(
     args: &Args,
-    body: &TabulatedDynamic,
+    body: &CreepSeries,
     nu: f64,
     law: &viscocontact::rheology::TimeTemperature,
     temperatures: &[f64],
@@ -154,7 +154,7 @@ fn contact_at(
 fn plot_master(
     args: &Args,
     master: &MasterCurve,
-    body: &TabulatedDynamic,
+    body: &CreepSeries,
     exact: impl Fn(f64) -> num_complex::Complex64,
 ) -> Result<(), Box<dyn Error>> {
     let [low, high] = body.report().range().ok_or("the master curve is empty")?;

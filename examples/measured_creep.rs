@@ -16,9 +16,10 @@ use clap::Parser;
 use indicatif::ProgressBar;
 use noise::noise;
 use viscocontact::Result;
+use viscocontact::TextFormat;
 use viscocontact::plot::{COLORS, Chart, Legend, Scale, Style};
 use viscocontact::prelude::*;
-use viscocontact::rheology::Units;
+use viscocontact::rheology::{CreepSeries, Experiment, Units};
 
 /// A sphere on a material known by a table of its creep.
 #[derive(Parser)]
@@ -61,7 +62,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         measure(args, seed)?;
     }
     // the material as its user gets it
-    let body = TabulatedCreep::from_csv(&args.table, Units::SI)?;
+    let body = Measurements::from_csv(Experiment::Creep, &args.table, Units::SI, TextFormat::default())?.fit()?;
     println!("{}", body.report());
     for (compliance, time) in body.spectrum().terms() {
         println!("  retardation time {time:9.2e} s, compliance {compliance:9.2e} 1/Pa");
@@ -129,7 +130,7 @@ fn measure(args: &Args, seed: u64) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn plot_fit(args: &Args, body: &TabulatedCreep) -> Result<(), Box<dyn Error>> {
+fn plot_fit(args: &Args, body: &CreepSeries) -> Result<(), Box<dyn Error>> {
     let truth = truth()?;
     let samples = body.report().samples();
     let mut chart = Chart::new("Creep compliance", "time [s]", "J [1/Pa]", Legend::UpperLeft);

@@ -61,19 +61,13 @@ struct Run {
 fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     if args.material == "list" {
         for material in library::all() {
-            println!(
-                "{}: {}\n  {}\n  {}",
-                material.name(),
-                material.description(),
-                material.reference(),
-                material.remark()
-            );
+            println!("{}: {}\n  {}\n  {}", material.name, material.description, material.reference, material.remark);
         }
         return Ok(());
     }
     fs::create_dir_all(&args.output)?;
     let published = library::find(&args.material)?;
-    println!("{}: {}\n({})", published.name(), published.reference(), published.remark());
+    println!("{}: {}\n({})", published.name, published.reference, published.remark);
     let shear = published.rheology(args.poisson)?;
     let spectrum = shear.creep_spectrum().ok_or("a Prony series has a spectrum")?;
     let glassy = 1.0 / spectrum.glassy();
@@ -117,7 +111,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
         );
     }
 
-    let title = format!("{}: contact radius under a force that is held", published.name());
+    let title = format!("{}: contact radius under a force that is held", published.name);
     let mut chart = Chart::new(&title, "time [s]", "contact radius [mm]", Legend::UpperLeft);
     chart.scale = Scale::LogLog;
     for (run, (material, name, color)) in
@@ -130,7 +124,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     }
     chart.save(args.output.join("contact_radius.png"))?;
 
-    let title = format!("{}: pressure across the contact", published.name());
+    let title = format!("{}: pressure across the contact", published.name);
     let mut chart = Chart::new(&title, "x1 [mm]", "pressure [MPa]", Legend::UpperRight);
     let profiles = &runs[0].profiles;
     for (k, (time, profile)) in profiles.iter().step_by(2).take(COLORS.len()).enumerate() {

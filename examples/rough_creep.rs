@@ -259,8 +259,8 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
 /// The published polymer, at another temperature where it is known how it shifts.
 fn polymer(args: &Args) -> Result<Material, Box<dyn Error>> {
     let published = library::find(&args.material)?;
-    println!("{}: {}\n({})", published.name(), published.description(), published.reference());
-    let nu = published.poisson().unwrap_or(args.poisson);
+    println!("{}: {}\n({})", published.name, published.description, published.reference);
+    let nu = published.poisson.unwrap_or(args.poisson);
     let rheology = published.rheology(nu)?;
     Ok(match published.time_temperature() {
         Some(law) => {

@@ -174,6 +174,7 @@ mod grid;
 #[cfg(all(doc, any(not(doctest), all(feature = "csv", feature = "plot"))))]
 pub mod guide;
 mod hereditary;
+mod input;
 mod kernel;
 #[cfg(feature = "laws")]
 pub mod laws;
@@ -200,8 +201,9 @@ mod solver;
 mod sum;
 
 pub use contact::ViscoelasticContact;
-pub use error::{Convergence, Error, KernelError, OutputError, Result, Trend};
+pub use error::{Convergence, Error, KernelError, OutputError, Result, TextError, Trend};
 pub use grid::Grid;
+pub use input::{Delimiter, TextFormat};
 pub use kernel::{InfluenceKernel, Layer, Workspace};
 /// The crate of the complex numbers of moduli and compliances.
 pub use num_complex;
@@ -230,8 +232,7 @@ pub mod prelude {
     pub use crate::plan::{Accuracy, Plan, PlanOptions};
     pub use crate::rheology::{
         Burgers, Elastic, FnRheology, FractionalMaxwell, FractionalZener, GeneralizedKelvin, GeneralizedMaxwell,
-        KelvinVoigt, Kww, LogCreep, Material, Maxwell, PowerLaw, Rheology, SlowCreep, TabulatedCreep, TabulatedDynamic,
-        TabulatedRelaxation, Zener,
+        KelvinVoigt, Kww, LogCreep, Material, Maxwell, Measurements, PowerLaw, Rheology, SlowCreep, Zener,
     };
     pub use crate::{Error, Grid, InfluenceKernel, Layer};
 }

@@ -35,6 +35,23 @@ pub(crate) fn count_within(field: &'static str, value: usize, inside: bool, allo
     if inside { Ok(()) } else { Err(Error::CountOutOfRange { field, value, allowed }) }
 }
 
+/// Accepts values of which each `may_follow` the one before it.
+pub(crate) fn in_order(
+    field: &'static str,
+    values: impl IntoIterator<Item = f64>,
+    rule: &'static str,
+    may_follow: impl Fn(f64, f64) -> bool,
+) -> Result<()> {
+    let mut before: Option<f64> = None;
+    for (index, value) in values.into_iter().enumerate() {
+        if let Some(previous) = before.filter(|&previous| !may_follow(previous, value)) {
+            return Err(Error::OutOfOrder { field, index, value, previous, rule });
+        }
+        before = Some(value);
+    }
+    Ok(())
+}
+
 /// Accepts a slice of exactly `expected` values.
 pub(crate) fn exact_length(field: &'static str, len: usize, expected: usize) -> Result<()> {
     if len == expected { Ok(()) } else { Err(Error::WrongLength { field, len, expected, exact: true }) }

@@ -71,7 +71,7 @@ impl Convergence {
 
     /// The lowest residual; +∞ without any.
     pub fn lowest(&self) -> f64 {
-        self.samples.iter().map(|sample| sample.1).fold(f64::INFINITY, f64::min)
+        lowest(&self.samples)
     }
 
     /// How the residual changed.
@@ -83,12 +83,11 @@ impl Convergence {
             return Trend::TooFew;
         }
         let (before, after) = self.samples.split_at(self.samples.len() / 2);
-        let lowest = |samples: &[(usize, f64)]| samples.iter().map(|sample| sample.1).fold(f64::INFINITY, f64::min);
         let (low, first) = (lowest(after), lowest(before));
         if low < PROGRESS * first {
             return Trend::Falling;
         }
-        let last = after.iter().rev().take(3).map(|sample| sample.1).fold(f64::INFINITY, f64::min);
+        let last = lowest(&after[after.len().saturating_sub(3)..]);
         let highest = after.iter().map(|sample| sample.1).fold(0.0, f64::max);
         if low.min(first) < ROUNDING {
             Trend::Rounding
@@ -112,6 +111,10 @@ impl Convergence {
         let more = (last.1 / self.tolerance).ln() / rate;
         (rate > 0.0 && (0.0..1e9).contains(&more)).then(|| last.0 + more.ceil() as usize)
     }
+}
+
+fn lowest(samples: &[(usize, f64)]) -> f64 {
+    samples.iter().map(|sample| sample.1).fold(f64::INFINITY, f64::min)
 }
 
 impl fmt::Display for Convergence {

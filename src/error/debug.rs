@@ -38,7 +38,7 @@ macro_rules! fmt_fields {
 }
 
 fmt_fields! {
-    Kernel Load Map Material Output Ranks Table;
+    Kernel Load Map Material Output Ranks Table Text;
     BeyondFullContact { time approach greatest }
     BeyondMaterial { time age known_until }
     BeyondReach { time reach }
@@ -65,8 +65,7 @@ fmt_fields! {
     Overflow { time what }
     StepTooShort { time dt tolerance }
     TiltOfPeriodic { time axis }
+    Unreadable { file reason kind }
     WrongFrame { what }
     WrongLength { field len expected exact }
-    WrongNumberOfBodies { given bodies }
-    WrongNumberOfLoads { loads bodies }
 }

@@ -37,17 +37,6 @@ pub enum MapError {
         residual: f64,
     },
 
-    /// A file could not be read, or does not have its format.
-    #[error("{file}: {reason}")]
-    Unreadable {
-        /// Its name, or its format if it has none.
-        file: String,
-        /// The message of the system or the reader.
-        reason: String,
-        /// The kind of the system's error; `None` if the contents cannot be read.
-        kind: Option<std::io::ErrorKind>,
-    },
-
     /// A file could not be written.
     #[error("the {format} file could not be written: {reason}")]
     Unwritable {
@@ -133,28 +122,6 @@ pub enum MapError {
         expected: u64,
         /// Whether `found` is the total, or only a count that exceeds the expected one.
         exact: bool,
-    },
-
-    /// A line of a file has the wrong number of columns.
-    #[error("line {line}: {found} columns, but {expected} are needed")]
-    Columns {
-        /// The line, from 1.
-        line: u64,
-        /// Columns found.
-        found: usize,
-        /// Columns needed.
-        expected: usize,
-    },
-
-    /// An entry of a file is neither a finite number nor a mark of a missing height.
-    #[error("line {line}, column {column}: {text:?} is not a finite number")]
-    NotNumeric {
-        /// The line, from 1.
-        line: u64,
-        /// The column, from 1.
-        column: usize,
-        /// The entry.
-        text: String,
     },
 
     /// A point is not on the regular grid of the other points.

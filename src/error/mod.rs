@@ -12,11 +12,13 @@ mod material;
 mod output;
 mod ranks;
 mod table;
+mod text;
+mod violation;
 
 #[cfg(feature = "checkpoint")]
 pub use checkpoint::CheckpointError;
 pub(crate) use checks::{
-    LONGEST, count_within, exact_length, finite, least_length, length, non_negative, positive, within,
+    LONGEST, count_within, exact_length, finite, in_order, least_length, length, non_negative, positive, within,
 };
 pub use convergence::{Convergence, Trend};
 pub use kernel::KernelError;
@@ -26,6 +28,8 @@ pub use material::MaterialError;
 pub use output::OutputError;
 pub use ranks::RanksError;
 pub use table::{Place, TableError};
+pub use text::TextError;
+pub use violation::{Location, Verdict, Violation};
 
 use crate::rounded::{TIME, rounded};
 
@@ -80,7 +84,8 @@ pub enum Error {
         bytes: u64,
     },
 
-    /// A slice or table has the wrong length: a field needs one value per cell, a table enough to define a function.
+    /// A slice or table has the wrong length: a field needs one value per cell, a table enough to define a function, a step
+    /// one load for each rigid body.
     #[error("{field} holds {len} values, but needs {}{expected}", if *.exact { "" } else { "at least " })]
     WrongLength {
         /// Which slice or table.
@@ -121,24 +126,6 @@ pub enum Error {
         body: usize,
         /// The point at which the load acts \[m\]; 0 along an axis whose tilt is prescribed, where it does not matter.
         at: [f64; 2],
-    },
-
-    /// The number of loads of a step differs from the number of rigid bodies.
-    #[error("{loads} loads were given for {bodies} rigid bodies")]
-    WrongNumberOfLoads {
-        /// Number of loads given.
-        loads: usize,
-        /// Number of bodies of the contact.
-        bodies: usize,
-    },
-
-    /// The number of geometries differs from the number of rigid bodies of the contact.
-    #[error("{given} geometries were given for {bodies} rigid bodies")]
-    WrongNumberOfBodies {
-        /// Number of geometries given.
-        given: usize,
-        /// Number of bodies of the contact.
-        bodies: usize,
     },
 
     /// A geometry returned NaN or −∞ for the gap of a cell; a gap must be finite, or +∞ where there is no body.
@@ -249,6 +236,21 @@ pub enum Error {
         /// Bytes allowed.
         limit: usize,
     },
+
+    /// A file cannot be read, or does not have its format.
+    #[error("{file}: {reason}")]
+    Unreadable {
+        /// Its name, or its format if it has none.
+        file: String,
+        /// The message of the system or the reader.
+        reason: String,
+        /// The kind of the system's error; `None` if the contents cannot be read.
+        kind: Option<std::io::ErrorKind>,
+    },
+
+    /// A table in a text file cannot be read.
+    #[error(transparent)]
+    Text(#[from] TextError),
 
     /// A table of measured data is not allowed.
     #[error(transparent)]

@@ -23,40 +23,10 @@ impl fmt::Display for Place {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum TableError {
-    /// The table has no rows.
-    #[error("the {table} table is empty")]
-    Empty {
-        /// Which table.
-        table: &'static str,
-    },
-
-    /// Too few values to fit a series to.
-    #[error("the {table} table holds {rows} values, but a fit needs at least {least}")]
-    TooFew {
-        /// Which table.
-        table: &'static str,
-        /// Number of values given.
-        rows: usize,
-        /// Number of values needed.
-        least: usize,
-    },
-
-    /// A value is NaN or infinite.
-    #[error("{table} table, {place}: {column} = {value:?} is not a number")]
-    NotFinite {
-        /// Which table.
-        table: &'static str,
-        /// Where.
-        place: Place,
-        /// Which column.
-        column: &'static str,
-        /// The value.
-        value: f64,
-    },
-
-    /// A time is negative, or a frequency, or a time that must be positive, is not positive.
-    #[error("{table} table, {place}: {column} = {value:?} must be {allowed}")]
-    Abscissa {
+    /// A value is outside its range, or not finite. Remove a first row of zeros, recorded before the load: it is not part
+    /// of the creep.
+    #[error("{table}, {place}: {column} = {value:?} is not allowed: it must be {allowed}")]
+    OutOfRange {
         /// Which table.
         table: &'static str,
         /// Where.
@@ -69,22 +39,8 @@ pub enum TableError {
         allowed: &'static str,
     },
 
-    /// A compliance or modulus is not positive. Remove a first row of zeros, recorded before the load: it is not part
-    /// of the creep.
-    #[error("{table} table, {place}: {column} = {value:?} must be > 0")]
-    NotPositive {
-        /// Which table.
-        table: &'static str,
-        /// Where.
-        place: Place,
-        /// Which column.
-        column: &'static str,
-        /// The value.
-        value: f64,
-    },
-
     /// Two values are given for the same time or frequency: average them, or keep one.
-    #[error("{table} table: {place} and {earlier} give two values for {column} = {value}")]
+    #[error("{table}: {place} and {earlier} give two values for {column} = {value}")]
     Duplicate {
         /// Which table.
         table: &'static str,
@@ -102,7 +58,7 @@ pub enum TableError {
     /// than the scatter of the data explains. No passive body responds so. Remove the outlier, or the data recorded
     /// after the specimen failed or slipped.
     #[error(
-        "{table} table, {place}: {column} = {value:?} deviates by {:.2} % from the nearest monotone curve; the scatter of the data explains {:.2} %",
+        "{table}, {place}: {column} = {value:?} deviates by {:.2} % from the nearest monotone curve; the scatter of the data explains {:.2} %",
         100.0 * .change, 100.0 * .noise
     )]
     WrongWay {
@@ -122,7 +78,7 @@ pub enum TableError {
 
     /// No series with positive coefficients fits the data: they do not describe a body of springs and dashpots
     /// (tertiary creep, a step, moduli that contradict each other, wrong units), or too few for their steepness.
-    #[error("the {table} table is not that of a linear body: the best series deviates by {:.0} % in the root mean square, and by {:.0} % at x = {x:e}", 100.0 * .rms, 100.0 * .worst)]
+    #[error("the {table} is not that of a linear body: the best series deviates by {:.0} % in the root mean square, and by {:.0} % at x = {x:e}", 100.0 * .rms, 100.0 * .worst)]
     Inconsistent {
         /// Which table.
         table: &'static str,
@@ -134,19 +90,11 @@ pub enum TableError {
         x: f64,
     },
 
-    /// A heading names Hz, but the units given mean rad/s: give 2π as [`Units::abscissa`](crate::rheology::Units).
-    #[error("line {line}: the column {heading:?} is in Hz, but Units::abscissa is 1: give 2π")]
-    Hertz {
-        /// The line of the headings.
-        line: u64,
-        /// The heading.
-        heading: String,
-    },
-
     /// A heading names a unit other than [`Units`](crate::rheology::Units) gives, an unknown unit, or logarithms:
     /// correct the heading or the units.
     #[error(
-        "line {line}, column {column}: the heading {heading:?} says {unit}, but Units::{field} = {given} means {expected}"
+        "line {line}, column {column}: the heading {heading:?} says {unit}, but Units::{field} = {given} means {expected}{}",
+        .size.map(|size| format!("; of {unit} it is {size:e}")).unwrap_or_default()
     )]
     Unit {
         /// The line of the headings.
@@ -157,6 +105,8 @@ pub enum TableError {
         heading: String,
         /// Its unit.
         unit: String,
+        /// The size of this unit in SI; `None` if it is unknown, or a logarithm.
+        size: Option<f64>,
         /// `abscissa` or `value`.
         field: &'static str,
         /// The size of the unit given.
@@ -165,32 +115,11 @@ pub enum TableError {
         expected: String,
     },
 
-    /// A file could not be read.
-    #[error("{file}: {reason}")]
-    Unreadable {
-        /// Its name.
-        file: String,
-        /// The message of the system or the reader.
-        reason: String,
-        /// The kind of the system's error; `None` if the contents cannot be read.
-        kind: Option<std::io::ErrorKind>,
-    },
-
-    /// A line of a file has the wrong number of columns.
-    #[error("line {line}: {found} columns, but {expected} are needed ({columns})")]
-    Columns {
-        /// The line.
-        line: u64,
-        /// Columns found.
-        found: usize,
-        /// Columns needed.
-        expected: usize,
-        /// Their names.
-        columns: String,
-    },
-
     /// No heading, or more than one, names a column that is needed.
-    #[error("line {line}: not exactly one heading names the {column} (headings: {found})")]
+    /// Rename a heading; or begin the line with `#`, and the columns are read in the order of the table.
+    #[error(
+        "line {line}: not exactly one heading names the {column} (headings: {found}); rename one, or begin the line with # to read the columns in order"
+    )]
     Heading {
         /// The line of the headings.
         line: u64,
@@ -200,32 +129,8 @@ pub enum TableError {
         found: String,
     },
 
-    /// An entry of a file is not a number.
-    #[error("line {line}, column {column}: {text:?} is not a number")]
-    NotNumeric {
-        /// The line.
-        line: u64,
-        /// Number of the column, from 1.
-        column: usize,
-        /// The entry.
-        text: String,
-    },
-
-    /// An entry of a file can be read in more than one way.
-    #[error("line {line}, column {column}: {text:?} can be {readings}")]
-    Ambiguous {
-        /// The line.
-        line: u64,
-        /// Number of the column, from 1.
-        column: usize,
-        /// The entry.
-        text: String,
-        /// Its possible meanings.
-        readings: &'static str,
-    },
-
     /// Isotherms of a master curve measure different quantities.
-    #[error("the {first} isotherms cannot be joined to {second} isotherms")]
+    #[error("a {first} and a {second} cannot be joined to one master curve")]
     MixedIsotherms {
         /// The quantity of the first, or the one requested.
         first: &'static str,

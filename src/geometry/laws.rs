@@ -23,33 +23,15 @@
 //!     }
 //! }
 //! let violation = laws::all(&Bowl, &Grid::square(8, 1.0)?).unwrap_err();
-//! assert_eq!((violation.law, violation.cell), ("a field is the gap at the cell centres", [0, 0]));
+//! assert_eq!(violation.law, "a field is the gap at the cell centres");
+//! assert!(matches!(violation.at, laws::Location::Cell { cell: [0, 0], .. }));
 //! println!("{violation}");
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 
 use crate::Grid;
+pub use crate::error::{Location, Verdict, Violation};
 use crate::geometry::Geometry;
-
-/// A violation of a law.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("{law}: on cell {cell:?} at {position:?} m found {found:e} m, expected {expected:e} m")]
-#[non_exhaustive]
-pub struct Violation {
-    /// The law.
-    pub law: &'static str,
-    /// The cell \[i, j\].
-    pub cell: [usize; 2],
-    /// The centre of the cell \[m\].
-    pub position: [f64; 2],
-    /// The gap found \[m\].
-    pub found: f64,
-    /// The gap required by the law \[m\]; for an inequality, its bound.
-    pub expected: f64,
-}
-
-/// Nothing if the law holds, otherwise its first violation.
-pub type Verdict = Result<(), Violation>;
 
 /// Difference that rounding may cause between equivalent formulas, relative to the greatest gap.
 const ROUNDING: f64 = 1e-10;
@@ -84,7 +66,7 @@ fn check(
         let cell = [k / n2, k % n2];
         let position = grid.center(cell[0], cell[1]);
         if let Some(expected) = expected(k, position, found) {
-            return Err(Violation { law, cell, position, found, expected });
+            return Err(Violation { law, quantity: "gap", at: Location::Cell { cell, position }, found, expected });
         }
     }
     Ok(())
@@ -109,18 +91,22 @@ fn greatest(gap: &[f64]) -> f64 {
     gap.iter().filter(|h| h.is_finite()).fold(0.0, |most, h| h.abs().max(most))
 }
 
+/// Whether two gaps differ by at most `within`, or are both +∞.
+fn same(a: f64, b: f64, within: f64) -> bool {
+    a == b || (a - b).abs() <= within
+}
+
 /// The gap at a point, if `found` differs from it by more than `within`.
 fn mismatch(geometry: &dyn Geometry, grid: &Grid, [x1, x2]: [f64; 2], found: f64, within: f64) -> Option<f64> {
     let expected = geometry.initial_gap(x1, x2);
-    let same = |a: f64, b: f64| a == b || (a - b).abs() <= within;
-    if same(found, expected) {
+    if same(found, expected, within) {
         return None;
     }
     // next to a jump, a value of a slightly displaced point is accepted
     let [d1, d2] = grid.spacing().map(|side| JUMP_DISPLACEMENT * side);
     let directions =
         [(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0), (1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)];
-    let displaced = |(s1, s2): (f64, f64)| same(found, geometry.initial_gap(x1 + s1 * d1, x2 + s2 * d2));
+    let displaced = |(s1, s2): (f64, f64)| same(found, geometry.initial_gap(x1 + s1 * d1, x2 + s2 * d2), within);
     if directions.into_iter().any(displaced) { None } else { Some(expected) }
 }
 
@@ -187,8 +173,7 @@ pub fn zero_shift_changes_nothing(geometry: &dyn Geometry, grid: &Grid) -> Verdi
     let gap = filled(geometry, grid, 0.0);
     let within = ROUNDING * greatest(&gap);
     check("a shift by zero changes nothing", grid, &shifted(geometry, grid, [0.0; 2], 0.0), |k, _, found| {
-        let same = found == gap[k] || (found - gap[k]).abs() <= within;
-        (!same).then_some(gap[k])
+        (!same(found, gap[k], within)).then_some(gap[k])
     })
 }
 
@@ -208,9 +193,7 @@ pub fn shifts_by_whole_cells(geometry: &dyn Geometry, grid: &Grid) -> Verdict {
                 return None;
             }
             let [i, j] = from.map(|index| index as usize);
-            let expected = gap[i * n2 + j];
-            let same = found == expected || (found - expected).abs() <= within;
-            if same { None } else { mismatch(geometry, grid, center, found, within) }
+            if same(found, gap[i * n2 + j], within) { None } else { mismatch(geometry, grid, center, found, within) }
         })?;
     }
     Ok(())

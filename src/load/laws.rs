@@ -16,31 +16,12 @@
 //! }
 //! let violation = laws::all(&Knock, &laws::even_times(0.0, 2.0, 10)).unwrap_err();
 //! assert_eq!((violation.law, violation.quantity), ("jumps lie on breakpoints", "normal force"));
-//! assert!((violation.t - 0.7).abs() < 1e-6);
+//! assert!(matches!(violation.at, laws::Location::Time(t) if (t - 0.7).abs() < 1e-6));
 //! println!("{violation}");
 //! ```
 
+pub use crate::error::{Location, Verdict, Violation};
 use crate::load::{Load, LoadHistory};
-
-/// A violation of a law.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("{law}: {quantity} at t = {t:e} s found {found:e}, expected {expected:e}")]
-#[non_exhaustive]
-pub struct Violation {
-    /// The law.
-    pub law: &'static str,
-    /// The quantity: force \[N\], approach \[m\], a tilt \[rad\], a load point \[m\], or a breakpoint \[s\].
-    pub quantity: &'static str,
-    /// Time \[s\].
-    pub t: f64,
-    /// The value found.
-    pub found: f64,
-    /// The value expected; the bound of an inequality.
-    pub expected: f64,
-}
-
-/// Whether a law holds; otherwise the violation.
-pub type Verdict = Result<(), Violation>;
 
 /// Difference allowed between formulas that are equal but for rounding, relative to the greatest value.
 const SAME: f64 = 1e-10;
@@ -56,20 +37,14 @@ pub fn even_times(first: f64, last: f64, count: usize) -> Vec<f64> {
 }
 
 const IS_A_LOAD: &str = "every load is one that a step accepts";
+const JUMPS: &str = "jumps lie on breakpoints";
 
 /// Every law, at ascending `times` \[s\].
 ///
 /// # Errors
 /// The first violation; or if the times are fewer than two, or not ascending.
 pub fn all(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
-    let law = "(arguments) two or more times are ascending";
-    let refused = |t: f64, found: f64, expected: f64| Err(Violation { law, quantity: "time", t, found, expected });
-    if times.len() < 2 {
-        return refused(times.first().copied().unwrap_or(0.0), times.len() as f64, 2.0);
-    }
-    if let Some(pair) = times.windows(2).find(|pair| pair[0].partial_cmp(&pair[1]) != Some(std::cmp::Ordering::Less)) {
-        return refused(pair[1], pair[1], pair[0]);
-    }
+    Violation::check_ascending(times, 2, f64::NEG_INFINITY)?;
     breakpoints_increase(history, times)?;
     is_a_load(history, times)?;
     repeats_itself(history, times)?;
@@ -112,21 +87,11 @@ fn scales(history: &dyn LoadHistory, moments: &[f64]) -> [f64; 3] {
     })
 }
 
-/// The first value in which two loads differ by more than `within` allows: its name, and both.
-fn difference(found: &Load, expected: &Load, within: [f64; 3]) -> Option<(&'static str, f64, f64)> {
+/// Accepts a load that differs from the expected one by no more than `within` in each value.
+fn check_load(law: &'static str, t: f64, found: &Load, expected: &Load, within: [f64; 3]) -> Verdict {
     let (a, b, named) = (found.values(), expected.values(), found.names());
-    if found.kind() != expected.kind() {
-        return Some(("kind of load", a[0], b[0]));
-    }
-    let same = |k: usize| (a[k] - b[k]).abs() <= within[k];
-    (0..3).find(|&k| !same(k)).map(|k| (named[k], a[k], b[k]))
-}
-
-fn verdict(law: &'static str, t: f64, difference: Option<(&'static str, f64, f64)>) -> Verdict {
-    match difference {
-        Some((quantity, found, expected)) => Err(Violation { law, quantity, t, found, expected }),
-        None => Ok(()),
-    }
+    Violation::check(law, "kind of load", t, [a[0], b[0]], found.kind() == expected.kind())?;
+    (0..3).try_for_each(|k| Violation::check(law, named[k], t, [a[k], b[k]], (a[k] - b[k]).abs() <= within[k]))
 }
 
 /// Breakpoints are finite and later than the argument; the next one is the same for every argument before it.
@@ -134,19 +99,18 @@ fn verdict(law: &'static str, t: f64, difference: Option<(&'static str, f64, f64
 /// # Errors
 /// The first violation.
 pub fn breakpoints_increase(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
-    let quantity = "breakpoint";
     let last = times.last().copied().unwrap_or(0.0);
     for (k, &t) in times.iter().enumerate() {
         let mut after = t;
         for _ in 0..MOST_BREAKPOINTS {
             let Some(next) = history.next_breakpoint(after) else { break };
             let later = next > after && next.is_finite();
-            verdict("breakpoints increase", after, (!later).then_some((quantity, next, after)))?;
+            Violation::check("breakpoints increase", "breakpoint", after, [next, after], later)?;
             let between = times[k..].iter().copied().chain([after + 0.5 * (next - after)]);
             for s in between.filter(|s| *s > after && *s < next) {
                 let again = history.next_breakpoint(s).unwrap_or(f64::INFINITY);
                 let law = "the next breakpoint is the same until it is reached";
-                verdict(law, s, (again != next).then_some((quantity, again, next)))?;
+                Violation::check(law, "breakpoint", s, [again, next], again == next)?;
             }
             // breakpoints beyond the next time are checked from there
             if next > times.get(k + 1).copied().unwrap_or(last) {
@@ -167,7 +131,7 @@ pub fn is_a_load(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
         for load in [history.at(t), history.before(t)].iter().filter(|load| load.validate().is_err()) {
             let (named, found) = (load.names(), load.values());
             let k = (0..3).find(|&k| !found[k].is_finite()).unwrap_or(0);
-            verdict(IS_A_LOAD, t, Some((named[k], found[k], 0.0)))?;
+            Violation::check(IS_A_LOAD, named[k], t, [found[k], 0.0], false)?;
         }
     }
     Ok(())
@@ -183,7 +147,7 @@ pub fn repeats_itself(history: &dyn LoadHistory, times: &[f64]) -> Verdict {
     for (&t, loads) in moments.iter().zip(&first).rev() {
         let again = [history.before(t), history.at(t)];
         for (found, expected) in [(&again[1], &loads[0]), (&again[0], &loads[1])] {
-            verdict("asked again, it answers the same", t, difference(found, expected, [0.0; 3]))?;
+            check_load("asked again, it answers the same", t, found, expected, [0.0; 3])?;
         }
     }
     Ok(())
@@ -205,7 +169,7 @@ fn one_sided_limits(law: &'static str, history: &dyn LoadHistory, times: &[f64],
         let (here, near) = (history.at(t + side * far), history.at(t + side * 1e-3 * far));
         let (a, b) = (here.values(), limit.values());
         let within = [0, 1, 2].map(|k| 0.5 * (a[k] - b[k]).abs() + SAME * scale[k]);
-        verdict(law, t, difference(&limit, &near, within))?;
+        check_load(law, t, &limit, &near, within)?;
     }
     Ok(())
 }
@@ -239,22 +203,22 @@ pub fn smooth_between_breakpoints(history: &dyn LoadHistory, times: &[f64]) -> V
         // at a time that is not a breakpoint there is no jump
         let is_breakpoint = history.next_breakpoint(start).is_some_and(|next| next <= end);
         if !is_breakpoint {
-            let jump = difference(&history.before(end), &history.at(end), scale.map(|scale| SAME * scale));
-            verdict("jumps lie on breakpoints", end, jump)?;
+            let within = scale.map(|scale| SAME * scale);
+            check_load(JUMPS, end, &history.before(end), &history.at(end), within)?;
         }
         let first = history.at(start);
         let load = |t: f64| if t == end { history.before(end) } else { history.at(t) };
         let (middle, last) = (load(0.5 * (start + end)), load(end));
-        for other in [&middle, &last].into_iter().filter(|other| other.kind() != first.kind()) {
-            let kind = Some(("kind of load", other.values()[0], first.values()[0]));
-            verdict("jumps lie on breakpoints", end, kind)?;
+        for other in [&middle, &last] {
+            let kinds = [other.values()[0], first.values()[0]];
+            Violation::check(JUMPS, "kind of load", end, kinds, other.kind() == first.kind())?;
         }
         for (k, scale) in scale.into_iter().enumerate() {
             let value = |t: f64| load(t).values()[k];
             if let Some((law, t)) = roughest(&value, start, end, STRAIGHT * scale) {
                 let near = 1e-9 * (end - start);
                 let (found, expected) = (value((t + near).min(end)), value((t - near).max(start)));
-                verdict(law, t, Some((first.names()[k], found, expected)))?;
+                Violation::check(law, first.names()[k], t, [found, expected], false)?;
             }
         }
     }
@@ -286,7 +250,7 @@ fn roughest(value: &dyn Fn(f64) -> f64, start: f64, end: f64, straight: f64) -> 
     let at = 0.5 * (window[0] + window[1]);
     match late / early {
         ratio if ratio.is_nan() => Some((IS_A_LOAD, at)),
-        ratio if ratio > 0.125 => Some(("jumps lie on breakpoints", at)),
+        ratio if ratio > 0.125 => Some((JUMPS, at)),
         ratio if ratio > 0.0055 => Some(("corners lie on breakpoints", at)),
         _ => None,
     }

@@ -276,22 +276,26 @@ pub trait LoadHistory: Debug + Send + Sync {
     }
 }
 
-/// Forwards the trait through references and smart pointers.
+/// Implements [`LoadHistory`] for a wrapper by the history inside.
 macro_rules! forward_load {
-    ($($pointer:ty),*) => {$(
-        impl<T: LoadHistory + ?Sized> LoadHistory for $pointer {
-            fn at(&self, t: f64) -> Load {
-                (**self).at(t)
+    ($(<$generic:ident>)? $self:ident: $outer:ty => $inner:expr) => {
+        impl $(<$generic: $crate::load::LoadHistory + ?Sized>)? $crate::load::LoadHistory for $outer {
+            fn at(&$self, t: f64) -> $crate::load::Load {
+                $inner.at(t)
             }
 
-            fn before(&self, t: f64) -> Load {
-                (**self).before(t)
+            fn before(&$self, t: f64) -> $crate::load::Load {
+                $inner.before(t)
             }
 
-            fn next_breakpoint(&self, after: f64) -> Option<f64> {
-                (**self).next_breakpoint(after)
+            fn next_breakpoint(&$self, after: f64) -> Option<f64> {
+                $inner.next_breakpoint(after)
             }
         }
-    )*};
+    };
 }
-forward_load!(&T, Box<T>, std::sync::Arc<T>);
+use forward_load;
+
+forward_load!(<T> self: &T => (**self));
+forward_load!(<T> self: Box<T> => (**self));
+forward_load!(<T> self: std::sync::Arc<T> => (**self));

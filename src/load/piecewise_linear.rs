@@ -1,4 +1,5 @@
-use crate::error::{Error, Result, finite, least_length};
+use crate::ascending::TimeTable;
+use crate::error::{Error, Result};
 use crate::load::{Load, LoadHistory};
 
 /// Loads at given times, linear in between and constant before the first and after the last. Two entries at the
@@ -16,7 +17,7 @@ use crate::load::{Load, LoadHistory};
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct PiecewiseLinear {
-    table: Vec<(f64, Load)>,
+    table: TimeTable<Load>,
 }
 
 impl PiecewiseLinear {
@@ -26,44 +27,27 @@ impl PiecewiseLinear {
     /// If there are fewer than two entries, a time is not finite or earlier than the one before, three
     /// entries share a time, a load is invalid, or the loads are of different kinds.
     pub fn new(table: &[(f64, Load)]) -> Result<PiecewiseLinear> {
-        least_length("load table", table.len(), 2)?;
-        for &(time, _) in table {
-            finite("time in the load table", time)?;
-        }
+        let times = "load table times";
+        let checked = TimeTable::new(["load table", times], table, 2)?;
         Load::validate_all("load table", table.iter().map(|entry| entry.1))?;
-        for (index, pair) in (1..).zip(table.windows(2)) {
-            let (field, previous, value) = ("load table times", pair[0].0, pair[1].0);
-            let disorder = |rule| Error::OutOfOrder { field, index, value, previous, rule };
-            if value < previous {
-                return Err(disorder("not decrease"));
-            }
-            if index > 1 && value == table[index - 2].0 {
-                return Err(disorder("occur at most twice, where the load jumps"));
-            }
+        if let Some(k) = table.windows(3).position(|three| three[0].0 == three[2].0) {
+            let (value, rule) = (table[k].0, "occur at most twice, where the load jumps");
+            return Err(Error::OutOfOrder { field: times, index: k + 2, value, previous: value, rule });
         }
-        Ok(PiecewiseLinear { table: table.to_vec() })
-    }
-
-    /// Interpolates between entry `next` − 1 and entry `next`; constant beyond the ends of the table.
-    fn around(&self, next: usize, t: f64) -> Load {
-        match (next.checked_sub(1).map(|k| self.table[k]), self.table.get(next)) {
-            (Some((start, from)), Some(&(end, ref to))) if end > start => from.towards(to, (t - start) / (end - start)),
-            (Some((_, load)), _) => load,
-            (None, _) => self.table[0].1,
-        }
+        Ok(PiecewiseLinear { table: checked })
     }
 }
 
 impl LoadHistory for PiecewiseLinear {
     fn at(&self, t: f64) -> Load {
-        self.around(self.table.partition_point(|entry| entry.0 <= t), t)
+        self.table.at(t, |from, to, share| from.towards(&to, share))
     }
 
     fn before(&self, t: f64) -> Load {
-        self.around(self.table.partition_point(|entry| entry.0 < t), t)
+        self.table.before(t, |from, to, share| from.towards(&to, share))
     }
 
     fn next_breakpoint(&self, after: f64) -> Option<f64> {
-        self.table.get(self.table.partition_point(|entry| entry.0 <= after)).map(|entry| entry.0)
+        self.table.after(after)
     }
 }

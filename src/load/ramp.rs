@@ -1,5 +1,5 @@
 use crate::error::{Result, positive};
-use crate::load::{Load, LoadHistory, PiecewiseLinear};
+use crate::load::{Load, PiecewiseLinear, forward_load};
 
 /// A load that changes linearly from one value to another in a given time from t = 0, and is constant before and
 /// after.
@@ -28,12 +28,4 @@ impl Ramp {
     }
 }
 
-impl LoadHistory for Ramp {
-    fn at(&self, t: f64) -> Load {
-        self.table.at(t)
-    }
-
-    fn next_breakpoint(&self, after: f64) -> Option<f64> {
-        self.table.next_breakpoint(after)
-    }
-}
+forward_load!(self: Ramp => self.table);

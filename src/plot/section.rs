@@ -1,6 +1,6 @@
 //! Maps of the stress on a section.
 
-use crate::error::{Error, Result, exact_length, least_length};
+use crate::error::{Result, exact_length, in_order, least_length};
 use crate::observe::{Axis, Stress, StressSection};
 use crate::plot::contact::time_title;
 use crate::plot::map::runs;
@@ -48,12 +48,8 @@ impl Map {
         exact_length("stresses on a section", section.values.len(), positions.len() * depths.len())?;
         least_length("depths of a section", depths.len(), 2)?;
         let step = depths[1] - depths[0];
-        let unequal = |pair: &[f64]| (pair[1] - pair[0] - step).abs() > UNEQUAL * step;
-        if let Some(k) = depths.windows(2).position(unequal) {
-            let (previous, value) = (depths[k], depths[k + 1]);
-            let (field, rule) = ("depths of a section", "rise in equal steps");
-            return Err(Error::OutOfOrder { field, index: k + 1, value, previous, rule });
-        }
+        let equal = |previous: f64, value: f64| (value - previous - step).abs() <= UNEQUAL * step;
+        in_order("depths of a section", depths.iter().copied(), "rise in equal steps", equal)?;
         let (side, count) = (contact.grid().spacing()[axis], depths.len());
         let grid = Grid::new([positions.len(), count], [side * positions.len() as f64, step * count as f64])?;
         // the map is drawn from below

@@ -38,12 +38,6 @@ impl RelaxationSpectrum {
     pub fn loss_modulus(&self, omega: f64) -> f64 {
         self.complex_modulus(omega).im
     }
-
-    /// Loss factor tan δ = G″/G′ at `omega` \[rad/s\].
-    pub fn loss_tangent(&self, omega: f64) -> f64 {
-        let modulus = self.complex_modulus(omega);
-        modulus.im / modulus.re
-    }
 }
 
 impl CreepSpectrum {
@@ -60,16 +54,6 @@ impl CreepSpectrum {
     /// The complex modulus G*(ω) = 1/J*(ω) \[Pa\] at the angular frequency `omega` > 0 \[rad/s\].
     pub fn complex_modulus(&self, omega: f64) -> Complex64 {
         self.complex_compliance(omega).finv()
-    }
-
-    /// Storage modulus G′(ω) \[Pa\] at `omega` > 0 \[rad/s\].
-    pub fn storage_modulus(&self, omega: f64) -> f64 {
-        self.complex_modulus(omega).re
-    }
-
-    /// Loss modulus G″(ω) \[Pa\] at `omega` > 0 \[rad/s\].
-    pub fn loss_modulus(&self, omega: f64) -> f64 {
-        self.complex_modulus(omega).im
     }
 
     /// Loss factor tan δ = G″/G′ = J″/J′ at `omega` > 0 \[rad/s\].

@@ -5,7 +5,7 @@ use crate::rheology::Rheology;
 ///
 /// Glassy polymers below their transition, amorphous solids, rubber near equilibrium. The creep is a stretched
 /// exponential; for a *relaxation modulus* of this form fit its values:
-/// [`TabulatedRelaxation`](crate::rheology::TabulatedRelaxation).
+/// [`Measurements::relaxation`](crate::rheology::Measurements::relaxation).
 ///
 /// ```
 /// use viscocontact::rheology::{Kww, Rheology};

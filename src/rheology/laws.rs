@@ -19,26 +19,9 @@
 //! println!("{violation}");
 //! ```
 
+pub use crate::error::{Location, Verdict, Violation};
 use crate::quadrature::GaussLegendre;
 use crate::rheology::{CreepSpectrum, Rheology, may_follow};
-
-/// A violation of a law.
-#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("{law}: at t = {t:e} s found {found:e}, expected {expected:e}")]
-#[non_exhaustive]
-pub struct Violation {
-    /// The law.
-    pub law: &'static str,
-    /// Time \[s\].
-    pub t: f64,
-    /// The value found.
-    pub found: f64,
-    /// The value expected; the bound of an inequality.
-    pub expected: f64,
-}
-
-/// Whether a law holds; otherwise the violation.
-pub type Verdict = Result<(), Violation>;
 
 /// Relative difference allowed between formulas that are equal but for rounding.
 const SAME: f64 = 1e-10;
@@ -58,7 +41,7 @@ pub fn log_times(first: f64, last: f64) -> Vec<f64> {
 /// # Errors
 /// The first violation; or if there are no times, or they are not positive and ascending.
 pub fn all(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
-    ascending(times)?;
+    Violation::check_ascending(times, 1, 0.0)?;
     non_negative(rheology, times)?;
     non_decreasing(rheology, times)?;
     concave(rheology, times)?;
@@ -72,26 +55,20 @@ pub fn all(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     Ok(())
 }
 
-/// Checks that there are times, positive and ascending.
-fn ascending(times: &[f64]) -> Verdict {
-    let law = "(arguments) times are positive and ascending";
-    verdict(law, 0.0, 0.0, 1.0, !times.is_empty())?;
-    let mut previous = 0.0;
-    for &t in times {
-        verdict(law, t, t, previous, t > previous && t.is_finite())?;
-        previous = t;
-    }
-    Ok(())
-}
-
 /// The times at which J is known.
 fn known<'a>(rheology: &dyn Rheology, times: &'a [f64]) -> impl Iterator<Item = f64> + use<'a> {
     let until = rheology.known_until();
     times.iter().copied().filter(move |t| *t <= until)
 }
 
-fn verdict(law: &'static str, t: f64, found: f64, expected: f64, holds: bool) -> Verdict {
-    if holds { Ok(()) } else { Err(Violation { law, t, found, expected }) }
+/// The verdict of a law of J at one time.
+fn check(law: &'static str, t: f64, found: f64, expected: f64, holds: bool) -> Verdict {
+    Violation::check(law, "creep compliance", t, [found, expected], holds)
+}
+
+/// Accepts a compliance that equals the expected one but for rounding.
+fn check_same(law: &'static str, t: f64, found: f64, expected: f64) -> Verdict {
+    check(law, t, found, expected, (found - expected).abs() <= SAME * expected)
 }
 
 /// J ≥ 0, and finite; > 0 after t = 0.
@@ -101,8 +78,8 @@ fn verdict(law: &'static str, t: f64, found: f64, expected: f64, holds: bool) ->
 pub fn non_negative(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     for t in std::iter::once(0.0).chain(known(rheology, times)) {
         let found = rheology.creep_compliance(t);
-        verdict("creep is finite and not negative", t, found, 0.0, found.is_finite() && found >= 0.0)?;
-        verdict("creep is positive after t = 0", t, found, 0.0, found > 0.0 || t == 0.0)?;
+        check("creep is finite and not negative", t, found, 0.0, found.is_finite() && found >= 0.0)?;
+        check("creep is positive after t = 0", t, found, 0.0, found > 0.0 || t == 0.0)?;
     }
     Ok(())
 }
@@ -115,7 +92,7 @@ pub fn non_decreasing(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     let mut previous = rheology.creep_compliance(0.0);
     for t in known(rheology, times) {
         let found = rheology.creep_compliance(t);
-        verdict("creep never decreases", t, found, previous, may_follow(found, previous))?;
+        check("creep never decreases", t, found, previous, may_follow(found, previous))?;
         previous = found;
     }
     Ok(())
@@ -132,7 +109,8 @@ pub fn concave(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     for t in known(rheology, times) {
         let next = rheology.creep_compliance(t);
         let (rate, uncertain) = ((next - value) / (t - before), 1e-11 * next / (t - before));
-        verdict("the creep rate never increases", t, rate, slowest.0, rate <= slowest.0 + slowest.1 + uncertain)?;
+        let holds = rate <= slowest.0 + slowest.1 + uncertain;
+        Violation::check("the creep rate never increases", "creep rate", t, [rate, slowest.0], holds)?;
         if rate < slowest.0 {
             slowest = (rate, uncertain);
         }
@@ -150,7 +128,7 @@ pub fn starts_at_its_glassy_compliance(rheology: &dyn Rheology, times: &[f64]) -
     let rise = |t: f64| rheology.creep_compliance(t) - glassy;
     let (here, far) = (rise(first), first * 1e-60);
     let found = rise(far);
-    verdict("creep starts at J(0)", far, found, 0.5 * here, found <= 0.5 * here + SAME * glassy)
+    check("creep starts at J(0)", far, found, 0.5 * here, found <= 0.5 * here + SAME * glassy)
 }
 
 /// The exact series, if there is one, equals J.
@@ -159,9 +137,8 @@ pub fn starts_at_its_glassy_compliance(rheology: &dyn Rheology, times: &[f64]) -
 /// Where they differ by more than 1e-10.
 pub fn spectrum_reproduces_creep(rheology: &dyn Rheology, times: &[f64]) -> Verdict {
     let Some(spectrum) = rheology.creep_spectrum() else { return Ok(()) };
-    for t in std::iter::once(0.0).chain(times.iter().copied()).filter(|t| *t <= rheology.known_until()) {
-        let (found, expected) = (spectrum.compliance(t), rheology.creep_compliance(t));
-        verdict("the series is the creep compliance", t, found, expected, (found - expected).abs() <= SAME * expected)?;
+    for t in std::iter::once(0.0).chain(known(rheology, times)) {
+        check_same("the series is the creep compliance", t, spectrum.compliance(t), rheology.creep_compliance(t))?;
     }
     Ok(())
 }
@@ -173,7 +150,9 @@ pub fn spectrum_reproduces_creep(rheology: &dyn Rheology, times: &[f64]) -> Verd
 /// The violation.
 pub fn limits(spectrum: &CreepSpectrum) -> Verdict {
     let relaxation = spectrum.relaxation();
-    let check = |t: f64, found: f64| verdict("J G = 1 in the limits", t, found, 1.0, (found - 1.0).abs() <= SAME);
+    let check = |t: f64, found: f64| {
+        Violation::check("J G = 1 in the limits", "J G", t, [found, 1.0], (found - 1.0).abs() <= SAME)
+    };
     if spectrum.glassy() > 0.0 {
         check(0.0, spectrum.glassy() * relaxation.modulus(0.0))?;
     }
@@ -193,8 +172,7 @@ pub fn limits(spectrum: &CreepSpectrum) -> Verdict {
 pub fn time_scaling(spectrum: &CreepSpectrum, times: &[f64]) -> Verdict {
     let Ok(slow) = spectrum.slowed(2.0) else { return Ok(()) };
     for &t in times {
-        let (found, expected) = (slow.compliance(2.0 * t), spectrum.compliance(t));
-        verdict("time scales", t, found, expected, (found - expected).abs() <= SAME * expected)?;
+        check_same("time scales", t, slow.compliance(2.0 * t), spectrum.compliance(t))?;
     }
     Ok(())
 }
@@ -221,7 +199,7 @@ pub fn creep_convolved_with_relaxation_is_time(spectrum: &CreepSpectrum, times: 
             graded(fastest(relaxation.terms()), &|s| spectrum.compliance(t - s) * relaxation.modulus(s));
         let near_creep = graded(fastest(spectrum.terms()), &|s| spectrum.compliance(s) * relaxation.modulus(t - s));
         let found = near_relaxation + near_creep + relaxation.viscosity() * spectrum.compliance(t);
-        verdict("J convolved with G is t", t, found, t, (found / t - 1.0).abs() <= SAME)?;
+        Violation::check("J convolved with G is t", "integral", t, [found, t], (found / t - 1.0).abs() <= SAME)?;
     }
     Ok(())
 }

@@ -7,7 +7,7 @@
 //! use viscocontact::rheology::library;
 //!
 //! for material in library::all() {
-//!     println!("{}: {}", material.name(), material.reference());
+//!     println!("{}: {}", material.name, material.reference);
 //! }
 //! let pmma = library::find("PMMA")?;
 //! let body = pmma.material(0.35)?; // Poisson's ratio is not published with it
@@ -15,7 +15,7 @@
 //! # Ok::<(), viscocontact::Error>(())
 //! ```
 
-use crate::error::{MaterialError, Result};
+use crate::error::{MaterialError, Result, within};
 use crate::rheology::{GeneralizedMaxwell, Material, TimeTemperature};
 
 /// The modulus of a published series.
@@ -30,37 +30,30 @@ pub enum Measured {
 
 /// A published material: a relaxation modulus as a Prony series.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Published {
-    name: &'static str,
-    description: &'static str,
-    measured: Measured,
+    /// Its name in this library.
+    pub name: &'static str,
+    /// A description.
+    pub description: &'static str,
+    /// Whether the series describes shear or tension.
+    pub measured: Measured,
     /// Modulus \[Pa\] of which the strengths of the terms are fractions.
     scale: f64,
     equilibrium: f64,
     terms: &'static [(f64, f64)],
-    temperature: Option<f64>,
-    poisson: Option<f64>,
+    /// Temperature of the measurement \[K\], if published.
+    pub temperature: Option<f64>,
+    /// Poisson's ratio, if published.
+    pub poisson: Option<f64>,
     wlf: Option<[f64; 2]>,
-    reference: &'static str,
-    remark: &'static str,
+    /// The publication.
+    pub reference: &'static str,
+    /// The source of the digits, and remarks on their use.
+    pub remark: &'static str,
 }
 
 impl Published {
-    /// Its name in this library.
-    pub fn name(&self) -> &'static str {
-        self.name
-    }
-
-    /// A description.
-    pub fn description(&self) -> &'static str {
-        self.description
-    }
-
-    /// Whether the series describes shear or tension.
-    pub fn measured(&self) -> Measured {
-        self.measured
-    }
-
     /// Modulus after an infinite time, as published \[Pa\].
     pub fn equilibrium(&self) -> f64 {
         self.equilibrium * self.scale
@@ -71,30 +64,10 @@ impl Published {
         self.terms.iter().map(|&(strength, time)| (strength * self.scale, time)).collect()
     }
 
-    /// Temperature of the measurement \[K\], if published.
-    pub fn temperature(&self) -> Option<f64> {
-        self.temperature
-    }
-
-    /// Poisson's ratio, if published.
-    pub fn poisson(&self) -> Option<f64> {
-        self.poisson
-    }
-
     /// The time–temperature law, if published.
     pub fn time_temperature(&self) -> Option<TimeTemperature> {
         let ([c1, c2], reference) = self.wlf.zip(self.temperature)?;
         TimeTemperature::wlf(c1, c2, reference).ok()
-    }
-
-    /// The publication.
-    pub fn reference(&self) -> &'static str {
-        self.reference
-    }
-
-    /// The source of the digits, and remarks on their use.
-    pub fn remark(&self) -> &'static str {
-        self.remark
     }
 
     /// Its behaviour in shear, with Poisson's ratio `nu` constant in time where the series describes tension.
@@ -102,7 +75,7 @@ impl Published {
     /// # Errors
     /// If `nu` is outside (−1, ½].
     pub fn rheology(&self, nu: f64) -> Result<GeneralizedMaxwell> {
-        crate::error::within("Poisson's ratio", nu, nu > -1.0 && nu <= 0.5, "in (-1, 0.5]")?;
+        within("Poisson's ratio", nu, nu > -1.0 && nu <= 0.5, "in (-1, 0.5]")?;
         let to_shear = if self.measured == Measured::Tension { 0.5 / (1.0 + nu) } else { 1.0 };
         let terms: Vec<_> = self.terms().into_iter().map(|(modulus, time)| (to_shear * modulus, time)).collect();
         GeneralizedMaxwell::new(to_shear * self.equilibrium(), &terms)

@@ -199,13 +199,13 @@ impl Material {
     /// Accepts rheologies whose times are not NaN.
     pub(crate) fn validate(&self) -> Result<()> {
         for rheology in self.bodies.iter().map(|body| &body.rheology) {
+            let refused = |field, value, allowed| Err(Error::OutOfRange { field, value, allowed });
             let (until, measured) = (rheology.known_until(), rheology.measured());
             if until.is_nan() || until <= 0.0 {
-                let (field, allowed) = ("Rheology::known_until", "> 0, +∞ for a formula");
-                return Err(Error::OutOfRange { field, value: until, allowed });
+                return refused("Rheology::known_until", until, "> 0, +∞ for a formula");
             }
             if let Some(value) = measured.into_iter().find(|time| time.is_nan()) {
-                return Err(Error::OutOfRange { field: "Rheology::measured", value, allowed: "two times" });
+                return refused("Rheology::measured", value, "two times");
             }
         }
         Ok(())

@@ -16,7 +16,7 @@
 //! | [`LogCreep`] | J_g + c ln(1 + t/λ) |
 //! | [`SlowCreep`] | J_g + c ln(1 + (t/λ)ⁿ) |
 //! | [`FnRheology`] | any closure |
-//! | [`TabulatedCreep`], [`TabulatedRelaxation`], [`TabulatedDynamic`] | fitted to measurements |
+//! | [`CreepSeries`] | fitted to [`Measurements`], or to another model |
 //! | [`AtTemperature`] | J of another model, at a constant temperature; [`TemperatureHistory`]: at a changing one |
 //!
 //! A [`Rheology`] describes shear; a [`Material`] adds the bulk response and gives the contact
@@ -88,7 +88,7 @@ pub(crate) use spectrum::SavedRelaxation;
 pub use spectrum::{CreepSpectrum, RelaxationSpectrum};
 #[cfg(feature = "csv")]
 pub use table::Units;
-pub use table::{Isotherm, MasterCurve, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
+pub use table::{Experiment, Isotherm, MasterCurve, Measurements};
 pub use temperature_history::TemperatureHistory;
 pub(crate) use time_temperature::GAS_CONSTANT;
 pub use time_temperature::{AtTemperature, TimeTemperature};

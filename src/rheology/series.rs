@@ -1,12 +1,13 @@
 use std::ops::RangeInclusive;
 
-use crate::error::{MaterialError, Result, positive, within};
+use crate::error::{MaterialError, Result, within};
 use crate::rheology::fit::{FitReport, MaterialFunction, Sample, Search};
 use crate::rheology::{CreepSpectrum, Rheology, is_known, may_follow};
 
 /// The exponential series that approximates a creep compliance over a range of times, and its error.
 ///
-/// Made by [`Rheology::series`]. It is a [`Rheology`] itself: exact at t = 0 if the body has an elastic response,
+/// Made by [`Rheology::series`] of a formula, and by [`Measurements::fit`](crate::rheology::Measurements::fit) of a table.
+/// It is a [`Rheology`] itself: exact at t = 0 if the body has an elastic response,
 /// within the tolerance over the range, and known up to its end. A body without elastic response gets one: its creep up
 /// to the shortest time counts as immediate.
 ///
@@ -49,10 +50,9 @@ impl CreepSeries {
         tolerance: f64,
     ) -> Result<CreepSeries> {
         let (first, last) = (*times.start(), *times.end());
-        positive("shortest time of a series", first)?;
-        within("longest time of a series", last, last >= first, "finite and no less than the shortest")?;
-        within("shortest time of a series", first, first >= 1e-90, "1e-90 or more")?;
-        within("longest time of a series", last, last <= 1e90, "1e90 at most")?;
+        let ordered = first <= last && last <= 1e90;
+        within("shortest time of a series", first, (1e-90..=1e90).contains(&first), "in [1e-90, 1e90]")?;
+        within("longest time of a series", last, ordered, "no less than the shortest, and at most 1e90")?;
         within("tolerance of a series", tolerance, (1e-8..=0.1).contains(&tolerance), "in [1e-8, 0.1]")?;
         if let Some(spectrum) = rheology.creep_spectrum() {
             let report = FitReport::exact(spectrum.terms().len());
@@ -83,9 +83,15 @@ impl CreepSeries {
         &self.spectrum
     }
 
-    /// The error of the series, at about 70 times per decade.
+    /// The error of the series, at about 70 times per decade, or at the rows of a table.
     pub fn report(&self) -> &FitReport {
         &self.report
+    }
+
+    /// The same body, with its series extrapolated beyond the last time.
+    #[must_use]
+    pub fn extrapolated(self) -> CreepSeries {
+        CreepSeries { known_until: f64::INFINITY, ..self }
     }
 }
 

@@ -1,8 +1,8 @@
 use std::fmt;
 use std::sync::Arc;
 
-use crate::ascending::Ascending;
-use crate::error::{Error, MaterialError, Result, finite, least_length, within};
+use crate::ascending::{Ascending, TimeTable};
+use crate::error::{Error, MaterialError, Result, finite, within};
 use crate::quadrature::GaussLegendre;
 use crate::rheology::TimeTemperature;
 
@@ -47,8 +47,8 @@ pub struct TemperatureHistory {
 
 #[derive(Clone)]
 enum Course {
-    /// Times and temperatures, linear in between; never empty.
-    Table(Vec<(f64, f64)>),
+    /// Linear between the times.
+    Table(TimeTable<f64>),
     Function {
         temperature: Arc<dyn Fn(f64) -> f64 + Send + Sync>,
         corners: Ascending,
@@ -86,18 +86,9 @@ impl TemperatureHistory {
     /// If there is no entry, a time is not finite or earlier than the one before, or for a temperature as
     /// [`TimeTemperature::shift_factor`].
     pub fn table(law: TimeTemperature, table: &[(f64, f64)]) -> Result<TemperatureHistory> {
-        least_length("temperature table", table.len(), 1)?;
-        for (index, &(time, temperature)) in table.iter().enumerate() {
-            finite("time in the temperature table", time)?;
-            law.shift_factor(temperature)?;
-            if let Some(&(previous, _)) = index.checked_sub(1).and_then(|before| table.get(before))
-                && time < previous
-            {
-                let (field, rule) = ("temperature table times", "not decrease");
-                return Err(Error::OutOfOrder { field, index, value: time, previous, rule });
-            }
-        }
-        Ok(TemperatureHistory::new(law, Course::Table(table.to_vec())))
+        let checked = TimeTable::new(["temperature table", "temperature table times"], table, 1)?;
+        table.iter().try_for_each(|&(_, temperature)| law.shift_factor(temperature).map(drop))?;
+        Ok(TemperatureHistory::new(law, Course::Table(checked)))
     }
 
     /// The temperature \[K\] by a closure of the time \[s\], smooth but for `corners` \[s\], in any order: adaptive steps end there.
@@ -127,17 +118,7 @@ impl TemperatureHistory {
     /// The temperature at `time` \[K\]; where it jumps, the one after.
     pub fn at(&self, time: f64) -> f64 {
         match &self.course {
-            Course::Table(table) => {
-                let next = table.partition_point(|entry| entry.0 <= time);
-                let before = next.checked_sub(1).map_or(table[0], |k| table[k]);
-                match table.get(next) {
-                    Some(&(end, to)) if end > before.0 && time > before.0 => {
-                        let share = (time - before.0) / (end - before.0);
-                        before.1 + share * (to - before.1)
-                    }
-                    _ => before.1,
-                }
-            }
+            Course::Table(table) => table.at(time, |from, to, share| from + share * (to - from)),
             Course::Function { temperature, .. } => temperature(time),
         }
     }
@@ -165,7 +146,7 @@ impl TemperatureHistory {
     /// The first corner or jump of the temperature after a time.
     pub(crate) fn next_corner(&self, after: f64) -> Option<f64> {
         match &self.course {
-            Course::Table(table) => table.get(table.partition_point(|entry| entry.0 <= after)).map(|entry| entry.0),
+            Course::Table(table) => table.after(after),
             Course::Function { corners, .. } => corners.after(after),
         }
     }
@@ -198,12 +179,10 @@ impl TemperatureHistory {
 
     /// ξ over a piece without corners inside.
     fn piece(&self, from: f64, to: f64) -> Result<f64> {
-        if let Course::Table(table) = &self.course {
-            let next = table.partition_point(|entry| entry.0 <= from);
-            let ends = [next.saturating_sub(1), next.min(table.len() - 1)].map(|k| table[k].1);
-            if ends[0] == ends[1] {
-                return Ok((to - from) / self.law.shift_factor(ends[0])?);
-            }
+        if let Course::Table(table) = &self.course
+            && table.is_constant_after(from)
+        {
+            return Ok((to - from) / self.law.shift_factor(self.at(from))?);
         }
         self.halved(from, to)
     }

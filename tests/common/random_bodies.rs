@@ -128,7 +128,11 @@ pub fn random_body(draws: &mut Draws) -> Body {
             let order = draws.between(0.2, 0.8);
             let times: Vec<f64> = (0..25).map(|k| tau * 10f64.powf((f64::from(k) - 24.0) / 4.0)).collect();
             let values: Vec<f64> = times.iter().map(|t| 1.0 / g + creep * (t / tau).powf(order)).collect();
-            ("measured creep", some(Box::new(TabulatedCreep::new(&times, &values).unwrap())), tau)
+            (
+                "measured creep",
+                some(Box::new(Measurements::creep(&times, &values).and_then(|table| table.fit()).unwrap())),
+                tau,
+            )
         }
         _ => {
             let ((g_k, eta_k), until) = (kelvin_voigt(1.0), tau * draws.power_of_ten(-1.0, 4.0));

@@ -1,7 +1,7 @@
 //! Height maps: their files and their operations.
 
-use viscocontact::Grid;
 use viscocontact::geometry::{Form, Geometry, HeightMap, LengthUnit, SurfaceStatistics};
+use viscocontact::{Grid, TextFormat};
 
 use crate::engine::{Outcome, Target, Verdict, finite, judged, known};
 use crate::source::Source;
@@ -95,7 +95,9 @@ fn text(source: &mut Source) -> Verdict {
     const FILES: [&str; 3] =
         ["# a\n1, 2, 3\n4, bad, 6\n", "# Channel: Height\n# Width: 2 um\n1.5e-3\t2\n3\tnan\n", "1 2\n3 4\n"];
     let (file, lengths) = (source.choose(&FILES), [source.scale(1e-6, 1e-2), source.scale(1e-6, 1e-2)]);
-    read(file.as_bytes(), None, source, |file| HeightMap::from_text(file, lengths, LengthUnit::Micrometre))
+    read(file.as_bytes(), None, source, |file| {
+        HeightMap::from_text(file, lengths, LengthUnit::Micrometre, TextFormat::default())
+    })
 }
 
 fn xyz(source: &mut Source) -> Verdict {
@@ -103,7 +105,7 @@ fn xyz(source: &mut Source) -> Verdict {
         ["0 0 1\n1 0 2\n2 0 nan\n0 1 4\n1 1 5\n2 1 6\n", "# x y z\n0.5;0;1\n0;0;1\n0;0.25;1\n0.5;0.25;-3e2\n"];
     let file = source.choose(&FILES);
     read(file.as_bytes(), None, source, |file| {
-        HeightMap::from_xyz(file, LengthUnit::Millimetre, LengthUnit::Micrometre)
+        HeightMap::from_xyz(file, LengthUnit::Millimetre, LengthUnit::Micrometre, TextFormat::default())
     })
 }
 

@@ -1,8 +1,6 @@
 //! Tables of measured data: from files, from slices, and master curves.
 
-use viscocontact::rheology::{
-    Isotherm, MasterCurve, Rheology, TabulatedCreep, TabulatedDynamic, TabulatedRelaxation, Units,
-};
+use viscocontact::rheology::{Isotherm, MasterCurve, Measurements, Rheology};
 
 use crate::engine::{Target, Verdict, judged, known};
 use crate::models::creeps;
@@ -63,9 +61,9 @@ fn falling(values: &[f64]) -> Vec<f64> {
 fn slices(source: &mut Source) -> Verdict {
     let [x, first, second] = columns(source);
     match source.below(3) {
-        0 => judged(TabulatedCreep::new(&x, &first), |table| look(&table)),
-        1 => judged(TabulatedRelaxation::new(&x, &falling(&first)), |table| look(&table)),
-        _ => judged(TabulatedDynamic::new(&x, &first, &second), |table| look(&table)),
+        0 => judged(Measurements::creep(&x, &first).and_then(|table| table.fit()), |table| look(&table)),
+        1 => judged(Measurements::relaxation(&x, &falling(&first)).and_then(|table| table.fit()), |table| look(&table)),
+        _ => judged(Measurements::dynamic(&x, &first, &second).and_then(|table| table.fit()), |table| look(&table)),
     }
 }
 
@@ -83,13 +81,13 @@ fn master(source: &mut Source) -> Verdict {
             let x = x.iter().map(|x| x * shift).collect();
             [x, first.clone(), second.clone()]
         });
-        let isotherm = match if source.chance(0.03) { source.below(3) } else { kind } {
-            0 => Isotherm::creep(temperature, &x, &first),
-            1 => Isotherm::relaxation(temperature, &x, &falling(&first)),
-            _ => Isotherm::dynamic(temperature, &x, &first, &second),
+        let table = match if source.chance(0.03) { source.below(3) } else { kind } {
+            0 => Measurements::creep(&x, &first),
+            1 => Measurements::relaxation(&x, &falling(&first)),
+            _ => Measurements::dynamic(&x, &first, &second),
         };
         temperatures.push(temperature);
-        isotherms.extend(isotherm);
+        isotherms.extend(table.and_then(|table| Isotherm::new(temperature, table)));
     }
     let reference = if source.chance(0.95) { source.choose(&temperatures) } else { source.between(250.0, 450.0) };
     judged(MasterCurve::new(reference, isotherms), |curve| {
@@ -98,13 +96,14 @@ fn master(source: &mut Source) -> Verdict {
         for law in [curve.wlf(), curve.arrhenius()].into_iter().flatten() {
             known("constants", law.wlf_constants().into_iter().flatten().chain(law.activation_energy()))?;
         }
-        curve.creep().map_or(Ok(()), |table| look(&table))?;
-        curve.relaxation().map_or(Ok(()), |table| look(&table))?;
-        curve.dynamic().map_or(Ok(()), |table| look(&table))
+        curve.fit().map_or(Ok(()), |table| look(&table))
     })
 }
 
 fn csv(source: &mut Source) -> Verdict {
+    use viscocontact::rheology::{Experiment, Units};
+    use viscocontact::{Delimiter, TextFormat};
+
     const FILES: [&str; 8] = [
         "# PMMA, 23 C\ntime [s], J [1/Pa]\n10, 1.2e-9\n1, 1.0e-9\n100, 1.3e-9\n3, 1.1e-9\n30, 1.25e-9\n300, 1.4e-9\n",
         "1; 4.0e6\n3; 3.1e6\n10; 2.4e6\n30; 2.1e6\n100; 1.9e6\n300; 1.8e6\n",
@@ -115,7 +114,8 @@ fn csv(source: &mut Source) -> Verdict {
         " 1.0D-01 3.0D+06\n 1.0D+00 2.0D+06\n 1.0D+01 1.0D+06\n 1.0D+02 0.5D+06\n",
         "f [Hz],E' [10^6 Pa],E'' [N/mm²]\r\n\"0,1\",\"1,0\",\"0,2\"\r\n1,\"1,5\",\"0,4\"\r\n10,2,\"0,4\"\r\n100,\"2,5\",\"0,1\"\r\n",
     ];
-    const KINDS: [usize; 8] = [0, 1, 2, 1, 0, 0, 1, 2];
+    use Experiment::{Creep, Dynamic, Relaxation};
+    const KINDS: [Experiment; 8] = [Creep, Relaxation, Dynamic, Relaxation, Creep, Creep, Relaxation, Dynamic];
     const UNITS: [[f64; 2]; 8] = {
         let mut units = [[1.0; 2]; 8];
         units[5] = [60.0, 1e-9];
@@ -133,9 +133,17 @@ fn csv(source: &mut Source) -> Verdict {
     let [abscissa, value] =
         if source.chance(0.7) { UNITS[which] } else { [source.scale(1e-3, 1e3), source.scale(1e-3, 1e3)] };
     let units = Units { abscissa, value };
-    match if source.chance(0.9) { KINDS[which] } else { source.below(3) } {
-        0 => judged(TabulatedCreep::from_csv_reader(&file[..], units), |table| look(&table)),
-        1 => judged(TabulatedRelaxation::from_csv_reader(&file[..], units), |table| look(&table)),
-        _ => judged(TabulatedDynamic::from_csv_reader(&file[..], units), |table| look(&table)),
-    }
+    let format = if source.chance(0.9) {
+        match which {
+            4 | 5 => TextFormat::default().with_decimal_comma(true),
+            7 => TextFormat::default().with_delimiter(Delimiter::Comma).with_decimal_comma(true),
+            _ => TextFormat::default(),
+        }
+    } else {
+        let delimiters = [Delimiter::Comma, Delimiter::Semicolon, Delimiter::Tab, Delimiter::Blanks];
+        TextFormat::default().with_delimiter(source.choose(&delimiters)).with_decimal_comma(source.chance(0.5))
+    };
+    let experiment = if source.chance(0.9) { KINDS[which] } else { source.choose(&[Creep, Relaxation, Dynamic]) };
+    let table = Measurements::from_csv_reader(experiment, &file[..], units, format);
+    judged(table.and_then(|table| table.fit()), |body| look(&body))
 }

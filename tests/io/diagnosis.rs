@@ -48,7 +48,9 @@ fn contact_near_the_edge_is_warned_of_before_it_touches() {
 #[test]
 fn material_beyond_its_data_is_warned_of() {
     let times = [0.1, 0.3, 1.0, 3.0, 10.0];
-    let table = TabulatedCreep::new(&times, &times.map(|t: f64| 1.0e-6 * (1.0 + 0.1 * t.ln_1p()))).unwrap();
+    let table = Measurements::creep(&times, &times.map(|t: f64| 1.0e-6 * (1.0 + 0.1 * t.ln_1p())))
+        .and_then(|table| table.fit())
+        .unwrap();
     assert_eq!(table.measured(), [0.1, 10.0]);
     let mut honest = contact(48, Material::incompressible(table.clone()), Settings::default());
     honest.step(0.0, Load::force(0.1)).unwrap();

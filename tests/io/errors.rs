@@ -185,7 +185,7 @@ fn load_tables_are_checked() {
     let load = Load::force(1.0);
     for (found, expected) in [
         (field(table(&[at(0.0, 1.0)])), "load table"),
-        (field(table(&[at(0.0, 1.0), at(f64::NAN, 1.0)])), "time in the load table"),
+        (field(table(&[at(0.0, 1.0), at(f64::NAN, 1.0)])), "load table times"),
         (field(table(&[at(0.0, 1.0), at(1.0, -1.0)])), "normal force"),
         (field(Ramp::new(load, load, 0.0)), "duration of the ramp"),
         (field(Sinusoid::new(load, load, -1.0)), "frequency"),

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules at the top of `src`: each may use the modules above it, none below it. docs/design.md describes them.
-const ORDER: [&str; 29] = [
+const ORDER: [&str; 30] = [
     "extent",
     "guide",
     "linalg",
@@ -16,6 +16,7 @@ const ORDER: [&str; 29] = [
     "events",
     "ascending",
     "file",
+    "input",
     "grid",
     "memory",
     "parallel",

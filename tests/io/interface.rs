@@ -7,6 +7,10 @@ use std::io;
 use crate::common::bodies::maxwell;
 use crate::common::spheres::sphere_on;
 use viscocontact::Error;
+#[cfg(feature = "csv")]
+use viscocontact::TextFormat;
+#[cfg(feature = "csv")]
+use viscocontact::rheology::{Experiment, Units};
 
 /// Names that the prelude leaves to others: an ambiguous one would not compile.
 mod names {
@@ -54,7 +58,7 @@ fn no_message_repeats_its_source() {
         (false, Ramp::new(Load::force(0.0), Load::approach(0.0), 1.0).unwrap_err()),
         (true, HeightMap::read(format!("{missing}.sdf")).unwrap_err()),
         #[cfg(feature = "csv")]
-        (true, TabulatedCreep::from_csv(missing, viscocontact::rheology::Units::SI).unwrap_err()),
+        (true, Measurements::from_csv(Experiment::Creep, missing, Units::SI, TextFormat::default()).unwrap_err()),
         #[cfg(feature = "checkpoint")]
         (true, contact().resume(missing).unwrap_err()),
         #[cfg(feature = "checkpoint")]

@@ -253,10 +253,12 @@ fn several_bodies_carry_their_own_loads() {
 fn wrong_numbers_of_bodies_and_loads_are_refused() {
     let mut contact = punch(16);
     let error = contact.step_each(0.0, &[Load::force(1.0), Load::force(1.0)]).unwrap_err();
-    assert_eq!(error, Error::WrongNumberOfLoads { loads: 2, bodies: 1 });
+    let field = "loads of the rigid bodies";
+    assert_eq!(error, Error::WrongLength { field, len: 2, expected: 1, exact: true });
     let shape = FlatPunch::circular(RADIUS).unwrap();
     let error = contact.set_geometries(&[&shape, &shape]).unwrap_err();
-    assert_eq!(error, Error::WrongNumberOfBodies { given: 2, bodies: 1 });
+    let field = "geometries of the rigid bodies";
+    assert_eq!(error, Error::WrongLength { field, len: 2, expected: 1, exact: true });
     for (load, field) in [
         (Load::approach(f64::NAN), "approach"),
         (Load::eccentric_force(1.0, [f64::INFINITY, 0.0]), "load point along x1"),

@@ -280,5 +280,5 @@ fn motions_without_contact_are_refused() {
         two.step_each_over([1, 0], 1.0e-3, &loads).unwrap();
     }
     assert_abs_diff_eq!(two.body(1).unwrap().force / 10.0, 1.0, epsilon = 1e-9);
-    assert!(matches!(two.step_over([1, 0], 1.0e-3, loads[0]), Err(Error::WrongNumberOfLoads { .. })));
+    assert!(matches!(two.step_over([1, 0], 1.0e-3, loads[0]), Err(Error::WrongLength { .. })));
 }

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::contact::indenter::Indenter;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result};
+use crate::error::{Result, exact_length};
 use crate::geometry::{Gap, Geometry, evaluate};
 
 impl ViscoelasticContact {
@@ -24,9 +24,7 @@ impl ViscoelasticContact {
     /// As [`ViscoelasticContact::set_geometry`], or if there is not one geometry per body.
     pub fn set_geometries(&mut self, geometries: &[&dyn Geometry]) -> Result<()> {
         self.not_shared("another geometry")?;
-        if geometries.len() != self.scene.bodies {
-            return Err(Error::WrongNumberOfBodies { given: geometries.len(), bodies: self.scene.bodies });
-        }
+        exact_length("geometries of the rigid bodies", geometries.len(), self.scene.bodies)?;
         let gaps =
             geometries.iter().map(|geometry| evaluate(*geometry, &self.scene.grid)).collect::<Result<Vec<_>>>()?;
         let indenter = Indenter::new(Gap::new(gaps, &self.scene.grid)?, self.scene.bodies);

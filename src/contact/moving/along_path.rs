@@ -8,7 +8,7 @@ use crate::contact::settings::Frame;
 use crate::contact::state::State;
 use crate::contact::step::request::Step;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Error, Result, exact_length, non_negative};
 use crate::geometry::Gap;
 use crate::load::Load;
 use crate::motion::Travel;
@@ -50,9 +50,7 @@ impl ViscoelasticContact {
         if self.settings().frame != Frame::Bodies {
             return Err(Error::WrongFrame { what: "a step along a path" });
         }
-        if self.bodies() != 1 {
-            return Err(Error::WrongNumberOfBodies { given: 1, bodies: self.bodies() });
-        }
+        exact_length("geometries of the rigid bodies", 1, self.bodies())?;
         non_negative("time step", dt)?;
         let from = travel.position(self.time())?;
         if self.indenter_buffer.is_empty() {

@@ -135,7 +135,7 @@ bitflags! {
         /// greatest pressure and contact area err by up to 1.3 %, 4 % and 8 % with contacts of 4 cells across, by 0.5 %, 1.5 % and 2.5 % with 8.
         const FEW_CELLS = 1 << 1;
         /// The loading time exceeds the measured range of the material: a table is extrapolated beyond its data
-        /// ([`TabulatedCreep::extrapolated`](crate::rheology::TabulatedCreep::extrapolated)).
+        /// ([`CreepSeries::extrapolated`](crate::rheology::CreepSeries::extrapolated)).
         const EXTRAPOLATED = 1 << 2;
         /// The step is shorter than the times for which the material is known: creep within it counts as elastic.
         const FASTER_THAN_MATERIAL = 1 << 3;

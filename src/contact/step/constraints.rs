@@ -7,7 +7,7 @@ use crate::contact::state::State;
 use crate::contact::step::request::{Step, Trial};
 use crate::contact::window::region::Region;
 use crate::contact::window::window::Window;
-use crate::error::{Convergence, Error, Result};
+use crate::error::{Convergence, Error, Result, exact_length};
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
 use crate::rheology::is_known;
@@ -16,9 +16,7 @@ use crate::solver::{Counts, Freedom, Outcome, Solution};
 /// Rejects loads that no pressure can balance.
 pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
     let (time, loads, grid) = (step.interval.time, step.loads, &scene.grid);
-    if loads.len() != scene.bodies {
-        return Err(Error::WrongNumberOfLoads { loads: loads.len(), bodies: scene.bodies });
-    }
+    exact_length("loads of the rigid bodies", loads.len(), scene.bodies)?;
     for (body, load) in loads.iter().enumerate() {
         load.validate()?;
         let Freedom { translation, tilt, point, total } = freedom(load, grid);

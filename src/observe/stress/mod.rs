@@ -14,7 +14,7 @@ pub use tensor::Stress;
 
 use num_complex::Complex64;
 
-use crate::error::{Error, KernelError, Result, exact_length, least_length, within};
+use crate::error::{KernelError, Result, exact_length, in_order, least_length, within};
 use crate::fft::Plane;
 use crate::kernel::{HalfSpace, fast_length};
 use crate::observe::profile::{Axis, line_through};
@@ -273,13 +273,7 @@ impl SubsurfaceStress {
     fn check_depths(&self, depths: &[f64]) -> Result<()> {
         least_length("depths", depths.len(), 1)?;
         depths.iter().try_for_each(|&depth| self.check_depth(depth))?;
-        match depths.windows(2).position(|pair| pair[1] <= pair[0]) {
-            None => Ok(()),
-            Some(k) => {
-                let (previous, value) = (depths[k], depths[k + 1]);
-                Err(Error::OutOfOrder { field: "depths", index: k + 1, value, previous, rule: "rise" })
-            }
-        }
+        in_order("depths", depths.iter().copied(), "rise", |previous, value| value > previous)
     }
 }
 

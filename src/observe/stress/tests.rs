@@ -1,6 +1,7 @@
 //! Transforms against sums, and laws that every stress obeys.
 
 use super::*;
+use crate::error::Error;
 use crate::observe::stress::waves;
 
 fn field(len: usize) -> Vec<f64> {

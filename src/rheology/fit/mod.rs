@@ -50,18 +50,17 @@ impl Search {
     /// nearest.
     pub(crate) fn within(&self, samples: &[Sample], most: f64) -> FittedSeries {
         let reached = |series: &FittedSeries| series.worst(samples) <= most;
-        let mut best: Option<FittedSeries> = None;
-        for density in DENSITIES {
-            let series = polish(&self.on_grid(samples, density), samples, self, LONG, &reached);
-            if best.as_ref().is_none_or(|best| series.worst(samples) < best.worst(samples)) {
-                best = Some(series);
-            }
-            if best.as_ref().is_some_and(reached) {
+        let fitted = |density| polish(&self.on_grid(samples, density), samples, self, LONG, &reached);
+        let mut found = fitted(DENSITIES[0]);
+        for density in &DENSITIES[1..] {
+            if reached(&found) {
                 break;
             }
+            let series = fitted(*density);
+            if series.worst(samples) < found.worst(samples) {
+                found = series;
+            }
         }
-        let found =
-            best.unwrap_or(FittedSeries { constant: self.constant.unwrap_or(0.0), slope: 0.0, terms: Vec::new() });
         let thinned = self.thinned(found, samples, TRIES, &|trial, _| reached(trial));
         // the polish of a merger stops early: complete it
         let polished = polish(&thinned, samples, self, LONG, &|_| false);
@@ -149,44 +148,39 @@ impl Search {
 
     /// Every series with one term fewer, and the cost of the merger to first order.
     fn mergers(&self, series: &FittedSeries, samples: &[Sample]) -> Vec<(f64, FittedSeries)> {
-        let mut mergers = Vec::new();
-        let cost = |merged: &FittedSeries| {
-            samples.iter().map(|sample| (merged.misfit(sample) - series.misfit(sample)).powi(2)).sum::<f64>()
-        };
-        let mut offer = |merged: FittedSeries| mergers.push((cost(&merged), merged));
-        for k in 1..series.terms.len() {
-            let mut merged = series.clone();
-            let (strength, lambda) = merged.terms.remove(k);
-            let (other, shorter) = merged.terms[k - 1];
-            let share = strength / (strength + other);
-            merged.terms[k - 1] = (strength + other, shorter * (lambda / shorter).powf(share));
-            offer(merged);
-        }
-        // terms faster than the first sample or slower than the last one become part of the constant or the slope,
-        // depending on the function
-        if series.terms.is_empty() {
-            return mergers;
-        }
         let without = |k: usize| {
             let mut merged = series.clone();
             let term = merged.terms.remove(k);
             (merged, term)
         };
-        let (swift, slow) = (0, series.terms.len() - 1);
-        let creep = samples[0].function == MaterialFunction::Creep;
-        if self.constant.is_none() {
-            let (mut merged, (strength, _)) = without(if creep { swift } else { slow });
-            merged.constant += strength;
-            offer(merged);
+        let joined = |k: usize| {
+            let (mut merged, (strength, lambda)) = without(k);
+            let (other, shorter) = merged.terms[k - 1];
+            let share = strength / (strength + other);
+            merged.terms[k - 1] = (strength + other, shorter * (lambda / shorter).powf(share));
+            merged
+        };
+        let mut mergers: Vec<FittedSeries> = (1..series.terms.len()).map(joined).collect();
+        // terms faster than the first sample or slower than the last one become part of the constant or the slope,
+        // depending on the function
+        if let Some(last) = series.terms.len().checked_sub(1) {
+            let creep = samples[0].function == MaterialFunction::Creep;
+            let (of_constant, of_slope) = if creep { (0, last) } else { (last, 0) };
+            if self.constant.is_none() {
+                let (mut merged, (strength, _)) = without(of_constant);
+                merged.constant += strength;
+                mergers.push(merged);
+            }
+            if self.slope {
+                let (mut merged, (strength, time)) = without(of_slope);
+                merged.slope += if creep { strength / time } else { strength * time };
+                mergers.push(merged);
+            }
+            mergers.extend([0, last].map(|k| without(k).0));
         }
-        if self.slope {
-            let (mut merged, (strength, time)) = without(if creep { slow } else { swift });
-            merged.slope += if creep { strength / time } else { strength * time };
-            offer(merged);
-        }
-        for k in [swift, slow] {
-            offer(without(k).0);
-        }
-        mergers
+        let cost = |merged: &FittedSeries| {
+            samples.iter().map(|sample| (merged.misfit(sample) - series.misfit(sample)).powi(2)).sum::<f64>()
+        };
+        mergers.into_iter().map(|merged| (cost(&merged), merged)).collect()
     }
 }

@@ -1,6 +1,6 @@
 //! Checks of measured data before a fit.
 
-use crate::error::{Place, Result, TableError};
+use crate::error::{Place, Result, TableError, least_length};
 use crate::rheology::fit::{MaterialFunction, Sample};
 
 /// One row of a table: its place, the abscissa, and one value for each column.
@@ -11,8 +11,20 @@ pub(crate) struct Row {
     pub(crate) values: Vec<f64>,
 }
 
+/// What a table of measurements holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub enum Experiment {
+    /// Time \[s\] and creep compliance J \[1/Pa\].
+    Creep,
+    /// Time \[s\] and relaxation modulus G \[Pa\].
+    Relaxation,
+    /// Angular frequency \[rad/s\], storage and loss modulus G′, G″ \[Pa\] (DMA, rheometer).
+    Dynamic,
+}
+
 /// The columns of a table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Layout {
     pub(crate) table: &'static str,
     pub(crate) abscissa: &'static str,
@@ -22,22 +34,28 @@ pub(crate) struct Layout {
     pub(crate) zero: bool,
 }
 
-pub(crate) const CREEP: Layout =
-    Layout { table: "creep", abscissa: "time", columns: &[("creep compliance", MaterialFunction::Creep)], zero: true };
+impl Experiment {
+    pub(crate) fn layout(self) -> Layout {
+        let (table, columns): (_, &[_]) = match self {
+            Experiment::Creep => ("creep table", &[("creep compliance", MaterialFunction::Creep)]),
+            Experiment::Relaxation => ("relaxation table", &[("relaxation modulus", MaterialFunction::Relaxation)]),
+            Experiment::Dynamic => (
+                "dynamic table",
+                &[("storage modulus", MaterialFunction::Storage), ("loss modulus", MaterialFunction::Loss)],
+            ),
+        };
+        let zero = self != Experiment::Dynamic;
+        Layout { table, abscissa: if zero { "time" } else { "angular frequency" }, columns, zero }
+    }
+}
 
-pub(crate) const RELAXATION: Layout = Layout {
-    table: "relaxation",
-    abscissa: "time",
-    columns: &[("relaxation modulus", MaterialFunction::Relaxation)],
-    zero: true,
-};
-
-pub(crate) const DYNAMIC: Layout = Layout {
-    table: "dynamic",
-    abscissa: "angular frequency",
-    columns: &[("storage modulus", MaterialFunction::Storage), ("loss modulus", MaterialFunction::Loss)],
-    zero: false,
-};
+impl Layout {
+    /// Names of the abscissa and of the columns.
+    #[cfg(feature = "csv")]
+    pub(crate) fn names(&self) -> impl Iterator<Item = &'static str> {
+        std::iter::once(self.abscissa).chain(self.columns.iter().map(|&(name, _)| name))
+    }
+}
 
 /// Data may deviate from a monotone curve by this many standard deviations of their scatter, ...
 const DEVIATIONS: f64 = 6.0;
@@ -51,28 +69,17 @@ const LEAST_NOISE: f64 = 1e-9;
 /// Number of values for a fit of constant, slope and one term.
 const LEAST_ROWS: usize = 4;
 
-/// The samples of a table, in ascending order, and their greatest deviation from a monotone curve.
-pub(crate) fn validated(layout: Layout, mut rows: Vec<Row>) -> Result<(Vec<Sample>, f64)> {
+/// Sorts the rows of a table. Returns its samples, in ascending order, and their greatest deviation from a monotone curve.
+pub(crate) fn validated(layout: Layout, rows: &mut [Row]) -> Result<(Vec<Sample>, f64)> {
     let Layout { table, abscissa, columns, zero } = layout;
-    if rows.is_empty() {
-        return Err(TableError::Empty { table }.into());
-    }
-    for Row { place, x, values } in &rows {
-        let (place, x) = (*place, *x);
-        if !x.is_finite() {
-            return Err(TableError::NotFinite { table, place, column: abscissa, value: x }.into());
-        }
-        if x < 0.0 || x == 0.0 && !zero || x > 0.0 && !(1e-90..=1e90).contains(&x) {
-            let allowed = if zero { "0, or in [1e-90, 1e90]" } else { "in [1e-90, 1e90]" };
-            return Err(TableError::Abscissa { table, place, column: abscissa, value: x, allowed }.into());
-        }
+    for Row { place, x, values } in &*rows {
+        let check = |column, value, inside, allowed| {
+            if inside { Ok(()) } else { Err(TableError::OutOfRange { table, place: *place, column, value, allowed }) }
+        };
+        let allowed = if zero { "0, or in [1e-90, 1e90]" } else { "in [1e-90, 1e90]" };
+        check(abscissa, *x, *x == 0.0 && zero || (1e-90..=1e90).contains(x), allowed)?;
         for (&value, &(column, _)) in values.iter().zip(columns) {
-            if !value.is_finite() {
-                return Err(TableError::NotFinite { table, place, column, value }.into());
-            }
-            if value <= 0.0 {
-                return Err(TableError::NotPositive { table, place, column, value }.into());
-            }
+            check(column, value, value.is_finite() && value > 0.0, "finite and > 0")?;
         }
     }
     rows.sort_by(|a, b| a.x.total_cmp(&b.x));
@@ -80,9 +87,7 @@ pub(crate) fn validated(layout: Layout, mut rows: Vec<Row>) -> Result<(Vec<Sampl
         let (earlier, place, value) = (pair[0].place, pair[1].place, pair[0].x);
         return Err(TableError::Duplicate { table, place, earlier, column: abscissa, value }.into());
     }
-    if rows.len() < LEAST_ROWS {
-        return Err(TableError::TooFew { table, rows: rows.len(), least: LEAST_ROWS }.into());
-    }
+    least_length(table, rows.len(), LEAST_ROWS)?;
     let mut greatest: f64 = 0.0;
     for (index, &(column, function)) in columns.iter().enumerate() {
         let values: Vec<f64> = rows.iter().map(|row| row.values[index]).collect();

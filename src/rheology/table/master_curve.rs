@@ -1,58 +1,36 @@
-use crate::error::{Error, Place, Result, TableError, least_length, within};
-use crate::rheology::table::data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
-use crate::rheology::table::{TabulatedCreep, TabulatedDynamic, TabulatedRelaxation};
-use crate::rheology::{MaterialFunction, TimeTemperature};
+use crate::error::{Error, Place, Result, TableError, in_order, least_length, within};
+use crate::rheology::table::data::Row;
+use crate::rheology::table::{Experiment, Measurements};
+use crate::rheology::{CreepSeries, MaterialFunction, TimeTemperature};
 
-/// A measurement at one temperature.
+/// Measurements at one temperature.
 ///
 /// ```
-/// use viscocontact::rheology::Isotherm;
+/// use viscocontact::rheology::{Isotherm, Measurements};
 ///
-/// let at_60 = Isotherm::creep(333.15, &[1.0, 10.0, 100.0, 1000.0], &[1.0e-9, 1.1e-9, 1.4e-9, 2.0e-9])?;
+/// let creep = Measurements::creep(&[1.0, 10.0, 100.0, 1000.0], &[1.0e-9, 1.1e-9, 1.4e-9, 2.0e-9])?;
+/// let at_60 = Isotherm::new(333.15, creep)?;
 /// assert_eq!(at_60.temperature(), 333.15);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Isotherm {
     temperature: f64,
-    layout: Layout,
+    experiment: Experiment,
+    /// Ascending.
     rows: Vec<Row>,
 }
 
 impl Isotherm {
-    /// Creep `compliances` \[1/Pa\] at `times` \[s\], measured at `temperature` \[K\].
+    /// `measurements` at `temperature` \[K\].
     ///
     /// # Errors
-    /// If the temperature is not finite and positive, the slices differ in length, or the data are no creep test
-    /// ([`TabulatedCreep::new`]).
-    pub fn creep(temperature: f64, times: &[f64], compliances: &[f64]) -> Result<Isotherm> {
-        Isotherm::new(temperature, CREEP, times, &[compliances])
-    }
-
-    /// Relaxation `moduli` \[Pa\] at `times` \[s\], measured at `temperature` \[K\].
-    ///
-    /// # Errors
-    /// As [`Isotherm::creep`].
-    pub fn relaxation(temperature: f64, times: &[f64], moduli: &[f64]) -> Result<Isotherm> {
-        Isotherm::new(temperature, RELAXATION, times, &[moduli])
-    }
-
-    /// `storage` and `loss` moduli \[Pa\] at the angular frequencies `omega` \[rad/s\], measured at
-    /// `temperature` \[K\].
-    ///
-    /// # Errors
-    /// As [`Isotherm::creep`].
-    pub fn dynamic(temperature: f64, omega: &[f64], storage: &[f64], loss: &[f64]) -> Result<Isotherm> {
-        Isotherm::new(temperature, DYNAMIC, omega, &[storage, loss])
-    }
-
-    fn new(temperature: f64, layout: Layout, x: &[f64], columns: &[&[f64]]) -> Result<Isotherm> {
+    /// If the temperature is not finite and positive.
+    pub fn new(temperature: f64, measurements: Measurements) -> Result<Isotherm> {
         within("temperature", temperature, temperature > 0.0, "finite and > 0 (kelvin)")?;
-        let mut rows = super::rows(x, "values of an isotherm", columns)?;
-        validated(layout, rows.clone())?;
+        let Measurements { experiment, mut rows, .. } = measurements;
         rows.retain(|row| row.x > 0.0); // a time of zero cannot be shifted
-        rows.sort_by(|a, b| a.x.total_cmp(&b.x));
-        Ok(Isotherm { temperature, layout, rows })
+        Ok(Isotherm { temperature, experiment, rows })
     }
 
     /// Temperature \[K\].
@@ -67,7 +45,7 @@ impl Isotherm {
     }
 
     fn log_time(&self, row: &Row) -> f64 {
-        if self.layout.zero { row.x.ln() } else { -row.x.ln() }
+        if self.experiment.layout().zero { row.x.ln() } else { -row.x.ln() }
     }
 
     /// ln of a column at ln t, linear in between.
@@ -88,7 +66,7 @@ impl Isotherm {
 /// values where the two overlap. There are no vertical shifts.
 ///
 /// ```
-/// use viscocontact::rheology::{Isotherm, MasterCurve, Rheology, TimeTemperature};
+/// use viscocontact::rheology::{Isotherm, MasterCurve, Measurements, Rheology, TimeTemperature};
 /// # use viscocontact::rheology::FractionalMaxwell;
 ///
 /// # let body = FractionalMaxwell::findley(1.0e-9, 2.0e-10, 0.3)?;
@@ -99,10 +77,10 @@ impl Isotherm {
 ///     // three decades of time at each temperature; here from a formula
 /// #   let slow = law.shift_factor(temperature)?;
 /// #   let compliances: Vec<f64> = times.iter().map(|&t| body.creep_compliance(t / slow)).collect();
-///     isotherms.push(Isotherm::creep(temperature, &times, &compliances)?);
+///     isotherms.push(Isotherm::new(temperature, Measurements::creep(&times, &compliances)?)?);
 /// }
 /// let master = MasterCurve::new(300.0, isotherms)?;
-/// let polymer = master.creep()?; // at 300 K, over more than four decades
+/// let polymer = master.fit()?; // at 300 K, over more than four decades
 /// assert!(polymer.known_until() > 1.0e4);
 /// println!("activation energy {:.0} kJ/mol", 1e-3 * master.arrhenius()?.activation_energy().unwrap());
 /// # Ok::<(), viscocontact::Error>(())
@@ -204,29 +182,28 @@ impl MasterCurve {
     /// The points of the curve: reduced time \[s\] or angular frequency \[rad/s\], material function, value; from
     /// the lowest temperature to the highest.
     pub fn points(&self) -> Vec<(f64, MaterialFunction, f64)> {
-        let mut points = Vec::new();
-        for (isotherm, row) in self.reduced() {
-            let columns = isotherm.layout.columns.iter().zip(&row.values);
-            points.extend(columns.map(|(&(_, function), &value)| (row.x, function, value)));
-        }
-        points
+        let functions = self.isotherms[0].experiment.layout().columns.iter().map(|&(_, function)| function);
+        let values =
+            |row: Row| functions.clone().zip(row.values).map(move |(function, value)| (row.x, function, value));
+        self.reduced().flat_map(values).collect()
     }
 
-    fn reduced(&self) -> impl Iterator<Item = (&Isotherm, Row)> {
+    /// The rows of all isotherms, at reduced times or frequencies.
+    fn reduced(&self) -> impl Iterator<Item = Row> {
         self.isotherms.iter().zip(&self.log_shifts).flat_map(|(isotherm, &shift)| {
-            let factor = if isotherm.layout.zero { (-shift).exp() } else { shift.exp() };
-            isotherm.rows.iter().map(move |row| (isotherm, Row { x: row.x * factor, ..row.clone() }))
+            let factor = if isotherm.experiment.layout().zero { (-shift).exp() } else { shift.exp() };
+            isotherm.rows.iter().map(move |row| Row { x: row.x * factor, ..row.clone() })
         })
     }
 
-    /// The rows of the curve, if it is of the quantity `wanted`; points at the same time are separated by one unit in
-    /// the last place.
-    fn rows(&self, wanted: Layout) -> Result<Vec<Row>> {
-        let given = self.isotherms[0].layout.table;
-        if given != wanted.table {
-            return Err(TableError::MixedIsotherms { first: wanted.table, second: given }.into());
-        }
-        let mut rows: Vec<Row> = self.reduced().map(|(_, row)| row).collect();
+    /// The body at the reference temperature: all points, fitted as one table.
+    ///
+    /// Points at the same time are separated by one unit in the last place.
+    ///
+    /// # Errors
+    /// If the curve cannot be fitted ([`Measurements::fit`]).
+    pub fn fit(&self) -> Result<CreepSeries> {
+        let mut rows: Vec<Row> = self.reduced().collect();
         rows.sort_by(|a, b| a.x.total_cmp(&b.x));
         for k in 0..rows.len() {
             if k > 0 && rows[k].x <= rows[k - 1].x {
@@ -234,31 +211,7 @@ impl MasterCurve {
             }
             rows[k].place = Place::Entry(k);
         }
-        Ok(rows)
-    }
-
-    /// The body at the reference temperature, from creep isotherms.
-    ///
-    /// # Errors
-    /// If the isotherms measure another quantity, or the curve cannot be fitted ([`TabulatedCreep::new`]).
-    pub fn creep(&self) -> Result<TabulatedCreep> {
-        TabulatedCreep::from_rows(self.rows(CREEP)?)
-    }
-
-    /// The body at the reference temperature, from relaxation isotherms.
-    ///
-    /// # Errors
-    /// If the isotherms measure another quantity, or the curve cannot be fitted.
-    pub fn relaxation(&self) -> Result<TabulatedRelaxation> {
-        TabulatedRelaxation::from_rows(self.rows(RELAXATION)?)
-    }
-
-    /// The body at the reference temperature, from dynamic isotherms.
-    ///
-    /// # Errors
-    /// If the isotherms measure another quantity, or the curve cannot be fitted.
-    pub fn dynamic(&self) -> Result<TabulatedDynamic> {
-        TabulatedDynamic::from_rows(self.rows(DYNAMIC)?)
+        Measurements::from_rows(self.isotherms[0].experiment, rows)?.fit()
     }
 }
 
@@ -266,21 +219,12 @@ impl MasterCurve {
 fn sorted(mut isotherms: Vec<Isotherm>) -> Result<Vec<Isotherm>> {
     least_length("isotherms", isotherms.len(), 1)?;
     isotherms.sort_by(|a, b| a.temperature.total_cmp(&b.temperature));
-    for (index, pair) in isotherms.windows(2).enumerate() {
-        let [colder, warmer] = pair else { continue };
-        if colder.layout != warmer.layout {
-            return Err(TableError::MixedIsotherms { first: colder.layout.table, second: warmer.layout.table }.into());
-        }
-        if colder.temperature == warmer.temperature {
-            return Err(Error::OutOfOrder {
-                field: "temperatures of the isotherms",
-                index: index + 1,
-                value: warmer.temperature,
-                previous: colder.temperature,
-                rule: "differ",
-            });
-        }
+    let first = isotherms[0].experiment;
+    if let Some(other) = isotherms.iter().map(|isotherm| isotherm.experiment).find(|other| *other != first) {
+        return Err(TableError::MixedIsotherms { first: first.layout().table, second: other.layout().table }.into());
     }
+    let temperatures = isotherms.iter().map(|isotherm| isotherm.temperature);
+    in_order("temperatures of the isotherms", temperatures, "differ", |colder, warmer| colder != warmer)?;
     Ok(isotherms)
 }
 
@@ -301,7 +245,7 @@ fn shift_between(colder: &Isotherm, warmer: &Isotherm) -> Result<f64> {
         if to - from < least {
             return f64::INFINITY;
         }
-        let columns = colder.layout.columns.len();
+        let columns = colder.experiment.layout().columns.len();
         let mut sum = 0.0;
         for column in 0..columns {
             for k in 0..=COMPARED {

@@ -10,9 +10,10 @@ pub use self::csv::Units;
 pub use master_curve::{Isotherm, MasterCurve};
 
 use crate::error::{Place, Result, TableError, exact_length};
+use crate::rheology::CreepSeries;
 use crate::rheology::fit::{FitReport, Sample, Search, Uncertainty};
-use crate::rheology::{CreepSeries, CreepSpectrum, forward_rheology};
-use data::{CREEP, DYNAMIC, Layout, RELAXATION, Row, validated};
+pub use data::Experiment;
+use data::{Row, validated};
 
 /// Greatest root mean square misfit of an accepted fit.
 const MOST_MISFIT: f64 = 0.1;
@@ -27,56 +28,14 @@ const BEYOND: f64 = 3.0;
 const BEYOND_FAST: f64 = 10.0;
 const NOTICEABLE: f64 = 12.0;
 
-/// Methods common to the three kinds of table.
-macro_rules! tabulated {
-    ($table:ident, $layout:expr) => {
-        impl $table {
-            /// The fitted series.
-            pub fn spectrum(&self) -> &CreepSpectrum {
-                self.0.spectrum()
-            }
-
-            /// The error of the fit.
-            pub fn report(&self) -> &FitReport {
-                self.0.report()
-            }
-
-            /// The same body, with its series extrapolated beyond the last measured time.
-            #[must_use]
-            pub fn extrapolated(self) -> $table {
-                $table(CreepSeries { known_until: f64::INFINITY, ..self.0 })
-            }
-
-            pub(crate) fn from_rows(rows: Vec<Row>) -> Result<$table> {
-                fitted($layout, rows).map($table)
-            }
-        }
-
-        forward_rheology!(self: $table => self.0);
-    };
-}
-
-/// A body given by its measured creep compliance: pairs of time \[s\] and J \[1/Pa\].
-///
-/// The data are fitted by a series with positive coefficients, by least squares of the relative misfit: a smooth
-/// curve through noise, with no more terms than needed. [`TabulatedCreep::report`] has the error, and the values
-/// needed to plot data and fit.
-///
-/// Over four to eight decades of smooth creep without noise, the error of J at and between the rows is below 0.1 % with
-/// two rows per decade or more. With fewer it is below 0.3 % in most cases, and several percent at worst. Where the
-/// rows do not determine J between them, [`FitReport::warning`] reports it, as do the steps of a contact
-/// ([`Warnings::UNCERTAIN_MATERIAL`](crate::contact::Warnings::UNCERTAIN_MATERIAL)).
-///
-/// Outside the data: creep before the first time counts as elastic (the compliance is between J_g of the fit and its
-/// value there). After the last time J is NaN, and a step of a contact fails with
-/// [`Error::BeyondMaterial`](crate::Error::BeyondMaterial), unless you choose [`TabulatedCreep::extrapolated`].
+/// A table of measured creep, relaxation or dynamic moduli. [`Measurements::fit`] makes a body of it.
 ///
 /// ```
-/// use viscocontact::rheology::{Rheology, TabulatedCreep};
+/// use viscocontact::rheology::{Measurements, Rheology};
 ///
 /// let times = [0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0];
 /// let compliances = [1.05e-6, 1.14e-6, 1.39e-6, 1.78e-6, 1.99e-6, 2.00e-6, 2.00e-6];
-/// let body = TabulatedCreep::new(&times, &compliances)?;
+/// let body = Measurements::creep(&times, &compliances)?.fit()?;
 /// println!("{}", body.report());
 /// assert!(body.report().max_misfit() < 5e-3);
 /// assert!((body.creep_compliance(5.0) / 1.92e-6 - 1.0).abs() < 1e-2);
@@ -84,130 +43,137 @@ macro_rules! tabulated {
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct TabulatedCreep(CreepSeries);
+pub struct Measurements {
+    experiment: Experiment,
+    /// Ascending.
+    rows: Vec<Row>,
+    samples: Vec<Sample>,
+    /// Greatest deviation of the samples from a monotone curve.
+    wrong_way: f64,
+}
 
-impl TabulatedCreep {
-    /// Fits `compliances` \[1/Pa\] at `times` ≥ 0 \[s\], in any order.
+impl Measurements {
+    /// Creep `compliances` \[1/Pa\] at `times` ≥ 0 \[s\], in any order.
     ///
     /// # Errors
     /// If the slices differ in length, there are fewer than four values, one is not finite and positive, a time is
     /// negative or given twice, or J decreases by more than the scatter of the data explains:
     /// [`Error::Table`](crate::Error::Table).
-    pub fn new(times: &[f64], compliances: &[f64]) -> Result<TabulatedCreep> {
-        TabulatedCreep::from_rows(rows(times, "creep compliances", &[compliances])?)
+    pub fn creep(times: &[f64], compliances: &[f64]) -> Result<Measurements> {
+        Measurements::from_slices(Experiment::Creep, times, "creep compliances", &[compliances])
     }
-}
 
-tabulated!(TabulatedCreep, CREEP);
-
-/// A body given by its measured relaxation modulus: pairs of time \[s\] and G \[Pa\].
-///
-/// Fitted as [`TabulatedCreep`] is, then converted to creep exactly. Known up to the last time of the data.
-///
-/// A table without a modulus at t = 0 does not show the relaxation before its first time, which slows the creep for many times
-/// as long: after a drop to a tenth, creep is uncertain by a factor of two at the first time, and by 5 % at five times as
-/// long or more. [`FitReport::uncertainties`] includes it, and [`Rheology::measured`](crate::rheology::Rheology::measured) begins
-/// where it is below 5 %, so that shorter steps of a contact warn by
-/// [`Warnings::FASTER_THAN_MATERIAL`](crate::contact::Warnings::FASTER_THAN_MATERIAL).
-///
-/// ```
-/// use viscocontact::rheology::{Rheology, TabulatedRelaxation};
-///
-/// let times = [0.01, 0.1, 0.3, 1.0, 3.0, 10.0];
-/// let moduli = times.map(|t: f64| 1.0e6 + 2.0e6 * (-t).exp());
-/// let body = TabulatedRelaxation::new(&times, &moduli)?;
-/// assert!((body.creep_compliance(0.0) * 3.0e6 - 1.0).abs() < 1e-4);
-/// # Ok::<(), viscocontact::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct TabulatedRelaxation(CreepSeries);
-
-impl TabulatedRelaxation {
-    /// Fits `moduli` \[Pa\] at `times` ≥ 0 \[s\], in any order.
+    /// Relaxation `moduli` \[Pa\] at `times` ≥ 0 \[s\], in any order.
+    ///
+    /// A table without a modulus at t = 0 does not show the relaxation before its first time, which slows the creep for many
+    /// times as long: after a drop to a tenth, creep is uncertain by a factor of two at the first time, and by 5 % at five
+    /// times as long or more. [`FitReport::uncertainties`] includes it, and
+    /// [`Rheology::measured`](crate::rheology::Rheology::measured) begins where it is below 5 %, so that shorter steps of a
+    /// contact warn by [`Warnings::FASTER_THAN_MATERIAL`](crate::contact::Warnings::FASTER_THAN_MATERIAL).
+    ///
+    /// ```
+    /// use viscocontact::rheology::{Measurements, Rheology};
+    ///
+    /// let times = [0.01, 0.1, 0.3, 1.0, 3.0, 10.0];
+    /// let moduli = times.map(|t: f64| 1.0e6 + 2.0e6 * (-t).exp());
+    /// let body = Measurements::relaxation(&times, &moduli)?.fit()?;
+    /// assert!((body.creep_compliance(0.0) * 3.0e6 - 1.0).abs() < 1e-4);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
     ///
     /// # Errors
-    /// As [`TabulatedCreep::new`]; G may not increase.
-    pub fn new(times: &[f64], moduli: &[f64]) -> Result<TabulatedRelaxation> {
-        TabulatedRelaxation::from_rows(rows(times, "relaxation moduli", &[moduli])?)
+    /// As [`Measurements::creep`]; G may not increase.
+    pub fn relaxation(times: &[f64], moduli: &[f64]) -> Result<Measurements> {
+        Measurements::from_slices(Experiment::Relaxation, times, "relaxation moduli", &[moduli])
     }
-}
 
-tabulated!(TabulatedRelaxation, RELAXATION);
-
-/// A body given by its measured dynamic moduli (DMA, rheometer): angular frequency \[rad/s\], storage and loss
-/// modulus G′, G″ \[Pa\].
-///
-/// Both moduli are fitted together, each in its relative misfit, then converted to creep exactly. Known up to the
-/// time 1/ω of the lowest frequency; relaxation faster than the highest frequency counts as elastic.
-///
-/// ```
-/// use viscocontact::rheology::{GeneralizedMaxwell, Rheology, TabulatedDynamic};
-///
-/// let truth = GeneralizedMaxwell::new(1.0e6, &[(4.0e6, 1.0)])?;
-/// let spectrum = truth.creep_spectrum().unwrap().relaxation();
-/// let omega: Vec<f64> = (-8..=8).map(|k| 10f64.powf(0.25 * f64::from(k))).collect();
-/// let storage: Vec<f64> = omega.iter().map(|&omega| spectrum.storage_modulus(omega)).collect();
-/// let loss: Vec<f64> = omega.iter().map(|&omega| spectrum.loss_modulus(omega)).collect();
-/// let body = TabulatedDynamic::new(&omega, &storage, &loss)?;
-/// assert!((body.creep_compliance(2.0) / truth.creep_compliance(2.0) - 1.0).abs() < 1e-4);
-/// # Ok::<(), viscocontact::Error>(())
-/// ```
-#[derive(Debug, Clone, PartialEq)]
-pub struct TabulatedDynamic(CreepSeries);
-
-impl TabulatedDynamic {
-    /// Fits `storage` and `loss` moduli \[Pa\] at the angular frequencies `omega` > 0 \[rad/s\], in any order.
+    /// `storage` and `loss` moduli \[Pa\] at the angular frequencies `omega` > 0 \[rad/s\], in any order.
+    ///
+    /// ```
+    /// use viscocontact::rheology::{GeneralizedMaxwell, Measurements, Rheology};
+    ///
+    /// let truth = GeneralizedMaxwell::new(1.0e6, &[(4.0e6, 1.0)])?;
+    /// let spectrum = truth.creep_spectrum().unwrap().relaxation();
+    /// let omega: Vec<f64> = (-8..=8).map(|k| 10f64.powf(0.25 * f64::from(k))).collect();
+    /// let storage: Vec<f64> = omega.iter().map(|&omega| spectrum.storage_modulus(omega)).collect();
+    /// let loss: Vec<f64> = omega.iter().map(|&omega| spectrum.loss_modulus(omega)).collect();
+    /// let body = Measurements::dynamic(&omega, &storage, &loss)?.fit()?;
+    /// assert!((body.creep_compliance(2.0) / truth.creep_compliance(2.0) - 1.0).abs() < 1e-4);
+    /// # Ok::<(), viscocontact::Error>(())
+    /// ```
     ///
     /// # Errors
-    /// As [`TabulatedCreep::new`]; frequencies and both moduli must be positive, and G′ may not decrease with the
+    /// As [`Measurements::creep`]; frequencies and both moduli must be positive, and G′ may not decrease with the
     /// frequency.
-    pub fn new(omega: &[f64], storage: &[f64], loss: &[f64]) -> Result<TabulatedDynamic> {
-        TabulatedDynamic::from_rows(rows(omega, "storage and loss moduli", &[storage, loss])?)
+    pub fn dynamic(omega: &[f64], storage: &[f64], loss: &[f64]) -> Result<Measurements> {
+        Measurements::from_slices(Experiment::Dynamic, omega, "storage and loss moduli", &[storage, loss])
     }
-}
 
-tabulated!(TabulatedDynamic, DYNAMIC);
-
-/// Rows of slices of equal length.
-fn rows(x: &[f64], field: &'static str, columns: &[&[f64]]) -> Result<Vec<Row>> {
-    for column in columns {
-        exact_length(field, column.len(), x.len())?;
+    fn from_slices(experiment: Experiment, x: &[f64], field: &'static str, columns: &[&[f64]]) -> Result<Measurements> {
+        columns.iter().try_for_each(|column| exact_length(field, column.len(), x.len()))?;
+        let row = |(k, &x): (usize, &f64)| Row {
+            place: Place::Entry(k),
+            x,
+            values: columns.iter().map(|column| column[k]).collect(),
+        };
+        Measurements::from_rows(experiment, x.iter().enumerate().map(row).collect())
     }
-    let row = |(k, &x): (usize, &f64)| Row {
-        place: Place::Entry(k),
-        x,
-        values: columns.iter().map(|column| column[k]).collect(),
-    };
-    Ok(x.iter().enumerate().map(row).collect())
-}
 
-/// The creep series fitted to the rows.
-fn fitted(layout: Layout, rows: Vec<Row>) -> Result<CreepSeries> {
-    let (samples, wrong_way) = validated(layout, rows)?;
-    let time = |x: f64| if layout.zero { x } else { 1.0 / x };
-    let positive = || samples.iter().map(|sample| time(sample.x)).filter(|t| *t > 0.0);
-    let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
-    let averaged = averaged(&samples, (last / first).log10());
-    let mut search = Search { constant: None, slope: layout == CREEP, times: [first / BEYOND, last * BEYOND] };
-    let mut measured = search.measured(&averaged);
-    if layout == RELAXATION && samples[0].x > 0.0 {
-        // terms shorter than the first time have not fully decayed there
-        let wider = Search { times: [first / BEYOND_FAST, last * BEYOND], ..search.clone() };
-        let other = wider.measured(&averaged);
-        if other.least_squares.squares(&averaged) + NOTICEABLE * other.noise.powi(2)
-            < measured.least_squares.squares(&averaged)
-        {
-            (search, measured) = (wider, other);
+    fn from_rows(experiment: Experiment, mut rows: Vec<Row>) -> Result<Measurements> {
+        let (samples, wrong_way) = validated(experiment.layout(), &mut rows)?;
+        Ok(Measurements { experiment, rows, samples, wrong_way })
+    }
+
+    /// The body that the table describes: a series with positive coefficients, by least squares of the relative misfit.
+    ///
+    /// The series is a smooth curve through noise, with no more terms than needed. [`CreepSeries::report`] has its error,
+    /// and the values needed to plot data and fit. Relaxation and dynamic moduli, both in their relative misfit, are then
+    /// converted to creep exactly.
+    ///
+    /// Over four to eight decades of smooth creep without noise, the error of J at and between the rows is below 0.1 % with
+    /// two rows per decade or more. With fewer it is below 0.3 % in most cases, and several percent at worst. Where the
+    /// rows do not determine J between them, [`FitReport::warning`] reports it, as do the steps of a contact
+    /// ([`Warnings::UNCERTAIN_MATERIAL`](crate::contact::Warnings::UNCERTAIN_MATERIAL)).
+    ///
+    /// Outside the data: creep before the first time, or faster than the highest frequency, counts as elastic (the
+    /// compliance is between J_g of the fit and its value there). After the last time, or after 1/ω of the lowest frequency,
+    /// J is NaN, and a step of a contact fails with [`Error::BeyondMaterial`](crate::Error::BeyondMaterial), unless you
+    /// choose [`CreepSeries::extrapolated`].
+    ///
+    /// # Errors
+    /// If no series fits the table ([`TableError::Inconsistent`](crate::rheology::TableError)).
+    pub fn fit(&self) -> Result<CreepSeries> {
+        let (layout, samples) = (self.experiment.layout(), &self.samples);
+        let time = |x: f64| if layout.zero { x } else { 1.0 / x };
+        let positive = || samples.iter().map(|sample| time(sample.x)).filter(|t| *t > 0.0);
+        let (first, last) = (positive().fold(f64::INFINITY, f64::min), positive().fold(0.0, f64::max));
+        let averaged = averaged(samples, (last / first).log10());
+        let mut search = Search {
+            constant: None,
+            slope: self.experiment == Experiment::Creep,
+            times: [first / BEYOND, last * BEYOND],
+        };
+        let mut measured = search.measured(&averaged);
+        if self.experiment == Experiment::Relaxation && samples[0].x > 0.0 {
+            // terms shorter than the first time have not fully decayed there
+            let wider = Search { times: [first / BEYOND_FAST, last * BEYOND], ..search.clone() };
+            let other = wider.measured(&averaged);
+            if other.least_squares.squares(&averaged) + NOTICEABLE * other.noise.powi(2)
+                < measured.least_squares.squares(&averaged)
+            {
+                (search, measured) = (wider, other);
+            }
         }
+        let Uncertainty { interval, known_from } = measured.uncertainty(&search, &averaged, [first, last])?;
+        let report =
+            FitReport::new(&measured.series, samples).of_measurements(self.wrong_way, measured.ambiguity, interval);
+        if let Some(worst) = report.worst().filter(|_| report.rms_misfit() > MOST_MISFIT) {
+            let (table, rms) = (layout.table, report.rms_misfit());
+            return Err(TableError::Inconsistent { table, rms, worst: worst.misfit().abs(), x: worst.x }.into());
+        }
+        let spectrum = measured.series.creep(samples[0].function)?;
+        Ok(CreepSeries { spectrum, report, known_until: last, measured: [known_from, last] })
     }
-    let Uncertainty { interval, known_from } = measured.uncertainty(&search, &averaged, [first, last])?;
-    let report = FitReport::new(&measured.series, &samples).of_measurements(wrong_way, measured.ambiguity, interval);
-    if let Some(worst) = report.worst().filter(|_| report.rms_misfit() > MOST_MISFIT) {
-        let (table, rms) = (layout.table, report.rms_misfit());
-        return Err(TableError::Inconsistent { table, rms, worst: worst.misfit().abs(), x: worst.x }.into());
-    }
-    let spectrum = measured.series.creep(samples[0].function)?;
-    Ok(CreepSeries { spectrum, report, known_until: last, measured: [known_from, last] })
 }
 
 /// Replaces neighbouring samples by their geometric means where there are more than a fit needs.

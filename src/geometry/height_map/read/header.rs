@@ -42,6 +42,8 @@ impl<'a> Header<'a> {
         MapError::Entry { format: self.format, key, text: text.to_owned(), allowed }
     }
 
+    /// Accepts a header whose entry `key` is `allowed`.
+    #[cfg(feature = "x3p")]
     pub(super) fn must_be(&self, key: &'static str, allowed: &'static str) -> Result<()> {
         let text = self.require(key)?;
         if text == allowed { Ok(()) } else { Err(self.error(key, text, allowed).into()) }

@@ -16,13 +16,13 @@ mod text;
 mod x3p;
 mod xyz;
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
 use crate::Grid;
 use crate::error::{MapError, Result};
 use crate::geometry::HeightMap;
+use crate::input;
 use crate::memory;
 
 /// Extensions of the formats that include the lengths of the map.
@@ -58,12 +58,11 @@ impl HeightMap {
         let path = path.as_ref();
         let name = || path.display().to_string();
         let extension = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        let open = || File::open(path).map_err(|error| unreadable(name(), error));
         match extension.as_str() {
-            "gsf" => HeightMap::from_gsf(open()?),
-            "sdf" => HeightMap::from_sdf(open()?),
+            "gsf" => HeightMap::from_gsf(input::open(path)?),
+            "sdf" => HeightMap::from_sdf(input::open(path)?),
             #[cfg(feature = "x3p")]
-            "x3p" => HeightMap::from_x3p(open()?),
+            "x3p" => HeightMap::from_x3p(input::open(path)?),
             _ => Err(MapError::Extension { file: name(), known: KNOWN }.into()),
         }
     }
@@ -86,16 +85,8 @@ impl HeightMap {
     }
 }
 
-/// All bytes of a reader. Sizes stated in a file are checked before they are allocated.
-fn bytes(mut reader: impl Read, format: &str) -> Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let read = reader.read_to_end(&mut bytes);
-    read.map_err(|error| unreadable(format!("{format} file"), error))?;
-    Ok(bytes)
-}
-
-fn unreadable(file: String, error: std::io::Error) -> MapError {
-    MapError::Unreadable { file, reason: error.to_string(), kind: Some(error.kind()) }
+fn bytes(reader: impl Read, format: &str) -> Result<Vec<u8>> {
+    input::bytes(reader, &format!("{format} file"))
 }
 
 /// The number of points, within the limits of a grid: checked before anything is allocated for the points.

@@ -1,8 +1,8 @@
 //! Properties of every format.
 
 use super::*;
-use crate::Error;
 use crate::geometry::LengthUnit;
+use crate::{Error, TextFormat};
 
 /// Reads a file in a known format.
 type Reader = fn(&[u8]) -> Result<HeightMap>;
@@ -19,8 +19,10 @@ fn files() -> Vec<(&'static str, Vec<u8>, Reader)> {
         ("gsf", gsf, |file| HeightMap::from_gsf(file)),
         ("sdf", sdf, |file| HeightMap::from_sdf(file)),
         ("binary sdf", binary_sdf(5, &[1; 12]), |file| HeightMap::from_sdf(file)),
-        ("text", b"# a\n1, 2, 3\n4, bad, 6\n".to_vec(), |file| HeightMap::from_text(file, [1.0; 2], LengthUnit::Metre)),
-        ("xyz", xyz, |file| HeightMap::from_xyz(file, LengthUnit::Metre, LengthUnit::Metre)),
+        ("text", b"# a\n1, 2, 3\n4, bad, 6\n".to_vec(), |file| {
+            HeightMap::from_text(file, [1.0; 2], LengthUnit::Metre, TextFormat::default())
+        }),
+        ("xyz", xyz, |file| HeightMap::from_xyz(file, LengthUnit::Metre, LengthUnit::Metre, TextFormat::default())),
     ];
     #[cfg(feature = "npy")]
     {
@@ -145,10 +147,7 @@ fn the_extension_determines_the_format() {
         assert!(matches!(unknown(name), Error::Map(MapError::Extension { .. })), "{name}");
     }
     let absent = unknown("absent.gsf");
-    assert!(
-        matches!(&absent, Error::Map(MapError::Unreadable { file, .. }) if file.ends_with("absent.gsf")),
-        "{absent}"
-    );
+    assert!(matches!(&absent, Error::Unreadable { file, .. } if file.ends_with("absent.gsf")), "{absent}");
     std::fs::remove_dir_all(&folder).unwrap();
     assert_eq!(read.len(), if cfg!(feature = "x3p") { 3 } else { 2 });
     for (map, expected) in read {

@@ -2,51 +2,47 @@
 
 use std::io::Read;
 
-use super::{First, bytes};
+use super::First;
 use crate::Grid;
-use crate::error::{MapError, Result};
+use crate::error::Result;
 use crate::geometry::{HeightMap, LengthUnit};
-
-const FORMAT: &str = "text";
+use crate::input::{TextFormat, TextRow, TextTable};
 
 impl HeightMap {
     /// Reads a matrix of heights in `unit` from text, on a rectangle of `lengths` \[m\]. A line is a row along x1; the
     /// first line is the top.
     ///
-    /// Heights are separated by semicolons, tabs, commas or blanks. A field that is empty, `nan` or `bad` is a missing
-    /// point. Empty lines and lines that start with `#` are skipped.
+    /// A field that is empty, `nan` or `bad` is a missing point. `format` states the delimiter and the decimal mark; empty
+    /// lines and lines that start with `#` are skipped.
     ///
     /// ```
+    /// use viscocontact::TextFormat;
     /// use viscocontact::geometry::{HeightMap, LengthUnit};
     ///
     /// let text = "# a step, in µm\n0.0, 0.5, 0.5\n0.0,    , 0.6\n";
-    /// let map = HeightMap::from_text(text.as_bytes(), [3e-6, 2e-6], LengthUnit::Micrometre)?;
+    /// let lengths = [3e-6, 2e-6];
+    /// let map = HeightMap::from_text(text.as_bytes(), lengths, LengthUnit::Micrometre, TextFormat::default())?;
     /// # let _ = map;
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the text cannot be read, a line differs from the first in its number of
-    /// columns, or a field is not a number, each with the number of the line; as [`HeightMap::new`] if the map is
-    /// invalid.
-    pub fn from_text(reader: impl Read, lengths: [f64; 2], unit: LengthUnit) -> Result<HeightMap> {
-        let text = text(reader)?;
-        let table = Table::new(&text);
+    /// If the text cannot be read, a line differs from the first in its number of columns, or a field is not a number, each
+    /// with the number of the line ([`TextError`](crate::TextError)); as [`HeightMap::new`] if the map is invalid.
+    pub fn from_text(reader: impl Read, lengths: [f64; 2], unit: LengthUnit, format: TextFormat) -> Result<HeightMap> {
+        let table = TextTable::read(reader, "text file", format)?;
         let (mut rows, mut columns) = (Vec::new(), 0);
-        // a separator at the end of every line terminates it; one at the end of some lines precedes a missing height
-        let is_terminated = |line: &str| table.separator.is_some_and(|mark| line.trim_end_matches(' ').ends_with(mark));
-        let terminated = table.lines().all(|(_, line)| is_terminated(line));
-        for (line, content) in table.lines() {
-            let mut fields = table.fields(content);
+        // a delimiter at the end of every line terminates it; one at the end of some lines precedes a missing height
+        let terminated =
+            table.rows().all(|row| row.fields.len() > 1 && row.fields.last().is_some_and(|f| f.is_empty()));
+        for mut row in table.rows() {
             if terminated {
-                fields.pop();
+                row.fields.pop();
             }
-            columns = if rows.is_empty() { fields.len() } else { columns };
-            if fields.len() != columns {
-                return Err(MapError::Columns { line, found: fields.len(), expected: columns }.into());
-            }
-            for (k, field) in fields.iter().enumerate() {
-                rows.push(height(line, k + 1, field)?);
+            columns = if rows.is_empty() { row.fields.len() } else { columns };
+            row.check_width(columns, "as in the first row")?;
+            for column in 0..columns {
+                rows.push(height(&row, column)?);
             }
         }
         let cells = [columns, rows.len().checked_div(columns).unwrap_or(0)];
@@ -55,67 +51,23 @@ impl HeightMap {
     }
 }
 
-/// The text of a reader. Comments may be in any encoding; numbers are ASCII.
-pub(super) fn text(reader: impl Read) -> Result<String> {
-    let bytes = bytes(reader, FORMAT)?;
-    if bytes.contains(&0) {
-        return Err(
-            MapError::Unreadable { file: "text file".into(), reason: "it is not text".into(), kind: None }.into()
-        );
-    }
-    let text = String::from_utf8_lossy(&bytes);
-    // byte order mark that some spreadsheets write
-    Ok(text.strip_prefix('\u{feff}').unwrap_or(&text).to_owned())
-}
-
-/// Lines of numbers with a common separator.
-pub(super) struct Table<'a> {
-    text: &'a str,
-    /// `None` for blanks.
-    separator: Option<char>,
-}
-
-impl<'a> Table<'a> {
-    pub(super) fn new(text: &'a str) -> Table<'a> {
-        let mut table = Table { text, separator: None };
-        let first = table.lines().next().map_or("", |(_, line)| line);
-        table.separator = [';', '\t', ','].into_iter().find(|&mark| first.contains(mark));
-        table
-    }
-
-    /// The lines with data, and their numbers.
-    pub(super) fn lines(&self) -> impl Iterator<Item = (u64, &'a str)> {
-        let numbered = (1..).zip(self.text.lines());
-        numbered.filter(|(_, line)| {
-            let line = line.trim_start();
-            !line.is_empty() && !line.starts_with('#')
-        })
-    }
-
-    pub(super) fn fields(&self, line: &'a str) -> Vec<&'a str> {
-        match self.separator {
-            Some(separator) => line.split(separator).map(str::trim).collect(),
-            None => line.split_whitespace().collect(),
-        }
-    }
-}
-
 /// A height, NaN if it is missing.
-pub(super) fn height(line: u64, column: usize, text: &str) -> Result<f64> {
-    match text.parse::<f64>() {
-        _ if text.is_empty() || text.eq_ignore_ascii_case("bad") => Ok(f64::NAN),
-        Ok(height) if !height.is_infinite() => Ok(height),
-        _ => Err(MapError::NotNumeric { line, column, text: text.to_owned() }.into()),
+pub(super) fn height(row: &TextRow, column: usize) -> Result<f64> {
+    let text = &*row.fields[column];
+    if text.is_empty() || text.eq_ignore_ascii_case("bad") {
+        return Ok(f64::NAN);
     }
+    let height = row.number(column)?;
+    if height.is_infinite() { Err(row.not_numeric(column).into()) } else { Ok(height) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Error;
+    use crate::{Error, TextError};
 
     fn read(text: &str) -> Result<HeightMap> {
-        HeightMap::from_text(text.as_bytes(), [3.0, 4.0], LengthUnit::Millimetre)
+        HeightMap::from_text(text.as_bytes(), [3.0, 4.0], LengthUnit::Millimetre, TextFormat::default())
     }
 
     #[test]
@@ -148,17 +100,17 @@ mod tests {
 
     #[test]
     fn malformed_lines_are_reported() {
-        let columns = MapError::Columns { line: 3, found: 2, expected: 3 };
-        assert_eq!(read("# a\n1,2,3\n4,5\n").unwrap_err(), columns.into());
+        let columns = read("# a\n1,2,3\n4,5\n").unwrap_err();
+        assert!(matches!(columns, Error::Text(TextError::Columns { line: 3, found: 2, expected: 3, .. })), "{columns}");
         for text in ["five", "inf", "1e999", "2:3"] {
-            let numeric = MapError::NotNumeric { line: 2, column: 2, text: text.into() };
+            let numeric = TextError::NotNumeric { line: 2, column: 2, text: text.into() };
             assert_eq!(read(&format!("1 2 3\n4 {text} 6\n")).unwrap_err(), numeric.into());
         }
         for empty in ["", "\n\n", "# nothing\n"] {
             assert!(matches!(read(empty), Err(Error::CountOutOfRange { value: 0, .. })));
         }
-        assert!(matches!(read("1 2\0\n"), Err(Error::Map(MapError::Unreadable { .. }))));
-        let flat = HeightMap::from_text("1 2\n".as_bytes(), [0.0, 1.0], LengthUnit::Metre);
+        assert!(matches!(read("1 2\0\n"), Err(Error::Unreadable { .. })));
+        let flat = HeightMap::from_text("1 2\n".as_bytes(), [0.0, 1.0], LengthUnit::Metre, TextFormat::default());
         assert!(matches!(flat, Err(Error::OutOfRange { field: "length along x1", .. })));
     }
 }

@@ -2,10 +2,11 @@
 
 use std::io::Read;
 
-use super::text::{Table, height, text};
+use super::text::height;
 use super::{First, count};
 use crate::error::{MapError, Result, least_length, positive};
 use crate::geometry::{HeightMap, LengthUnit};
+use crate::input::{TextFormat, TextRow, TextTable};
 use crate::memory;
 
 /// Greatest distance of a point from the regular grid, in spacings.
@@ -21,25 +22,31 @@ impl HeightMap {
     ///
     /// The points may be in any order, but must lie on a regular grid along x and y to within 1/1000 of its spacing,
     /// which is determined from them. Points of the grid that are absent, or whose height is `nan` or `bad`, are
-    /// missing. Columns are separated by semicolons, tabs, commas or blanks. Empty lines and lines that start with `#`
-    /// are skipped.
+    /// missing. `format` states the delimiter and the decimal mark; empty lines and lines that start with `#` are skipped.
     ///
     /// ```
+    /// use viscocontact::TextFormat;
     /// use viscocontact::geometry::{HeightMap, LengthUnit};
     ///
     /// let text = "0 0 1.0\n1 0 1.5\n2 0 2.0\n0 2 1.1\n1 2 1.6\n2 2 2.1\n";
-    /// let map = HeightMap::from_xyz(text.as_bytes(), LengthUnit::Millimetre, LengthUnit::Micrometre)?;
+    /// let (lateral, vertical) = (LengthUnit::Millimetre, LengthUnit::Micrometre);
+    /// let map = HeightMap::from_xyz(text.as_bytes(), lateral, vertical, TextFormat::default())?;
     /// # let _ = map; // 3 × 2 cells on 3 mm × 4 mm
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
     ///
     /// # Errors
-    /// [`Error::Map`](crate::Error::Map) if the text cannot be read, a line does not have three numbers, a point lies
-    /// off the grid or is given twice, or less than 1 % of the points of the grid are given; if there are fewer than
-    /// two different coordinates along x or y; as [`HeightMap::new`] if the map is invalid.
-    pub fn from_xyz(reader: impl Read, lateral: LengthUnit, vertical: LengthUnit) -> Result<HeightMap> {
-        let text = text(reader)?;
-        let points = points(&text, lateral, vertical)?;
+    /// If the text cannot be read or a line does not have three numbers ([`TextError`](crate::TextError)); if a point lies
+    /// off the grid or is given twice, or less than 1 % of the points of the grid are given
+    /// ([`Error::Map`](crate::Error::Map)); if there are fewer than two different coordinates along x or y; as
+    /// [`HeightMap::new`] if the map is invalid.
+    pub fn from_xyz(
+        reader: impl Read,
+        lateral: LengthUnit,
+        vertical: LengthUnit,
+        format: TextFormat,
+    ) -> Result<HeightMap> {
+        let points = points(&TextTable::read(reader, "text file", format)?, lateral, vertical)?;
         let axes = [axis(&points, "x", 0)?, axis(&points, "y", 1)?];
         let (cells, spacing) = (axes.each_ref().map(|axis| axis.cells), axes.each_ref().map(|axis| axis.spacing));
         let count = count(cells, spacing)?;
@@ -66,21 +73,17 @@ struct Point {
     height: f64,
 }
 
-fn points(text: &str, lateral: LengthUnit, vertical: LengthUnit) -> Result<Vec<Point>> {
-    let table = Table::new(text);
-    let point = |(line, content)| {
-        let fields = table.fields(content);
-        let &[x, y, z] = &fields[..] else {
-            return Err(MapError::Columns { line, found: fields.len(), expected: 3 }.into());
+fn points(table: &TextTable, lateral: LengthUnit, vertical: LengthUnit) -> Result<Vec<Point>> {
+    let point = |row: TextRow| {
+        row.check_width(3, "x, y, height")?;
+        let coordinate = |column: usize| match row.number(column)? {
+            value if value.is_finite() => Ok(lateral.to_metres(value)),
+            _ => Err(row.not_numeric(column)),
         };
-        let coordinate = |column: usize, text: &str| match text.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(lateral.to_metres(value)),
-            _ => Err(MapError::NotNumeric { line, column, text: text.to_owned() }),
-        };
-        let at = [coordinate(1, x)?, coordinate(2, y)?];
-        Ok(Point { line, at, height: vertical.to_metres(height(line, 3, z)?) })
+        let at = [coordinate(0)?, coordinate(1)?];
+        Ok(Point { line: row.line, at, height: vertical.to_metres(height(&row, 2)?) })
     };
-    table.lines().map(point).collect()
+    table.rows().map(point).collect()
 }
 
 /// The regular positions along an axis of the grid.
@@ -155,10 +158,10 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
-    use crate::Error;
+    use crate::{Error, TextError};
 
     fn read(text: &str) -> Result<HeightMap> {
-        HeightMap::from_xyz(text.as_bytes(), LengthUnit::Micrometre, LengthUnit::Nanometre)
+        HeightMap::from_xyz(text.as_bytes(), LengthUnit::Micrometre, LengthUnit::Nanometre, TextFormat::default())
     }
 
     #[test]
@@ -221,15 +224,18 @@ mod tests {
         let sparse = MapError::Sparse { points: 1000, cells: [1000, 1000] };
         assert_eq!(read(&diagonal).unwrap_err(), sparse.into());
         let wide = "-1e308 0 1\n1e308 0 1\n0 1 1\n1e308 1 1\n";
-        assert!(HeightMap::from_xyz(wide.as_bytes(), LengthUnit::Metre, LengthUnit::Metre).is_err());
+        assert!(
+            HeightMap::from_xyz(wide.as_bytes(), LengthUnit::Metre, LengthUnit::Metre, TextFormat::default()).is_err()
+        );
         assert!(read("0 0 1\n1e-320 0 1\n0 1 1\n").is_err());
     }
 
     #[test]
     fn malformed_lines_are_reported() {
-        assert_eq!(read("0 0 1\n1 0\n").unwrap_err(), MapError::Columns { line: 2, found: 2, expected: 3 }.into());
+        let columns = read("0 0 1\n1 0\n").unwrap_err();
+        assert!(matches!(columns, Error::Text(TextError::Columns { line: 2, found: 2, expected: 3, .. })), "{columns}");
         for (line, column, text) in [("one 0 1", 1, "one"), ("1 nan 1", 2, "nan"), ("1 0 inf", 3, "inf")] {
-            let wanted = MapError::NotNumeric { line: 2, column, text: text.into() };
+            let wanted = TextError::NotNumeric { line: 2, column, text: text.into() };
             assert_eq!(read(&format!("0 0 1\n{line}\n")).unwrap_err(), wanted.into());
         }
     }

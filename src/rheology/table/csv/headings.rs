@@ -1,9 +1,9 @@
 //! Headings of a table: the meaning and the unit of each column.
 
 use super::Units;
-use super::number::shortened;
-use super::unit::{Kind, TAU, readings, same};
+use super::unit::{COMPLIANCE, FREQUENCY, MODULUS, TIME, name, readings, same};
 use crate::error::TableError;
+use crate::input::{TextRow, shortened};
 use crate::rheology::fit::MaterialFunction;
 use crate::rheology::table::data::Layout;
 
@@ -21,80 +21,62 @@ fn words(column: &str) -> &'static [&'static str] {
     }
 }
 
-/// Indices of the columns that a table needs, in its order, or `None` if no heading names one.
-pub(super) fn columns(
-    line: u64,
-    headings: &[String],
-    names: &[&'static str],
-) -> Result<Option<Vec<usize>>, TableError> {
-    let is_other = |heading: &&String| OTHERS.iter().any(|other| heading.to_lowercase().contains(other));
-    let meaning: Vec<Option<&'static str>> = headings
-        .iter()
-        .map(|heading| {
-            if is_other(&heading) {
-                return None;
-            }
+/// Indices of the columns that a table needs, in its order.
+pub(super) fn columns(headings: &TextRow, layout: &Layout) -> Result<Vec<usize>, TableError> {
+    let place = |name: &'static str| {
+        let is_named = |heading: &str| {
             let heading = heading.to_lowercase();
             let word = heading.split(|c: char| " [({_/,;:=.|*".contains(c)).next().unwrap_or_default();
-            names.iter().copied().find(|name| words(name).contains(&word))
-        })
-        .collect();
-    let nothing = meaning.iter().all(Option::is_none) && !headings.iter().any(|heading| is_other(&heading));
-    if nothing && headings.len() == names.len() {
-        return Ok(None);
-    }
-    let single = |&name: &&'static str| {
-        let mut places = (0..headings.len()).filter(|&k| meaning[k] == Some(name));
+            words(name).contains(&word) && !OTHERS.iter().any(|other| heading.contains(other))
+        };
+        let mut places = (0..headings.fields.len()).filter(|&k| is_named(&headings.fields[k]));
         match (places.next(), places.next()) {
             (Some(place), None) => Ok(place),
             _ => {
-                let found = shortened(&headings.join(", "));
-                Err(TableError::Heading { line, column: name, found })
+                let found = shortened(&headings.fields.join(", "));
+                Err(TableError::Heading { line: headings.line, column: name, found })
             }
         }
     };
-    names.iter().map(single).collect::<Result<_, _>>().map(Some)
+    layout.names().map(place).collect()
 }
 
 /// Rejects headings with units other than those given; `order` has the indices of the columns that are read.
 pub(super) fn check_units(
-    line: u64,
-    headings: &[String],
+    headings: &TextRow,
     order: &[usize],
     layout: &Layout,
     units: Units,
 ) -> Result<(), TableError> {
-    let abscissa = if layout.zero { Kind::Time } else { Kind::Frequency };
-    let values = layout.columns.iter().map(|&(_, function)| match function {
-        MaterialFunction::Creep => Kind::Compliance,
-        _ => Kind::Modulus,
+    let abscissa = if layout.zero { TIME } else { FREQUENCY };
+    let values = layout.columns.iter().map(|&(_, function)| {
+        let quantity = if function == MaterialFunction::Creep { COMPLIANCE } else { MODULUS };
+        ("value", quantity, units.value)
     });
-    let columns =
-        std::iter::once(("abscissa", abscissa, units.abscissa)).chain(values.map(|kind| ("value", kind, units.value)));
-    for ((field, kind, given), &column) in columns.zip(order) {
-        let heading = &headings[column];
-        let refused = |unit: &str| {
-            let (heading, expected) = (heading.clone(), kind.name(given));
-            Err(TableError::Unit { line, column: column + 1, heading, unit: unit.to_owned(), field, given, expected })
+    let fields = std::iter::once(("abscissa", abscissa, units.abscissa)).chain(values);
+    for ((field, quantity, given), &column) in fields.zip(order) {
+        let heading = &*headings.fields[column];
+        let refused = |unit: &str, size: Option<f64>| {
+            let (line, heading, unit) = (headings.line, heading.to_owned(), unit.to_owned());
+            let expected = name(quantity, given);
+            Err(TableError::Unit { line, column: column + 1, heading, unit, size, field, given, expected })
         };
         if let Some(logarithm) = logarithm(heading) {
-            return refused(logarithm);
+            return refused(logarithm, None);
         }
         for (text, marked) in unit_texts(heading) {
             let readings = readings(text);
-            let right = || readings.iter().filter(|reading| reading.0 == kind);
-            if right().any(|reading| same(reading.1, given)) {
+            let sizes: Vec<f64> =
+                readings.iter().filter(|reading| reading.0 == quantity).map(|reading| reading.1).collect();
+            if sizes.iter().any(|&size| same(size, given)) {
                 break;
             }
-            if kind == Kind::Frequency && given == 1.0 && right().any(|reading| same(reading.1, TAU)) {
-                return Err(TableError::Hertz { line, heading: heading.clone() });
-            }
             // G(s) is a function, and a last word need not be a unit
-            let clear = right().next().is_some() || marked && text.chars().count() > 1;
+            let clear = !sizes.is_empty() || marked && text.chars().count() > 1;
             // text in square brackets is a unit, even an unsupported one
             let square = heading.contains(&format!("[{text}")) && text.contains(char::is_alphabetic);
             if clear && !readings.is_empty() || square {
-                return refused(text);
+                return refused(text, sizes.first().copied());
             }
         }
     }

@@ -1,0 +1,68 @@
+/// A law of a trait that an implementation violates, with the value found and the value required.
+#[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
+#[error("{law}: {quantity} {at} is {found:e}, expected {expected:e}")]
+#[non_exhaustive]
+pub struct Violation {
+    /// The law.
+    pub law: &'static str,
+    /// The quantity: creep compliance \[1/Pa\], gap \[m\], force \[N\], breakpoint \[s\], …
+    pub quantity: &'static str,
+    /// Where the law is violated.
+    pub at: Location,
+    /// The value found.
+    pub found: f64,
+    /// The value expected; the bound of an inequality.
+    pub expected: f64,
+}
+
+/// Nothing if a law holds, otherwise its first violation.
+pub type Verdict = Result<(), Violation>;
+
+/// Where a law is violated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum Location {
+    /// A time \[s\].
+    Time(f64),
+    /// A cell.
+    Cell {
+        /// Its indices \[i, j\].
+        cell: [usize; 2],
+        /// Its centre \[m\].
+        position: [f64; 2],
+    },
+}
+
+impl std::fmt::Display for Location {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Location::Time(time) => write!(f, "at t = {time:e} s"),
+            Location::Cell { cell, position } => write!(f, "on cell {cell:?} at {position:?} m"),
+        }
+    }
+}
+
+impl Violation {
+    /// The verdict of a law at one time \[s\].
+    pub(crate) fn check(
+        law: &'static str,
+        quantity: &'static str,
+        time: f64,
+        [found, expected]: [f64; 2],
+        holds: bool,
+    ) -> Verdict {
+        if holds { Ok(()) } else { Err(Violation { law, quantity, at: Location::Time(time), found, expected }) }
+    }
+
+    /// Accepts `least` or more finite times, ascending from a time after `bound`.
+    pub(crate) fn check_ascending(times: &[f64], least: usize, bound: f64) -> Verdict {
+        let law = "(arguments) times are ascending";
+        Violation::check(law, "number of times", 0.0, [times.len() as f64, least as f64], times.len() >= least)?;
+        let mut previous = bound;
+        for &time in times {
+            Violation::check(law, "time", time, [time, previous], time > previous && time.is_finite())?;
+            previous = time;
+        }
+        Ok(())
+    }
+}
