@@ -78,33 +78,6 @@ fn runs_along_a_history_continue_with_the_same_steps() {
     }
 }
 
-/// Written by one number of threads, continued by another.
-#[test]
-fn a_file_is_continued_by_any_number_of_threads() {
-    let path = Temporary::file("threads");
-    let whole = Settings::default().with_window(false).with_symmetry(false);
-    let build = || sphere_on(Grid::square(192, 4.0e-3).unwrap(), three_times(), whole);
-    let in_pool = |threads: usize, f: &(dyn Fn() -> Vec<f64> + Sync)| {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(f)
-    };
-    let written = in_pool(2, &|| {
-        let mut contact = build();
-        (0..6).for_each(|k| _ = wandering(&mut contact, k));
-        contact.save(&path).unwrap();
-        (6..12).for_each(|k| _ = wandering(&mut contact, k));
-        contact.pressure().to_vec()
-    });
-    for threads in [1, 3] {
-        let again = in_pool(threads, &|| {
-            let mut contact = build();
-            contact.resume(&path).unwrap();
-            (6..12).for_each(|k| _ = wandering(&mut contact, k));
-            contact.pressure().to_vec()
-        });
-        assert!(again == written, "{threads} threads");
-    }
-}
-
 fn refused(contact: &mut ViscoelasticContact, path: &Path) -> CheckpointError {
     match contact.resume(path).unwrap_err() {
         Error::Checkpoint { source, .. } => source,

@@ -249,6 +249,8 @@ mod threads {
     use super::*;
     use crate::common::bodies::zener;
     use crate::common::spheres::RADIUS;
+    #[cfg(feature = "checkpoint")]
+    use crate::common::temporary::Temporary;
 
     fn on<T: Send>(threads: usize, run: impl Fn() -> T + Send + Sync) -> T {
         rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run)
@@ -278,15 +280,27 @@ mod threads {
         assert!([2, 3, 5].into_iter().all(|threads| on(threads, run) == one));
     }
 
+    #[cfg(feature = "checkpoint")]
     proptest! {
         #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2033), max_shrink_iters: 0, ..ProptestConfig::with_cases(4) })]
 
+        /// Written into the same file as well, and read from it.
         #[test]
         fn any_number_gives_the_same_bits(scene in scenarios()) {
             let grid = Grid::new([192, 176], scene.grid.lengths()).unwrap();
-            let steps = scene.steps.iter().copied().take(3).collect();
-            let fine = Scenario { grid, steps, ..scene };
-            let run = || bits(&fine.run(whole()).unwrap());
+            let fine = Scenario { grid, ..scene };
+            let run = || {
+                let path = Temporary::file("threads");
+                let [mut contact, mut resumed] = [0; 2].map(|_| fine.builder().settings(whole()).build().unwrap());
+                for (k, &(dt, load)) in fine.steps.iter().take(4).enumerate() {
+                    if k < 2 { &mut contact } else { &mut resumed }.step(dt, load).unwrap();
+                    if k < 2 {
+                        contact.save(&path).unwrap();
+                        resumed.resume(&path).unwrap();
+                    }
+                }
+                (bits(&resumed), std::fs::read(&path).unwrap())
+            };
             let one = on(1, run);
             prop_assert!(on(2, run) == one && on(3, run) == one);
         }

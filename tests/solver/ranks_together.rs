@@ -1,14 +1,14 @@
 //! Ranks stay together: what travels between them, ranks without rows, and ranks that fail or leave.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use crate::common::bodies::{elastic, zener};
 use crate::common::spheres::builder_on;
-use crate::common::watched_ranks::{Call, WatchedRanks};
+use crate::common::watched_ranks::{Call, WatchedRanks, with_calls_left};
 use viscocontact::observe::Axis;
 use viscocontact::parallel::{Ranks, RanksError, Threads};
 use viscocontact::prelude::*;
@@ -301,12 +301,8 @@ fn a_loss_at_any_call_is_an_error_and_leaves_the_contact_as_it_was() {
     let failed = within_a_minute(|| {
         Threads::run(2, |ranks| {
             // all ranks lose the same call, so that none waits
-            let (rank, calls_left) = (ranks.rank(), Arc::new(AtomicUsize::new(usize::MAX)));
-            let left = Arc::clone(&calls_left);
-            let lossy = WatchedRanks::around(ranks, move |_| {
-                let calls = left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1));
-                calls.map(|_| ()).map_err(|_| RanksError::Left { rank: 1 })
-            });
+            let rank = ranks.rank();
+            let (lossy, calls_left) = with_calls_left(ranks, 1);
             // calls `job` without its first call, then without its second, and so on until it succeeds
             let losing = |job: &mut dyn FnMut() -> Result<(), Error>| {
                 for at in 0.. {

@@ -3,15 +3,14 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use crate::common::bodies::zener;
 use crate::common::sealed::seal;
 use crate::common::spheres::builder_on;
 use crate::common::temporary::Temporary;
-use crate::common::watched_ranks::WatchedRanks;
+use crate::common::watched_ranks::with_calls_left;
 use approx::assert_abs_diff_eq;
 use viscocontact::contact::CheckpointError;
 use viscocontact::parallel::{RanksError, Threads};
@@ -168,14 +167,7 @@ fn a_rank_that_is_lost_during_a_save_spoils_nothing() {
         for lost in 0..3 {
             let saved = Threads::run(3, |ranks| {
                 let rank = ranks.rank();
-                // a rank leaves when no more calls are left to it
-                let calls_left = Arc::new(AtomicUsize::new(usize::MAX));
-                let left = Arc::clone(&calls_left);
-                let leaving = WatchedRanks::around(ranks, move |_| {
-                    let next = |left: usize| left.checked_sub(1);
-                    let calls = left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, next);
-                    calls.map(|_| ()).map_err(|_| RanksError::Left { rank })
-                });
+                let (leaving, calls_left) = with_calls_left(ranks, rank);
                 let mut contact = sphere().unwrap().ranks(leaving).build().unwrap();
                 contact.step(0.0, Load::force(1.5)).unwrap();
                 if rank == lost {
