@@ -104,7 +104,7 @@ pub enum TableError {
         /// The heading.
         heading: String,
         /// Its unit.
-        unit: String,
+        unit: Box<str>,
         /// The size of this unit in SI; `None` if it is unknown, or a logarithm.
         size: Option<f64>,
         /// `abscissa` or `value`.
@@ -112,7 +112,7 @@ pub enum TableError {
         /// The size of the unit given.
         given: f64,
         /// The unit of this size.
-        expected: String,
+        expected: Box<str>,
     },
 
     /// No heading, or more than one, names a column that is needed.

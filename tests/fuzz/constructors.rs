@@ -24,7 +24,7 @@ pub fn targets() -> Vec<Target> {
 
 fn rheology(source: &mut Source) -> Verdict {
     judged(models::rheology(source, true), |body| {
-        // a closure of the user's says what it likes
+        // a closure of the user's may return anything
         if format!("{body:?}").contains("FnRheology") {
             return Ok(());
         }
@@ -56,7 +56,7 @@ fn series(source: &mut Source) -> Verdict {
 fn geometry(source: &mut Source) -> Verdict {
     let length = source.scale(1e-6, 1.0);
     judged(models::geometry(source, length), |shape| {
-        // closures and maps with missing points say NaN where they like
+        // closures and maps with missing points may be NaN
         let text = format!("{shape:?}");
         let own = text.contains("FnGeometry") || text.contains("HeightMap");
         // squares of longer ones leave the range of f64; a contact refuses such a gap by its cell
@@ -161,14 +161,14 @@ fn analytic(source: &mut Source) -> Verdict {
     let [r, s] = [source.scale(1e-9, 1.0), source.scale(1e-9, 1.0)];
     match source.below(5) {
         0 => judged(Hertz::new(radius, modulus, force), |hertz| {
-            known("Hertz", [hertz.contact_radius(), hertz.max_pressure(), hertz.approach(), hertz.pressure(0.0)])
+            known("Hertz", [hertz.contact_radius, hertz.max_pressure, hertz.approach, hertz.pressure(0.0)])
         }),
         1 => judged(HertzEllipse::new([radius, source.scale(1e-3, 1.0)], modulus, force), |ellipse| {
-            let [a, b] = ellipse.semi_axes();
-            known("ellipse", [a, b, ellipse.max_pressure(), ellipse.approach(), ellipse.pressure(0.0, 0.0)])
+            let [a, b] = ellipse.semi_axes;
+            known("ellipse", [a, b, ellipse.max_pressure, ellipse.approach, ellipse.pressure(0.0, 0.0)])
         }),
         2 => judged(RigidPunch::new(radius, modulus, force, radius * source.between(-0.4, 0.4)), |punch| {
-            known("punch", [punch.approach(), punch.tilt(), punch.pressure(0.0, 0.0)])
+            known("punch", [punch.approach, punch.tilt, punch.pressure(0.0, 0.0)])
         }),
         3 => {
             let Ok(material) = models::material(source, false) else { return Ok(Outcome::Refused) };

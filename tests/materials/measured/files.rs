@@ -85,7 +85,7 @@ fn errors_name_the_line() {
     assert!(matches!(bad, TableError::Heading { column: "loss modulus", .. }), "{bad}");
     let bad = dynamic("f [Hz],G',G''\n1,1e6,1e5\n");
     let TableError::Unit { line: 1, column: 1, unit, size: Some(size), .. } = &bad else { panic!("{bad}") };
-    assert_eq!((unit.as_str(), *size), ("Hz", std::f64::consts::TAU));
+    assert_eq!((&**unit, *size), ("Hz", std::f64::consts::TAU));
     // remarks in any encoding
     let latin: &[u8] = b"# 23 \xb0C\n1,1\n2,1.1\n3,1.2\n4,1.3\n";
     assert!(

@@ -12,7 +12,7 @@ fn units_of_headings_are_those_given() {
     let refused =
         |headings: &str, units: Units| match creep(&format!("{headings}\n{rows}"), units, points()).unwrap_err() {
             Error::Table(TableError::Unit { line: 1, column, unit, field, expected, .. }) => {
-                (column, unit, field, expected)
+                (column, unit.into_string(), field, expected.into_string())
             }
             other => panic!("{headings}: {other}"),
         };
@@ -121,7 +121,7 @@ fn units_are_read_however_they_follow_the_symbol() {
                         continue;
                     }
                     match table(other).unwrap_err() {
-                        Error::Table(TableError::Unit { unit: said, .. }) => assert_eq!(said, *unit, "{heading}"),
+                        Error::Table(TableError::Unit { unit: said, .. }) => assert_eq!(&*said, *unit, "{heading}"),
                         error => panic!("{heading}: {error}"),
                     }
                     refused += 1;

@@ -57,8 +57,8 @@ pub(super) fn check_units(
     for ((field, quantity, given), &column) in fields.zip(order) {
         let heading = &*headings.fields[column];
         let refused = |unit: &str, size: Option<f64>| {
-            let (line, heading, unit) = (headings.line, heading.to_owned(), unit.to_owned());
-            let expected = name(quantity, given);
+            let (line, heading, unit) = (headings.line, heading.to_owned(), unit.into());
+            let expected = name(quantity, given).into();
             Err(TableError::Unit { line, column: column + 1, heading, unit, size, field, given, expected })
         };
         if let Some(logarithm) = logarithm(heading) {

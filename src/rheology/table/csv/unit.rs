@@ -66,6 +66,10 @@ pub(super) fn same(one: f64, other: f64) -> bool {
 /// The possible meanings of a text as a unit, empty if none: `1/s` is an angular frequency or another notation of Hz.
 pub(super) fn readings(text: &str) -> Vec<Unit> {
     let text = plain(text);
+    // of J / (10⁻⁶/Pa), the first slash is no part of the unit
+    if text.starts_with('/') && text.matches('/').count() > 1 {
+        return Vec::new();
+    }
     let mut products = vec![([0; 4], 1.0)];
     for (k, part) in text.split('/').enumerate() {
         let mut factors: Vec<&str> = part.split([' ', '·', '*', '×']).filter(|factor| !factor.is_empty()).collect();
@@ -90,17 +94,22 @@ pub(super) fn readings(text: &str) -> Vec<Unit> {
     angular.chain(rates).filter(|unit| [TIME, FREQUENCY, MODULUS, COMPLIANCE].contains(&unit.0)).collect()
 }
 
-/// The text without brackets, with powers as in 10^-9 Pa^-1 for 10⁻⁹ Pa⁻¹.
+/// The text with blanks in place of brackets, and powers as in 10^-9 Pa^-1 for 10⁻⁹ Pa⁻¹ and 10^{-9} Pa^{-1}.
 fn plain(text: &str) -> String {
     let mut plain = String::new();
-    for c in text.trim().trim_end_matches('.').chars().filter(|c| !"()[]{}".contains(*c)) {
+    for c in text.trim().trim_end_matches('.').chars().filter(|c| !"{}".contains(*c)) {
         let raised = "⁰¹²³⁴⁵⁶⁷⁸⁹⁻".chars().zip("0123456789-".chars()).find(|(raised, _)| *raised == c);
         if raised.is_some() && !plain.ends_with(['-', '^']) {
             plain.push('^');
         }
-        plain.push(raised.map_or(if c == 'μ' { 'µ' } else { c }, |(_, digit)| digit));
+        plain.push(match (raised, c) {
+            (Some((_, digit)), _) => digit,
+            (None, 'μ') => 'µ',
+            (None, '(' | ')' | '[' | ']') => ' ',
+            _ => c,
+        });
     }
-    plain
+    plain.trim().to_owned()
 }
 
 /// The possible meanings of a power, of ten or of a unit, or its reciprocal if `sign` is −1. Case is ignored in names
