@@ -2,7 +2,7 @@
 //!
 //! An allocation that fails inside `vec!` aborts the process. Moreover, most systems overcommit memory: on Linux, by
 //! default, an allocation fails only if it alone exceeds all memory and swap of the machine, and a process that writes
-//! to more pages than exist is killed. So the bytes of all fields of a scene are added up by formula and requested in
+//! to more pages than exist is killed. So the bytes of all fields of a scene are added up before and requested in
 //! one piece, which is returned at once, before any field is filled. This detects every scene larger than the machine.
 //! It does not detect a scene that fits the machine but not beside the other processes on it, a limit of a container
 //! (cgroup), or any lack of memory where the system overcommits without bounds (`vm.overcommit_memory` = 1). Where

@@ -32,6 +32,7 @@ pub(crate) struct History {
 #[derive(Debug, Educe)]
 #[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[expect(clippy::large_enum_variant, reason = "a contact has one")]
 enum Rule {
     Exponential(ExponentialRule),
     DirectSum(DirectSum),
