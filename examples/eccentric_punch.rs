@@ -88,10 +88,10 @@ fn against_lure(args: &Args) -> Result<(), Box<dyn Error>> {
                 worst = worst.max((p / exact.pressure(x1, x2) - 1.0).abs());
             }
         }
-        let tilt = if e > 0.0 { contact.tilt()[0] / exact.tilt() - 1.0 } else { 0.0 };
+        let tilt = if e > 0.0 { contact.tilt()[0] / exact.tilt - 1.0 } else { 0.0 };
         println!(
             "{e:6.2} {worst:14.1e} {:10.1e} {tilt:10.1e} {:13.2}",
-            contact.approach() / exact.approach() - 1.0,
+            contact.approach() / exact.approach - 1.0,
             report.convolution_equivalents()
         );
         let curve = (-98..=98).map(|k| k as f64 / 100.0);

@@ -171,8 +171,8 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
         (steps, work) = (steps + 1, work + report.convolution_equivalents());
         let patches = contact.patches()?;
         let smooth = Hertz::new(args.radius, 1.0 / rubber.contact_compliance(report.time), args.load)?;
-        let hertz = std::f64::consts::PI * smooth.contact_radius().powi(2);
-        history.write(contact, &report, &[patches.count() as f64, hertz])?;
+        let hertz = std::f64::consts::PI * smooth.contact_radius.powi(2);
+        history.write(contact, &report, &[patches.all.len() as f64, hertz])?;
         if !shown.contains(&report.time) {
             continue;
         }
@@ -182,10 +182,10 @@ fn press(args: &Args, roughness: &HeightMap) -> Result<(), Box<dyn Error>> {
                 report.time,
                 contact.contact_area() * 1e6,
                 hertz * 1e6,
-                patches.count(),
+                patches.all.len(),
                 patches.largest().map_or(0.0, |patch| patch.area * 1e6),
                 contact.max_pressure() * 1e-3,
-                smooth.max_pressure() * 1e-3
+                smooth.max_pressure * 1e-3
             );
         });
         progress.inc(1);

@@ -147,7 +147,7 @@ fn opening(cells: usize) -> Drawn {
 /// The radius of contact a_H and the greatest pressure p_H when the load has just been applied: the paper's units.
 fn hertz(scene: &StepLoadedSphere) -> Result<[f64; 2]> {
     let hertz = Hertz::new(scene.radius, 1.0 / scene.material.contact_compliance(0.0), scene.force)?;
-    Ok([hertz.contact_radius(), hertz.max_pressure()])
+    Ok([hertz.contact_radius, hertz.max_pressure])
 }
 
 /// The exact pressure at a time in the paper's units, dense near the rim, where it falls like a root.

@@ -290,7 +290,7 @@ fn observe(contact: &ViscoelasticContact) -> Result<Moment> {
         time: contact.time(),
         area: contact.contact_area() / nominal,
         cells: contact.contact_cells() as f64 / gap.len() as f64,
-        patches: patches.count(),
+        patches: patches.all.len(),
         largest: patches.largest().map_or(0.0, |patch| patch.cells as f64 / contact.contact_cells() as f64),
         mean_gap: gap.iter().sum::<f64>() / gap.len() as f64,
     })

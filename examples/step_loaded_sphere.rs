@@ -300,7 +300,7 @@ impl Run {
         let title = format!("Pressure under a step-loaded sphere, {} half-space", scene.name);
         let [x, y] = ["r / Hertz radius at t = 0", "p / Hertz pressure at t = 0"];
         let mut chart = Chart::new(&title, x, y, Legend::UpperRight);
-        let (a, p) = (self.hertz.contact_radius(), self.hertz.max_pressure());
+        let (a, p) = (self.hertz.contact_radius, self.hertz.max_pressure);
         for (profile, color) in self.profiles.iter().zip(COLORS) {
             let edge = self.exact.contact_radius(profile.time);
             // dense near the rim, where the profile falls like a root
@@ -316,7 +316,7 @@ impl Run {
     }
 
     fn add_growth(&self, scene: &StepLoadedSphere, chart: &mut Chart, color: Color) {
-        let unit = self.hertz.contact_radius();
+        let unit = self.hertz.contact_radius;
         let times = (0..=200).map(|k| scene.duration * k as f64 / 200.0);
         let line = times.map(|t| (t / scene.tau, self.exact.contact_radius(t) / unit)).collect();
         chart.add(format!("{}, Table 1", scene.name), color, Style::Line, line);

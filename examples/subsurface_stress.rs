@@ -101,7 +101,7 @@ fn press(args: &Args, material: Material, length: f64, advance: impl Fn()) -> vi
         let radius = (contact.contact_area() / std::f64::consts::PI).sqrt();
         // nearer the surface the cells that joined last stand out, as in the pressure: they are stiffer than their neighbours
         let depths: Vec<f64> = (2..=12).map(|k| 0.1 * f64::from(k) * radius).collect();
-        let peak = stress.max_von_mises(&depths)?;
+        let peak = stress.greatest(&depths, Stress::von_mises)?;
         run.moments.push(Moment { time: contact.time(), radius, pressure: contact.max_pressure(), peak });
         if k == 0 || k == args.steps {
             let depths: Vec<f64> = (0..cells / 2).map(|k| (k as f64 + 0.5) * step).collect();
@@ -119,7 +119,7 @@ fn run(args: &Args) -> Result<(), Box<dyn Error>> {
     // the contact at the end, with some space around it
     let last =
         viscocontact::analytic::Hertz::new(args.radius, 1.0 / polymer.contact_compliance(1e3 * args.tau), args.force)?;
-    let length = 3.0 * last.contact_radius();
+    let length = 3.0 * last.contact_radius;
     let progress = ProgressBar::new(2 * (args.steps as u64 + 1));
     let bodies = [("elastic bulk", polymer), ("incompressible", Material::incompressible(shear))];
     let mut runs = Vec::new();

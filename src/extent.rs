@@ -12,14 +12,14 @@ impl Extent {
         Extent { low: cell, high: cell }
     }
 
-    /// The least one that holds both.
+    /// The least extent that contains both.
     pub(crate) fn with(self, other: Extent) -> Extent {
         let low = [0, 1].map(|axis| self.low[axis].min(other.low[axis]));
         let high = [0, 1].map(|axis| self.high[axis].max(other.high[axis]));
         Extent { low, high }
     }
 
-    /// The least one that holds them all; `None` if there is none.
+    /// The least extent that contains all of them; `None` of no extents.
     pub(crate) fn hull(extents: impl Iterator<Item = Extent>) -> Option<Extent> {
         extents.reduce(Extent::with)
     }

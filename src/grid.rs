@@ -52,7 +52,7 @@ impl Grid {
             positive("cell side along x2", lengths[1] / cells[1] as f64)?,
         ];
         positive("cell area", spacing[0] * spacing[1])?;
-        // as `lengths` computes them: side times count may overflow by rounding
+        // the products in `lengths`: side times count may overflow by rounding
         positive("length along x1", spacing[0] * cells[0] as f64)?;
         positive("length along x2", spacing[1] * cells[1] as f64)?;
         Ok(Grid { cells, spacing, start: cells.map(|count| 1 - count as i64) })
@@ -152,7 +152,7 @@ mod tests {
         assert_eq!(grid.center(0, 3), [-0.4, 0.75]);
     }
 
-    /// The side of a cell may round up, so that the sum of all of them overflows.
+    /// The side of a cell may round up, so that the sum of all sides overflows.
     #[test]
     fn lengths_are_finite_however_they_round() {
         let (mut made, mut refused) = (0, 0);

@@ -1,5 +1,8 @@
-//! Contact of viscoelastic bodies: the pressure between an indenter and a creeping half-space, the contact area, and
-//! how both evolve in time, for any geometry, any load history and any linear rheology, including measured ones.
+//! Frictionless contact of viscoelastic bodies, for tribologists, and for engineers who couple a contact to other programs.
+//!
+//! An indenter is pressed onto a creeping half-space. The crate computes the pressure between them, the contact area and the
+//! approach, and how they evolve in time. Geometry, load history and linear rheology are arbitrary; measured surfaces and
+//! measured creep are read from files.
 //!
 //! # The problem
 //!
@@ -21,9 +24,9 @@
 //! Periodic bodies, line contacts in plane strain, layers ([`Layer`]) and user-defined bodies have another K
 //! ([`InfluenceKernel`]).
 //!
-//! Pressure and contact area are unknown, and both change even when the force does not. The discretisation follows S.
-//! Spinu, *The surface contact of viscoelastic materials, Part I*; time rule and solver go beyond it. Where each of its
-//! equations and figures is found: [`paper`].
+//! Pressure and contact area are unknown, and both change even under a constant force. The discretisation follows S. Spinu,
+//! *The surface contact of viscoelastic materials, Part I*; time rule and solver go beyond it. The page [`paper`] lists
+//! where its equations and figures are implemented.
 //!
 //! # A simulation
 //!
@@ -81,8 +84,8 @@
 //!
 //! A convolution of N cells is one forward and one inverse real transform of the zero-padded grid, O(N log N). Periodic
 //! bodies are not padded and cost a third; a line of N × 1 cells is transformed in one dimension. A step of the default
-//! solver takes 3 to 5 convolutions in the scenes of the README at 256² cells; a scene without tilt does no work for
-//! it. Where gap and load are even in x1, x2 or both, only half or a quarter of the cells is computed
+//! solver takes 3 to 5 convolutions in the scenes of the README at 256² cells; tilts cost nothing in a scene without
+//! them. Where gap and load are even in x1, x2 or both, only half or a quarter of the cells is computed
 //! ([`contact::Settings::symmetry`]); cells that contact cannot reach are not computed at all
 //! ([`contact::Settings::window`]). `docs/performance.md` gives the cost of a step with each method.
 //!
@@ -103,7 +106,7 @@
 //!
 //! A failed step leaves no trace and may be tried again, shorter or under another load. A caller that iterates takes a
 //! [`contact::Snapshot`], tries steps and restores it, without allocating. With the feature `checkpoint` the whole
-//! state is saved to a file and resumed; the steps that follow are bitwise identical.
+//! state is saved to a file and resumed; the following steps are bitwise identical.
 //!
 //! # Features
 //!
@@ -122,9 +125,8 @@
 //!
 //! `x3p`: height maps from X3P files (ISO 25178-72).
 //!
-//! `serde`: `Serialize` and `Deserialize` for what describes a run: [`load::Load`], [`contact::Settings`],
-//! [`contact::Stepping`], [`geometry::RoughSpec`] and what they consist of, and for the error estimates of a run. Part of
-//! `checkpoint`.
+//! `serde`: `Serialize` and `Deserialize` for the description of a run, [`load::Load`], [`contact::Settings`],
+//! [`contact::Stepping`], [`geometry::RoughSpec`] and their parts, and for the error estimates of a run. Part of `checkpoint`.
 //!
 //! `tracing`: events of the `tracing` crate: steps accepted, rejected and failed, regions moved, series fitted.
 //!
@@ -170,7 +172,7 @@ mod fft;
 mod file;
 pub mod geometry;
 mod grid;
-// its programs are run where the features that they use are there
+// the programs of the guide run only with the features that they use
 #[cfg(all(doc, any(not(doctest), all(feature = "csv", feature = "plot"))))]
 pub mod guide;
 mod hereditary;
@@ -208,8 +210,8 @@ pub use kernel::{InfluenceKernel, Layer, Workspace};
 /// The crate of the complex numbers of moduli and compliances.
 pub use num_complex;
 
-/// Everything a scene is written with, except for names that mean something else elsewhere: [`geometry::Sum`],
-/// [`geometry::Form`], [`motion::Path`] and [`Result`] are imported from where they are.
+/// The types for writing a scene, except for names with another common meaning: [`geometry::Sum`], [`geometry::Form`],
+/// [`motion::Path`] and [`Result`] are imported from their modules.
 ///
 /// ```
 /// use viscocontact::prelude::*;

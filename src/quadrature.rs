@@ -1,4 +1,4 @@
-//! Gauss–Legendre quadrature, used by the influence coefficients and the reference solutions.
+//! Gauss–Legendre quadrature and bisection, used by the influence coefficients and the reference solutions.
 
 use std::f64::consts::PI;
 
@@ -40,6 +40,14 @@ impl GaussLegendre {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         half * self.sum(|s| f(middle + half * s))
     }
+}
+
+/// The ends of the interval between `low` and `high` at which `is_below` turns false, after so many halvings.
+pub(crate) fn bisect(low: f64, high: f64, halvings: usize, is_below: impl Fn(f64) -> bool) -> [f64; 2] {
+    (0..halvings).fold([low, high], |[low, high], _| {
+        let middle = 0.5 * (low + high);
+        if is_below(middle) { [middle, high] } else { [low, middle] }
+    })
 }
 
 /// Legendre polynomial of degree `n` and its derivative at `x` inside (−1, 1).

@@ -33,7 +33,7 @@ pub(crate) use named_sums;
 
 const LANES: usize = 8;
 
-/// The sum of two bands' sums, number by number.
+/// The sums of two arrays, number by number.
 pub(crate) fn add<const K: usize>(a: [f64; K], b: [f64; K]) -> [f64; K] {
     std::array::from_fn(|n| a[n] + b[n])
 }
@@ -55,7 +55,7 @@ pub(crate) fn greatest(values: &[f64]) -> f64 {
     greatest_of(values, 0.0, f64::abs)
 }
 
-/// The greatest value, −∞ of none.
+/// The greatest value, −∞ of no values.
 pub(crate) fn most(values: &[f64]) -> f64 {
     greatest_of(values, f64::NEG_INFINITY, |value| value)
 }
@@ -69,8 +69,8 @@ fn greatest_of(values: &[f64], least: f64, f: impl Fn(f64) -> f64) -> f64 {
             *lane = if f(value) > *lane { f(value) } else { *lane };
         }
     }
-    let rest = rest.iter().map(|&value| f(value));
-    lanes.into_iter().chain(rest).fold(least, |greatest, value| value.max(greatest))
+    let greatest = lanes.into_iter().fold(least, |greatest, value| value.max(greatest));
+    rest.iter().fold(greatest, |greatest, &value| f(value).max(greatest))
 }
 
 /// Σ f(a, b) over the values of two fields.

@@ -67,7 +67,7 @@ impl Slider {
     fn hertz(self, compliance: f64) -> Result<[f64; 2]> {
         match self {
             Slider::Line => Ok([(4.0 * 500.0 * RADIUS * compliance / PI).sqrt(), 0.5]),
-            Slider::Paraboloid(radii) => Ok(HertzEllipse::new(radii, 1.0 / compliance, 1.0)?.semi_axes()),
+            Slider::Paraboloid(radii) => Ok(HertzEllipse::new(radii, 1.0 / compliance, 1.0)?.semi_axes),
         }
     }
 

@@ -12,7 +12,6 @@ use crate::rheology::{Material, is_known};
 /// g(x) = |x| ∫ f′(r)/√(x² − r²) dr over 0 < r < |x|.
 #[derive(Clone)]
 pub struct Profile {
-    name: &'static str,
     depth: Arc<dyn Fn(f64) -> f64 + Send + Sync>,
 }
 
@@ -23,7 +22,7 @@ impl Profile {
     /// If the radius is not finite and positive.
     pub fn sphere(radius: f64) -> Result<Profile> {
         positive("sphere radius", radius)?;
-        Ok(Profile { name: "sphere", depth: Arc::new(move |x| x * x / radius) })
+        Ok(Profile::new(move |x| x * x / radius))
     }
 
     /// A cone with slope `tan_beta`: g = (π/2) x tan β.
@@ -32,7 +31,7 @@ impl Profile {
     /// If the slope is not finite and positive.
     pub fn cone(tan_beta: f64) -> Result<Profile> {
         positive("cone slope tan β", tan_beta)?;
-        Ok(Profile { name: "cone", depth: Arc::new(move |x| 0.5 * PI * x * tan_beta) })
+        Ok(Profile::new(move |x| 0.5 * PI * x * tan_beta))
     }
 
     /// A flat circular punch of `radius` \[m\]: g = 0 on the face, +∞ off it.
@@ -41,18 +40,18 @@ impl Profile {
     /// If the radius is not finite and positive.
     pub fn punch(radius: f64) -> Result<Profile> {
         positive("punch radius", radius)?;
-        Ok(Profile { name: "punch", depth: Arc::new(move |x| if x <= radius { 0.0 } else { f64::INFINITY }) })
+        Ok(Profile::new(move |x| if x <= radius { 0.0 } else { f64::INFINITY }))
     }
 
     /// Any other g(x) for x ≥ 0 \[m\].
     pub fn new(depth: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Profile {
-        Profile { name: "function", depth: Arc::new(depth) }
+        Profile { depth: Arc::new(depth) }
     }
 }
 
 impl fmt::Debug for Profile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_tuple("Profile").field(&self.name).finish()
+        f.debug_struct("Profile").finish_non_exhaustive()
     }
 }
 
@@ -76,9 +75,9 @@ impl fmt::Debug for Profile {
 /// let mut contact = AxisymmetricContact::new(&Profile::sphere(10.0e-3)?, &body, 4000, 2.0e-3)?;
 /// contact.press(0.0, 1.0)?;
 /// let hertz = Hertz::new(10.0e-3, 4.0e6, 1.0)?;
-/// assert!((contact.approach() / hertz.approach() - 1.0).abs() < 1e-6);
-/// assert!((contact.contact_radius() / hertz.contact_radius() - 1.0).abs() < 1e-6);
-/// assert!((contact.pressure(0.0) / hertz.max_pressure() - 1.0).abs() < 1e-6);
+/// assert!((contact.approach() / hertz.approach - 1.0).abs() < 1e-6);
+/// assert!((contact.contact_radius() / hertz.contact_radius - 1.0).abs() < 1e-6);
+/// assert!((contact.pressure(0.0) / hertz.max_pressure - 1.0).abs() < 1e-6);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Clone)]
@@ -113,8 +112,9 @@ impl AxisymmetricContact {
         // six fields, a difference of one or two, and the recursion
         memory::check("a foundation", (64 + 8 * rule.branches()) as u128 * elements as u128)?;
         let depths: Vec<f64> = (0..elements).map(|k| (profile.depth)((k as f64 + 0.5) * width)).collect();
-        let mut bounded = depths.iter().filter(|depth| **depth != f64::INFINITY);
-        bounded.try_for_each(|&depth| finite("profile", depth).map(drop))?;
+        for &depth in depths.iter().filter(|depth| **depth != f64::INFINITY) {
+            finite("profile", depth)?;
+        }
         let approach = depths.iter().copied().fold(f64::INFINITY, f64::min);
         if approach == f64::INFINITY {
             return Err(Error::NothingToTouch { body: 0, cells: elements });
@@ -188,25 +188,26 @@ impl AxisymmetricContact {
     }
 
     fn accept(&mut self, dt: f64, c: f64, approach: f64) -> Result<()> {
+        let time = self.time + dt;
         if self.trial_touch.last().is_some_and(|&touch| touch < approach) {
-            return Err(Error::BeyondReach { time: self.time + dt, reach: self.width * self.load.len() as f64 });
+            return Err(Error::BeyondReach { time, reach: self.width * self.load.len() as f64 });
         }
+        let load = |touch: &f64| (approach - touch).max(0.0) / c;
+        let force = self.trial_touch.iter().map(load).sum::<f64>() * self.width;
+        let displacement = self.displacement.trial().iter().sum::<f64>();
+        let overflow = |what| Err(Error::Overflow { time, what });
         if !(approach.is_finite() && c.is_finite()) {
-            return Err(Error::Overflow { time: self.time + dt, what: "the approach" });
+            return overflow("the approach");
         }
-        let force = self.trial_touch.iter().map(|touch| (approach - touch).max(0.0) / c).sum::<f64>() * self.width;
-        if !(force.is_finite() && self.displacement.trial().iter().sum::<f64>().is_finite()) {
-            return Err(Error::Overflow { time: self.time + dt, what: "the force" });
+        if !(force.is_finite() && displacement.is_finite()) {
+            return overflow("the force");
         }
-        for (q, &touch) in self.load.iter_mut().zip(&self.trial_touch) {
-            *q = (approach - touch).max(0.0) / c;
-        }
+        self.load.iter_mut().zip(&self.trial_touch).for_each(|(q, touch)| *q = load(touch));
         self.displacement.add(c, &self.load);
         self.rule.commit();
         self.displacement.commit();
         std::mem::swap(&mut self.touch, &mut self.trial_touch);
-        self.time += dt;
-        self.approach = approach;
+        (self.time, self.approach) = (time, approach);
         Ok(())
     }
 

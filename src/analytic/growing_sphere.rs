@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use crate::error::{Error, LoadError, Result, positive, within};
 use crate::load::{Load, LoadHistory, StepLoad};
-use crate::quadrature::GaussLegendre;
+use crate::quadrature::{GaussLegendre, bisect};
 use crate::rheology::{CreepSpectrum, Material, RelaxationSpectrum};
 
 /// A sphere on a viscoelastic half-space under a force for which the contact never shrinks.
@@ -149,12 +149,7 @@ impl GrowingSphere {
         if self.contact_radius(0.0) >= r {
             return 0.0;
         }
-        let (mut low, mut high) = (0.0, t);
-        for _ in 0..100 {
-            let middle = 0.5 * (low + high);
-            if self.contact_radius(middle) < r { low = middle } else { high = middle }
-        }
-        high
+        bisect(0.0, t, 100, |time| self.contact_radius(time) < r)[1]
     }
 
     /// ∫ f over [from, to] for f = (function with root-like behaviour at `from` and corners of the load)

@@ -9,15 +9,19 @@ use crate::error::{Result, finite, non_negative, positive};
 /// use viscocontact::analytic::Hertz;
 ///
 /// let hertz = Hertz::new(10.0e-3, 4.0e6, 1.0)?;
-/// assert!((hertz.contact_radius() - 1.2331e-3).abs() < 1e-7);
-/// assert_eq!(hertz.pressure(hertz.contact_radius()), 0.0);
+/// assert!((hertz.contact_radius - 1.2331e-3).abs() < 1e-7);
+/// assert_eq!(hertz.pressure(hertz.contact_radius), 0.0);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Hertz {
-    radius: f64,
-    contact_radius: f64,
-    max_pressure: f64,
+    /// Contact radius a \[m\].
+    pub contact_radius: f64,
+    /// Peak pressure p0, at the centre \[Pa\].
+    pub max_pressure: f64,
+    /// Approach ω \[m\].
+    pub approach: f64,
 }
 
 impl Hertz {
@@ -31,23 +35,8 @@ impl Hertz {
         non_negative("force", force)?;
         let contact_radius = (0.75 * force * radius / modulus).cbrt();
         let max_pressure = finite("peak pressure", 2.0 * contact_radius * modulus / (PI * radius))?;
-        finite("approach", contact_radius * contact_radius / radius)?;
-        Ok(Hertz { radius, contact_radius, max_pressure })
-    }
-
-    /// Contact radius a \[m\].
-    pub fn contact_radius(&self) -> f64 {
-        self.contact_radius
-    }
-
-    /// Peak pressure p0, at the centre \[Pa\].
-    pub fn max_pressure(&self) -> f64 {
-        self.max_pressure
-    }
-
-    /// Approach ω \[m\].
-    pub fn approach(&self) -> f64 {
-        self.contact_radius * self.contact_radius / self.radius
+        let approach = finite("approach", contact_radius * contact_radius / radius)?;
+        Ok(Hertz { contact_radius, max_pressure, approach })
     }
 
     /// Pressure at the distance `r` from the centre \[m\], p0 √(1 − r²/a²) \[Pa\].

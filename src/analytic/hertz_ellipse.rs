@@ -3,6 +3,7 @@ use std::f64::consts::PI;
 use ellip::{elliprd, elliprf};
 
 use crate::error::{Result, finite, non_negative, positive, within};
+use crate::quadrature::bisect;
 
 /// A paraboloid with two radii of curvature on an elastic half-space (Hertz 1882; Johnson, *Contact
 /// Mechanics*, 1985, §4.2): the contact is an ellipse.
@@ -15,15 +16,19 @@ use crate::error::{Result, finite, non_negative, positive, within};
 ///
 /// let ellipse = HertzEllipse::new([10.0e-3, 10.0e-3], 4.0e6, 1.0)?; // a sphere
 /// let circle = Hertz::new(10.0e-3, 4.0e6, 1.0)?;
-/// assert!((ellipse.semi_axes()[0] / circle.contact_radius() - 1.0).abs() < 1e-12);
-/// assert!((ellipse.approach() / circle.approach() - 1.0).abs() < 1e-12);
+/// assert!((ellipse.semi_axes[0] / circle.contact_radius - 1.0).abs() < 1e-12);
+/// assert!((ellipse.approach / circle.approach - 1.0).abs() < 1e-12);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct HertzEllipse {
-    semi_axes: [f64; 2],
-    max_pressure: f64,
-    approach: f64,
+    /// Semi-axes of the contact along x1 and x2 \[m\].
+    pub semi_axes: [f64; 2],
+    /// Peak pressure p0, at the centre \[Pa\].
+    pub max_pressure: f64,
+    /// Approach ω \[m\].
+    pub approach: f64,
 }
 
 impl HertzEllipse {
@@ -43,12 +48,10 @@ impl HertzEllipse {
         within("ratio of the radii of curvature", radii[0] / radii[1], ratio <= 1e12, "in [1e-12, 1e12]")?;
 
         // the ratio of the curvatures, (a/b)² (K/D − 1), falls with k = b/a: bisect in ln k
-        let (mut low, mut high) = (-2.0 * ratio.ln() - 1.0, 0.0_f64);
-        for _ in 0..200 {
-            let middle = 0.5 * (low + high);
+        let [low, high] = bisect(-2.0 * ratio.ln() - 1.0, 0.0, 200, |middle| {
             let (k, d) = elliptic_integrals(middle.exp());
-            if (-2.0 * middle).exp() * (k / d - 1.0) > ratio { low = middle } else { high = middle }
-        }
+            (-2.0 * middle).exp() * (k / d - 1.0) > ratio
+        });
         let flattening = (0.5 * (low + high)).exp();
         let (k, d) = elliptic_integrals(flattening);
 
@@ -61,21 +64,6 @@ impl HertzEllipse {
         let approach = finite("approach", max_pressure / modulus * b * k)?;
         let semi_axes = if radii[0] >= radii[1] { [a, b] } else { [b, a] };
         Ok(HertzEllipse { semi_axes, max_pressure, approach })
-    }
-
-    /// Semi-axes of the contact along x1 and x2 \[m\].
-    pub fn semi_axes(&self) -> [f64; 2] {
-        self.semi_axes
-    }
-
-    /// Peak pressure p0, at the centre \[Pa\].
-    pub fn max_pressure(&self) -> f64 {
-        self.max_pressure
-    }
-
-    /// Approach ω \[m\].
-    pub fn approach(&self) -> f64 {
-        self.approach
     }
 
     /// Pressure at the point (x1, x2) \[m\], p0 √(1 − x1²/a1² − x2²/a2²) \[Pa\].

@@ -12,17 +12,20 @@ use crate::error::{Result, finite, non_negative, positive, within};
 /// use viscocontact::analytic::RigidPunch;
 ///
 /// let punch = RigidPunch::new(1.0e-3, 4.0e6, 1.0, 0.2e-3)?;
-/// assert!(punch.tilt() > 0.0);
+/// assert!(punch.tilt > 0.0);
 /// assert!(punch.pressure(0.5e-3, 0.0) > punch.pressure(-0.5e-3, 0.0));
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct RigidPunch {
+    /// Approach ω of the centre of the face \[m\].
+    pub approach: f64,
+    /// Tilt α1: the face lowers the surface by ω + α1 x1 \[rad\].
+    pub tilt: f64,
     radius: f64,
     eccentricity: f64,
     mean_pressure: f64,
-    approach: f64,
-    tilt: f64,
 }
 
 impl RigidPunch {
@@ -45,16 +48,6 @@ impl RigidPunch {
             approach: finite("approach", force / (2.0 * radius * modulus))?,
             tilt: finite("tilt", 0.75 * (force / (radius * modulus)) * (eccentricity / radius) / radius)?,
         })
-    }
-
-    /// Approach ω of the centre of the face \[m\].
-    pub fn approach(&self) -> f64 {
-        self.approach
-    }
-
-    /// Tilt α1: the face lowers the surface by ω + α1 x1 \[rad\].
-    pub fn tilt(&self) -> f64 {
-        self.tilt
     }
 
     /// Pressure at the point (x1, x2) \[m\], infinite on the rim where it is not zero \[Pa\].

@@ -1,12 +1,12 @@
 //! The stepper: a contact that is advanced in time, step by step or along a load history.
 //!
-//! A contact has five owners: the scene never changes; the indenter is replaced whole when it moves; the state is what a
-//! step changes; the window computes on the region of the state, and follows from the three above; the trial is the step
-//! being tried. State, window and trial form a computation.
+//! A contact has five owners. The scene never changes. The indenter is replaced as a whole when it moves. The state is changed
+//! by accepted steps. The window, which follows from the other three, computes on the region of the state. The trial holds the
+//! step being computed. State, window and trial form a computation.
 //!
 //! | question | folder |
 //! |---|---|
-//! | how is a contact made from what a user gives? | `builder` |
+//! | how is a contact made from its parts? | `builder` |
 //! | what is the gap before deformation, and where may loads act? | `indenter` |
 //! | what does a step change, and what was it before, or within, the last one? | `state` |
 //! | which part of the grid is computed? | `window` |
@@ -17,7 +17,7 @@
 //! | how does a run go on after an interruption? | `checkpoint` |
 //! | what does a contact do for ranks? | `distributed` |
 
-// the documentation shows methods in the order of these: what drives a contact, then what is read from it
+// the documentation lists methods in the order of these modules: methods that drive a contact, then its results
 mod builder;
 
 mod step;

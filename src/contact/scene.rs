@@ -1,4 +1,4 @@
-//! What never changes once a contact is built.
+//! The constants of a contact.
 
 use std::sync::Arc;
 
@@ -42,7 +42,7 @@ impl Scene {
         }
     }
 
-    /// The reduced time that passes between two times, which are such a `length` apart.
+    /// The reduced time that passes between two times a `length` apart.
     pub(super) fn reduced_length(&self, [from, to]: [f64; 2], length: f64) -> Result<f64> {
         match &self.temperature {
             Some(history) if length > 0.0 => history.reduced_time(from, to),
@@ -50,7 +50,7 @@ impl Scene {
         }
     }
 
-    /// About the time that passes after the clock's while the reduced time grows by `reduced`, at most `most`.
+    /// Approximate time in which the reduced time grows by `reduced` after the clock's, at most `most`.
     pub(super) fn length_of(&self, clock: &Clock, reduced: f64, most: f64) -> Result<f64> {
         match &self.temperature {
             None => Ok(reduced.min(most)),

@@ -40,11 +40,11 @@ pub struct Settings {
     /// true). The rectangle grows with the contact; a step in which it grows allocates memory. With direct sums, and on bodies
     /// other than the half-space loaded on the grid, such as layers, the whole grid is computed.
     pub window: bool,
-    /// What the grid is fixed to (default: [`Frame::Bodies`]).
+    /// The frame of the grid (default: [`Frame::Bodies`]).
     pub frame: Frame,
 }
 
-/// What the grid is fixed to. It only matters where something moves along the surface.
+/// The frame of the grid. It only matters for motion along the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
@@ -81,8 +81,8 @@ pub enum Solver {
 #[non_exhaustive]
 pub enum TimeRule {
     /// Exponential integration of the relaxation form, stable for steps of any length, one field per relaxation time. Within
-    /// a step the displacement is a polynomial of time through its last values, and each step puts right the one before,
-    /// which had one value less. Steps of given length take it to be linear: third order. Steps chosen by their error
+    /// a step the displacement is a polynomial of time through its last values, and each step corrects the step before, which
+    /// had one value less. Steps of given length take it to be linear: third order. Steps chosen by their error
     /// ([`Stepping::adaptive`](crate::contact::Stepping::adaptive)), and all of a body without elastic response (as
     /// Kelvin–Voigt), take it to be quadratic: fourth order, second without elastic response. A kink of the displacement, as
     /// at cells that come into contact, is met with second order.
@@ -91,7 +91,7 @@ pub enum TimeRule {
     /// [`Builder::times`](crate::contact::Builder::times).
     #[default]
     Exponential,
-    /// The same with the displacement linear within each step, and nothing put right afterwards: second order (first without
+    /// The same with the displacement linear within each step, and no correction afterwards: second order (first without
     /// elastic response). A prediction never rises above the undeformed surface, whatever the lengths of the steps.
     ExponentialLinear,
     /// The rule of the source paper, a direct sum over all past steps (Eq. 11): first order, oscillates when
@@ -99,8 +99,8 @@ pub enum TimeRule {
     /// an elastic response.
     Rectangle,
     /// [`TimeRule::Rectangle`] at the cost that the source paper states (section 4), O(N_t² N₁N₂ log(N₁N₂)): the history is
-    /// kept as pressures, and each step convolves all past increments anew, as Eq. 11 is written. The pressures are those of
-    /// [`TimeRule::Rectangle`] to within rounding. For comparisons of cost only.
+    /// kept as pressures, and each step convolves all past increments anew, as Eq. 11 is written. The pressures equal the
+    /// pressures of [`TimeRule::Rectangle`] to within rounding. For comparisons of cost only.
     RectangleUncached,
     /// A direct sum over all past steps with the rheology's own J(t), without a series: first order, stable for steps of
     /// any length, one field per past step ([`Settings::history_limit`]).
@@ -116,7 +116,7 @@ pub enum Edge {
     /// result would be wrong.
     #[default]
     Refuse,
-    /// The step goes on: the rigid body ends where the grid does.
+    /// The step continues: the rigid body ends where the grid does.
     Allow,
 }
 
@@ -151,7 +151,7 @@ setters! { Settings {
 } }
 
 impl TimeRule {
-    /// Whether it works with an exponential series of the creep.
+    /// Whether the rule needs an exponential series of the creep.
     pub(crate) fn needs_series(self) -> bool {
         matches!(self, TimeRule::Exponential | TimeRule::ExponentialLinear)
     }
@@ -183,7 +183,7 @@ impl Settings {
         if self.time_rule == TimeRule::ExponentialLinear { Interpolant::Linear } else { Interpolant::CorrectedLinear }
     }
 
-    /// How it changes within a step chosen by its error.
+    /// How the displacement changes within a step chosen by its error.
     pub(crate) fn adaptive_interpolant(&self) -> Interpolant {
         if self.time_rule == TimeRule::ExponentialLinear {
             Interpolant::Linear

@@ -43,21 +43,22 @@ use crate::contact::scene::Scene;
 /// ```
 #[derive(Clone)]
 pub struct ViscoelasticContact {
-    /// What never changes.
+    /// Grid, kernel, material and settings, which never change.
     pub(super) scene: Arc<Scene>,
-    /// What steps change, and what computes them.
+    /// The state, and the window and the trial that compute steps.
     pub(super) computation: Computation,
-    /// Fields on the whole grid, as users read them.
+    /// Fields on the whole grid, for users to read.
     pub(super) view: View,
-    /// How far the run had come that was saved and resumed, for the next to go on.
+    /// Progress of a run that was saved and resumed, for the next run to continue.
     pub(super) progress: Option<Box<Progress>>,
-    /// An indenter to refill in the next step along a path.
+    /// Buffers for the indenter of the next step along a path.
     pub(super) indenter_buffer: IndenterBuffer,
 }
 
 impl ViscoelasticContact {
     pub(super) fn new(scene: Scene, computation: Computation) -> ViscoelasticContact {
-        let view = View::new(&computation.state);
+        let mut view = View::default();
+        view.refresh(&computation.state);
         ViscoelasticContact {
             scene: Arc::new(scene),
             computation,

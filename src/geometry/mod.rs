@@ -138,7 +138,7 @@ forward_geometry!(&T, Box<T>, std::sync::Arc<T>);
 
 /// The gap field of the rigid bodies, relative to its minimum: heights that are large compared with the indentation
 /// cost no digits.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Gap {
     /// Minimum of the gap \[m\].

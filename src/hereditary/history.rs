@@ -94,10 +94,10 @@ impl History {
         History { far, ..layout }
     }
 
-    /// How many values the layout has for each cell.
-    pub(crate) fn values_per_cell(&self, window: bool) -> usize {
+    /// How many values it has for each cell.
+    pub(crate) fn values_per_cell(&self) -> usize {
         let mut values = 0;
-        self.layout(window).map([0; 2], window, &mut |field| {
+        self.map([0; 2], true, &mut |field| {
             values += field.per_cell;
             Vec::new()
         });

@@ -17,7 +17,7 @@ const NOISE: f64 = -1e-14;
 ///
 /// What the step committed last adds to the past waits until the next one is predicted, so that every q_i passes through the
 /// processor once per step: with many relaxation times this is the cost of a step besides its contact problem.
-#[derive(Debug, Educe)]
+#[derive(Debug, Default, Educe)]
 #[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct RememberedField {
@@ -49,15 +49,7 @@ impl RememberedField {
     /// The undisturbed field of bodies with so many relaxation times.
     pub(crate) fn new(branches: usize, cells: usize) -> RememberedField {
         let [now, trial, relaxing] = [1, 1, branches].map(|per_cell| vec![0.0; cells * per_cell]);
-        RememberedField {
-            branches,
-            relaxing,
-            kept: 0,
-            differences: [Vec::new(), Vec::new()],
-            waiting: false,
-            now,
-            trial,
-        }
+        RememberedField { branches, relaxing, now, trial, ..RememberedField::default() }
     }
 
     /// The undisturbed field of a rule, on no cells yet. It keeps the differences that steps of given length need, so that none

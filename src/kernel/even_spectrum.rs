@@ -8,46 +8,35 @@ use realfft::{RealFftPlanner, RealToComplex};
 use super::layout::{Ends, Layout};
 use super::transform::Shares;
 
-/// A quarter of the real even spectrum on the period of a padded layout, or some columns of it.
-pub(super) struct EvenSpectrum {
-    values: Vec<f64>,
-    /// The first column, and the values of each.
-    first: usize,
-    length: usize,
-}
+/// A real even function of wave numbers.
+pub(super) type Symbol = Box<dyn Fn(usize, usize) -> f64>;
 
-impl EvenSpectrum {
-    /// The spectrum of the kernel with this response: at the distances of the layout along an axis that ends, and zero beyond;
-    /// at wave numbers along a periodic one. Local columns, where ranks share it out.
-    pub(super) fn of(layout: Layout, shares: Option<&Shares>, response: &dyn Fn([usize; 2]) -> f64) -> EvenSpectrum {
-        // a kernel made periodic needs half a period at most, and none beyond the cells
-        let known = [0, 1].map(|axis| {
-            let (cells, half) = (layout.unfolded(axis), layout.period(axis) / 2 + 1);
-            if layout.ends[axis] == Ends::Free { cells } else { cells.min(half) }
-        });
-        let columns = shares.map_or(layout.all_columns(), |shares| shares.columns(&layout));
-        let (first, count, length) = (columns.start, columns.len(), layout.period(0) / 2 + 1);
-        let [mut down, mut across] = [0, 1].map(|axis| EvenLine::new(&layout, axis));
-        let mut write = |i: usize, row: &mut [f64]| across.transform((0..known[1]).map(|j| response([i, j])), row);
-        let rows = if let Some(shares) = shares {
-            shares.own_columns(&layout, known[0], write)
-        } else {
-            let mut rows = vec![0.0; known[0] * count];
-            rows.chunks_exact_mut(count).enumerate().for_each(|(i, row)| write(i, row));
-            rows
-        };
-        // stored column by column
-        let mut values = vec![0.0; length * count];
-        for (k2, column) in values.chunks_exact_mut(length).enumerate() {
-            down.transform(rows[k2..].iter().step_by(count).copied(), column);
-        }
-        EvenSpectrum { values, first, length }
+/// The spectrum of the kernel with this response on the period of a padded layout. The response is taken at the distances of the
+/// layout along an axis that ends, and zero beyond; at wave numbers along a periodic one. For local columns, where ranks share
+/// it out.
+pub(super) fn even_spectrum(layout: Layout, shares: Option<&Shares>, response: &dyn Fn([usize; 2]) -> f64) -> Symbol {
+    // a kernel made periodic needs half a period at most, and none beyond the cells
+    let known = [0, 1].map(|axis| {
+        let (cells, half) = (layout.unfolded(axis), layout.period(axis) / 2 + 1);
+        if layout.ends[axis] == Ends::Free { cells } else { cells.min(half) }
+    });
+    let columns = shares.map_or(0..layout.period(1) / 2 + 1, |shares| shares.columns(&layout));
+    let (first, count, length) = (columns.start, columns.len(), layout.period(0) / 2 + 1);
+    let [mut down, mut across] = [0, 1].map(|axis| EvenLine::new(&layout, axis));
+    let mut write = |i: usize, row: &mut [f64]| across.transform((0..known[1]).map(|j| response([i, j])), row);
+    let rows = if let Some(shares) = shares {
+        shares.own_columns(&layout, known[0], write)
+    } else {
+        let mut rows = vec![0.0; known[0] * count];
+        rows.chunks_exact_mut(count).enumerate().for_each(|(i, row)| write(i, row));
+        rows
+    };
+    // stored column by column
+    let mut values = vec![0.0; length * count];
+    for (k2, column) in values.chunks_exact_mut(length).enumerate() {
+        down.transform(rows[k2..].iter().step_by(count).copied(), column);
     }
-
-    /// The value at the wave numbers `k1`, `k2` of the period.
-    pub(super) fn at(&self, k1: usize, k2: usize) -> f64 {
-        self.values[(k2 - self.first) * self.length + k1]
-    }
+    Box::new(move |k1, k2| values[(k2 - first) * length + k1])
 }
 
 /// Transforms real even lines of one period, if their axis is not periodic: there they hold waves already.

@@ -5,15 +5,12 @@ use std::fmt;
 use std::sync::Arc;
 
 use super::InfluenceKernel;
-use super::even_spectrum::EvenSpectrum;
+use super::even_spectrum::{Symbol, even_spectrum};
 use super::layer::Layer;
 use super::layout::{Ends, Layout, is_fast, waves_at};
 use super::line_load::{uniform, wave_number};
 use super::transform::Shares;
 use crate::Grid;
-
-/// A real even function of wave numbers.
-pub(super) type Symbol = Box<dyn Fn(usize, usize) -> f64>;
 
 /// The response \[m\] at two indices, one for each axis: a wave number of the grid along a periodic axis, a distance in cells
 /// along an axis that ends. So it is the influence of a cell on another, the compliance of a wave, or, of a body periodic along
@@ -84,8 +81,7 @@ impl InfluenceKernel {
             let response = Arc::clone(&self.response);
             return Box::new(move |k1, k2| response([k1, k2]));
         }
-        let spectrum = EvenSpectrum::of(layout, shares, &*self.response);
-        Box::new(move |k1, k2| spectrum.at(k1, k2))
+        even_spectrum(layout, shares, &*self.response)
     }
 
     /// A layout without padding, and the factor by which an approximate inverse of the operator multiplies each of its

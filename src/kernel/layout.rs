@@ -1,7 +1,6 @@
 //! Cells, boundaries and symmetries of an operator, and the lengths of its transforms.
 
 use std::f64::consts::TAU;
-use std::ops::Range;
 
 /// Number of mirror images of a cell, itself included, where axes are folded.
 pub(crate) fn images(folded: [bool; 2]) -> usize {
@@ -52,11 +51,6 @@ impl Layout {
     /// Number of independent coefficients of a real line along an axis: the others mirror them.
     pub(super) fn independent(&self, axis: usize) -> usize {
         if self.folded[axis] { self.line(axis) } else { self.line(axis) / 2 + 1 }
-    }
-
-    /// All wave numbers along a row.
-    pub(super) fn all_columns(&self) -> Range<usize> {
-        0..self.period(1) / 2 + 1
     }
 
     /// The layout of an operator that need not be exact: no padding but for fast transforms.

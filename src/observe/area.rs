@@ -96,32 +96,29 @@ impl Pressed<'_> {
             [false, false, false, false] => return 0.0,
             _ => {}
         }
-        // twice the area: the sum over the sides of the polygon of touched corners and ends of contact
-        let (mut sum, mut first, mut last) = (0.0, None, [0.0; 2]);
-        let mut visit = |point: [f64; 2]| {
-            match first {
-                None => first = Some(point),
-                Some(_) => sum += last[0] * point[1] - last[1] * point[0],
-            }
-            last = point;
+        // corners of the polygon: touched cell centres, and ends of contact
+        let (mut polygon, mut count) = ([[0.0; 2]; 8], 0);
+        let mut add = |corner: [f64; 2]| {
+            polygon[count] = corner;
+            count += 1;
         };
         for k in 0..4 {
             let next = (k + 1) % 4;
             if inside[k] {
-                visit(UNIT[k]);
+                add(UNIT[k]);
             }
             if inside[k] != inside[next] {
                 let (from, to) = if inside[k] { (k, next) } else { (next, k) };
-                let reach = self.reach(corners[from], corners[to]);
-                visit([0, 1].map(|axis| UNIT[from][axis] + reach * (UNIT[to][axis] - UNIT[from][axis])));
+                let end = self.distance_to_end(corners[from], corners[to]);
+                add([0, 1].map(|axis| UNIT[from][axis] + end * (UNIT[to][axis] - UNIT[from][axis])));
             }
         }
-        let start = first.unwrap_or(last);
-        0.5 * (sum + last[0] * start[1] - last[1] * start[0])
+        let sides = polygon[..count].iter().zip(polygon[..count].iter().cycle().skip(1));
+        0.5 * sides.map(|([x1, x2], [y1, y2])| x1 * y2 - x2 * y1).sum::<f64>()
     }
 
     /// Distance of the end of contact from the centre of a cell in contact towards its neighbour out of contact, in cells.
-    fn reach(&self, from: [isize; 2], to: [isize; 2]) -> f64 {
+    fn distance_to_end(&self, from: [isize; 2], to: [isize; 2]) -> f64 {
         const TO_THE_RIM: f64 = 0.5;
         match self.end(from, to) {
             End::OfShape | End::Unknown => TO_THE_RIM,

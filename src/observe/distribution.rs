@@ -8,15 +8,24 @@ const MAX_BINS: usize = 1_000_000;
 /// probability density of its positive values in bins of equal width. Together they integrate to 1, as P does in
 /// Persson's theory of contact.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Distribution {
-    share_at_zero: f64,
-    width: f64,
-    density: Vec<f64>,
+    /// Share of the surface where the quantity is zero.
+    pub share_at_zero: f64,
+    /// Width of a bin, in the unit of the quantity; 0 without bins.
+    pub width: f64,
+    /// Density in each bin, in 1 over the unit of the quantity; empty if the quantity is zero everywhere. Its sum times the
+    /// width is 1 − `share_at_zero`.
+    pub density: Vec<f64>,
 }
 
 impl Distribution {
     /// The distribution of `all` values, of which `positive_values` are positive and the rest are zero.
-    fn new(positive_values: impl Iterator<Item = f64> + Clone, all: usize, bins: usize) -> Result<Distribution> {
+    pub(crate) fn new(
+        positive_values: impl Iterator<Item = f64> + Clone,
+        all: usize,
+        bins: usize,
+    ) -> Result<Distribution> {
         count_within("bins", bins, (1..=MAX_BINS).contains(&bins), "in [1, 1000000]")?;
         let greatest = positive_values.clone().fold(0.0, f64::max);
         if greatest == 0.0 {
@@ -32,35 +41,6 @@ impl Distribution {
         let density = counts.into_iter().map(|count| count as f64 / all as f64 / width);
         let density = density.map(|value| finite("density", value)).collect::<Result<_>>()?;
         Ok(Distribution { share_at_zero: (all - counted) as f64 / all as f64, width, density })
-    }
-
-    /// The distribution of `gap` \[m\] over the cells where it is finite. A cell under pressure counts as gap 0.
-    pub(crate) fn of_gap(gap: &[f64], pressure: &[f64], bins: usize) -> Result<Distribution> {
-        let finite = gap.iter().filter(|h| h.is_finite()).count();
-        let open = gap.iter().zip(pressure).filter(|(h, p)| h.is_finite() && **h > 0.0 && **p == 0.0);
-        Distribution::new(open.map(|(h, _)| *h), finite, bins)
-    }
-
-    /// The distribution of `pressure` \[Pa\] over all cells.
-    pub(crate) fn of_pressure(pressure: &[f64], bins: usize) -> Result<Distribution> {
-        Distribution::new(pressure.iter().copied().filter(|p| *p > 0.0), pressure.len(), bins)
-    }
-
-    /// Share of the surface where the quantity is zero.
-    pub fn share_at_zero(&self) -> f64 {
-        self.share_at_zero
-    }
-
-    /// Width of a bin, in the unit of the quantity; 0 without bins.
-    pub fn width(&self) -> f64 {
-        self.width
-    }
-
-    /// Density in each bin, in 1 over the unit of the quantity; empty if the quantity is zero everywhere.
-    ///
-    /// Its sum times the width is 1 − [`share_at_zero`](Distribution::share_at_zero).
-    pub fn density(&self) -> &[f64] {
-        &self.density
     }
 
     /// Centres of the bins, in the unit of the quantity.
@@ -84,7 +64,7 @@ mod tests {
         assert_eq!(found, Distribution { share_at_zero: 0.375, width: 1.0, density: vec![0.125, 0.125, 0.125, 0.25] });
         assert_eq!(found.centers().collect::<Vec<_>>(), [0.5, 1.5, 2.5, 3.5]);
         let none = Distribution::new(std::iter::empty(), 8, 4).unwrap();
-        assert_eq!((none.share_at_zero(), none.density().len(), none.width()), (1.0, 0, 0.0));
+        assert_eq!((none.share_at_zero, none.density.len(), none.width), (1.0, 0, 0.0));
         for bins in [0, MAX_BINS + 1] {
             assert!(matches!(Distribution::new([1.0].into_iter(), 1, bins), Err(Error::CountOutOfRange { .. })));
         }
@@ -97,15 +77,15 @@ mod tests {
     #[test]
     fn pressures_under_a_sphere() {
         let exact = Hertz::new(10.0e-3, 4.0e6, 0.5).unwrap();
-        let (a, peak, side) = (exact.contact_radius(), exact.pressure(0.0), 2.6 * exact.contact_radius());
+        let (a, peak, side) = (exact.contact_radius, exact.pressure(0.0), 2.6 * exact.contact_radius);
         let found = sphere([256; 2], [side; 2], [0.0; 2], 0.5).pressure_distribution(10).unwrap();
         let scale = 2.0 * std::f64::consts::PI * (a / side).powi(2) / peak.powi(2);
-        for (p, density) in found.centers().zip(found.density()) {
+        for (p, density) in found.centers().zip(&found.density) {
             // each tenth of the peak holds at least 200 cells
             assert!((density - scale * p).abs() < 0.03 * scale * peak, "{p:e}: {density:e} {:e}", scale * p);
         }
         let share = std::f64::consts::PI * (a / side).powi(2);
-        assert_abs_diff_eq!(1.0 - found.share_at_zero(), share, epsilon = 0.01 * share);
+        assert_abs_diff_eq!(1.0 - found.share_at_zero, share, epsilon = 0.01 * share);
     }
 
     #[test]
@@ -117,14 +97,14 @@ mod tests {
             .unwrap();
         contact.step(0.0, Load::force(1.0)).unwrap();
         let found = contact.gap_distribution(5).unwrap();
-        assert_eq!((found.share_at_zero(), found.density()), (1.0, &[][..]));
+        assert_eq!((found.share_at_zero, found.density.len()), (1.0, 0));
 
         let contact = sphere([32; 2], [4.0e-3; 2], [0.0; 2], 0.5);
         let found = contact.gap_distribution(50).unwrap();
-        assert_eq!(found.share_at_zero(), contact.contact_cells() as f64 / 1024.0);
-        let sum = found.density().iter().sum::<f64>() * found.width();
-        assert_abs_diff_eq!(sum + found.share_at_zero(), 1.0, epsilon = 1e-12);
+        assert_eq!(found.share_at_zero, contact.contact_cells() as f64 / 1024.0);
+        let sum = found.density.iter().sum::<f64>() * found.width;
+        assert_abs_diff_eq!(sum + found.share_at_zero, 1.0, epsilon = 1e-12);
         let corner = contact.profile(crate::observe::Axis::X1, -2.0e-3).unwrap().gap[0];
-        assert_abs_diff_eq!(found.width() * 50.0 / corner, 1.0, epsilon = 1e-12);
+        assert_abs_diff_eq!(found.width * 50.0 / corner, 1.0, epsilon = 1e-12);
     }
 }

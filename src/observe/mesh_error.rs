@@ -13,12 +13,12 @@ use crate::sum::{most, sum};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct MeshError {
-    /// Of the approach, or of the force where the approach is given.
+    /// Error of the approach, or of the force where the approach is given.
     pub approach: f64,
-    /// Of the greatest pressure. `None` where the pressure near its greatest value does not look like a smooth
-    /// peak: it does not converge there (the tip of a cone, the edge of a punch), or the cells do not resolve it.
+    /// Error of the greatest pressure. `None` where the pressure near its greatest value is not a smooth peak: it does not
+    /// converge there (the tip of a cone, the edge of a punch), or the cells do not resolve it.
     pub max_pressure: Option<f64>,
-    /// Of the contact area.
+    /// Error of the contact area.
     pub area: f64,
     /// The part of the approach's error that is due to an infinite pressure at the edge, of first order in the cell width.
     /// The rest is of second order on smooth shapes; where a shape ends between cells, it is of first order too.
@@ -135,15 +135,21 @@ enum Peak {
     },
 }
 
+/// The rows of an extent, in pieces: the row, and the columns of the piece.
+fn pieces(Extent { low, high }: Extent) -> impl Iterator<Item = (usize, Range<usize>)> {
+    let columns = move || (low[1]..=high[1]).step_by(PIECE).map(move |start| start..(start + PIECE).min(high[1] + 1));
+    (low[0]..=high[0]).flat_map(move |i| columns().map(move |piece| (i, piece)))
+}
+
 impl Pressed<'_> {
     /// The errors due to the mesh of a contact of `contact_cells` cells. `None` without a rim, and where the cells do not
     /// resolve the contact or the periodic gap.
     pub(crate) fn mesh_error(&self, contact_cells: usize) -> Option<MeshError> {
-        let Extent { low, high } = self.extent?;
+        let extent @ Extent { low, high } = self.extent?;
         let rows = (low[0]..=high[0]).map(|i| self.columns(i, low[1]..high[1] + 1));
         let (total, highest) =
             rows.fold((0.0, 0.0_f64), |(total, highest), row| (total + sum(row), highest.max(most(row))));
-        let rim = self.rim(low, high);
+        let rim = self.rim(extent);
         if total == 0.0 || rim.cells == 0 {
             return None;
         }
@@ -168,7 +174,7 @@ impl Pressed<'_> {
         // at an edge of the shape the pressure is infinite
         let at_rim =
             rim.shape_lengths > 0.0 || rim.highest > MOST_AT_RIM * highest || rim.rising > MOST_RISING * highest;
-        let peak = if at_rim { None } else { self.peak_error(low, high, highest) };
+        let peak = if at_rim { None } else { self.peak_error(extent, highest) };
         Some(MeshError {
             approach,
             max_pressure: peak.map(|peak| peak + approach),
@@ -183,22 +189,19 @@ impl Pressed<'_> {
 
     /// The error of the greatest pressure: the largest error among the peaks that may be the greatest on a finer mesh, each
     /// from the curvature of the pressure at the peak. `None` if one of these peaks is not resolved.
-    fn peak_error(&self, low: [usize; 2], high: [usize; 2], highest: f64) -> Option<f64> {
+    fn peak_error(&self, extent: Extent, highest: f64) -> Option<f64> {
         let least = OTHER_PEAKS * highest;
         let mut worst = 0.0_f64;
-        for i in low[0]..=high[0] {
-            for start in (low[1]..=high[1]).step_by(PIECE) {
-                let piece = start..(start + PIECE).min(high[1] + 1);
-                let pressure = self.columns(i, piece.clone());
-                if !pressure.iter().fold(false, |any, &p| any | (p >= least)) {
-                    continue;
-                }
-                for (j, &p) in piece.zip(pressure).filter(|(_, p)| **p >= least) {
-                    match self.peak([i as isize, j as isize], p) {
-                        Peak::Unresolved { drop } if p * (1.0 + drop) >= highest => return None,
-                        Peak::Resolved { error } if p * (1.0 + TRUSTED * error) >= highest => worst = worst.max(error),
-                        _ => {}
-                    }
+        for (i, piece) in pieces(extent) {
+            let pressure = self.columns(i, piece.clone());
+            if !pressure.iter().fold(false, |any, &p| any | (p >= least)) {
+                continue;
+            }
+            for (j, &p) in piece.zip(pressure).filter(|(_, p)| **p >= least) {
+                match self.peak([i as isize, j as isize], p) {
+                    Peak::Unresolved { drop } if p * (1.0 + drop) >= highest => return None,
+                    Peak::Resolved { error } if p * (1.0 + TRUSTED * error) >= highest => worst = worst.max(error),
+                    _ => {}
                 }
             }
         }
@@ -223,18 +226,12 @@ impl Pressed<'_> {
         Peak::Resolved { error: PEAK * steep * (SMOOTH_GROWTH / growth).powi(4) + NARROW_PEAK * near * near }
     }
 
-    fn rim(&self, low: [usize; 2], high: [usize; 2]) -> Rim {
+    fn rim(&self, extent: Extent) -> Rim {
         let n2 = self.grid.cells()[1];
         let mut rim = Rim::default();
-        for i in low[0]..=high[0] {
-            for start in (low[1]..=high[1]).step_by(PIECE) {
-                let piece = start..(start + PIECE).min(high[1] + 1);
-                if self.has_no_rim(i, &piece) {
-                    continue;
-                }
-                for j in piece.filter(|j| self.pressure[i * n2 + j] != 0.0) {
-                    self.add_cell([i, j], &mut rim);
-                }
+        for (i, piece) in pieces(extent).filter(|(i, piece)| !self.has_no_rim(*i, piece)) {
+            for j in piece.filter(|j| self.pressure[i * n2 + j] != 0.0) {
+                self.add_cell([i, j], &mut rim);
             }
         }
         rim
@@ -255,19 +252,21 @@ impl Pressed<'_> {
             rim.sides += 1;
             let inwards = self.pressure_at(away(-1));
             rim.narrow_sides += usize::from(inwards == 0.0 || self.pressure_at(away(-2)) == 0.0);
-            let end = self.end(from, to);
-            rim.place += match end {
-                End::OfShape => 0.0,
-                End::Unknown => PLACE_UNKNOWN,
+            rim.place += match self.end(from, to) {
+                End::OfShape => {
+                    self.add_edge(cell, side, rim);
+                    continue;
+                }
+                End::Unknown => {
+                    unknown = true;
+                    PLACE_UNKNOWN
+                }
                 End::Line(_) => PLACE_OF_ONE,
                 End::LineAndParabola(line, parabola) => PLACE_OF_TWO + PLACE_OF_DIFFERENCE * (parabola - line).abs(),
             };
-            match end {
-                End::OfShape => self.add_edge(cell, side, rim),
-                _ if inwards <= p => rim.rising = rim.rising.max(p),
-                _ => {}
+            if inwards <= p {
+                rim.rising = rim.rising.max(p);
             }
-            unknown |= matches!(end, End::Unknown);
         }
         rim.cells += usize::from(on_rim);
         if on_rim {
@@ -349,7 +348,7 @@ mod tests {
                     expected = (expected.0 + 1, expected.1 + pressure[k], expected.2 + free);
                 }
             }
-            let rim = pressed.rim([0, 0], [cells[0] - 1, cells[1] - 1]);
+            let rim = pressed.rim(Extent { low: [0, 0], high: [cells[0] - 1, cells[1] - 1] });
             assert_eq!((rim.cells, rim.pressure, rim.sides), expected, "{cells:?} {periodic:?}");
         }
     }

@@ -18,7 +18,7 @@ mod asymmetry;
 mod distribution;
 pub(crate) mod mesh_error;
 mod patches;
-mod profile;
+pub(crate) mod profile;
 mod stress;
 
 pub use asymmetry::Asymmetry;

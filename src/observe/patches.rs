@@ -1,6 +1,6 @@
 //! Connected patches of a contact.
 
-use crate::error::{Error, Result, exact_length, finite};
+use crate::error::{Result, count_within, exact_length, finite, non_negative};
 use crate::{Grid, memory};
 
 /// One patch of contact.
@@ -35,15 +35,18 @@ pub struct Patch {
 ///     0.0, 0.0, 3.0, 0.0,
 /// ];
 /// let patches = Patches::new(&grid, &pressure, [false; 2])?;
-/// assert_eq!(patches.labels(), [1, 0, 0, 2, 1, 0, 3, 0, 0, 0, 3, 0]);
-/// assert_eq!(patches.all()[0].force, 7.0);
-/// assert_eq!(Patches::new(&grid, &pressure, [false, true])?.all().len(), 2);
+/// assert_eq!(patches.labels, [1, 0, 0, 2, 1, 0, 3, 0, 0, 0, 3, 0]);
+/// assert_eq!(patches.all[0].force, 7.0);
+/// assert_eq!(Patches::new(&grid, &pressure, [false, true])?.all.len(), 2);
 /// # Ok::<(), viscocontact::Error>(())
 /// ```
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Patches {
-    labels: Vec<u32>,
-    all: Vec<Patch>,
+    /// The label of each cell: 0 out of contact, k + 1 in the patch `all[k]`.
+    pub labels: Vec<u32>,
+    /// The patches, in the order of their first cells on the grid.
+    pub all: Vec<Patch>,
 }
 
 impl Patches {
@@ -55,8 +58,8 @@ impl Patches {
     /// `f64`. If there is no memory for the labels.
     pub fn new(grid: &Grid, pressure: &[f64], periodic: [bool; 2]) -> Result<Patches> {
         exact_length("pressure", pressure.len(), grid.len())?;
-        if let Some(&value) = pressure.iter().find(|p| !(p.is_finite() && **p >= 0.0)) {
-            return Err(Error::OutOfRange { field: "pressure", value, allowed: "finite and >= 0" });
+        for &p in pressure {
+            non_negative("pressure", p)?;
         }
         let what = "the labels of patches";
         let (labels, periods) = (memory::field(what, grid.len(), 0)?, memory::field(what, grid.len(), [0; 2])?);
@@ -64,31 +67,14 @@ impl Patches {
         let mut all = Vec::new();
         for (k, &p) in pressure.iter().enumerate() {
             if p > 0.0 && fill.labels[k] == 0 {
-                let label = u32::try_from(all.len() + 1).map_err(|_| {
-                    let (field, allowed) = ("patches of contact", "4294967295 at most");
-                    Error::CountOutOfRange { field, value: all.len() + 1, allowed }
-                })?;
-                let patch = fill.patch(k, label);
+                let label = all.len() + 1;
+                count_within("patches of contact", label, u32::try_from(label).is_ok(), "4294967295 at most")?;
+                let patch = fill.patch(k, label as u32);
                 finite("force of a patch", patch.force)?;
                 all.push(patch);
             }
         }
         Ok(Patches { labels: fill.labels, all })
-    }
-
-    /// The label of each cell: 0 out of contact, k + 1 in the patch `all()[k]`.
-    pub fn labels(&self) -> &[u32] {
-        &self.labels
-    }
-
-    /// The patches, in the order of their first cells on the grid.
-    pub fn all(&self) -> &[Patch] {
-        &self.all
-    }
-
-    /// Number of patches.
-    pub fn count(&self) -> usize {
-        self.all.len()
     }
 
     /// The patch with the most cells, the first of several; `None` without contact.
@@ -165,6 +151,7 @@ mod tests {
     use approx::assert_abs_diff_eq;
 
     use super::*;
+    use crate::error::Error;
     use crate::observe::sphere;
 
     /// Patches of a map whose digits are pressures, on cells of 1 m × 2 m.
@@ -178,25 +165,25 @@ mod tests {
     #[test]
     fn cells_that_share_a_corner_are_apart_and_a_ring_is_one_patch() {
         let found = patches(&["11100", "10100", "11102", "00020"], [false; 2]);
-        assert_eq!(found.labels(), [1, 1, 1, 0, 0, 1, 0, 1, 0, 0, 1, 1, 1, 0, 2, 0, 0, 0, 3, 0]);
-        assert_eq!(found.count(), 3);
-        let ring = found.all()[0];
+        assert_eq!(found.labels, [1, 1, 1, 0, 0, 1, 0, 1, 0, 0, 1, 1, 1, 0, 2, 0, 0, 0, 3, 0]);
+        assert_eq!(found.all.len(), 3);
+        let ring = found.all[0];
         assert_eq!((ring.cells, ring.area, ring.force, ring.winds), (8, 16.0, 16.0, [false; 2]));
         // rows 0 to 2 of 4, columns 0 to 2 of 5
         assert_eq!(ring.centroid, [-0.5, -2.0]);
         assert_eq!(found.largest(), Some(&ring));
-        assert_eq!(found.all()[2].max_pressure, 2.0);
+        assert_eq!(found.all[2].max_pressure, 2.0);
         assert_eq!(patches(&["00", "00"], [true; 2]).largest(), None);
     }
 
     #[test]
     fn periodic_axes_join_patches_across_the_edge() {
         let rows = ["30001", "00000", "00000", "20000"];
-        assert_eq!(patches(&rows, [false; 2]).count(), 3);
-        assert_eq!(patches(&rows, [true, false]).labels()[15], 1);
-        assert_eq!(patches(&rows, [true, false]).count(), 2);
+        assert_eq!(patches(&rows, [false; 2]).all.len(), 3);
+        assert_eq!(patches(&rows, [true, false]).labels[15], 1);
+        assert_eq!(patches(&rows, [true, false]).all.len(), 2);
         let found = patches(&rows, [true; 2]);
-        let [patch] = *found.all() else { panic!("{found:?}") };
+        let [patch] = *found.all else { panic!("{found:?}") };
         // the corner cell at (−1.5, −4), its neighbours across either edge
         let expected: [f64; 2] = [-1.5 - 1.0 / 3.0, -4.0 - 2.0 / 3.0];
         assert!((0..2).all(|axis| (patch.centroid[axis] - expected[axis]).abs() < 1e-14), "{:?}", patch.centroid);
@@ -206,14 +193,14 @@ mod tests {
     #[test]
     fn patches_connected_to_themselves_wind() {
         let found = patches(&["000", "121", "000"], [true; 2]);
-        assert_eq!((found.all()[0].winds, found.all()[0].centroid), ([false, true], [0.0; 2]));
+        assert_eq!((found.all[0].winds, found.all[0].centroid), ([false, true], [0.0; 2]));
         let found = patches(&["000", "121", "000"], [true, false]);
-        assert_eq!(found.all()[0].winds, [false; 2]);
+        assert_eq!(found.all[0].winds, [false; 2]);
         // diagonal stairs, around both axes
         let found = patches(&["1100", "0110", "0011", "1001"], [true; 2]);
-        assert_eq!((found.count(), found.all()[0].winds), (1, [true; 2]));
+        assert_eq!((found.all.len(), found.all[0].winds), (1, [true; 2]));
         // a cell that is its own neighbour
-        assert_eq!(patches(&["1"], [true; 2]).all()[0].winds, [true; 2]);
+        assert_eq!(patches(&["1"], [true; 2]).all[0].winds, [true; 2]);
     }
 
     /// Against labels that spread from cell to cell until none changes.
@@ -251,9 +238,9 @@ mod tests {
             roots.dedup();
             for k in 0..n1 * n2 {
                 let label = if pressure[k] > 0.0 { roots.binary_search(&slow[k]).unwrap() + 1 } else { 0 };
-                assert_eq!(found.labels()[k] as usize, label, "round {round}, cell {k}");
+                assert_eq!(found.labels[k] as usize, label, "round {round}, cell {k}");
             }
-            assert_eq!(found.all().iter().map(|patch| patch.cells).sum::<usize>() as f64, pressure.iter().sum::<f64>());
+            assert_eq!(found.all.iter().map(|patch| patch.cells).sum::<usize>() as f64, pressure.iter().sum::<f64>());
         }
     }
 
@@ -261,8 +248,8 @@ mod tests {
     fn a_sphere_has_one_patch_with_the_whole_force() {
         let contact = sphere([64, 48], [2.0e-3, 1.5e-3], [0.1e-3, -0.05e-3], 0.1);
         let found = contact.patches().unwrap();
-        assert_eq!(found.count(), 1);
-        let patch = found.all()[0];
+        assert_eq!(found.all.len(), 1);
+        let patch = found.all[0];
         assert_eq!(patch.cells, contact.contact_cells());
         assert_abs_diff_eq!(patch.force, 0.1, epsilon = 1e-9);
         assert!((patch.centroid[0] - 0.1e-3).abs() < 1e-5 && (patch.centroid[1] + 0.05e-3).abs() < 1e-5);

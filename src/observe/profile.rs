@@ -48,23 +48,6 @@ pub struct LineProfile {
     pub gap: Vec<f64>,
 }
 
-impl LineProfile {
-    /// Along the line of cells that contains the other coordinate `at` \[m\]; `values_of` gives pressure, displacement and gap
-    /// on it.
-    pub(crate) fn new(
-        grid: &Grid,
-        along: Axis,
-        at: f64,
-        values_of: impl FnOnce(usize) -> Result<[Vec<f64>; 3]>,
-    ) -> Result<LineProfile> {
-        let (along, across) = along.and_other();
-        let line = line_through(grid, across, ("coordinate of the profile", at))?;
-        let positions = (0..grid.cells()[along]).map(|k| grid.coordinate(along, k)).collect();
-        let [pressure, displacement, gap] = values_of(line)?;
-        Ok(LineProfile { at: grid.coordinate(across, line), positions, pressure, displacement, gap })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use approx::assert_abs_diff_eq;

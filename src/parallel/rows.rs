@@ -123,7 +123,7 @@ impl Rows {
     }
 
     /// The cells of a local band in a field of local rows.
-    fn band(&self, band: usize) -> Range<usize> {
+    pub(crate) fn band(&self, band: usize) -> Range<usize> {
         let (length, cells) = (self.band_cells(), self.own.len() * self.cells[1]);
         band * length..((band + 1) * length).min(cells)
     }
@@ -150,8 +150,11 @@ impl Rows {
     pub(crate) fn sum_terms<const K: usize>(&self, terms: impl Fn(usize) -> Option<[f64; K]> + Sync) -> [f64; K] {
         let part = |band: Range<usize>| {
             let mut sums = [0.0; K];
-            for terms in band.filter_map(&terms) {
-                sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+            for k in band {
+                // called here, to be inlined
+                if let Some(terms) = terms(k) {
+                    sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+                }
             }
             sums
         };

@@ -124,8 +124,8 @@ impl Threads {
     ) -> Result<(), RanksError> {
         {
             let own = &mut *lock(&self.meeting.brought[self.rank]);
-            refill(&mut own.numbers, numbers);
-            refill(&mut own.counts, counts);
+            numbers.clone_into(&mut own.numbers);
+            counts.clone_into(&mut own.counts);
         }
         self.meeting.wait()?;
         let (mut rest, mut agree) = (received, true);
@@ -165,11 +165,6 @@ impl Ranks for Threads {
     ) -> Result<(), RanksError> {
         self.meet((send, send_counts), received, receive_counts)
     }
-}
-
-fn refill<T: Copy>(kept: &mut Vec<T>, values: &[T]) {
-    kept.clear();
-    kept.extend_from_slice(values);
 }
 
 impl fmt::Debug for Threads {

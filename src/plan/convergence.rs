@@ -3,9 +3,10 @@
 use crate::Grid;
 use crate::error::{Error, Result};
 use crate::load::Load;
-use crate::plan::convergence_fit::{Convergence, MeshConvergence, ORDERS};
+use crate::plan::Accuracy;
+use crate::plan::error_law::{ErrorLaw, ORDERS};
 use crate::plan::steps::{Differences, Steps, relative};
-use crate::plan::trial_runs::{Extent, Run, Scene, State, greatest};
+use crate::plan::trial_runs::{ContactSize, Run, StepState, TrialScene, greatest};
 
 /// Cells across the widest contact on the coarsest mesh, and on the finest that a plan computes.
 const LEAST_ACROSS: f64 = 16.0;
@@ -35,43 +36,45 @@ const MIN_NARROWING: f64 = 0.25;
 pub(super) const DOMAIN_TO_CONTACT: f64 = 1.12;
 
 /// The grid with `across` cells across the widest contact.
-pub(super) fn grid_with(extent: &Extent, across: f64) -> Result<Grid> {
-    let lengths = extent.reach.map(|half| 2.0 * DOMAIN_TO_CONTACT * half);
-    let cells = [0, 1].map(|axis| smooth_size((across * lengths[axis] / extent.width[axis]).ceil() as usize));
+pub(super) fn grid_with(size: &ContactSize, across: f64) -> Result<Grid> {
+    let lengths = size.reach.map(|half| 2.0 * DOMAIN_TO_CONTACT * half);
+    let cells = [0, 1].map(|axis| smooth_size((across * lengths[axis] / size.width[axis]).ceil() as usize));
     Grid::new(cells, lengths)
 }
 
-impl Extent {
-    /// Extent of the contact on a mesh that resolves it: a contact far off the middle is only a few cells wide on the
+impl ContactSize {
+    /// Size of the contact on a mesh that resolves it: a contact far off the middle is only a few cells wide on the
     /// coarsest mesh.
-    pub(super) fn of(scene: &Scene<'_>) -> Result<Extent> {
-        let extent = scene.extent()?;
-        if [0, 1].iter().all(|&axis| extent.width[axis] > extent.reach[axis]) {
-            return Ok(extent);
+    pub(super) fn of(scene: &TrialScene<'_>) -> Result<ContactSize> {
+        let size = scene.size()?;
+        if [0, 1].iter().all(|&axis| size.width[axis] > size.reach[axis]) {
+            return Ok(size);
         }
-        extent.held(|extent| {
-            let finer = scene.follow(grid_with(extent, LEAST_ACROSS)?, &[])?.extent;
+        size.on_growing_domain(|size| {
+            let finer = scene.follow(grid_with(size, LEAST_ACROSS)?, &[])?.size;
             // a contact may be a few cells wide on any mesh
-            let width = [0, 1].map(|axis| finer.width[axis].max(MIN_NARROWING * extent.width[axis]));
-            Ok(Extent { width, ..finer })
+            let width = [0, 1].map(|axis| finer.width[axis].max(MIN_NARROWING * size.width[axis]));
+            Ok(ContactSize { width, ..finer })
         })
     }
 
     /// Runs `compute` on domains that grow until they contain the contact.
-    pub(super) fn held<T>(&self, compute: impl Fn(&Extent) -> Result<T>) -> Result<T> {
-        let mut extent = *self;
+    pub(super) fn on_growing_domain<T>(&self, compute: impl Fn(&ContactSize) -> Result<T>) -> Result<T> {
+        let mut size = *self;
         for _ in 0..MAX_GROWTHS {
-            match compute(&extent) {
-                Err(Error::ContactAtEdge { .. }) => extent.reach = extent.reach.map(|half| GROWTH * half),
+            match compute(&size) {
+                Err(Error::ContactAtEdge { .. }) => size.reach = size.reach.map(|half| GROWTH * half),
                 other => return other,
             }
         }
-        compute(&extent)
+        compute(&size)
     }
 }
 
-/// Runs on successive meshes, each twice as fine as the last.
-struct Meshes {
+/// Runs on successive meshes, each twice as fine as the last. Cells are counted across the widest contact of the whole run.
+pub(super) struct Meshes {
+    /// Whether the shape has an edge, as a punch.
+    punch: bool,
     across: f64,
     /// Differences between each mesh and the one before.
     differences: Vec<Differences>,
@@ -82,11 +85,16 @@ struct Meshes {
 
 impl Meshes {
     /// Refines until the needed number of cells across is within the range of extrapolation.
-    fn refine(scene: &Scene<'_>, extent: &Extent, base: Run, needed: impl Fn(&Meshes) -> f64) -> Result<Meshes> {
-        let mut meshes = Meshes { across: LEAST_ACROSS, differences: Vec::new(), finest: base, work_order: 0.0 };
+    fn refine(
+        scene: &TrialScene<'_>,
+        size: &ContactSize,
+        (base, punch): (Run, bool),
+        needed: impl Fn(&Meshes) -> f64,
+    ) -> Result<Meshes> {
+        let mut meshes = Meshes { punch, across: LEAST_ACROSS, differences: Vec::new(), finest: base, work_order: 0.0 };
         loop {
             meshes.across *= 2.0;
-            let grid = grid_with(extent, meshes.across)?;
+            let grid = grid_with(size, meshes.across)?;
             let [n1, n2] = grid.cells();
             let finer = scene.repeat(grid, &meshes.finest.steps)?;
             meshes.differences.push(Differences::between(&meshes.finest.states, &finer.states));
@@ -107,50 +115,61 @@ impl Meshes {
     }
 
     /// Convergence of approach and force; for a punch, whose rim is resolved to a cell, by fractions of a cell.
-    fn main(&self, punch: bool) -> Convergence {
-        let law = if punch { Convergence::by_cells } else { Convergence::smooth };
+    pub(super) fn main(&self) -> ErrorLaw {
+        let law = if self.punch { ErrorLaw::by_cells } else { ErrorLaw::smooth };
         law(&self.each(|differences| differences.main), self.across)
     }
 
     /// First-order part of the error, estimated from the rim. Creep raises the pressure at a growing rim too, but at
     /// edges of the shape the pressure is raised from the start.
-    fn singular(&self, punch: bool) -> Convergence {
+    pub(super) fn singular(&self) -> ErrorLaw {
         let states = &self.finest.states;
         let deepest = greatest(states, |state| state.approach);
         let shares = states.iter().map(|state| state.singular * relative(state.approach.abs(), deepest));
         let touching = states.iter().filter(|state| state.force > 0.0);
-        let lasts = punch || touching.map(|state| state.singular).fold(f64::INFINITY, f64::min) > 0.0;
+        let lasts = self.punch || touching.map(|state| state.singular).fold(f64::INFINITY, f64::min) > 0.0;
         let error = if lasts { shares.fold(0.0, f64::max) } else { 0.0 };
-        Convergence { error, order: 1.0, across: self.across, converges: true }
+        ErrorLaw { error, order: 1.0, across: self.across, converges: true }
     }
 
-    fn work(&self) -> Convergence {
+    /// Convergence of the greatest pressure at any time.
+    pub(super) fn pressure_over_time(&self) -> ErrorLaw {
+        ErrorLaw::smooth(&self.each(|differences| differences.pressure_over_time), self.across)
+    }
+
+    /// Convergence of the contact radius at any time.
+    pub(super) fn radius(&self) -> ErrorLaw {
+        ErrorLaw::by_cells(&self.each(|differences| differences.radius), self.across)
+    }
+
+    /// Convolution equivalents of the run, which grow with the cells.
+    pub(super) fn work(&self) -> ErrorLaw {
         let (error, order) = (self.finest.convolutions, -self.work_order);
-        Convergence { error, order, across: self.across, converges: true }
+        ErrorLaw { error, order, across: self.across, converges: true }
     }
 
     /// Convergence of the greatest pressure of the run, which requires that the finest mesh resolves the peak.
     /// Differences of a single number may be small or large by chance: where they agree with the estimate from the
     /// neighbours of the peak, the pressure is as smooth as in an elastic contact.
-    fn pressure(&self) -> Convergence {
+    fn pressure(&self) -> ErrorLaw {
         let pressure = self.each(|differences| differences.pressure);
-        let law = Convergence::smooth(&pressure, self.across);
+        let law = ErrorLaw::smooth(&pressure, self.across);
         let Some(peak) = self.highest().and_then(|state| state.peak) else {
-            return Convergence { converges: false, ..law };
+            return ErrorLaw { converges: false, ..law };
         };
         if pressure.last().is_some_and(|&last| last <= MAX_DIFFERENCE_OVER_PEAK * peak) {
-            let error = Convergence::second_order(&pressure).max(peak);
-            return Convergence { error, order: ORDERS[1], converges: true, ..law };
+            let error = ErrorLaw::second_order(&pressure).max(peak);
+            return ErrorLaw { error, order: ORDERS[1], converges: true, ..law };
         }
         law
     }
 
     /// Whether the pressure was no greater while the contact was too small to be resolved, as under a ramp on a body
     /// that creeps fast. The pressure on elastic bodies under the same loads is an upper bound.
-    fn bounds_small_contacts(&self, scene: &Scene<'_>, extent: &Extent) -> Result<bool> {
+    fn bounds_small_contacts(&self, scene: &TrialScene<'_>, size: &ContactSize) -> Result<bool> {
         let Run { states, steps, .. } = &self.finest;
         let Some(highest) = self.highest() else { return Ok(false) };
-        let small = |state: &State| !state.resolved || state.radius == 0.0;
+        let small = |state: &StepState| !state.resolved || state.radius == 0.0;
         let starts = std::iter::once(true).chain(states.iter().map(small));
         let ends =
             starts.zip(states).zip(steps).filter(|((start, state), _)| *start && !small(state) && state.time > 0.0);
@@ -161,7 +180,7 @@ impl Meshes {
         for by_force in [true, false] {
             let loads = ends.clone().map(|(_, (_, load))| load).filter(|load| normal(load).0 == by_force);
             let Some(&load) = loads.max_by(|a, b| normal(a).1.total_cmp(&normal(b).1)) else { continue };
-            let mut elastic = scene.builder(grid_with(extent, self.across)?).build()?;
+            let mut elastic = scene.builder(grid_with(size, self.across)?).build()?;
             let resolved = elastic.step(0.0, load).is_ok() && elastic.contact_cells() >= BOUNDING_CELLS;
             if !resolved || BOUNDING_MARGIN * elastic.max_pressure() > highest.pressure {
                 return Ok(false);
@@ -170,73 +189,76 @@ impl Meshes {
         Ok(true)
     }
 
+    /// Cells across for an `accuracy` of which `left` is allowed as error of approach and force.
+    pub(super) fn across_for(&self, pressure: ErrorLaw, left: f64, accuracy: Accuracy, area: bool) -> f64 {
+        let main = self.main().across_for(left).max(self.singular().across_for(left));
+        let others = [Some(pressure).filter(|law| law.converges), area.then(|| self.radius())];
+        others.into_iter().flatten().map(|law| law.across_for(accuracy.space())).fold(main, f64::max)
+    }
+
     /// The state with the greatest pressure.
-    fn highest(&self) -> Option<&State> {
+    fn highest(&self) -> Option<&StepState> {
         self.finest.states.iter().max_by(|a, b| a.pressure.total_cmp(&b.pressure))
     }
 }
 
-/// Finds the steps, and the convergence of approach, force, radius and greatest pressure with the mesh; `area` states
-/// whether the radius has to be resolved.
-pub(super) fn converge(scene: &Scene<'_>, extent: &Extent, area: bool) -> Result<MeshConvergence> {
-    let mut first = grid_with(extent, STEPS_ACROSS)?;
+/// A run whose steps are short enough, on meshes that show how it converges.
+pub(super) struct ConvergedRun {
+    pub(super) steps: Steps,
+    pub(super) meshes: Meshes,
+    /// Convergence of the greatest pressure of the run.
+    pub(super) pressure: ErrorLaw,
+    /// Half sides of the rectangle about the origin that contained the contact.
+    pub(super) reach: [f64; 2],
+}
+
+/// Finds the steps and the meshes; `area` states whether the contact radius has to be resolved.
+pub(super) fn converge(scene: &TrialScene<'_>, size: &ContactSize, area: bool) -> Result<ConvergedRun> {
+    let mut first = grid_with(size, STEPS_ACROSS)?;
     if first.cells().into_iter().any(|cells| cells > MOST_CELLS) {
-        first = grid_with(extent, LEAST_ACROSS)?;
+        first = grid_with(size, LEAST_ACROSS)?;
     }
     let punch = scene.has_edge(&first);
     let steps = Steps::find(scene, &first)?;
-    let scene = &Scene { tolerance: steps.tolerance, ..*scene };
-    let zoomed = match scene.before_growth(&steps.run).map(|until| small_contact(scene, until, extent)) {
+    let scene = &TrialScene { tolerance: steps.tolerance, ..*scene };
+    let zoomed = match scene.before_growth(&steps.run).map(|until| small_contact(scene, until, size)) {
         Some(Err(error @ Error::OutOfMemory { .. })) => return Err(error),
         // the run succeeds without a separate domain for this part
-        Some(law) => Some(law.unwrap_or(Convergence::NONE)),
+        Some(law) => Some(law.unwrap_or(ErrorLaw::NONE)),
         None => None,
     };
-    let base = scene.repeat(grid_with(extent, LEAST_ACROSS)?, &steps.run.steps)?;
-    let found = |meshes: &Meshes| MeshConvergence {
-        reach: [0, 1].map(|axis| extent.reach[axis].max(meshes.finest.extent.reach[axis])),
-        main: meshes.main(punch),
-        singular: meshes.singular(punch),
-        pressure: zoomed.unwrap_or_else(|| meshes.pressure()),
-        pressure_over_time: Convergence::smooth(
-            &meshes.each(|differences| differences.pressure_over_time),
-            meshes.across,
-        ),
-        radius: Convergence::by_cells(&meshes.each(|differences| differences.radius), meshes.across),
-        work: meshes.work(),
-        steps: steps.clone(),
-    };
-    let needed = |meshes: &Meshes| {
-        let mut found = found(meshes);
+    let base = scene.repeat(grid_with(size, LEAST_ACROSS)?, &steps.run.steps)?;
+    let left = steps.left_for_mesh(scene.accuracy);
+    let meshes = Meshes::refine(scene, size, (base, punch), |meshes| {
         // a pressure on a separate domain does not determine the cells of these meshes
-        found.pressure.converges &= zoomed.is_none();
-        found.across_for(scene.accuracy, area)
-    };
-    let meshes = Meshes::refine(scene, extent, base, needed)?;
-    let mut found = found(&meshes);
-    if zoomed.is_none() && found.pressure.converges && !meshes.bounds_small_contacts(scene, extent)? {
-        found.pressure = Convergence::NONE;
+        let pressure = if zoomed.is_some() { ErrorLaw::NONE } else { meshes.pressure() };
+        meshes.across_for(pressure, left, scene.accuracy, area)
+    })?;
+    let mut pressure = zoomed.unwrap_or_else(|| meshes.pressure());
+    if zoomed.is_none() && pressure.converges && !meshes.bounds_small_contacts(scene, size)? {
+        pressure = ErrorLaw::NONE;
     }
-    Ok(found)
+    let reach = [0, 1].map(|axis| size.reach[axis].max(meshes.finest.size.reach[axis]));
+    Ok(ConvergedRun { steps, meshes, pressure, reach })
 }
 
 /// Convergence of a greatest pressure that occurs before the contact grows much: from the run to `until` on a separate
 /// domain.
-fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Convergence> {
+fn small_contact(scene: &TrialScene<'_>, until: f64, whole: &ContactSize) -> Result<ErrorLaw> {
     let (mut until, mut zooms) = (until, 0);
-    let (part, extent, base) = loop {
-        let part = Scene { until, ..*scene };
-        let (extent, base) =
-            Extent::of(&part)?.held(|extent| Ok((*extent, part.follow(grid_with(extent, LEAST_ACROSS)?, &[])?)))?;
+    let (part, size, base) = loop {
+        let part = TrialScene { until, ..*scene };
+        let (size, base) = ContactSize::of(&part)?
+            .on_growing_domain(|size| Ok((*size, part.follow(grid_with(size, LEAST_ACROSS)?, &[])?)))?;
         zooms += 1;
         match part.before_growth(&base).filter(|_| zooms < MAX_ZOOMS) {
             Some(earlier) => until = earlier,
-            None => break (part, extent, base),
+            None => break (part, size, base),
         }
     };
-    let (meshes, bounded) = extent.held(|extent| {
-        let base = part.repeat(grid_with(extent, LEAST_ACROSS)?, &base.steps)?;
-        let meshes = Meshes::refine(&part, extent, base, |meshes| {
+    let (meshes, bounded) = size.on_growing_domain(|size| {
+        let base = part.repeat(grid_with(size, LEAST_ACROSS)?, &base.steps)?;
+        let meshes = Meshes::refine(&part, size, (base, false), |meshes| {
             let pressure = meshes.pressure();
             if pressure.converges {
                 pressure.across_for(scene.accuracy.space())
@@ -246,15 +268,15 @@ fn small_contact(scene: &Scene<'_>, until: f64, whole: &Extent) -> Result<Conver
                 f64::INFINITY
             }
         })?;
-        let bounded = meshes.bounds_small_contacts(&part, extent)?;
+        let bounded = meshes.bounds_small_contacts(&part, size)?;
         Ok((meshes, bounded))
     })?;
     if !bounded {
-        return Ok(Convergence::NONE);
+        return Ok(ErrorLaw::NONE);
     }
-    let larger = [0, 1].map(|axis| whole.width[axis] / extent.width[axis]);
+    let larger = [0, 1].map(|axis| whole.width[axis] / size.width[axis]);
     let across = meshes.across * larger[0].max(larger[1]);
-    Ok(Convergence { across, ..meshes.pressure() })
+    Ok(ErrorLaw { across, ..meshes.pressure() })
 }
 
 /// The next even number of cells without prime factors above 5, for fast transforms.

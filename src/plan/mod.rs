@@ -2,7 +2,7 @@
 
 mod accuracy;
 mod convergence;
-mod convergence_fit;
+mod error_law;
 mod steps;
 mod trial_runs;
 
@@ -14,9 +14,9 @@ use crate::error::{Error, Result, positive};
 use crate::geometry::Geometry;
 use crate::load::LoadHistory;
 use crate::observe::mesh_error::MeshError;
-use crate::plan::convergence::{DOMAIN_TO_CONTACT, converge, grid_with};
-use crate::plan::convergence_fit::{Convergence, MeshConvergence};
-use crate::plan::trial_runs::{Extent, Scene};
+use crate::plan::convergence::{ConvergedRun, DOMAIN_TO_CONTACT, converge, grid_with};
+use crate::plan::error_law::ErrorLaw;
+use crate::plan::trial_runs::{ContactSize, TrialScene};
 use crate::rheology::{Material, TemperatureHistory};
 
 /// A run planned for an accuracy: the extent of the contact, the required cells and steps, and their cost.
@@ -92,7 +92,7 @@ pub struct Plan {
     pub pressure_error_at_all_times: f64,
 }
 
-/// What a plan considers besides the scene of [`Plan::new`].
+/// Options of a plan besides the scene of [`Plan::new`].
 #[derive(Debug, Clone, Copy, Default)]
 #[expect(clippy::exhaustive_structs, reason = "written as a literal")]
 pub struct PlanOptions<'a> {
@@ -160,49 +160,50 @@ impl Plan {
         positive("end of the run", until)?;
         Accuracy::target_of(accuracy.target())?;
         let tolerance = accuracy.step_tolerance();
-        let scene = Scene { geometry, material, temperature, history, until, whole: until, accuracy, tolerance };
-        let extent = Extent::of(&scene)?;
-        let mut found = extent.held(|extent| converge(&scene, extent, area))?;
-        let extent = Extent { reach: found.reach, ..extent };
-        let needed = |found: &MeshConvergence| {
-            let across = found.across_for(accuracy, area).max(FEWEST_ACROSS);
-            (across, [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * extent.reach[axis] / extent.width[axis]))
+        let scene = TrialScene { geometry, material, temperature, history, until, whole: until, accuracy, tolerance };
+        let size = ContactSize::of(&scene)?;
+        let found = size.on_growing_domain(|size| converge(&scene, size, area))?;
+        let ConvergedRun { steps, meshes, mut pressure, reach } = found;
+        let size = ContactSize { reach, ..size };
+        let needed = |pressure: ErrorLaw| {
+            let across = meshes.across_for(pressure, steps.left_for_mesh(accuracy), accuracy, area).max(FEWEST_ACROSS);
+            (across, [0, 1].map(|axis| 2.0 * DOMAIN_TO_CONTACT * across * size.reach[axis] / size.width[axis]))
         };
-        let (mut across, mut sides) = needed(&found);
+        let (mut across, mut sides) = needed(pressure);
         if sides[0].max(sides[1]) > MOST_CELLS as f64 {
-            found.pressure = Convergence::NONE;
-            (across, sides) = needed(&found);
+            pressure = ErrorLaw::NONE;
+            (across, sides) = needed(pressure);
         }
         let wanted = sides[0].max(sides[1]);
         if wanted.is_nan() || wanted > MOST_CELLS as f64 {
             let (field, allowed) = ("cells along a side for this accuracy", "at most 8192: choose a lower accuracy");
             return Err(Error::CountOutOfRange { field, value: wanted.min(1e18) as usize, allowed });
         }
-        let grid = grid_with(&extent, across)?;
+        let grid = grid_with(&size, across)?;
         let across = across * grid.cells()[0] as f64 / sides[0];
+        let converges = pressure.converges && steps.resolve_pressure(accuracy);
         let mesh_error = MeshError {
-            approach: found.main.at(across).max(found.singular.at(across)),
-            max_pressure: found.pressure_converges(accuracy).then(|| found.pressure.at(across)),
-            area: 2.0 * found.radius.at(across),
-            singular: found.singular.at(across),
+            approach: meshes.main().at(across).max(meshes.singular().at(across)),
+            max_pressure: converges.then(|| pressure.at(across)),
+            area: 2.0 * meshes.radius().at(across),
+            singular: meshes.singular().at(across),
         };
         let builder = scene.builder(grid.clone());
         let memory = builder.memory()?;
-        let in_time = found.steps.error;
         Ok(Plan {
             builder,
-            stepping: Stepping::adaptive(found.steps.tolerance),
+            stepping: Stepping::adaptive(steps.tolerance),
             grid,
             accuracy,
-            reach: extent.reach,
-            steps: found.steps.run.steps.len(),
-            convolutions: found.work.at(across),
+            reach,
+            steps: steps.run.steps.len(),
+            convolutions: meshes.work().at(across),
             // adaptive steps keep the rate of the displacement
             bytes: memory.total() + 8 * memory.computed_cells as u64,
-            time_error: in_time.map(|error| error.main),
+            time_error: steps.error.map(|error| error.main),
             mesh_error,
-            pressure_error_at_all_times: found.pressure_over_time.at(across)
-                + in_time.map_or(0.0, |error| error.pressure_over_time),
+            pressure_error_at_all_times: meshes.pressure_over_time().at(across)
+                + steps.error.map_or(0.0, |error| error.pressure_over_time),
         })
     }
 

@@ -3,13 +3,16 @@
 use crate::Grid;
 use crate::error::{Error, Result};
 use crate::plan::Accuracy;
-use crate::plan::trial_runs::{LEAST_TOLERANCE, Run, Scene, State, greatest};
+use crate::plan::trial_runs::{LEAST_TOLERANCE, Run, StepState, TrialScene, greatest};
 
 /// Shares of the accuracy: greatest of the error in time, of the errors in time and of the mesh together, and least of
 /// the error of the mesh.
 const MAX_TIME_SHARE: f64 = 0.6;
 const BOTH_SHARES: f64 = 0.9;
 const MIN_MESH_SHARE: f64 = 0.2;
+/// Greatest error in time of the greatest pressure, as a share of the accuracy. A greater error grows on finer meshes,
+/// whose cells a growing edge crosses faster: then the pressure is not promised.
+const MAX_PEAK_TIME_SHARE: f64 = 0.2;
 /// Greatest number of times that steps are shortened.
 const MAX_STEP_TRIES: u32 = 3;
 /// Least factor of the tolerance at a time, and the greatest part of the error that may remain for a shortening to be
@@ -18,7 +21,6 @@ const MAX_SHORTENING: f64 = 0.2;
 const MIN_GAIN: f64 = 0.8;
 
 /// The steps of a trial run, and their error in time.
-#[derive(Clone)]
 pub(super) struct Steps {
     pub(super) tolerance: f64,
     pub(super) run: Run,
@@ -34,9 +36,14 @@ impl Steps {
         left.clamp(MIN_MESH_SHARE * target, accuracy.space())
     }
 
+    /// Whether the greatest pressure of the run hardly depends on the steps.
+    pub(super) fn resolve_pressure(&self, accuracy: Accuracy) -> bool {
+        self.error.is_none_or(|error| error.pressure <= MAX_PEAK_TIME_SHARE * accuracy.target())
+    }
+
     /// Shortens the steps while the error of approach, force or greatest pressure exceeds its share and falls with the
     /// steps.
-    pub(super) fn find(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
+    pub(super) fn find(scene: &TrialScene<'_>, grid: &Grid) -> Result<Steps> {
         let target = scene.accuracy.target();
         let mut steps = Steps::with_tolerance(scene, grid)?;
         for _ in 0..MAX_STEP_TRIES {
@@ -45,7 +52,7 @@ impl Steps {
                 break;
             }
             let tolerance = (steps.tolerance * (0.5 * target / worst).max(MAX_SHORTENING)).max(LEAST_TOLERANCE);
-            match Steps::with_tolerance(&Scene { tolerance, ..*scene }, grid) {
+            match Steps::with_tolerance(&TrialScene { tolerance, ..*scene }, grid) {
                 Ok(shorter) if shorter.error.is_some() && shorter.worst() <= MIN_GAIN * worst => steps = shorter,
                 Err(error @ (Error::ContactAtEdge { .. } | Error::OutOfMemory { .. })) => return Err(error),
                 _ => break,
@@ -60,7 +67,7 @@ impl Steps {
         self.error.map_or(0.0, |error| error.main.max(error.pressure))
     }
 
-    fn with_tolerance(scene: &Scene<'_>, grid: &Grid) -> Result<Steps> {
+    fn with_tolerance(scene: &TrialScene<'_>, grid: &Grid) -> Result<Steps> {
         let run = scene.follow(grid.clone(), &[])?;
         let finer = scene.with_shorter_steps(&run, grid.clone())?;
         let error = finer.map(|finer| Differences::between(&run.states, &finer));
@@ -82,8 +89,8 @@ pub(super) struct Differences {
 }
 
 impl Differences {
-    pub(super) fn between(coarse: &[State], fine: &[State]) -> Differences {
-        let over = |of: fn(&State) -> f64, all: bool| difference(coarse, fine, of, all);
+    pub(super) fn between(coarse: &[StepState], fine: &[StepState]) -> Differences {
+        let over = |of: fn(&StepState) -> f64, all: bool| difference(coarse, fine, of, all);
         let [before, now] = [coarse, fine].map(|states| greatest(states, |state| state.pressure));
         Differences {
             main: over(|state| state.approach, true).max(over(|state| state.force, true)),
@@ -96,7 +103,7 @@ impl Differences {
 
 /// The greatest difference between the states of two runs at the same times, relative to the greatest value: over all
 /// states, or over the states that `coarse` resolves.
-fn difference(coarse: &[State], fine: &[State], of: impl Fn(&State) -> f64, all: bool) -> f64 {
+fn difference(coarse: &[StepState], fine: &[StepState], of: impl Fn(&StepState) -> f64, all: bool) -> f64 {
     let pairs = coarse.iter().zip(fine).filter(|(state, _)| all || state.resolved);
     let most = pairs.map(|(coarse, fine)| (of(coarse) - of(fine)).abs()).fold(0.0, f64::max);
     relative(most, greatest(fine, of))

@@ -3,7 +3,7 @@
 use crate::Grid;
 use crate::contact::{Builder, StepReport, Stepping, ViscoelasticContact, Warnings};
 use crate::error::{Error, Result};
-use crate::extent as cells;
+use crate::extent::Extent;
 use crate::geometry::Geometry;
 use crate::load::{Load, LoadHistory};
 use crate::plan::Accuracy;
@@ -29,7 +29,7 @@ pub(super) const LEAST_TOLERANCE: f64 = 1e-9;
 
 /// A scene to plan.
 #[derive(Clone, Copy)]
-pub(super) struct Scene<'a> {
+pub(super) struct TrialScene<'a> {
     pub(super) geometry: &'a dyn Geometry,
     pub(super) material: &'a Material,
     pub(super) temperature: Option<&'a TemperatureHistory>,
@@ -42,9 +42,9 @@ pub(super) struct Scene<'a> {
     pub(super) tolerance: f64,
 }
 
-/// Extent of the contact during a run.
+/// Size of the contact during a run.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Extent {
+pub(super) struct ContactSize {
     /// Half sides of the rectangle about the origin that contained the contact.
     pub(super) reach: [f64; 2],
     /// Greatest widths of the contact at any one time.
@@ -53,7 +53,7 @@ pub(super) struct Extent {
 
 /// A state at the end of a step.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct State {
+pub(super) struct StepState {
     pub(super) time: f64,
     pub(super) approach: f64,
     pub(super) force: f64,
@@ -70,10 +70,10 @@ pub(super) struct State {
 /// A run on a coarse mesh.
 #[derive(Clone, Default)]
 pub(super) struct Run {
-    pub(super) extent: Extent,
+    pub(super) size: ContactSize,
     /// Steps taken: their lengths, and the loads at their ends.
     pub(super) steps: Vec<(f64, Load)>,
-    pub(super) states: Vec<State>,
+    pub(super) states: Vec<StepState>,
     pub(super) convolutions: f64,
 }
 
@@ -82,7 +82,7 @@ impl Run {
         let mesh = contact.mesh_error().unwrap_or_default();
         self.convolutions += report.convolution_equivalents();
         self.steps.push((report.dt, contact.load()));
-        self.states.push(State {
+        self.states.push(StepState {
             time: report.time,
             approach: report.approach,
             force: report.force,
@@ -92,18 +92,18 @@ impl Run {
             singular: mesh.map_or(0.0, |error| error.singular),
             resolved: !report.warnings.contains(Warnings::FEW_CELLS),
         });
-        let Some(cells::Extent { low, high }) = contact.extent_of_contact() else { return };
+        let Some(Extent { low, high }) = contact.extent_of_contact() else { return };
         let grid = contact.grid();
         let (first, last) = (grid.center(low[0], low[1]), grid.center(high[0], high[1]));
         for axis in 0..2 {
-            let (side, Extent { reach, width }) = (grid.spacing()[axis], &mut self.extent);
+            let (side, ContactSize { reach, width }) = (grid.spacing()[axis], &mut self.size);
             reach[axis] = reach[axis].max(first[axis].abs().max(last[axis].abs()) + 0.5 * side);
             width[axis] = width[axis].max((high[axis] + 1 - low[axis]) as f64 * side);
         }
     }
 }
 
-impl Scene<'_> {
+impl TrialScene<'_> {
     pub(super) fn builder(&self, grid: Grid) -> Builder {
         let builder = ViscoelasticContact::builder(grid).geometry(self.geometry).material(self.material.clone());
         let builder = builder.settings(self.accuracy.settings()).times_of(self.history, self.whole);
@@ -113,8 +113,8 @@ impl Scene<'_> {
         }
     }
 
-    /// Runs on domains of several sizes until the contact fills one well; returns the extent of the contact.
-    pub(super) fn extent(&self) -> Result<Extent> {
+    /// Runs on domains of several sizes until the contact fills one well; returns the size of the contact.
+    pub(super) fn size(&self) -> Result<ContactSize> {
         let mut lengths = [self.first_length()?; 2];
         for _ in 0..MAX_DOMAINS {
             match self.follow(Grid::new([DOMAIN_CELLS; 2], lengths)?, &[]) {
@@ -122,9 +122,9 @@ impl Scene<'_> {
                 Err(Error::NothingToTouch { .. }) => lengths = lengths.map(|length| 0.3 * length),
                 Err(error) => return Err(error),
                 Ok(run) => {
-                    let filled = [0, 1].map(|axis| 2.0 * run.extent.reach[axis] / lengths[axis]);
+                    let filled = [0, 1].map(|axis| 2.0 * run.size.reach[axis] / lengths[axis]);
                     if filled.iter().all(|part| (CONTACT_FRACTION[0]..=CONTACT_FRACTION[1]).contains(part)) {
-                        return Ok(run.extent);
+                        return Ok(run.size);
                     }
                     let least = 2.0 / DOMAIN_CELLS as f64;
                     lengths = [0, 1].map(|axis| lengths[axis] * (filled[axis].max(least) * 1.3).clamp(0.1, 1.7));
@@ -147,13 +147,13 @@ impl Scene<'_> {
 
     /// The states at the times of `run` from a run with shorter steps on the same mesh. `None` if the steps are too
     /// short for `f64` or the solver does not converge.
-    pub(super) fn with_shorter_steps(&self, run: &Run, grid: Grid) -> Result<Option<Vec<State>>> {
+    pub(super) fn with_shorter_steps(&self, run: &Run, grid: Grid) -> Result<Option<Vec<StepState>>> {
         let times: Vec<f64> = run.states.iter().map(|state| state.time).collect();
         let tolerance = (SHORTER * self.tolerance).max(LEAST_TOLERANCE);
         // splits every step of the run, since its control may have missed an event within a step
         let middles = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]));
         let stops: Vec<f64> = times.iter().copied().chain(middles).collect();
-        match (Scene { tolerance, ..*self }.follow(grid, &stops)) {
+        match (TrialScene { tolerance, ..*self }.follow(grid, &stops)) {
             Err(Error::StepTooShort { .. } | Error::NotConverged { .. }) => Ok(None),
             finer => {
                 let mut states = finer?.states.into_iter();
@@ -239,6 +239,6 @@ fn advance(contact: &mut ViscoelasticContact, dt: f64, load: Load, halvings: u32
     }
 }
 
-pub(super) fn greatest(states: &[State], of: impl Fn(&State) -> f64) -> f64 {
+pub(super) fn greatest(states: &[StepState], of: impl Fn(&StepState) -> f64) -> f64 {
     states.iter().map(|state| of(state).abs()).fold(0.0, f64::max)
 }

@@ -1,4 +1,4 @@
-//! A first guess of the pressure under a body that has none yet.
+//! A first guess of the pressure under a body without pressure.
 
 use std::f64::consts::PI;
 
@@ -10,21 +10,37 @@ use crate::solver::rigid_motion::ModeCoefficients;
 /// Bisections for the level, far beyond the accuracy that a guess needs.
 const LEVEL_BISECTIONS: usize = 40;
 
-/// Fills the pressure under `body` with a guess whose force and moments are in balance; takes all cells that it
-/// may touch into `set`.
+/// Clips a guess to p ≥ 0 on cells that may carry pressure, balances it, and sets the contact to the cells with pressure. Fails
+/// with the body whose load no pressure can balance.
+pub(crate) fn make_feasible(problem: &Problem<'_>, set: &mut ContactSet, solution: &mut Solution) -> Result<(), usize> {
+    for (k, p) in solution.pressure.iter_mut().enumerate() {
+        *p = if problem.possible(k) { p.max(0.0) } else { 0.0 };
+    }
+    set.find_pressed(problem, &solution.pressure);
+    for body in problem.loaded_bodies() {
+        let balanced = set.count_under(body) > 0 && balance(problem, body, set, solution);
+        if !balanced {
+            cold_start(problem, body, set, solution, |_, _| ())?;
+        }
+    }
+    set.find_pressed(problem, &solution.pressure);
+    Ok(())
+}
+
+/// Fills the pressure under `body` with a guess whose force and moments are in balance; adds all cells that it
+/// may touch to `set`.
 ///
 /// `sharpen` may improve the pressures where the whole face is pressed, as under a punch, whose pressure
 /// rises to its rim. Its result is kept if no part of the face has to open for the balance.
 ///
-/// False if no pressure on these cells can balance the load.
-#[must_use]
+/// Fails with the body if no pressure on these cells can balance the load.
 pub(crate) fn cold_start(
     problem: &Problem<'_>,
     body: usize,
     set: &mut ContactSet,
     solution: &mut Solution,
     sharpen: impl FnOnce(&ContactSet, &mut Solution),
-) -> bool {
+) -> Result<(), usize> {
     set.press_possible(problem, body);
     let pressed =
         |solution: &Solution| !problem.rows().any(!set.cells(problem, body).all(|k| solution.pressure[k] > 0.0));
@@ -32,11 +48,11 @@ pub(crate) fn cold_start(
     if pressed(solution) {
         sharpen(set, solution);
         if balance(problem, body, set, solution) && pressed(solution) {
-            return true;
+            return Ok(());
         }
         fill_hertz(problem, body, set, solution);
     }
-    balance_with_supports(problem, body, set, solution)
+    if balance_with_supports(problem, body, set, solution) { Ok(()) } else { Err(body) }
 }
 
 /// Presses every cell that the body may touch, evenly but for the moments: a guess that does not depend on the gap.
@@ -47,15 +63,15 @@ pub(crate) fn press_everywhere(problem: &Problem<'_>, body: usize, set: &mut Con
     balance_with_supports(problem, body, set, solution);
 }
 
-/// Balances the pressures in contact. Where that cannot be, as under a load so near the rim that next to no cell can carry it, the
-/// cells that the body would rest on if nothing yielded are pressed more: they balance the load if any cells do.
+/// Balances the pressures in contact. If they have no balance, as under a load so near the rim that next to no cell can carry it, the
+/// cells on which the rigid body would rest are pressed more: they balance the load if any cells do.
 fn balance_with_supports(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &mut Solution) -> bool {
     if balance(problem, body, set, solution) {
         return true;
     }
     let freedom = problem.bodies[body];
     if freedom.translation {
-        let resting = RestingPosition::new(problem.rows(), &problem.modes(body), set.cells(problem, body), problem.gap);
+        let resting = RestingPosition::new(problem, &problem.modes(body), set, body);
         for (k, share) in resting.supports.into_iter().flatten() {
             solution.pressure[k] += share * freedom.total;
         }
@@ -74,12 +90,12 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &m
     let cells = || set.cells(problem, body);
     cells().for_each(|k| solution.pressure[k] = 0.0);
     // a body that tilts under a force starts from its resting position
-    let motion = if modes.tilts() && modes.translates() {
-        RestingPosition::new(rows, &modes, cells(), problem.gap).motion
+    let motion = if modes.freedom.tilts() && modes.freedom.translation {
+        RestingPosition::new(problem, &modes, set, body).motion
     } else {
         ModeCoefficients::default()
     };
-    if modes.tilts() {
+    if modes.freedom.tilts() {
         solution.motions[body] = motion;
     }
     let gap = |k: usize| problem.gap[k] - modes.displacement(motion, k);
@@ -116,10 +132,9 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &m
 
     let depth = level - lowest;
     for k in cells() {
-        let above = if depth > 0.0 { ((level - gap(k)) / depth).max(0.0).sqrt() } else { 0.0 };
         // where the rise is below rounding, the lowest cells are pressed evenly
-        let share = if depth > 0.0 { above } else { f64::from(u8::from(gap(k) <= lowest)) };
-        solution.pressure[k] = peak * share;
+        let evenly = || f64::from(u8::from(gap(k) <= lowest));
+        solution.pressure[k] = peak * if depth > 0.0 { ((level - gap(k)) / depth).max(0.0).sqrt() } else { evenly() };
     }
     if freedom.translation {
         let scale = freedom.total / set.sum_of(problem, body, |k| solution.pressure[k]);
@@ -128,15 +143,15 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &m
 }
 
 /// Brings pressures ≥ 0 in contact into balance with the load by a factor 1 + B y, clipped at zero; false
-/// if that cannot be.
+/// if there is no such balance.
 pub(crate) fn balance(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &mut Solution) -> bool {
     let modes = problem.modes(body);
-    if !modes.tilts() && !modes.translates() {
+    if !modes.freedom.tilts() && !modes.freedom.translation {
         return true;
     }
     let pressure = &mut solution.pressure;
     let admissible = || !problem.rows().any(!set.cells(problem, body).all(|k| pressure[k] >= 0.0));
-    if !modes.tilts() && admissible() {
+    if !modes.freedom.tilts() && admissible() {
         let scale = problem.bodies[body].total / set.sum(problem, body, pressure);
         if !scale.is_finite() {
             return false;
@@ -144,8 +159,7 @@ pub(crate) fn balance(problem: &Problem<'_>, body: usize, set: &ContactSet, solu
         set.cells(problem, body).for_each(|k| pressure[k] *= scale);
         return true;
     }
-    let pieces = |band| set.pieces_in(problem, body, band);
-    let Some(y) = modes.balance(problem.rows(), pieces, |k| pressure[k], |k| pressure[k]) else { return false };
+    let Some(y) = set.balance(problem, body, |k| pressure[k], |k| pressure[k]) else { return false };
     for (k, factor) in set.displacements(problem, body, y) {
         pressure[k] = (pressure[k] + pressure[k] * factor).max(0.0);
     }

@@ -2,7 +2,11 @@
 
 use std::ops::Range;
 
+use crate::solver::bands::Bands;
+use crate::solver::passes::Passes;
 use crate::solver::problem::Problem;
+#[cfg(doc)]
+use crate::solver::rigid_motion::Modes;
 use crate::solver::rigid_motion::{Gram, ModeCoefficients};
 use crate::solver::row_segments::RowSegments;
 use crate::sum::{self, greatest, sum};
@@ -12,15 +16,15 @@ use crate::sum::{self, greatest, sum};
 pub(crate) struct ContactSet {
     /// Whether a cell is in contact. After changes, [`ContactSet::update`] is due.
     pub(crate) member: Vec<bool>,
-    pub(crate) runs: RowSegments,
+    pub(crate) segments: RowSegments,
     bodies: Vec<BodyContact>,
     /// The greatest |gap| in contact.
     pub(crate) greatest_gap: f64,
-    /// How often the set was updated: what is made for the set is made anew where this has changed.
+    /// Number of updates of the set: values that depend on the set are computed anew where this number has changed.
     pub(crate) version: u64,
 }
 
-/// The part of the set that belongs to one body.
+/// The cells in contact under one body.
 #[derive(Debug, Clone, Default)]
 struct BodyContact {
     /// Number of cells.
@@ -35,21 +39,21 @@ impl ContactSet {
     pub(crate) fn new(cells: usize, bodies: usize) -> ContactSet {
         ContactSet {
             member: vec![false; cells],
-            runs: RowSegments::with_capacity(cells),
+            segments: RowSegments::with_capacity(cells),
             bodies: vec![BodyContact::default(); bodies],
             greatest_gap: 0.0,
             version: 0,
         }
     }
 
-    /// Finds the runs of the members, and what belongs to them.
+    /// Finds the segments of the members, and counts, products and the greatest gap over them.
     pub(crate) fn update(&mut self, problem: &Problem<'_>) {
         self.version += 1;
-        self.runs.find(&self.member);
+        self.segments.find(&self.member);
         self.bodies.fill(BodyContact::default());
         self.greatest_gap = 0.0;
         let tilting = matches!(problem.bodies, [only] if only.tilts());
-        for piece in self.runs.inside(&(0..self.member.len()), problem.cut()) {
+        for piece in self.segments.inside(&(0..self.member.len()), problem.cut()) {
             let contact = &mut self.bodies[piece.body];
             if problem.bodies[piece.body].tilts() && !tilting {
                 contact.gram.add_cells(&problem.modes(piece.body).line(piece.cells.start), piece.cells.len());
@@ -75,7 +79,7 @@ impl ContactSet {
         let modes = problem.modes(0);
         let within = |band: Range<usize>| {
             let mut gram = Gram::default();
-            for piece in self.runs.inside(&band, problem.cut()) {
+            for piece in self.segments.inside(&band, problem.cut()) {
                 gram.add_cells(&modes.line(piece.cells.start), piece.cells.len());
             }
             std::array::from_fn::<f64, 9, _>(|n| gram.entries[n / 3][n % 3])
@@ -94,13 +98,8 @@ impl ContactSet {
         self.bodies[body].cells
     }
 
-    /// The cells in contact under one body, in pieces along which its modes are affine.
-    pub(crate) fn pieces(&self, problem: &Problem<'_>, body: usize) -> impl Iterator<Item = Range<usize>> + Clone {
-        self.pieces_in(problem, body, 0..self.member.len())
-    }
-
-    /// Those of a band.
-    pub(crate) fn pieces_in(
+    /// The cells of a band in contact under one body, in pieces along which its modes are affine.
+    fn pieces(
         &self,
         problem: &Problem<'_>,
         body: usize,
@@ -108,28 +107,30 @@ impl ContactSet {
     ) -> impl Iterator<Item = Range<usize>> + Clone {
         let span = &self.bodies[body].span;
         let start = band.start.max(span.start);
-        let pieces = self.runs.inside(&(start..band.end.min(span.end).max(start)), problem.cut());
+        let pieces = self.segments.inside(&(start..band.end.min(span.end).max(start)), problem.cut());
         pieces.filter(move |piece| piece.body == body).map(|piece| piece.cells)
     }
 
     /// Σ f over the cells in contact under one body.
     pub(crate) fn sum_of(&self, problem: &Problem<'_>, body: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
-        problem.rows().sum_of(|band| self.pieces_in(problem, body, band).flatten().map(&f).sum())
+        problem.rows().sum_of(|band| self.pieces(problem, body, band).flatten().map(&f).sum())
     }
 
     /// Σ f over all cells in contact.
     pub(crate) fn sum_over_all(&self, problem: &Problem<'_>, f: impl Fn(usize) -> f64 + Sync) -> f64 {
-        problem.rows().sum_of(|band| self.runs.inside(&band, problem.cut()).flat_map(|piece| piece.cells).map(&f).sum())
+        problem
+            .rows()
+            .sum_of(|band| self.segments.inside(&band, problem.cut()).flat_map(|piece| piece.cells).map(&f).sum())
     }
 
     /// The cells in contact under one body.
     pub(crate) fn cells(&self, problem: &Problem<'_>, body: usize) -> impl Iterator<Item = usize> + Clone {
-        self.pieces(problem, body).flatten()
+        self.pieces(problem, body, 0..self.member.len()).flatten()
     }
 
     /// Σ values over the cells in contact under one body.
     pub(crate) fn sum(&self, problem: &Problem<'_>, body: usize, values: &[f64]) -> f64 {
-        problem.rows().sum_of(|band| self.pieces_in(problem, body, band).map(|piece| sum(&values[piece])).sum())
+        problem.rows().sum_of(|band| self.pieces(problem, body, band).map(|piece| sum(&values[piece])).sum())
     }
 
     /// The cells in contact under one body, and the value of a motion on each of them.
@@ -140,20 +141,48 @@ impl ContactSet {
         motion: ModeCoefficients,
     ) -> impl Iterator<Item = (usize, f64)> {
         let modes = problem.modes(body);
-        self.pieces(problem, body).flat_map(move |piece| {
+        self.pieces(problem, body, 0..self.member.len()).flat_map(move |piece| {
             let [start, slope] = modes.line(piece.start).of(motion);
             piece.enumerate().map(move |(j, k)| (k, start + slope * j as f64))
         })
     }
 
-    /// The motion of a body that fits a field best on its cells in contact, from Σ B f over them; zero for what they do not
+    /// The motion of a body that fits a field best on its cells in contact, from Σ B f over them; zero for modes that they do not
     /// determine.
     pub(crate) fn fit(&self, problem: &Problem<'_>, body: usize, sums: [f64; 3]) -> ModeCoefficients {
-        let BodyContact { cells, ref gram, .. } = self.bodies[body];
-        problem.modes(body).fit(gram, cells, sums)
+        let (BodyContact { cells, gram, .. }, freedom) = (&self.bodies[body], problem.bodies[body]);
+        if freedom.tilts() {
+            return ModeCoefficients(gram.solve(sums));
+        }
+        ModeCoefficients([if freedom.translation { sums[0] / (*cells).max(1) as f64 } else { 0.0 }, 0.0, 0.0])
     }
 
-    /// Takes in all cells that a body may touch.
+    /// The cells of a problem for one pass.
+    pub(crate) fn passes<'a>(&'a self, problem: &'a Problem<'a>, bands: &'a mut Bands) -> Passes<'a> {
+        Passes { problem, segments: &self.segments, bands }
+    }
+
+    /// The y of [`Modes::balance`] on the cells in contact under one body; zero for a body whose motion is given.
+    pub(crate) fn balance(
+        &self,
+        problem: &Problem<'_>,
+        body: usize,
+        base: impl Fn(usize) -> f64 + Sync,
+        weight: impl Fn(usize) -> f64 + Sync,
+    ) -> Option<ModeCoefficients> {
+        if !problem.bodies[body].moves() {
+            return Some(ModeCoefficients::default());
+        }
+        problem.modes(body).balance(problem.rows(), |band| self.pieces(problem, body, band), base, weight)
+    }
+
+    /// Sets the contact to the cells with positive pressure.
+    pub(crate) fn find_pressed(&mut self, problem: &Problem<'_>, pressure: &[f64]) {
+        self.member.iter_mut().zip(pressure).for_each(|(member, &p)| *member = p > 0.0);
+        self.update(problem);
+    }
+
+    /// Adds all cells that a body may touch.
     pub(crate) fn press_possible(&mut self, problem: &Problem<'_>, body: usize) {
         for (k, member) in self.member.iter_mut().enumerate() {
             *member |= problem.gap[k].is_finite() && problem.owner(k) == body;
@@ -161,7 +190,7 @@ impl ContactSet {
         self.update(problem);
     }
 
-    /// Keeps of the cells of a body only those with positive pressure.
+    /// Removes the cells of a body without positive pressure.
     pub(crate) fn keep_pressed(&mut self, problem: &Problem<'_>, body: usize, pressure: &[f64]) {
         let own = self.member.iter_mut().enumerate().filter(|(k, _)| problem.owner(*k) == body);
         own.for_each(|(k, member)| *member &= pressure[k] > 0.0);
@@ -219,8 +248,7 @@ mod tests {
             assert!((0..3).all(|m| (fit.0[m] - motion.0[m]).abs() < 1e-12), "{body}: {fit:?}");
 
             let p = |k: usize| pressure[k];
-            let pieces = |band| set.pieces_in(&problem, body, band);
-            let y = modes.balance(problem.rows(), pieces, p, p).unwrap();
+            let y = set.balance(&problem, body, p, p).unwrap();
             let mut carried = [0.0; 3];
             for (k, factor) in set.displacements(&problem, body, y) {
                 (0..3).for_each(|m| carried[m] += modes.at(k)[m] * (p(k) + p(k) * factor).max(0.0));

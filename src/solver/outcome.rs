@@ -1,5 +1,6 @@
-//! How far a state is from a solution, and how a solve ends.
+//! The residual of a state, and the outcome of a solve.
 
+use crate::solver::contact_set::ContactSet;
 use crate::solver::problem::{Problem, Solution};
 
 /// When to stop.
@@ -26,7 +27,7 @@ pub(crate) enum Outcome {
 }
 
 impl Stop {
-    /// How the solve ends here, if it does. Only an `admissible` state converges: its pressures are ≥ 0 and balance the
+    /// The outcome if the solve ends here. Only an `admissible` state converges: its pressures are ≥ 0 and balance the
     /// loads.
     pub(crate) fn outcome(&self, solution: &Solution, admissible: impl FnOnce() -> bool) -> Option<Outcome> {
         if solution.residual <= self.tolerance && admissible() {
@@ -41,7 +42,7 @@ impl Stop {
     }
 }
 
-/// Sums over the cells in contact, of which the residual is made.
+/// Sums over the cells in contact, from which the residual is computed.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct ResidualSums {
     /// Σ h².
@@ -55,8 +56,10 @@ pub(crate) struct ResidualSums {
     /// Rounding of gap and c K p where they are small differences of large parts.
     pub(crate) cancellation: f64,
     pub(crate) cells: usize,
-    /// The deepest penetration.
+    /// The greatest −h in contact.
     pub(crate) deepest: f64,
+    /// The deepest penetration outside the contact.
+    pub(crate) penetration: f64,
 }
 
 /// Penetration may exceed the root mean square of the residual by this factor, being a maximum.
@@ -65,17 +68,21 @@ pub(crate) const PENETRATION_SLACK: f64 = 10.0;
 /// Lengths whose squares underflow \[m\].
 const UNDERFLOW: f64 = 1.5e-154;
 
-/// Of the penetrating cells, those join the contact that are deeper than this fraction of the deepest.
+/// Penetrating cells join the contact if they are deeper than this fraction of the deepest.
 const JOIN_OVER_DEEPEST: f64 = 0.2;
 
 impl ResidualSums {
-    /// Writes the residual of a state with this `penetration` outside the contact to `solution` and its trace; `rounding` is
-    /// the rounding of c K p of the guess.
-    pub(crate) fn note(&mut self, problem: &Problem<'_>, penetration: f64, rounding: f64, solution: &mut Solution) {
+    /// The sums over a set of cells before they are computed.
+    pub(crate) fn of(set: &ContactSet) -> ResidualSums {
+        ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() }
+    }
+
+    /// Writes the residual to `solution` and its trace; `rounding` is the rounding of c K p of the guess.
+    pub(crate) fn note(&mut self, problem: &Problem<'_>, rounding: f64, solution: &mut Solution) {
         self.cancellation = problem.rounding(&solution.pressure) + rounding;
         // where a rank is lost, the sums are NaN, which ends the iterations
         let lost = problem.rows().intact().is_err();
-        solution.residual = if lost { f64::NAN } else { self.relative_residual(penetration) };
+        solution.residual = if lost { f64::NAN } else { self.relative_residual() };
         // a smaller residual cannot be detected; where squares of displacements vanish, none can
         solution.rounding = if self.displacement > 0.0 {
             (self.rounding() + UNDERFLOW) / self.yielding()
@@ -87,10 +94,11 @@ impl ResidualSums {
         solution.trace.note(solution.counts.iterations, solution.residual);
     }
 
-    /// How far a state is from solving its [`Problem`], relative to rms (c v) in contact: the larger of rms |h| in contact
+    /// The residual of a state, relative to rms (c v) in contact: the larger of rms |h| in contact
     /// and a tenth of the deepest penetration. Rounding of the gap itself does not count.
-    fn relative_residual(&self, penetration: f64) -> f64 {
-        let error = self.rms().max(self.deepest.max(penetration) / PENETRATION_SLACK) - self.rounding() - UNDERFLOW;
+    fn relative_residual(&self) -> f64 {
+        let error =
+            self.rms().max(self.deepest.max(self.penetration) / PENETRATION_SLACK) - self.rounding() - UNDERFLOW;
         if error <= 0.0 { 0.0 } else { error / self.yielding() }
     }
 
@@ -109,9 +117,10 @@ impl ResidualSums {
         (self.displacement / self.cells.max(1) as f64).sqrt()
     }
 
-    /// The penetration from which cells join the contact: the shallowest, on the rim of a growing contact, would mostly leave
-    /// again. A body that penetrates deeper than the surface yields is far from its position: then only the deepest join.
-    pub(crate) fn joining_depth(&self, penetration: f64) -> f64 {
-        penetration * if penetration > self.yielding() { 0.5 } else { JOIN_OVER_DEEPEST }
+    /// The penetration from which cells join the contact: the shallowest cells, on the rim of a growing contact, would mostly
+    /// leave again. A body that penetrates deeper than the surface yields is far from its position: then only the deepest
+    /// cells join.
+    pub(crate) fn joining_depth(&self) -> f64 {
+        self.penetration * if self.penetration > self.yielding() { 0.5 } else { JOIN_OVER_DEEPEST }
     }
 }

@@ -1,17 +1,18 @@
 //! The passes of the solvers over their fields.
 //!
-//! Each pass works on pieces of [`RowSegments`], along which the motion of a body is affine, and does everything that needs the
+//! Each pass works on pieces of [`RowSegments`], along which the motion of a body is affine, and does all work that reads the
 //! same fields at once. Sums are taken for each body: Σ B f of its modes B from Σ f and Σ j f of every piece.
 
-use crate::parallel::Rows;
-use crate::solver::bands::{Bands, Found};
-use crate::solver::problem::Problem;
+use std::ops::Range;
+
+use crate::solver::bands::{BandSums, Bands};
+use crate::solver::problem::{Problem, Solution, Solve};
 use crate::solver::rigid_motion::{Line, ModeCoefficients};
 use crate::solver::row_segments::{PIECE_CELLS, Piece, RowSegments};
 use crate::sum::{most, sum, sum_of_pairs};
 
-/// The numbers of the cells of a piece.
-pub(crate) static NUMBERS: [f64; PIECE_CELLS] = {
+/// The numbers j = 0, 1, … of the cells of a piece, as values.
+static NUMBERS: [f64; PIECE_CELLS] = {
     let (mut numbers, mut j) = ([0.0; PIECE_CELLS], 0);
     while j < PIECE_CELLS {
         numbers[j] = j as f64;
@@ -20,214 +21,223 @@ pub(crate) static NUMBERS: [f64; PIECE_CELLS] = {
     numbers
 };
 
-/// The fields of [`Passes::survey`].
-pub(crate) struct Fields<'a> {
-    pub(crate) direction: &'a [f64],
-    pub(crate) image: &'a [f64],
-    pub(crate) pressure: &'a mut [f64],
-    pub(crate) potential: &'a mut [f64],
-}
-
-/// The passes over the fields of one contact.
+/// A search direction d and its K d.
 #[derive(Debug, Clone)]
-pub(crate) struct Passes {
-    bands: Bands,
+pub(crate) struct Search {
+    pub(crate) direction: Vec<f64>,
+    pub(crate) image: Vec<f64>,
 }
 
-impl Passes {
-    pub(crate) fn new(rows: &Rows, bodies: usize) -> Passes {
-        Passes { bands: Bands::new(rows, bodies) }
+impl Search {
+    pub(crate) fn new(cells: usize) -> Search {
+        Search { direction: vec![0.0; cells], image: vec![0.0; cells] }
     }
 
-    /// p += a d, v += a K d, with r = motion − (c v + gap) on the cells in contact. Finds Σ B r, Σ r², Σ (c v)² and
-    /// Σ min(p, 0)² over them, the greatest r of them, and the greatest motion − (c v + gap) of all others that may carry pressure.
-    pub(crate) fn survey(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
-        a: f64,
-        motions: &[ModeCoefficients],
-        fields: Fields<'_>,
-    ) -> &[Found] {
-        let Fields { direction, image, pressure, potential } = fields;
-        let (c, cut) = (problem.compliance, problem.cut());
-        self.bands.over([pressure, potential], |band, [p, v], found| {
+    /// Computes K d.
+    pub(crate) fn convolve(&mut self, solve: &mut Solve<'_>) {
+        solve.convolve_field(&self.direction, &mut self.image);
+    }
+}
+
+/// The cells of a problem, cut into bands and pieces, for one pass.
+pub(crate) struct Passes<'a> {
+    pub(crate) problem: &'a Problem<'a>,
+    pub(crate) segments: &'a RowSegments,
+    pub(crate) bands: &'a mut Bands,
+}
+
+/// A piece of cells under one body, in a pass.
+struct Visit<'p, T, const M: usize> {
+    cells: Range<usize>,
+    body: usize,
+    in_contact: bool,
+    /// The parts of the fields that the pass writes.
+    outputs: [&'p mut [T]; M],
+    /// A buffer for r.
+    residual: &'p mut [f64],
+    /// The sums of the body.
+    sums: &'p mut BandSums,
+}
+
+impl<'a> Passes<'a> {
+    /// Calls `visit` with all pieces.
+    #[inline]
+    fn over<T: Send, const M: usize>(
+        self,
+        outputs: [&mut [T]; M],
+        visit: impl Fn(Visit<'_, T, M>) + Sync,
+    ) -> &'a mut Bands {
+        let Passes { problem, segments, bands } = self;
+        let cut = problem.cut();
+        bands.over(outputs, |band, mut outputs, sums| {
             let mut residual = [0.0; PIECE_CELLS];
-            runs.walk(&band, cut, |Piece { cells, body }, inside| {
+            segments.walk(&band, cut, |Piece { cells, body }, in_contact| {
                 let here = cells.start - band.start..cells.end - band.start;
-                let (v, h, found) = (&mut v[here.clone()], &problem.gap[cells.clone()], &mut found[body]);
-                if a != 0.0 {
-                    add(v, a, &image[cells.clone()]);
-                }
-                let line = problem.line(body, cells.start);
-                let motion = line.of(motions[body]);
-                if !inside {
-                    if !problem.released(body) {
-                        note_depth(found, motion, c, v, h);
-                    }
-                    return;
-                }
-                let (p, r) = (&mut p[here], &mut residual[..cells.len()]);
-                if a != 0.0 {
-                    add(p, a, &direction[cells]);
-                }
-                fill_residual(motion, r, c, v, h);
-                add_modes(&mut found.sums.residual_modes, &line, r);
-                found.peak = found.peak.max(most(r));
-                found.sums.residual_square += sum_of_pairs(r, r, |r, _| r * r);
-                found.sums.displacement_square += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
-                found.sums.negative_square += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
+                let outputs = outputs.each_mut().map(|output| &mut output[here.clone()]);
+                let (residual, sums) = (&mut residual[..cells.len()], &mut sums[body]);
+                visit(Visit { cells, body, in_contact, outputs, residual, sums });
             });
-        })
+        });
+        bands
+    }
+
+    /// p += a d, v += a K d, with r = motion − (c v + gap) on the cells in contact. Sums Σ B r, Σ r², Σ (c v)² and
+    /// Σ min(p, 0)² over them, and takes the greatest r. Over all other cells that may carry pressure it takes the greatest
+    /// motion − (c v + gap).
+    pub(crate) fn survey(self, a: f64, search: &Search, solution: &mut Solution) -> &'a [BandSums] {
+        let (problem, c) = (self.problem, self.problem.compliance);
+        let Solution { motions, pressure, potential, .. } = solution;
+        let bands = self.over([pressure, potential], |visit| {
+            let Visit { cells, body, in_contact, outputs: [p, v], residual: r, sums } = visit;
+            if a != 0.0 {
+                add(v, a, &search.image[cells.clone()]);
+            }
+            if !in_contact && problem.released(body) {
+                return;
+            }
+            let line = problem.line(body, cells.start);
+            fill_residual(line.of(motions[body]), r, c, v, &problem.gap[cells.clone()]);
+            if !in_contact {
+                sums.penetration = sums.penetration.max(most(r));
+                return;
+            }
+            if a != 0.0 {
+                add(p, a, &search.direction[cells]);
+            }
+            add_modes(&mut sums.residual_modes, &line, r);
+            sums.peak = sums.peak.max(most(r));
+            sums.residual_square += sum_of_pairs(r, r, |r, _| r * r);
+            sums.displacement_square += sum_of_pairs(v, v, |v, _| (c * v) * (c * v));
+            sums.negative_square += sum_of_pairs(p, p, |p, _| if p < 0.0 { p * p } else { 0.0 });
+        });
+        bands.joined()
     }
 
     /// The deepest penetration of the cells outside that may carry pressure, 0 if there is none.
-    pub(crate) fn penetration(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
-        motions: &[ModeCoefficients],
-        potential: &[f64],
-    ) -> f64 {
-        let (c, cut) = (problem.compliance, problem.cut());
-        let found = self.bands.over([], |band, [], found| {
-            runs.walk(&band, cut, |Piece { cells, body }, inside| {
-                if !inside && !problem.released(body) {
-                    let motion = problem.line(body, cells.start).of(motions[body]);
-                    note_depth(&mut found[body], motion, c, &potential[cells.clone()], &problem.gap[cells]);
-                }
-            });
+    pub(crate) fn penetration(self, solution: &Solution) -> f64 {
+        let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
+        let bands = self.over::<f64, 0>([], |Visit { cells, body, in_contact, residual: depth, sums, .. }| {
+            if !in_contact && !problem.released(body) {
+                let (motion, v) = (problem.line(body, cells.start).of(motions[body]), &potential[cells.clone()]);
+                fill_residual(motion, depth, problem.compliance, v, &problem.gap[cells]);
+                sums.penetration = sums.penetration.max(most(depth));
+            }
         });
-        found.iter().map(Found::greatest).fold(0.0, f64::max)
+        bands.joined().iter().map(|sums| sums.penetration).fold(0.0, f64::max)
+    }
+
+    /// Takes cells without pressure that penetrate deeper than `least` into the set.
+    pub(crate) fn add_penetrating(self, least: f64, solution: &Solution, member: &mut [bool]) {
+        let (problem, Solution { motions, pressure, potential, .. }) = (self.problem, solution);
+        self.over([member], |Visit { cells, body, in_contact, outputs: [member], residual: depth, .. }| {
+            if !in_contact && !problem.released(body) {
+                let (motion, v) = (problem.line(body, cells.start).of(motions[body]), &potential[cells.clone()]);
+                fill_residual(motion, depth, problem.compliance, v, &problem.gap[cells.clone()]);
+                let fields = pressure[cells].iter().zip(depth);
+                member
+                    .iter_mut()
+                    .zip(fields)
+                    .for_each(|(member, (&p, &mut depth))| *member = (p == 0.0) & (depth > least));
+            }
+        });
     }
 
     /// z ← r = motion − (c v + gap) in contact, zero elsewhere; returns Σ r² and the greatest r.
-    pub(crate) fn residual(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
-        motions: &[ModeCoefficients],
-        potential: &[f64],
-        z: &mut [f64],
-    ) -> [f64; 2] {
-        let (c, cut) = (problem.compliance, problem.cut());
-        let found = self.bands.over([z], |band, [z], found| {
-            runs.walk(&band, cut, |Piece { cells, body }, inside| {
-                let z = &mut z[cells.start - band.start..cells.end - band.start];
-                if !inside {
-                    return z.fill(0.0);
-                }
-                let motion = problem.line(body, cells.start).of(motions[body]);
-                fill_residual(motion, z, c, &potential[cells.clone()], &problem.gap[cells]);
-                found[body].sums.residual_square += sum_of_pairs(z, z, |z, _| z * z);
-                found[body].peak = found[body].peak.max(most(z));
-            });
+    pub(crate) fn residual(self, solution: &Solution, z: &mut [f64]) -> [f64; 2] {
+        let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
+        let bands = self.over([z], |Visit { cells, body, in_contact, outputs: [z], sums, .. }| {
+            if !in_contact {
+                return z.fill(0.0);
+            }
+            let (motion, v) = (problem.line(body, cells.start).of(motions[body]), &potential[cells.clone()]);
+            fill_residual(motion, z, problem.compliance, v, &problem.gap[cells]);
+            sums.residual_square += sum_of_pairs(z, z, |z, _| z * z);
+            sums.peak = sums.peak.max(most(z));
         });
-        let of =
-            |[square, deepest]: [f64; 2], found: &Found| [square + found.sums.residual_square, deepest.max(found.peak)];
-        found.iter().fold([0.0; 2], of)
+        let add = |[square, peak]: [f64; 2], sums: &BandSums| [square + sums.residual_square, peak.max(sums.peak)];
+        bands.joined().iter().fold([0.0; 2], add)
     }
 
-    /// Finds Σ B z, Σ B Kd, Σ B d and Σ z·Kd in contact.
-    pub(crate) fn overlaps(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
-        z: &[f64],
-        image: &[f64],
-        direction: &[f64],
-    ) -> &[Found] {
-        let cut = problem.cut();
-        self.bands.over([], |band, [], found| {
-            for Piece { cells, body } in runs.inside(&band, cut) {
-                let (sums, line) = (&mut found[body].sums, problem.line(body, cells.start));
-                let (z, kd, d) = (&z[cells.clone()], &image[cells.clone()], &direction[cells]);
-                add_modes(&mut sums.residual_modes, &line, z);
-                add_modes(&mut sums.image_modes, &line, kd);
-                add_modes(&mut sums.direction_modes, &line, d);
-                sums.residual_image += sum_of_pairs(z, kd, |z, kd| z * kd);
+    /// Sums Σ B z, Σ B Kd, Σ B d and Σ z·Kd in contact.
+    pub(crate) fn overlaps(self, z: &[f64], search: &Search) -> &'a [BandSums] {
+        let problem = self.problem;
+        let bands = self.over::<f64, 0>([], |Visit { cells, body, in_contact, sums, .. }| {
+            if !in_contact {
+                return;
             }
-        })
+            let line = problem.line(body, cells.start);
+            let (z, kd, d) = (&z[cells.clone()], &search.image[cells.clone()], &search.direction[cells]);
+            add_modes(&mut sums.residual_modes, &line, z);
+            add_modes(&mut sums.image_modes, &line, kd);
+            add_modes(&mut sums.direction_modes, &line, d);
+            sums.residual_image += sum_of_pairs(z, kd, |z, kd| z * kd);
+        });
+        bands.joined()
     }
 
     /// d ← scale (z + β d + motion) in contact, 0 elsewhere; with β = 0 for any d, NaN included.
     pub(crate) fn redirect(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
+        self,
         [scale, beta]: [f64; 2],
         motions: &[ModeCoefficients],
         z: &[f64],
         direction: &mut [f64],
     ) {
-        let cut = problem.cut();
-        self.bands.over([direction], |band, [d], _| {
-            runs.walk(&band, cut, |Piece { cells, body }, inside| {
-                let d = &mut d[cells.start - band.start..cells.end - band.start];
-                if !inside {
-                    return d.fill(0.0);
-                }
-                let motion = problem.line(body, cells.start).of(motions[body]);
-                let z = &z[cells];
-                if beta == 0.0 {
-                    map(motion, d, [z, z], |_, z, _, motion| scale * (z + motion));
-                } else {
-                    map(motion, d, [z, z], |d, z, _, motion| scale * (z + beta * d + motion));
-                }
-            });
+        let problem = self.problem;
+        self.over([direction], |Visit { cells, body, in_contact, outputs: [d], .. }| {
+            if !in_contact {
+                return d.fill(0.0);
+            }
+            let (motion, z) = (problem.line(body, cells.start).of(motions[body]), &z[cells]);
+            if beta == 0.0 {
+                map(motion, d, [z, z], |_, z, _, motion| scale * (z + motion));
+            } else {
+                map(motion, d, [z, z], |d, z, _, motion| scale * (z + beta * d + motion));
+            }
         });
     }
 
     /// d += max(0, p + shape · motion) − p in contact, with p = 0 for negative pressures; if `whole`,
     /// d ← max(0, p + d + shape · motion) − p. Bodies without motion keep their d.
     pub(crate) fn correct(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
+        self,
         motions: &[Option<ModeCoefficients>],
         whole: bool,
         [pressure, shape]: [&[f64]; 2],
         direction: &mut [f64],
     ) {
-        let cut = problem.cut();
-        self.bands.over([direction], |band, [d], _| {
-            for Piece { cells, body } in runs.inside(&band, cut) {
-                let d = &mut d[cells.start - band.start..cells.end - band.start];
-                let Some(motion) = motions[body] else { continue };
-                let motion = problem.line(body, cells.start).of(motion);
-                map(motion, d, [&pressure[cells.clone()], &shape[cells]], |d, p, shape, motion| {
-                    if whole {
-                        return (p + d + shape * motion).max(0.0) - p;
-                    }
-                    let p = p.max(0.0);
-                    d + ((p + shape * motion).max(0.0) - p)
-                });
-            }
+        let problem = self.problem;
+        self.over([direction], |Visit { cells, body, in_contact, outputs: [d], .. }| {
+            let Some(motion) = motions[body].filter(|_| in_contact) else { return };
+            let motion = problem.line(body, cells.start).of(motion);
+            map(motion, d, [&pressure[cells.clone()], &shape[cells]], |d, p, shape, motion| {
+                if whole {
+                    return (p + d + shape * motion).max(0.0) - p;
+                }
+                let p = p.max(0.0);
+                d + ((p + shape * motion).max(0.0) - p)
+            });
         });
     }
 
-    /// Finds Σ B Kd of bodies that tilt, and Σ r·d and Σ d·Kd, in contact.
-    pub(crate) fn slope_and_curvature(
-        &mut self,
-        problem: &Problem<'_>,
-        runs: &RowSegments,
-        motions: &[ModeCoefficients],
-        [potential, direction, image]: [&[f64]; 3],
-    ) -> &[Found] {
-        let (c, cut) = (problem.compliance, problem.cut());
-        self.bands.over([], |band, [], found| {
-            let mut residual = [0.0; PIECE_CELLS];
-            for Piece { cells, body } in runs.inside(&band, cut) {
-                let (sums, line) = (&mut found[body].sums, problem.line(body, cells.start));
-                let (d, kd, r) = (&direction[cells.clone()], &image[cells.clone()], &mut residual[..cells.len()]);
-                fill_residual(line.of(motions[body]), r, c, &potential[cells.clone()], &problem.gap[cells]);
-                if problem.bodies[body].tilts() {
-                    add_modes(&mut sums.image_modes, &line, kd);
-                }
-                sums.residual_direction += sum_of_pairs(r, d, |r, d| r * d);
-                sums.direction_image += sum_of_pairs(d, kd, |d, kd| d * kd);
+    /// Sums Σ B Kd of bodies that tilt, and Σ r·d and Σ d·Kd, in contact.
+    pub(crate) fn slope_and_curvature(self, solution: &Solution, search: &Search) -> &'a [BandSums] {
+        let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
+        let bands = self.over::<f64, 0>([], |Visit { cells, body, in_contact, residual: r, sums, .. }| {
+            if !in_contact {
+                return;
             }
-        })
+            let (d, kd, v) =
+                (&search.direction[cells.clone()], &search.image[cells.clone()], &potential[cells.clone()]);
+            let line = problem.line(body, cells.start);
+            fill_residual(line.of(motions[body]), r, problem.compliance, v, &problem.gap[cells]);
+            if problem.bodies[body].tilts() {
+                add_modes(&mut sums.image_modes, &line, kd);
+            }
+            sums.residual_direction += sum_of_pairs(r, d, |r, d| r * d);
+            sums.direction_image += sum_of_pairs(d, kd, |d, kd| d * kd);
+        });
+        bands.joined()
     }
 }
 
@@ -247,23 +257,9 @@ pub(crate) fn add(x: &mut [f64], a: f64, y: &[f64]) {
 /// Adds Σ B f over a piece.
 #[inline]
 fn add_modes(sums: &mut [f64; 3], line: &Line, f: &[f64]) {
-    if line.upright {
-        sums[0] += sum(f);
-        return;
-    }
-    let moment = if line.changes() { sum_of_pairs(f, &NUMBERS[..f.len()], |f, j| f * j) } else { 0.0 };
+    let moment = if line.step != 0.0 { sum_of_pairs(f, &NUMBERS[..f.len()], |f, j| f * j) } else { 0.0 };
     let part = line.sums([sum(f), moment]);
     sums.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
-}
-
-/// Takes the depths of a piece into the greatest.
-#[inline]
-fn note_depth(found: &mut Found, [start, slope]: [f64; 2], c: f64, v: &[f64], h: &[f64]) {
-    if slope == 0.0 {
-        found.raise([v, h], |v, h, _| start - (c * v + h));
-    } else {
-        found.raise([v, h], |v, h, j| start + slope * j - (c * v + h));
-    }
 }
 
 /// z ← f(z, x, y, start + slope j) on the cells of a piece.
@@ -285,7 +281,7 @@ mod tests {
     use crate::solver::contact_set::ContactSet;
     use crate::solver::rigid_motion::Freedom;
 
-    /// Every pass against its definition, cell by cell, with one body and with several, on one band and on more.
+    /// Every pass equals its definition, cell by cell, with one body and with several, on one band and on several.
     #[test]
     fn passes_match_their_definitions() {
         let freedom = |translation, tilt, total| Freedom { translation, tilt, point: [0.1, -0.2], total };
@@ -326,12 +322,15 @@ mod tests {
         let inside = |body: usize, f: &dyn Fn(usize) -> f64| {
             (0..n).filter(|&k| set.member[k] && problem.owner(k) == body).map(f).sum::<f64>()
         };
-        let (mut passes, runs) = (Passes::new(kernel.rows(), bodies.len()), &set.runs);
+        let (mut bands, search) =
+            (Bands::new(kernel.rows(), bodies.len()), Search { direction: d.clone(), image: kd.clone() });
 
-        let (mut p, mut v) = (field(1.3), field(1.7));
-        let (p0, v0) = (p.clone(), v.clone());
-        let fields = Fields { direction: &d, image: &kd, pressure: &mut p, potential: &mut v };
-        let found = passes.survey(&problem, runs, a, &motions, fields).to_vec();
+        let (p0, v0) = (field(1.3), field(1.7));
+        let mut solution = Solution::zero(n, bodies.len());
+        (solution.pressure, solution.potential) = (p0.clone(), v0.clone());
+        solution.motions.clone_from(&motions);
+        let found = set.passes(&problem, &mut bands).survey(a, &search, &mut solution).to_vec();
+        let Solution { pressure: p, potential: v, .. } = &solution;
         let mut deepest = 0.0_f64;
         for k in 0..n {
             assert_eq!(v[k], v0[k] + a * kd[k]);
@@ -342,38 +341,39 @@ mod tests {
         }
         let r: Vec<f64> = (0..n).map(|k| at(k) - (c * v[k] + gap[k])).collect();
         for (body, found) in found.iter().enumerate() {
-            (0..3).for_each(|m| near(found.sums.residual_modes[m], inside(body, &|k| modes(k)[m] * r[k])));
-            near(found.sums.residual_square, inside(body, &|k| r[k] * r[k]));
-            near(found.sums.displacement_square, inside(body, &|k| c * v[k] * c * v[k]));
-            near(found.sums.negative_square, inside(body, &|k| p[k].min(0.0).powi(2)));
+            (0..3).for_each(|m| near(found.residual_modes[m], inside(body, &|k| modes(k)[m] * r[k])));
+            near(found.residual_square, inside(body, &|k| r[k] * r[k]));
+            near(found.displacement_square, inside(body, &|k| c * v[k] * c * v[k]));
+            near(found.negative_square, inside(body, &|k| p[k].min(0.0).powi(2)));
             let own = (0..n).filter(|&k| set.member[k] && problem.owner(k) == body);
             assert_eq!(found.peak, own.map(|k| r[k]).fold(f64::NEG_INFINITY, f64::max));
         }
-        near(found.iter().map(Found::greatest).fold(0.0, f64::max), deepest);
-        near(passes.penetration(&problem, runs, &motions, &v), deepest);
+        near(found.iter().map(|sums| sums.penetration).fold(0.0, f64::max), deepest);
+        near(set.passes(&problem, &mut bands).penetration(&solution), deepest);
 
         let mut z = field(2.0);
-        let [square, highest] = passes.residual(&problem, runs, &motions, &v, &mut z);
+        let [square, highest] = set.passes(&problem, &mut bands).residual(&solution, &mut z);
         near(square, z.iter().map(|z| z * z).sum());
         assert_eq!(highest, z.iter().copied().fold(0.0, f64::max));
         (0..n).for_each(|k| near(z[k], if set.member[k] { r[k] } else { 0.0 }));
         let z = field(2.2);
-        for (body, found) in passes.overlaps(&problem, runs, &z, &kd, &d).iter().enumerate() {
+        for (body, found) in set.passes(&problem, &mut bands).overlaps(&z, &search).iter().enumerate() {
             for m in 0..3 {
-                near(found.sums.residual_modes[m], inside(body, &|k| modes(k)[m] * z[k]));
-                near(found.sums.image_modes[m], inside(body, &|k| modes(k)[m] * kd[k]));
-                near(found.sums.direction_modes[m], inside(body, &|k| modes(k)[m] * d[k]));
+                near(found.residual_modes[m], inside(body, &|k| modes(k)[m] * z[k]));
+                near(found.image_modes[m], inside(body, &|k| modes(k)[m] * kd[k]));
+                near(found.direction_modes[m], inside(body, &|k| modes(k)[m] * d[k]));
             }
-            near(found.sums.residual_image, inside(body, &|k| z[k] * kd[k]));
+            near(found.residual_image, inside(body, &|k| z[k] * kd[k]));
         }
-        for (body, found) in passes.slope_and_curvature(&problem, runs, &motions, [&v, &d, &kd]).iter().enumerate() {
+        for (body, found) in set.passes(&problem, &mut bands).slope_and_curvature(&solution, &search).iter().enumerate()
+        {
             let tilts = if bodies[body].tilts() { 1.0 } else { 0.0 };
-            (0..3).for_each(|m| near(found.sums.image_modes[m], tilts * inside(body, &|k| modes(k)[m] * kd[k])));
-            near(found.sums.residual_direction, inside(body, &|k| r[k] * d[k]));
-            near(found.sums.direction_image, inside(body, &|k| d[k] * kd[k]));
+            (0..3).for_each(|m| near(found.image_modes[m], tilts * inside(body, &|k| modes(k)[m] * kd[k])));
+            near(found.residual_direction, inside(body, &|k| r[k] * d[k]));
+            near(found.direction_image, inside(body, &|k| d[k] * kd[k]));
         }
         let mut turned = d.clone();
-        passes.redirect(&problem, runs, [2.0, 0.5], &motions, &z, &mut turned);
+        set.passes(&problem, &mut bands).redirect([2.0, 0.5], &motions, &z, &mut turned);
         (0..n).for_each(|k| {
             near(turned[k], if set.member[k] { 2.0 * (z[k] + 0.5 * d[k] + at(k)) } else { 0.0 });
         });
@@ -381,7 +381,7 @@ mod tests {
         let corrections: Vec<_> = (0..bodies.len()).map(corrected).collect();
         for whole in [false, true] {
             let before = turned.clone();
-            passes.correct(&problem, runs, &corrections, whole, [&p, &gap], &mut turned);
+            set.passes(&problem, &mut bands).correct(&corrections, whole, [p, &gap], &mut turned);
             for k in 0..n {
                 let (base, kept) =
                     if whole { (p[k] + before[k], -p[k]) } else { (p[k].max(0.0), before[k] - p[k].max(0.0)) };

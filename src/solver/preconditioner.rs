@@ -4,9 +4,9 @@ use std::sync::Arc;
 
 use crate::kernel::{LocalKernel, SpectralOperator, TransformWorkspace, Workspace};
 use crate::solver::contact_set::ContactSet;
-use crate::solver::extension::{Attenuation, Extension, Range};
+use crate::solver::extension::{Attenuation, Extension, ExtensionKind};
 
-/// What remains of the continued residual where the distance from the contact exceeds the thickness of a layer on a rigid
+/// Factor of the extended residual where the distance from the contact exceeds the thickness of a layer on a rigid
 /// base. There M acts as K⁻¹ of a bed of springs, which needs no extension, or of an incompressible layer, −∇⁻², whose
 /// pressure falls to zero at the edge: then the residual continues with the opposite sign. A fifth of that suits both.
 const BEYOND_LAYER: f64 = -0.2;
@@ -14,26 +14,27 @@ const BEYOND_LAYER: f64 = -0.2;
 /// Eᵀ M E ≈ (K on A)⁻¹, with M ≈ K⁻¹, a multiplication in wave space on a grid without padding ([`LocalKernel::inverse`]): for the
 /// half-space a quarter of the size of a convolution.
 ///
-/// M alone, cut off at the edge of the set A of cells in contact, would be wrong over a strip along the edge whose width is that
-/// of a cell, and the more so the finer the mesh. The [`Extension`] E continues the residual smoothly beyond the edge instead; on
+/// M alone, cut off at the edge of the set A of cells in contact, would be wrong over a strip along the edge, a cell
+/// wide, and the more so the finer the mesh. The [`Extension`] E continues the residual smoothly beyond the edge instead; on
 /// a layer no farther than the layer is thick ([`BEYOND_LAYER`]).
 #[derive(Debug, Clone)]
 pub(crate) struct Preconditioner {
     operator: Arc<SpectralOperator>,
     work: TransformWorkspace,
-    diagonal: f64,
+    /// The diagonal of M.
+    pub(crate) diagonal: f64,
     extension: Extension,
     /// The version of A that `extension` is made for.
     version: u64,
 }
 
 impl Preconditioner {
-    /// That of a kernel, whose buffers it borrows.
+    /// The preconditioner of a kernel, whose buffers it borrows.
     pub(crate) fn new(kernel: &LocalKernel, lender: &mut Workspace) -> Preconditioner {
         let (rows, [n1, n2]) = (kernel.rows(), kernel.rows().cells());
         let operator = kernel.inverse();
         let work = kernel.inverse_workspace(&operator);
-        let extension = Extension::new(rows, kernel.periodic_axes(), ebb(kernel));
+        let extension = Extension::new(rows, kernel.periodic_axes(), attenuation(kernel));
         let mut preconditioner =
             Preconditioner { operator: Arc::new(operator), work, diagonal: 0.0, extension, version: 0 };
         let mut impulse = vec![0.0; kernel.grid().len()];
@@ -51,13 +52,20 @@ impl Preconditioner {
         self.fit(set);
         self.extension.extend(field, &set.member);
         self.filter(field, lender);
-        self.extension.gather(field, &set.member, Range::Attenuated);
+        self.extension.gather(field, &set.member, ExtensionKind::Attenuated);
     }
 
     /// field ← Eᵀ field: the values of other cells are moved to the cells of A around them, whose sum becomes the sum over all cells.
     pub(crate) fn gather(&mut self, field: &mut [f64], set: &ContactSet) {
         self.fit(set);
-        self.extension.gather(field, &set.member, Range::Unbounded);
+        self.extension.gather(field, &set.member, ExtensionKind::Unbounded);
+    }
+
+    /// out ← Eᵀ of the values of `field` outside A: they are moved to the cells of A around them.
+    pub(crate) fn gather_outside(&mut self, field: &[f64], set: &ContactSet, out: &mut [f64]) {
+        out.copy_from_slice(field);
+        set.segments.cells().for_each(|k| out[k] = 0.0);
+        self.gather(out, set);
     }
 
     fn fit(&mut self, set: &ContactSet) {
@@ -70,15 +78,10 @@ impl Preconditioner {
     pub(crate) fn filter(&mut self, field: &mut [f64], lender: &mut Workspace) {
         self.operator.apply_beside(field, &mut self.work, &mut lender.0);
     }
-
-    /// The diagonal of M.
-    pub(crate) fn diagonal(&self) -> f64 {
-        self.diagonal
-    }
 }
 
 /// Range of the extension of the residual. For wavelengths beyond its thickness a layer on a half-space responds like the half-space.
-fn ebb(kernel: &LocalKernel) -> Option<Attenuation> {
+fn attenuation(kernel: &LocalKernel) -> Option<Attenuation> {
     let layer = kernel.layer()?;
     let remains = BEYOND_LAYER + (1.0 - BEYOND_LAYER) * layer.longest_over_half_space();
     let (cells, spacing) = (kernel.rows().cells(), kernel.grid().spacing());

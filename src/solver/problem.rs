@@ -4,6 +4,7 @@ use educe::Educe;
 
 use crate::kernel::{LocalKernel, Workspace};
 use crate::parallel::Rows;
+use crate::solver::outcome::Stop;
 use crate::solver::rigid_motion::{Freedom, Line, ModeCoefficients, Modes};
 use crate::solver::row_segments::Cut;
 use crate::solver::trace::Trace;
@@ -18,7 +19,7 @@ pub(crate) struct Problem<'a> {
     pub(crate) compliance: f64,
     /// Initial gap, history and prescribed motion, hi + u_old − (ω + α·x) \[m\]; +∞ where the indenter has no surface.
     pub(crate) gap: &'a [f64],
-    /// The greatest of the prescribed motions that were subtracted from `gap`, which carries their rounding \[m\].
+    /// Greatest of the prescribed motions that were subtracted from `gap`; their rounding is in it \[m\].
     pub(crate) prescribed: f64,
     /// The free motions of each rigid body.
     pub(crate) bodies: &'a [Freedom],
@@ -70,8 +71,7 @@ impl<'a> Problem<'a> {
     /// The free modes of a body along a row, from cell `k` on.
     #[inline]
     pub(crate) fn line(&self, body: usize, k: usize) -> Line {
-        // without tilt, the common scene, there is nothing to compute
-        if self.bodies[body].tilts() { self.modes(body).line(k) } else { Line::UPRIGHT }
+        self.modes(body).line(k)
     }
 
     /// The local rows, with the reductions over all ranks.
@@ -105,9 +105,14 @@ impl<'a> Problem<'a> {
         self.bodies[body].translation && self.bodies[body].total == 0.0
     }
 
+    /// The bodies under a force that is not zero, and those whose approach is given.
+    pub(crate) fn loaded_bodies(&self) -> impl Iterator<Item = usize> {
+        (0..self.bodies.len()).filter(|&body| !self.released(body))
+    }
+
     /// Whether the force on every body is zero.
     pub(crate) fn all_released(&self) -> bool {
-        (0..self.bodies.len()).all(|body| self.released(body))
+        self.loaded_bodies().next().is_none()
     }
 
     /// Whether cell `k` may carry pressure.
@@ -115,7 +120,7 @@ impl<'a> Problem<'a> {
         self.gap[k].is_finite() && !self.released(self.owner(k))
     }
 
-    /// How deep cell `k` penetrates (negative: its gap).
+    /// Penetration of cell `k`; a negative value is its gap.
     pub(crate) fn depth(&self, solution: &Solution, k: usize) -> f64 {
         let body = self.owner(k);
         self.modes(body).displacement(solution.motions[body], k)
@@ -143,7 +148,7 @@ impl Solution {
         (self.residual, self.rounding) = (0.0, 0.0);
     }
 
-    /// Lets every released body follow the surface: it just touches, and does not tilt.
+    /// Moves every released body until it just touches the surface, without tilt.
     pub(crate) fn follow_surface(&mut self, problem: &Problem<'_>) {
         for body in (0..problem.bodies.len()).filter(|&body| problem.released(body)) {
             let own = (0..problem.gap.len()).filter(|&k| problem.owner(k) == body);
@@ -152,10 +157,26 @@ impl Solution {
             self.motions[body] = ModeCoefficients([lowest, 0.0, 0.0]);
         }
     }
+}
 
+/// A problem, its solution so far, when to stop, and the buffers of the convolutions.
+pub(crate) struct Solve<'a> {
+    pub(crate) problem: &'a Problem<'a>,
+    pub(crate) stop: Stop,
+    pub(crate) solution: &'a mut Solution,
+    pub(crate) work: &'a mut Workspace,
+}
+
+impl Solve<'_> {
     /// v ← K p, counted.
-    pub(crate) fn convolve(&mut self, problem: &Problem<'_>, work: &mut Workspace) {
-        problem.kernel.apply(&self.pressure, &mut self.potential, work);
-        self.counts.convolutions += 1;
+    pub(crate) fn convolve(&mut self) {
+        self.problem.kernel.apply(&self.solution.pressure, &mut self.solution.potential, self.work);
+        self.solution.counts.convolutions += 1;
+    }
+
+    /// image ← K field, counted.
+    pub(crate) fn convolve_field(&mut self, field: &[f64], image: &mut [f64]) {
+        self.problem.kernel.apply(field, image, self.work);
+        self.solution.counts.convolutions += 1;
     }
 }

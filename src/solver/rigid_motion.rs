@@ -1,5 +1,4 @@
-//! The rigid motion of a body: the part of it that a load leaves free, and the balance of force and moments that
-//! belongs to every freedom.
+//! The rigid motion of a body: the modes that a load leaves free, and the balance of force and moments of each free mode.
 
 use std::ops::Range;
 
@@ -8,7 +7,7 @@ use crate::linalg;
 use crate::parallel::Rows;
 use crate::sum;
 
-/// The motions ω + α1 ξ1 + α2 ξ2 that a load leaves free to one body, ξ = x − e measured from the point e
+/// The motions ω + α1 ξ1 + α2 ξ2 of one body that a load leaves free, ξ = x − e measured from the point e
 /// at which the load acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0 (Eq. 4 and
 /// Eq. 5 of the paper).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,6 +23,11 @@ pub(crate) struct Freedom {
 impl Freedom {
     pub(crate) fn tilts(&self) -> bool {
         self.tilt != [false; 2]
+    }
+
+    /// Whether any motion is free.
+    pub(crate) fn moves(&self) -> bool {
+        self.translation || self.tilts()
     }
 }
 
@@ -65,7 +69,7 @@ impl ModeCoefficients {
     }
 }
 
-/// Part of the square of a mode, independent of the other modes, that counts as zero: the cells at hand do not determine
+/// Fraction of the square of a mode, independent of the other modes, that counts as zero: the cells do not determine
 /// the motion (fewer than three, or all on a line).
 const DEPENDENT_FRACTION: f64 = 1e-11;
 
@@ -79,7 +83,7 @@ const BALANCE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Modes<'a> {
     grid: &'a Grid,
-    freedom: Freedom,
+    pub(crate) freedom: Freedom,
     /// Unit lengths of the tilts, half the lengths of the grid.
     scale: [f64; 2],
 }
@@ -88,9 +92,7 @@ pub(crate) struct Modes<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Line {
     first: [f64; 3],
-    step: f64,
-    /// Whether the body does not tilt, which is quicker.
-    pub(crate) upright: bool,
+    pub(crate) step: f64,
 }
 
 /// Σ w B Bᵀ over some cells.
@@ -106,14 +108,6 @@ impl<'a> Modes<'a> {
         Modes { grid, freedom, scale }
     }
 
-    pub(crate) fn tilts(&self) -> bool {
-        self.freedom.tilts()
-    }
-
-    pub(crate) fn translates(&self) -> bool {
-        self.freedom.translation
-    }
-
     /// The values of the free modes on cell `k`, zero for modes that are not free.
     pub(crate) fn at(&self, k: usize) -> [f64; 3] {
         let Freedom { translation, tilt, point, .. } = self.freedom;
@@ -126,11 +120,11 @@ impl<'a> Modes<'a> {
 
     /// The free modes along the row of cell `k`, from there on. A body that does not tilt has the mode 1, even if it is held.
     pub(crate) fn line(&self, k: usize) -> Line {
-        if !self.tilts() {
+        if !self.freedom.tilts() {
             return Line::UPRIGHT;
         }
         let step = if self.freedom.tilt[1] { self.grid.spacing()[1] / self.scale[1] } else { 0.0 };
-        Line { first: self.at(k), step, upright: false }
+        Line { first: self.at(k), step }
     }
 
     /// Which of ω, α1 and α2 are free.
@@ -145,7 +139,7 @@ impl<'a> Modes<'a> {
 
     /// The displacement of cell `k` in a motion.
     pub(crate) fn displacement(&self, motion: ModeCoefficients, k: usize) -> f64 {
-        if self.tilts() { dot(self.at(k), motion.0) } else { motion.0[0] }
+        if self.freedom.tilts() { dot(self.at(k), motion.0) } else { motion.0[0] }
     }
 
     /// The motion with these coefficients, ω at the origin of the grid.
@@ -163,20 +157,6 @@ impl<'a> Modes<'a> {
         ModeCoefficients([if translation { held } else { 0.0 }, alpha[0] * self.scale[0], alpha[1] * self.scale[1]])
     }
 
-    /// The force and moments that the free modes must carry.
-    fn wanted(&self) -> [f64; 3] {
-        self.load().map(|share| share * self.freedom.total)
-    }
-
-    /// The motion that fits a field best on `cells` cells, by least squares, from Σ B f over them; `gram` is that of the
-    /// cells, and not needed without tilt.
-    pub(crate) fn fit(&self, gram: &Gram, cells: usize, sums: [f64; 3]) -> ModeCoefficients {
-        if self.tilts() {
-            return ModeCoefficients(gram.solve(sums));
-        }
-        ModeCoefficients([if self.freedom.translation { sums[0] / cells.max(1) as f64 } else { 0.0 }, 0.0, 0.0])
-    }
-
     /// Finds y such that the pressures max(0, base + weight · B y) on the `pieces` of each band carry the force and moments
     /// of the load: the minimum of the convex ½ Σ weight (base/weight + B y)₊² − b·y, by
     /// Newton's method with step halving. `None` if there is none, because the load does not act inside
@@ -188,7 +168,7 @@ impl<'a> Modes<'a> {
         base: impl Fn(usize) -> f64 + Sync,
         weight: impl Fn(usize) -> f64 + Sync,
     ) -> Option<ModeCoefficients> {
-        let wanted = self.wanted();
+        let wanted = self.load().map(|share| share * self.freedom.total);
         let within = |y: [f64; 3], band: Range<usize>| {
             let (mut gram, mut sums, mut value) = (Gram::default(), [0.0; 3], 0.0);
             // piece by piece, so that rounding does not grow with the number of cells
@@ -233,50 +213,37 @@ impl<'a> Modes<'a> {
             }
             let step = gram.solve(sums);
             let descent = dot(step, sums);
-            let mut length = 1.0;
-            let accepted = loop {
+            let lengths = std::iter::successors(Some(1.0), |length| Some(0.5 * length)).take_while(|&a| a >= 1e-6);
+            let mut trials = lengths.map(|length| {
                 let next = [0, 1, 2].map(|m| y[m] - length * step[m]);
-                let state = evaluate(next);
-                // near the minimum the value is rounded, but the gradient still falls
-                if state.2 <= value - 1e-4 * length * descent || norm(state.1) <= 0.5 * norm(sums) {
-                    break Some((next, state));
-                }
-                length *= 0.5;
-                if length < 1e-6 {
-                    break None;
-                }
-            };
-            match accepted {
-                Some((next, state)) => (y, (gram, sums, value)) = (next, state),
-                // rounding hides any further descent: the balance decides
-                None => break,
-            }
+                (length, next, evaluate(next))
+            });
+            // near the minimum the value is rounded, but the gradient still falls
+            let next = trials.find(|(length, _, (_, next_sums, next_value))| {
+                *next_value <= value - 1e-4 * length * descent
+                    || dot(*next_sums, *next_sums).sqrt() <= 0.5 * dot(sums, sums).sqrt()
+            });
+            // if no trial falls, rounding hides any further descent: the balance decides
+            let Some((_, next, state)) = next else { break };
+            (y, (gram, sums, value)) = (next, state);
         }
         sums.iter().all(|sum| sum.abs() <= 1e-12 * size).then_some(ModeCoefficients(y))
     }
 }
 
 impl Line {
-    /// Of a body that does not tilt.
-    pub(crate) const UPRIGHT: Line = Line { first: [1.0, 0.0, 0.0], step: 0.0, upright: true };
+    /// The line of a body that does not tilt.
+    pub(crate) const UPRIGHT: Line = Line { first: [1.0, 0.0, 0.0], step: 0.0 };
 
     /// The same modes, with j counted from elsewhere.
     fn from(self, j: f64) -> Line {
         let [mode0, mode1, mode2] = self.first;
-        Line { first: [mode0, mode1, mode2 + self.step * j], ..self }
-    }
-
-    /// Whether the modes change along the row.
-    pub(crate) fn changes(&self) -> bool {
-        self.step != 0.0
+        Line { first: [mode0, mode1, mode2 + self.step * j], step: self.step }
     }
 
     /// A motion on the first cell, and its increase from cell to cell.
     #[inline]
     pub(crate) fn of(&self, motion: ModeCoefficients) -> [f64; 2] {
-        if self.upright {
-            return [motion.0[0], 0.0];
-        }
         [dot(self.first, motion.0), self.step * motion.0[2]]
     }
 
@@ -310,13 +277,9 @@ impl Gram {
     }
 
     /// Solves Gram x = `right`; x is zero for a mode that depends on the others.
-    fn solve(&self, right: [f64; 3]) -> [f64; 3] {
+    pub(crate) fn solve(&self, right: [f64; 3]) -> [f64; 3] {
         linalg::solve_normal_equations(&self.entries, right, DEPENDENT_FRACTION)
     }
-}
-
-fn norm(a: [f64; 3]) -> f64 {
-    dot(a, a).sqrt()
 }
 
 pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -328,7 +291,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn coefficients_are_those_of_the_motion() {
+    fn coefficients_and_motions_convert_into_each_other() {
         let grid = Grid::new([7, 4], [2.0, 3.0]).unwrap();
         let rows = Rows::all(grid.cells());
         let motion = RigidMotion { approach: 0.3, tilt: [-0.2, 0.7] };

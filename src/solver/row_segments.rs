@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-/// Cells checked together in the search for runs.
+/// Cells that the search for runs checks together.
 const SEARCH_BLOCK: usize = 32;
 
 /// Cells visited together: their fields remain in the fastest cache.
@@ -16,7 +16,7 @@ pub(crate) struct Piece {
     pub(crate) body: usize,
 }
 
-/// How the cells of a grid are cut into pieces.
+/// Where the cells of a grid are cut into pieces.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Cut<'a> {
     /// Cells of a row; `usize::MAX` where no body tilts, and pieces may reach over the end of a row.
@@ -25,7 +25,7 @@ pub(crate) struct Cut<'a> {
     pub(crate) owner: Option<&'a [u16]>,
 }
 
-/// The runs, each as its first cell and the one after its last.
+/// The runs of cells in contact, each as its first cell and the cell after its last.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct RowSegments {
     runs: Vec<[u32; 2]>,
@@ -39,26 +39,21 @@ impl RowSegments {
     /// Finds the runs of members of a set.
     pub(crate) fn find(&mut self, member: &[bool]) {
         self.runs.clear();
-        let mut start = None;
+        let mut inside = false;
         for (block, values) in member.chunks(SEARCH_BLOCK).enumerate() {
             // most blocks are all inside or all outside, as the cell before them
-            let inside = start.is_some();
             if values.iter().fold(true, |same, &m| same & (m == inside)) {
                 continue;
             }
-            for (k, &m) in values.iter().enumerate() {
-                let k = (block * SEARCH_BLOCK + k) as u32;
-                match start {
-                    None if m => start = Some(k),
-                    Some(first) if !m => {
-                        self.runs.push([first, k]);
-                        start = None;
-                    }
-                    _ => {}
+            for (k, &m) in (block * SEARCH_BLOCK..).zip(values) {
+                match self.runs.last_mut() {
+                    _ if m == inside => continue,
+                    Some(last) if inside => last[1] = k as u32,
+                    _ => self.runs.push([k as u32, member.len() as u32]),
                 }
+                inside = m;
             }
         }
-        self.runs.extend(start.map(|first| [first, member.len() as u32]));
     }
 
     /// The cells of all runs.
@@ -66,7 +61,7 @@ impl RowSegments {
         self.runs.iter().flat_map(|&[start, end]| start as usize..end as usize)
     }
 
-    /// The cells between the runs, before them and behind them.
+    /// The cells outside the runs.
     pub(crate) fn outside(&self, cells: usize) -> impl Iterator<Item = Range<usize>> {
         let starts = std::iter::once(0).chain(self.runs.iter().map(|run| run[1] as usize));
         starts.zip(self.runs.iter().map(|run| run[0] as usize).chain([cells])).map(|(start, end)| start..end)
@@ -129,7 +124,7 @@ impl<'a> Cut<'a> {
     }
 }
 
-/// How many of the first values are the same.
+/// Number of the first values that are equal.
 fn same(values: &[u16]) -> usize {
     let mut count = 0;
     for block in values.chunks(SEARCH_BLOCK) {

@@ -7,8 +7,8 @@ use crate::solver::preconditioner::Preconditioner;
 pub(crate) const FLAT_PUNCH_TOLERANCE: f64 = 1e-7;
 const MAX_ITERATIONS: usize = 500;
 
-/// Σ q over the cells with K q = 1 on those for which `touches` holds and q = 0 elsewhere: the pressure under a rigid
-/// displacement of a body of unit compliance, by preconditioned conjugate gradients. If they do not converge, their
+/// Σ q over the cells, with K q = 1 on cells for which `touches` holds and q = 0 elsewhere: the pressure under a rigid
+/// displacement of a body of unit compliance, by preconditioned conjugate gradients. If they do not converge, it fails with their number of
 /// iterations and the residual reached.
 pub(crate) fn flat_punch(kernel: &LocalKernel, touches: impl Fn(usize) -> bool) -> Result<f64, (usize, f64)> {
     let (cells, rows) = (kernel.grid().len(), kernel.rows());

@@ -26,21 +26,15 @@ impl Trace {
     /// Adds the residual after some iterations.
     pub(crate) fn note(&mut self, iterations: usize, residual: f64) {
         self.last = (u32::try_from(iterations).unwrap_or(u32::MAX), residual);
-        if !iterations.is_multiple_of(self.stride) {
-            return;
-        }
-        if self.len == MAX_SAMPLES {
+        if self.len == MAX_SAMPLES && iterations.is_multiple_of(self.stride) {
             self.stride = self.stride.saturating_mul(2);
-            for k in 1..MAX_SAMPLES / 2 {
-                self.samples[k] = self.samples[2 * k];
-            }
             self.len = MAX_SAMPLES / 2;
-            if !iterations.is_multiple_of(self.stride) {
-                return;
-            }
+            (1..self.len).for_each(|k| self.samples[k] = self.samples[2 * k]);
         }
-        self.samples[self.len] = self.last;
-        self.len += 1;
+        if iterations.is_multiple_of(self.stride) {
+            self.samples[self.len] = self.last;
+            self.len += 1;
+        }
     }
 
     /// Iterations and residuals, the last one included.

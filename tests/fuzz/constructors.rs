@@ -161,14 +161,14 @@ fn analytic(source: &mut Source) -> Verdict {
     let [r, s] = [source.scale(1e-9, 1.0), source.scale(1e-9, 1.0)];
     match source.below(5) {
         0 => judged(Hertz::new(radius, modulus, force), |hertz| {
-            known("Hertz", [hertz.contact_radius(), hertz.max_pressure(), hertz.approach(), hertz.pressure(0.0)])
+            known("Hertz", [hertz.contact_radius, hertz.max_pressure, hertz.approach, hertz.pressure(0.0)])
         }),
         1 => judged(HertzEllipse::new([radius, source.scale(1e-3, 1.0)], modulus, force), |ellipse| {
-            let [a, b] = ellipse.semi_axes();
-            known("ellipse", [a, b, ellipse.max_pressure(), ellipse.approach(), ellipse.pressure(0.0, 0.0)])
+            let [a, b] = ellipse.semi_axes;
+            known("ellipse", [a, b, ellipse.max_pressure, ellipse.approach, ellipse.pressure(0.0, 0.0)])
         }),
         2 => judged(RigidPunch::new(radius, modulus, force, radius * source.between(-0.4, 0.4)), |punch| {
-            known("punch", [punch.approach(), punch.tilt(), punch.pressure(0.0, 0.0)])
+            known("punch", [punch.approach, punch.tilt, punch.pressure(0.0, 0.0)])
         }),
         3 => {
             let Ok(material) = models::material(source, false) else { return Ok(Outcome::Refused) };

@@ -107,13 +107,13 @@ pub fn look(contact: &ViscoelasticContact, report: &StepReport, source: &mut Sou
     }
     known("pressures", [contact.mean_pressure(), contact.max_pressure()])?;
     if let Ok(patches) = contact.patches() {
-        let all = patches.all().iter();
+        let all = patches.all.iter();
         let of = |patch: &viscocontact::observe::Patch| [patch.area, patch.force, patch.centroid[0], patch.centroid[1]];
         known("patches", all.flat_map(of))?;
     }
     for distribution in [contact.gap_distribution(5), contact.pressure_distribution(5)].into_iter().flatten() {
-        known("distribution", distribution.density().iter().copied())?;
-        known("distribution", distribution.centers().chain([distribution.width(), distribution.share_at_zero()]))?;
+        known("distribution", distribution.density.iter().copied())?;
+        known("distribution", distribution.centers().chain([distribution.width, distribution.share_at_zero]))?;
     }
     if let Ok(profile) = contact.profile(source.choose(&[Axis::X1, Axis::X2]), 0.0) {
         known("profile", profile.positions.into_iter().chain(profile.gap))?;

@@ -53,8 +53,8 @@ fn few_cells_are_warned_of() {
         let mut contact = contact(cells, maxwell(), Settings::default());
         let report = contact.step(0.0, Load::force(0.1)).unwrap();
         assert_eq!(report.warnings.contains(Warnings::FEW_CELLS), few, "{cells}");
-        let approach = (report.approach / hertz.approach() - 1.0).abs();
-        let peak = (contact.max_pressure() / hertz.max_pressure() - 1.0).abs();
+        let approach = (report.approach / hertz.approach - 1.0).abs();
+        let peak = (contact.max_pressure() / hertz.max_pressure - 1.0).abs();
         println!("{} cells in contact: approach {approach:.1e}, peak {peak:.1e}", report.contact_cells);
     }
 }
@@ -137,7 +137,7 @@ fn no_pressure_is_negative_when_iterations_run_out() {
 #[test]
 fn few_cells_are_warned_of_where_errors_are_large() {
     let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 1.0).unwrap();
-    let a = hertz.contact_radius();
+    let a = hertz.contact_radius;
     // the greatest errors of approach, peak and area over places of the sphere within a cell; whether each was warned of
     let worst = |across: f64| {
         let side = 2.0 * a / across;
@@ -152,7 +152,7 @@ fn few_cells_are_warned_of_where_errors_are_large() {
             let report = contact.step(0.0, Load::force(1.0)).unwrap();
             warned += u32::from(report.warnings.contains(Warnings::FEW_CELLS));
             let found = [contact.approach(), contact.max_pressure(), contact.contact_area()];
-            let exact = [hertz.approach(), hertz.max_pressure(), std::f64::consts::PI * a * a];
+            let exact = [hertz.approach, hertz.max_pressure, std::f64::consts::PI * a * a];
             errors = [0, 1, 2].map(|i| errors[i].max((found[i] / exact[i] - 1.0).abs()));
         }
         (errors, warned)

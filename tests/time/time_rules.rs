@@ -87,7 +87,7 @@ fn a_step_of_length_zero_is_elastic() {
 fn the_default_rule_takes_steps_of_any_length() {
     let scene = StepLoadedSphere::zener();
     let exact = |modulus: f64| viscocontact::analytic::Hertz::new(scene.radius, modulus, scene.force).unwrap();
-    let (glassy, relaxed) = (exact(4.0e6).approach(), exact(2.0e6).approach());
+    let (glassy, relaxed) = (exact(4.0e6).approach, exact(2.0e6).approach);
     let mut last = 0.0;
     for exponent in (-12..=12).step_by(3) {
         let mut contact = scene.contact(64, Settings::default()).unwrap();

@@ -45,10 +45,10 @@ impl Shape {
             Shape::Punch => (Profile::punch(PUNCH).unwrap(), [1.0; 2]),
             Shape::Ellipsoid(other) => {
                 let ellipse = HertzEllipse::new([RADIUS, other], 4.0 * MODULUS, 1.0).unwrap();
-                let [a, b] = ellipse.semi_axes();
+                let [a, b] = ellipse.semi_axes;
                 let radius = a.powi(3) * 4.0 * MODULUS / 0.75;
                 let sphere = Hertz::new(radius, 4.0 * MODULUS, 1.0).unwrap();
-                (Profile::sphere(radius).unwrap(), [ellipse.approach() / sphere.approach(), a / b])
+                (Profile::sphere(radius).unwrap(), [ellipse.approach / sphere.approach, a / b])
             }
         }
     }
@@ -63,8 +63,8 @@ impl Shape {
             }
             Shape::Ellipsoid(other) => {
                 let unit = HertzEllipse::new([RADIUS, other], 1.0 / compliance, 1.0).unwrap();
-                let force = (radius / unit.semi_axes()[0]).powi(3);
-                [unit.approach() * force.powf(2.0 / 3.0), force]
+                let force = (radius / unit.semi_axes[0]).powi(3);
+                [unit.approach * force.powf(2.0 / 3.0), force]
             }
             Shape::Punch => [0.02 * PUNCH, 0.04 * PUNCH * PUNCH / compliance],
         }

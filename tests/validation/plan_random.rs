@@ -107,14 +107,14 @@ fn scene(seed: u64) -> Scene {
         3 => {
             let radii = [radius, radius * random.scale(0.02, 50.0)];
             let unit = HertzEllipse::new(radii, 1.0e6, 1.0).unwrap();
-            let [a, b] = unit.semi_axes();
+            let [a, b] = unit.semi_axes;
             // the sphere whose contact radius is the semi-axis a at all times: the pressure is a/b of its pressure
             let equal = GrowingSphere::step(a.powi(3) * 1.0e6 / 0.75, &material, 1.0).unwrap();
             let compliance = material.clone();
             let state = move |t: f64| {
                 let now = HertzEllipse::new(radii, 1.0 / compliance.contact_compliance(t), 1.0).unwrap();
-                let [a, b] = now.semi_axes();
-                [Some(now.approach()), Some((a * b).sqrt()), Some(a / b * highest(&equal, t))]
+                let [a, b] = now.semi_axes;
+                [Some(now.approach), Some((a * b).sqrt()), Some(a / b * highest(&equal, t))]
             };
             let held = Box::new(StepLoad::new(Load::force(1.0)).unwrap());
             let _ = b;

@@ -18,7 +18,7 @@ const G: f64 = 1.0e6;
 /// A ball on an elastic body, on a grid 2.6 contact radii wide.
 fn ball(cells: usize, nu: f64) -> (ViscoelasticContact, Hertz) {
     let hertz = Hertz::new(RADIUS, 2.0 * G / (1.0 - nu), 0.5).unwrap();
-    let grid = Grid::square(cells, 2.6 * hertz.contact_radius()).unwrap();
+    let grid = Grid::square(cells, 2.6 * hertz.contact_radius).unwrap();
     let mut contact = ViscoelasticContact::builder(grid)
         .geometry(&Sphere::new(RADIUS).unwrap())
         .material(Material::constant_poisson(Elastic::new(G).unwrap(), nu).unwrap())
@@ -38,8 +38,8 @@ fn depths(count: usize, last: f64) -> Vec<f64> {
 fn a_ball_yields_where_hertz_says() {
     for (nu, value, depth) in [(0.3, 0.620_041, 0.480_87), (0.5, 0.532_697, 0.547_87)] {
         let (contact, hertz) = ball(256, nu);
-        let (a, peak) = (hertz.contact_radius(), hertz.pressure(0.0));
-        let found = contact.stress().unwrap().max_von_mises(&depths(12, 1.2 * a)).unwrap();
+        let (a, peak) = (hertz.contact_radius, hertz.pressure(0.0));
+        let found = contact.stress().unwrap().greatest(&depths(12, 1.2 * a), Stress::von_mises).unwrap();
         let error = found.value / (value * peak) - 1.0;
         let [x1, x2, x3] = found.position.map(|x| x / a);
         println!("ν = {nu}: von Mises {error:.1e}, depth {:.1e} a, aside {x1:.1e} {x2:.1e}", x3 - depth);
@@ -47,7 +47,7 @@ fn a_ball_yields_where_hertz_says() {
         assert!((x3 - depth).abs() < 1e-4 && x1.abs() < 1e-6 && x2.abs() < 1e-6, "{nu}: {:?}", found.position);
         assert!(!found.at_end_of_depths && found.stress.von_mises() == found.value);
         // on the axis two principal stresses are equal: Tresca is von Mises, and of the same place
-        let tresca = contact.stress().unwrap().max_tresca(&depths(12, 1.2 * a)).unwrap();
+        let tresca = contact.stress().unwrap().greatest(&depths(12, 1.2 * a), Stress::tresca).unwrap();
         assert!((tresca.value / found.value - 1.0).abs() < 1e-6, "{}", tresca.value);
     }
 }
@@ -57,7 +57,8 @@ fn a_ball_yields_where_hertz_says() {
 fn the_greatest_stress_converges() {
     let error = |cells: usize| {
         let (contact, hertz) = ball(cells, 0.3);
-        let found = contact.stress().unwrap().max_von_mises(&depths(12, 1.2 * hertz.contact_radius())).unwrap();
+        let found =
+            contact.stress().unwrap().greatest(&depths(12, 1.2 * hertz.contact_radius), Stress::von_mises).unwrap();
         (found.value / (0.620_041 * hertz.pressure(0.0)) - 1.0).abs()
     };
     let errors = [32, 128].map(error);
@@ -71,7 +72,7 @@ fn the_greatest_stress_converges() {
 fn hertz_on_the_axis() {
     for nu in [0.0, 0.3, 0.5] {
         let (contact, hertz) = ball(256, nu);
-        let (a, peak) = (hertz.contact_radius(), hertz.pressure(0.0));
+        let (a, peak) = (hertz.contact_radius, hertz.pressure(0.0));
         let stress = contact.stress().unwrap();
         for zeta in [0.02, 0.1, 0.3, 0.5, 1.0, 2.0, 5.0, 30.0] {
             let found = stress.at(&[[0.0, 0.0, zeta * a]]).unwrap()[0];
@@ -107,7 +108,7 @@ fn a_cylinder_yields_where_hertz_says() {
             .unwrap();
         contact.step(0.0, Load::force(per_length)).unwrap();
         let stress = contact.stress().unwrap();
-        let found = stress.max_tresca(&depths(12, 1.5 * a)).unwrap();
+        let found = stress.greatest(&depths(12, 1.5 * a), Stress::tresca).unwrap();
         let error = 0.5 * found.value / (0.300_283 * peak) - 1.0;
         assert!(error.abs() < 1e-3, "{error:e}");
         let [depth, aside] = [found.position[2] / a, found.position[axis] / a];
@@ -129,7 +130,7 @@ fn a_cylinder_yields_where_hertz_says() {
 #[test]
 fn a_plane_carries_the_force() {
     let (contact, hertz) = ball(64, 0.3);
-    let grid = Grid::square(192, 24.0 * hertz.contact_radius()).unwrap();
+    let grid = Grid::square(192, 24.0 * hertz.contact_radius).unwrap();
     let mut wide = ViscoelasticContact::builder(grid)
         .geometry(&Sphere::new(RADIUS).unwrap())
         .material(contact.material().clone())
@@ -138,11 +139,11 @@ fn a_plane_carries_the_force() {
     wide.step(0.0, Load::force(0.5)).unwrap();
     let stress = wide.stress().unwrap();
     for over_a in [0.5, 1.0, 2.0] {
-        let z = over_a * hertz.contact_radius();
+        let z = over_a * hertz.contact_radius;
         let plane = stress.on_plane(z).unwrap();
         let force = -plane.iter().map(|s| s.s33).sum::<f64>() * wide.grid().cell_area();
         let beyond = |c: f64| (1.0 + (c / z).powi(2)).powf(-1.5);
-        let half = 12.0 * hertz.contact_radius();
+        let half = 12.0 * hertz.contact_radius;
         let missing = 1.0 - force / wide.force();
         assert!(missing < 1.02 * beyond(half) && missing > 0.98 * beyond(2f64.sqrt() * half), "{over_a}: {missing:e}");
     }
@@ -172,7 +173,7 @@ fn the_stress_below_a_window_that_grows() {
             let pairs = a.components().into_iter().zip(b.components());
             pairs.for_each(|(a, b)| assert!((a - b).abs() < 1e-7 * peak, "{touched} cells: {a:e} {b:e}"));
         }
-        let [a, b] = [one, other].map(|stress| stress.max_von_mises(&depths).unwrap().value);
+        let [a, b] = [one, other].map(|stress| stress.greatest(&depths, Stress::von_mises).unwrap().value);
         assert!((a / b - 1.0).abs() < 1e-7, "{a:e} {b:e}");
     }
     assert!(10 * sizes[0] < sizes[4] && sizes[4] < 96 * 96 / 4, "{sizes:?}");
@@ -222,7 +223,7 @@ fn below_a_rolling_cylinder_the_stress_skews_with_the_pressure() {
         let rolled = roll(&scene, direction, 5.0 * scene.reach);
         let contact = &rolled.contact;
         let depths: Vec<f64> = (1..30).map(|k| 0.05 * a * f64::from(k)).collect();
-        let peak = contact.stress().unwrap().max_tresca(&depths).unwrap();
+        let peak = contact.stress().unwrap().greatest(&depths, Stress::tresca).unwrap();
         let middle = contact.asymmetry([rolled.at, 0.0]).unwrap().unwrap().center_of_pressure[0];
         let section = contact.stress().unwrap().on_section(Axis::X1, 0.0, &depths).unwrap();
         // left and right of the point of the greatest stress, at its depth

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::contact::builder::memory::{Footprint, Memory, symmetry_of};
-use crate::contact::builder::{Builder, OwnGap};
+use crate::contact::builder::{Builder, LocalGap};
 #[cfg(feature = "checkpoint")]
 use crate::contact::checkpoint::scene_fingerprint::Built;
 use crate::contact::computation::Computation;
@@ -38,8 +38,8 @@ impl Builder {
     /// If there is not enough memory ([`Error::OutOfMemory`], before any is taken; systems that overcommit memory, as Linux
     /// does, may grant more than is free), or more than 2³² − 1 cells would be computed.
     ///
-    /// If [`Builder::ranks`] share out the rows: an error of one of them is an error on all, [`RanksError::Failed`]; so is what
-    /// cannot be shared out ([`RanksError::NotShared`]).
+    /// If [`Builder::ranks`] share out the rows: an error of one rank is an error on all ([`RanksError::Failed`]); a scene that
+    /// cannot be shared out is refused ([`RanksError::NotShared`]).
     pub fn build(mut self) -> Result<ViscoelasticContact> {
         let Some(group) = &self.ranks else {
             self.validate()?;
@@ -50,7 +50,7 @@ impl Builder {
             let folded = if self.settings.symmetry { indenter.even_axes(&self.grid) } else { [false; 2] };
             let region = if parts.are_windowed() {
                 // without load, each body is above the cell that it would touch first
-                Region::first_touched(&self.grid, folded, indenter.gap(), bodies)
+                Region::around(&self.grid, folded, Region::lowest_cells(&self.grid, indenter.gap(), bodies), 0.0)
             } else {
                 Region::whole(&self.grid, folded)
             };
@@ -87,7 +87,7 @@ impl Builder {
 
     /// The rows of the whole grid that ranks share out, after they have agreed that they can. A call of all ranks.
     fn agreed_rows(&self, group: &Arc<dyn Ranks>) -> Result<Rows> {
-        // what is agreed upon before there are rows to share
+        // for the agreement on the grid, before there are rows to share
         let anything = Rows::of_rank([1, 1], Arc::clone(group));
         anything.together(|| {
             anything.agree(self.may_be_shared())?;
@@ -98,7 +98,7 @@ impl Builder {
         })
     }
 
-    /// Rejects what ranks cannot share out, and what has to be valid before it is.
+    /// Rejects invalid settings, and scenes that ranks cannot share out.
     fn may_be_shared(&self) -> Result<()> {
         self.validate()?;
         let Settings { solver, time_rule, frame, .. } = self.settings;
@@ -115,9 +115,9 @@ impl Builder {
     }
 
     /// Parts, gap, its symmetry and the region of a contact whose rows ranks share out. A call of all ranks.
-    fn shared_parts<'a>(&self, gaps: &'a [OwnGap], rows: &Rows) -> Result<(Parts, SharedGap<'a>, [bool; 2], Region)> {
+    fn shared_parts<'a>(&self, gaps: &'a [LocalGap], rows: &Rows) -> Result<(Parts, SharedGap<'a>, [bool; 2], Region)> {
         let parts = rows.agree(self.parts())?;
-        let gap = SharedGap::new(rows.agree(own_gap(gaps, rows))?, &self.grid, rows)?;
+        let gap = SharedGap::new(rows.agree(local_gap(gaps, rows))?, &self.grid, rows)?;
         let even = gap.even_axes();
         let region = Region::shared(&self.grid, even.map(|even| even && self.settings.symmetry), rows);
         Ok((parts, gap, even, region))
@@ -125,12 +125,11 @@ impl Builder {
 
     /// The memory that the contact will take; no field is allocated to find out. The cells that are computed follow from the
     /// symmetry of the gap ([`Settings::symmetry`](crate::contact::Settings::symmetry)); with [`Settings::window`](crate::contact::Settings::window) the figure holds for the largest window. A
-    /// load that breaks the symmetry makes the contact compute the mirror images too: set symmetry to false for what that
-    /// takes. Where there is not even memory for the gap, it counts as asymmetric.
+    /// load that breaks the symmetry makes the contact compute the mirror images too: the memory for these is returned with
+    /// symmetry set to false. A gap for which there is no memory counts as asymmetric.
     ///
-    /// A series of the material over [`Builder::times`] is fitted for it, in a tenth of a second. Threads belong to the
-    /// pool in which it is called. Of a contact that [ranks](crate::parallel) share out it counts the local rows, and is a call of all
-    /// of them.
+    /// A series of the material over [`Builder::times`] is fitted for this, in a tenth of a second. The threads are those of the
+    /// pool of the call. For a contact that [ranks](crate::parallel) share out, the local rows count; all ranks must call.
     ///
     /// ```
     /// use viscocontact::prelude::*;
@@ -204,8 +203,8 @@ impl Builder {
     }
 }
 
-/// The gap on own rows of the whole grid.
-fn own_gap<'a>(gaps: &'a [OwnGap], rows: &Rows) -> Result<&'a [f64]> {
+/// The gap on the local rows of the whole grid.
+fn local_gap<'a>(gaps: &'a [LocalGap], rows: &Rows) -> Result<&'a [f64]> {
     let Some((has, gap)) = gaps.first() else { return Err(Error::Missing { part: "geometry" }) };
     let (gap, own, [n1, n2]) = (gap.as_ref().map_err(Error::clone)?, rows.own(), rows.cells());
     match has {
@@ -234,8 +233,8 @@ impl Parts {
     }
 }
 
-/// Whether only a part of the grid is computed. Elsewhere than on a half-space nothing is known of the displacement outside
-/// a window.
+/// Whether only a part of the grid is computed: on half-spaces only, since the displacement outside a window is bounded for
+/// these alone.
 pub(in crate::contact) fn windowed(settings: &Settings, history: &History, kernel: &InfluenceKernel) -> bool {
     settings.window && history.has_far_field() && kernel.is_half_space()
 }

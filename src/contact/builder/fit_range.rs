@@ -1,4 +1,4 @@
-//! The times over which a material is wanted.
+//! The range of times over which the series of a material is fitted.
 
 use std::ops::RangeInclusive;
 
@@ -6,27 +6,23 @@ use crate::error::{Error, Result};
 use crate::load::LoadHistory;
 use crate::rheology::{Material, TemperatureHistory};
 
-/// The shortest time that a run is taken to look at is this part of the shortest time between corners of its load, ...
+/// Ratio of the shortest time of a run to the shortest time between corners of its load.
 const SHORTEST_PART: f64 = 1e-6;
-/// ... of the first so many.
+/// Number of corners of the load that are compared.
 const MAX_CORNERS: usize = 1000;
-/// The slowest creep of a run is looked for at so many temperatures.
+/// Number of temperatures among which the slowest creep of a run is sought.
 const TEMPERATURES: i32 = 64;
 
 /// The times over which the series of a material is fitted.
 #[derive(Debug, Clone)]
 pub(in crate::contact) struct Times {
-    range: RangeInclusive<f64>,
-    /// Whether they were taken from a run, which fails where the material is not known.
-    of_run: bool,
+    pub(super) range: RangeInclusive<f64>,
+    /// Whether the times come from a run; a run fails where the material is not known.
+    pub(super) of_run: bool,
 }
 
 impl Times {
-    pub(in crate::contact) fn new(range: RangeInclusive<f64>) -> Times {
-        Times { range, of_run: false }
-    }
-
-    /// Those of a run along `history` to the time `until`.
+    /// The times of a run along `history` to the time `until`.
     pub(in crate::contact) fn of_run(history: &dyn LoadHistory, until: f64) -> Times {
         let (mut shortest, mut corner) = (until, 0.0);
         for _ in 0..MAX_CORNERS {
@@ -41,7 +37,7 @@ impl Times {
         Times { range: SHORTEST_PART * shortest..=until, of_run: true }
     }
 
-    /// The material with a series over these times, where it has no exact one.
+    /// The material, with a series over these times if it has no exact series.
     pub(in crate::contact) fn fit(
         &self,
         material: &Material,

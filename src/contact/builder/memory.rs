@@ -110,11 +110,10 @@ impl Footprint<'_> {
         // the whole gap, which ranks do not have; its computed part; the pressure on the grid
         let whole = if region.is_shared() { 0 } else { gap * all };
         let grid = if count == shown { gap * n } else { whole + 8 * all + gap * n };
-        let no_gap = Gap { datum: 0.0, above: Vec::new(), owner: None };
-        let indenter = Arc::new(Indenter::new(no_gap, self.bodies));
-        let per_cell = 8 * State::layout(indenter, region.clone(), self.history).values_per_cell();
+        let indenter = Arc::new(Indenter::new(Gap::default(), self.bodies));
+        let layout = State::layout(indenter, region.clone(), self.history);
         // the displacement at both ends of a step counts as state
-        let of_history = 8 * (self.history.values_per_cell(!region.covers()) - 2);
+        let [per_cell, of_history] = [layout.values_per_cell(), layout.history.values_per_cell() - 2].map(|n| 8 * n);
         let rows = if region.is_shared() { region.rows() } else { Rows::all(cells) };
         let [kernel, inverse] = self.kernel.bytes(&rows, region.folded());
         // three fields, a mark, and runs of cells

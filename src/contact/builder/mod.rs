@@ -24,7 +24,7 @@ use crate::rheology::{Material, TemperatureHistory};
 pub struct Builder {
     pub(super) grid: Grid,
     /// The gap of each rigid body.
-    pub(super) gaps: Vec<OwnGap>,
+    pub(super) gaps: Vec<LocalGap>,
     pub(super) material: Option<Material>,
     pub(super) counter_body: Option<Material>,
     pub(super) times: Option<Times>,
@@ -35,7 +35,7 @@ pub struct Builder {
 }
 
 /// Rows of the grid, and a gap on them if there was memory for it.
-pub(super) type OwnGap = (Range<usize>, Result<Vec<f64>>);
+pub(super) type LocalGap = (Range<usize>, Result<Vec<f64>>);
 
 impl ViscoelasticContact {
     /// A builder for a contact on `grid`.
@@ -56,13 +56,13 @@ impl ViscoelasticContact {
 
 impl Builder {
     /// The shape of the rigid body: the gap before the bodies deform. Required; evaluated here, errors are
-    /// reported by [`Builder::build`]. Replaces what was given before.
+    /// reported by [`Builder::build`]. Replaces the shapes given before.
     pub fn geometry(mut self, geometry: &dyn Geometry) -> Builder {
         self.gaps.clear();
         self.another_body(geometry)
     }
 
-    /// A further rigid body on the same creeping one, with a force, approach and tilt of its own: see
+    /// A further rigid body on the same creeping body, with a force, approach and tilt of its own: see
     /// [`ViscoelasticContact::step_each`]. Gaps are measured from the same plane; a cell can be touched by one
     /// body only, the one whose gap is lowest there.
     pub fn another_body(mut self, geometry: &dyn Geometry) -> Builder {
@@ -75,16 +75,14 @@ impl Builder {
 
     /// The material of the creeping body. Required. The other body is rigid unless [`Builder::counter_body`] gives its
     /// material.
-    pub fn material(mut self, material: Material) -> Builder {
-        self.material = Some(material);
-        self
+    pub fn material(self, material: Material) -> Builder {
+        Builder { material: Some(material), ..self }
     }
 
     /// The material of the other body, the one with the shape: elastic or creeping too. Both surfaces then
     /// deform: u is the sum of their displacements, and C(t) the sum of their compliances.
-    pub fn counter_body(mut self, material: Material) -> Builder {
-        self.counter_body = Some(material);
-        self
+    pub fn counter_body(self, material: Material) -> Builder {
+        Builder { counter_body: Some(material), ..self }
     }
 
     /// The loading times \[s\] over which the material is needed, from the shortest that matters to the end of the scene,
@@ -110,9 +108,8 @@ impl Builder {
     /// assert!(fit.max_misfit() <= 1.0e-4);
     /// # Ok::<(), viscocontact::Error>(())
     /// ```
-    pub fn times(mut self, times: RangeInclusive<f64>) -> Builder {
-        self.times = Some(Times::new(times));
-        self
+    pub fn times(self, times: RangeInclusive<f64>) -> Builder {
+        Builder { times: Some(Times { range: times, of_run: false }), ..self }
     }
 
     /// [`Builder::times`] of a run along `history` that ends at `until` \[s\]: from a millionth of the shortest time between
@@ -137,34 +134,31 @@ impl Builder {
     }
 
     /// A temperature that changes: all material then creeps in reduced time, ξ = ∫ dt/a_T(T(t)), with its times at the reference
-    /// temperature of the law. Those of [`Builder::times`] and [`Error::BeyondMaterial`](crate::Error::BeyondMaterial) are
+    /// temperature of the law. The times of [`Builder::times`] and [`Error::BeyondMaterial`](crate::Error::BeyondMaterial) are
     /// reduced times; [`Builder::times_of`] takes them from the run. A scene without one costs nothing more.
     ///
     /// A step fails where the temperature is outside the range of the law.
-    pub fn temperature(mut self, history: TemperatureHistory) -> Builder {
-        self.temperature = Some(history);
-        self
+    pub fn temperature(self, history: TemperatureHistory) -> Builder {
+        Builder { temperature: Some(history), ..self }
     }
 
     /// An influence kernel to share with other contacts on the same grid; without one,
     /// [`InfluenceKernel::half_space`] is made.
-    pub fn kernel(mut self, kernel: Arc<InfluenceKernel>) -> Builder {
-        self.kernel = Some(kernel);
-        self
+    pub fn kernel(self, kernel: Arc<InfluenceKernel>) -> Builder {
+        Builder { kernel: Some(kernel), ..self }
     }
 
     /// Settings other than the defaults.
-    pub fn settings(mut self, settings: Settings) -> Builder {
-        self.settings = settings;
-        self
+    pub fn settings(self, settings: Settings) -> Builder {
+        Builder { settings, ..self }
     }
 
     /// The [ranks](crate::parallel) that share out the rows of the contact, each of which builds it from the same parts. Without
     /// it, this process computes all of it.
     ///
-    /// Geometries that follow it are evaluated on own rows alone; those before it are on the whole grid, 8 bytes a cell.
-    pub fn ranks(mut self, ranks: Arc<dyn Ranks>) -> Builder {
-        self.ranks = Some(ranks);
-        self
+    /// Geometries given after this call are evaluated on the local rows alone; geometries before it on the whole grid, 8 bytes a
+    /// cell.
+    pub fn ranks(self, ranks: Arc<dyn Ranks>) -> Builder {
+        Builder { ranks: Some(ranks), ..self }
     }
 }

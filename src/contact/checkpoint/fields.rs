@@ -70,7 +70,7 @@ impl<'a> FieldWriter<'a> {
     fn write(&mut self, values: impl Iterator<Item = f64>) {
         if let (Some(out), Ok(())) = (&mut self.out, &self.written) {
             self.bytes.clear();
-            self.bytes.extend(values.flat_map(f64::to_le_bytes));
+            values.for_each(|value| self.bytes.extend_from_slice(&value.to_le_bytes()));
             self.written = out.write_all(&self.bytes);
         }
     }
@@ -82,42 +82,18 @@ impl<'a> FieldWriter<'a> {
     }
 }
 
-/// Reads fields one after the other, on the rows of a rank.
-pub(super) struct FieldReader {
-    file: Input,
-    /// Values of the fields that were read.
-    read: u64,
-}
-
-impl FieldReader {
-    pub(super) fn new(file: Input) -> FieldReader {
-        FieldReader { file, read: 0 }
-    }
-
-    /// The state of which the file has all fields, on the local rows of a region.
-    pub(super) fn state(&mut self, layout: &State, region: &Region) -> Result<State, CheckpointError> {
-        let (rows, cells) = (region.rows(), region.len());
-        let mut sound = Ok(());
-        let state = layout.map(region, &mut |field| {
-            if let Role::Work = field.role {
-                return vec![0.0; field.per_cell * cells];
-            }
-            interleaved(field.per_cell, cells, |_| match self.rows(&rows) {
-                Ok(values) => values,
-                Err(error) => {
-                    sound = Err(error);
-                    Vec::new()
-                }
+/// Reads all fields of a state, on the local rows of a region.
+pub(super) fn read_state(file: &mut Input, layout: &State, region: &Region) -> Result<State, CheckpointError> {
+    let (rows, cells) = (region.rows(), region.len());
+    let mut sound = Ok(());
+    let state = layout.map(region, &mut |field| match field.role {
+        Role::Work => vec![0.0; field.per_cell * cells],
+        _ => interleaved(field.per_cell, cells, |_| {
+            file.rows(&rows).unwrap_or_else(|error| {
+                sound = Err(error);
+                Vec::new()
             })
-        });
-        sound.map(|()| state)
-    }
-
-    /// The next value of each local cell.
-    pub(super) fn rows(&mut self, rows: &Rows) -> Result<Vec<f64>, CheckpointError> {
-        let (own, columns) = (rows.own(), rows.cells()[1]);
-        let values = self.file.values(self.read + (own.start * columns) as u64, own.len() * columns);
-        self.read += rows.len() as u64;
-        values
-    }
+        }),
+    });
+    sound.map(|()| state)
 }

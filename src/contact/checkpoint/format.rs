@@ -71,7 +71,7 @@ pub(super) struct Input {
     header: [u8; HEADER],
     /// Bytes of the contents.
     length: u64,
-    /// Where the values begin, once the contents before them were read.
+    /// Where the values that are read next begin.
     values: u64,
 }
 
@@ -150,11 +150,13 @@ impl Input {
         count.checked_mul(8).and_then(|bytes| bytes.checked_add(self.values)) == Some(self.length + HEADER as u64)
     }
 
-    /// Reads `count` values after the first `skipped` ones.
-    pub(super) fn values(&mut self, skipped: u64, count: usize) -> Result<Vec<f64>, CheckpointError> {
-        self.file.seek(SeekFrom::Start(self.values + 8 * skipped)).map_err(unreadable)?;
-        let (mut values, mut bytes) = (Vec::with_capacity(count), [0; 8]);
-        for _ in 0..count {
+    /// Reads one value for each local cell, of the next values of all cells.
+    pub(super) fn rows(&mut self, rows: &Rows) -> Result<Vec<f64>, CheckpointError> {
+        let (own, columns) = (rows.own(), rows.cells()[1]);
+        self.file.seek(SeekFrom::Start(self.values + 8 * (own.start * columns) as u64)).map_err(unreadable)?;
+        self.values += 8 * rows.len() as u64;
+        let (mut values, mut bytes) = (Vec::with_capacity(own.len() * columns), [0; 8]);
+        for _ in 0..own.len() * columns {
             self.file.read_exact(&mut bytes).map_err(unreadable)?;
             values.push(f64::from_le_bytes(bytes));
         }

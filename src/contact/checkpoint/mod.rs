@@ -16,13 +16,12 @@ use crate::contact::indenter::Indenter;
 use crate::contact::run::progress::Progress;
 use crate::contact::state::State;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::contact::window::region::Region;
 use crate::error::{CheckpointError, Error, Result};
 use crate::geometry::Gap;
 use crate::parallel::Rows;
-use fields::{FieldReader, FieldWriter};
+use fields::{FieldWriter, read_state};
 use format::{Input, Output};
-use saved::Saved;
+use saved::{Saved, check_fields, malformed, moved_indenter};
 use scene_fingerprint::{Built, difference};
 
 impl ViscoelasticContact {
@@ -74,8 +73,8 @@ impl ViscoelasticContact {
     /// [`ViscoelasticContact::save`] with how far a run along a history has come.
     pub(super) fn save_with(&self, path: &Path, progress: Option<&Progress>) -> Result<()> {
         let State { region, indenter, .. } = &self.computation.state;
-        let (rows, above) = (region.rows(), &indenter.gap().above);
-        rows.replace_file(path, |out| {
+        let above = &indenter.gap().above;
+        region.rows().replace_file(path, |out| {
             let saved = Saved::of(self, progress);
             let begun = out.map(|out| {
                 let mut out = Output::begin(out)?;
@@ -85,12 +84,8 @@ impl ViscoelasticContact {
             let mut fields = FieldWriter::new(begun);
             fields.state(&self.computation.state);
             let (gap, n2) = (saved.gap_region(self), self.scene.grid.cells()[1]);
-            if rows.are_shared() {
-                fields.rows(&rows, |cells| above[cells].iter().copied());
-            } else {
-                let value = |k| gap.cell(k);
-                fields.rows(&gap.rows(), |cells| cells.map(value).map(|[i, j]| above[i * n2 + j]));
-            }
+            let place = |k| if gap.is_shared() { k } else { gap.cell(k)[0] * n2 + gap.cell(k)[1] };
+            fields.rows(&gap.rows(), |cells| cells.map(|k| above[place(k)]));
             fields.finish()
         })
     }
@@ -141,28 +136,26 @@ impl ViscoelasticContact {
         rows.same([f64::from(file.stated_checksum())])?;
         let of_part = all.of(file.checksum_of_part(rows))?;
         all.of(file.require_checksum(rows, of_part))?;
-        let saved = file.contents::<Saved<'_>>().and_then(|saved| saved.check(self).map(|()| saved));
+        let saved = file.contents::<Saved<'_>>().and_then(|saved| {
+            saved.check(self)?;
+            if file.has_values(saved.values(self)) { Ok(saved) } else { malformed("fields that do not fit its region") }
+        });
         let saved = all.of(saved)?;
-        let (values, gap_region) = (saved.values(self), saved.gap_region(self));
-        all.of(if file.has_values(values) { Ok(()) } else { saved::malformed("fields that do not fit its region") })?;
 
-        let (grid, own, folded) = (&self.scene.grid, &self.computation.state, saved.state.region.folded());
-        let shared = own.region.is_shared();
-        let region = if shared { Region::shared(grid, folded, &own.region.rows()) } else { saved.state.region.clone() };
-        let gap_region = if shared { &region } else { &gap_region };
-        let mut fields = FieldReader::new(file);
-        let read = fields.state(&saved.state, &region).and_then(|state| {
+        let own = &self.computation.state;
+        let (region, gap_region) = (saved.state.region.clone().shared_like(&own.region), saved.gap_region(self));
+        let read = read_state(&mut file, &saved.state, &region).and_then(|state| {
             let Gap { datum, owner, .. } = saved.state.indenter.gap().clone();
-            let gap = Gap { datum, owner, above: fields.rows(&gap_region.rows())? };
-            saved::check_fields(&state, &gap).map(|()| (state, gap))
+            let gap = Gap { datum, owner, above: file.rows(&gap_region.rows())? };
+            check_fields(&state, &gap).map(|()| (state, gap))
         });
         let (state, mut gap) = all.of(read)?;
-        let indenter = if shared {
+        let indenter = if region.is_shared() {
             let moved = difference(&Built::new(&gap, &region).shape, &self.scene.built.shape).is_some();
-            all.of(if moved { Err(saved::moved_indenter()) } else { Ok(()) })?;
+            all.of(if moved { Err(moved_indenter()) } else { Ok(()) })?;
             own.indenter.with_gap_on(&region, gap)
         } else {
-            let mut whole = vec![0.0; grid.len()];
+            let mut whole = vec![0.0; self.scene.grid.len()];
             gap_region.show(&gap.above, &mut whole);
             gap.above = whole;
             Indenter::new(gap, self.scene.bodies)

@@ -37,9 +37,9 @@ impl<'a> Saved<'a> {
         }
     }
 
-    /// The part of the grid that the gap is saved on.
+    /// The part of the grid that the gap is saved on; the local rows of it if ranks share out the contact.
     pub(super) fn gap_region(&self, contact: &ViscoelasticContact) -> Region {
-        Region::whole(&contact.scene.grid, self.gap_folded)
+        Region::whole(&contact.scene.grid, self.gap_folded).shared_like(&contact.computation.state.region)
     }
 
     /// Number of values that a file has after this.
@@ -50,7 +50,7 @@ impl<'a> Saved<'a> {
                 per_cell += field.per_cell;
             }
         });
-        (per_cell as u64).saturating_mul(self.state.region.len() as u64) + self.gap_region(contact).len() as u64
+        (per_cell as u64).saturating_mul(self.state.region.len() as u64) + self.gap_region(contact).rows().len() as u64
     }
 
     /// Rejects what a contact cannot go on from.

@@ -216,7 +216,7 @@ mod tests {
             for size in [1, 3, 5] {
                 let found = Threads::run(size, |ranks| {
                     let region = Region::shared(&grid, folded, &Rows::of_rank(grid.cells(), ranks));
-                    let own = Gap { datum: 1.0e-6, above: region.cut(&gap.above), owner: None };
+                    let own = Gap { datum: 1.0e-6, above: region.cut(&gap.above).collect(), owner: None };
                     Built::new(&own, &region)
                 });
                 for found in found.unwrap() {

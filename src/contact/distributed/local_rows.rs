@@ -87,6 +87,10 @@ impl ViscoelasticContact {
         places: impl Fn(usize) -> [Range<usize>; 2],
     ) -> [f64; K] {
         let (rows, n1) = (self.computation.state.region.rows(), self.grid().cells()[0]);
+        if !rows.are_shared() {
+            // in a step along a path, which allocates nothing
+            return found.fold([0.0; K], sum::add);
+        }
         let count = |rank: usize| K * places(rank).iter().map(ExactSizeIterator::len).sum::<usize>();
         rows.gather(found.flatten(), count, |all| {
             let (mut in_order, mut rest) = (vec![[0.0; K]; n1 + 1], all.as_chunks::<K>().0);

@@ -60,9 +60,9 @@ impl Hull {
         Hull { corners, tolerance }
     }
 
-    /// The point at which pressures balance a force at `point`: this one, or the nearest of the boundary if that is as near as
-    /// rounding; the body then rests on an edge or a corner. `None` if it acts outside. An axis along which the body cannot
-    /// tilt does not count.
+    /// The point at which pressures balance a force at `point`: `point` itself, or the nearest point of the boundary if their
+    /// distance is rounding; the body then rests on an edge or a corner. `None` for a force outside the hull. An axis along
+    /// which the body cannot tilt does not count.
     pub(crate) fn balanced_at(&self, point: [f64; 2], tilts: [bool; 2]) -> Option<[f64; 2]> {
         match tilts {
             [false, false] => Some(point),
@@ -72,7 +72,7 @@ impl Hull {
         }
     }
 
-    /// `x`, or the end of the range of coordinates along `axis` that it is at.
+    /// `x`, or the end of the range of coordinates along `axis` to which `x` is equal up to rounding.
     fn within_span(&self, axis: usize, x: f64) -> Option<f64> {
         let low = self.corners.iter().map(|corner| corner[axis]).fold(f64::INFINITY, f64::min);
         let high = self.corners.iter().map(|corner| corner[axis]).fold(f64::NEG_INFINITY, f64::max);

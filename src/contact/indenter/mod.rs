@@ -1,4 +1,4 @@
-//! The rigid bodies that press on the creeping one: their gap, and what follows from it.
+//! The rigid bodies that press on the creeping body: their gap, its symmetry, and the hulls where loads may act.
 
 pub(in crate::contact) mod hull;
 pub(in crate::contact) mod replacement;
@@ -18,37 +18,36 @@ use crate::solver::RigidMotion;
 #[derive(Debug)]
 pub(crate) struct Indenter {
     gap: Gap,
-    bodies: usize,
-    /// What distinguishes it from every other indenter of this process.
+    /// Unique among the indenters of this process.
     id: u64,
     /// Axes about whose middle the gap is even, bitwise.
     even: OnceLock<[bool; 2]>,
-    /// Where loads may act on each body; found when one is first free to tilt.
+    /// Where loads may act on each body; computed when a body is first free to tilt.
     hulls: Vec<OnceLock<Hull>>,
-    /// Whether the gap is known on the rows of a rank only.
-    on_own_rows: bool,
+    /// Whether the gap covers only the local rows of a rank.
+    is_local: bool,
 }
 
 impl Indenter {
     pub(crate) fn new(gap: Gap, bodies: usize) -> Indenter {
         let hulls = (0..bodies).map(|_| OnceLock::new()).collect();
-        Indenter { gap, bodies, id: next_id(), even: OnceLock::new(), hulls, on_own_rows: false }
+        Indenter { gap, id: next_id(), even: OnceLock::new(), hulls, is_local: false }
     }
 
-    /// The indenter of a rank: the gap of a single body on the computed cells of own rows, and what follows from all rows.
+    /// The indenter of a rank: the gap of a single body on the computed cells of the local rows; symmetry and hull of all rows.
     pub(crate) fn shared(gap: Gap, even: [bool; 2], hull: Hull) -> Indenter {
         let hulls = vec![OnceLock::from(hull)];
-        Indenter { gap, bodies: 1, id: next_id(), even: OnceLock::from(even), hulls, on_own_rows: true }
+        Indenter { even: OnceLock::from(even), hulls, is_local: true, ..Indenter::new(gap, 0) }
     }
 
-    /// On the whole grid, or, where ranks share it out, the computed cells of own rows.
+    /// The gap on the whole grid, or on the computed cells of the local rows where ranks share out the grid.
     pub(crate) fn gap(&self) -> &Gap {
         &self.gap
     }
 
     /// Number of rigid bodies.
     pub(crate) fn bodies(&self) -> usize {
-        self.bodies
+        self.hulls.len()
     }
 
     pub(crate) fn id(&self) -> u64 {
@@ -62,9 +61,9 @@ impl Indenter {
         *self.even.get_or_init(|| even_axes(grid.cells(), alike))
     }
 
-    /// The folded axes of a region that stay so under it.
+    /// The folded axes of a region along which the gap is even.
     pub(crate) fn keeps_folded(&self, folded: [bool; 2], grid: &Grid) -> [bool; 2] {
-        // nothing to look up where there is no symmetry to lose
+        // the gap is searched only for a symmetry that the region uses
         let even = if folded == [false; 2] { folded } else { self.even_axes(grid) };
         [0, 1].map(|axis| folded[axis] && even[axis])
     }
@@ -75,32 +74,30 @@ impl Indenter {
         self.hulls[body].get_or_init(|| Hull::new(grid, touchable))
     }
 
-    /// The indenter of a rank with a gap that rounds otherwise, on own rows of the region of another state.
+    /// The indenter of a rank with another rounding of the gap, on the local rows of the region of another state.
     #[cfg(feature = "checkpoint")]
     pub(crate) fn with_gap_on(&self, region: &Region, gap: Gap) -> Indenter {
         let built = self.even.get().copied().unwrap_or_default();
         let even = OnceLock::from([0, 1].map(|axis| built[axis] || region.folded()[axis]));
-        Indenter { gap, bodies: self.bodies, id: next_id(), even, hulls: self.hulls.clone(), on_own_rows: true }
+        Indenter { even, hulls: self.hulls.clone(), is_local: true, ..Indenter::new(gap, 0) }
     }
 
     /// The motion at which each body just touches the undeformed surface, upright.
     pub(crate) fn first_touch(&self) -> Vec<RigidMotion> {
-        let of_body = |body: usize| {
-            if self.on_own_rows {
-                // a single body touches where its gap is least
-                return RigidMotion { approach: self.gap.datum, tilt: [0.0; 2] };
-            }
+        let lowest = |body: usize| {
             let own = self.gap.above.iter().enumerate().filter(|(k, _)| self.gap.owner(*k) == body);
-            let approach = self.gap.datum + own.map(|(_, &h)| h).fold(f64::INFINITY, f64::min);
-            RigidMotion { approach, tilt: [0.0; 2] }
+            own.map(|(_, &h)| h).fold(f64::INFINITY, f64::min)
         };
-        (0..self.bodies).map(of_body).collect()
+        // a single body touches at the datum, which all ranks have
+        let height = |body: usize| if self.is_local { 0.0 } else { lowest(body) };
+        let at = |body: usize| RigidMotion { approach: self.gap.datum + height(body), tilt: [0.0; 2] };
+        (0..self.bodies()).map(at).collect()
     }
 
-    /// Takes the heights of a single body, and leaves its own in their place: another indenter without reallocating.
+    /// Becomes another indenter without reallocating: exchanges the gap of a single body for `heights`.
     ///
     /// # Errors
-    /// If they are no gap; the indenter is then as it was.
+    /// If the heights are no valid gap; the indenter is then unchanged.
     pub(crate) fn refill(&mut self, heights: &mut Vec<f64>, grid: &Grid) -> Result<()> {
         self.gap.exchange(heights, grid)?;
         self.id = next_id();
@@ -132,7 +129,7 @@ pub(crate) mod saved {
     use super::{Gap, Indenter};
 
     pub(crate) fn serialize<S: Serializer>(indenter: &Arc<Indenter>, serializer: S) -> Result<S::Ok, S::Error> {
-        (&indenter.gap, indenter.bodies as u16).serialize(serializer)
+        (&indenter.gap, indenter.bodies() as u16).serialize(serializer)
     }
 
     pub(crate) fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<Indenter>, D::Error> {

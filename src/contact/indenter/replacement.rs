@@ -12,8 +12,8 @@ impl ViscoelasticContact {
     /// and touch the new one from the next step on.
     ///
     /// # Errors
-    /// If a gap is NaN or −∞, or none is finite, or there are several rigid bodies, or there is no memory for what is no longer
-    /// symmetric; the contact then keeps the old one.
+    /// If a gap is NaN or −∞, or none is finite, or there are several rigid bodies, or the new gap breaks a symmetry and there is
+    /// no memory for the mirror images. The contact then keeps the old indenter.
     pub fn set_geometry(&mut self, geometry: &dyn Geometry) -> Result<()> {
         self.set_geometries(&[geometry])
     }
@@ -31,7 +31,7 @@ impl ViscoelasticContact {
         let region = &self.computation.state.region;
         let still_folded = indenter.keeps_folded(region.folded(), &self.scene.grid);
         if still_folded != region.folded() {
-            // the next step gives up the symmetry
+            // the next step unfolds the fields
             self.computation.check_memory_for(&self.scene, &region.unfolded(still_folded))?;
         }
         let state = &mut self.computation.state;

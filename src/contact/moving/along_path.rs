@@ -8,11 +8,10 @@ use crate::contact::settings::Frame;
 use crate::contact::state::State;
 use crate::contact::step::request::Step;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result, exact_length, non_negative};
+use crate::error::{Error, Result, exact_length};
 use crate::geometry::Gap;
 use crate::load::Load;
 use crate::motion::Travel;
-use crate::solver::RigidMotion;
 use crate::{Grid, memory};
 
 /// A step along a path.
@@ -51,17 +50,16 @@ impl ViscoelasticContact {
             return Err(Error::WrongFrame { what: "a step along a path" });
         }
         exact_length("geometries of the rigid bodies", 1, self.bodies())?;
-        non_negative("time step", dt)?;
+        let loads = [load];
+        let requested = self.request_next(dt, &loads)?;
         let from = travel.position(self.time())?;
-        if self.indenter_buffer.is_empty() {
+        if self.indenter_buffer.heights.is_empty() {
             memory::check("the gap of a moving indenter", 16 * self.grid().len() as u128)?;
         }
         let indenter = self.indenter_buffer.fill(&self.scene.grid, travel, self.time() + dt)?;
-        let before = (self.force(), self.moment(), self.computation.state.current.motions[0]);
+        let before = self.load_and_motion();
         let left = Arc::clone(&self.computation.state.indenter);
-        let loads = [load];
-        let step = Step { indenter, ..self.request(self.time() + dt, dt, &loads, self.settings().tolerance)? };
-        let step = self.take(step)?;
+        let step = self.take(Step { indenter, ..requested })?;
         self.indenter_buffer.indenter = Some(left);
         let position = travel.position(step.time)?;
         let lateral_force = self.lateral_force(&travel.shape_at(step.time)?);
@@ -69,20 +67,21 @@ impl ViscoelasticContact {
         Ok(TravelReport { step, position, from, lateral_force, power })
     }
 
+    /// Force and moments of the first body, and the parts of its motion on which they do work.
+    fn load_and_motion(&self) -> [[f64; 3]; 2] {
+        let ([moment1, moment2], [tilt1, tilt2]) = (self.moment(), self.tilt());
+        [[self.force(), moment1, moment2], [self.approach(), tilt1, tilt2]]
+    }
+
     /// Work of the lateral motion in the last step \[J\]: the work of the pressure, Σ p Δu, less the work of force and
-    /// moments.
-    fn work_along(&self, (force, moment, motion): (f64, [f64; 2], RigidMotion)) -> f64 {
+    /// moments, from load and motion before the step.
+    fn work_along(&self, [load, motion]: [[f64; 3]; 2]) -> f64 {
         let State { region, history, current, previous, .. } = &self.computation.state;
         let pressures = previous.solution.pressure.iter().zip(&current.solution.pressure);
         let displacements = history.trial().iter().zip(history.displacement());
         let work: f64 = pressures.zip(displacements).map(|((p, q), (u, w))| 0.5 * (p + q) * (w - u)).sum();
-        let parts = |motion: RigidMotion| [motion.approach, motion.tilt[0], motion.tilt[1]];
-        let (start, end) = (parts(motion), parts(current.motions[0]));
-        let ends = [[force, moment[0], moment[1]], {
-            let [m1, m2] = self.moment();
-            [self.force(), m1, m2]
-        }];
-        let pressed = (0..3).map(|k| 0.5 * (ends[0][k] + ends[1][k]) * (end[k] - start[k]));
+        let [load_now, motion_now] = self.load_and_motion();
+        let pressed = (0..3).map(|k| 0.5 * (load[k] + load_now[k]) * (motion_now[k] - motion[k]));
         work * self.grid().cell_area() * region.images() as f64 - pressed.sum::<f64>()
     }
 }
@@ -97,11 +96,6 @@ pub(crate) struct IndenterBuffer {
 }
 
 impl IndenterBuffer {
-    /// Whether no step along a path has been taken.
-    fn is_empty(&self) -> bool {
-        self.heights.is_empty()
-    }
-
     /// Returns the indenter at time `t` of its path.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use crate::contact::read::report::StepReport;
 use crate::contact::settings::Frame;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, Result, non_negative};
+use crate::error::{Error, Result};
 use crate::load::Load;
 
 impl ViscoelasticContact {
@@ -49,8 +49,7 @@ impl ViscoelasticContact {
         if self.settings().frame != Frame::Indenter {
             return Err(Error::WrongFrame { what: "a step over the bodies" });
         }
-        non_negative("time step", dt)?;
-        let mut step = self.request(self.time() + dt, dt, loads, self.settings().tolerance)?;
+        let mut step = self.request_next(dt, loads)?;
         step.interval.stride = cells;
         self.take(step)
     }

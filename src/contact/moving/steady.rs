@@ -124,25 +124,23 @@ impl TowardSteady<'_> {
         if self.arrived {
             return Ok(None);
         }
-        if self.contact.contact_cells() == 0 {
-            if self.tried_to_touch {
-                return Err(Error::NoContact { time: self.contact.time() });
-            }
-            self.tried_to_touch = true;
-            let motion = self.motion;
-            let dt = self.contact.grid().spacing()[motion.axis] / motion.velocity.abs();
-            return self.contact.step_over([0; 2], dt, motion.load).map(Some);
+        let apart = self.contact.contact_cells() == 0;
+        if apart && self.tried_to_touch {
+            return Err(Error::NoContact { time: self.contact.time() });
         }
-        if self.left == 0 && !self.next_stride()? {
+        if !apart && self.left == 0 && !self.next_stride()? {
             return Ok(None);
         }
+        self.tried_to_touch |= apart;
         let SteadyMotion { axis, velocity, load, .. } = self.motion;
+        // bodies that are apart touch in place, within the time for one cell
+        let (stride, lasts) = if apart { (0, 1) } else { (self.stride, self.stride) };
         let mut cells = [0; 2];
-        cells[axis] = if velocity > 0.0 { self.stride as isize } else { -(self.stride as isize) };
-        let dt = self.stride as f64 * self.contact.grid().spacing()[axis] / velocity.abs();
+        cells[axis] = velocity.signum() as isize * stride as isize;
+        let dt = lasts as f64 * self.contact.grid().spacing()[axis] / velocity.abs();
         let report = self.contact.step_over(cells, dt, load)?;
-        self.travelled += self.stride;
-        self.left = self.left.saturating_sub(self.stride);
+        self.travelled += stride;
+        self.left = self.left.saturating_sub(stride);
         Ok(Some(report))
     }
 
@@ -176,7 +174,8 @@ impl TowardSteady<'_> {
         let (cells, contact) = (grid.cells()[axis], self.length_of_contact());
         let limit = self.motion.tolerance;
         (self.stride, self.left) = match self.stride {
-            0 => (longest_stride(contact), cells),
+            // the largest power of two within an eighth of the contact
+            0 => (1 << (contact / STEPS_PER_CONTACT_LENGTH).max(1).ilog2(), cells),
             1 => {
                 let pairs = self.contact.pressure().iter().zip(&self.before);
                 let change: f64 = pairs.map(|(now, before)| (now - before).abs()).sum();
@@ -202,9 +201,4 @@ impl TowardSteady<'_> {
         let along = |Extent { low, high }| high[self.motion.axis] + 1 - low[self.motion.axis];
         self.contact.extent_of_contact().map_or(1, along)
     }
-}
-
-/// The largest power of two of which a contact is [`STEPS_PER_CONTACT_LENGTH`] long.
-fn longest_stride(contact: usize) -> usize {
-    1 << (contact / STEPS_PER_CONTACT_LENGTH).max(1).ilog2()
 }

@@ -1,6 +1,5 @@
 //! Read-only accessors, and the fields of a contact on the whole grid, or on the local rows of a rank.
 
-use std::borrow::Cow;
 use std::fmt;
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
@@ -85,33 +84,30 @@ impl ViscoelasticContact {
     /// only a region is computed.
     pub fn gap_into(&self, out: &mut [f64]) -> Result<()> {
         let (Scene { grid, kernel, .. }, state) = (&*self.scene, &self.computation.state);
-        exact_length("gap", out.len(), state.region.shown_len())?;
-        if state.region.is_shared() {
-            state.region.show(&self.own_gap(), out);
+        let State { region, indenter, current, history, .. } = state;
+        exact_length("gap", out.len(), region.shown_len())?;
+        let initial = indenter.gap();
+        let gap = |k: usize, u: f64, center: [f64; 2]| {
+            let RigidMotion { approach, tilt } = current.motions[initial.owner(k)];
+            let lowered = RigidMotion { approach: approach - initial.datum, tilt };
+            initial.above[k] + u - lowered.at(center)
+        };
+        if region.is_shared() {
+            let own = history.displacement().iter().enumerate().map(|(k, &u)| gap(k, u, region.center(k)));
+            region.show(&own.collect::<Vec<_>>(), out);
             return Ok(());
         }
-        if !self.view.has_displacement(state) {
-            let whole = Region::whole(grid, state.region.folded());
+        if !region.is_shown() && self.view.displacement.get().is_none() {
+            let whole = Region::whole(grid, region.folded());
             let [kernel, _] = kernel.bytes(&whole.rows(), whole.folded());
             let fields = 8 * (grid.len() + 2 * whole.len()) as u128;
             memory::check("the displacement on the whole grid", kernel + fields)?;
         }
-        let (n2, displacement, gap) = (grid.cells()[1], self.displacement(), state.indenter.gap());
-        for (k, h) in out.iter_mut().enumerate() {
-            let RigidMotion { approach, tilt } = state.current.motions[gap.owner(k)];
-            let lowered = RigidMotion { approach: approach - gap.datum, tilt };
-            *h = gap.above[k] + displacement[k] - lowered.at(grid.center(k / n2, k % n2));
+        let n2 = grid.cells()[1];
+        for (k, (h, &u)) in out.iter_mut().zip(self.displacement()).enumerate() {
+            *h = gap(k, u, grid.center(k / n2, k % n2));
         }
         Ok(())
-    }
-
-    /// The gap on the computed cells of the local rows.
-    fn own_gap(&self) -> Vec<f64> {
-        let State { region, indenter, current, history, .. } = &self.computation.state;
-        let (gap, RigidMotion { approach, tilt }) = (indenter.gap(), current.motions[0]);
-        let lowered = RigidMotion { approach: approach - gap.datum, tilt };
-        let cells = gap.above.iter().zip(history.displacement()).enumerate();
-        cells.map(|(k, (above, u))| above + u - lowered.at(region.center(k))).collect()
     }
 
     /// Rigid-body approach ω of the (first) body, at the origin of the grid \[m\]. Without load, the approach at first
@@ -203,33 +199,21 @@ impl fmt::Debug for ViscoelasticContact {
 
 /// Pressure and displacement on the whole grid, where only a region is computed; on the local rows, where ranks share
 /// them out.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(crate) struct View {
     pressure: Vec<f64>,
-    /// The region of the pressure; elsewhere it is zero.
-    region: Region,
     /// Computed at the first call.
     displacement: OnceLock<Vec<f64>>,
 }
 
 impl View {
-    pub(in crate::contact) fn new(state: &State) -> View {
-        let mut view = View { pressure: Vec::new(), region: state.region.clone(), displacement: OnceLock::new() };
-        view.refresh(state);
-        view
-    }
-
     /// Updates the fields to `state`.
     pub(in crate::contact) fn refresh(&mut self, state: &State) {
         self.displacement.take();
-        if self.region != state.region {
-            self.region = state.region.clone();
-            // clears values of the previous region
-            self.pressure.fill(0.0);
-        }
         if state.region.is_shown() {
             self.pressure = Vec::new();
         } else {
+            self.pressure.clear();
             self.pressure.resize(state.region.shown_len(), 0.0);
             state.region.show(&state.current.solution.pressure, &mut self.pressure);
         }
@@ -241,38 +225,21 @@ impl View {
 
     pub(in crate::contact) fn displacement<'a>(&'a self, scene: &Scene, state: &'a State) -> &'a [f64] {
         let own = state.history.displacement();
-        if state.region.is_shown() {
-            return own;
-        }
-        let whole = || on_the_whole_grid(scene, &state.region, own, state.history.far_source()).into_owned();
-        self.displacement.get_or_init(whole)
-    }
-
-    /// Whether the displacement needs no further computation.
-    pub(in crate::contact) fn has_displacement(&self, state: &State) -> bool {
-        state.region.is_shown() || state.region.is_shared() || self.displacement.get().is_some()
+        if state.region.is_shown() { own } else { self.displacement.get_or_init(|| on_the_whole_grid(scene, state)) }
     }
 }
 
-/// Extends a field of a region to the whole grid. Outside the region the field is the convolution of `source`, or zero
-/// without a source.
-pub(in crate::contact) fn on_the_whole_grid<'a>(
-    scene: &Scene,
-    region: &Region,
-    own: &'a [f64],
-    source: Option<&[f64]>,
-) -> Cow<'a, [f64]> {
-    if region.is_shown() {
-        return Cow::Borrowed(own);
-    }
+/// The displacement on the whole grid. Outside the region it is the convolution of the source of the far field, or zero without
+/// a source.
+fn on_the_whole_grid(scene: &Scene, State { region, history, .. }: &State) -> Vec<f64> {
     let mut whole = vec![0.0; region.shown_len()];
-    if let Some(source) = source {
+    if let Some(source) = history.far_source() {
         let all = Region::whole(&scene.grid, region.folded());
         let kernel = scene.kernel.on(all.grid(), all.folded());
         let mut far = vec![0.0; all.len()];
         kernel.apply(&region.transfer(source, &all, |_| 0.0), &mut far, &mut kernel.workspace());
         all.show(&far, &mut whole);
     }
-    region.show(own, &mut whole);
-    Cow::Owned(whole)
+    region.show(history.displacement(), &mut whole);
+    whole
 }

@@ -7,6 +7,7 @@ use crate::error::{Convergence, Error, Result, finite};
 use crate::memory;
 use crate::observe::area::Pressed;
 use crate::observe::mesh_error::MeshError;
+use crate::observe::profile::line_through;
 use crate::observe::{Asymmetry, Axis, Distribution, LineProfile, Patches};
 use crate::solver::{FLAT_PUNCH_TOLERANCE, flat_punch};
 
@@ -52,7 +53,7 @@ impl ViscoelasticContact {
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
     /// let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 0.5)?;
-    /// let error = (contact.approach() / hertz.approach() - 1.0).abs();
+    /// let error = (contact.approach() / hertz.approach - 1.0).abs();
     /// let estimate = contact.mesh_error()?.expect("in contact").approach;
     /// assert!(error < 2.0 * estimate && error > 0.2 * estimate);
     /// # Ok::<(), viscocontact::Error>(())
@@ -66,7 +67,7 @@ impl ViscoelasticContact {
     }
 
     /// Normal stiffness of the contact over the contact modulus \[m\]: dW/dω = E* times this while the contact area
-    /// stays as it is; with 1/C(0) it is the response to a jump, with 1/C(t) that to a step held for t. 2a for a circle
+    /// stays as it is; with 1/C(0) it is the response to a jump, with 1/C(t) the response to a step held for t. 2a for a circle
     /// of radius a. It depends on the area alone, not on the material; the electrical and thermal conductance of the
     /// contact are proportional to it (J. R. Barber, Proc. R. Soc. A 459, 2003).
     ///
@@ -127,7 +128,7 @@ impl ViscoelasticContact {
     /// If `bins` is 0 or more than a million.
     pub fn pressure_distribution(&self, bins: usize) -> Result<Distribution> {
         self.not_shared("a distribution")?;
-        Distribution::of_pressure(self.pressure(), bins)
+        Distribution::new(self.pressure().iter().copied().filter(|p| *p > 0.0), self.pressure().len(), bins)
     }
 
     /// The distribution of the gap \[m\] over all cells where the initial gap is finite, in `bins` between 0 and the
@@ -143,7 +144,7 @@ impl ViscoelasticContact {
     ///     .build()?;
     /// contact.step(0.0, Load::force(0.5))?;
     /// let gaps = contact.gap_distribution(20)?;
-    /// for (gap, density) in gaps.centers().zip(gaps.density()) {
+    /// for (gap, density) in gaps.centers().zip(&gaps.density) {
     ///     println!("{gap:.2e} m  {density:.3e} 1/m");
     /// }
     /// # Ok::<(), Error>(())
@@ -153,7 +154,11 @@ impl ViscoelasticContact {
     /// If `bins` is 0 or more than a million, or there is no memory for the gap.
     pub fn gap_distribution(&self, bins: usize) -> Result<Distribution> {
         self.not_shared("a distribution")?;
-        Distribution::of_gap(&self.gap()?, self.pressure(), bins)
+        let gap = self.gap()?;
+        let touchable = gap.iter().filter(|h| h.is_finite()).count();
+        // a cell under pressure counts as gap 0
+        let open = gap.iter().zip(self.pressure()).filter(|(h, p)| h.is_finite() && **h > 0.0 && **p == 0.0);
+        Distribution::new(open.map(|(h, _)| *h), touchable, bins)
     }
 
     /// Pressure, displacement and gap along the line of cells in the direction of `along` that contains the other
@@ -179,12 +184,15 @@ impl ViscoelasticContact {
     ///
     /// A call of all [ranks](crate::parallel) that share out the contact, each of which gets the whole profile.
     pub fn profile(&self, along: Axis, at: f64) -> Result<LineProfile> {
-        LineProfile::new(self.grid(), along, at, |line| {
-            let gap = self.gap()?;
-            let rows = self.computation.state.region.rows();
-            let line_of = |field| self.line_of(field, along, line);
-            rows.together(|| Ok([line_of(self.pressure())?, line_of(self.displacement())?, line_of(&gap)?]))
-        })
+        let ((axis, across), grid) = (along.and_other(), self.grid());
+        let line = line_through(grid, across, ("coordinate of the profile", at))?;
+        let gap = self.gap()?;
+        let rows = self.computation.state.region.rows();
+        let line_of = |field| self.line_of(field, along, line);
+        let [pressure, displacement, gap] =
+            rows.together(|| Ok([line_of(self.pressure())?, line_of(self.displacement())?, line_of(&gap)?]))?;
+        let positions = (0..grid.cells()[axis]).map(|k| grid.coordinate(axis, k)).collect();
+        Ok(LineProfile { at: grid.coordinate(across, line), positions, pressure, displacement, gap })
     }
 
     /// The connected patches of the contact; where the bodies are periodic, the first and the last cells are
@@ -231,10 +239,14 @@ impl ViscoelasticContact {
     }
 
     fn pressed(&self) -> Pressed<'_> {
-        let State { indenter, region, current, .. } = &self.computation.state;
-        let (periodic, gap) = (self.scene.kernel.periodic_axes(), &indenter.gap().above);
-        let extent = region.reach(&current.solution.pressure);
-        Pressed { grid: self.grid(), first: None, periodic, pressure: self.pressure(), gap, extent }
+        Pressed {
+            grid: self.grid(),
+            first: None,
+            periodic: self.kernel().periodic_axes(),
+            pressure: self.pressure(),
+            gap: &self.computation.state.indenter.gap().above,
+            extent: self.extent_of_contact(),
+        }
     }
 }
 
@@ -251,7 +263,7 @@ mod tests {
         let exact = Hertz::new(10.0e-3, 4.0e6, 0.5).unwrap();
         let peak = exact.pressure(0.0);
         // odd number of cells: one lies in the middle
-        let mut contact = sphere([129; 2], [2.6 * exact.contact_radius(); 2], [0.0; 2], 0.5);
+        let mut contact = sphere([129; 2], [2.6 * exact.contact_radius; 2], [0.0; 2], 0.5);
         assert_abs_diff_eq!(contact.max_pressure() / peak, 1.0, epsilon = 1e-3);
         assert_abs_diff_eq!(contact.mean_pressure() / (peak / 1.5), 1.0, epsilon = 3e-3);
         contact.step(0.0, Load::force(0.0)).unwrap();

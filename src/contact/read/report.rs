@@ -142,7 +142,7 @@ bitflags! {
         /// One more step of this length would exceed the range in which the material is known, and fail with
         /// [`Error::BeyondMaterial`](crate::Error::BeyondMaterial).
         const NEAR_END_OF_MATERIAL = 1 << 4;
-        /// The time rule oscillates at steps of this length. The rectangle rule does where a step lets the bodies creep by more than
+        /// The time rule oscillates at steps of this length. The rectangle rule does where the bodies creep in a step by more than
         /// they yield at once, C(Δ) > 2 C(0), which is Δ > τ on a Maxwell body; on fluids it diverges further on.
         const RINGS = 1 << 5;
         /// The solver stagnated, and its slow fall-back took over for a while:

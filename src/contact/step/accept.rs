@@ -1,4 +1,4 @@
-//! A step that was computed becomes the state, and leaves its warnings.
+//! Acceptance of a computed step, and its warnings.
 
 use crate::contact::computation::Computation;
 use crate::contact::read::report::Warnings;

@@ -1,4 +1,4 @@
-//! The constraints of a step's loads: which motions they leave free, and which they prescribe. Checks of loads and results.
+//! The free motions of a step, and checks of its loads and results.
 
 use crate::Grid;
 use crate::contact::scene::Scene;
@@ -36,7 +36,7 @@ pub(super) fn validate_loads(scene: &Scene, step: &Step<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Writes what the loads leave free of each body. A tilt about a folded axis vanishes by symmetry.
+/// Writes the free motions of each body. A tilt along a folded axis vanishes by symmetry.
 pub(super) fn find_free_motions(scene: &Scene, region: &Region, step: &Step<'_>, free: &mut [Freedom]) {
     for (body, (own, load)) in free.iter_mut().zip(step.loads).enumerate() {
         *own = freedom(load, &scene.grid);
@@ -50,7 +50,7 @@ pub(super) fn find_free_motions(scene: &Scene, region: &Region, step: &Step<'_>,
     }
 }
 
-/// What a load leaves free of a body.
+/// The free motions of a body under a load.
 fn freedom(load: &Load, grid: &Grid) -> Freedom {
     let tilt = load.tilt().map(|tilt| matches!(tilt, Tilt::Free { .. }));
     let point = load.tilt().map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 });
@@ -61,22 +61,22 @@ fn freedom(load: &Load, grid: &Grid) -> Freedom {
     Freedom { translation, tilt, point, total }
 }
 
-/// Rejects a step whose loading time is longer than the material is known for, if the bodies are `touched`: what
-/// was never touched has no history.
+/// Rejects a step beyond the loading times for which the material is known. Bodies that were never `touched` have no loading
+/// time.
 pub(super) fn material_is_known(scene: &Scene, state: &State, step: &Step<'_>, touched: bool) -> Result<()> {
     let Interval { time, reduced, .. } = step.interval;
     let (age, known_until) = (reduced - state.clock.undisturbed_until, scene.material.known_until());
     if !touched || is_known(age, known_until) { Ok(()) } else { Err(Error::BeyondMaterial { time, age, known_until }) }
 }
 
-/// Rejects a compliance that left the range of numbers; it is 0 in jumps of bodies without elastic response alone.
+/// Rejects a compliance that overflows or underflows. It is 0 only in jumps of bodies without elastic response.
 pub(super) fn compliance_is_usable(c: f64, step: &Step<'_>) -> Result<()> {
     let Interval { time, dt, .. } = step.interval;
     let usable = c > 0.0 && c.is_finite() || c == 0.0 && dt == 0.0;
     if usable { Ok(()) } else { Err(Error::Overflow { time, what: "the compliance of the step" }) }
 }
 
-/// Rejects an approach beyond that which closes every gap, where the mean displacement is held: Σ h = Σ gap ≥ 0.
+/// Rejects an approach greater than the one that closes every gap, if the mean displacement is fixed: Σ h = Σ gap ≥ 0.
 pub(super) fn below_full_contact(window: &Window, trial: &Trial, step: &Step<'_>) -> Result<()> {
     let held = step.loads.iter().all(|load| matches!(load, Load::Approach { .. }));
     let (true, true, &[Load::Approach { approach, .. }, ..]) = (held, window.kernel().mean_is_held(), step.loads)
@@ -89,7 +89,7 @@ pub(super) fn below_full_contact(window: &Window, trial: &Trial, step: &Step<'_>
     if left > 0.0 { Ok(()) } else { Err(Error::BeyondFullContact { time: step.interval.time, approach, greatest }) }
 }
 
-/// Rejects what the solver did not solve.
+/// Rejects a contact problem that the solver did not solve.
 pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, step: &Step<'_>) -> Result<()> {
     let Solution { residual, counts: Counts { iterations, .. }, ref trace, .. } = *solution;
     let (time, dt, tolerance) = (step.interval.time, step.interval.length, step.tolerance);
@@ -108,7 +108,7 @@ pub(super) fn converged(outcome: Outcome, scene: &Scene, solution: &Solution, st
     }
 }
 
-/// Rejects results that left the range of numbers, and contact at the edge of the grid; returns Σ p.
+/// Rejects results that overflow, and contact at the edge of the grid. Returns Σ p.
 pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Step<'_>) -> Result<f64> {
     let (Solution { pressure, motions, .. }, rows) = (&trial.solution, state.region.rows());
     let sum_of_pressure = rows.sum(pressure);
@@ -127,9 +127,11 @@ pub(super) fn acceptable(scene: &Scene, state: &State, trial: &Trial, step: &Ste
     if let Some((_, what)) = within_range.into_iter().find(|(is_finite, _)| !is_finite) {
         return Err(Error::Overflow { time, what });
     }
-    let on_edge = || state.region.positive_on_edge(pressure, scene.kernel.periodic_axes());
-    match if edge == Edge::Refuse { on_edge() } else { 0 } {
-        0 => Ok(sum_of_pressure),
-        cells => Err(Error::ContactAtEdge { time, cells }),
+    if edge == Edge::Refuse {
+        let cells = state.region.positive_on_edge(pressure, scene.kernel.periodic_axes());
+        if cells > 0 {
+            return Err(Error::ContactAtEdge { time, cells });
+        }
     }
+    Ok(sum_of_pressure)
 }

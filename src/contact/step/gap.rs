@@ -19,8 +19,8 @@ pub(super) struct RigidBodies<'a> {
 }
 
 impl RigidBodies<'_> {
-    /// By how much a body is retracted in a step that prescribes all of its motion: by nothing if it is held. Known only
-    /// where hi + u in contact is its motion at the start.
+    /// The retraction of a body in a step that prescribes all of its motion; zero for a held body. `None` unless hi + u in
+    /// contact is its motion at the start.
     fn retraction(&self, body: usize) -> Option<RigidMotion> {
         let load = self.step.loads[body];
         let Load::Approach { approach, tilt: [Tilt::Fixed(tilt1), Tilt::Fixed(tilt2)] } = load else { return None };
@@ -46,11 +46,11 @@ impl RigidBodies<'_> {
         (0..self.step.loads.len()).map(|body| reach(taken(body))).fold(0.0, f64::max)
     }
 
-    /// The gap before any pressure and free motion, hi + u_old − what is prescribed of ω + α·x (Eq. 1 of the paper).
+    /// Writes the gap before any pressure and free motion: hi + u_old − (prescribed part of ω + α·x), Eq. 1 of the paper.
     ///
-    /// In contact under bodies whose motion is prescribed, hi + u is their motion at the start of the step. The gap there is
-    /// their retraction less u − u_old, by how much the surface recedes. Computed as a part of hi + u_old − ω, that would be
-    /// lost in rounding once the pressure has relaxed by many decades.
+    /// In contact under bodies of prescribed motion, hi + u is their motion at the start of the step. The gap there is their
+    /// retraction minus the recovery u − u_old of the surface. The difference hi + u_old − ω would lose the recovery in
+    /// rounding once the pressure has relaxed by many decades.
     pub(super) fn fill_gap(&self, initial: &Gap, history: &History, pressure: &[f64], gap: &mut [f64]) {
         let (bodies, u_old, first) = (self.step.loads.len(), history.trial(), self.step.prescribed(0));
         let upright = bodies == 1 && first.tilt == [0.0; 2];
@@ -60,12 +60,10 @@ impl RigidBodies<'_> {
                 *gap = (initial + u_old) - approach;
             }
         });
-        for body in if upright { 0..0 } else { 0..bodies } {
-            let motion = self.step.prescribed(body);
-            if motion != RigidMotion::default() {
-                for k in (0..gap.len()).filter(|&k| initial.owner(k) == body) {
-                    gap[k] -= motion.at(self.region.center(k));
-                }
+        let motions = (0..bodies).map(|body| (body, self.step.prescribed(body)));
+        for (body, motion) in motions.filter(|(_, motion)| !upright && *motion != RigidMotion::default()) {
+            for k in (0..gap.len()).filter(|&k| initial.owner(k) == body) {
+                gap[k] -= motion.at(self.region.center(k));
             }
         }
         for (body, retraction) in self.retractions() {
@@ -74,9 +72,9 @@ impl RigidBodies<'_> {
         }
     }
 
-    /// u = u_old + c K p. Where the displacement is `integrated`, the surface in contact is then laid on the rigid body:
-    /// the residual of this step would otherwise stay in u, and count many times over when a later step is much stiffer than
-    /// this one, as a jump after a long hold is.
+    /// u = u_old + c K p. Where the displacement is `integrated`, the surface in contact is then set to the surface of the
+    /// rigid body. Otherwise the residual of this step would stay in u, and a later, much stiffer step, such as a jump after a
+    /// long hold, would amplify it.
     pub(super) fn displace(&self, initial: &Gap, c: f64, integrated: bool, trial: &Trial, u: &mut [f64]) {
         let Trial { solution, gap, free, .. } = trial;
         if let (true, &[Freedom { tilt: [false, false], .. }]) = (integrated, &free[..]) {
@@ -100,7 +98,7 @@ impl RigidBodies<'_> {
         for (body, &freedom) in free.iter().enumerate() {
             let (modes, motion) = (self.region.modes(freedom), solution.motions[body]);
             for k in (0..gap.len()).filter(|&k| initial.owner(k) == body && gap[k].is_finite()) {
-                // u_old + c v with the gap h less the same: gap = hi + u_old − prescribed
+                // the gap after the step, h = (hi + u_old − prescribed) + c v − free
                 let h = gap[k] + c * solution.potential[k] - modes.displacement(motion, k);
                 if solution.pressure[k] > 0.0 || h < 0.0 {
                     u[k] -= h;
@@ -109,8 +107,8 @@ impl RigidBodies<'_> {
         }
     }
 
-    /// Lets the surface in contact follow bodies whose motion is prescribed to the last bit, from the displacement `before`:
-    /// its rounding would feed the branches of the past, and outlive the pressure.
+    /// Moves the surface in contact, from the displacement `before`, with bodies of prescribed motion, to the last bit:
+    /// rounding would enter the branches of the past, and outlive the pressure.
     pub(super) fn follow_prescribed(&self, initial: &Gap, [old, new]: [&[f64]; 2], before: &[f64], u: &mut [f64]) {
         for (body, retraction) in self.retractions() {
             let displacements = u.iter_mut().zip(before);

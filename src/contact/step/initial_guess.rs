@@ -1,6 +1,4 @@
-//! The first guess of a step.
-
-use std::ops::Range;
+//! The initial guess of the pressure in a step.
 
 use crate::contact::state::extrapolation::MAX_REACH;
 use crate::contact::state::{Equilibrium, State};
@@ -8,13 +6,12 @@ use crate::contact::step::request::{Step, Trial};
 use crate::contact::window::window::Window;
 use crate::parallel::{Rows, for_each_band};
 use crate::solver::{Counts, Freedom, RigidMotion};
-use crate::sum;
 
-/// A guess is extrapolated only if it carries the force to within this factor: what is left after a cancellation is noise.
+/// A guess is extrapolated only if it carries the force to within this factor: the remainder of a cancellation is noise.
 const MAX_FORCE_RATIO: f64 = 1.5;
 
-/// Where motions are given and the pressure falls to less than this share in a step, the last change of the pressure is no
-/// guide: the last pressure is scaled by what is left.
+/// If motions are given and the pressure falls to less than this share in a step, its last change does not predict the next:
+/// the guess is the last pressure times the share.
 const MAX_SHARE_LEFT: f64 = 0.5;
 
 /// Least distance, in cells, by which the edge of the contact must be expected to move for the next contact to be predicted.
@@ -24,9 +21,9 @@ const MIN_EDGE_SPEED: f64 = 0.5;
 /// the cells far from it.
 const MIN_SHARE_STAYING: f64 = 0.5;
 
-/// Fills the trial with a guess: the state extrapolated from the last step, p and K p alike. Bodies of given motion whose
-/// pressure falls a lot in this step of compliance `c` get the last one scaled: K p would keep the rounding of a greater
-/// one.
+/// Fills the trial with a guess for a step of compliance `c`: p and K p extrapolated from the last step. Under bodies of given
+/// motion whose pressure falls a lot, the last pressure is scaled: an extrapolated K p would keep the rounding of the greater
+/// pressure.
 pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Trial, step: &Step<'_>, c: f64) {
     begin(state, trial, step);
     let (now, before, rows) = (&state.current.solution, &state.previous.solution, state.region.rows());
@@ -65,26 +62,25 @@ pub(super) fn initial_guess(state: &State, window: &mut Window, trial: &mut Tria
     }
     fill_guess(state, window, trial, |now, before| now + reach * (now - before));
     if reach > 0.0 && window.needs_potential() && step.interval.stride == [0; 2] {
-        trial.foreseen = foresee_contact(state, window, trial, step, c);
+        trial.predicted = predict_contact(state, window, trial, step, c);
     }
 }
 
-/// Finds the cells that are likely to be in contact at the end of a step that goes a times as far as the last one. At a moving
-/// edge the pressure goes to zero like the root of the distance, and the gap opens like its power 3/2 (Hertz): a pressure that
-/// fell to less than √(a/(1 + a)) of itself vanishes, a gap that fell to less than the third power of that closes. False where
-/// the last two gaps are not known, where most cells would join or leave, or where the edge moves so slowly that single cells join: their
-/// gaps fall evenly until they touch, which is what the extrapolated pressure shows by itself.
-fn foresee_contact(state: &State, window: &mut Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
+/// Finds the cells that are likely to be in contact at the end of a step a times as long as the last one. At a moving edge the
+/// pressure goes to zero like the root of the distance, and the gap opens like its power 3/2 (Hertz): a pressure that fell to
+/// less than √(a/(1 + a)) of itself vanishes, a gap that fell to less than the third power of this factor closes.
+///
+/// False if the last two gaps are not known, if most cells would join or leave, or if the edge moves so slowly that single
+/// cells join: their gaps fall evenly until they touch, which the extrapolated pressure predicts by itself.
+fn predict_contact(state: &State, window: &mut Window, trial: &mut Trial, step: &Step<'_>, c: f64) -> bool {
     let (now, before) = (&state.current, &state.previous);
     let elastic = state.history.exponential_rule().is_some_and(|rule| !rule.has_memory());
-    let change = state.history.last_change();
+    let (change, rows) = (state.history.last_change(), state.region.rows());
     if now.contact_cells == 0 || before.contact_cells == 0 {
         return false;
     }
-    // a rank without cells has no changes of them
-    let unknown = change.is_none() && state.region.len() > 0;
-    let rows = state.region.rows();
-    if rows.any(unknown) && !elastic {
+    // a rank without cells has no changes
+    if rows.any(change.is_none() && state.region.len() > 0) && !elastic {
         return false;
     }
     let ahead = state.extrapolation.reach(step.interval.dt);
@@ -126,32 +122,26 @@ fn foresee_contact(state: &State, window: &mut Window, trial: &mut Trial, step: 
 }
 
 /// Mean distance in cells by which the edge of the contact moved in the last step: cells that joined or left, over the length of
-/// the edge, that is the number of its sides along one axis or the other. With the pressures `beyond` the first own row, if
-/// another rank has those.
+/// the edge, the number of its sides along one axis or the other. `beyond` is the row of pressures before the first local row,
+/// if another rank has it.
 fn edge_speed(rows: &Rows, now: &Equilibrium, before: &Equilibrium, beyond: Option<&[f64]>) -> f64 {
     let columns = rows.cells()[1];
-    let touches = |k: usize| now.solution.pressure[k] > 0.0;
-    let touched = |k: usize| before.solution.pressure[k] > 0.0;
-    let part = |band: Range<usize>| {
-        let mut across = 0;
-        let mut row = band.start / columns * columns;
-        while row < band.end {
-            let cells = band.start.max(row + 1)..band.end.min(row + columns);
-            across += cells.filter(|&k| touches(k) != touches(k - 1)).count();
-            row += columns;
-        }
-        let mut down = (band.start.max(columns)..band.end).filter(|&k| touches(k) != touches(k - columns)).count();
-        if let (0, Some(beyond)) = (band.start, beyond) {
-            down += (0..columns.min(band.end)).filter(|&k| touches(k) != (beyond[k] > 0.0)).count();
-        }
-        [band.filter(|&k| touches(k) != touched(k)).count(), across, down].map(|count| count as f64)
-    };
-    let [moved, across, down] = rows.merge(part, sum::add);
+    let [now, before] = [now, before].map(|equilibrium| &equilibrium.solution.pressure);
+    let [moved, across, down] = rows.sum_terms(|k| {
+        let touching = now[k] > 0.0;
+        let left = if k % columns > 0 { now[k - 1] > 0.0 } else { touching };
+        let above = match k.checked_sub(columns) {
+            Some(above) => now[above] > 0.0,
+            None => beyond.map_or(touching, |row| row[k] > 0.0),
+        };
+        let differ = [before[k] > 0.0, left, above].map(|other| other != touching);
+        (differ != [false; 3]).then(|| differ.map(|differs| f64::from(u8::from(differs))))
+    });
     moved / across.max(down).max(1.0)
 }
 
-/// The share of the last pressure that best closes the gap of the step, if it is small. On a fixed contact a single
-/// relaxation time leaves exactly that, and so does a punch that is retracted from an elastic body.
+/// The share of the last pressure that best closes the gap of the step, if it is small. It is exact on a fixed contact with a
+/// single relaxation time, and under a punch that is retracted from an elastic body.
 fn share_left(state: &State, trial: &Trial, c: f64) -> Option<f64> {
     let (now, rows) = (&state.current.solution, state.region.rows());
     let pressed = |k: usize| now.pressure[k] > 0.0;
@@ -168,8 +158,8 @@ fn share_left(state: &State, trial: &Trial, c: f64) -> Option<f64> {
     (share < MAX_SHARE_LEFT).then_some(share.max(0.0))
 }
 
-/// The reach a of the guess p₀ + a (p₀ − p₁), scaled to the Σ p that is `wanted`, whose energy ½ c p·K p + gap·p is least. It costs
-/// no convolution, K p₀ and K p₁ being known, and follows a creep that slows down better than the length of the step does.
+/// The reach a of the guess p₀ + a (p₀ − p₁), scaled to Σ p = `wanted`, with the least energy ½ c p·K p + gap·p. It costs no
+/// convolution, since K p₀ and K p₁ are known. It predicts a creep that slows down better than the length of the step does.
 fn best_reach(state: &State, gap: &[f64], c: f64, wanted: f64) -> Option<f64> {
     let (now, before) = (&state.current.solution, &state.previous.solution);
     let [p, dp, gap_p, gap_dp, pv, pdv, dpdv] = state.region.rows().sum_terms(|k| {
@@ -178,7 +168,7 @@ fn best_reach(state: &State, gap: &[f64], c: f64, wanted: f64) -> Option<f64> {
         // outside a punch, where the gap is infinite, nothing presses
         (p != 0.0 || dp != 0.0).then(|| [p, dp, gap[k] * p, gap[k] * dp, p * v, p * dv, dp * dv])
     });
-    // the direction is p₀ − p₁ less so much of p₀ that it carries no force
+    // the direction is p₀ − p₁ minus the multiple of p₀ that makes its force zero
     let (scale, share) = (wanted / p, dp / p);
     let slope = gap_dp - share * gap_p + c * scale * (pdv - share * pv);
     let curvature = c * (dpdv - share * (2.0 * pdv - share * pv));
@@ -186,12 +176,12 @@ fn best_reach(state: &State, gap: &[f64], c: f64, wanted: f64) -> Option<f64> {
     best.is_finite().then_some(best.clamp(0.0, MAX_REACH))
 }
 
-/// Resets the counts, and leaves the bodies where they are, as far as their loads leave them free.
+/// Resets the trial for a new step; the free motions of the bodies start at their present values.
 pub(super) fn begin(state: &State, trial: &mut Trial, step: &Step<'_>) {
     trial.solution.counts = Counts::default();
     trial.solution.rounding = 0.0;
     trial.solution.trace.clear();
-    (trial.reach, trial.foreseen) = (0.0, false);
+    (trial.reach, trial.predicted) = (0.0, false);
     let datum = step.indenter.gap().datum;
     for (body, motion) in trial.solution.motions.iter_mut().enumerate() {
         let RigidMotion { approach, tilt } = state.current.motions[body];

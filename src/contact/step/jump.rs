@@ -1,7 +1,5 @@
 //! Jumps of the load on bodies without elastic response.
 
-use std::ops::Range;
-
 use crate::contact::state::State;
 use crate::contact::step::initial_guess::{begin, fill_guess};
 use crate::contact::step::request::{Step, Trial};
@@ -9,13 +7,12 @@ use crate::contact::window::window::Window;
 use crate::error::{Error, Result};
 use crate::geometry::Gap;
 use crate::solver::PENETRATION_SLACK;
-use crate::sum::named_sums;
 
-/// Rounding of the gap of a cell, relative to the numbers that it is the sum of.
+/// Rounding of the gap of a cell, relative to its summands.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// Writes the end of a jump to the trial where the compliance of the step is 0, so that the displacement stays: with the
-/// pressure as it is if that satisfies the loads, else with none if none is needed. Other loads are rejected.
+/// Writes the end of a jump of compliance 0 to the trial; the displacement stays. The pressure stays if it satisfies the
+/// loads, else it vanishes if zero pressure satisfies them. Other loads are rejected.
 pub(super) fn jump_without_response(
     state: &State,
     window: &mut Window,
@@ -41,70 +38,46 @@ pub(super) fn jump_without_response(
     Ok(())
 }
 
-/// How far `body`, pressed as it is or not at all, is from satisfying its load without any change of the displacement: gap
-/// and penetration relative to the displacement in contact, force and moments relative to the force.
+/// The residual of the load of `body` at an unchanged displacement, under the present pressure (`pressed`) or none: gap and
+/// penetration relative to the displacement in contact, force and moments relative to the force.
 fn residual(state: &State, initial: &Gap, trial: &Trial, step: &Step<'_>, body: usize, pressed: bool) -> f64 {
     let freedom = trial.free[body];
     let (modes, motion) = (state.region.modes(freedom), trial.solution.motions[body]);
     let released = freedom.translation && freedom.total == 0.0;
     let prescribed = step.prescribed(body).approach.abs() + initial.datum.abs();
-    let own = |&k: &usize| initial.owner(k) == body && initial.above[k].is_finite();
-    let part = |band: Range<usize>| {
-        let mut sums = Misfit::default();
-        for k in band.filter(own) {
-            let p = if pressed { state.current.solution.pressure[k] } else { 0.0 };
-            let (u, moved) = (state.history.trial()[k], modes.displacement(motion, k));
-            let h = trial.gap[k] - moved;
-            if !h.is_finite() {
-                sums.penetration = f64::INFINITY;
-                continue;
-            }
-            let rounding = ROUNDING * (prescribed + initial.above[k] + u.abs() + trial.gap[k].abs() + moved.abs());
-            if p > 0.0 {
-                let (distance, [mode0, mode1, mode2]) = ((h.abs() - rounding).max(0.0), modes.at(k));
-                sums.cells += 1.0;
-                sums.distance += distance * distance;
-                sums.displacement += u * u;
-                sums.pressure += p;
-                sums.mode0 += p * mode0;
-                sums.mode1 += p * mode1;
-                sums.mode2 += p * mode2;
-            } else if !released {
-                sums.penetration = sums.penetration.max(-h - rounding);
-            }
-        }
-        sums.numbers()
+    let own = |k: usize| initial.owner(k) == body && initial.above[k].is_finite();
+    let (rows, u) = (state.region.rows(), state.history.trial());
+    let pressure = |k: usize| if pressed { state.current.solution.pressure[k] } else { 0.0 };
+    let gap = |k: usize| trial.gap[k] - modes.displacement(motion, k);
+    let rounding = |k: usize| {
+        let moved = modes.displacement(motion, k);
+        ROUNDING * (prescribed + initial.above[k] + u[k].abs() + trial.gap[k].abs() + moved.abs())
     };
-    let sums = Misfit::of(state.region.rows().merge(part, Misfit::joined));
-    let (penetration, balance) = (sums.penetration, [sums.mode0, sums.mode1, sums.mode2]);
+    let penetration = |k: usize| match gap(k) {
+        h if !h.is_finite() => f64::INFINITY,
+        _ if released || pressure(k) > 0.0 => 0.0,
+        h => -h - rounding(k),
+    };
+    let deepest = (0..u.len()).filter(|&k| own(k)).map(penetration).fold(0.0, f64::max);
+    let penetration = rows.greatest(deepest);
     if penetration == f64::INFINITY {
         return penetration;
     }
-    let force = sums.pressure.max(freedom.total);
+    // over cells in contact: their number, Σ h², Σ u², Σ p, and Σ p B for each mode B of the motion
+    let [cells, distances, displacements, pressures, mode0, mode1, mode2] = rows.sum_terms(|k| {
+        let p = pressure(k);
+        (own(k) && p > 0.0).then(|| {
+            let (distance, modes) = ((gap(k).abs() - rounding(k)).max(0.0), modes.at(k).map(|mode| p * mode));
+            [1.0, distance * distance, u[k] * u[k], p, modes[0], modes[1], modes[2]]
+        })
+    });
+    let balance = [mode0, mode1, mode2];
+    let force = pressures.max(freedom.total);
     let imbalance = (0..3).map(|m| (balance[m] - modes.load()[m] * freedom.total).abs() / force);
-    let root_mean = |sum: f64| (sum / f64::max(sums.cells, 1.0)).sqrt();
-    let distance = root_mean(sums.distance).max(penetration / PENETRATION_SLACK) / root_mean(sums.displacement);
-    // nothing over nothing is nothing, but numbers that left their range satisfy no load
+    let root_mean = |sum: f64| (sum / f64::max(cells, 1.0)).sqrt();
+    let distance = root_mean(distances).max(penetration / PENETRATION_SLACK) / root_mean(displacements);
+    // 0/0 counts as 0; any other NaN satisfies no load
     let parts =
-        imbalance.filter(|_| force > 0.0).chain([distance].into_iter().filter(|_| sums.distance + penetration > 0.0));
+        imbalance.filter(|_| force > 0.0).chain([distance].into_iter().filter(|_| distances + penetration > 0.0));
     parts.fold(0.0, |most, part| if part.is_nan() { f64::INFINITY } else { part.max(most) })
-}
-
-named_sums! {
-    /// Sums over the cells of a body: how far the last state is from a solution of the step.
-    Misfit[8] {
-        /// Cells in contact.
-        cells: +,
-        /// Σ h² over these.
-        distance: +,
-        /// Σ u² over these.
-        displacement: +,
-        /// Σ p, and Σ p B for each mode B of the motion.
-        pressure: +,
-        mode0: +,
-        mode1: +,
-        mode2: +,
-        /// The deepest penetration of the others.
-        penetration: max,
-    }
 }

@@ -10,10 +10,9 @@
 //! | pressure and displacement kept for the steps to come (Eq. 11) | [`History::respond`](crate::hereditary::History::respond) |
 //! | next step | [`ViscoelasticContact::accept`] |
 //!
-//! Beyond the paper, a step checks whether the bodies might touch outside the region that is computed, and then goes on in a
-//! copy of the state on a larger one ([`outgrown`]). All that a step computes is in its trial, in such a copy, or in the
-//! part of the history that it may write; the state changes when the step is accepted. A step that fails has nothing to
-//! undo.
+//! Beyond the paper, a step checks whether the bodies might touch outside the computed region. If so, it continues in a copy
+//! of the state on a larger region ([`outgrown`]). A step writes to its trial, to this copy, and to the part of the history
+//! reserved for steps. The state changes when the step is accepted. A failed step has nothing to undo.
 
 mod accept;
 mod constraints;
@@ -48,28 +47,28 @@ use gap::RigidBodies;
 use initial_guess::initial_guess;
 use jump::jump_without_response;
 
-/// A step that was computed and waits to be accepted; dropped, it leaves the contact as it was.
+/// A computed step, not yet accepted. Dropping it leaves the contact unchanged.
 #[must_use]
 pub(in crate::contact) struct Attempt {
-    /// The copy on a larger region in which it was computed, if it needed one.
+    /// The copy on a larger region, if the step needed one.
     larger: Option<Box<Computation>>,
     /// Σ p.
     sum: f64,
 }
 
 impl ViscoelasticContact {
-    /// Advances by `dt` \[s\] to a state that carries `load`. `dt` = 0 is a jump of the load:
-    /// the bodies respond elastically. A body without elastic response (J(0) = 0) keeps its displacement in a jump; it can
-    /// follow those after which nothing presses it, and those to a load that the pressure as it is satisfies to within
+    /// Advances by `dt` \[s\] to a state that carries `load`. `dt` = 0 is a jump of the load: the bodies respond
+    /// elastically. A body without elastic response (J(0) = 0) keeps its displacement in a jump. It accepts jumps to zero
+    /// pressure, and jumps to a load that the present pressure satisfies to within
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance), such as the present approach in place of the force.
     ///
     /// # Errors
     /// If `dt` or a force is negative, a number not finite, a force acts where it would topple the body, `dt` = 0 and the body
     /// has no elastic response for the pressure that the load needs, contact reaches the edge of the grid (unless
     /// [`Edge::Allow`](crate::contact::Edge::Allow)), the solver does not converge, a creep closure returns an impossible
-    /// value, the material is not known for so long a time, a direct sum has filled its memory, there is none for the cells
-    /// that the contact reaches ([`Error::OutOfMemory`]), or there are several rigid bodies. The contact is then exactly as it
-    /// was before, but for [`ViscoelasticContact::within_step`], which has lost the start of the last step.
+    /// value, the material is not known for so long a time, a direct sum has filled its memory, there is no memory for the
+    /// cells that the contact reaches ([`Error::OutOfMemory`]), or there are several rigid bodies. The contact is then
+    /// unchanged, except that [`ViscoelasticContact::within_step`] has lost the start of the last step.
     pub fn step(&mut self, dt: f64, load: Load) -> Result<StepReport> {
         self.step_each(dt, &[load])
     }
@@ -81,15 +80,20 @@ impl ViscoelasticContact {
     pub fn step_each(&mut self, dt: f64, loads: &[Load]) -> Result<StepReport> {
         let rows = self.computation.state.region.rows();
         rows.together(|| {
-            let requested = non_negative("time step", dt)
-                .and_then(|dt| self.request(self.time() + dt, dt, loads, self.settings().tolerance));
+            let requested = self.request_next(dt, loads);
             let requested = requested.and_then(|step| validate_loads(&self.scene, &step).map(|()| step));
             let step = rows.agree(requested)?;
             self.take(step)
         })
     }
 
-    /// A step of such a `length` to a `time`, in which nothing moves along the surface.
+    /// The next step of length `dt`, to the tolerance of the settings.
+    pub(in crate::contact) fn request_next<'a>(&self, dt: f64, loads: &'a [Load]) -> Result<Step<'a>> {
+        non_negative("time step", dt)?;
+        self.request(self.time() + dt, dt, loads, self.settings().tolerance)
+    }
+
+    /// A step of `length` to the time `time`, without motion along the surface.
     pub(in crate::contact) fn request<'a>(
         &self,
         time: f64,
@@ -111,7 +115,7 @@ impl ViscoelasticContact {
         Ok(self.take_expecting(step, StepContext::default())?.0)
     }
 
-    /// Computes a step and accepts it; its error is estimated with regard to the `outlook`.
+    /// Computes a step and accepts it; the `outlook` enters the estimate of its error.
     pub(in crate::contact) fn take_expecting(
         &mut self,
         step: Step<'_>,
@@ -126,7 +130,7 @@ impl ViscoelasticContact {
     pub(in crate::contact) fn attempt(&mut self, step: &Step<'_>) -> Result<Attempt> {
         let (mut larger, region) = (None, &self.computation.state.region);
         let (rows, from) = (region.rows(), region.cells());
-        // ranks wait for each other, which they must not do on threads that all of them need
+        // ranks wait for each other: on the threads of one pool they would block each other
         let cells = if region.is_shared() { 0 } else { region.len() };
         let tried = rows.together(|| {
             rows.same(marks(step))?;
@@ -144,7 +148,7 @@ impl ViscoelasticContact {
         tried.map(|sum| Attempt { larger, sum })
     }
 
-    /// Makes an attempt the state; an error, which leaves the state as it is, if a rank is lost.
+    /// Makes an attempt the state, and reports it. The loss of a rank is an error, which leaves the state unchanged.
     pub(in crate::contact) fn accept(
         &mut self,
         attempt: Attempt,
@@ -176,8 +180,8 @@ impl ViscoelasticContact {
         Ok(report)
     }
 
-    /// Makes an attempt the state, without a report; `sizes` are the means of displacement and v in contact. Returns the rectangle
-    /// that holds all pressed cells.
+    /// Makes an attempt the state, without a report; `sizes` are the mean displacement and the mean v in contact. Returns
+    /// the smallest rectangle that contains all pressed cells.
     pub(in crate::contact) fn adopt(
         &mut self,
         attempt: Attempt,
@@ -197,13 +201,13 @@ impl ViscoelasticContact {
 }
 
 impl Attempt {
-    /// Where it was computed: in its own copy, or in the contact's.
+    /// The computation of the attempt: its copy on a larger region, or `own`, the contact's.
     pub(in crate::contact) fn computation<'a>(&'a self, own: &'a Computation) -> &'a Computation {
         self.larger.as_deref().unwrap_or(own)
     }
 }
 
-/// Numbers of a step that are the same on all ranks.
+/// Numbers of a step that must agree on all ranks.
 fn marks(step: &Step<'_>) -> [f64; 4] {
     let load = step.loads.first().map_or(0.0, |load| match load {
         Load::Force { normal, .. } => *normal,
@@ -212,7 +216,7 @@ fn marks(step: &Step<'_>) -> [f64; 4] {
     [step.interval.time, step.interval.dt, step.tolerance, load]
 }
 
-/// Computes a step in `own`, or in a copy on the first `larger` region that holds all of the contact; returns Σ p.
+/// Computes a step in `own`, or in a copy on the first `larger` region that contains the whole contact. Returns Σ p.
 fn compute(
     scene: &Scene,
     own: &mut Computation,
@@ -228,7 +232,7 @@ fn compute(
         let at = larger.as_deref_mut().unwrap_or(&mut *own);
         let grown = match at.solve(scene, step) {
             Ok(()) => outgrown(scene, &at.state, &at.window, &at.trial, step),
-            // the load acts inside the hull of what the body may touch, but nothing in the window can carry it there
+            // the load acts inside the hull of the body, but outside the hull of its cells in the window
             Err(Error::LoadOutsideHull { .. }) if at.state.history.far_source().is_some() => {
                 Some(Region::whole(&scene.grid, at.state.region.folded()))
             }
@@ -240,7 +244,7 @@ fn compute(
 }
 
 impl Computation {
-    /// Computes a step on the region at hand: into the trial, and the part of the history that a step may write.
+    /// Computes a step on the present region: writes the trial, and the part of the history reserved for steps.
     fn solve(&mut self, scene: &Scene, step: &Step<'_>) -> Result<()> {
         let Computation { state, window, trial } = self;
         window.follow(&state.region, &step.indenter);
@@ -252,8 +256,9 @@ impl Computation {
         let (c, convolutions) = state.history.predict(step.interval, scene.history_inputs(), kernel, work)?;
         compliance_is_usable(c, step)?;
 
-        // h = hi + u_old + c K p − ω − α·x, what is prescribed of ω and α included
-        let on_bodies = state.history.follows_body_exactly() && !step.has_new_indenter(state);
+        // h = hi + u_old + c K p − ω − α·x, with the prescribed parts of ω and α
+        let gap_is_new = state.indenter_is_new || step.indenter.id() != state.indenter.id();
+        let on_bodies = state.history.follows_body_exactly() && !gap_is_new;
         let start = on_bodies.then_some((&state.loads[..], &state.current.motions[..]));
         let bodies = RigidBodies { step, region: &state.region, start };
         let before = &state.current.solution.pressure;

@@ -1,9 +1,8 @@
-//! A requested step, and what is computed for it.
+//! The request for a step, and the trial that the step computes.
 
 use std::sync::Arc;
 
 use crate::contact::indenter::Indenter;
-use crate::contact::state::State;
 use crate::hereditary::Interval;
 use crate::load::{Load, Tilt};
 use crate::solver::{Freedom, RigidMotion, Solution};
@@ -16,18 +15,13 @@ pub(in crate::contact) struct Step<'a> {
     pub(in crate::contact) loads: &'a [Load],
     /// The indenter at its end.
     pub(in crate::contact) indenter: Arc<Indenter>,
-    /// Of the solver.
+    /// Tolerance of the solver.
     pub(in crate::contact) tolerance: f64,
 }
 
 impl Step<'_> {
-    /// Whether the initial gap differs from the gap of the last step.
-    pub(in crate::contact) fn has_new_indenter(&self, state: &State) -> bool {
-        state.indenter_is_new || self.indenter.id() != state.indenter.id()
-    }
-
-    /// What the load of a body prescribes of its motion, the approach from the datum of the gap; zero where it leaves
-    /// it free.
+    /// The part of a body's motion that its load prescribes; zero for free components. The approach counts from the datum of
+    /// the gap.
     pub(in crate::contact) fn prescribed(&self, body: usize) -> RigidMotion {
         let (load, datum) = (&self.loads[body], self.indenter.gap().datum);
         let approach = if let Load::Approach { approach, .. } = load { approach - datum } else { 0.0 };
@@ -36,21 +30,21 @@ impl Step<'_> {
     }
 }
 
-/// Everything that a step computes before it is accepted, but for the displacement, which the history holds
-/// at both ends of a step. Dropped when the step fails.
+/// Everything that a step computes before it is accepted, except the displacement: the history holds the displacement at
+/// both ends of a step. Dropped when the step fails.
 #[derive(Debug, Clone)]
 pub(crate) struct Trial {
     /// A guess, then the solution.
     pub(in crate::contact) solution: Solution,
     /// The gap before any pressure and free motion.
     pub(in crate::contact) gap: Vec<f64>,
-    /// What the loads leave free of each body.
+    /// Free motions of each body.
     pub(in crate::contact) free: Vec<Freedom>,
-    /// How many times the last step the guess reaches ahead.
+    /// Length of the extrapolation of the guess, in last steps.
     pub(in crate::contact) reach: f64,
-    /// Cells that are likely to be in contact, and whether that is known.
+    /// Cells that are likely to be in contact, and whether they were predicted.
     pub(in crate::contact) likely: Vec<bool>,
-    pub(in crate::contact) foreseen: bool,
+    pub(in crate::contact) predicted: bool,
 }
 
 impl Trial {
@@ -65,7 +59,7 @@ impl Trial {
             free: vec![nothing_free; bodies],
             reach: 0.0,
             likely: vec![false; cells],
-            foreseen: false,
+            predicted: false,
         }
     }
 }

@@ -11,34 +11,27 @@ use crate::hereditary::Role;
 
 impl Region {
     /// The part of a field on the whole grid that belongs to the region.
-    pub(crate) fn cut<V: Copy>(&self, whole: &[V]) -> Vec<V> {
-        self.part(whole).collect()
-    }
-
-    /// Overwrites a gap with the part of another that belongs to the region.
-    pub(crate) fn cut_gap_into(&self, gap: &Gap, own: &mut Gap) {
-        own.datum = gap.datum;
-        own.above.clear();
-        own.above.extend(self.part(&gap.above));
-        if let (Some(own), Some(owner)) = (&mut own.owner, &gap.owner) {
-            own.clear();
-            own.extend(self.part(owner));
-        }
-    }
-
-    fn part<V: Copy>(&self, whole: &[V]) -> impl Iterator<Item = V> {
+    pub(crate) fn cut<V: Copy>(&self, whole: &[V]) -> impl Iterator<Item = V> {
         let n2 = self.whole.cells()[1];
         (0..self.len()).map(|k| self.cell(k)).map(move |[i, j]| whole[i * n2 + j])
     }
 
-    /// The part of a gap that belongs to the region; `None` if that is all of it.
-    pub(crate) fn cut_gap(&self, gap: &Gap) -> Option<Gap> {
+    /// Writes the part of a gap that belongs to the region over `own`; `None` if that is all of it.
+    pub(crate) fn cut_gap(&self, gap: &Gap, own: &mut Option<Gap>) {
         // on ranks the gap is given on local rows
-        (!self.is_whole() && !self.is_shared()).then(|| Gap {
-            datum: gap.datum,
-            above: self.cut(&gap.above),
-            owner: gap.owner.as_ref().map(|owner| self.cut(owner)),
-        })
+        if self.is_whole() || self.is_shared() {
+            *own = None;
+            return;
+        }
+        let Gap { datum, above, owner } = own.get_or_insert_with(Gap::default);
+        *datum = gap.datum;
+        above.clear();
+        above.extend(self.cut(&gap.above));
+        if let Some(all) = &gap.owner {
+            let owner = owner.get_or_insert_default();
+            owner.clear();
+            owner.extend(self.cut(all));
+        }
     }
 
     /// Writes a field of the region, and its mirror images, over the cells that are shown; others stay as they are.

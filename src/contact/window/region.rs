@@ -60,6 +60,15 @@ impl Region {
         if self.is_shared() { Region::whole(&self.whole, self.folded) } else { self.clone() }
     }
 
+    /// The local rows of it, if ranks share out the rows of `own`, or all of it.
+    #[cfg(feature = "checkpoint")]
+    pub(crate) fn shared_like(self, own: &Region) -> Region {
+        match &own.shared {
+            Some(rows) => Region::shared(&self.whole, self.folded, rows),
+            None => self,
+        }
+    }
+
     /// The region that the gap of an indenter is on: the whole grid, or the local rows of ranks.
     pub(crate) fn of_gap(&self) -> Region {
         if self.is_shared() { self.clone() } else { Region::whole(&self.whole, [false; 2]) }
@@ -85,11 +94,6 @@ impl Region {
             }
         }
         Region::new(grid, folded, first, cells)
-    }
-
-    /// A small region that holds the lowest cell of each body.
-    pub(crate) fn first_touched(grid: &Grid, folded: [bool; 2], gap: &Gap, bodies: usize) -> Region {
-        Region::around(grid, folded, Region::lowest_cells(grid, gap, bodies), 0.0)
     }
 
     /// The least rectangle that holds the lowest cell of each body.

@@ -38,7 +38,7 @@ fn regions_know_their_cells() {
                 [x, y].iter().zip(folded).fold(0.0, |sum, (x, folded)| 10.0 * sum + if folded { x.abs() } else { *x })
             };
             let field: Vec<f64> = (0..600).map(|k| even([k / 30, k % 30])).collect();
-            let own = region.cut(&field);
+            let own: Vec<f64> = region.cut(&field).collect();
             for (k, &value) in own.iter().enumerate() {
                 assert_eq!(
                     region.grid().center(k / region.cells()[1], k % region.cells()[1]),

@@ -7,7 +7,7 @@ use crate::contact::step::request::Trial;
 use crate::contact::window::region::Region;
 use crate::geometry::Gap;
 use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::{ActiveSet, Ghosts, HaloExchange, Outcome, PolonskyKeer, Problem, Stop};
+use crate::solver::{ActiveSet, HaloExchange, HaloRows, Outcome, PolonskyKeer, Problem, Solve, Stop};
 
 /// Kernel, solver and gap on the region of a state: all of it follows from scene, region and indenter. It is rebuilt for
 /// another region and never saved.
@@ -20,10 +20,10 @@ pub(crate) struct Window {
     gap: Option<Gap>,
     /// The lowest of the gaps outside the region and its mirror images, above the datum.
     lowest_outside: f64,
-    /// The indenter whose gap these are.
-    indenter: u64,
+    /// The number of the indenter that the gap belongs to.
+    indenter: Option<u64>,
     /// What fetches rows of other ranks, if they share out the region.
-    beside: Option<(HaloExchange, Ghosts)>,
+    beside: Option<(HaloExchange, HaloRows)>,
 }
 
 #[derive(Debug, Clone)]
@@ -44,28 +44,21 @@ impl Window {
         };
         let rows = region.rows();
         let beside = HaloExchange::new(&rows, rows.cells()[1])
-            .map(|exchange| (exchange, Ghosts::beside(&rows, |rank| rows.of(rank), rows.cells(), false)));
-        Window {
-            beside,
-            work,
-            kernel,
-            solver,
-            gap: region.cut_gap(indenter.gap()),
-            lowest_outside: region.lowest_outside(&indenter.gap().above),
-            indenter: indenter.id(),
-        }
+            .map(|exchange| (exchange, HaloRows::new(&rows, |rank| rows.of(rank), rows.cells(), false)));
+        let mut window =
+            Window { beside, work, kernel, solver, gap: None, lowest_outside: f64::INFINITY, indenter: None };
+        window.follow(region, indenter);
+        window
     }
 
     /// Brings the gap up to date with an indenter that has moved.
     pub(crate) fn follow(&mut self, region: &Region, indenter: &Indenter) {
-        if self.indenter == indenter.id() {
+        if self.indenter == Some(indenter.id()) {
             return;
         }
-        if let Some(own) = &mut self.gap {
-            region.cut_gap_into(indenter.gap(), own);
-        }
+        region.cut_gap(indenter.gap(), &mut self.gap);
         self.lowest_outside = region.lowest_outside(&indenter.gap().above);
-        self.indenter = indenter.id();
+        self.indenter = Some(indenter.id());
     }
 
     /// The gap of the indenter on the region, which the window follows.
@@ -109,7 +102,7 @@ impl Window {
         trial: &mut Trial,
     ) -> Outcome {
         let Window { kernel, work, solver, gap, .. } = self;
-        let Trial { solution, gap: open, free, likely, foreseen, .. } = trial;
+        let Trial { solution, gap: open, free, likely, predicted, .. } = trial;
         let owner = gap.as_ref().unwrap_or(indenter.gap()).owner.as_deref();
         let problem = Problem {
             kernel,
@@ -118,7 +111,7 @@ impl Window {
             prescribed,
             bodies: free,
             owner,
-            likely: foreseen.then_some(&likely[..]),
+            likely: predicted.then_some(&likely[..]),
         };
         let outcome = match solver {
             _ if c == 0.0 => Outcome::Converged,
@@ -126,8 +119,8 @@ impl Window {
                 solution.release();
                 Outcome::Converged
             }
-            ContactSolver::ActiveSet(solver) => solver.solve(&problem, stop, solution, work),
-            ContactSolver::PolonskyKeer(solver) => solver.solve(&problem, stop, solution, work),
+            ContactSolver::ActiveSet(solver) => solver.solve(&mut Solve { problem: &problem, stop, solution, work }),
+            ContactSolver::PolonskyKeer(solver) => solver.solve(&mut Solve { problem: &problem, stop, solution, work }),
         };
         solution.follow_surface(&problem);
         outcome

@@ -203,15 +203,14 @@ impl fmt::Debug for SpectralOperator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::even_spectrum::EvenSpectrum;
+    use crate::kernel::even_spectrum::even_spectrum;
     use crate::kernel::layout::Ends;
 
     impl SpectralOperator {
         /// Convolution with the even kernel whose coefficient at distance (i, j) is `coefficient(i, j)`; called for
         /// distances below the number of cells (twice that along a folded axis), taken as zero beyond.
         pub(crate) fn from_coefficients(layout: Layout, coefficient: impl Fn(usize, usize) -> f64) -> SpectralOperator {
-            let spectrum = EvenSpectrum::of(layout, None, &|[i, j]| coefficient(i, j));
-            SpectralOperator::new(layout, None, |k1, k2| spectrum.at(k1, k2))
+            SpectralOperator::new(layout, None, even_spectrum(layout, None, &|[i, j]| coefficient(i, j)))
         }
     }
 

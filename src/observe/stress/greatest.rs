@@ -9,7 +9,7 @@ use crate::memory;
 const ROUNDS: usize = 8;
 const NARROWER: f64 = 0.4;
 
-/// The point where a stress is greatest, see [`SubsurfaceStress::max_von_mises`].
+/// The point where a stress is greatest, see [`SubsurfaceStress::greatest`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct StressPeak {
@@ -24,7 +24,8 @@ pub struct StressPeak {
 }
 
 impl SubsurfaceStress {
-    /// The greatest von Mises stress, between the first and the last of the `depths` \[m\], and its place.
+    /// The greatest of a quantity of the stress, such as [`Stress::von_mises`] or [`Stress::tresca`], between the first and the
+    /// last of the `depths` \[m\], and its place.
     ///
     /// Sought below the centres of all cells at each of the depths, then refined by parabolas through its neighbours along
     /// each axis, which are computed anew at the vertices and narrowed in eight rounds: the place does not depend on the
@@ -32,19 +33,7 @@ impl SubsurfaceStress {
     ///
     /// # Errors
     /// As [`SubsurfaceStress::on_section`].
-    pub fn max_von_mises(&self, depths: &[f64]) -> Result<StressPeak> {
-        self.greatest_of(depths, Stress::von_mises)
-    }
-
-    /// The greatest Tresca stress, twice the greatest shear stress: as [`SubsurfaceStress::max_von_mises`].
-    ///
-    /// # Errors
-    /// As [`SubsurfaceStress::on_section`].
-    pub fn max_tresca(&self, depths: &[f64]) -> Result<StressPeak> {
-        self.greatest_of(depths, Stress::tresca)
-    }
-
-    fn greatest_of(&self, depths: &[f64], quantity: fn(&Stress) -> f64) -> Result<StressPeak> {
+    pub fn greatest(&self, depths: &[f64], quantity: impl Fn(&Stress) -> f64) -> Result<StressPeak> {
         self.check_depths(depths)?;
         let mut plane = memory::field("the stress on a plane", self.grid.len(), Stress::default())?;
         let mut buffers = self.buffers();

@@ -59,7 +59,7 @@ const FARTHEST: f64 = 1e40;
 /// an eighth of the transforms; a point one closed form per loaded cell.
 ///
 /// ```
-/// use viscocontact::prelude::*;
+/// use viscocontact::{observe::Stress, prelude::*};
 ///
 /// let mut contact = ViscoelasticContact::builder(Grid::square(64, 2.4e-3)?)
 ///     .geometry(&Sphere::new(10.0e-3)?)
@@ -68,11 +68,11 @@ const FARTHEST: f64 = 1e40;
 /// contact.step(0.0, Load::force(0.5))?;
 /// let stress = contact.stress()?;
 /// let depths: Vec<f64> = (1..=20).map(|k| f64::from(k) * 0.05e-3).collect();
-/// let greatest = stress.max_von_mises(&depths)?;
+/// let greatest = stress.greatest(&depths, Stress::von_mises)?;
 /// // ν = ½: 0.5327 p0 at 0.548 a below the centre
 /// let hertz = viscocontact::analytic::Hertz::new(10.0e-3, 4.0e6, 0.5)?;
 /// assert!((greatest.value / hertz.pressure(0.0) - 0.5327).abs() < 2.0e-3);
-/// assert!((greatest.position[2] / hertz.contact_radius() - 0.548).abs() < 5.0e-3);
+/// assert!((greatest.position[2] / hertz.contact_radius - 0.548).abs() < 5.0e-3);
 /// # Ok::<(), Error>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -241,7 +241,13 @@ impl SubsurfaceStress {
     /// If the depth x3 of a point is out of the range of [`SubsurfaceStress::on_plane`], or x1 or x2 is not finite, or beyond
     /// ±1e40 depths.
     pub fn at(&self, points: &[[f64; 3]]) -> Result<Vec<Stress>> {
-        points.iter().map(|&point| self.check_point(point).map(|()| self.at_point(point))).collect()
+        for &[x1, x2, x3] in points {
+            self.check_depth(x3)?;
+            for (field, x) in [("coordinate x1 of a point", x1), ("coordinate x2 of a point", x2)] {
+                within(field, x, x.abs() <= FARTHEST * x3, "finite and at most 1e40 times the depth of the point")?;
+            }
+        }
+        Ok(points.iter().map(|&point| self.at_point(point)).collect())
     }
 
     /// The stress at a point in the range that [`SubsurfaceStress::at`] accepts.
@@ -254,14 +260,6 @@ impl SubsurfaceStress {
             HalfSpace::Periodic => waves::below_field(&self.grid, &source.spectrum, point, source.weights),
         };
         self.sources.iter().map(below).fold(Stress::default(), |sum, stress| sum + stress)
-    }
-
-    fn check_point(&self, [x1, x2, x3]: [f64; 3]) -> Result<()> {
-        self.check_depth(x3)?;
-        for (field, x) in [("coordinate x1 of a point", x1), ("coordinate x2 of a point", x2)] {
-            within(field, x, x.abs() <= FARTHEST * x3, "finite and at most 1e40 times the depth of the point")?;
-        }
-        Ok(())
     }
 
     fn check_depth(&self, depth: f64) -> Result<()> {

@@ -170,7 +170,7 @@ fn wrong_arguments_are_refused_by_name() {
         assert_eq!(name(stress.on_plane(depth).unwrap_err()), "depth");
         assert_eq!(name(stress.at(&[[0.0, 0.0, depth]]).unwrap_err()), "depth");
         assert_eq!(name(stress.on_section(Axis::X1, 0.0, &[depth]).unwrap_err()), "depth");
-        assert_eq!(name(stress.max_von_mises(&[depth]).unwrap_err()), "depth");
+        assert_eq!(name(stress.greatest(&[depth], Stress::von_mises).unwrap_err()), "depth");
     }
     assert_eq!(name(stress.on_section(Axis::X1, 0.0, &[]).unwrap_err()), "depths");
     assert_eq!(name(stress.in_volume(&[1.0, 1.0]).unwrap_err()), "depths");

@@ -1,11 +1,10 @@
 //! Balance of force and moments on the active set.
 
 use super::{ActiveSet, MAX_MOVED_SHARE, Shape};
-use crate::kernel::Workspace;
 use crate::parallel::for_each_band;
 use crate::solver::cold_start::{balance, cold_start, press_everywhere};
 use crate::solver::outcome::ResidualSums;
-use crate::solver::problem::{Problem, Solution};
+use crate::solver::problem::{Problem, Solution, Solve};
 
 /// Share of the force by which a converged pressure may be changed in order to balance it.
 const MAX_CLOSING_CHANGE: f64 = 1e-9;
@@ -30,46 +29,38 @@ impl ActiveSet {
     /// Makes the pressure on A carry the force and moments of each body: at once, by scaling p and v, where the force of a
     /// single body is the only load; else by the next direction. Where that cannot be, the last step is cut short, if it was a
     /// search, `searched` long; else the body begins again.
-    pub(super) fn balance(
-        &mut self,
-        problem: &Problem<'_>,
-        shape: Shape,
-        searched: f64,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Result<(), usize> {
+    pub(super) fn balance(&mut self, shape: Shape, searched: f64, solve: &mut Solve<'_>) -> Result<(), usize> {
+        let problem = solve.problem;
         let single = problem.bodies.len() == 1;
-        let pressed: f64 = (0..problem.bodies.len()).map(|body| self.set.sum(problem, body, &solution.pressure)).sum();
-        let all = if self.changes.leaving { problem.rows().sum(&solution.pressure) } else { pressed };
+        let pressed: f64 =
+            (0..problem.bodies.len()).map(|body| self.set.sum(problem, body, &solve.solution.pressure)).sum();
+        let all = if self.changes.leaving { problem.rows().sum(&solve.solution.pressure) } else { pressed };
         self.changes.moves = self.changes.leaving && (all - pressed).abs() < MAX_MOVED_SHARE * pressed;
         let carried = if self.changes.moves { all } else { pressed };
         if !single || problem.bodies[0].tilts() {
-            self.fill_shape(shape, solution);
+            self.fill_shape(shape, solve.solution);
         }
-        for body in 0..problem.bodies.len() {
+        self.changes.corrections.fill(None);
+        for body in problem.loaded_bodies().filter(|&body| problem.bodies[body].moves()) {
             let modes = problem.modes(body);
-            self.changes.corrections[body] = None;
-            if problem.released(body) || !(modes.translates() || modes.tilts()) {
-                continue;
-            }
-            if single && !modes.tilts() {
+            if single && !modes.freedom.tilts() {
                 let scale = problem.bodies[body].total / carried;
                 if (scale - 1.0).abs() > f64::EPSILON {
-                    for_each_band([&mut solution.pressure, &mut solution.potential], |_, [p, v]| {
+                    for_each_band([&mut solve.solution.pressure, &mut solve.solution.potential], |_, [p, v]| {
                         p.iter_mut().for_each(|p| *p *= scale);
                         v.iter_mut().for_each(|v| *v *= scale);
                     });
                 }
                 continue;
             }
+            let solution = &mut *solve.solution;
             let p = |k: usize| solution.pressure[k].max(0.0);
-            let pieces = |band| self.set.pieces_in(problem, body, band);
-            if let Some(y) = modes.balance(problem.rows(), pieces, p, |k| self.shape[k]) {
+            if let Some(y) = self.set.balance(problem, body, p, |k| self.shape[k]) {
                 // pressures that are moved change the moments, and the force of the bodies beside their own
                 self.changes.corrections[body] = (self.changes.moves || y != Default::default()).then_some(y);
                 continue;
             }
-            // the load acts outside the hull of what is left of A
+            // the load acts outside the hull of the cells that are left in A
             if searched > 0.0 && self.cut_step(problem, searched, solution) {
                 return Ok(());
             }
@@ -79,49 +70,50 @@ impl ActiveSet {
                     *p = 0.0;
                 }
             }
-            if !modes.translates() {
-                // held at a pivot, and touching on one side of it only: unloaded, it may turn away
+            if !modes.freedom.translation {
+                // the body is held at a pivot, and touches on one side of it only: without pressure it may turn away
                 self.set.cells(problem, body).for_each(|k| solution.pressure[k] = 0.0);
             } else if shape == Shape::Punch {
                 // the iterations may have begun from a cold start: another one could lead to the same state
                 press_everywhere(problem, body, &mut self.set, solution);
-            } else if !cold_start(problem, body, &mut self.set, solution, |_, _| ()) {
-                return Err(body);
+            } else {
+                cold_start(problem, body, &mut self.set, solution, |_, _| ())?;
             }
             self.set.keep_pressed(problem, body, &solution.pressure);
-            solution.convolve(problem, work);
-            self.changes.leaving = self.some_leave(problem, solution);
-            self.search.energy = 0.0;
+            solve.convolve();
+            self.changes.leaving = self.some_leave(problem, solve.solution);
+            self.energy = 0.0;
         }
         Ok(())
     }
 
-    /// Removes from a converged pressure the imbalance of force and moments that rounding has left: too little to show in v.
+    /// Removes from a converged pressure the imbalance of force and moments that rounding has left: too little to change v.
     /// False if it is more than rounding.
-    pub(super) fn close_balance(&mut self, problem: &Problem<'_>, tolerance: f64, solution: &mut Solution) -> bool {
-        (0..problem.bodies.len()).filter(|&body| !problem.released(body)).all(|body| {
+    pub(super) fn close_balance(&mut self, solve: &mut Solve<'_>) -> bool {
+        let Solve { problem, ref stop, ref mut solution, .. } = *solve;
+        problem.loaded_bodies().all(|body| {
             let modes = problem.modes(body);
-            if !modes.tilts() {
+            if !modes.freedom.tilts() {
                 let sum = |solution: &Solution| self.set.sum(problem, body, &solution.pressure);
                 let carried = sum(solution);
                 let closed = balance(problem, body, &self.set, solution);
-                return !modes.translates()
+                return !modes.freedom.translation
                     || closed && (sum(solution) - carried).abs() <= MAX_CLOSING_CHANGE * carried;
             }
-            let before = &mut self.preconditioned;
+            let before = &mut self.buffer;
             before.copy_from_slice(&solution.pressure);
             let closed = balance(problem, body, &self.set, solution);
             let carried = self.set.sum_of(problem, body, |k| before[k]);
-            // what cannot be balanced would have to be removed entirely
+            // a pressure that cannot be balanced would have to be removed entirely
             let change = |k: usize| (solution.pressure[k] - before[k]).abs();
             let changed = if closed { self.set.sum_of(problem, body, change) } else { carried };
-            if modes.translates() {
+            if modes.freedom.translation {
                 return closed && changed <= MAX_CLOSING_CHANGE * carried;
             }
-            // where no force is prescribed, the pressure may be rounding itself: no cell moves more than by this
+            // without a prescribed force, the whole pressure may be rounding: no cell moves more than by this
             let kernel = problem.kernel;
             let moved = problem.compliance * kernel.self_influence() * kernel.images();
-            let [unseen, rounding] = self.unseen(problem, tolerance, solution);
+            let [unseen, rounding] = self.unseen(problem, stop.tolerance, solution);
             if moved * carried <= rounding {
                 // the body is held by a touch
                 self.set.cells(problem, body).for_each(|k| solution.pressure[k] = 0.0);
@@ -134,16 +126,11 @@ impl ActiveSet {
         })
     }
 
-    /// The displacement that a residual below the tolerance does not show, and the rounding of the gap in it.
+    /// The displacement that a residual below the tolerance may hide, and the rounding of the gap in it.
     fn unseen(&self, problem: &Problem<'_>, tolerance: f64, solution: &Solution) -> [f64; 2] {
         let square = self.set.sum_over_all(problem, |k| (problem.compliance * solution.potential[k]).powi(2));
-        let sums = ResidualSums {
-            displacement: square,
-            cells: self.set.count(),
-            greatest_gap: self.set.greatest_gap,
-            cancellation: problem.rounding(&solution.pressure) + self.guess_rounding,
-            ..ResidualSums::default()
-        };
+        let cancellation = problem.rounding(&solution.pressure) + self.guess_rounding;
+        let sums = ResidualSums { displacement: square, cancellation, ..ResidualSums::of(&self.set) };
         [tolerance * sums.yielding() + sums.rounding(), sums.rounding()]
     }
 }

@@ -13,13 +13,12 @@
 
 use super::iteration::Towards;
 use super::{ActiveSet, JOIN_OVER_RMS};
-use crate::kernel::Workspace;
-use crate::solver::cold_start::{balance, cold_start};
-use crate::solver::outcome::{Outcome, ResidualSums, Stop};
-use crate::solver::problem::{Problem, Solution};
-use crate::solver::rigid_motion::ModeCoefficients;
+use crate::solver::cold_start::make_feasible;
+use crate::solver::outcome::{Outcome, ResidualSums};
+use crate::solver::passes::add;
+use crate::solver::problem::{Problem, Solution, Solve};
 
-/// Times that cells may join A without any gain in between; after that, the rest of the residual is rounding.
+/// Number of times that cells may join A without a gain in between; then the remaining residual is rounding.
 const MAX_JOINS_WITHOUT_GAIN: usize = 3;
 
 /// The best step along a direction.
@@ -27,12 +26,12 @@ const MAX_JOINS_WITHOUT_GAIN: usize = 3;
 struct Gain {
     /// Length of the step.
     length: f64,
-    /// By how much E falls.
+    /// Decrease of E.
     energy: f64,
 }
 
 impl Gain {
-    /// Of a step along a direction with Σ r d = `slope` and c Σ d·Kd = `curvature`, up to the minimum or to `most`.
+    /// The gain of a step along a direction with Σ r d = `slope` and c Σ d·Kd = `curvature`, up to the minimum or to `most`.
     fn along(slope: f64, curvature: f64, most: f64) -> Gain {
         if slope <= 0.0 || curvature <= 0.0 {
             return Gain::default();
@@ -44,75 +43,41 @@ impl Gain {
 
 impl ActiveSet {
     /// Improves `solution` until its residual is below the tolerance, the iterations are spent, or rounding hides any gain.
-    pub(super) fn descend(
-        &mut self,
-        problem: &Problem<'_>,
-        stop: Stop,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Outcome {
-        if let Err(body) = self.make_feasible(problem, solution, work) {
-            return Outcome::Unbalanced(body);
-        }
+    pub(super) fn descend(&mut self, solve: &mut Solve<'_>) -> Result<Outcome, usize> {
+        let (problem, stop) = (solve.problem, solve.stop);
+        self.changes.clear();
+        make_feasible(problem, &mut self.set, solve.solution)?;
+        solve.convolve();
         let (mut gained, mut joins_without_gain, mut blocked) = (true, 0, false);
-        self.search.energy = 0.0;
+        self.energy = 0.0;
         loop {
-            let (mut state, penetration) = self.advance(problem, solution, 0.0);
-            state.note(problem, penetration, self.guess_rounding, solution);
-            if let Some(outcome) = stop.outcome(solution, || true) {
-                return outcome;
+            let mut state = self.advance(problem, solve.solution, 0.0);
+            state.note(problem, self.guess_rounding, solve.solution);
+            if let Some(outcome) = stop.outcome(solve.solution, || true) {
+                return Ok(outcome);
             }
-            let penetrates = penetration > JOIN_OVER_RMS * state.rms();
+            let penetrates = state.penetration > JOIN_OVER_RMS * state.rms();
             // cells at zero that blocked the step have left; where they joined again before any gain, they would block the next
             if penetrates && !blocked {
                 joins_without_gain = if gained { 0 } else { joins_without_gain + 1 };
                 if joins_without_gain > MAX_JOINS_WITHOUT_GAIN {
-                    return Outcome::Stagnated;
+                    return Ok(Outcome::Stagnated);
                 }
                 gained = false;
-                self.add_deepest_cells(problem, joins_without_gain > 0, state, solution);
-                self.advance(problem, solution, 0.0);
+                self.add_deepest_cells(problem, joins_without_gain > 0, state, solve.solution);
+                self.advance(problem, solve.solution, 0.0);
             }
-            solution.counts.iterations += 1;
-            solution.counts.fallback_iterations += 1;
+            solve.solution.counts.iterations += 1;
+            solve.solution.counts.fallback_iterations += 1;
             let cells = self.set.count();
             let towards = if joins_without_gain > 1 { Towards::Residual } else { Towards::Preconditioned };
-            let gain = self.step_downhill(problem, towards, solution, work);
+            let gain = self.step_downhill(towards, solve);
             gained |= gain > 0.0;
             blocked = gain <= 0.0 && self.set.count() < cells;
             if gain <= 0.0 && !blocked && !penetrates {
-                return Outcome::Stagnated;
+                return Ok(Outcome::Stagnated);
             }
         }
-    }
-
-    /// Makes the pressures ≥ 0 and balanced, computes their K p, and sets A to where they are positive.
-    fn make_feasible(
-        &mut self,
-        problem: &Problem<'_>,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Result<(), usize> {
-        for (k, member) in self.set.member.iter_mut().enumerate() {
-            let p = &mut solution.pressure[k];
-            *member = problem.possible(k) && *p > 0.0;
-            if !*member {
-                *p = 0.0;
-            }
-        }
-        self.set.update(problem);
-        self.changes.clear();
-        for body in (0..problem.bodies.len()).filter(|&body| !problem.released(body)) {
-            if (self.set.count_under(body) == 0 || !balance(problem, body, &self.set, solution))
-                && !cold_start(problem, body, &mut self.set, solution, |_, _| ())
-            {
-                return Err(body);
-            }
-        }
-        self.set.member.iter_mut().zip(&solution.pressure).for_each(|(member, &p)| *member = p > 0.0);
-        self.set.update(problem);
-        solution.convolve(problem, work);
-        Ok(())
     }
 
     /// Takes penetrating cells into A: the deeper ones, or the deepest alone.
@@ -121,40 +86,34 @@ impl ActiveSet {
         let cells = (0..self.set.member.len()).filter(outside);
         let deepest = problem.rows().greatest(cells.map(|k| problem.depth(solution, k)).fold(0.0, f64::max));
         // where several cells have joined without any gain, only the deepest one
-        let least = if alone { deepest } else { state.joining_depth(deepest) };
+        let least = if alone { deepest } else { ResidualSums { penetration: deepest, ..state }.joining_depth() };
         for k in 0..self.set.member.len() {
             self.set.member[k] |= problem.possible(k) && least > 0.0 && problem.depth(solution, k) >= least;
         }
         self.set.update(problem);
-        self.search.energy = 0.0;
+        self.energy = 0.0;
     }
 
-    /// One step; returns by how much E falls.
-    fn step_downhill(
-        &mut self,
-        problem: &Problem<'_>,
-        towards: Towards,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> f64 {
-        let c = problem.compliance;
-        self.find_direction(problem, towards, solution, work);
-        problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
-        solution.counts.convolutions += 1;
+    /// One step; returns the decrease of E.
+    fn step_downhill(&mut self, towards: Towards, solve: &mut Solve<'_>) -> f64 {
+        let (problem, c) = (solve.problem, solve.problem.compliance);
+        self.find_direction(towards, solve);
+        self.search.convolve(solve);
+        let solution = &mut *solve.solution;
         let [slope, curvature] = self.slope_and_curvature(problem, solution);
-        self.search.energy = curvature;
+        self.energy = curvature;
         let free = Gain::along(slope, c * curvature, f64::INFINITY);
         if free.energy <= 0.0 {
-            self.search.energy = 0.0;
+            self.energy = 0.0;
             return 0.0;
         }
         let to_zero = |k: usize| {
             let (p, d) = (solution.pressure[k], self.search.direction[k]);
             if d < 0.0 { -p / d } else { f64::INFINITY }
         };
-        let first_zero = problem.rows().least(self.set.runs.cells().map(to_zero).fold(f64::INFINITY, f64::min));
+        let first_zero = problem.rows().least(self.set.segments.cells().map(to_zero).fold(f64::INFINITY, f64::min));
         if free.length <= first_zero {
-            for k in self.set.runs.cells() {
+            for k in self.set.segments.cells() {
                 solution.pressure[k] = (solution.pressure[k] + free.length * self.search.direction[k]).max(0.0);
             }
             add(&mut solution.potential, free.length, &self.search.image);
@@ -162,63 +121,52 @@ impl ActiveSet {
         }
 
         let straight = Gain::along(slope, c * curvature, first_zero);
-        // s of the clipped step takes the place of z
         let clipped = if self.find_clipped_step(problem, free.length, solution) {
-            let slope = self.set.sum_over_all(problem, |k| problem.depth(solution, k) * self.preconditioned[k]);
-            self.shape.resize(solution.pressure.len(), 0.0);
-            problem.kernel.apply(&self.preconditioned, &mut self.shape, work);
-            solution.counts.convolutions += 1;
-            let curvature = self.set.sum_over_all(problem, |k| self.preconditioned[k] * self.shape[k]);
+            let ActiveSet { set, buffer: step, shape: image, .. } = self;
+            let slope = set.sum_over_all(problem, |k| problem.depth(solution, k) * step[k]);
+            image.resize(step.len(), 0.0);
+            solve.convolve_field(step, image);
+            let curvature = set.sum_over_all(problem, |k| step[k] * image[k]);
             Gain::along(slope, c * curvature, 1.0)
         } else {
             Gain::default()
         };
         let clips = clipped.energy > straight.energy;
-        for k in self.set.runs.cells() {
-            let (p, d) = (&mut solution.pressure[k], self.search.direction[k]);
+        let solution = &mut *solve.solution;
+        let ActiveSet { set, buffer: clipped_step, shape: clipped_image, search, .. } = self;
+        for k in set.segments.cells() {
+            let (p, d) = (&mut solution.pressure[k], search.direction[k]);
             *p = if clips {
-                (*p + clipped.length * self.preconditioned[k]).max(0.0)
+                (*p + clipped.length * clipped_step[k]).max(0.0)
             } else if d < 0.0 && -*p / d <= first_zero {
                 0.0
             } else {
                 (*p + straight.length * d).max(0.0)
             };
             if *p <= 0.0 && d < 0.0 {
-                self.set.member[k] = false;
+                set.member[k] = false;
             }
         }
-        let (gain, image) = if clips { (clipped, &self.shape) } else { (straight, &self.search.image) };
+        let (gain, image) = if clips { (clipped, clipped_image) } else { (straight, &mut search.image) };
         add(&mut solution.potential, gain.length, image);
-        self.set.update(problem);
-        self.search.energy = 0.0;
+        set.update(problem);
+        self.energy = 0.0;
         gain.energy
     }
 
-    /// Writes s, the way from p to the balanced max(0, p + a d), to `preconditioned`; false if there is no such balance on A.
+    /// Writes the step from p to the balanced max(0, p + a d) to the buffer; false if there is no such balance on A.
     fn find_clipped_step(&mut self, problem: &Problem<'_>, a: f64, solution: &Solution) -> bool {
-        self.preconditioned.fill(0.0);
-        for body in (0..problem.bodies.len()).filter(|&body| !problem.released(body)) {
-            let modes = problem.modes(body);
-            let clipped = |k: usize| (solution.pressure[k] + a * self.search.direction[k]).max(0.0);
-            let y = if modes.tilts() || modes.translates() {
-                let pieces = |band| self.set.pieces_in(problem, body, band);
-                let Some(y) = modes.balance(problem.rows(), pieces, clipped, clipped) else { return false };
-                y
-            } else {
-                ModeCoefficients::default()
-            };
-            for (k, factor) in self.set.displacements(problem, body, y) {
-                let balanced = (clipped(k) + clipped(k) * factor).max(0.0);
-                self.preconditioned[k] = balanced - solution.pressure[k];
+        let ActiveSet { set, buffer: step, search, .. } = self;
+        step.fill(0.0);
+        problem.loaded_bodies().all(|body| {
+            let clipped = |k: usize| (solution.pressure[k] + a * search.direction[k]).max(0.0);
+            let Some(y) = set.balance(problem, body, clipped, clipped) else { return false };
+            for (k, factor) in set.displacements(problem, body, y) {
+                step[k] = (clipped(k) + clipped(k) * factor).max(0.0) - solution.pressure[k];
             }
-        }
-        true
+            true
+        })
     }
-}
-
-/// x += a y.
-fn add(x: &mut [f64], a: f64, y: &[f64]) {
-    x.iter_mut().zip(y).for_each(|(x, &y)| *x += a * y);
 }
 
 #[cfg(test)]
@@ -226,9 +174,10 @@ mod tests {
     use super::*;
     use crate::Grid;
     use crate::kernel::InfluenceKernel;
+    use crate::solver::outcome::Stop;
     use crate::solver::rigid_motion::Freedom;
 
-    /// Alone, and from a bad guess, it finds what the active set finds, on soft surfaces and on nearly rigid ones.
+    /// The fall-back alone, from a bad guess, converges to the solution of the active set, on soft and on nearly rigid surfaces.
     #[test]
     fn it_converges_on_its_own() {
         let grid = Grid::square(12, 1.2).unwrap();
@@ -254,11 +203,17 @@ mod tests {
             };
             let mut solver = ActiveSet::new(&kernel, 1, &mut work);
             let mut exact = Solution::zero(grid.len(), 1);
-            assert_eq!(solver.solve(&problem, stop, &mut exact, &mut work), Outcome::Converged);
+            assert_eq!(
+                solver.solve(&mut Solve { problem: &problem, stop, solution: &mut exact, work: &mut work }),
+                Outcome::Converged
+            );
 
             let mut slow = Solution::zero(grid.len(), 1);
             slow.pressure.iter_mut().zip(&gap).for_each(|(p, h)| *p = if h.is_finite() { 1.0 } else { 0.0 });
-            assert_eq!(solver.descend(&problem, stop, &mut slow, &mut work), Outcome::Converged);
+            assert_eq!(
+                solver.descend(&mut Solve { problem: &problem, stop, solution: &mut slow, work: &mut work }),
+                Ok(Outcome::Converged)
+            );
             assert!(slow.counts.fallback_iterations < 60, "{compliance}: {:?}", slow.counts);
             let peak = exact.pressure.iter().copied().fold(0.0, f64::max);
             for (a, b) in slow.pressure.iter().zip(&exact.pressure) {

@@ -1,17 +1,16 @@
 //! One iteration of the active set: its residual, its direction and its length.
 
-use super::{ActiveSet, CORRECTION_LENGTH, JOIN_OVER_RMS, Search};
-use crate::kernel::Workspace;
-use crate::solver::outcome::{Outcome, ResidualSums, Stop};
-use crate::solver::passes::{Fields, add};
-use crate::solver::problem::{Problem, Solution};
+use super::{ActiveSet, CORRECTION_LENGTH, JOIN_OVER_RMS};
+use crate::solver::outcome::{Outcome, ResidualSums};
+use crate::solver::passes::add;
+use crate::solver::problem::{Problem, Solution, Solve};
 use crate::solver::rigid_motion::{ModeCoefficients, dot};
 
 /// Σ (r − mean)² is computed afresh, not from Σ r², where less than this fraction of Σ r² is left.
 const MIN_CENTRED_FRACTION: f64 = 1e-6;
 
-/// Penetration outside is found anew where the motion of a tilting body has changed by more than this fraction of rms |r|
-/// since the penetration was found.
+/// Penetration outside is computed anew where the motion of a tilting body has changed by more than this fraction of rms |r|
+/// since the penetration was computed.
 const MAX_TURN_OVER_RMS: f64 = 1e-6;
 
 /// Iterations without a new lowest residual after which no correction follows another one: a search comes between them.
@@ -23,236 +22,206 @@ const DEEPEST: f64 = 0.999;
 /// Iterations without a new lowest residual after which the fall-back takes over.
 const MAX_ITERATIONS_WITHOUT_GAIN: usize = 40;
 
-/// What z of a direction is.
+/// The vector z of a direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Towards {
     /// P Eᵀ M E P r.
     Preconditioned,
     /// r itself.
     Residual,
-    /// Nothing: the residual is below the tolerance, and the direction makes the changes of the pressure alone. A z without
-    /// a line search could make it greater again.
+    /// Zero: the residual is below the tolerance, and the direction makes the changes of the pressure alone. A z without
+    /// a line search could increase it again.
     Corrections,
 }
 
 impl ActiveSet {
-    /// Iterates from a guess until the solve ends, or stagnates.
-    pub(super) fn iterate(
-        &mut self,
-        problem: &Problem<'_>,
-        stop: Stop,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Outcome {
-        if let Err(body) = self.start(problem, solution, work) {
-            return Outcome::Unbalanced(body);
-        }
+    /// Iterates from a guess until the solve ends, or stagnates. Fails with the body whose load no pressure can balance.
+    pub(super) fn iterate(&mut self, solve: &mut Solve<'_>) -> Result<Outcome, usize> {
+        let (problem, stop) = (solve.problem, solve.stop);
+        self.start(solve)?;
         let (mut lowest, mut without_gain, mut step, mut searched) = (f64::INFINITY, 0, 0.0, 0.0);
         loop {
-            let (mut state, mut penetration) = self.advance(problem, solution, step);
-            let hasty = without_gain > MAX_CORRECTIONS_WITHOUT_GAIN && searched == 0.0 && step != 0.0;
-            if state.negative > 0.0 && self.should_remove_tensile(problem, stop, state, hasty) {
-                if let Err(body) = self.remove_tensile_cells(problem, searched, solution, work) {
-                    return Outcome::Unbalanced(body);
-                }
-                (state, penetration) = self.advance(problem, solution, 0.0);
+            let mut state = self.advance(problem, solve.solution, step);
+            let aggressive = without_gain <= MAX_CORRECTIONS_WITHOUT_GAIN || searched != 0.0 || step == 0.0;
+            if state.negative > 0.0 && self.should_remove_tensile(problem, stop, state, aggressive) {
+                self.remove_tensile_cells(searched, solve)?;
+                state = self.advance(problem, solve.solution, 0.0);
             }
-            state.note(problem, penetration, self.guess_rounding, solution);
-            let mut ended = stop.outcome(solution, || !self.changes.any() && state.negative == 0.0);
-            let tensile = || !solution.pressure.iter().all(|&p| p >= 0.0);
+            state.note(problem, self.guess_rounding, solve.solution);
+            let mut ended = stop.outcome(solve.solution, || !self.changes.any() && state.negative == 0.0);
+            let tensile = || !solve.solution.pressure.iter().all(|&p| p >= 0.0);
             if ended == Some(Outcome::Converged) && problem.rows().any(tensile()) {
                 // tiny tensile pressures, whose squares vanish, still violate p ≥ 0
-                if let Err(body) = self.remove_tensile_cells(problem, searched, solution, work) {
-                    return Outcome::Unbalanced(body);
-                }
-                (state, penetration) = self.advance(problem, solution, 0.0);
-                ended = stop.outcome(solution, || false);
+                self.remove_tensile_cells(searched, solve)?;
+                state = self.advance(problem, solve.solution, 0.0);
+                ended = stop.outcome(solve.solution, || false);
             }
             if let Some(outcome) = ended {
-                return outcome;
+                return Ok(outcome);
             }
-            without_gain = if solution.residual < lowest { 0 } else { without_gain + 1 };
-            lowest = lowest.min(solution.residual);
+            without_gain = if solve.solution.residual < lowest { 0 } else { without_gain + 1 };
+            lowest = lowest.min(solve.solution.residual);
             if without_gain > MAX_ITERATIONS_WITHOUT_GAIN {
-                return Outcome::Stagnated;
+                return Ok(Outcome::Stagnated);
             }
             // do not test the predicted set at iteration 0: it has no pressure yet
-            let foreseen = problem.likely.is_some() && solution.counts.iterations == 0;
-            // small pressures that leave are all that is left to do
-            let solved = solution.residual <= stop.tolerance && self.changes.any();
-            if penetration > JOIN_OVER_RMS * state.rms() && !foreseen && !solved {
-                let least = if std::mem::take(&mut self.was_cut) {
-                    DEEPEST * penetration
-                } else {
-                    state.joining_depth(penetration)
-                };
-                self.add_penetrating_cells(problem, least, solution);
-                self.advance(problem, solution, 0.0);
+            let predicted = problem.likely.is_some() && solve.solution.counts.iterations == 0;
+            // only small pressures that leave remain to be removed
+            let solved = solve.solution.residual <= stop.tolerance && self.changes.any();
+            if state.penetration > JOIN_OVER_RMS * state.rms() && !predicted && !solved {
+                let was_cut = std::mem::take(&mut self.was_cut);
+                let least = if was_cut { DEEPEST * state.penetration } else { state.joining_depth() };
+                self.add_penetrating_cells(problem, least, solve.solution);
+                self.advance(problem, solve.solution, 0.0);
             }
 
-            solution.counts.iterations += 1;
+            solve.solution.counts.iterations += 1;
             let corrects = self.changes.any();
             let towards = if solved { Towards::Corrections } else { Towards::Preconditioned };
-            self.find_direction(problem, towards, solution, work);
-            problem.kernel.apply(&self.search.direction, &mut self.search.image, work);
-            solution.counts.convolutions += 1;
-            step = self.step_length(problem, solution);
+            self.find_direction(towards, solve);
+            self.search.convolve(solve);
+            step = self.step_length(problem, solve.solution);
             searched = if corrects { 0.0 } else { step };
         }
     }
 
-    /// p += a d, v += a K d; sets r and the free motions, and returns the sums over A and the deepest penetration outside.
-    pub(super) fn advance(&mut self, problem: &Problem<'_>, solution: &mut Solution, a: f64) -> (ResidualSums, f64) {
-        let Solution { motions, pressure, potential, .. } = solution;
+    /// p += a d, v += a K d; fits the free motions, and returns the sums over A and the deepest penetration outside.
+    pub(super) fn advance(&mut self, problem: &Problem<'_>, solution: &mut Solution, a: f64) -> ResidualSums {
         if a != 0.0 {
-            // r had no motion on A before the step: what K d adds is known, but for rounding
-            for (motion, &image) in motions.iter_mut().zip(&self.search.image_motions) {
+            // r had no motion on A before the step: the motion that K d adds is known, but for rounding
+            for (motion, &image) in solution.motions.iter_mut().zip(&self.image_motions) {
                 *motion = motion.plus(a * problem.compliance, image);
             }
         }
-        let Search { direction, image, .. } = &self.search;
-        let fields = Fields { direction, image, pressure, potential };
-        let mut state =
-            ResidualSums { greatest_gap: self.set.greatest_gap, cells: self.set.count(), ..ResidualSums::default() };
-        let (mut square, mut penetration, mut turned) = (0.0, 0.0_f64, 0.0_f64);
-        for (body, found) in self.passes.survey(problem, &self.set.runs, a, motions, fields).iter().enumerate() {
-            // The fit determines a change of the last motion: what the cells at hand do not determine remains as it was.
-            let fit = self.set.fit(problem, body, found.sums.residual_modes);
-            motions[body] = motions[body].plus(-1.0, fit);
+        let mut state = ResidualSums::of(&self.set);
+        let (mut square, mut turned) = (0.0, 0.0_f64);
+        let found = self.set.passes(problem, &mut self.bands).survey(a, &self.search, solution);
+        for (body, found) in found.iter().enumerate() {
+            // The fit determines a change of the last motion: a motion that the cells do not determine remains as it was.
+            let fit = self.set.fit(problem, body, found.residual_modes);
+            solution.motions[body] = solution.motions[body].plus(-1.0, fit);
             let tilts = problem.bodies[body].tilts();
             // of a body that tilts, no cell moves more than this
             let moved = if tilts { fit.0.iter().map(|y| y.abs()).sum() } else { -fit.0[0] };
-            let (all, fitted) = (found.sums.residual_square, dot(fit.0, found.sums.residual_modes));
-            square += all;
-            state.square += all - fitted;
-            state.displacement += found.sums.displacement_square;
-            state.negative += found.sums.negative_square;
+            square += found.residual_square;
+            state.square += found.residual_square - dot(fit.0, found.residual_modes);
+            state.displacement += found.displacement_square;
+            state.negative += found.negative_square;
             state.deepest = state.deepest.max(found.peak + moved);
-            if tilts {
-                turned = turned.max(moved);
-                penetration = penetration.max(found.greatest());
-            } else {
-                penetration = penetration.max(found.greatest() + moved);
-            }
+            turned = turned.max(if tilts { moved } else { 0.0 });
+            state.penetration = state.penetration.max(found.penetration + if tilts { 0.0 } else { moved });
         }
         // where a motion was far off, the difference is mostly rounding
         if state.square < MIN_CENTRED_FRACTION * square {
             [state.square, state.deepest] = self.find_residual(problem, solution);
         }
         if turned > MAX_TURN_OVER_RMS * state.rms() {
-            let Solution { motions, potential, .. } = &*solution;
-            penetration = self.passes.penetration(problem, &self.set.runs, motions, potential);
+            state.penetration = self.set.passes(problem, &mut self.bands).penetration(solution);
             [_, state.deepest] = self.find_residual(problem, solution);
         }
-        (state, penetration)
+        state
     }
 
-    /// z ← r on A, zero elsewhere; returns Σ r² and the greatest r.
+    /// Writes r on A, zero elsewhere, to the buffer; returns Σ r² and the greatest r.
     fn find_residual(&mut self, problem: &Problem<'_>, solution: &Solution) -> [f64; 2] {
-        let Solution { motions, potential, .. } = solution;
-        self.passes.residual(problem, &self.set.runs, motions, potential, &mut self.preconditioned)
+        self.set.passes(problem, &mut self.bands).residual(solution, &mut self.buffer)
     }
 
     /// d ← z + β d without free motion on A; with pressures to bring to zero or into balance, d is the whole change of p.
-    pub(super) fn find_direction(
-        &mut self,
-        problem: &Problem<'_>,
-        towards: Towards,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) {
+    pub(super) fn find_direction(&mut self, towards: Towards, solve: &mut Solve<'_>) {
+        let Solve { problem, solution, work, .. } = solve;
         // no longer than the last search: where M is too great an inverse, a longer one would not lower the residual
-        let length = CORRECTION_LENGTH.min(self.search.length) / problem.compliance;
+        let length = CORRECTION_LENGTH.min(self.search_length) / problem.compliance;
         let pending = self.changes.any();
-        if towards == Towards::Corrections {
-            self.preconditioned.fill(0.0);
-        } else {
+        if towards != Towards::Corrections {
             self.find_residual(problem, solution);
         }
-        if towards == Towards::Preconditioned {
-            self.preconditioner.apply(&mut self.preconditioned, &self.set, work);
-            solution.counts.preconditioner_applications += 1;
+        let ActiveSet { set, bands, preconditioner, buffer: z, search, shifts, .. } = self;
+        match towards {
+            Towards::Corrections => z.fill(0.0),
+            Towards::Residual => {}
+            Towards::Preconditioned => {
+                preconditioner.apply(z, set, work);
+                solution.counts.preconditioner_applications += 1;
+            }
         }
-
-        let (runs, z) = (&self.set.runs, &self.preconditioned);
-        let Search { direction, image, energy, shifts, .. } = &mut self.search;
         let mut overlap = 0.0;
-        let found = self.passes.overlaps(problem, runs, z, image, direction);
+        let found = set.passes(problem, bands).overlaps(z, search);
         for (body, found) in found.iter().enumerate() {
-            let fit = self.set.fit(problem, body, found.sums.residual_modes);
+            let fit = set.fit(problem, body, found.residual_modes);
             shifts[body] = ModeCoefficients::default().plus(-1.0, fit);
-            overlap += found.sums.residual_image - dot(fit.0, found.sums.image_modes);
+            overlap += found.residual_image - dot(fit.0, found.image_modes);
         }
-        let beta = conjugate(*energy, overlap, pending);
+        // β from z·Kd + β d·Kd = 0. A correction is not conjugate to the last direction: conjugacy would only spread the error
+        // of its length.
+        let beta = if self.energy > 0.0 && !pending { -overlap / self.energy } else { 0.0 };
         // without a last direction, d holds values of an earlier solve
         if beta != 0.0 {
             for (body, found) in found.iter().enumerate() {
-                shifts[body] = shifts[body].plus(-beta, self.set.fit(problem, body, found.sums.direction_modes));
+                shifts[body] = shifts[body].plus(-beta, set.fit(problem, body, found.direction_modes));
             }
         }
         let scale = if pending { length } else { 1.0 };
-        self.passes.redirect(problem, runs, [scale, beta], shifts, z, direction);
+        set.passes(problem, bands).redirect([scale, beta], shifts, z, &mut search.direction);
         if pending {
-            self.correct_direction(problem, solution);
+            self.correct_direction(problem, &solution.pressure);
         }
     }
 
-    /// Lets the direction bring the pressures that leave to zero, move them to the cells around, and balance what it leads to.
-    fn correct_direction(&mut self, problem: &Problem<'_>, solution: &Solution) {
-        if self.changes.moves {
-            self.move_leaving(solution);
-            add(&mut self.search.direction, 1.0, &self.preconditioned);
+    /// Adds the pending changes to the direction: pressures that leave are brought to zero and moved to the cells around, and the
+    /// pressure after the step is balanced.
+    fn correct_direction(&mut self, problem: &Problem<'_>, p: &[f64]) {
+        let ActiveSet { set, bands, preconditioner, buffer: moved, shape, changes, .. } = self;
+        let (direction, balances) = (&mut self.search.direction, &mut self.shifts);
+        if changes.moves {
+            preconditioner.gather_outside(p, set, moved);
+            add(direction, 1.0, moved);
         }
-        let Search { direction, shifts: balances, .. } = &mut self.search;
-        let (runs, p) = (&self.set.runs, &solution.pressure);
-        if self.changes.leaving {
-            runs.outside(p.len()).for_each(|cells| {
+        if changes.leaving {
+            set.segments.outside(p.len()).for_each(|cells| {
                 direction[cells.clone()].iter_mut().zip(&p[cells]).for_each(|(d, &p)| *d = -p);
             });
         }
-        let corrections = &mut self.changes.corrections;
+        let corrections = &mut changes.corrections;
         if corrections.iter().all(Option::is_none) {
             return;
         }
         let mut bodies = corrections.iter().zip(balances.iter_mut()).enumerate();
         let whole = bodies.all(|(body, (correction, balance))| {
             let next = |k: usize| p[k] + direction[k];
-            let pieces = |band| self.set.pieces_in(problem, body, band);
-            let found =
-                correction.and_then(|_| problem.modes(body).balance(problem.rows(), pieces, next, |k| self.shape[k]));
+            let found = correction.and_then(|_| set.balance(problem, body, next, |k| shape[k]));
             *balance = found.unwrap_or_default();
             found.is_some() == correction.is_some()
         });
         if whole {
             let corrections = corrections.iter_mut().zip(balances);
             corrections.for_each(|(correction, y)| *correction = correction.map(|_| *y));
-        } else if self.changes.moves {
-            // what leaves is dropped: the balance of the rest is known
-            runs.cells().for_each(|k| direction[k] -= self.preconditioned[k]);
+        } else if changes.moves {
+            // the pressure that leaves is dropped: the balance of the rest is known
+            set.segments.cells().for_each(|k| direction[k] -= moved[k]);
         }
-        self.passes.correct(problem, runs, &self.changes.corrections, whole, [p, &self.shape], direction);
+        set.passes(problem, bands).correct(corrections, whole, [p, shape], direction);
     }
 
     /// The length a of the step along d, 1 for a correction. Brings cells that leave to p = 0.
-    pub(super) fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> f64 {
+    fn step_length(&mut self, problem: &Problem<'_>, solution: &mut Solution) -> f64 {
         let [slope, curvature] = self.slope_and_curvature(problem, solution);
-        let energy = &mut self.search.energy;
-        *energy = curvature;
         if !self.changes.any() {
-            // a direction that vanishes, as on a single cell, gains nothing
+            self.energy = curvature;
             // the product of small ones may vanish
             let product = problem.compliance * curvature;
             let length = if product > 0.0 { slope / product } else { slope / curvature / problem.compliance };
-            let downhill = slope > 0.0 && curvature > 0.0 && length.is_finite();
-            if downhill {
-                self.search.length = length * problem.compliance;
+            // a direction that vanishes, as on a single cell, gains nothing
+            if !(slope > 0.0 && curvature > 0.0 && length.is_finite()) {
+                return 0.0;
             }
-            return if downhill { length } else { 0.0 };
+            self.search_length = length * problem.compliance;
+            return length;
         }
-        // nothing is conjugate to a correction, which has no line search
-        *energy = 0.0;
+        // no later direction is conjugate to a correction, which has no line search
+        self.energy = 0.0;
         if self.changes.leaving {
-            self.set.runs.outside(solution.pressure.len()).for_each(|cells| solution.pressure[cells].fill(0.0));
+            self.set.segments.outside(solution.pressure.len()).for_each(|cells| solution.pressure[cells].fill(0.0));
         }
         self.changes.clear();
         1.0
@@ -260,21 +229,14 @@ impl ActiveSet {
 
     /// Σ r d and Σ d·Kd on A; notes how K d moves the bodies that tilt.
     pub(super) fn slope_and_curvature(&mut self, problem: &Problem<'_>, solution: &Solution) -> [f64; 2] {
-        let Search { direction, image, image_motions, .. } = &mut self.search;
-        let (motions, fields) = (&solution.motions, [&*solution.potential, &*direction, &*image]);
-        let found = self.passes.slope_and_curvature(problem, &self.set.runs, motions, fields);
+        let found = self.set.passes(problem, &mut self.bands).slope_and_curvature(solution, &self.search);
         let mut sums = [0.0; 2];
         for (body, found) in found.iter().enumerate() {
             let tilts = problem.bodies[body].tilts();
-            image_motions[body] =
-                if tilts { self.set.fit(problem, body, found.sums.image_modes) } else { Default::default() };
-            sums = [sums[0] + found.sums.residual_direction, sums[1] + found.sums.direction_image];
+            self.image_motions[body] =
+                if tilts { self.set.fit(problem, body, found.image_modes) } else { Default::default() };
+            sums = [sums[0] + found.residual_direction, sums[1] + found.direction_image];
         }
         sums
     }
-}
-
-/// β from z·Kd. A correction is not conjugate to the last direction: conjugacy would only spread the error of its length.
-fn conjugate(energy: f64, overlap: f64, pending: bool) -> f64 {
-    if energy > 0.0 && !pending { -overlap / energy } else { 0.0 }
 }

@@ -14,8 +14,8 @@
 //!   residual ([`JOIN_OVER_RMS`]).
 //! * Cells whose pressure is negative leave when their error is large compared with the residual ([`LEAVE_OVER_RMS`]). The
 //!   *next* direction brings them to p = 0: it contains δ = −p on them, so that the convolution it needs anyway updates v.
-//!   Its length is then 1, and the rest of it is z with the usual length ([`CORRECTION_LENGTH`]). What they carried is moved
-//!   to the cells around by Eᵀ, which keeps the force. Cells whose pressure that would make negative leave with them.
+//!   Its length is then 1, and z enters it with the usual length ([`CORRECTION_LENGTH`]). Eᵀ moves their pressure
+//!   to the cells around, which keeps the force. Cells whose pressure becomes negative by the move leave with them.
 //! * Where the force is out of balance, p and v are scaled together. With moments to balance, or several bodies, the
 //!   correction B y times a shape differs from cell to cell, and joins the next direction too.
 //! * A guess extrapolated from earlier steps comes with its own v.
@@ -29,11 +29,12 @@ mod iteration;
 mod membership;
 
 use crate::kernel::{LocalKernel, Workspace};
+use crate::solver::bands::Bands;
 use crate::solver::contact_set::ContactSet;
-use crate::solver::outcome::{Outcome, PENETRATION_SLACK, Stop};
-use crate::solver::passes::Passes;
+use crate::solver::outcome::{Outcome, PENETRATION_SLACK};
+use crate::solver::passes::Search;
 use crate::solver::preconditioner::Preconditioner;
-use crate::solver::problem::{Problem, Solution};
+use crate::solver::problem::Solve;
 use crate::solver::rigid_motion::ModeCoefficients;
 use crate::sum::greatest;
 
@@ -48,8 +49,8 @@ const LEAVE_OVER_RMS: f64 = 0.1;
 /// c a of a direction that corrects the pressure and has no line search, unless the last search was shorter.
 const CORRECTION_LENGTH: f64 = 0.9;
 
-/// Pressures that leave are moved to the cells around, unless they carry more than this part of the force: then the
-/// contact is another one, and they are dropped.
+/// Pressures that leave are moved to the cells around. Pressures that carry more than this part of the force are dropped
+/// instead: the contact is another one.
 const MAX_MOVED_SHARE: f64 = 0.1;
 
 #[derive(Debug, Clone)]
@@ -57,55 +58,44 @@ pub(crate) struct ActiveSet {
     preconditioner: Preconditioner,
     /// The active set A.
     set: ContactSet,
-    passes: Passes,
+    bands: Bands,
     /// Rounding of c K p of the guess: where an approach is given, the pressure may fall far below the pressure of the guess.
     guess_rounding: f64,
     changes: PendingChanges,
     /// Whether the last step was cut short: cells that joined together may have held each other off, and the deepest one joins
     /// alone.
     was_cut: bool,
-    /// r, and what is made of it.
-    preconditioned: Vec<f64>,
     search: Search,
-    /// The shape of corrections of the balance, in the fall-back K s: allocated by the first solve with a tilting load, several
-    /// bodies or the fall-back.
+    /// d·Kd; 0 if the next direction need not be conjugate to d.
+    energy: f64,
+    /// c a of the last search of this solve.
+    search_length: f64,
+    /// The fit of K d on A under each body that tilts.
+    image_motions: Vec<ModeCoefficients>,
+    /// The free motion of each body that is added to d.
+    shifts: Vec<ModeCoefficients>,
+    /// A field that a method fills and reads under a name of its own: z, moved pressures and so on. Its values do not outlive
+    /// the method.
+    buffer: Vec<f64>,
+    /// The shape s of corrections of the balance, in the fall-back a second buffer: allocated by the first solve with a tilting
+    /// load, several bodies or the fall-back.
     shape: Vec<f64>,
 }
 
-/// The search direction d.
-#[derive(Debug, Clone)]
-struct Search {
-    direction: Vec<f64>,
-    /// K d.
-    image: Vec<f64>,
-    /// d·Kd.
-    energy: f64,
-    /// c a of the last search of this solve.
-    length: f64,
-    /// The fit of K d on A under each body that tilts.
-    image_motions: Vec<ModeCoefficients>,
-    /// What makes d free of motion on A.
-    shifts: Vec<ModeCoefficients>,
-}
-
-/// What the next direction changes of the pressure.
+/// Changes of the pressure that the next direction makes.
 #[derive(Debug, Clone)]
 struct PendingChanges {
     /// Whether cells outside A carry pressure, which it brings to zero.
     leaving: bool,
     /// Whether it moves that pressure to the cells around.
     moves: bool,
-    /// For each body the y of the change shape · B y by which it balances the pressure, where that is needed.
+    /// For each body the y of the change shape · B y that balances the pressure, where the pressure is out of balance.
     corrections: Vec<Option<ModeCoefficients>>,
 }
 
 impl PendingChanges {
-    fn corrects(&self) -> bool {
-        self.corrections.iter().any(Option::is_some)
-    }
-
     fn any(&self) -> bool {
-        self.leaving || self.corrects()
+        self.leaving || self.corrections.iter().any(Option::is_some)
     }
 
     fn clear(&mut self) {
@@ -127,23 +117,20 @@ impl ActiveSet {
     /// A solver that works in the buffers of the kernel.
     pub(crate) fn new(kernel: &LocalKernel, bodies: usize, work: &mut Workspace) -> ActiveSet {
         let cells = kernel.grid().len();
-        let (field, motions) = (vec![0.0; cells], vec![ModeCoefficients::default(); bodies]);
+        let motions = vec![ModeCoefficients::default(); bodies];
         ActiveSet {
             preconditioner: Preconditioner::new(kernel, work),
             set: ContactSet::new(cells, bodies),
-            passes: Passes::new(kernel.rows(), bodies),
+            bands: Bands::new(kernel.rows(), bodies),
             guess_rounding: 0.0,
             was_cut: false,
             changes: PendingChanges { leaving: false, moves: false, corrections: vec![None; bodies] },
-            preconditioned: field.clone(),
-            search: Search {
-                direction: field.clone(),
-                image: field,
-                energy: 0.0,
-                length: f64::INFINITY,
-                image_motions: motions.clone(),
-                shifts: motions,
-            },
+            search: Search::new(cells),
+            energy: 0.0,
+            search_length: f64::INFINITY,
+            image_motions: motions.clone(),
+            shifts: motions,
+            buffer: vec![0.0; cells],
             shape: Vec::new(),
         }
     }
@@ -151,27 +138,22 @@ impl ActiveSet {
     /// Improves `solution` until its residual is below the tolerance or the iterations are spent. On
     /// entry `solution.potential` is K p of the guess, whose pressure may be negative on some cells; a body
     /// without any positive pressure gets a cold start.
-    pub(crate) fn solve(
-        &mut self,
-        problem: &Problem<'_>,
-        stop: Stop,
-        solution: &mut Solution,
-        work: &mut Workspace,
-    ) -> Outcome {
+    pub(crate) fn solve(&mut self, solve: &mut Solve<'_>) -> Outcome {
+        let problem = solve.problem;
         let given = problem.bodies.iter().any(|freedom| !freedom.translation);
-        let most = if given { problem.rows().greatest(greatest(&solution.potential)) } else { 0.0 };
+        let most = if given { problem.rows().greatest(greatest(&solve.solution.potential)) } else { 0.0 };
         self.guess_rounding = 4.0 * f64::EPSILON * problem.compliance * most;
-        let outcome = match self.iterate(problem, stop, solution, work) {
-            Outcome::Stagnated => self.descend(problem, stop, solution, work),
+        let outcome = match self.iterate(solve) {
+            Ok(Outcome::Stagnated) => self.descend(solve),
             outcome => outcome,
         };
-        if outcome != Outcome::Converged || self.close_balance(problem, stop.tolerance, solution) {
-            return outcome;
+        if outcome != Ok(Outcome::Converged) || self.close_balance(solve) {
+            return outcome.unwrap_or_else(Outcome::Unbalanced);
         }
         // the converged pressure does not carry the loads
-        match self.descend(problem, stop, solution, work) {
-            Outcome::Converged if !self.close_balance(problem, stop.tolerance, solution) => Outcome::Stagnated,
-            outcome => outcome,
+        match self.descend(solve) {
+            Ok(Outcome::Converged) if !self.close_balance(solve) => Outcome::Stagnated,
+            outcome => outcome.unwrap_or_else(Outcome::Unbalanced),
         }
     }
 }

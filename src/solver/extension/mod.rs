@@ -1,20 +1,16 @@
 //! The smooth extension of a field from the contact to all cells, and its transpose.
 
-mod neighbours;
+mod halo;
 mod passes;
 
 #[cfg(test)]
 mod tests;
 
-use std::ops;
+use std::ops::Range;
 
-use crate::parallel::Rows;
-use crate::parallel::{Task, for_each_share, lanes};
-pub(crate) use crate::solver::extension::neighbours::{Ghosts, HaloExchange};
-use crate::solver::extension::passes::{Blocks, Known, Pull, Push, Restrict, RowBuffers, Spread, Values, weight};
-
-/// κ: how far the mean of a block of cells is trusted, of which only the share s is known, w = κ s/(1 + (κ − 1) s).
-const TRUST: f64 = 1.5;
+use crate::parallel::{Rows, for_each_share, lanes};
+pub(crate) use crate::solver::extension::halo::{HaloExchange, HaloRows};
+use crate::solver::extension::passes::{Blocks, Known, Operation, Pass, RowBuffers, SharedRows, TRUST};
 
 /// E: from the cells of a set A to all cells, by means over blocks of 2 × 2 cells, over blocks of such blocks and so on, and
 /// bilinear interpolation back (a push–pull pyramid),
@@ -22,19 +18,19 @@ const TRUST: f64 = 1.5;
 /// x_l = w_l m_l + (1 − w_l) up(x_(l+1)),  m_(l+1) = Σ w_l m_l / Σ w_l over the block,  w_(l+1) = κ s/(1 + (κ − 1) s),
 ///
 /// where s is the mean of w_l over the block, and w_0 is 1 on A and 0 elsewhere; x = m on the coarsest level, a single block. E
-/// reproduces constants. Its transpose brings what all cells hold to A, and keeps the sum.
-/// Blocks hold the sums S = Σ w m over what they consist of, and the factor φ = κ/(4 + 4 (κ − 1) s), in which everything is
-/// linear: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
+/// reproduces constants. Its transpose moves the values of all cells to A, and keeps their sum.
+/// Blocks hold the sums S = Σ w m over their parts, and the factor φ = κ/(4 + 4 (κ − 1) s). The weights are
+/// linear in φ: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
 ///
-/// An [`Attenuation`] multiplies x of one level before the next finer one is made of it: near A everything remains, and far away little.
+/// An [`Attenuation`] multiplies x of one level before the next finer one is computed: the factor is 1 near A and decays with distance.
 ///
-/// Axes that are not periodic are mirrored at their ends, which is what they are on the parts that symmetry leaves of a grid.
+/// Axes that are not periodic are mirrored at their ends, as the symmetric parts of a grid are.
 ///
 /// Every row of a level is computed from finished rows of another one: threads share the rows, and the result does not depend on
 /// their number.
 ///
-/// Where ranks share out the cells, their bands are whole rows of blocks of 16 × 16 cells. Blocks of 2 × 2, 4 × 4 and 8 × 8 are
-/// they hold the local rows, and a halo row where a pass needs it. Larger ones, a 256th as many numbers as
+/// Where ranks share the cells, their bands are whole rows of blocks of 16 × 16 cells. Of blocks of 2 × 2, 4 × 4 and 8 × 8 cells
+/// a rank holds the local rows, and a halo row where a pass needs it. Larger blocks, a 256th as many numbers as
 /// there are cells, are gathered, and every rank computes all of them.
 #[derive(Debug, Clone)]
 pub(crate) struct Extension {
@@ -46,18 +42,13 @@ pub(crate) struct Extension {
     share: f64,
     /// One set per thread.
     buffers: Vec<RowBuffers>,
-    /// Number of levels of which only own rows are kept.
-    local: usize,
-    /// Own blocks of the first level that is gathered.
-    own: Vec<f64>,
     /// The halo rows of the cells.
-    ghosts: Ghosts,
-    neighbours: Option<HaloExchange>,
-    /// Where E ebbs, the level of the blocks from which it does, and what remains.
-    ebb: Option<(usize, f64)>,
+    halo: HaloRows,
+    exchange: Option<HaloExchange>,
+    attenuation: Option<Attenuation>,
 }
 
-/// How far a field is continued, and what of it remains beyond.
+/// Range of an extension, and the factor beyond it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Attenuation {
     /// In cells.
@@ -66,247 +57,218 @@ pub(crate) struct Attenuation {
     pub(crate) remains: f64,
 }
 
-/// Which of two extensions: that which ebbs, or that which reproduces constants.
+impl Attenuation {
+    /// The height of the blocks that are multiplied by `remains`: they are no longer than the reach.
+    fn height(&self) -> usize {
+        (self.reach.log2() as usize).max(1)
+    }
+}
+
+/// Extension with or without attenuation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Range {
+pub(crate) enum ExtensionKind {
+    /// With its [`Attenuation`].
     Attenuated,
+    /// Without one: constants are reproduced.
     Unbounded,
 }
 
 /// Blocks of cells.
 #[derive(Debug, Clone)]
 struct Level {
-    /// Of all ranks.
+    /// A block has 2^`height` × 2^`height` cells.
+    height: usize,
+    /// Blocks of all ranks.
     cells: [usize; 2],
-    /// The rows that are kept.
-    kept: ops::Range<usize>,
+    /// The rows that this rank holds.
+    kept: Range<usize>,
     /// φ.
     factor: Vec<f64>,
     /// S, then x.
     value: Vec<f64>,
-    /// The rows beside those kept.
-    ghosts: Ghosts,
+    /// The halo rows, where a rank holds the local rows alone.
+    halo: HaloRows,
+    /// The values of the local rows, where the rows of other ranks are gathered.
+    local: Option<Vec<f64>>,
 }
 
-/// Most levels of which a rank keeps own rows alone: the next one has blocks as high as a band.
+/// Greatest number of levels of which a rank holds the local rows alone: blocks of the next level are as high as a band.
 const MOST_LOCAL: usize = 3;
 
+/// Number of levels over so many cells: the last one is a single block.
+fn count_levels(cells: [usize; 2]) -> usize {
+    cells[0].max(cells[1]).next_power_of_two().ilog2() as usize
+}
+
+/// Whether a rank holds the local rows alone of blocks of this height.
+fn is_local(rows: &Rows, height: usize) -> bool {
+    rows.are_shared() && height <= MOST_LOCAL && height < count_levels(rows.cells())
+}
+
+/// The rows of blocks of this height in rows of cells.
+fn blocks_of(rows: Range<usize>, height: usize) -> Range<usize> {
+    if rows.is_empty() { 0..0 } else { rows.start >> height..rows.end.div_ceil(1 << height) }
+}
+
+/// The rows of blocks of this height that a rank holds.
+fn kept(rows: &Rows, height: usize) -> Range<usize> {
+    blocks_of(if is_local(rows, height) { rows.own() } else { 0..rows.cells()[0] }, height)
+}
+
 impl Level {
+    fn new(rows: &Rows, height: usize, periodic: bool) -> Level {
+        let cells = rows.cells().map(|n| n.div_ceil(1 << height));
+        let local_blocks = |rank: usize| blocks_of(rows.of(rank), height);
+        let halo = if is_local(rows, height) {
+            HaloRows::new(rows, local_blocks, cells, periodic)
+        } else {
+            HaloRows::default()
+        };
+        let is_gathered = !is_local(rows, height) && (height == 1 || is_local(rows, height - 1));
+        let local =
+            (rows.are_shared() && is_gathered).then(|| vec![0.0; blocks_of(rows.own(), height).len() * cells[1]]);
+        let kept = kept(rows, height);
+        let field = vec![0.0; kept.len() * cells[1]];
+        Level { height, cells, kept, factor: field.clone(), value: field, halo, local }
+    }
+
     fn blocks(&self) -> Blocks<'_> {
-        Blocks { values: &self.value, first: self.kept.start, columns: self.cells[1], ghosts: &self.ghosts }
+        Blocks { values: &self.value, first: self.kept.start, columns: self.cells[1], halo: &self.halo }
+    }
+
+    /// Computes all values by a pass.
+    fn compute(&mut self, pass: &Pass<'_>, rows: &Rows, buffers: &mut [RowBuffers]) {
+        let Level { height, cells: [_, columns], ref kept, ref mut value, ref mut local, .. } = *self;
+        let Some(local) = local else { return compute_rows(pass, buffers, value, kept.start, columns) };
+        compute_rows(pass, buffers, local, blocks_of(rows.own(), height).start, columns);
+        rows.gather_rows(local, value, |rank| columns * blocks_of(rows.of(rank), height).len());
+    }
+
+    /// Multiplies all values by the factor of the attenuation, if it acts on this level.
+    fn attenuate(&mut self, attenuation: Option<Attenuation>) {
+        if let Some(Attenuation { remains, .. }) = attenuation.filter(|of| of.height() == self.height) {
+            self.value.iter_mut().for_each(|value| *value *= remains);
+        }
+    }
+
+    /// Fetches the halo rows: the values, or their `open` part.
+    fn fetch_halo(&mut self, rows: &Rows, exchange: &mut Option<HaloExchange>, open: bool) {
+        if let (Some(exchange), true) = (exchange, is_local(rows, self.height)) {
+            let Level { cells: [_, columns], ref kept, ref factor, ref value, ref mut halo, .. } = *self;
+            exchange.fetch(halo, columns, kept.len(), |row, out| {
+                let cells = row * columns..(row + 1) * columns;
+                if open {
+                    Known::Factors(&factor[cells.clone()]).write_open(&value[cells], out);
+                } else {
+                    out.copy_from_slice(&value[cells]);
+                }
+            });
+        }
     }
 }
 
 impl Extension {
-    pub(crate) fn new(rows: &Rows, periodic: [bool; 2], ebb: Option<Attenuation>) -> Extension {
+    pub(crate) fn new(rows: &Rows, periodic: [bool; 2], attenuation: Option<Attenuation>) -> Extension {
         let cells = rows.cells();
-        let local = if rows.are_shared() { MOST_LOCAL.min(sizes(cells).count().saturating_sub(1)) } else { 0 };
-        let level = |(height, size): (usize, [usize; 2])| {
-            let of = |rank: usize| blocks_of(rows.of(rank), height);
-            let (kept, ghosts) = if height <= local {
-                (blocks_of(rows.own(), height), Ghosts::beside(rows, of, size, periodic[0]))
-            } else {
-                (0..size[0], Ghosts::default())
-            };
-            let field = vec![0.0; kept.len() * size[1]];
-            Level { cells: size, kept, factor: field.clone(), value: field, ghosts }
-        };
-        let levels: Vec<Level> = (1..).zip(sizes(cells)).map(level).collect();
-        let own = match levels.get(local) {
-            Some(gathered) if rows.are_shared() => blocks_of(rows.own(), local + 1).len() * gathered.cells[1],
-            _ => 0,
-        };
         let threads = lanes(rows.own().len() * cells[1]).min(rows.own().len()).max(1);
-        // blocks of 2^(level + 1) cells that are no longer than the reach
-        let from = |reach: f64| (reach.log2() as usize).max(1) - 1;
         Extension {
-            ebb: ebb.map(|ebb| (from(ebb.reach), ebb.remains)),
+            attenuation,
             periodic,
-            levels,
+            levels: (1..=count_levels(cells)).map(|height| Level::new(rows, height, periodic[0])).collect(),
             share: 0.0,
             buffers: vec![RowBuffers::new(cells[1]); threads],
-            local,
-            own: vec![0.0; own],
-            ghosts: Ghosts::beside(rows, |rank| rows.of(rank), cells, periodic[0]),
-            neighbours: HaloExchange::new(rows, cells[1]),
+            halo: HaloRows::new(rows, |rank| rows.of(rank), cells, periodic[0]),
+            exchange: HaloExchange::new(rows, cells[1]),
             rows: rows.clone(),
         }
     }
 
-    /// Bytes that it takes: of own rows, and of all where they are gathered.
+    /// Bytes of an extension on the local rows.
     pub(crate) fn bytes(rows: &Rows) -> u128 {
-        let cells = rows.cells();
-        let own = |(height, size): (usize, [usize; 2])| {
-            let kept =
-                if rows.are_shared() && height <= MOST_LOCAL { blocks_of(rows.own(), height).len() } else { size[0] };
-            kept as u128 * size[1] as u128
-        };
-        let blocks: u128 = (1..).zip(sizes(cells)).map(own).sum();
-        let threads = lanes(rows.own().len().saturating_mul(cells[1])).min(rows.own().len());
-        16 * blocks + threads as u128 * RowBuffers::bytes(cells[1])
+        let [n1, n2] = rows.cells();
+        let blocks = |height: usize| kept(rows, height).len() as u128 * n2.div_ceil(1 << height) as u128;
+        let threads = lanes(rows.own().len().saturating_mul(n2)).min(rows.own().len());
+        16 * (1..=count_levels([n1, n2])).map(blocks).sum::<u128>() + threads as u128 * RowBuffers::bytes(n2)
     }
 
     /// Builds E for the set of members.
     pub(crate) fn fit(&mut self, member: &[bool]) {
-        // the values are Σ w here, the sums of a field of ones
-        self.push(Values::Members(member), |level| {
-            let factors = level.factor.iter_mut().zip(&level.value);
-            factors.for_each(|(factor, &sum)| *factor = TRUST / (4.0 + (TRUST - 1.0) * sum));
-        });
+        self.ascend(Operation::SumOnes, &[], member, None);
         let known = self.levels.last().map_or(0.0, |coarsest| coarsest.value[0]);
         self.share = if known > 0.0 { 1.0 / known } else { 0.0 };
     }
 
-    /// Fills all cells outside the set, where `field` is zero, ebbing.
+    /// Fills all cells outside the set, where `field` is zero, with attenuation.
     pub(crate) fn extend(&mut self, field: &mut [f64], member: &[bool]) {
-        self.push(Values::Field(field), |_| ());
-        let periodic = self.periodic;
-        self.descend(field, member, true, self.ebb, |blocks, known, fine, first, buffers, values| {
-            run(&Pull { blocks, known, fine, first, periodic }, buffers, values, first, fine[1]);
-        });
+        self.ascend(Operation::Sum, field, member, None);
+        self.descend(Operation::Interpolate, field, member, self.attenuation);
     }
 
-    /// The transpose: what all cells hold is brought to the set, and `field` is zero elsewhere. The endless one keeps the sum.
-    pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool], range: Range) {
-        let ebb = self.ebb.filter(|_| range == Range::Attenuated);
-        let Extension { rows, periodic, levels, buffers, local, own, ghosts, neighbours, .. } = self;
+    /// The transpose: moves the values of all cells to the set, and leaves zero elsewhere. The unbounded one keeps the sum.
+    pub(crate) fn gather(&mut self, field: &mut [f64], member: &[bool], kind: ExtensionKind) {
+        let attenuation = self.attenuation.filter(|_| kind == ExtensionKind::Attenuated);
+        self.ascend(Operation::Restrict, field, member, attenuation);
+        self.descend(Operation::Repeat, field, member, None);
+    }
+
+    /// Computes S from level to level; with the factors φ, if the field is 1 on the set.
+    fn ascend(&mut self, operation: Operation, field: &[f64], member: &[bool], attenuation: Option<Attenuation>) {
+        let Extension { ref rows, periodic, ref mut levels, ref mut buffers, ref mut halo, ref mut exchange, .. } =
+            *self;
         let columns = rows.cells()[1];
-        if let Some(neighbours) = neighbours {
-            neighbours.fetch(ghosts, columns, rows.own().len(), |row, out| {
-                let open = field[row * columns..].iter().zip(&member[row * columns..]);
-                out.iter_mut().zip(open).for_each(|(out, (&f, &inside))| *out = if inside { 0.0 } else { f });
+        if let (Operation::Restrict, Some(exchange)) = (operation, &mut *exchange) {
+            exchange.fetch(halo, columns, rows.own().len(), |row, out| {
+                let cells = row * columns..(row + 1) * columns;
+                Known::Members(&member[cells.clone()]).write_open(&field[cells], out);
             });
         }
         for l in 0..levels.len() {
             let (finer, level) = levels.split_at_mut(l);
-            let (values, known, fine) = match finer.last() {
-                None => {
-                    let values = Blocks { values: field, first: rows.own().start, columns, ghosts };
-                    (values, Known::Members(member), rows.cells())
-                }
+            let level = &mut level[0];
+            let first = rows.own().start;
+            let (read, known, fine) = match finer.last() {
+                None => (Blocks { values: field, first, columns, halo }, Known::Members(member), rows.cells()),
                 Some(finer) => (finer.blocks(), Known::Factors(&finer.factor), finer.cells),
             };
-            raise(
-                &Restrict { values, known, fine, periodic: *periodic },
-                rows,
-                buffers,
-                (l == *local).then_some(l + 1),
-                own,
-                &mut level[0],
-            );
-            fade(ebb, l, &mut level[0].value);
-            if let (true, Some(neighbours)) = (l < *local, neighbours.as_mut()) {
-                let Level { cells: [_, columns], kept, factor, value, ghosts } = &mut level[0];
-                neighbours.fetch(ghosts, *columns, kept.len(), |row, out| {
-                    let blocks = value[row * *columns..].iter().zip(&factor[row * *columns..]);
-                    out.iter_mut().zip(blocks).for_each(|(out, (&f, &factor))| *out = (1.0 - weight(factor)) * f);
-                });
+            let pass = Pass { operation, read, known, first: read.first, fine, periodic };
+            level.compute(&pass, rows, buffers);
+            if operation == Operation::SumOnes {
+                let factors = level.factor.iter_mut().zip(&level.value);
+                factors.for_each(|(factor, &sum)| *factor = TRUST / (4.0 + (TRUST - 1.0) * sum));
             }
-        }
-        self.descend(field, member, false, None, |blocks, known, fine, first, buffers, values| {
-            run(&Spread { blocks, known, fine, first }, buffers, values, first, fine[1]);
-        });
-    }
-
-    /// Finds S level by level, and calls `finish` with each of them.
-    fn push(&mut self, values: Values<'_>, finish: impl Fn(&mut Level)) {
-        let Extension { rows, levels, buffers, local, own, .. } = self;
-        for l in 0..levels.len() {
-            let (finer, level) = levels.split_at_mut(l);
-            let (values, fine, first) = match finer.last() {
-                None => (values, rows.cells(), rows.own().start),
-                Some(Level { cells, kept, factor, value, .. }) => (Values::Weighted(value, factor), *cells, kept.start),
-            };
-            raise(&Push { values, fine, first }, rows, buffers, (l == *local).then_some(l + 1), own, &mut level[0]);
-            finish(&mut level[0]);
+            if operation == Operation::Restrict {
+                level.attenuate(attenuation);
+                level.fetch_halo(rows, exchange, true);
+            }
         }
     }
 
-    /// From the coarsest level down to the cells: calls `pass` with the blocks of a level, what is known of the next finer one,
-    /// the size of that and the first row kept of it, row buffers and its values. A `smooth` pass needs blocks beside, too.
-    fn descend(
-        &mut self,
-        field: &mut [f64],
-        member: &[bool],
-        smooth: bool,
-        ebb: Option<(usize, f64)>,
-        pass: impl Fn(Blocks<'_>, Known<'_>, [usize; 2], usize, &mut [RowBuffers], &mut [f64]),
-    ) {
-        let Extension { rows, levels, share, buffers, local, neighbours, .. } = self;
-        let Some(coarsest) = levels.last_mut() else { return };
-        coarsest.value[0] *= *share;
-        // what remains of a level, and the halo rows of the levels that are kept
-        let mut finish = |level: &mut Level, l: usize| {
-            fade(ebb, l, &mut level.value);
-            if let (true, Some(neighbours)) = (smooth && l < *local, neighbours.as_mut()) {
-                let Level { cells: [_, columns], kept, value, ghosts, .. } = level;
-                neighbours.fetch(ghosts, *columns, kept.len(), |row, out| {
-                    out.copy_from_slice(&value[row * *columns..][..*columns]);
-                });
-            }
-        };
-        for l in (1..levels.len()).rev() {
+    /// Computes x from level to level, down to the cells.
+    fn descend(&mut self, operation: Operation, field: &mut [f64], member: &[bool], attenuation: Option<Attenuation>) {
+        let Extension { ref rows, periodic, ref mut levels, share, ref mut buffers, ref mut exchange, .. } = *self;
+        levels.last_mut().into_iter().for_each(|coarsest| coarsest.value[0] *= share);
+        for l in (0..levels.len()).rev() {
             let (finer, coarser) = levels.split_at_mut(l);
-            finish(&mut coarser[0], l);
-            let Level { cells, kept, factor, value, .. } = &mut finer[l - 1];
-            pass(coarser[0].blocks(), Known::Factors(factor), *cells, kept.start, buffers, value);
+            let coarser = &mut coarser[0];
+            coarser.attenuate(attenuation);
+            if operation == Operation::Interpolate {
+                coarser.fetch_halo(rows, exchange, false);
+            }
+            let (values, known, first, fine) = match finer.last_mut() {
+                None => (&mut *field, Known::Members(member), rows.own().start, rows.cells()),
+                Some(Level { cells, kept, factor, value, .. }) => {
+                    (&mut value[..], Known::Factors(factor), kept.start, *cells)
+                }
+            };
+            let pass = Pass { operation, read: coarser.blocks(), known, first, fine, periodic };
+            compute_rows(&pass, buffers, values, first, fine[1]);
         }
-        finish(&mut levels[0], 0);
-        pass(levels[0].blocks(), Known::Members(member), rows.cells(), rows.own().start, buffers, field);
     }
 }
 
-/// Leaves what remains of the values of the level from which an extension ebbs.
-fn fade(ebb: Option<(usize, f64)>, level: usize, values: &mut [f64]) {
-    if let Some((from, remains)) = ebb
-        && from == level
-    {
-        values.iter_mut().for_each(|value| *value *= remains);
-    }
-}
-
-/// The sizes of all levels.
-fn sizes(cells: [usize; 2]) -> impl Iterator<Item = [usize; 2]> {
-    let coarser = |size: &[usize; 2]| (*size != [1, 1]).then(|| size.map(|n| n.div_ceil(2)));
-    std::iter::successors(coarser(&cells), coarser)
-}
-
-/// The rows of blocks of 2^`height` cells that rows of cells consist of.
-fn blocks_of(rows: ops::Range<usize>, height: usize) -> ops::Range<usize> {
-    if rows.is_empty() { 0..0 } else { rows.start >> height..rows.end.div_ceil(1 << height) }
-}
-
-/// Runs a pass from a level to the next one; where blocks of this height are to be `gathered`, on own rows.
-fn raise<T: Task<Lane = RowBuffers, Item = f64> + Sync>(
-    task: &T,
-    rows: &Rows,
-    buffers: &mut [RowBuffers],
-    gathered: Option<usize>,
-    own: &mut [f64],
-    level: &mut Level,
-) {
-    let columns = level.cells[1];
-    let Some(height) = gathered.filter(|_| rows.are_shared()) else {
-        return run(task, buffers, &mut level.value, level.kept.start, columns);
-    };
-    let of = |rank: usize| blocks_of(rows.of(rank), height);
-    let first = of(rows.rank()).start;
-    run(task, buffers, own, first, columns);
-    rows.gather_rows(own, &mut level.value, |rank| columns * of(rank).len());
-}
-
-/// Runs a pass over rows of a level from the `first` on, each thread with some of them.
-fn run<T: Task<Lane = RowBuffers, Item = f64> + Sync>(
-    task: &T,
-    buffers: &mut [RowBuffers],
-    values: &mut [f64],
-    first: usize,
-    columns: usize,
-) {
+/// Computes rows of a level from the `first` on by a pass, each thread some of them.
+fn compute_rows(pass: &Pass<'_>, buffers: &mut [RowBuffers], values: &mut [f64], first: usize, columns: usize) {
     let threads = buffers.len().min(lanes(values.len()));
     let share = (values.len() / columns).div_ceil(threads).max(1);
-    for (k, rows) in buffers.iter_mut().enumerate() {
-        rows.first = first + k * share;
-    }
-    for_each_share(task, &mut buffers[..threads], values, share * columns);
+    for_each_share(&SharedRows { pass, first, columns }, &mut buffers[..threads], values, share * columns);
 }

@@ -7,12 +7,12 @@ fn noise(seed: &mut u64) -> f64 {
     (*seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
 }
 
-/// E as its definition says, cell by cell.
-fn dense(member: &[bool], values: &[f64], cells: [usize; 2], periodic: [bool; 2], ebb: [f64; 2]) -> Vec<f64> {
-    pull(&member.iter().map(|&m| f64::from(u8::from(m))).collect::<Vec<_>>(), values, cells, periodic, ebb)
+/// E by its definition, cell by cell.
+fn dense(member: &[bool], values: &[f64], cells: [usize; 2], periodic: [bool; 2], attenuation: [f64; 2]) -> Vec<f64> {
+    pull(&member.iter().map(|&m| f64::from(u8::from(m))).collect::<Vec<_>>(), values, cells, periodic, attenuation)
 }
 
-/// `levels_to_go` levels above this one the extension ebbs.
+/// The extension is attenuated `levels_to_go` levels above this one.
 fn pull(
     weight: &[f64],
     mean: &[f64],
@@ -53,7 +53,7 @@ fn pull(
 }
 
 #[test]
-fn it_is_what_its_definition_says_and_has_an_exact_transpose() {
+fn extension_matches_its_definition_and_has_an_exact_transpose() {
     let mut seed = 1;
     let sizes =
         [[16, 16], [13, 31], [20, 9], [32, 32], [1, 17], [17, 1], [1, 1], [2, 3], [64, 5], [370, 361], [5, 30000]];
@@ -86,7 +86,7 @@ fn check(cells: [usize; 2], periodic: [bool; 2], share: f64, seed: &mut u64) {
     for (k, (a, b)) in extended.iter().zip(&expected).enumerate() {
         assert!((a - b).abs() < 1e-14, "{cells:?} {periodic:?}: {a} instead of {b} at {k}");
     }
-    has_transpose(&mut extension, &member, &values, Range::Unbounded, seed);
+    has_transpose(&mut extension, &member, &values, ExtensionKind::Unbounded, seed);
 
     // from blocks of two cells at least
     for (reach, level) in [(0.3, 0.0), (2.0, 0.0), (4.0, 1.0), (5.9, 1.0), (1e9, 28.0)] {
@@ -98,25 +98,25 @@ fn check(cells: [usize; 2], periodic: [bool; 2], share: f64, seed: &mut u64) {
         for (k, (a, b)) in extended.iter().zip(&expected).enumerate() {
             assert!((a - b).abs() < 1e-14, "{cells:?} {periodic:?}, {reach}: {a} instead of {b} at {k}");
         }
-        has_transpose(&mut extension, &member, &values, Range::Attenuated, seed);
+        has_transpose(&mut extension, &member, &values, ExtensionKind::Attenuated, seed);
     }
 }
 
-fn has_transpose(extension: &mut Extension, member: &[bool], values: &[f64], range: Range, seed: &mut u64) {
+fn has_transpose(extension: &mut Extension, member: &[bool], values: &[f64], kind: ExtensionKind, seed: &mut u64) {
     let mut extended = values.to_vec();
     extension.extend(&mut extended, member);
     let field: Vec<f64> = values.iter().map(|_| noise(seed)).collect();
     let mut gathered = field.clone();
-    extension.gather(&mut gathered, member, range);
+    extension.gather(&mut gathered, member, kind);
     let terms = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect::<Vec<_>>();
     let [there, back] = [terms(&extended, &field), terms(values, &gathered)];
     let rounding: f64 = there.iter().chain(&back).map(|term| 1e-15 * term.abs()).sum();
     let [there, back] = [there, back].map(|terms| terms.iter().sum::<f64>());
     assert!((there - back).abs() < 2.0 * rounding, "{there} {back}");
     assert!(member.iter().zip(&gathered).all(|(&m, &x)| m || x == 0.0));
-    // the endless one keeps the sum, whether or not the other one ebbs
+    // the unbounded extension keeps the sum, with and without an attenuation
     let mut kept = field.clone();
-    extension.gather(&mut kept, member, Range::Unbounded);
+    extension.gather(&mut kept, member, ExtensionKind::Unbounded);
     let [before, after] = [field.iter().sum::<f64>(), kept.iter().sum()];
     assert!((before - after).abs() < 1e-12 * (1.0 + field.len() as f64).sqrt(), "{before} {after}");
 }

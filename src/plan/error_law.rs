@@ -1,0 +1,66 @@
+//! Errors of the mesh as powers of the cell width.
+
+/// Range of accepted orders of convergence. Below the first the quantity counts as not converging.
+pub(super) const ORDERS: [f64; 2] = [0.7, 2.0];
+/// Ratio of the greatest difference between two meshes to the error on the finer one, for errors that are fractions of
+/// a cell and have either sign.
+const DIFFERENCE_OVER_ERROR: f64 = 1.25;
+
+/// The error of a quantity, relative to the greatest value of the run, as a power of the number of cells across.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ErrorLaw {
+    pub(super) error: f64,
+    pub(super) order: f64,
+    /// Cells across the widest contact at which the error is `error`.
+    pub(super) across: f64,
+    /// Whether the differences fall with the mesh.
+    pub(super) converges: bool,
+}
+
+impl ErrorLaw {
+    /// The fit of a quantity that does not converge.
+    pub(super) const NONE: ErrorLaw = ErrorLaw { error: 1.0, order: 1.0, across: 1.0, converges: false };
+
+    /// Fit of a smooth quantity to the differences between successive meshes, the finest with `across` cells.
+    pub(super) fn smooth(differences: &[f64], across: f64) -> ErrorLaw {
+        let (error, order, converges) = match *differences {
+            [] => (1.0, 1.0, true),
+            [only] => (only, 1.0, true),
+            [.., before, last] => {
+                let last = last.max(before * 0.5f64.powf(ORDERS[1]));
+                let order = if last > 0.0 { (before / last).log2() } else { ORDERS[1] };
+                let believed = order.clamp(ORDERS[0], ORDERS[1]);
+                (last / (2f64.powf(believed) - 1.0), believed, order >= ORDERS[0])
+            }
+        };
+        ErrorLaw { error, order, across, converges }
+    }
+
+    /// The error on the finest mesh if the order is two.
+    pub(super) fn second_order(differences: &[f64]) -> f64 {
+        let finest = 2f64.powf(ORDERS[1]);
+        let last = differences.last().copied().unwrap_or(1.0);
+        let before = differences.iter().rev().nth(1).map_or(0.0, |before| before / finest);
+        last.max(before) / (finest - 1.0)
+    }
+
+    /// Fit of a quantity that errs by a fraction of a cell.
+    pub(super) fn by_cells(differences: &[f64], across: f64) -> ErrorLaw {
+        let last = match *differences {
+            [] => 1.0,
+            [only] => only,
+            [.., before, last] => last.max(0.5 * before),
+        };
+        ErrorLaw { error: last / DIFFERENCE_OVER_ERROR, order: 1.0, across, converges: true }
+    }
+
+    /// The error with `across` cells across.
+    pub(super) fn at(&self, across: f64) -> f64 {
+        self.error * (self.across / across).powf(self.order)
+    }
+
+    /// Cells across for the error `target`.
+    pub(super) fn across_for(&self, target: f64) -> f64 {
+        self.across * (self.error / target).powf(1.0 / self.order)
+    }
+}
