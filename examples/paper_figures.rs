@@ -116,7 +116,7 @@ fn opening(cells: usize) -> Drawn {
     let face = pressed_punch(cells, 0.0)?.contact_area();
     let (mut area, mut tilt, mut finer_area, mut finer_tilt) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     // by Lur'e the tilt is e / R of these
-    let unit = lure(0.3)?.tilt() / 0.3;
+    let unit = lure(0.3)?.tilt / 0.3;
     let mut merits = Vec::new();
     for step in 0..=16 {
         let e = f64::from(step) / 20.0;

@@ -1,4 +1,4 @@
-//! The tests that see what is public: one module for each doubt that a user may have.
+//! Tests of the public interface: one module for each doubt that a user may have.
 
 use viscocontact_scenes as common;
 

@@ -1,4 +1,4 @@
-//! What a builder tells of memory, against what is counted.
+//! The memory that a builder predicts, against the bytes that are allocated.
 
 use crate::common::bodies::elastic;
 use std::alloc::System;

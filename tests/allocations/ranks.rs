@@ -7,6 +7,8 @@ use viscocontact::parallel::{Ranks, Threads};
 use viscocontact::prelude::*;
 
 use crate::ALLOCATOR;
+use crate::common::bodies::zener;
+use crate::common::spheres::builder_of;
 
 const SIZE: usize = 3;
 
@@ -59,7 +61,7 @@ pub fn ranks_announce_what_is_counted() {
                 ViscoelasticContact::builder(grid.clone())
                     .ranks(Arc::clone(ranks))
                     .geometry(&shape)
-                    .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
+                    .material(zener())
                     .settings(Settings::default().with_symmetry(symmetry))
             };
             // what threads keep for the next contact is taken once
@@ -85,8 +87,5 @@ pub fn ranks_announce_what_is_counted() {
 }
 
 fn builder(settings: Settings, shape: &dyn Geometry) -> Builder {
-    ViscoelasticContact::builder(Grid::square(256, 4.0e-3).unwrap())
-        .geometry(shape)
-        .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
-        .settings(settings)
+    builder_of(shape, Grid::square(256, 4.0e-3).unwrap(), zener()).settings(settings)
 }

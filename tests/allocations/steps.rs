@@ -1,9 +1,19 @@
 //! A step allocates nothing: every buffer is made when the contact is built.
 
 use crate::ALLOCATOR;
+use crate::common::bodies::zener;
+use crate::common::spheres::{builder_of, sphere, sphere_on};
 use crate::common::step_loaded_sphere::StepLoadedSphere;
 use stats_alloc::Region;
 use viscocontact::prelude::*;
+
+/// Panics if the job allocates.
+fn allocates_nothing(what: impl std::fmt::Debug, job: impl FnOnce()) {
+    let region = Region::new(ALLOCATOR);
+    job();
+    let change = region.change();
+    assert_eq!((change.allocations, change.reallocations), (0, 0), "{what:?}: {change:?}");
+}
 
 /// Steps of tilting bodies and of several bodies, from the third on, whatever becomes of them: warm steps, cold starts after
 /// a jump of the load, and the fall-back. Returns how many steps there were with iterations of the fall-back.
@@ -50,7 +60,7 @@ pub fn tilting_steps_allocate_nothing() {
     for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
         let builder = || {
             ViscoelasticContact::builder(Grid::new([24, 30], [side, side]).unwrap())
-                .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
+                .material(zener())
                 .settings(Settings::default().with_solver(solver).with_window(false).with_edge(Edge::Allow))
         };
         let punch = || builder().geometry(&FlatPunch::circular(1.4e-3).unwrap()).build().unwrap();
@@ -75,25 +85,19 @@ pub fn steps_allocate_nothing() {
         for (cells, symmetry) in [(32, true), (32, false), (45, true)] {
             let whole = Settings::default().with_solver(solver).with_symmetry(symmetry).with_window(false);
             let mut contact = scene.contact(cells, whole).unwrap();
-            let region = Region::new(ALLOCATOR);
-            contact.step(0.0, Load::force(1.0)).unwrap();
-            for step in 0..80 {
-                contact.step(0.02, Load::force(1.0 - 0.01 * step as f64)).unwrap();
-            }
-            let change = region.change();
-            assert_eq!((change.allocations, change.reallocations), (0, 0), "{solver:?} on {cells}²: {change:?}");
+            allocates_nothing((solver, cells), || {
+                contact.step(0.0, Load::force(1.0)).unwrap();
+                (0..80).for_each(|k| _ = contact.step(0.02, Load::force(1.0 - 0.01 * f64::from(k))).unwrap());
+            });
 
             // a window takes memory while it grows, and then no more
             let wide = Grid::square(3 * cells, 3.0 * scene.grid(cells).unwrap().lengths()[0]).unwrap();
             let mut contact =
                 scene.contact_on(wide, Settings::default().with_solver(solver).with_symmetry(symmetry)).unwrap();
             contact.step(0.0, Load::force(1.0)).unwrap();
-            let region = Region::new(ALLOCATOR);
-            for step in 0..80 {
-                contact.step(0.02, Load::force(1.0 - 0.012 * step as f64)).unwrap();
-            }
-            let change = region.change();
-            assert_eq!((change.allocations, change.reallocations), (0, 0), "{solver:?} on {cells}²: {change:?}");
+            allocates_nothing((solver, cells), || {
+                (0..80).for_each(|k| _ = contact.step(0.02, Load::force(1.0 - 0.012 * f64::from(k))).unwrap());
+            });
         }
     }
 
@@ -103,10 +107,7 @@ pub fn steps_allocate_nothing() {
         let ramp = Ramp::new(Load::force(0.1), Load::force(1.0), 1.0).unwrap();
         let mut run = contact.follow(&ramp, stepping, 2.0);
         (0..2).for_each(|_| _ = run.next_step().unwrap());
-        let region = Region::new(ALLOCATOR);
-        while run.next_step().unwrap().is_some() {}
-        let change = region.change();
-        assert_eq!((change.allocations, change.reallocations), (0, 0), "{stepping:?}: {change:?}");
+        allocates_nothing(stepping, || while run.next_step().unwrap().is_some() {});
     }
 
     // nor do steps over the bodies, on any kernel, with several relaxation times
@@ -126,75 +127,48 @@ pub fn steps_allocate_nothing() {
     ];
     for (kernel, force) in kernels {
         let kernel = std::sync::Arc::new(kernel.unwrap());
-        let mut contact = ViscoelasticContact::builder(kernel.grid().clone())
-            .geometry(&Ellipsoid::new(10.0e-3, 10.0e-3).unwrap())
-            .material(body())
-            .kernel(kernel)
-            .settings(Settings::default().with_frame(Frame::Indenter).with_symmetry(false))
-            .build()
-            .unwrap();
-        let region = Region::new(ALLOCATOR);
-        contact.step(0.0, Load::force(force)).unwrap();
-        for _ in 0..40 {
-            contact.step_over([1, 0], 0.02, Load::force(force)).unwrap();
-        }
-        let change = region.change();
-        assert_eq!((change.allocations, change.reallocations), (0, 0), "{:?}: {change:?}", contact.kernel());
+        let settings = Settings::default().with_frame(Frame::Indenter).with_symmetry(false);
+        let builder = builder_of(&Ellipsoid::new(10.0e-3, 10.0e-3).unwrap(), kernel.grid().clone(), body());
+        let mut contact = builder.kernel(kernel).settings(settings).build().unwrap();
+        allocates_nothing(contact.kernel().to_string(), || {
+            contact.step(0.0, Load::force(force)).unwrap();
+            (0..40).for_each(|_| _ = contact.step_over([1, 0], 0.02, Load::force(force)).unwrap());
+        });
     }
 
     // nor, after the first, do steps along a path, with and without something that stays in place
     let plane = Grid::square(48, 8.0e-3).unwrap();
     let path = || Straight::new([-1.0e-3, 0.0], [0.01, 0.0]).unwrap();
-    let sphere = || Sphere::new(10.0e-3).unwrap();
     let ways = [Travel::new(sphere(), path()), Travel::new(sphere(), path()).over(Wavy::new(1.0e-6, 1.0e-3).unwrap())];
     for travel in ways {
-        let mut contact = ViscoelasticContact::builder(plane.clone())
-            .geometry(&sphere())
-            .material(body())
-            .settings(Settings::default().with_window(false))
-            .build()
-            .unwrap();
+        let mut contact = sphere_on(plane.clone(), body(), Settings::default().with_window(false));
         contact.step_along(&travel, 0.0, Load::force(0.5)).unwrap();
-        let region = Region::new(ALLOCATOR);
-        for _ in 0..40 {
-            contact.step_along(&travel, 5.0e-3, Load::force(0.5)).unwrap();
-        }
-        let change = region.change();
-        assert_eq!((change.allocations, change.reallocations), (0, 0), "{change:?}");
+        allocates_nothing("along a path", || {
+            (0..40).for_each(|_| _ = contact.step_along(&travel, 5.0e-3, Load::force(0.5)).unwrap());
+        });
     }
 
     // nor do snapshots, taken into the memory of one before, and restored
     for frame in [Frame::Bodies, Frame::Indenter] {
-        let mut contact = ViscoelasticContact::builder(plane.clone())
-            .geometry(&sphere())
-            .material(body())
-            .settings(Settings::default().with_window(false).with_frame(frame))
-            .build()
-            .unwrap();
+        let mut contact = sphere_on(plane.clone(), body(), Settings::default().with_window(false).with_frame(frame));
         contact.step(0.0, Load::force(0.5)).unwrap();
         let mut snapshot = contact.snapshot();
-        let region = Region::new(ALLOCATOR);
-        for _ in 0..20 {
-            contact.step(0.01, Load::force(0.5)).unwrap();
-            contact.snapshot_into(&mut snapshot);
-            contact.step(0.01, Load::force(0.4)).unwrap();
-            contact.restore(&snapshot).unwrap();
-        }
-        let change = region.change();
-        assert_eq!((change.allocations, change.reallocations), (0, 0), "{frame:?}: {change:?}");
+        allocates_nothing(frame, || {
+            for _ in 0..20 {
+                contact.step(0.01, Load::force(0.5)).unwrap();
+                contact.snapshot_into(&mut snapshot);
+                contact.step(0.01, Load::force(0.4)).unwrap();
+                contact.restore(&snapshot).unwrap();
+            }
+        });
     }
 
     // a line contact takes what its cells do, and the tables of its transforms, which are as long as the line
+    let grid = Grid::new([16384, 1], [8.0e-3, 1.0]).unwrap();
     let region = Region::new(ALLOCATOR);
-    let contact = ViscoelasticContact::builder(Grid::new([16384, 1], [8.0e-3, 1.0]).unwrap())
-        .geometry(&Cylinder::new(10.0e-3).unwrap())
-        .material(scene.material.clone())
-        .kernel(std::sync::Arc::new(
-            InfluenceKernel::line(&Grid::new([16384, 1], [8.0e-3, 1.0]).unwrap(), 1.0).unwrap(),
-        ))
-        .settings(Settings::default().with_symmetry(false))
-        .build()
-        .unwrap();
+    let builder = builder_of(&Cylinder::new(10.0e-3).unwrap(), grid.clone(), scene.material.clone());
+    let kernel = std::sync::Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap());
+    let contact = builder.kernel(kernel).settings(Settings::default().with_symmetry(false)).build().unwrap();
     let change = region.change();
     let line = (change.bytes_allocated - change.bytes_deallocated) as f64 / 16384.0;
     drop(contact);

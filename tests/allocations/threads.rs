@@ -4,6 +4,8 @@ use stats_alloc::Region;
 use viscocontact::prelude::*;
 
 use crate::ALLOCATOR;
+use crate::common::bodies::zener;
+use crate::common::spheres::sphere_on;
 
 const STEPS: usize = 100;
 /// Calls of a step: its contact problem, and the estimate of its error.
@@ -14,12 +16,7 @@ const CALLS_TO_A_BLOCK: usize = 63;
 /// Allocations of warm steps on the whole grid.
 fn counted() -> usize {
     let settings = Settings::default().with_symmetry(false).with_window(false);
-    let mut contact = ViscoelasticContact::builder(Grid::square(256, 4.0e-3).unwrap())
-        .geometry(&Sphere::new(10.0e-3).unwrap())
-        .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
-        .settings(settings)
-        .build()
-        .unwrap();
+    let mut contact = sphere_on(Grid::square(256, 4.0e-3).unwrap(), zener(), settings);
     contact.step(0.0, Load::force(1.0)).unwrap();
     let region = Region::new(ALLOCATOR);
     for _ in 0..STEPS {

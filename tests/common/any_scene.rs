@@ -1,5 +1,5 @@
-//! Scenes of every kernel drawn at random: shapes that come down along curves and are pulled off again, tilts, changing
-//! temperature, steps given or chosen by their error, fewer bands of rows than ranks and more.
+//! Scenes that one process or several ranks compute. Those drawn at random have every kernel, shapes that come down along curves
+//! and are pulled off again, tilts, changing temperature, and steps that are given or chosen by their error.
 
 use std::sync::Arc;
 
@@ -8,9 +8,10 @@ use viscocontact::parallel::Ranks;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
+use super::bodies::zener;
 use super::draws::Draws;
 
-/// So many steps of a run show whether ranks stay together.
+/// Most steps of a run.
 const MOST_STEPS: usize = 40;
 const LENGTH: f64 = 4.0e-3;
 const RADIUS: f64 = 10.0e-3;
@@ -25,18 +26,46 @@ pub struct Course {
     pub fields: [Vec<u64>; 2],
 }
 
+/// The steps of a scene.
+pub(super) enum Steps {
+    /// Lengths of the steps \[s\], and the loads at their ends.
+    Given(Vec<(f64, Load)>),
+    /// Along a history, up to a time \[s\].
+    Along(Box<dyn LoadHistory>, Stepping, f64),
+}
+
+/// Takes the steps of a scene: a contact, or a run along a history.
+pub enum Stepper<'a, 'b> {
+    Contact(&'a mut ViscoelasticContact),
+    Run(&'a mut Follow<'b>),
+}
+
+impl Stepper<'_, '_> {
+    pub fn contact(&self) -> &ViscoelasticContact {
+        match self {
+            Stepper::Contact(contact) => contact,
+            Stepper::Run(run) => run.contact(),
+        }
+    }
+}
+
 pub struct AnyScene {
     pub name: String,
-    grid: Grid,
-    kernel: Arc<InfluenceKernel>,
-    shape: Box<dyn Geometry>,
-    material: Material,
-    temperature: Option<TemperatureHistory>,
+    pub(super) grid: Grid,
+    pub(super) kernel: Arc<InfluenceKernel>,
+    pub(super) shape: Box<dyn Geometry>,
+    /// In place of the shape: drawn by one process, or by all ranks together.
+    pub(super) rough: Option<RoughSpec>,
+    pub(super) material: Material,
+    pub(super) temperature: Option<TemperatureHistory>,
     pub settings: Settings,
-    history: Box<dyn LoadHistory>,
-    stepping: Stepping,
+    pub(super) steps: Steps,
+    /// How many ranks share out a random scene.
     pub size: usize,
-    on_own_rows: bool,
+    /// Whether a rank evaluates the shape on its own rows alone.
+    pub on_own_rows: bool,
+    /// Whether the stiffness and the state within the last step are compared, which take contact problems of their own.
+    pub(super) probed: bool,
 }
 
 /// Cells of a line or a plane: of one band of rows, or of several.
@@ -183,69 +212,126 @@ impl AnyScene {
         let settings = Settings::default().with_window(false).with_symmetry(symmetry).with_edge(Edge::Allow);
         let (size, on_own_rows) = (1 + draws.below(7), draws.chance(0.5));
         let name = format!("seed {seed}: {:?} cells, {kernel}, {material:?}, {stepping:?}, {size} ranks", grid.cells());
-        let kernel = Arc::new(kernel);
-        AnyScene { name, grid, kernel, shape, material, temperature, settings, history, stepping, size, on_own_rows }
+        let (kernel, steps) = (Arc::new(kernel), Steps::Along(history, stepping, 1.0));
+        let rough = None;
+        AnyScene {
+            name,
+            grid,
+            kernel,
+            shape,
+            rough,
+            material,
+            temperature,
+            settings,
+            steps,
+            size,
+            on_own_rows,
+            probed: true,
+        }
     }
 
-    /// Runs the scene in one process, or as one of `ranks`.
-    pub fn course(&self, ranks: Option<Arc<dyn Ranks>>) -> Result<Course, Error> {
+    /// A shape on a Zener half-space, all cells of which are computed.
+    pub(super) fn plain(name: &str, grid: Grid, shape: impl Geometry + 'static, steps: Steps) -> AnyScene {
+        AnyScene {
+            name: name.into(),
+            kernel: Arc::new(InfluenceKernel::half_space(&grid).unwrap()),
+            grid,
+            shape: Box::new(shape),
+            rough: None,
+            material: zener(),
+            temperature: None,
+            settings: Settings::default().with_window(false),
+            steps,
+            size: 1,
+            on_own_rows: true,
+            probed: false,
+        }
+    }
+
+    /// The contact of one process, or of one of `ranks`.
+    pub fn contact(&self, ranks: Option<&Arc<dyn Ranks>>) -> Result<ViscoelasticContact, Error> {
+        let rough: Option<Box<dyn Geometry>> = match (self.rough, ranks) {
+            (Some(spec), Some(ranks)) => Some(Box::new(Rough::shared(&self.grid, spec, ranks)?)),
+            (Some(spec), None) => Some(Box::new(Rough::new(&self.grid, spec)?)),
+            (None, _) => None,
+        };
         let mut builder = ViscoelasticContact::builder(self.grid.clone());
-        if let (Some(ranks), true) = (&ranks, self.on_own_rows) {
+        if let (Some(ranks), true) = (ranks, self.on_own_rows) {
             builder = builder.ranks(Arc::clone(ranks));
         }
-        builder = builder.geometry(&self.shape).material(self.material.clone()).kernel(Arc::clone(&self.kernel));
-        builder = builder.settings(self.settings);
+        builder = builder.geometry(rough.as_ref().unwrap_or(&self.shape)).material(self.material.clone());
+        builder = builder.kernel(Arc::clone(&self.kernel)).settings(self.settings);
         if let Some(temperature) = &self.temperature {
             builder = builder.temperature(temperature.clone());
         }
         if let (Some(ranks), false) = (ranks, self.on_own_rows) {
-            builder = builder.ranks(ranks);
+            builder = builder.ranks(Arc::clone(ranks));
         }
-        let mut contact = builder.build()?;
-        let mut run = contact.follow(&self.history, self.stepping, 1.0);
-        let (mut reports, mut error, mut length) = (Vec::new(), None, 0.0);
-        while reports.len() < MOST_STEPS {
-            match run.next_step() {
-                Ok(Some(report)) => {
-                    length = report.dt;
-                    reports.push(format!("{report:?}"));
-                }
-                Ok(None) => break,
-                Err(failed) => {
-                    error = Some(failed.to_string());
-                    break;
-                }
+        builder.build()
+    }
+
+    /// Takes the steps after the first `from`, until `after` returns false. Returns the error budget and the number of rejected
+    /// steps of a run, and the error that ends it.
+    pub fn drive(
+        &self,
+        contact: &mut ViscoelasticContact,
+        from: usize,
+        after: &mut dyn FnMut(Stepper, StepReport) -> Result<bool, Error>,
+    ) -> ([f64; 4], Option<Error>) {
+        match &self.steps {
+            Steps::Given(steps) => {
+                let mut take = |&(dt, load): &(f64, Load)| {
+                    let report = contact.step(dt, load)?;
+                    after(Stepper::Contact(contact), report)
+                };
+                let ended = steps[from..].iter().map(&mut take).find(|taken| !matches!(taken, Ok(true)));
+                ([0.0; 4], ended.and_then(Result::err))
+            }
+            Steps::Along(history, stepping, until) => {
+                let mut run = contact.follow(history, *stepping, *until);
+                let ended = loop {
+                    let step = run.next_step();
+                    match step.and_then(|step| step.map_or(Ok(false), |report| after(Stepper::Run(&mut run), report))) {
+                        Ok(true) => {}
+                        ended => break ended.err(),
+                    }
+                };
+                let budget = run.error_budget();
+                let numbers = [budget.time.unwrap_or(-1.0), budget.pressure.unwrap_or(-1.0), budget.solver];
+                ([numbers[0], numbers[1], numbers[2], run.rejected_steps() as f64], ended)
             }
         }
-        let (budget, rejected) = (run.error_budget(), run.rejected_steps());
-        drop(run);
+    }
+
+    /// All steps in one process, or as one of `ranks`.
+    pub fn course(&self, ranks: Option<Arc<dyn Ranks>>) -> Result<Course, Error> {
+        let mut contact = self.contact(ranks.as_ref())?;
+        self.course_from(&mut contact, 0)
+    }
+
+    /// The steps after the first `from`.
+    pub fn course_from(&self, contact: &mut ViscoelasticContact, from: usize) -> Result<Course, Error> {
+        let (mut reports, mut length) = (Vec::new(), 0.0);
+        let (budget, error) = self.drive(contact, from, &mut |_, report| {
+            length = report.dt;
+            reports.push(format!("{report:?}"));
+            Ok(reports.len() < MOST_STEPS)
+        });
         let bits = |field: Vec<f64>| field.into_iter().map(f64::to_bits).collect::<Vec<_>>();
         let whole = |field: &[f64]| Ok::<_, Error>(bits(contact.gathered(field, 0)?.unwrap_or_default()));
         let ([moment1, moment2], [tilt1, tilt2]) = (contact.moment(), contact.tilt());
         let [force1, force2] = contact.lateral_force(&self.shape);
-        // after a step that failed, the state before it is not kept
-        let inside = contact.time() - if error.is_none() { 0.4 * length } else { 0.0 };
-        let last = contact.within_step(inside)?;
-        let numbers = vec![
-            contact.force(),
-            contact.approach(),
-            contact.max_pressure(),
-            contact.contact_area(),
-            contact.stiffness_over_modulus().unwrap_or(-1.0),
-            moment1,
-            moment2,
-            tilt1,
-            tilt2,
-            force1,
-            force2,
-            last.force(),
-            last.approach(),
-            budget.time.unwrap_or(-1.0),
-            budget.pressure.unwrap_or(-1.0),
-            budget.solver,
-            rejected as f64,
-        ];
+        let mut probes = [-1.0; 3];
+        if self.probed {
+            // after a step that failed, the state before it is not kept
+            let inside = contact.time() - if error.is_none() { 0.4 * length } else { 0.0 };
+            let last = contact.within_step(inside)?;
+            probes = [contact.stiffness_over_modulus().unwrap_or(-1.0), last.force(), last.approach()];
+        }
+        let state = [contact.force(), contact.approach(), contact.max_pressure(), contact.contact_area(), probes[0]];
+        let turned = [moment1, moment2, tilt1, tilt2, force1, force2, probes[1], probes[2]];
+        let numbers = state.into_iter().chain(turned).chain(budget).collect();
         let fields = [whole(contact.pressure())?, whole(contact.displacement())?];
-        Ok(Course { reports, error, numbers: bits(numbers), fields })
+        Ok(Course { reports, error: error.map(|error| error.to_string()), numbers: bits(numbers), fields })
     }
 }

@@ -26,7 +26,7 @@ pub fn three_times() -> Material {
     Material::incompressible(GeneralizedMaxwell::new(0.1e6, &terms).unwrap())
 }
 
-/// A body without an exact series: [`Builder::times`] says over which times one is fitted.
+/// A body without an exact series: one is fitted over the times of [`Builder::times`].
 pub fn power_law() -> Material {
     Material::constant_poisson(PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap(), 0.3).unwrap()
 }

@@ -2,8 +2,10 @@
 
 pub mod any_scene;
 pub mod bodies;
+pub mod chosen_scenes;
 pub mod draws;
 pub mod environment;
+pub mod gauss;
 pub mod histories;
 #[path = "../../examples/support/scenes/indenters.rs"]
 pub mod indenters;
@@ -19,16 +21,20 @@ pub mod random_bodies;
 pub mod random_histories;
 pub mod random_returns;
 pub mod random_scenes;
+pub mod ratios;
+pub mod refused;
 #[cfg(feature = "laws")]
 pub mod related;
 #[path = "../../examples/support/scenes/rolling.rs"]
 pub mod rolling;
 pub mod rough;
 pub mod runs;
+pub mod sealed;
 pub mod spectra;
 pub mod spheres;
 #[path = "../../examples/support/scenes/step_loaded_sphere.rs"]
 pub mod step_loaded_sphere;
+pub mod temporary;
 pub mod truth;
 pub mod watched_ranks;
 pub mod watched_runs;

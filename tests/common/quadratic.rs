@@ -19,7 +19,7 @@ pub fn minimum(matrix: &[f64], gap: &[f64], columns: &[Vec<f64>], right: &[f64])
             return Some((vec![0.0; n], vec![f64::NAN; columns.len()]));
         }
         let Some((p, y)) = on_set(matrix, gap, columns, right, &inside) else {
-            // too few cells to tell the motion: pressures are determined all the same
+            // too few cells determine the motion; the pressures are determined all the same
             return Some((p, vec![f64::NAN; columns.len()]));
         };
         let h = |k: usize| {
@@ -61,7 +61,7 @@ fn interior(matrix: &[f64], gap: &[f64], columns: &[Vec<f64>], right: &[f64]) ->
         let mut factor = matrix.to_vec();
         (0..n).for_each(|k| factor[k * n + k] += s[k] / p[k]);
         if !cholesky(&mut factor, n) {
-            // too near the boundary for its rounding: good enough to tell the set
+            // too near the boundary for its rounding: good enough to find the set
             return (mu < 1e-8).then_some((p, s));
         }
         let image: Vec<Vec<f64>> = columns.iter().map(|column| back(&factor, n, column)).collect();

@@ -62,7 +62,7 @@ fn corners_of(rows: &[(f64, f64)]) -> Vec<f64> {
     rows.iter().map(|row| row.0).chain(rows.windows(2).filter_map(crossing)).collect()
 }
 
-/// A history over `until` seconds; `jumps` says whether it may jump.
+/// A history over `until` seconds, with jumps if `jumps`.
 pub fn random_history(draws: &mut Draws, control: Control, until: f64, jumps: bool) -> RandomHistory {
     let apart = if control.is_approach() { -draws.between(0.1, 0.5) } else { 0.0 };
     let tabled = |name: String, rows: Vec<(f64, f64)>| control.tabled(name, &rows);

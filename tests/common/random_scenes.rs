@@ -1,5 +1,6 @@
 //! Whole scenes drawn at random, on small meshes: bodies, shapes, histories, and the times at which they are looked at.
 
+use super::spheres::builder_of;
 use std::sync::Arc;
 
 use viscocontact::contact::Builder;
@@ -180,9 +181,7 @@ impl RandomScene {
 
     /// The scene before it is built, with contact allowed at the edge.
     pub fn builder(&self, settings: Settings) -> Builder {
-        ViscoelasticContact::builder(self.grid.clone())
-            .geometry(&*self.geometry)
-            .material(self.body.material.clone())
+        builder_of(&*self.geometry, self.grid.clone(), self.body.material.clone())
             .kernel(self.kernel.clone())
             .settings(settings.with_edge(Edge::Allow))
     }
@@ -200,13 +199,6 @@ impl RandomScene {
     /// The same by a rule of time.
     pub fn contact_by(&self, time_rule: TimeRule, tolerance: f64) -> ViscoelasticContact {
         self.contact_of(self.body.material.clone(), time_rule, tolerance)
-    }
-
-    /// The kinds of body and of history, with what is given.
-    pub fn kinds(&self) -> [String; 2] {
-        let by = if self.control.is_approach() { "approach" } else { "force" };
-        let history = self.history.name.split([' ', ',', '^']).next().unwrap_or_default();
-        [self.body.name.to_string(), format!("{by}, {history}")]
     }
 
     /// The history itself.

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 use viscocontact::laws::Scenario;
 use viscocontact::prelude::*;
 
-/// Solved so tightly that what is left is the difference of the scenes.
+/// Tolerance below which errors of the solver are far smaller than differences of the scenes.
 pub const TIGHT: f64 = 1e-10;
 
 pub fn tight() -> Settings {
@@ -37,7 +37,7 @@ fn apart(one: &[f64], other: &[f64], scale: f64) -> f64 {
     if apart == 0.0 { 0.0 } else { apart / most }
 }
 
-/// Whether fields are the same, to `within` of the greatest value or of `scale`: what is left after letting go is rounding
+/// Whether fields are the same, to `within` of the greatest value or of `scale`: after a release, rounding remains
 /// of what was there before.
 pub fn assert_same(what: &str, one: &[f64], other: &[f64], scale: f64, within: f64) -> Result<(), TestCaseError> {
     let apart = apart(one, other, scale);

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use viscocontact::prelude::*;
+use viscocontact::rheology::{TemperatureHistory, TimeTemperature};
 
 use super::bodies::{power_law, three_times};
-use super::spheres::{builder_on, sphere, sphere_on};
+use super::spheres::{builder_of, builder_on, sphere, sphere_on};
 
 pub type Build = Box<dyn Fn() -> ViscoelasticContact>;
 pub type Step = Box<dyn Fn(&mut ViscoelasticContact, u32) -> StepReport>;
@@ -24,9 +25,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
     let whole = Settings::default().with_window(false).with_symmetry(false);
     let line = || {
         let grid = Grid::new([200, 1], [10.0e-3, 1.0]).unwrap();
-        ViscoelasticContact::builder(grid.clone())
-            .geometry(&Cylinder::new(10.0e-3).unwrap())
-            .material(three_times())
+        builder_of(&Cylinder::new(10.0e-3).unwrap(), grid.clone(), three_times())
             .kernel(Arc::new(InfluenceKernel::line(&grid, 1.0).unwrap()))
             .settings(Settings::default().with_frame(Frame::Indenter))
             .build()
@@ -37,9 +36,7 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
     };
     let strip = || {
         let grid = Grid::new([64, 24], [8.0e-3, 3.0e-3]).unwrap();
-        ViscoelasticContact::builder(grid.clone())
-            .geometry(&sphere())
-            .material(three_times())
+        builder_on(grid.clone(), three_times())
             .kernel(Arc::new(InfluenceKernel::periodic_along(&grid, 1, 1.0).unwrap()))
             .build()
             .unwrap()
@@ -66,6 +63,17 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
         contact.step_each(0.02, &[Load::force(0.2), Load::force(0.1 + 0.01 * f64::from(k % 4))]).unwrap()
     };
     let direct = whole.with_time_rule(TimeRule::Backward);
+    let uncached = Settings::paper().with_time_rule(TimeRule::RectangleUncached);
+    let layer = move || {
+        let layer = Layer::bonded_to_rigid(1.0e-3, 0.5).unwrap();
+        let kernel = Arc::new(InfluenceKernel::layer(&grid(), layer).unwrap());
+        builder_on(grid(), three_times()).kernel(kernel).build().unwrap()
+    };
+    let warming = move || {
+        let law = TimeTemperature::wlf(10.0, 60.0, 300.0).unwrap();
+        let temperature = TemperatureHistory::function(law, |t| 290.0 + 4.0 * t, &[0.5]).unwrap();
+        builder_on(grid(), three_times()).temperature(temperature).build().unwrap()
+    };
     vec![
         ("window", Box::new(move || sphere_on(wide(), three_times(), Settings::default())), Box::new(wandering)),
         ("folded", Box::new(with(Settings::default().with_window(false))), Box::new(wandering)),
@@ -76,6 +84,9 @@ pub fn scenes() -> Vec<(&'static str, Build, Step)> {
             Box::new(with(direct)),
             Box::new(|c, k| c.step(0.02, Load::force(0.3 + 0.01 * f64::from(k))).unwrap()),
         ),
+        ("uncached sum", Box::new(with(uncached)), Box::new(wandering)),
+        ("layer", Box::new(layer), Box::new(wandering)),
+        ("warming", Box::new(warming), Box::new(wandering)),
         (
             "fitted",
             Box::new(move || builder_on(grid(), power_law()).times(2e-4..=2e4).build().unwrap()),

@@ -24,8 +24,6 @@ pub struct Truth {
     cell: usize,
     greatest: [f64; 2],
     pub uncertainty: [f64; 3],
-    pub steps: u64,
-    pub levels: u32,
 }
 
 /// The limit of runs each with half the steps of the one before, by the order that the last three show, one to four; and its
@@ -47,14 +45,12 @@ impl Truth {
     /// Halves given steps until the answer is known to `wanted`, or a run would take more than `most_steps`.
     pub fn of(scene: &RandomScene, wanted: f64, most_steps: u64) -> Result<Truth, Stopped> {
         let mut runs: Vec<Watched> = Vec::new();
-        let mut work = 0;
         loop {
             let times = scene.graded_times(runs.len() as u32);
-            // by the linear rule, which shares less with what is judged
+            // by the linear rule, which shares less with the runs under test
             let mut contact = scene.contact_by(TimeRule::ExponentialLinear, 1e-9);
             let stepping = Stepping::fixed(10.0 * scene.body.until);
             let run = watch(scene, &mut contact, scene.load(), stepping, &times, u64::MAX)?;
-            work += run.steps;
             runs.push(run);
             let (count, fine) = (runs.len(), &runs[runs.len() - 1]);
             if count < 4 {
@@ -76,8 +72,6 @@ impl Truth {
                     cell,
                     greatest: fine.greatest,
                     uncertainty: [u0, u1, u2],
-                    steps: work,
-                    levels: runs.len() as u32,
                 });
             }
         }
@@ -86,8 +80,8 @@ impl Truth {
     /// One line of text.
     fn line(&self, scene: &RandomScene) -> String {
         let mut line = key(scene);
-        let Truth { answer, pressures: [top, central], times, cell, greatest, uncertainty, steps, levels } = self;
-        write!(line, "\t{cell}\t{steps}\t{levels}").unwrap();
+        let Truth { answer, pressures: [top, central], times, cell, greatest, uncertainty } = self;
+        write!(line, "\t{cell}").unwrap();
         for numbers in [&greatest[..], uncertainty, times, answer, top, central] {
             line.push('\t');
             numbers.iter().for_each(|number| write!(line, "{number:e} ").unwrap());
@@ -102,13 +96,11 @@ impl Truth {
         };
         Some(Truth {
             cell: fields.first()?.parse().ok()?,
-            steps: fields.get(1)?.parse().ok()?,
-            levels: fields.get(2)?.parse().ok()?,
-            greatest: numbers(3)?.try_into().ok()?,
-            uncertainty: numbers(4)?.try_into().ok()?,
-            times: numbers(5)?,
-            answer: numbers(6)?,
-            pressures: [numbers(7)?, numbers(8)?],
+            greatest: numbers(1)?.try_into().ok()?,
+            uncertainty: numbers(2)?.try_into().ok()?,
+            times: numbers(3)?,
+            answer: numbers(4)?,
+            pressures: [numbers(5)?, numbers(6)?],
         })
     }
 

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use viscocontact::parallel::{Ranks, RanksError};
 
@@ -12,7 +13,7 @@ pub enum Call {
     Exchange(usize),
 }
 
-/// Calls `watch` before each call; its error is that of the call.
+/// Calls `watch` before each call, which returns the error of `watch`.
 pub struct WatchedRanks<F> {
     inner: Arc<dyn Ranks>,
     watch: F,
@@ -22,6 +23,17 @@ impl<F: Fn(Call) -> Result<(), RanksError> + Send + Sync + 'static> WatchedRanks
     pub fn around(inner: Arc<dyn Ranks>, watch: F) -> Arc<dyn Ranks> {
         Arc::new(WatchedRanks { inner, watch })
     }
+}
+
+/// A rank with calls left to it: the others fail as if `lost` had left.
+pub fn with_calls_left(inner: Arc<dyn Ranks>, lost: usize) -> (Arc<dyn Ranks>, Arc<AtomicUsize>) {
+    let calls_left = Arc::new(AtomicUsize::new(usize::MAX));
+    let left = Arc::clone(&calls_left);
+    let watch = move |_| {
+        let calls = left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1));
+        calls.map(|_| ()).map_err(|_| RanksError::Left { rank: lost })
+    };
+    (WatchedRanks::around(inner, watch), calls_left)
 }
 
 impl<F> fmt::Debug for WatchedRanks<F> {

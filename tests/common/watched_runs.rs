@@ -1,4 +1,4 @@
-//! What is seen of a run at given times.
+//! What is seen of a contact, and of a run at given times.
 
 use std::fmt;
 
@@ -19,7 +19,7 @@ pub struct Watched {
     pub steps: u64,
     pub rejected: u64,
     pub equivalents: f64,
-    /// What the budget says of the approach or force, and of the pressure.
+    /// The error budget of the approach or force, and of the pressure.
     pub time_budget: f64,
     pub pressure_budget: f64,
 }
@@ -62,16 +62,6 @@ pub enum Stopped {
         time: f64,
         steps: u64,
     },
-}
-
-impl Stopped {
-    /// The name of the error, or what stands in for it.
-    pub fn reason(&self) -> String {
-        match self {
-            Stopped::Failed { error, .. } => format!("{error:#?}").split([' ', '(']).next().unwrap_or_default().into(),
-            Stopped::Endless { .. } => "endless".into(),
-        }
-    }
 }
 
 impl fmt::Display for Stopped {
@@ -120,4 +110,12 @@ pub fn watch(
     let budget = run.error_budget();
     (seen.time_budget, seen.pressure_budget) = (budget.time.unwrap_or(0.0), budget.pressure.unwrap_or(0.0));
     Ok(seen)
+}
+
+/// Everything that a contact shows, to the last bit.
+pub fn seen(contact: &ViscoelasticContact) -> String {
+    let scalars = (contact.time(), contact.load(), contact.approach(), contact.tilt(), contact.moment());
+    let (body, patches) = (contact.body(0).unwrap(), contact.patches().map(|patches| patches.all.len()));
+    let fields = (contact.contact_area(), contact.pressure(), contact.displacement());
+    format!("{scalars:?} {body:?} {patches:?} {fields:?}")
 }

@@ -3,20 +3,19 @@
 use std::sync::OnceLock;
 
 use viscocontact::prelude::*;
+use viscocontact_scenes::sealed::{CHECKSUM, seal};
 
 use crate::engine::{Outcome, Target, Verdict, finite, known};
 use crate::files::Folder;
-use crate::scenes::{look, state, unchanged};
+use crate::scenes::{look, look_along, state, unchanged};
 use crate::source::Source;
 
 pub fn targets() -> Vec<Target> {
-    vec![Target { name: "checkpoint", short: 400, run: checkpoint }]
+    vec![Target { name: "checkpoint", short: 2500, run: checkpoint }]
 }
 
 /// How many scenes there are to save.
 const SCENES: usize = 7;
-/// Mark, version and length; then the checksum; then the state.
-const CHECKSUM: std::ops::Range<usize> = 20..24;
 
 fn build(scene: usize) -> viscocontact::Result<ViscoelasticContact> {
     let whole = Settings::default().with_window(false).with_symmetry(false);
@@ -73,13 +72,6 @@ fn sound_files() -> &'static [(usize, Vec<u8>)] {
     })
 }
 
-/// The checksum of the format: CRC-32 of IEEE 802.3, bit by bit.
-fn crc(bytes: impl Iterator<Item = u8>) -> u32 {
-    !bytes.fold(!0, |crc: u32, byte| {
-        (0..8).fold(crc ^ u32::from(byte), |crc, _| (crc >> 1) ^ (0xEDB8_8320 & (crc & 1).wrapping_neg()))
-    })
-}
-
 /// A file whose state is damaged, and whose length and checksum fit it.
 fn forged(file: &[u8], source: &mut Source) -> Vec<u8> {
     let mut file = if source.chance(0.2) {
@@ -87,12 +79,7 @@ fn forged(file: &[u8], source: &mut Source) -> Vec<u8> {
     } else {
         source.damage_behind(file, CHECKSUM.end)
     };
-    if file.len() >= CHECKSUM.end {
-        let length = (file.len() - CHECKSUM.end) as u64;
-        file[12..20].copy_from_slice(&length.to_le_bytes());
-        let right = crc(file[..CHECKSUM.start].iter().chain(&file[CHECKSUM.end..]).copied());
-        file[CHECKSUM].copy_from_slice(&right.to_le_bytes());
-    }
+    seal(&mut file);
     file
 }
 
@@ -119,18 +106,7 @@ fn checkpoint(source: &mut Source) -> Verdict {
     finite("resumed numbers", [contact.time(), contact.approach(), contact.force()])?;
     if source.chance(0.2) {
         let load = StepLoad::new(Load::force(0.1)).map_err(|error| error.to_string())?;
-        let mut run = contact.follow(&load, Stepping::adaptive(1e-2), 3.0);
-        for _ in 0..2 {
-            match run.next_step() {
-                Ok(Some(report)) => look(run.contact(), &report, source)?,
-                Ok(None) => break,
-                Err(error) if error.to_string().is_empty() => return Err("an error without words".to_owned()),
-                Err(_) => break,
-            }
-        }
-        let budget = run.error_budget();
-        let mesh = budget.max_mesh.map(|mesh| mesh.approach);
-        known("error budget", budget.time.into_iter().chain(budget.pressure).chain(mesh).chain([budget.solver]))?;
+        look_along(contact.follow(&load, Stepping::adaptive(1e-2), 3.0), 2, source, |_| ())?;
         return Ok(Outcome::Accepted);
     }
     for dt in [source.choose(&[0.0, 0.01]), 0.02] {

@@ -24,7 +24,7 @@ pub fn targets() -> Vec<Target> {
 
 fn rheology(source: &mut Source) -> Verdict {
     judged(models::rheology(source, true), |body| {
-        // a closure of the user's says what it likes
+        // a closure of the user's may return anything
         if format!("{body:?}").contains("FnRheology") {
             return Ok(());
         }
@@ -56,7 +56,7 @@ fn series(source: &mut Source) -> Verdict {
 fn geometry(source: &mut Source) -> Verdict {
     let length = source.scale(1e-6, 1.0);
     judged(models::geometry(source, length), |shape| {
-        // closures and maps with missing points say NaN where they like
+        // closures and maps with missing points may be NaN
         let text = format!("{shape:?}");
         let own = text.contains("FnGeometry") || text.contains("HeightMap");
         // squares of longer ones leave the range of f64; a contact refuses such a gap by its cell

@@ -1,4 +1,4 @@
-//! Runs targets, each execution from a seed of its own, and tells what went wrong with which.
+//! Runs targets, each execution from a seed of its own, and prints the findings.
 
 use std::cell::RefCell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -17,7 +17,7 @@ const QUICK: Duration = Duration::from_secs(1);
 const REPETITIONS: usize = 5;
 /// After this the process is given up, with the case that hangs.
 const HANGS: u64 = 120;
-/// So many findings of a target are told.
+/// So many findings of a target are printed.
 const TOLD: usize = 12;
 
 /// What was made of an input that did no harm.
@@ -29,7 +29,7 @@ pub enum Outcome {
     Refused,
 }
 
-/// What one execution comes to; `Err` says what is wrong.
+/// Result of one execution; `Err` holds the finding.
 pub type Verdict = Result<Outcome, String>;
 
 /// Something that reads or accepts data.
@@ -47,7 +47,7 @@ pub struct Tally {
     pub executions: u64,
     pub accepted: u64,
     pub slowest: Duration,
-    /// Cases, and what is wrong with them.
+    /// Cases, each with its finding.
     pub findings: Vec<(u64, String)>,
     pub found: u64,
 }
@@ -86,7 +86,7 @@ pub fn execute(target: &Target, case: u64) -> Verdict {
     verdict.unwrap_or_else(|_| Err(format!("panic: {}", PANIC.with(|text| text.take()))))
 }
 
-/// The time of an execution over that of a piece of work right before and after it.
+/// Time of an execution over the time of a piece of work right before and after it.
 fn cost(target: &Target, case: u64) -> f64 {
     let time = |run: &dyn Fn()| {
         let start = Instant::now();
@@ -169,7 +169,7 @@ pub fn finite(what: &str, values: impl IntoIterator<Item = f64>) -> Result<(), S
     }
 }
 
-/// Accepted or refused, as the result says; an error must have something to say.
+/// Accepted or refused, by the result; the message of an error must not be empty.
 pub fn judged<T>(result: viscocontact::Result<T>, look: impl FnOnce(T) -> Result<(), String>) -> Verdict {
     match result {
         Ok(value) => look(value).map(|()| Outcome::Accepted),

@@ -5,7 +5,7 @@
 //!
 //! `FUZZ_SECONDS=3600 FUZZ_SEED=7 cargo test --all-features --test fuzz -- --nocapture`
 //!
-//! with `FUZZ_TARGET=scene` for targets whose names begin so. What it finds is told with its case; `FUZZ_TARGET=scene
+//! with `FUZZ_TARGET=scene` for targets whose names begin so. A finding is printed with its case; `FUZZ_TARGET=scene
 //! FUZZ_CASE=123` runs that alone. The record of long runs is docs/fuzzing.md.
 
 #[cfg(feature = "checkpoint")]
@@ -90,7 +90,7 @@ fn nothing_panics_hangs_or_returns_nan() {
     }
     files::Folder::leave();
     targets.iter().zip(&tallies).for_each(|(target, tally)| println!("{}", tally.line(target)));
-    // told as they were found: the hook that keeps panics quiet keeps this one quiet too
+    // printed as they were found: the hook that silences panics silences this one, too
     let found: u64 = tallies.iter().map(|tally| tally.found).sum();
     assert!(found == 0, "{found} findings");
 }

@@ -1,4 +1,4 @@
-//! Height maps: their files, and what is done with them.
+//! Height maps: their files and their operations.
 
 use viscocontact::geometry::{Form, Geometry, HeightMap, LengthUnit, SurfaceStatistics};
 use viscocontact::{Grid, TextFormat};
@@ -7,21 +7,16 @@ use crate::engine::{Outcome, Target, Verdict, finite, judged, known};
 use crate::source::Source;
 
 pub fn targets() -> Vec<Target> {
-    let mut targets = vec![
+    vec![
         Target { name: "map_gsf", short: 1500, run: gsf },
         Target { name: "map_sdf", short: 1500, run: sdf },
         Target { name: "map_text", short: 1500, run: text },
         Target { name: "map_xyz", short: 1500, run: xyz },
         Target { name: "map_operations", short: 500, run: operations },
-    ];
-    if cfg!(feature = "npy") {
-        targets.push(Target { name: "map_npy", short: 1500, run: npy });
-    }
-    if cfg!(feature = "x3p") {
-        targets.push(Target { name: "map_x3p", short: 500, run: x3p });
-        targets.push(Target { name: "map_x3p_xml", short: 500, run: x3p_xml });
-    }
-    targets
+        Target { name: "map_npy", short: 1500, run: npy },
+        Target { name: "map_x3p", short: 500, run: x3p },
+        Target { name: "map_x3p_xml", short: 500, run: x3p_xml },
+    ]
 }
 
 /// A small map of good values.
@@ -35,7 +30,7 @@ fn map(source: &mut Source) -> HeightMap {
     HeightMap::new(cells, cells.map(|n| spacing * n as f64), heights).expect("it is a good map")
 }
 
-/// What a map has to say: heights are finite or missing, everything else is a number.
+/// Heights of a map are finite or missing, everything else is a number.
 fn look(map: HeightMap) -> Result<(), String> {
     if map.heights().len() != map.cells()[0] * map.cells()[1] {
         return Err("heights are not as many as cells".to_owned());
@@ -114,19 +109,12 @@ fn xyz(source: &mut Source) -> Verdict {
     })
 }
 
-#[cfg(feature = "npy")]
 fn npy(source: &mut Source) -> Verdict {
     let mut file = Vec::new();
     map(source).write_npy(&mut file).map_err(|error| error.to_string())?;
     read(&file, Some(128), source, |file| HeightMap::from_npy(file, [1e-3; 2], LengthUnit::Metre))
 }
 
-#[cfg(not(feature = "npy"))]
-fn npy(_: &mut Source) -> Verdict {
-    Ok(Outcome::Refused)
-}
-
-#[cfg(feature = "x3p")]
 mod packed {
     use std::io::{Cursor, Write};
 
@@ -155,7 +143,7 @@ mod packed {
     }
 
     fn archive(xml: &[u8], source: &mut Source) -> Vec<u8> {
-        // mostly the width that the description says
+        // mostly the width of the description
         let widths = [("D</DataType></CZ>", 8), ("F</DataType></CZ>", 4), ("Increment>0.5", 2)];
         let text = String::from_utf8_lossy(xml);
         let said = widths.iter().find(|(mark, _)| text.contains(mark)).map_or(8, |&(_, width)| width);
@@ -190,16 +178,7 @@ mod packed {
     }
 }
 
-#[cfg(feature = "x3p")]
 use packed::{x3p, x3p_xml};
-
-#[cfg(not(feature = "x3p"))]
-fn x3p(_: &mut Source) -> Verdict {
-    Ok(Outcome::Refused)
-}
-
-#[cfg(not(feature = "x3p"))]
-use x3p as x3p_xml;
 
 /// A map of any numbers, and what can be done with it.
 fn operations(source: &mut Source) -> Verdict {

@@ -32,7 +32,7 @@ fn quantity(source: &mut Source) -> Quantity {
     if source.chance(0.3) { Quantity::from(text(source)) } else { Quantity::of(text(source), unit) }
 }
 
-/// A picture is as large as it says.
+/// A picture has as many pixels as its size.
 fn look(picture: &Picture) -> Result<(), String> {
     let [width, height] = picture.size();
     if picture.rgb().len() == 3 * width as usize * height as usize {

@@ -181,6 +181,29 @@ fn steps(source: &mut Source, fitted: bool) -> Verdict {
     Ok(if accepted { Outcome::Accepted } else { Outcome::Refused })
 }
 
+/// Looks at the first steps of a run, and at its error budget.
+pub fn look_along(
+    mut run: Follow,
+    steps: usize,
+    source: &mut Source,
+    mut seen: impl FnMut(StepReport),
+) -> Result<(), String> {
+    for _ in 0..steps {
+        match run.next_step() {
+            Ok(Some(report)) => {
+                look(run.contact(), &report, source)?;
+                seen(report);
+            }
+            Ok(None) => break,
+            Err(error) if error.to_string().is_empty() => return Err("an error without words".to_owned()),
+            Err(_) => break,
+        }
+    }
+    let budget = run.error_budget();
+    let mesh = budget.max_mesh.map(|mesh| mesh.approach);
+    known("error budget", budget.time.into_iter().chain(budget.pressure).chain(mesh).chain([budget.solver]))
+}
+
 fn follow(source: &mut Source) -> Verdict {
     let settings = settings(source);
     let Ok(Scale { mut contact, length, softness }) = build(source, false, settings) else {
@@ -196,24 +219,11 @@ fn follow(source: &mut Source) -> Verdict {
     let landings = [source.between(0.0, 1.0) * until, source.between(0.0, 1.0) * until];
     let mut reports = Vec::new();
     {
-        let Ok(mut run) = contact.follow(&*history, stepping, until).stop_at(&landings) else {
+        let Ok(run) = contact.follow(&*history, stepping, until).stop_at(&landings) else {
             return Ok(Outcome::Refused);
         };
         // no more than these, or the slowest scenes take for ever
-        for _ in 0..12 {
-            match run.next_step() {
-                Ok(Some(report)) => {
-                    look(run.contact(), &report, source)?;
-                    reports.push(report);
-                }
-                Ok(None) => break,
-                Err(error) if error.to_string().is_empty() => return Err("an error without words".to_owned()),
-                Err(_) => break,
-            }
-        }
-        let budget = run.error_budget();
-        let mesh = budget.max_mesh.map(|mesh| mesh.approach);
-        known("error budget", budget.time.into_iter().chain(budget.pressure).chain(mesh).chain([budget.solver]))?;
+        look_along(run, 12, source, |report| reports.push(report))?;
     }
     if reports.windows(2).any(|pair| pair[1].time < pair[0].time) {
         return Err("time runs backwards".to_owned());

@@ -28,7 +28,7 @@ const WILD: [f64; 24] = [
     -1e-9,
 ];
 
-/// Splitmix64, and what is drawn from it.
+/// A stream of numbers from splitmix64.
 #[derive(Debug, Clone)]
 pub struct Source {
     state: u64,

@@ -7,13 +7,11 @@ use crate::models::creeps;
 use crate::source::Source;
 
 pub fn targets() -> Vec<Target> {
-    let mut targets = vec![
+    vec![
         Target { name: "table_slices", short: 300, run: slices },
         Target { name: "table_master", short: 60, run: master },
-    ];
-    #[cfg(feature = "csv")]
-    targets.push(Target { name: "table_csv", short: 600, run: csv });
-    targets
+        Target { name: "table_csv", short: 600, run: csv },
+    ]
 }
 
 /// A table is known, and creeps, until its end, and no further.
@@ -102,7 +100,6 @@ fn master(source: &mut Source) -> Verdict {
     })
 }
 
-#[cfg(feature = "csv")]
 fn csv(source: &mut Source) -> Verdict {
     use viscocontact::rheology::{Experiment, Units};
     use viscocontact::{Delimiter, TextFormat};

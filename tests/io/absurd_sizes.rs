@@ -1,4 +1,4 @@
-//! Grids that no machine has memory for: every call says so, with the bytes, before anything is filled.
+//! Grids that no machine has memory for: every call returns an error with the bytes, before anything is filled.
 
 use crate::common::bodies::maxwell;
 use std::hint::black_box;
@@ -71,7 +71,7 @@ fn grids() -> Vec<Grid> {
     grids
 }
 
-/// The bytes that an error says were asked for; no fewer than one field of 8 bytes per cell takes, divided by `share`.
+/// The error has at least the bytes of one field of 8 bytes per cell, divided by `share`.
 fn refused<T>(result: Result<T>, grid: &Grid, share: u128, what: &str) {
     match result.map(|_| ()) {
         Err(Error::OutOfMemory { bytes, .. }) => {
@@ -86,10 +86,6 @@ fn refused<T>(result: Result<T>, grid: &Grid, share: u128, what: &str) {
 /// A shape that is not to be looked at.
 fn unseen() -> impl Geometry {
     FnGeometry::new(|_, _| panic!("a gap was filled"))
-}
-
-fn body() -> Material {
-    maxwell()
 }
 
 #[test]
@@ -142,7 +138,7 @@ fn surfaces_are_refused_before_they_are_filled() {
             }
         }
         let profile = Profile::new(|_| panic!("a profile was asked for"));
-        refused(AxisymmetricContact::new(&profile, &body(), grid.len(), 1.0), &grid, 1, "a foundation");
+        refused(AxisymmetricContact::new(&profile, &maxwell(), grid.len(), 1.0), &grid, 1, "a foundation");
     }
 }
 
@@ -161,7 +157,7 @@ fn contacts_are_refused_before_they_are_filled() {
                     .settings(settings)
                     .geometry(shape)
                     .another_body(&unseen())
-                    .material(body());
+                    .material(maxwell());
                 let memory = builder.memory().unwrap();
                 // state, solver and kernel of the whole grid
                 assert!(u128::from(memory.total()) >= (150 * grid.len() as u128).min(u64::MAX.into()), "{memory}");
@@ -169,7 +165,7 @@ fn contacts_are_refused_before_they_are_filled() {
             }
         }
         let kernel = Arc::new(InfluenceKernel::periodic(&grid).unwrap());
-        let builder = ViscoelasticContact::builder(grid.clone()).geometry(&unseen()).material(body()).kernel(kernel);
+        let builder = ViscoelasticContact::builder(grid.clone()).geometry(&unseen()).material(maxwell()).kernel(kernel);
         assert_eq!(builder.memory().unwrap().computed_cells, grid.len());
         refused(builder.build(), &grid, 1, "a periodic contact");
     }
@@ -183,7 +179,7 @@ fn four_thousand_million_cells_are_refused_with_their_bytes() {
         return; // a machine that has room for its fields would fill them
     }
     let sphere = Sphere::new(0.1).unwrap();
-    let builder = ViscoelasticContact::builder(grid).geometry(&sphere).material(body());
+    let builder = ViscoelasticContact::builder(grid).geometry(&sphere).material(maxwell());
     // threads need memory of their own
     let two = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     let total = two.install(|| builder.memory().unwrap().total());

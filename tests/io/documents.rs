@@ -104,7 +104,7 @@ fn commands_and_files_exist() {
     assert!(missing.is_empty(), "{missing:#?}");
 }
 
-/// What `cargo test --test suite` is told to run, in documents, comments of tests and the workflow, is part of the name of a
+/// Every filter of `cargo test --test suite`, in documents, comments of tests and the workflow, is part of the name of a
 /// test that there is.
 #[test]
 fn tests_that_are_named_exist() {
@@ -148,7 +148,7 @@ fn findings_of_fuzzing_have_their_tests() {
     assert!(missing.is_empty() && found > 25, "{found} {missing:?}");
 }
 
-/// Every example has its place in the gallery, those that are packages of their own included.
+/// Every example has its place in the gallery and the README, packages of their own included.
 #[test]
 fn examples_are_shown() {
     let folders = ["examples", "examples/coupling"].map(|folder| fs::read_dir(root().join(folder)).unwrap());
@@ -168,7 +168,7 @@ fn examples_are_shown() {
 
 /// The first program of the README is the example `quickstart`, and no program shows lines that only tests should see.
 #[test]
-fn programs_of_the_readme_can_be_pasted() {
+fn programs_of_the_readme_are_complete() {
     let readme = fs::read_to_string(root().join("README.md")).unwrap();
     let quickstart = fs::read_to_string(root().join("examples/quickstart.rs")).unwrap();
     let program = quickstart.lines().filter(|line| !line.starts_with("//!")).collect::<Vec<_>>().join("\n");

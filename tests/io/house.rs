@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The modules at the top of `src`: each may use the modules above it, none below it. docs/design.md says what they hold.
+/// The modules at the top of `src`: each may use the modules above it, none below it. docs/design.md describes them.
 const ORDER: [&str; 30] = [
     "extent",
     "guide",

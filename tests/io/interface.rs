@@ -1,4 +1,4 @@
-//! What callers rely on besides numbers: errors that can be told apart, outputs that replace earlier ones when told so, names
+//! What callers rely on besides numbers: errors that differ, outputs that replace earlier ones on request, names
 //! that do not collide, values that can be stored.
 
 use std::error::Error as _;
@@ -49,9 +49,9 @@ fn messages(error: &Error) -> Vec<String> {
     messages
 }
 
-/// No error says what one of its sources says again, and those of files name the file.
+/// No message of an error contains a message of its sources; errors of files name the file.
 #[test]
-fn no_message_is_said_twice() {
+fn no_message_repeats_its_source() {
     let missing = "no/such/folder/file";
     let errors = [
         (false, Maxwell::new(-1.0, 1.0).unwrap_err()),
@@ -89,7 +89,7 @@ fn a_report_prints_round_times() {
     assert_eq!(report.area, contact.contact_cells() as f64 * contact.grid().cell_area());
 }
 
-/// Under a grid that follows the indenter nothing is estimated, and the report says so.
+/// On a grid that follows the indenter no error is estimated, and the report states that.
 #[test]
 fn steps_over_the_bodies_have_no_estimate() {
     let settings = Settings::default().with_frame(Frame::Indenter);
@@ -154,13 +154,12 @@ mod outputs {
     use viscocontact::output::{CsvHistory, Field, Format, FrameSeries, Metadata};
 
     use super::*;
+    use crate::common::temporary::Temporary;
 
-    /// Every output that grows refuses an earlier one, leaves it as it is, and replaces it when told so.
+    /// Every output that grows refuses an earlier one, leaves it as it is, and replaces it on request.
     #[test]
     fn earlier_outputs_are_replaced_when_told_so() {
-        let folder = std::env::temp_dir().join(format!("viscocontact-replaced-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&folder);
-        fs::create_dir_all(&folder).unwrap();
+        let folder = Temporary::folder("replaced");
         let mut contact = contact();
         let report = contact.step(0.0, Load::force(0.5)).unwrap();
         let metadata = || Metadata::new("Ball on rubber");
@@ -183,12 +182,15 @@ mod outputs {
             CsvHistory::create(&table, &metadata(), &contact, &[]).unwrap_err(),
         ] {
             assert_eq!(error.io_kind(), Some(AlreadyExists), "{error:?}");
+            let named = ["frame_000000.npz", "vtk", "history.csv"];
+            assert!(named.iter().any(|name| messages(&error).concat().contains(name)), "{:?}", messages(&error));
         }
         assert_eq!(fs::read(&table).unwrap(), before);
         assert_eq!([count("npz"), count("vtk")], [4, 4]);
 
-        // what is asked for wrongly removes nothing
-        assert!(FrameSeries::create_or_replace(&archives, Format::Npz, &metadata(), &[Field::Gap; 2]).is_err());
+        // an invalid request removes nothing
+        let twice = FrameSeries::create_or_replace(&archives, Format::Npz, &metadata(), &[Field::Gap; 2]).unwrap_err();
+        assert!(messages(&twice).concat().contains("gap is requested twice"), "{:?}", messages(&twice));
         assert!(CsvHistory::create_or_replace(&table, &metadata(), &contact, &["a", "a"]).is_err());
         assert_eq!(fs::read(&table).unwrap(), before);
         assert_eq!(count("npz"), 4);
@@ -206,6 +208,5 @@ mod outputs {
 
         let error = CsvHistory::create_or_replace(&archives, &metadata(), &contact, &[]).unwrap_err();
         assert!(matches!(error, Error::NotAFile { .. }), "{error}");
-        fs::remove_dir_all(&folder).unwrap();
     }
 }

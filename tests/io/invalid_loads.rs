@@ -1,7 +1,8 @@
 //! Loads that are none, wherever a run looks at its history.
 
 use crate::common::bodies::{elastic, maxwell};
-use crate::common::spheres::sphere_on;
+use crate::common::spheres::{builder_of, sphere_on};
+use crate::common::watched_runs::seen;
 use std::sync::{Arc, Mutex};
 
 use proptest::prelude::*;
@@ -11,7 +12,7 @@ use viscocontact::prelude::*;
 
 const UNTIL: f64 = 2.0;
 
-/// What a history says where it is wrong.
+/// Invalid loads, and the names of their values.
 const WRONG: [(Load, &str); 7] = [
     (wrong_force(f64::NAN), "normal force"),
     (wrong_force(f64::INFINITY), "normal force"),
@@ -88,19 +89,12 @@ fn contact(material: usize) -> ViscoelasticContact {
     sphere_on(Grid::square(16, 5.0e-3).unwrap(), material, Settings::default())
 }
 
-/// What is seen of a state, bit by bit.
-fn state(contact: &ViscoelasticContact) -> (u64, u64, Vec<u64>, Vec<u64>, Load) {
-    let bits = |field: &[f64]| field.iter().map(|x| x.to_bits()).collect();
-    let (time, approach) = (contact.time().to_bits(), contact.approach().to_bits());
-    (time, approach, bits(contact.pressure()), bits(contact.displacement()), contact.load())
-}
-
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7202), ..ProptestConfig::with_cases(300) })]
 
-    /// A run ends with the error where it first looks at what is no load, and leaves the contact as the last step did.
+    /// A run ends with an error at the first invalid load that it evaluates, and leaves the contact as after the last step.
     #[test]
-    fn what_a_run_looks_at_is_a_load(history in recorded(), material in 0..3_usize, steps in 0..5_usize) {
+    fn a_run_ends_at_the_first_invalid_load(history in recorded(), material in 0..3_usize, steps in 0..5_usize) {
         let stepping = match steps {
             0 => Stepping::fixed(0.07),
             1 => Stepping::fixed(0.5),
@@ -108,15 +102,15 @@ proptest! {
         };
         let mut contact = contact(material);
         let mut run = contact.follow(&history, stepping, UNTIL);
-        let mut before = state(run.contact());
+        let mut before = seen(run.contact());
         let error = loop {
             match run.next_step() {
-                Ok(Some(_)) => before = state(run.contact()),
+                Ok(Some(_)) => before = seen(run.contact()),
                 Ok(None) => break None,
                 Err(error) => break Some(error),
             }
         };
-        prop_assert!(state(run.contact()) == before, "the contact changed");
+        prop_assert!(seen(run.contact()) == before, "the contact changed");
         let asked = history.asked.lock().unwrap().clone();
         let wrong: Vec<f64> = asked.iter().filter(|asked| asked.1).map(|asked| asked.0).collect();
         let named = WRONG.iter().find(|wrong| format!("{:?}", wrong.0) == format!("{:?}", history.wrong)).unwrap().1;
@@ -126,10 +120,10 @@ proptest! {
                 prop_assert_eq!(field, named);
                 prop_assert_eq!(&wrong, &[time], "the first is the last that is looked at");
                 prop_assert_eq!(asked.last().unwrap().0, time);
-                // asked again, it says so again, and the contact stays
+                // the next call returns the same error, and the contact stays
                 let again = run.next_step();
                 prop_assert!(matches!(again, Err(Error::Load(LoadError::OutOfRange { .. }))), "{again:?}");
-                prop_assert!(state(run.contact()) == before, "the contact changed");
+                prop_assert!(seen(run.contact()) == before, "the contact changed");
             }
             Some(other) => prop_assert!(false, "{other}"),
         }
@@ -138,7 +132,7 @@ proptest! {
 
 /// The case that was missed: a window of NaN that a step of the whole run leaps over, both of its ends being loads.
 #[test]
-fn a_gap_in_a_history_is_not_leapt_over() {
+fn no_step_skips_an_invalid_interval() {
     let history = FnHistory::new(|t: f64| Load::force(if (0.9..1.1).contains(&t) { f64::NAN } else { 0.2 }));
     let mut contact = contact(0);
     let mut run = contact.follow(&history, Stepping::adaptive(1e-3), UNTIL);
@@ -156,9 +150,9 @@ fn a_gap_in_a_history_is_not_leapt_over() {
     assert!(error.to_string().contains(&format!("normal force = NaN at t = {time}")), "{error}");
 }
 
-/// What else asks users for numbers names them, or says NaN.
+/// Other functions that evaluate closures name the value, or return NaN.
 #[test]
-fn no_number_is_lost_elsewhere() {
+fn nan_is_named_or_returned_elsewhere() {
     let nan = FnHistory::new(|t: f64| Load::force(if (0.9..1.1).contains(&t) { f64::NAN } else { 0.2 }));
     let (sphere, body) =
         (Sphere::new(10.0e-3).unwrap(), Material::incompressible(Zener::new(1.0e6, 1.0e6, 0.5e6).unwrap()));
@@ -183,9 +177,7 @@ fn no_number_is_lost_elsewhere() {
         }
     }
     for until in [f64::NAN, 0.0, -1.0] {
-        let contact = ViscoelasticContact::builder(Grid::square(8, 4.0e-3).unwrap())
-            .geometry(&sphere)
-            .material(Material::incompressible(Unknown(until)));
+        let contact = builder_of(&sphere, Grid::square(8, 4.0e-3).unwrap(), Material::incompressible(Unknown(until)));
         assert!(matches!(contact.build(), Err(Error::OutOfRange { field: "Rheology::known_until", .. })), "{until}");
     }
 }

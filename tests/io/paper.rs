@@ -85,7 +85,7 @@ fn sources_tests_and_pictures_of_the_page_exist() {
     for Line { name, sources, tests, pictures } in lines(&page()) {
         for source in sources {
             let text = fs::read_to_string(root().join(&source)).unwrap_or_default();
-            // the source of an equation says which it is
+            // the source of an equation names its number
             let numbered = !name.starts_with("Eq.")
                 || text
                     .match_indices(&name)

@@ -1,17 +1,16 @@
 //! Pictures: what they show, that files are whole, and that no data make them fail otherwise than by an error.
 
 use crate::common::bodies::maxwell;
+use crate::common::refused::field;
+use crate::common::temporary::Temporary;
 use approx::assert_abs_diff_eq;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use proptest::prelude::*;
-use viscocontact::Result;
 use viscocontact::observe::Axis;
 use viscocontact::output::Field;
-use viscocontact::plot::{
-    Animation, COLORS, Chart, Color, History, Legend, Map, Observed, Picture, Quantity, Scale, Style,
-};
+use viscocontact::plot::{Animation, COLORS, Chart, History, Legend, Map, Observed, Picture, Quantity, Scale, Style};
 use viscocontact::prelude::*;
 
 /// A ball on a Maxwell body under force; on 32 × 24 cells, so that axes are not mixed up.
@@ -25,59 +24,44 @@ fn ball() -> ViscoelasticContact {
     contact
 }
 
-fn folder(name: &str) -> PathBuf {
-    let folder = std::env::temp_dir().join(format!("viscocontact-plot-{name}-{}", std::process::id()));
-    fs::create_dir_all(&folder).unwrap();
-    folder
+type Pixel = ([usize; 2], [u8; 3]);
+
+/// Column, row and colour of each pixel.
+fn pixels(picture: &Picture) -> impl Iterator<Item = Pixel> {
+    let width = picture.size()[0] as usize;
+    picture.rgb().as_chunks().0.iter().enumerate().map(move |(k, &rgb)| ([k % width, k / width], rgb))
 }
 
-/// Pixels of a colour: how many, and their mean column and row.
-fn center(picture: &Picture, is: impl Fn([u8; 3]) -> bool) -> (usize, [f64; 2]) {
-    let width = picture.size()[0] as usize;
-    let (mut count, mut sum) = (0, [0.0; 2]);
-    for (k, pixel) in picture.rgb().chunks_exact(3).enumerate() {
-        if is([pixel[0], pixel[1], pixel[2]]) {
-            count += 1;
-            sum[0] += (k % width) as f64;
-            sum[1] += (k / width) as f64;
-        }
-    }
-    (count, sum.map(|s| s / count as f64))
+/// How many pixels have one of these colours, and the least and greatest of their columns and rows.
+fn bounds(pixels: impl Iterator<Item = Pixel>, colors: &[[u8; 3]]) -> (f64, [[f64; 2]; 2]) {
+    let places = pixels.filter(|(_, rgb)| colors.contains(rgb)).map(|(at, _)| at.map(|x| x as f64));
+    places.fold((0.0, [[f64::INFINITY; 2], [0.0; 2]]), |(count, [low, high]), at| {
+        let [low, high] = [[0, 1].map(|axis| at[axis].min(low[axis])), [0, 1].map(|axis| at[axis].max(high[axis]))];
+        (count + 1.0, [low, high])
+    })
 }
+
+const BLUE: [u8; 3] = [0, 114, 178];
 
 #[test]
 fn a_map_shows_each_cell_where_it_is() {
     // one cell of the greatest value, to the right and above
     let grid = Grid::new([8, 4], [8.0, 4.0]).unwrap();
+    let (dark, light) = ([68, 1, 84], [254, 232, 37]);
     for (cell, at) in [([6, 3], [0.8125, 0.125]), ([0, 0], [0.0625, 0.875])] {
         let mut values = vec![0.0; 32];
         values[cell[0] * 4 + cell[1]] = 1.0;
         let picture = Map::new(&grid, values, "q").unwrap().draw().unwrap();
         // the colour bar has pixels of the light end too: it stands to the right of 870
-        let Color(r, g, b) = Color(254, 232, 37);
-        let width = picture.size()[0] as usize;
-        let mut on_map = picture.rgb().chunks_exact(3).enumerate().filter(|(k, _)| k % width < 860);
-        let (mut count, mut low, mut high) = (0, [f64::INFINITY; 2], [0.0_f64; 2]);
-        for (k, _) in on_map.by_ref().filter(|(_, p)| p == &[r, g, b]) {
-            count += 1;
-            for (axis, v) in [(k % width) as f64, (k / width) as f64].into_iter().enumerate() {
-                (low[axis], high[axis]) = (low[axis].min(v), high[axis].max(v));
-            }
-        }
+        let on_map = || pixels(&picture).filter(|([column, _], _)| *column < 860);
+        let (count, [low, high]) = bounds(on_map(), &[light]);
         // a cell is an eighth of 730 pixels wide
-        assert_abs_diff_eq!(count as f64 / (730.0_f64 / 8.0).powi(2), 1.0, epsilon = 0.1);
+        assert_abs_diff_eq!(count / (730.0_f64 / 8.0).powi(2), 1.0, epsilon = 0.1);
         // the dark end of the scale fills the rest of the map
-        let (mut left, mut right, mut top, mut bottom) = (f64::INFINITY, 0.0_f64, f64::INFINITY, 0.0_f64);
-        for (k, p) in picture.rgb().chunks_exact(3).enumerate().filter(|(k, _)| k % width < 860) {
-            if p == [68, 1, 84] || p == [r, g, b] {
-                let (x, y) = ((k % width) as f64, (k / width) as f64);
-                (left, right, top, bottom) = (left.min(x), right.max(x), top.min(y), bottom.max(y));
-            }
-        }
-        let share =
-            [(0.5 * (low[0] + high[0]) - left) / (right - left), (0.5 * (low[1] + high[1]) - top) / (bottom - top)];
+        let (_, [first, last]) = bounds(on_map(), &[dark, light]);
         for axis in 0..2 {
-            assert!((share[axis] - at[axis]).abs() < 0.01, "{share:?}, not {at:?}");
+            let share = (0.5 * (low[axis] + high[axis]) - first[axis]) / (last[axis] - first[axis]);
+            assert!((share - at[axis]).abs() < 0.01, "{share:?}, not {at:?}");
         }
     }
 }
@@ -97,15 +81,14 @@ fn pressure_is_blank_out_of_contact() {
     assert!(matches!(plain, Err(Error::WrongLength { field: "cells of an outline", len: 0, expected: 768, .. })));
     let outlined = Map::displacement(&contact).unwrap().draw().unwrap();
     let without = Map::displacement(&contact).unwrap().outline(vec![false; 768]).unwrap().draw().unwrap();
-    let differs = |k: usize| outlined.rgb()[3 * k..3 * k + 3] != without.rgb()[3 * k..3 * k + 3];
-    let width = outlined.size()[0] as usize;
-    let changed: Vec<usize> = (0..outlined.rgb().len() / 3).filter(|&k| differs(k)).collect();
-    let mean = |of: &dyn Fn(usize) -> usize| changed.iter().map(|&k| of(k) as f64).sum::<f64>() / changed.len() as f64;
-    let pixels = 730.0 / 4.0e-3;
-    let cell = 0.125e-3 * pixels;
+    let changed = pixels(&outlined).zip(pixels(&without)).filter(|(one, other)| one != other);
+    let columns: Vec<f64> = changed.map(|(([column, _], _), _)| column as f64).collect();
+    let mean = columns.iter().sum::<f64>() / columns.len() as f64;
+    let scale = 730.0 / 4.0e-3;
+    let cell = 0.125e-3 * scale;
     // 115 pixels are left of the map; its middle is 365 further
-    assert_abs_diff_eq!(mean(&|k| k % width), 115.0 + 365.0 + 0.5e-3 * pixels, epsilon = cell);
-    assert!(changed.len() > 200);
+    assert_abs_diff_eq!(mean, 115.0 + 365.0 + 0.5e-3 * scale, epsilon = cell);
+    assert!(columns.len() > 200);
 }
 
 #[test]
@@ -135,16 +118,13 @@ fn charts_draw_series_in_their_colours() {
     chart.add("", COLORS[0], Style::Line, vec![(0.0, 0.0), (1.0, 1.0), (f64::NAN, 0.0), (3.0, 1.0), (4.0, 0.0)]);
     chart.add("", COLORS[1], Style::Dots, vec![(4.0, 1.0)]);
     let picture = chart.draw().unwrap();
-    let (line, _) = center(&picture, |p| p == [0, 114, 178]);
-    let (dot, [x, y]) = center(&picture, |p| p == [213, 94, 0]);
-    assert!(line > 500 && (60..130).contains(&dot), "{line} {dot}");
+    let (line, _) = bounds(pixels(&picture), &[BLUE]);
+    let (dot, [[x, _], [_, y]]) = bounds(pixels(&picture), &[[213, 94, 0]]);
+    assert!(line > 500.0 && (60.0..130.0).contains(&dot), "{line} {dot}");
     assert!(x > 1000.0 && y < 100.0, "the dot is in the upper right corner, not at {x}, {y}");
     // the line is broken: nothing of it crosses the middle
-    let width = picture.size()[0] as usize;
-    let middle = 115 + (width - 155) / 2;
-    let crossing =
-        picture.rgb().chunks_exact(3).enumerate().filter(|(k, p)| k % width == middle && *p == [0, 114, 178]);
-    assert_eq!(crossing.count(), 0);
+    let middle = 115 + (picture.size()[0] as usize - 155) / 2;
+    assert_eq!(pixels(&picture).filter(|&([column, _], rgb)| column == middle && rgb == BLUE).count(), 0);
 }
 
 /// A thick line that turns back sharply has no spike out of the axes.
@@ -153,9 +133,8 @@ fn lines_that_turn_back_stay_where_they_are() {
     let mut chart = Chart::new("", "x", "y", Legend::UpperLeft);
     chart.add("", COLORS[0], Style::Line, vec![(0.0, 0.0), (0.2, 0.5), (1.0, 0.50), (0.1, 0.503), (1.0, 1.0)]);
     let picture = chart.draw().unwrap();
-    let width = picture.size()[0] as usize;
-    let left = picture.rgb().chunks_exact(3).enumerate().filter(|(_, p)| *p == [0, 114, 178]).map(|(k, _)| k % width);
-    assert!(left.min().unwrap() >= 110, "a pixel of the line stands left of the axis");
+    let (_, [[left, _], _]) = bounds(pixels(&picture), &[BLUE]);
+    assert!(left >= 110.0, "a pixel of the line stands left of the axis");
 }
 
 /// A logarithmic axis has numbers, however little its values differ: the strip left of it is not empty.
@@ -166,10 +145,8 @@ fn narrow_logarithmic_axes_have_numbers() {
         chart.scale = Scale::LogY;
         chart.add("", COLORS[0], Style::Line, vec![(0.0, y), (1.0, 1.01 * y)]);
         let picture = chart.draw().unwrap();
-        let width = picture.size()[0] as usize;
-        let dark =
-            picture.rgb().chunks_exact(3).enumerate().filter(|(k, p)| k % width < 105 && p.iter().all(|&c| c < 100));
-        let rows: std::collections::BTreeSet<usize> = dark.map(|(k, _)| k / width).collect();
+        let dark = pixels(&picture).filter(|([column, _], rgb)| *column < 105 && rgb.iter().all(|&c| c < 100));
+        let rows: std::collections::BTreeSet<usize> = dark.map(|([_, row], _)| row).collect();
         let [low, high] = [*rows.first().unwrap(), *rows.last().unwrap()];
         assert!(high - low > 300, "{y}: numbers from row {low} to row {high}");
     }
@@ -177,12 +154,6 @@ fn narrow_logarithmic_axes_have_numbers() {
 
 #[test]
 fn bad_pictures_are_refused_by_name() {
-    let field = |result: Result<Picture>| match result.unwrap_err() {
-        Error::OutOfRange { field, .. } | Error::CountOutOfRange { field, .. } | Error::WrongLength { field, .. } => {
-            field
-        }
-        other => panic!("unexpected {other}"),
-    };
     let grid = Grid::square(2, 1.0).unwrap();
     let map = Map::new(&grid, vec![1.0, 2.0, f64::NAN, 4.0], "q").unwrap();
     assert_eq!(map.range, [1.0, 4.0]);
@@ -205,7 +176,7 @@ fn bad_pictures_are_refused_by_name() {
 
 #[test]
 fn animations_play_back() {
-    let folder = folder("animation");
+    let folder = Temporary::folder("animation");
     let path = folder.join("run.gif");
     let mut contact = ball();
     let mut animation = Animation::create(&path, Field::Pressure, [0.0, 0.4e6], 0.05).unwrap();
@@ -255,10 +226,9 @@ fn animations_play_back() {
     let empty = Animation::create(folder.join("b.gif"), Field::Gap, [0.0, 1.0], 0.1).unwrap();
     assert!(matches!(empty.finish(), Err(Error::WrongLength { .. })));
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
-    fs::remove_dir_all(&folder).unwrap();
 }
 
-/// Numbers of every size, and those that are none.
+/// Numbers of every size, NaN and infinities.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![
         Just(0.0),
@@ -330,17 +300,8 @@ fn frames_until_there_is_no_room() {
 #[cfg(unix)]
 #[test]
 fn a_frame_without_room_leaves_no_trace() {
-    let folder = folder("full");
-    let child = std::process::Command::new("sh")
-        .args([
-            "-c",
-            "trap '' XFSZ; ulimit -f 64; exec \"$0\" --exact io::plot::frames_until_there_is_no_room --ignored --nocapture",
-        ])
-        .arg(std::env::current_exe().unwrap())
-        .env("FULL_FOLDER", &folder)
-        .output()
-        .unwrap();
+    let folder = Temporary::folder("full-animation");
+    let child = super::with_room_for_32_kib("io::plot::frames_until_there_is_no_room", &folder);
     assert!(child.status.success(), "{}", String::from_utf8_lossy(&child.stderr));
     assert!(String::from_utf8_lossy(&child.stdout).contains("1 passed"), "the test above has run");
-    fs::remove_dir_all(folder).unwrap();
 }

@@ -1,8 +1,11 @@
 //! States kept in memory and restored: the same steps again, to the last bit.
 
-use crate::common::bodies::{maxwell, three_times};
+use crate::common::bodies::three_times;
 use crate::common::runs::{scenes, wandering};
 use crate::common::spheres::sphere_on;
+use crate::common::temporary::Temporary;
+use crate::common::watched_runs::seen;
+use std::path::Path;
 use viscocontact::prelude::*;
 
 /// Every scene, back and forth in between: into new memory and into old, from its own contact and from a clone.
@@ -51,34 +54,6 @@ fn snapshots_of_other_contacts_are_refused() {
     one.restore(&snapshot).unwrap();
 }
 
-/// What is seen after going back to a smaller contact is what was seen then, and stays so.
-#[test]
-fn nothing_is_left_of_a_larger_contact() {
-    let mut contact = sphere_on(Grid::square(64, 4.0e-3).unwrap(), maxwell(), Settings::default());
-    contact.step(0.0, Load::force(0.01)).unwrap();
-    let (snapshot, twin) = (contact.snapshot(), contact.clone());
-    contact.step(0.0, Load::force(1.0)).unwrap();
-    contact.restore(&snapshot).unwrap();
-    let seen = |contact: &ViscoelasticContact| {
-        let (body, patches) = (contact.body(0).unwrap(), contact.patches().unwrap());
-        let fields = (contact.pressure().to_vec(), contact.displacement().to_vec());
-        (
-            fields,
-            format!("{body:?}"),
-            patches.all.len(),
-            contact.contact_area(),
-            contact.moment(),
-            contact.max_pressure(),
-        )
-    };
-    assert_eq!(seen(&contact), seen(&twin));
-    let mut twin = twin;
-    for contact in [&mut contact, &mut twin] {
-        contact.step(0.1, Load::force(0.01)).unwrap();
-    }
-    assert_eq!(seen(&contact), seen(&twin));
-}
-
 /// One operation on a contact, by four random numbers; whether it succeeded.
 fn operate(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) -> bool {
     let (dt, force) = (0.2 * a, 0.2 + b);
@@ -101,17 +76,24 @@ fn operate(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) -> bool
 }
 
 /// Something that must leave no trace: steps that fail in every way, on a larger region or with the indenter elsewhere, and
-/// states that are restored.
-fn disturb(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) {
+/// states that are restored, or resumed from a file.
+fn disturb(contact: &mut ViscoelasticContact, path: &Path, [kind, a, b, c]: [f64; 4]) {
     let (dt, too_much) = (0.2 * a, 1.0e3 * (1.0 + b));
-    match (6.0 * kind) as usize {
+    match (9.0 * kind) as usize {
         0 => assert!(contact.step(dt, Load::force(too_much)).is_err(), "contact at the edge"),
+        4 => assert!(contact.step(dt, Load::force([1e200, 1e305][(2.0 * b) as usize])).is_err(), "beyond numbers"),
+        5 => assert!(contact.step(-dt, Load::force(0.1)).is_err()),
         1 => assert!(contact.step(dt, Load::force(f64::NAN)).is_err()),
         2 => assert!(contact.step(dt, Load::eccentric_force(0.5, [1.0, 0.0])).is_err(), "outside the hull"),
         3 => {
             let path = Straight::new([3.0e-4 * (c - 0.5), 1.0e-4], [1.0e-4, 0.0]).unwrap();
             let travel = Travel::new(Sphere::new(10.0e-3).unwrap(), path);
             assert!(contact.step_along(&travel, dt, Load::force(too_much)).is_err());
+        }
+        6 => {
+            contact.save(path).unwrap();
+            (0..3).for_each(|k| _ = operate(contact, [(kind * 7.0 + f64::from(k) * 0.37).fract(), b, c, a]));
+            contact.resume(path).unwrap();
         }
         _ => {
             let snapshot = contact.snapshot();
@@ -124,8 +106,8 @@ fn disturb(contact: &mut ViscoelasticContact, [kind, a, b, c]: [f64; 4]) {
 /// Two contacts take the same random steps, one of them disturbed in between: bitwise the same, whatever moves, grows, unfolds
 /// or fails.
 #[test]
-fn what_fails_or_is_restored_leaves_no_trace() {
-    let mut taken = 0;
+fn failed_steps_and_restored_states_leave_no_trace() {
+    let (mut taken, path) = (0, Temporary::file("disturbed"));
     for seed in 0..120 {
         let mut uniform = crate::common::noise::uniform(seed);
         let mut random = move || [0; 4].map(|_| uniform());
@@ -139,16 +121,12 @@ fn what_fails_or_is_restored_leaves_no_trace() {
         let mut disturbed = plain.clone();
         for step in 0..10 {
             let (operation, disturbance) = (random(), random());
-            disturb(&mut disturbed, disturbance);
+            disturb(&mut disturbed, &path, disturbance);
+            assert!(seen(&plain) == seen(&disturbed), "seed {seed}, step {step}: after {disturbance:?}");
             let done = [operate(&mut plain, operation), operate(&mut disturbed, operation)];
             assert_eq!(done[0], done[1], "seed {seed}, step {step}: {operation:?} after {disturbance:?}");
             taken += usize::from(done[0]);
-            let same = plain.pressure() == disturbed.pressure()
-                && plain.displacement() == disturbed.displacement()
-                && plain.approach() == disturbed.approach()
-                && plain.tilt() == disturbed.tilt()
-                && plain.time() == disturbed.time();
-            assert!(same, "seed {seed}, step {step}: {operation:?} after {disturbance:?}");
+            assert!(seen(&plain) == seen(&disturbed), "seed {seed}, step {step}: {operation:?} after {disturbance:?}");
         }
     }
     assert!(taken > 900, "{taken}");

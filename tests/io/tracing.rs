@@ -44,7 +44,7 @@ impl Subscriber for Kept {
 }
 
 #[test]
-fn steps_regions_and_series_are_told() {
+fn steps_regions_and_series_are_events() {
     let kept = Kept(Arc::default(), std::thread::current().id());
     tracing::subscriber::set_global_default(kept.clone()).unwrap();
     {

@@ -1,30 +1,30 @@
 //! The influence coefficients of every kernel: equations 8 and 12 of the paper.
 
-use std::f64::consts::{FRAC_2_PI, PI, TAU};
+use std::f64::consts::{FRAC_2_PI, TAU};
 
+use super::{convolve, noise};
 use approx::abs_diff_eq;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use viscocontact::rheology::{Material, Maxwell, Zener};
 use viscocontact::{Error, Grid, InfluenceKernel, KernelError, Layer};
 
-/// A unit pressure on one cell displaces every other by its coefficient: even, odd and single cells along an axis.
-fn assert_is_the_response_to_a_unit_pressure(kernel: &InfluenceKernel) {
-    let [n1, n2] = kernel.grid().cells();
-    let mut work = kernel.workspace().unwrap();
-    let own = kernel.coefficient(0, 0).unwrap();
-    for (k1, k2) in [(0, 0), (n1 - 1, n2 - 1), (n1 / 2, n2 / 3)] {
-        let (mut pressure, mut displacement) = (vec![0.0; n1 * n2], vec![f64::NAN; n1 * n2]);
-        pressure[k1 * n2 + k2] = 1.0;
-        kernel.convolve(&pressure, &mut displacement, &mut work).unwrap();
-        for (cell, value) in displacement.iter().enumerate() {
-            let (i, j) = (cell / n2, cell % n2);
-            let found = kernel.coefficient(i as isize - k1 as isize, j as isize - k2 as isize).unwrap();
-            assert!((found - value).abs() < 1e-14 * own, "{kernel} [{i}, {j}] of [{k1}, {k2}]: {found} {value}");
-        }
-    }
+/// What a convolution returns is the double sum of K(i − k, j − l) p(k, l) over all cells (k, l): equation 7.
+fn sum_defect(kernel: &InfluenceKernel, pressure: &[f64]) -> f64 {
+    let n2 = kernel.grid().cells()[1];
+    let at = |k: usize| kernel.coefficient((k / n2) as isize, (k % n2) as isize).unwrap();
+    let coefficients: Vec<f64> = (0..pressure.len()).map(at).collect();
+    let scale = coefficients[0] * pressure.iter().map(|p| p.abs()).sum::<f64>();
+    let defect = |(cell, value): (usize, f64)| {
+        let k = |from: usize| coefficients[(cell / n2).abs_diff(from / n2) * n2 + (cell % n2).abs_diff(from % n2)];
+        let sum: f64 = pressure.iter().enumerate().map(|(from, p)| k(from) * p).sum();
+        (value - sum).abs() / scale
+    };
+    convolve(kernel, pressure).into_iter().enumerate().map(defect).fold(0.0, f64::max)
 }
 
-/// The kernels of every kind on a grid, but those that it does not allow.
-fn kernels(grid: &Grid) -> Vec<InfluenceKernel> {
+/// The kernels of every kind but layers.
+fn kernels_without_layers(grid: &Grid) -> Vec<InfluenceKernel> {
     let layer = |q: f64| 2.0 / q * (0.3 * q).tanh();
     let spectrum = move |q1: f64, q2: f64| if q1 + q2 > 0.0 { layer(q1.hypot(q2)) } else { 0.6 };
     let made = [
@@ -35,6 +35,12 @@ fn kernels(grid: &Grid) -> Vec<InfluenceKernel> {
         InfluenceKernel::from_coefficients(grid, |i, j| 0.1 / (1.0 + (i * i + 2 * j * j) as f64)),
         InfluenceKernel::from_spectrum(grid, spectrum),
     ];
+    let line = (grid.cells()[1] == 1).then(|| InfluenceKernel::line(grid, 20.0));
+    made.into_iter().chain(line).map(Result::unwrap).collect()
+}
+
+/// The kernels of every kind that a grid allows.
+fn kernels(grid: &Grid) -> Vec<InfluenceKernel> {
     let sheet = Layer::bonded_to_rigid(0.7, 0.4).unwrap();
     let coating = Layer::bonded_to_half_space(0.3, 0.4, 0.2, 0.3).unwrap();
     let layers = [
@@ -44,19 +50,38 @@ fn kernels(grid: &Grid) -> Vec<InfluenceKernel> {
         InfluenceKernel::layer_periodic_along(grid, sheet, 0, None),
         InfluenceKernel::layer_periodic_along(grid, coating, 1, Some(20.0)),
     ];
-    let lines =
-        || [InfluenceKernel::line(grid, 20.0).unwrap(), InfluenceKernel::layer_line(grid, sheet, None).unwrap()];
-    let lines = (grid.cells()[1] == 1).then(lines).into_iter().flatten();
-    let kernels: Vec<_> = made.into_iter().chain(layers).map(Result::unwrap).chain(lines).collect();
-    assert!(kernels.len() >= 11);
-    kernels
+    let line = (grid.cells()[1] == 1).then(|| InfluenceKernel::layer_line(grid, sheet, None));
+    let layers = layers.into_iter().chain(line).map(Result::unwrap);
+    kernels_without_layers(grid).into_iter().chain(layers).collect()
 }
 
 #[test]
-fn coefficients_are_responses_to_a_unit_pressure() {
+fn convolutions_are_sums_over_the_coefficients() {
     for cells in [[12, 9], [9, 16], [15, 1], [1, 8], [64, 2]] {
         let grid = Grid::new(cells, [2.0, 3.0]).unwrap();
-        kernels(&grid).iter().for_each(assert_is_the_response_to_a_unit_pressure);
+        for kernel in kernels(&grid) {
+            let defect = sum_defect(&kernel, &noise(grid.len()));
+            assert!(defect < 1e-14, "{kernel}, {cells:?}: {defect:e}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(2011), ..ProptestConfig::with_cases(128) })]
+
+    #[test]
+    fn convolutions_on_random_grids_are_sums_over_the_coefficients(
+        n1 in 1_usize..24,
+        n2 in 1_usize..24,
+        aspect in -2.0..2.0_f64,
+        which in any::<prop::sample::Index>(),
+        pressure in prop::collection::vec(-1.0..1.0_f64, 576),
+    ) {
+        // sides up to one: other kernels than the half-space have a length of their own
+        let grid = Grid::new([n1, n2], [-aspect, aspect].map(|power| 10f64.powf(power.min(0.0)))).unwrap();
+        let kernels = kernels_without_layers(&grid);
+        let defect = sum_defect(&kernels[which.index(kernels.len())], &pressure[..grid.len()]);
+        prop_assert!(defect <= 1e-12, "{defect:e}");
     }
 }
 
@@ -78,25 +103,6 @@ fn coefficients_are_even_and_of_the_period() {
     }
 }
 
-/// Love's four-term closed form, written independently of the crate.
-#[test]
-fn coefficients_of_a_half_space_are_loves() {
-    for lengths in [[2.0, 3.0], [2.0e-3, 2.4e-3], [30.0, 1.0]] {
-        let grid = Grid::new([20, 24], lengths).unwrap();
-        let kernel = InfluenceKernel::half_space(&grid).unwrap();
-        let [d1, d2] = grid.spacing();
-        let primitive = |x: f64, y: f64| x * (y / x.abs()).asinh() + y * (x / y.abs()).asinh();
-        for (i, j) in (-19..20).flat_map(|i| (-23..24).map(move |j| (i, j))) {
-            let corner = |a: f64, b: f64| primitive((i as f64 + a) * d1, (j as f64 + b) * d2);
-            let exact = (corner(0.5, 0.5) - corner(-0.5, 0.5) - corner(0.5, -0.5) + corner(-0.5, -0.5)) / PI;
-            let found = kernel.coefficient(i, j).unwrap();
-            assert!((found / exact - 1.0).abs() < 1e-12, "{lengths:?} ({i}, {j}): {found} {exact}");
-        }
-    }
-    let square = InfluenceKernel::half_space(&Grid::square(8, 4.0).unwrap()).unwrap();
-    assert_eq!(square.coefficient(0, 0), Ok(0.5 * 4.0 * 1_f64.asinh() / PI));
-}
-
 /// The other bodies: logarithms, waves, and the user's own numbers.
 #[test]
 fn coefficients_of_other_bodies_are_their_closed_forms() {
@@ -107,7 +113,7 @@ fn coefficients_of_other_bodies_are_their_closed_forms() {
         let found = line.coefficient(i, 0).unwrap();
         assert!((found / exact - 1.0).abs() < 1e-12, "{i}: {found} {exact}");
     }
-    // the waves of a period add up to the coefficients; that of the mean is their sum
+    // the waves of a period add up to the coefficients; the mean is their sum
     let grid = Grid::new([10, 7], [2.0, 3.0]).unwrap();
     let wave = |q1: f64, q2: f64| 1.0 / (1.0 + q1 * q1 + 2.0 * q2);
     let kernel = InfluenceKernel::from_spectrum(&grid, wave).unwrap();
@@ -124,7 +130,7 @@ fn coefficients_of_other_bodies_are_their_closed_forms() {
     assert_eq!(kernel.coefficient(-7, 6), Ok(own(7, 6)));
 }
 
-/// Equation 12, K_vs = 2G Φ K_el with Φ = J/2, and equation 7 as the sum that it is.
+/// Equation 12, K_vs = 2G Φ K_el with Φ = J/2.
 #[test]
 fn viscoelastic_coefficients_are_creep_times_geometry() {
     let (modulus, branch, nu) = (2.0e6, 3.0e6, 0.3);
@@ -144,15 +150,6 @@ fn viscoelastic_coefficients_are_creep_times_geometry() {
             }
         }
     }
-    let pressure: Vec<f64> = (0..grid.len()).map(|cell| ((cell * cell) as f64 * 0.37 + 1.0).sin()).collect();
-    let mut fast = vec![f64::NAN; grid.len()];
-    kernel.convolve(&pressure, &mut fast, &mut kernel.workspace().unwrap()).unwrap();
-    let offset = |to: usize, from: usize| to as isize - from as isize;
-    for (cell, value) in fast.iter().enumerate() {
-        let k = |from: usize| kernel.coefficient(offset(cell / 6, from / 6), offset(cell % 6, from % 6)).unwrap();
-        let sum: f64 = pressure.iter().enumerate().map(|(from, p)| k(from) * p).sum();
-        assert!((value - sum).abs() < 1e-14 * 54.0 * k(cell), "{cell}: {value} {sum}");
-    }
 }
 
 #[test]
@@ -169,4 +166,17 @@ fn offsets_outside_the_grid_are_refused() {
     let text = "offset (3, -9) in cells is not allowed: it must be in (-12, 12) along x1 and (-9, 9) along x2, \
                 the grid having 12 × 9 cells";
     assert_eq!(error.to_string(), text);
+}
+
+#[test]
+fn fields_of_the_wrong_length_are_refused() {
+    let kernel = |cells: usize| InfluenceKernel::half_space(&Grid::square(cells, 1.0).unwrap()).unwrap();
+    let (eight, nine) = (kernel(8), kernel(9));
+    for (pressure, displacement, of, wrong) in
+        [(63, 64, &eight, "pressure"), (64, 60, &eight, "displacement"), (64, 64, &nine, "workspace")]
+    {
+        let mut work = of.workspace().unwrap();
+        let refused = eight.convolve(&vec![0.0; pressure], &mut vec![0.0; displacement], &mut work).unwrap_err();
+        assert!(matches!(refused, Error::WrongLength { field, .. } if field == wrong), "{refused}");
+    }
 }

@@ -6,7 +6,7 @@ use crate::common::noise::uniform;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSpectrum, FitReport, RelaxationSpectrum};
 
-/// A table, and what is known of it.
+/// A table with its exact creep.
 struct Table {
     report: FitReport,
     fitted: CreepSpectrum,
@@ -126,7 +126,7 @@ fn creep_is_inside_the_interval_of_its_table() {
 }
 
 #[test]
-fn relaxation_that_begins_late_says_so() {
+fn relaxation_is_inside_the_interval_of_its_table() {
     judge("relaxation");
 }
 

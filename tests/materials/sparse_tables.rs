@@ -10,7 +10,7 @@ use viscocontact::rheology::{CreepSeries, CreepSpectrum, FitReport, FitWarning, 
 
 /// Rows of the tables of a body. 10 are every other one of 19, these of 37.
 const ROWS: [usize; 6] = [10, 13, 19, 25, 37, 60];
-/// Tables are told apart by their rows a decade, from these on.
+/// Classes of tables by their rows a decade, from these on.
 const CLASSES: [f64; 7] = [1.0, 1.5, 2.0, 2.5, 3.5, 5.0, 8.0];
 
 fn log_spaced(decades: f64, count: usize) -> Vec<f64> {
@@ -149,7 +149,7 @@ fn dynamic(truth: &RelaxationSpectrum, times: &[f64], check: &[f64], mut measure
     Fitted::new(errors, table.report())
 }
 
-/// Without noise: within half a percent from 2.5 rows a decade on; where fewer rows do worse, they say so; more rows never do
+/// Without noise: within half a percent from 2.5 rows a decade on; fits of fewer rows that do worse have a warning; more rows never do
 /// worse, but for a tenth of a percent; the terms stay few.
 fn clean(kind: Kind) {
     let mut classes: [Vec<(f64, usize)>; CLASSES.len()] = Default::default();
@@ -248,7 +248,7 @@ fn more_rows_are_no_worse() {
 
 /// Doubts of a table reach the steps of a contact.
 #[test]
-fn doubtful_tables_are_told() {
+fn contacts_warn_of_doubtful_tables() {
     let step = |table: &CreepSeries| {
         let mut contact =
             sphere_on(Grid::square(24, 4.0e-3).unwrap(), Material::incompressible(table.clone()), Settings::default());

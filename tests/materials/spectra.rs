@@ -1,10 +1,10 @@
 //! Creep, relaxation, and the passage between them.
 
+use crate::common::refused::field;
 use crate::common::spectra::spectra;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use viscocontact::Error;
 use viscocontact::prelude::*;
 use viscocontact::rheology::{CreepSpectrum, RelaxationSpectrum};
 
@@ -105,39 +105,34 @@ fn clustered_repeated_and_weak_terms_are_reciprocal() {
 
 #[test]
 fn bad_parameters_are_refused_by_name() {
-    let field = |error: Error| match error {
-        Error::OutOfRange { field, .. } | Error::WrongLength { field, .. } => field,
-        other => panic!("unexpected {other}"),
-    };
     for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(field(Elastic::new(bad).unwrap_err()), "shear modulus");
-        assert_eq!(field(Maxwell::new(bad, 1.0).unwrap_err()), "shear modulus");
-        assert_eq!(field(Maxwell::new(1.0, bad).unwrap_err()), "shear viscosity");
-        assert_eq!(field(KelvinVoigt::new(bad, 1.0).unwrap_err()), "shear modulus");
-        assert_eq!(field(KelvinVoigt::new(1.0, bad).unwrap_err()), "shear viscosity");
-        assert_eq!(field(Zener::new(1.0, bad, 1.0).unwrap_err()), "Kelvin–Voigt modulus");
-        assert_eq!(field(Zener::new(1.0, 1.0, bad).unwrap_err()), "Kelvin–Voigt viscosity");
-        assert_eq!(field(Burgers::new(1.0, bad, 1.0, 1.0).unwrap_err()), "shear viscosity");
-        assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(1.0, bad)]).unwrap_err()), "retardation time");
-        assert_eq!(field(GeneralizedMaxwell::new(1.0, &[(1.0, bad)]).unwrap_err()), "relaxation time");
+        assert_eq!(field(Elastic::new(bad)), "shear modulus");
+        assert_eq!(field(Maxwell::new(bad, 1.0)), "shear modulus");
+        assert_eq!(field(Maxwell::new(1.0, bad)), "shear viscosity");
+        assert_eq!(field(KelvinVoigt::new(bad, 1.0)), "shear modulus");
+        assert_eq!(field(KelvinVoigt::new(1.0, bad)), "shear viscosity");
+        assert_eq!(field(Zener::new(1.0, bad, 1.0)), "Kelvin–Voigt modulus");
+        assert_eq!(field(Zener::new(1.0, 1.0, bad)), "Kelvin–Voigt viscosity");
+        assert_eq!(field(Burgers::new(1.0, bad, 1.0, 1.0)), "shear viscosity");
+        assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(1.0, bad)])), "retardation time");
+        assert_eq!(field(GeneralizedMaxwell::new(1.0, &[(1.0, bad)])), "relaxation time");
     }
     for bad in [-1.0, f64::NAN, f64::INFINITY] {
-        assert_eq!(field(GeneralizedKelvin::new(bad, 0.0, &[]).unwrap_err()), "glassy compliance");
-        assert_eq!(field(GeneralizedKelvin::new(1.0, bad, &[]).unwrap_err()), "fluidity");
-        assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(bad, 1.0)]).unwrap_err()), "retarded compliance");
-        assert_eq!(field(GeneralizedMaxwell::new(bad, &[(1.0, 1.0)]).unwrap_err()), "equilibrium modulus");
-        assert_eq!(field(RelaxationSpectrum::new(1.0, bad, &[]).unwrap_err()), "immediate viscosity");
+        assert_eq!(field(GeneralizedKelvin::new(bad, 0.0, &[])), "glassy compliance");
+        assert_eq!(field(GeneralizedKelvin::new(1.0, bad, &[])), "fluidity");
+        assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(bad, 1.0)])), "retarded compliance");
+        assert_eq!(field(GeneralizedMaxwell::new(bad, &[(1.0, 1.0)])), "equilibrium modulus");
+        assert_eq!(field(RelaxationSpectrum::new(1.0, bad, &[])), "immediate viscosity");
     }
     // reciprocals and products stay numbers
-    assert_eq!(field(Maxwell::new(1e-150, 1e170).unwrap_err()), "glassy compliance");
-    assert_eq!(field(GeneralizedMaxwell::new(1e-310, &[(1.0, 1.0)]).unwrap_err()), "equilibrium modulus");
-    assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(1.0, 1e-200)]).unwrap_err()), "retardation time");
-    assert_eq!(field(CreepSpectrum::new(0.0, 0.0, &[(0.0, 1.0)]).unwrap_err()), "creep spectrum");
-    assert_eq!(field(GeneralizedMaxwell::new(1.0, &[]).unwrap_err()), "Maxwell elements");
-    assert_eq!(field(GeneralizedMaxwell::new(0.0, &[(0.0, 1.0)]).unwrap_err()), "relaxation spectrum");
+    assert_eq!(field(Maxwell::new(1e-150, 1e170)), "glassy compliance");
+    assert_eq!(field(GeneralizedMaxwell::new(1e-310, &[(1.0, 1.0)])), "equilibrium modulus");
+    assert_eq!(field(GeneralizedKelvin::new(1.0, 0.0, &[(1.0, 1e-200)])), "retardation time");
+    assert_eq!(field(CreepSpectrum::new(0.0, 0.0, &[(0.0, 1.0)])), "creep spectrum");
+    assert_eq!(field(GeneralizedMaxwell::new(1.0, &[])), "Maxwell elements");
+    assert_eq!(field(GeneralizedMaxwell::new(0.0, &[(0.0, 1.0)])), "relaxation spectrum");
     for nu in [-1.0, 0.51, f64::NAN] {
-        let error = Material::constant_poisson(Elastic::new(1.0).unwrap(), nu).unwrap_err();
-        assert_eq!(field(error), "Poisson's ratio");
+        assert_eq!(field(Material::constant_poisson(Elastic::new(1.0).unwrap(), nu)), "Poisson's ratio");
     }
 }
 
@@ -181,7 +176,7 @@ fn spectra_between_the_ends_of_their_range_have_numbers_for_reciprocals() {
 
 /// A term too weak to count, at the very time at which the others have a zero: the reciprocal must not notice it.
 #[test]
-fn a_hair_on_a_zero_changes_nothing() {
+fn a_negligible_term_does_not_change_the_relaxation() {
     for weak in [1e-10, 1e-15, 1e-17, 1e-20, 1e-28, 1e-34, 1e-60, 1e-100] {
         // 1 + 1/(1 + s) vanishes at s = −2
         let creep = CreepSpectrum::new(1.0, 0.0, &[(1.0, 1.0), (weak, 0.5)]).unwrap();

@@ -135,7 +135,7 @@ proptest! {
     }
 }
 
-/// Shapes by their name, what is interpolated on its own grid.
+/// Shapes by their name; interpolated shapes are on their own grid.
 fn shapes() -> Vec<(&'static str, Grid, Box<dyn Geometry>)> {
     let grid = || Grid::new([12, 9], [1.2, 0.9]).unwrap();
     let spec = RoughSpec::new(1.0, 0.2, Roughness::RmsHeight(1e-3)).with_roll_off(0.5).with_seed(3);
@@ -394,9 +394,9 @@ mod at_random {
     }
 }
 
-/// Looking at nothing finds nothing wrong: times that say nothing are refused, and so is a body that never creeps.
+/// Too few times or times that do not ascend are refused, and so is a body that never creeps.
 #[test]
-fn laws_want_something_to_look_at() {
+fn laws_refuse_times_that_test_nothing() {
     use viscocontact::rheology::laws;
 
     let maxwell = Maxwell::new(1.0e6, 1.0e6).unwrap();
@@ -412,7 +412,7 @@ fn laws_want_something_to_look_at() {
     let times = laws::log_times(1e-3, 1e3);
     let rigid = laws::all(&FnRheology::new(|_| 0.0), &times).unwrap_err();
     assert_eq!(rigid.law, "creep is positive after t = 0");
-    // what is not known is not asked
+    // times beyond the series are not evaluated
     let known = PowerLaw::new(1.0e-6, 1.0, 0.3).unwrap().series(1e-3..=1e1, 1e-4).unwrap();
     laws::all(&known, &times).unwrap();
 

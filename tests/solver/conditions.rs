@@ -2,6 +2,7 @@
 
 use crate::common::bodies::{elastic, maxwell};
 use crate::common::noise::uniform;
+use crate::common::spheres::{builder_of, contact_of};
 use crate::common::step_loaded_sphere::StepLoadedSphere;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
@@ -166,7 +167,7 @@ impl Scene {
 
 const TOLERANCE: f64 = 1e-9;
 
-/// p ≥ 0, h = 0 in contact and h ≥ 0 outside to the tolerance, and what the load says.
+/// p ≥ 0, h = 0 in contact and h ≥ 0 outside to the tolerance, and the conditions of the load.
 fn assert_contact_conditions(contact: &ViscoelasticContact, load: Load, tolerance: f64) {
     let mut gap = vec![0.0; contact.grid().len()];
     contact.gap_into(&mut gap).unwrap();
@@ -244,7 +245,7 @@ proptest! {
             }
             reference.step(dt, load).unwrap();
             assert_contact_conditions(&reference, load, TOLERANCE);
-            // the greatest pressure so far: what is left of it after letting go is rounding
+            // the greatest pressure so far: after a release, rounding of it remains
             peak = ours.pressure().iter().copied().fold(peak, f64::max);
             for (a, b) in ours.pressure().iter().zip(reference.pressure()) {
                 prop_assert!((a - b).abs() <= 1e-6 * peak, "step {}: {} {}", step, a, b);
@@ -266,31 +267,6 @@ fn a_viscoelastic_run_keeps_the_conditions() {
     }
 }
 
-/// Let go and come back: the surface recovers freely in between, and both solvers tell the same story.
-#[test]
-fn bodies_separate_recover_and_touch_again() {
-    let scene = StepLoadedSphere::zener();
-    let run = |solver| {
-        let mut contact = scene.contact(64, Settings::default().with_tolerance(1e-9).with_solver(solver)).unwrap();
-        contact.step(0.0, Load::force(1.0)).unwrap();
-        contact.step(0.5, Load::force(1.0)).unwrap();
-        let pressed = contact.approach();
-        contact.step(0.0, Load::force(0.0)).unwrap();
-        assert_eq!((contact.contact_cells(), contact.force()), (0, 0.0));
-        let released = contact.approach();
-        assert!(released > 0.0 && released < pressed);
-        contact.step(1.0, Load::force(0.0)).unwrap();
-        let recovered = contact.approach();
-        assert!(recovered > 0.0 && recovered < released);
-        contact.step(0.0, Load::force(0.7)).unwrap();
-        [pressed, released, recovered, contact.approach()]
-    };
-    let (ours, reference) = (run(Solver::ActiveSet), run(Solver::PolonskyKeer));
-    for (a, b) in ours.iter().zip(&reference) {
-        assert!((a / b - 1.0).abs() < 1e-7, "{ours:?} {reference:?}");
-    }
-}
-
 /// The work of the scene that users are shown, pinned to catch silent drift of the algorithm: it may
 /// fall, and then the figures in the documents change with it.
 #[test]
@@ -304,37 +280,6 @@ fn work_is_what_the_documents_say() {
     }
 }
 
-/// Mirrored scene, mirrored answer; shifted by whole cells, shifted answer.
-#[test]
-fn mirrored_and_shifted_scenes_have_such_answers() {
-    let grid = Grid::new([40, 32], [4.0e-3, 3.2e-3]).unwrap();
-    let solve = |shape: &dyn Geometry| {
-        let mut contact = ViscoelasticContact::builder(grid.clone())
-            .geometry(shape)
-            .material(elastic())
-            .settings(Settings::default().with_tolerance(1e-10))
-            .build()
-            .unwrap();
-        contact.step(0.0, Load::force(0.3)).unwrap();
-        contact.pressure().to_vec()
-    };
-    let lump =
-        |x: f64, y: f64| 40.0 * (x * x + 2.0 * y * y) + 1.0e-6 * (3000.0 * x).sin() + 0.5e-6 * (2000.0 * y).sin();
-    let field = solve(&FnGeometry::new(lump));
-    let peak = field.iter().copied().fold(0.0, f64::max);
-    let mirrored = solve(&FnGeometry::new(move |x, y| lump(-x, y)));
-    let shifted = solve(&FnGeometry::new(move |x, y| lump(x - 0.3e-3, y + 0.1e-3))); // 3 and −1 cells
-    for i in 0..40 {
-        for j in 0..32 {
-            let value = field[i * 32 + j];
-            assert_abs_diff_eq!(mirrored[(39 - i) * 32 + j], value, epsilon = 1e-8 * peak);
-            if i < 37 && j > 0 {
-                assert_abs_diff_eq!(shifted[(i + 3) * 32 + j - 1], value, epsilon = 1e-8 * peak);
-            }
-        }
-    }
-}
-
 /// A thousand isolated spots, and what their neighbours make of them.
 #[test]
 fn a_thousand_spots_keep_the_conditions() {
@@ -342,9 +287,7 @@ fn a_thousand_spots_keep_the_conditions() {
     let wave = |x: f64| (32.0 * std::f64::consts::TAU * x).cos();
     let bumps = FnGeometry::new(move |x, y| 1.0e-3 * (wave(x) + wave(y) + x + 0.3 * y));
     for load in [Load::force(2.0e-3), Load::eccentric_force(2.0e-3, [0.1, -0.2])] {
-        let mut contact = ViscoelasticContact::builder(grid.clone())
-            .geometry(&bumps)
-            .material(Material::incompressible(Elastic::new(0.25).unwrap()))
+        let mut contact = builder_of(&bumps, grid.clone(), Material::incompressible(Elastic::new(0.25).unwrap()))
             .settings(Settings::default().with_tolerance(1e-7).with_edge(Edge::Allow))
             .build()
             .unwrap();
@@ -355,43 +298,23 @@ fn a_thousand_spots_keep_the_conditions() {
     }
 }
 
-/// The work of a warm step grows less than twofold from 128² to 1024² cells, where an edge that moved a ninth
-/// of a cell a step moves a whole one.
-#[test]
-fn warm_steps_hardly_grow_with_the_mesh() {
-    let scene = StepLoadedSphere::maxwell();
-    let iterations = |cells: usize| {
-        let mut contact = scene.contact(cells, Settings::default()).unwrap();
-        contact.step(0.0, Load::force(scene.force)).unwrap();
-        let reports = (0..24).map(|_| contact.step(0.02, Load::force(scene.force)).unwrap());
-        reports.skip(4).map(|report| report.iterations).sum::<usize>() as f64 / 20.0
-    };
-    let (coarse, fine) = (iterations(128), iterations(1024));
-    println!("{coarse} → {fine} iterations per step");
-    assert!(fine <= 2.0 * coarse, "{coarse} → {fine}");
-}
-
 /// A state that still pulls somewhere is no solution, however small its residual is when the iterations run out.
 #[test]
 fn pressures_are_never_negative_when_iterations_run_out() {
     let wavy = Sum::new(Sphere::new(5.0e-3).unwrap(), Wavy::new(2.0e-5, 0.7e-3).unwrap());
     let (mut solved, mut given_up) = (0, 0);
-    for max_iterations in 1..6 {
+    for max_iterations in 1..12 {
         for tolerance in [1e-4, 1e-3, 1e-2, 0.1] {
             let settings = Settings::default()
                 .with_max_iterations(max_iterations)
                 .with_tolerance(tolerance)
                 .with_edge(Edge::Allow);
-            let mut contact = ViscoelasticContact::builder(Grid::square(16, 2.0e-3).unwrap())
-                .geometry(&wavy)
-                .material(maxwell())
-                .settings(settings)
-                .build()
-                .unwrap();
+            let mut contact = contact_of(&wavy, Grid::square(16, 2.0e-3).unwrap(), maxwell(), settings);
             for (dt, force) in [(0.0, 0.5), (0.1, 0.3), (0.1, 0.05), (1.0, 0.4), (0.3, 0.01), (0.0, 0.2)] {
                 match contact.step(dt, Load::force(force)) {
                     Ok(_) => {
                         assert!(contact.pressure().iter().all(|&p| p >= 0.0), "{max_iterations} {tolerance:e}");
+                        assert!((contact.force() / force - 1.0).abs() < 1e-9, "{max_iterations} {tolerance:e}");
                         solved += 1;
                     }
                     Err(Error::NotConverged { .. }) => given_up += 1,
@@ -404,9 +327,9 @@ fn pressures_are_never_negative_when_iterations_run_out() {
 }
 
 /// On cells so slender that the gradients of Polonsky & Keer lose their way, a step backwards let cells in with a negative
-/// pressure, which no later look saw: what is accepted pulls nowhere and carries the load.
+/// pressure, which no later check found: an accepted pressure is nowhere negative and carries the load.
 #[test]
-fn steps_backwards_let_nothing_in_that_pulls() {
+fn backward_steps_accept_no_negative_pressure() {
     let body = KelvinVoigt::new(2.9e7, 1.3e6).unwrap();
     let material = Material::constant_poisson(body, 0.25)
         .unwrap()
@@ -466,9 +389,7 @@ fn pivots_are_solved_by_both_solvers() {
             tilt: [between(-0.5e-3, 0.5e-3), between(-0.5e-3, 0.5e-3)].map(|at| Tilt::Free { at }),
         };
         let run = |solver| {
-            let mut contact = ViscoelasticContact::builder(grid.clone())
-                .geometry(&shapes[scene % 4])
-                .material(elastic())
+            let mut contact = builder_of(&shapes[scene % 4], grid.clone(), elastic())
                 .settings(Settings::default().with_solver(solver).with_tolerance(1e-8).with_edge(Edge::Allow))
                 .build()
                 .unwrap();

@@ -2,7 +2,7 @@
 
 use crate::common::bodies::{elastic, maxwell, three_times, zener};
 use crate::common::noise::uniform;
-use crate::common::spheres::{RADIUS, builder_on};
+use crate::common::spheres::{RADIUS, builder_of, builder_on, contact_of, sphere};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::contact::Warnings;
@@ -58,8 +58,8 @@ fn every_length_of_step_errs_by_no_more_than_its_rule() {
 /// After a huge step nothing rings: the pressure stays where it is, and of one sign.
 #[test]
 fn huge_steps_do_not_ring() {
-    for material in [zener(), maxwell()] {
-        for dt in [3.0, 30.0, 1e3] {
+    for (material, longest) in [(zener(), 1e12), (maxwell(), 1e3)] {
+        for dt in [3.0, 30.0, 1e3, longest] {
             let width = 2.6 * (0.75 * RADIUS * 0.01 * material.contact_compliance(12.0 * dt)).cbrt();
             let mut contact = builder(32, width, material.clone()).build().unwrap();
             contact.step(0.0, Load::force(0.01)).unwrap();
@@ -71,45 +71,10 @@ fn huge_steps_do_not_ring() {
             // creep only spreads the force
             for pair in centers.windows(2) {
                 assert!(pair[1] < pair[0] * (1.0 + 1e-4), "Δ = {dt}: {centers:?}");
+                // a solid is relaxed after the first of them
+                assert!(longest < 1e4 || dt < 1e3 || pair[1] > pair[0] * (1.0 - 1e-4), "Δ = {dt}: {centers:?}");
             }
         }
-    }
-}
-
-/// Second order for a smooth load on any rheology with an elastic response, once steps resolve its fastest relaxation (a
-/// power law resolved from 0.3 s on); first order without.
-#[test]
-fn the_default_rule_is_of_second_order() {
-    let power = FractionalMaxwell::findley(0.5e-6, 0.5e-6, 0.4).unwrap().series(0.3..=10.0, 1e-2).unwrap();
-    let bodies: Vec<(&str, Material)> = vec![
-        ("Maxwell", maxwell()),
-        ("Zener", zener()),
-        ("Kelvin–Voigt", Material::incompressible(KelvinVoigt::new(1.0e6, 0.3e6).unwrap())),
-        ("Burgers", Material::incompressible(Burgers::new(1.0e6, 3.0e6, 1.0e6, 0.5e6).unwrap())),
-        ("power law", Material::incompressible(power)),
-        ("elastic bulk", Material::elastic_bulk(Zener::new(2.0e6, 1.0e6, 1.0e6).unwrap(), 3.0e6).unwrap()),
-    ];
-    // on a punch nothing but the rule is there to see: no cell comes or goes
-    let punch = FlatPunch::circular(0.8e-3).unwrap();
-    let force = |t: f64| (0.5 * std::f64::consts::PI * t).sin().powi(2);
-    for (name, material) in bodies {
-        let approach = |steps: u32| {
-            let settings = Settings::default().with_tolerance(1e-12);
-            let mut contact =
-                builder(24, 2.2e-3, material.clone()).geometry(&punch).settings(settings).build().unwrap();
-            for k in 1..=steps {
-                let t = 0.8 * f64::from(k) / f64::from(steps);
-                contact.step(0.8 / f64::from(steps), Load::force(force(t))).unwrap();
-            }
-            contact.approach()
-        };
-        let fine = approach(8192);
-        let errors = [64, 128, 256].map(|steps| (approach(steps) / fine - 1.0).abs());
-        let order = (errors[0] / errors[2]).log2() / 2.0;
-        println!("{name}: errors {errors:?}, order {order:.2}");
-        // an immediate dashpot answers with the slope of u at the end of a step, which a straight line knows to first order
-        let immediate = material.contact_compliance(0.0) == 0.0;
-        assert!(if immediate { order > 0.95 } else { order >= 1.95 }, "{name}: {errors:?}");
     }
 }
 
@@ -133,43 +98,6 @@ fn thirty_decades_in_one_body_are_followed() {
     assert!(worst < 3e-3 && steps < 500, "{worst:e} {steps}");
 }
 
-/// The same dimensionless scene in any units: bit by bit for powers of two, else to rounding.
-#[test]
-fn units_do_not_matter() {
-    let run = |length: f64, modulus: f64, time: f64, tolerance: f64| {
-        let body = Zener::new(1.0e6 * modulus, 0.5e6 * modulus, 0.5e6 * modulus * time).unwrap();
-        let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3 * length).unwrap())
-            .geometry(&Sphere::new(RADIUS * length).unwrap())
-            .material(Material::incompressible(body))
-            .settings(Settings::default().with_tolerance(tolerance))
-            .build()
-            .unwrap();
-        let force = |share: f64| Load::force(share * modulus * length * length);
-        for (dt, share) in [(0.0, 0.3), (0.1, 0.5), (0.3, 0.6), (1.0, 0.2), (0.2, 0.0), (0.1, 0.4)] {
-            contact.step(dt * time, force(share)).unwrap();
-        }
-        let pressure: Vec<f64> = contact.pressure().iter().map(|p| p / modulus).collect();
-        (pressure, contact.approach() / length)
-    };
-    let (pressure, approach) = run(1.0, 1.0, 1.0, 1e-6);
-    for (length, modulus, time) in [(-33, 0, 0), (0, -40, 0), (0, 30, 0), (27, 30, 40), (-30, -40, -40)] {
-        let two = |exponent: i32| 2f64.powi(exponent);
-        let (scaled, deep) = run(two(length), two(modulus), two(time), 1e-6);
-        assert!(scaled == pressure && deep == approach, "2^{length} m, 2^{modulus} Pa, 2^{time} s");
-    }
-    // other factors round otherwise, and iterations take other ways to the same answer
-    let (pressure, approach) = run(1.0, 1.0, 1.0, 1e-13);
-    let peak = pressure.iter().copied().fold(0.0, f64::max);
-    for (length, modulus, time) in
-        [(1e-8, 1.0, 1.0), (1e8, 1.0, 1.0), (1.0, 1e-12, 1.0), (1.0, 1e9, 1.0), (1e-8, 1e3, 1e-9), (1e8, 1e-12, 1e9)]
-    {
-        let (scaled, deep) = run(length, modulus, time, 1e-13);
-        assert!((deep / approach - 1.0).abs() < 1e-12, "{length:e} {modulus:e} {time:e}: {:e}", deep / approach - 1.0);
-        let far = scaled.iter().zip(&pressure).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / peak;
-        assert!(far < 1e-10, "{length:e} {modulus:e} {time:e}: pressure {far:e}");
-    }
-}
-
 #[test]
 fn every_poissons_ratio_and_shape_of_cell_gives_hertz() {
     for nu in [0.0, 0.5, -0.9] {
@@ -185,11 +113,8 @@ fn every_poissons_ratio_and_shape_of_cell_gives_hertz() {
     let ellipsoid = Ellipsoid::new(1.0e-3, 1.0e3).unwrap();
     let hertz = viscocontact::analytic::HertzEllipse::new([1.0e-3, 1.0e3], 4.0e6, 1.0).unwrap();
     let [a, b] = hertz.semi_axes;
-    let mut contact = ViscoelasticContact::builder(Grid::new([48, 48], [2.4 * a, 2.4 * b]).unwrap())
-        .geometry(&ellipsoid)
-        .material(elastic())
-        .build()
-        .unwrap();
+    let mut contact =
+        contact_of(&ellipsoid, Grid::new([48, 48], [2.4 * a, 2.4 * b]).unwrap(), elastic(), Settings::default());
     let [d1, d2] = contact.grid().spacing();
     contact.step(0.0, Load::force(1.0)).unwrap();
     let relative = contact.approach() / hertz.approach - 1.0;
@@ -211,9 +136,27 @@ fn elastic_sphere(cells: usize) -> ViscoelasticContact {
     builder(cells, 4.0e-3, elastic()).build().unwrap()
 }
 
+/// Loads that fall by halves: the extrapolated guess cancels to noise.
+#[test]
+fn k_p_stays_exact_under_falling_loads() {
+    let shapes: [&dyn Geometry; 2] = [&sphere(), &FlatPunch::circular(1.0e-3).unwrap()];
+    for (shape, solver) in
+        shapes.into_iter().flat_map(|shape| [(shape, Solver::ActiveSet), (shape, Solver::PolonskyKeer)])
+    {
+        let settings = Settings::default().with_solver(solver);
+        let mut contact = contact_of(shape, Grid::square(32, 3.0e-3).unwrap(), elastic(), settings);
+        let mut fresh = vec![0.0; contact.grid().len()];
+        let halves = (0..40).map(|k| 0.4 * 0.5_f64.powi(k)).chain((0..12).map(|k| 0.4 * 0.65_f64.powi(k)));
+        for force in halves.chain([0.4, 0.2, 1e-3, 1e-6, 0.3, 0.3]) {
+            contact.step(1.0, Load::force(force)).unwrap();
+            assert!(drift(&contact, &mut fresh) < 1e-11, "{solver:?} at {force}");
+        }
+    }
+}
+
 /// Steps that grow carry the rounding of K p along, larger each time: it must be computed afresh in time.
 #[test]
-fn growing_steps_do_not_lose_k_p() {
+fn k_p_stays_exact_as_steps_grow() {
     for growth in [1.0, 1.2, 1.5, 2.0, 2.9] {
         let mut contact = elastic_sphere(24);
         let mut fresh = vec![0.0; contact.grid().len()];
@@ -245,7 +188,7 @@ fn a_million_steps_do_not_drift() {
 
 /// A body with several times under a periodic load: once the beginning is forgotten, all periods are the same.
 #[test]
-fn many_steps_of_a_body_that_remembers_do_not_drift() {
+fn periodic_steps_of_a_viscoelastic_body_do_not_drift() {
     let period = 500;
     let kelvin = Material::incompressible(GeneralizedKelvin::new(0.0, 0.0, &[(1.0e-6, 0.03), (1.0e-6, 3.0)]).unwrap());
     for (material, steps) in [(three_times(), 400_000_u32), (kelvin, 200_000)] {
@@ -283,7 +226,7 @@ fn a_load_removed_and_restored_a_thousand_times_leaves_nothing() {
     assert!(contact.contact_cells() > 50);
     contact.step(0.0, Load::force(0.0)).unwrap();
     let left = contact.displacement().iter().copied().fold(0.0, f64::max);
-    // a step of many relaxation times leaves τ/Δ, the next one that of it
+    // each step of many relaxation times leaves the share τ/Δ
     let mut forgotten = left;
     for _ in 0..3 {
         contact.step(1e3, Load::force(0.0)).unwrap();
@@ -370,7 +313,7 @@ fn moments_beyond_numbers_are_refused() {
 
 /// Pressures so small that their squares vanish: a pull among them is still a pull.
 #[test]
-fn the_least_pressures_do_not_pull() {
+fn the_least_pressures_are_not_negative() {
     let (mut accepted, mut refused) = (0, 0);
     for dt in [f64::MAX, 1e300, 1e250, 1e200] {
         for k in 0..40 {
@@ -381,9 +324,7 @@ fn the_least_pressures_do_not_pull() {
             ] {
                 let grid = Grid::new(cells, [3.1e-6, 3.9e-6]).unwrap();
                 let wavy = Wavy::new(1.0e-8 * (1.0 + 0.1 * f64::from(k)), 1.1e-6).unwrap();
-                let mut contact = ViscoelasticContact::builder(grid)
-                    .geometry(&Sum::new(Sphere::new(1.0e-4).unwrap(), wavy))
-                    .material(maxwell())
+                let mut contact = builder_of(&Sum::new(Sphere::new(1.0e-4).unwrap(), wavy), grid, maxwell())
                     .settings(Settings::default().with_edge(Edge::Allow).with_tolerance(4.5e-8))
                     .build()
                     .unwrap();
@@ -413,11 +354,8 @@ fn a_held_approach_relaxes_by_many_decades() {
             Box::new(FlatPunch::circular(between(0.5e-3, 1.5e-3)).unwrap()),
         ];
         let cells = [24 + (between(0.0, 24.0) as usize), 24 + (between(0.0, 24.0) as usize)];
-        let mut contact = ViscoelasticContact::builder(Grid::new(cells, [4.0e-3; 2]).unwrap())
-            .geometry(&shapes[scene % 4])
-            .material(maxwell())
-            .build()
-            .unwrap();
+        let mut contact =
+            contact_of(&shapes[scene % 4], Grid::new(cells, [4.0e-3; 2]).unwrap(), maxwell(), Settings::default());
         let held = Load::approach_and_tilt(between(0.2e-5, 3.0e-5), [between(0.0, 1.0e-3), 0.0]);
         // held where it is, or where a force has brought it
         let held = if scene % 3 == 0 {
@@ -446,19 +384,17 @@ fn a_held_approach_relaxes_by_many_decades() {
 
 /// A flat punch on an elastic body is pressed in proportion to its approach, however much deeper it was before.
 #[test]
-fn small_approaches_after_great_ones_press_in_proportion() {
+fn pressure_is_proportional_to_the_approach_of_a_punch() {
     let mut dice = uniform(3);
     let mut between = |low: f64, high: f64| low + (high - low) * dice();
     for scene in 0..30 {
         let cells = 24 + between(0.0, 48.0) as usize;
-        let mut contact = ViscoelasticContact::builder(Grid::square(cells, 4.0e-3).unwrap())
-            .geometry(&FlatPunch::circular(between(0.5e-3, 1.5e-3)).unwrap())
-            .material(elastic())
-            .settings(
-                Settings::default().with_tolerance(1e-8).with_symmetry(scene % 2 == 0).with_window(scene % 3 == 0),
-            )
-            .build()
-            .unwrap();
+        let mut contact = contact_of(
+            &FlatPunch::circular(between(0.5e-3, 1.5e-3)).unwrap(),
+            Grid::square(cells, 4.0e-3).unwrap(),
+            elastic(),
+            Settings::default().with_tolerance(1e-8).with_symmetry(scene % 2 == 0).with_window(scene % 3 == 0),
+        );
         contact.step(0.0, Load::approach(1.0e-5)).unwrap();
         let whole = contact.pressure().to_vec();
         for _ in 0..6 {

@@ -1,6 +1,7 @@
 //! Limit states: loads on the rim of the hull, pivots that a touch balances, loads and steps at the ends of the numbers.
 //! `LIMIT_SCENES` (120) scenes of each kind.
 
+use crate::common::spheres::builder_of;
 use viscocontact::plan::{Accuracy, Plan};
 use viscocontact::prelude::*;
 
@@ -80,9 +81,7 @@ fn loads_on_the_rim_of_the_hull_are_carried() {
             rim + inwards * (middle[axis] - rim)
         });
         on_rim += usize::from(inwards == 0.0);
-        let mut contact = ViscoelasticContact::builder(grid.clone())
-            .geometry(&FnGeometry::new(gap))
-            .material(bodies(&mut draws))
+        let mut contact = builder_of(&FnGeometry::new(gap), grid.clone(), bodies(&mut draws))
             .settings(Settings::default().with_edge(Edge::Allow))
             .build()
             .unwrap();
@@ -121,7 +120,7 @@ fn loads_on_the_rim_of_the_hull_are_carried() {
 
 /// A body held at a pivot where it touches, or turns away, is pressed by nothing or by more than rounding.
 #[test]
-fn pivots_held_by_a_touch_carry_nothing() {
+fn bodies_that_just_touch_at_a_pivot_carry_no_load() {
     let (mut touching, mut pressed) = (0, 0);
     for seed in 0..scenes() {
         let mut draws = Draws::new(seed + 1);
@@ -157,7 +156,7 @@ fn pivots_held_by_a_touch_carry_nothing() {
 
 /// The least forces, approaches and moduli end in an answer or in an error, after few steps.
 #[test]
-fn the_least_loads_end() {
+fn runs_under_the_least_loads_end() {
     let (mut answers, mut refused) = (0, 0);
     for modulus in [1.0e-95, 1.0e6, 1.0e95] {
         let material = Material::incompressible(Zener::new(modulus, modulus, modulus).unwrap());
@@ -171,9 +170,7 @@ fn the_least_loads_end() {
                 for load in [Load::force(size), Load::approach(size), Load::eccentric_force(size, [1.0e-4, 0.0])] {
                     let what = format!("{modulus:e} Pa, {load:?}");
                     let build = || {
-                        ViscoelasticContact::builder(Grid::square(12, 4.0e-3).unwrap())
-                            .geometry(shape)
-                            .material(material.clone())
+                        builder_of(shape, Grid::square(12, 4.0e-3).unwrap(), material.clone())
                             .settings(Settings::default().with_edge(Edge::Allow))
                             .build()
                             .unwrap()

@@ -6,8 +6,6 @@ mod extremes;
 mod limits;
 mod loads;
 mod population;
-mod ranks;
-mod ranks_at_random;
 mod ranks_together;
 mod region;
 mod several;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
+use crate::common::ratios::Ratios;
 use viscocontact::geometry::Sum;
 use viscocontact::prelude::*;
 
@@ -48,14 +49,8 @@ fn body(draws: &mut Draws) -> Material {
     }
 }
 
-struct Cost {
-    equivalents: f64,
-    fallback: bool,
-    name: String,
-}
-
 /// Warm steps of the scene of a seed, under a load that is held, grows, falls or moves.
-fn run(seed: u64, costs: &mut Vec<Cost>) {
+fn run(seed: u64, costs: &mut Ratios) {
     let mut draws = Draws::new(seed);
     let cells = 48 + 2 * draws.below(60);
     let grid = Grid::square(cells, LENGTH).unwrap();
@@ -96,11 +91,7 @@ fn run(seed: u64, costs: &mut Vec<Cost>) {
             )
         };
         match contact.step(dt, load) {
-            Ok(report) if step > 0 => costs.push(Cost {
-                equivalents: report.convolution_equivalents(),
-                fallback: report.fallback_iterations > 0,
-                name: name(),
-            }),
+            Ok(report) if step > 0 => costs.push(report.convolution_equivalents(), &name()),
             Ok(_) => {}
             Err(error) => panic!("{}: {error}", name()),
         }
@@ -110,14 +101,9 @@ fn run(seed: u64, costs: &mut Vec<Cost>) {
 #[test]
 fn warm_steps_do_not_stall() {
     let (scenes, first) = (from_environment("POPULATION_SCENES", 20), from_environment("POPULATION_SEED", 1));
-    let mut costs = Vec::new();
+    let mut costs = Ratios::default();
     (0..scenes).for_each(|k| run(first * 1_000_000 + k, &mut costs));
-    costs.sort_by(|a, b| a.equivalents.total_cmp(&b.equivalents));
-    let at = |share: f64| costs[((costs.len() - 1) as f64 * share) as usize].equivalents;
-    let mean = costs.iter().map(|cost| cost.equivalents).sum::<f64>() / costs.len() as f64;
-    let fallback = costs.iter().filter(|cost| cost.fallback).count();
-    println!("{} warm steps: {mean:.2} equivalents, {fallback} with the fall-back", costs.len());
-    println!("percentiles 50, 90, 99, 99.9, 100: {:.1?}", [0.5, 0.9, 0.99, 0.999, 1.0].map(at));
-    costs.iter().rev().take(5).for_each(|cost| println!("{:.1}: {}", cost.equivalents, cost.name));
-    assert!(mean <= 10.0 && at(1.0) <= 60.0, "{mean} {}", at(1.0));
+    println!("{} warm steps: {:.2} equivalents", costs.count(), costs.mean());
+    costs.print("equivalents", 5);
+    assert!(costs.mean() <= 10.0 && costs.quantile(1.0) <= 60.0, "{} {}", costs.mean(), costs.quantile(1.0));
 }

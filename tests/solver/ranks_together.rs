@@ -1,23 +1,21 @@
 //! Ranks stay together: what travels between them, ranks without rows, and ranks that fail or leave.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::Ordering;
 use std::sync::mpsc::channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use crate::common::watched_ranks::{Call, WatchedRanks};
+use crate::common::bodies::{elastic, zener};
+use crate::common::spheres::builder_on;
+use crate::common::watched_ranks::{Call, WatchedRanks, with_calls_left};
 use viscocontact::observe::Axis;
 use viscocontact::parallel::{Ranks, RanksError, Threads};
 use viscocontact::prelude::*;
 
 fn sphere(cells: usize, ranks: Arc<dyn Ranks>) -> Result<ViscoelasticContact, Error> {
-    ViscoelasticContact::builder(Grid::square(cells, 4.0e-3)?)
-        .geometry(&Sphere::new(10.0e-3)?)
-        .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6)?))
-        .settings(Settings::default().with_symmetry(false))
-        .ranks(ranks)
-        .build()
+    let settings = Settings::default().with_symmetry(false);
+    builder_on(Grid::square(cells, 4.0e-3)?, zener()).settings(settings).ranks(ranks).build()
 }
 
 /// Fails, and does not hang, if ranks wait for each other for ever.
@@ -88,7 +86,7 @@ fn part(n: usize, rank: usize, size: usize) -> usize {
     n * (rank + 1) / size - n * rank / size
 }
 
-/// A grid of one band: all ranks but one have nothing to do, and know as much.
+/// A grid of one band: all ranks but one have no rows, and return the same reports.
 #[test]
 fn ranks_without_rows_get_the_same_reports() {
     let seen = Threads::run(3, |ranks| {
@@ -111,10 +109,8 @@ fn ranks_without_rows_get_the_same_reports() {
 fn profiles_are_those_of_one_process() {
     for symmetry in [true, false] {
         let build = || {
-            ViscoelasticContact::builder(Grid::new([384, 200], [4.0e-3, 3.0e-3]).unwrap())
-                .geometry(&Sphere::new(10.0e-3).unwrap())
-                .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
-                .settings(Settings::default().with_symmetry(symmetry).with_window(false))
+            let settings = Settings::default().with_symmetry(symmetry).with_window(false);
+            builder_on(Grid::new([384, 200], [4.0e-3, 3.0e-3]).unwrap(), zener()).settings(settings)
         };
         let lines = [(Axis::X1, 0.3e-3), (Axis::X2, -0.5e-3), (Axis::X2, 0.1e-3), (Axis::X1, -1.5e-3)];
         let look = |mut contact: ViscoelasticContact| {
@@ -166,12 +162,11 @@ fn a_bad_gap_is_found_where_one_process_finds_it() {
         |_, _| f64::INFINITY,
     ];
     let builder = |grid: &Grid| ViscoelasticContact::builder(grid.clone());
-    let body = || Material::incompressible(Elastic::new(1.0e6).unwrap());
     for gap in scenes {
         let grid = Grid::square(192, 1.0e-3).unwrap();
-        let alone = builder(&grid).geometry(&FnGeometry::new(gap)).material(body()).build().unwrap_err();
+        let alone = builder(&grid).geometry(&FnGeometry::new(gap)).material(elastic()).build().unwrap_err();
         let errors = Threads::run(3, |ranks| {
-            builder(&grid).ranks(ranks).geometry(&FnGeometry::new(gap)).material(body()).build().unwrap_err()
+            builder(&grid).ranks(ranks).geometry(&FnGeometry::new(gap)).material(elastic()).build().unwrap_err()
         });
         for error in errors.unwrap() {
             // NaN is not equal to itself
@@ -187,8 +182,7 @@ fn a_contact_that_one_rank_cannot_build_is_built_by_none() {
         Threads::run(3, |ranks| {
             let (sphere, bad) = (Sphere::new(1.0e-2).unwrap(), ranks.rank() == 2);
             let builder = ViscoelasticContact::builder(Grid::square(32, 1.0e-3).unwrap()).ranks(ranks);
-            let body = Material::incompressible(Elastic::new(1.0e6).unwrap());
-            let builder = if bad { builder } else { builder.material(body) };
+            let builder = if bad { builder } else { builder.material(elastic()) };
             builder.geometry(&sphere).build().unwrap_err()
         })
         .unwrap()
@@ -307,12 +301,8 @@ fn a_loss_at_any_call_is_an_error_and_leaves_the_contact_as_it_was() {
     let failed = within_a_minute(|| {
         Threads::run(2, |ranks| {
             // all ranks lose the same call, so that none waits
-            let (rank, calls_left) = (ranks.rank(), Arc::new(AtomicUsize::new(usize::MAX)));
-            let left = Arc::clone(&calls_left);
-            let lossy = WatchedRanks::around(ranks, move |_| {
-                let calls = left.fetch_update(Ordering::Relaxed, Ordering::Relaxed, |left| left.checked_sub(1));
-                calls.map(|_| ()).map_err(|_| RanksError::Left { rank: 1 })
-            });
+            let rank = ranks.rank();
+            let (lossy, calls_left) = with_calls_left(ranks, 1);
             // calls `job` without its first call, then without its second, and so on until it succeeds
             let losing = |job: &mut dyn FnMut() -> Result<(), Error>| {
                 for at in 0.. {
@@ -369,10 +359,7 @@ fn a_loss_at_any_call_is_an_error_and_leaves_the_contact_as_it_was() {
 fn what_is_not_shared_is_refused_by_name() {
     let refused = |settings: fn() -> Settings| {
         Threads::run(2, move |ranks| {
-            let builder = ViscoelasticContact::builder(Grid::square(32, 4.0e-3).unwrap())
-                .geometry(&Sphere::new(10.0e-3).unwrap())
-                .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()));
-            builder.settings(settings()).ranks(ranks).build().err()
+            builder_on(Grid::square(32, 4.0e-3).unwrap(), zener()).settings(settings()).ranks(ranks).build().err()
         })
         .unwrap()
     };
@@ -387,12 +374,7 @@ fn what_is_not_shared_is_refused_by_name() {
     }
     Threads::run(2, |ranks| {
         let not_shared = |error: Error| assert!(matches!(error, Error::Ranks(RanksError::NotShared { .. })), "{error}");
-        let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3).unwrap())
-            .geometry(&Sphere::new(10.0e-3).unwrap())
-            .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
-            .ranks(ranks)
-            .build()
-            .unwrap();
+        let mut contact = builder_on(Grid::square(32, 4.0e-3).unwrap(), zener()).ranks(ranks).build().unwrap();
         contact.step(0.0, Load::force(1.0)).unwrap();
         not_shared(contact.patches().unwrap_err());
         not_shared(contact.stress().unwrap_err());

@@ -1,10 +1,8 @@
-//! What is computed is a matter of speed alone: on the cells that contact can reach, on a quarter of them, on any number of
-//! threads, the answer is the same.
+//! What is computed is a matter of speed alone: on the cells that contact can reach, or on a quarter of them, the answer is the same.
+//! Random scenes are in `properties::metamorphic`.
 
 use crate::common::bodies::{elastic, maxwell};
-use crate::common::spheres::{RADIUS, builder_on};
-use crate::common::step_loaded_sphere::StepLoadedSphere;
-use proptest::prelude::*;
+use crate::common::spheres::{RADIUS, builder_of, builder_on};
 use viscocontact::prelude::*;
 
 /// The same scene with and without what spares cells.
@@ -16,9 +14,7 @@ fn pair(cells: [usize; 2], side: f64, geometry: &dyn Geometry, material: &Materi
             .with_symmetry(sparing)
             .with_window(sparing)
             .with_edge(Edge::Allow);
-        ViscoelasticContact::builder(Grid::new(cells, [side, side * n2 as f64 / n1 as f64]).unwrap())
-            .geometry(geometry)
-            .material(material.clone())
+        builder_of(geometry, Grid::new(cells, [side, side * n2 as f64 / n1 as f64]).unwrap(), material.clone())
             .settings(settings)
             .build()
             .unwrap()
@@ -34,7 +30,7 @@ fn assert_same(contacts: &[ViscoelasticContact; 2], tolerance: f64, when: &str) 
         contact.gap_into(&mut gap).unwrap();
         gap
     };
-    // what is left of a displacement that went, or of a gap that closed, is rounding
+    // a displacement that went, or a gap that closed, leaves rounding
     let least = size(b.displacement()).max(1e-3 * size(&gap(b)));
     let compare = |what: &str, a: &[f64], b: &[f64]| {
         let is_length = what.contains("displacement") || what == "gap" || what == "approach";
@@ -144,57 +140,6 @@ fn direct_sums_and_fitted_series_are_the_same_whole_or_folded() {
                 contact.step(if step == 0 { 0.0 } else { 0.1 }, Load::force(0.2)).unwrap();
             }
             assert_same(&contacts, 1e-8, &format!("{rule:?}, step {step}"));
-        }
-    }
-}
-
-/// Threads share transforms and passes; what they return does not depend on their number.
-#[test]
-fn any_number_of_threads_gives_the_same_bits() {
-    let whole = Settings::default().with_symmetry(false).with_window(false);
-    let upright = || StepLoadedSphere::zener().run(192, 5, whole).unwrap().0.pressure().to_vec();
-    // rows that end anywhere in a band, and so many cells that threads share the coarser levels of the extension as well
-    let tilting = || {
-        let mut contact = ViscoelasticContact::builder(Grid::new([400, 370], [8.0e-3, 8.0e-3]).unwrap())
-            .geometry(&Ellipsoid::new(RADIUS, 0.7 * RADIUS).unwrap())
-            .material(Material::incompressible(Zener::new(1.0e6, 1.0e6, 1.0e6).unwrap()))
-            .settings(whole)
-            .build()
-            .unwrap();
-        for dt in [0.0, 0.3, 0.5] {
-            contact.step(dt, Load::eccentric_force(0.3, [1.0e-4, -2.0e-4])).unwrap();
-        }
-        contact.pressure().to_vec()
-    };
-    let on = |threads: usize, run: &(dyn Fn() -> Vec<f64> + Sync)| {
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap().install(run)
-    };
-    for run in [&upright as &(dyn Fn() -> Vec<f64> + Sync), &tilting] {
-        let one = on(1, run);
-        for threads in [2, 3, 5] {
-            assert!(on(threads, run) == one, "{threads} threads");
-        }
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 60, ..ProptestConfig::default() })]
-
-    /// Random paraboloids, anywhere, under random loads and steps.
-    #[test]
-    fn sparing_cells_changes_nothing_in_random_scenes(
-        n1 in 8_usize..40, n2 in 8_usize..40,
-        curvature in 0.3..3.0_f64, shift in prop_oneof![Just([0.0; 2]), [-1.0e-3..1.0e-3, -1.0e-3..1.0e-3]],
-        body in 0_usize..3,
-        steps in prop::collection::vec((prop_oneof![Just(0.0), 0.01..1.0_f64], prop_oneof![Just(0.0), 0.01..0.6_f64]), 1..6),
-    ) {
-        let shape = Shifted::new(Ellipsoid::new(RADIUS, curvature * RADIUS).unwrap(), shift).unwrap();
-        let mut contacts = pair([n1, n2], 8.0e-3, &shape, &bodies()[body]);
-        for (step, (dt, force)) in steps.into_iter().enumerate() {
-            for contact in &mut contacts {
-                contact.step(dt, Load::force(force)).unwrap();
-            }
-            assert_same(&contacts, 1e-7, &format!("step {step}: {dt} s, {force} N"));
         }
     }
 }

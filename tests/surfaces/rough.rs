@@ -1,6 +1,7 @@
-//! Rough surfaces on periodic bodies: what they cost, and what is known of them.
+//! Rough surfaces on periodic bodies: the work of the solver, and published results.
 
 use crate::common::bodies::{E_STAR, G, elastic};
+use crate::common::spheres::builder_of;
 use std::sync::Arc;
 
 use crate::common::rough::self_affine;
@@ -17,9 +18,7 @@ fn rough(cells: usize, shortest: f64, seed: u64) -> (Grid, Rough) {
 }
 
 fn pressed(grid: &Grid, shape: &Rough, material: Material, settings: Settings) -> ViscoelasticContact {
-    ViscoelasticContact::builder(grid.clone())
-        .geometry(shape)
-        .material(material)
+    builder_of(shape, grid.clone(), material)
         .kernel(Arc::new(InfluenceKernel::periodic(grid).unwrap()))
         .settings(settings)
         .build()
@@ -35,7 +34,7 @@ fn share_of_cells(contact: &ViscoelasticContact) -> f64 {
     contact.contact_cells() as f64 / contact.grid().len() as f64
 }
 
-/// At small loads the area is κ p̄/(E* h′): Persson's theory has κ = √(8/π) = 1.6, that of Bush, Gibson & Thomas
+/// At small loads the area is κ p̄/(E* h′): Persson's theory has κ = √(8/π) = 1.6, the theory of Bush, Gibson & Thomas
 /// √(2π) = 2.5; computations lie between them (Hyun et al., Phys. Rev. E 70, 2004: 1.8 … 2.2).
 #[test]
 fn area_is_proportional_to_small_loads() {
@@ -75,7 +74,7 @@ fn half_full_contact_takes_a_quarter_of_the_other_solvers_work() {
     assert!(active_set <= 60 && 4 * active_set <= polonsky_keer, "{active_set} {polonsky_keer}");
 }
 
-/// Nearly all of the surface in contact, where pressures close to zero are many, and the mean says nothing.
+/// Nearly all of the surface in contact, where many pressures are close to zero, far from the mean.
 #[test]
 fn nearly_full_contact_converges() {
     let (grid, shape) = rough(2048, 8.0, 1);

@@ -2,7 +2,7 @@
 
 use crate::common::bodies::{elastic, maxwell};
 use crate::common::histories::{Scene, scenes};
-use crate::common::spheres::{RADIUS, builder_on};
+use crate::common::spheres::{RADIUS, builder_on, contact_of};
 use approx::assert_abs_diff_eq;
 use viscocontact::Error;
 use viscocontact::prelude::*;
@@ -87,9 +87,9 @@ fn steps_end_on_corners_and_on_the_times_asked_for() {
     assert!(run.history.windows(2).all(|pair| pair[1][0] >= pair[0][0]));
 }
 
-/// Closures say nothing of their corners: a short pulse and a corner are found all the same.
+/// Closures do not name their corners: a short pulse and a corner are found all the same.
 #[test]
-fn closures_are_watched() {
+fn pulses_and_corners_of_closures_are_found() {
     let pulse = FnHistory::new(|t: f64| Load::force(0.2 + 0.8 * (-((t - 3.0) / 0.05).powi(2)).exp()));
     let scene = scenes().into_iter().find(|scene| scene.name == "Zener, held").unwrap();
     let mut contact = scene.contact(32, 1e-6);
@@ -134,83 +134,13 @@ fn rejected_steps_leave_no_trace() {
         assert_eq!(adaptive(&mut again, &times), (times.clone(), 0));
         assert!(again.pressure() == rejecting.pressure() && again.displacement() == rejecting.displacement());
         if time_rule == TimeRule::ExponentialLinear {
-            // the same steps, given, follow the same rule; the solver's tolerance is that of the adaptive run
+            // the same steps, given, follow the same rule, with the solver's tolerance of the adaptive run
             let mut given = contact(1e-3 * 0.03);
             let mut run = given.follow(&*scene.history, Stepping::fixed(10.0), scene.until).stop_at(&times).unwrap();
             while run.next_step().unwrap().is_some() {}
             assert!(given.pressure() == rejecting.pressure() && given.displacement() == rejecting.displacement());
         }
     }
-}
-
-/// Greatest and mean error of approach and force inside the steps of an adaptive run, by what the contact says and on the line
-/// between the ends of the steps, relative to their greatest values; and the number of steps.
-fn errors_inside(scene: &Scene, tolerance: f64) -> ([[[f64; 2]; 2]; 2], usize) {
-    const SHARES: [f64; 3] = [0.2, 0.5, 0.8];
-    let mut contact = scene.contact(24, 1e-4 * tolerance);
-    let mut follow = contact.follow(&*scene.history, Stepping::adaptive(tolerance), scene.until);
-    // time; approach and force there, and on the line
-    let (mut inside, mut start, mut steps) = (Vec::new(), [0.0; 2], 0);
-    while let Some(report) = follow.next_step().unwrap() {
-        let end = [report.approach, report.force];
-        for share in SHARES.into_iter().filter(|_| report.dt > 0.0) {
-            let time = report.time - (1.0 - share) * report.dt;
-            let between = follow.within_step(time).unwrap();
-            assert!(between.displacement().iter().all(|&u| u >= 0.0), "{} at {time}", scene.name);
-            let line = [0, 1].map(|which| start[which] + share * (end[which] - start[which]));
-            inside.push((time, [[between.approach(), between.force()], line]));
-        }
-        (start, steps) = (end, steps + 1);
-    }
-    let times: Vec<f64> = inside.iter().map(|(time, _)| *time).collect();
-    let mut contact = scene.contact(24, 1e-10);
-    let fine = Stepping::adaptive((1e-2 * tolerance).min(1e-5));
-    let mut follow = contact.follow(&*scene.history, fine, scene.until).stop_at(&times).unwrap();
-    let mut exact = Vec::new();
-    while let Some(report) = follow.next_step().unwrap() {
-        exact.push((report.time, [report.approach, report.force]));
-    }
-    let errors = [0, 1].map(|which| {
-        let greatest = exact.iter().map(|(_, exact)| exact[which].abs()).fold(0.0, f64::max);
-        [0, 1].map(|by| {
-            let off = inside.iter().map(|(time, found)| {
-                let (_, exact) = exact.iter().find(|(at, _)| at == time).unwrap();
-                (found[by][which] - exact[which]).abs() / greatest
-            });
-            off.fold([0.0, 0.0], |[most, mean]: [f64; 2], off| [most.max(off), mean + off / inside.len() as f64])
-        })
-    });
-    (errors, steps)
-}
-
-/// Against the line between the ends of the steps: nearer, also where bodies part and meet again.
-#[test]
-fn the_state_inside_a_step_is_nearer_than_a_line() {
-    let sine = || Box::new(Sinusoid::new(Load::force(0.2), Load::force(1.0), 1.0).unwrap());
-    let elastic = Scene { name: "elastic, sine", material: elastic(), history: sine(), until: 2.0 };
-    let others = scenes().into_iter().filter(|scene| scene.name.contains("sine") || scene.name.contains("approach"));
-    for scene in others.chain([elastic]) {
-        let (errors, steps) = errors_inside(&scene, 1e-3);
-        for (what, [own, line]) in ["approach", "force"].into_iter().zip(errors) {
-            println!("{}, {steps} steps, {what}: {own:?}, on the line {line:?}", scene.name);
-            // the load has a corner that it does not name, which no polynomial meets, while the bodies are apart
-            let most = if scene.name.contains("|sin|") { 1.0 } else { 0.5 };
-            assert!(own[0] <= most * line[0] && own[1] <= 0.4 * line[1], "{}, {what}: {own:?} {line:?}", scene.name);
-        }
-    }
-}
-
-/// Third where all is smooth; kinks of the cells that join take a part of it.
-#[test]
-fn the_order_inside_adaptive_steps_is_above_that_of_a_line() {
-    let scene = scenes().into_iter().find(|scene| scene.name.contains("sine")).unwrap();
-    let [(coarse, few), (fine, many)] = [1e-3, 1e-5].map(|tolerance| errors_inside(&scene, tolerance));
-    let [approach, force] = [0, 1];
-    let order = |by: usize| (coarse[approach][by][1] / fine[approach][by][1]).ln() / (many as f64 / few as f64).ln();
-    println!("{few} and {many} steps, order {:.2}, on the line {:.2}", order(0), order(1));
-    assert!(order(0) > 2.9 && order(0) > order(1) + 0.9, "{} {}", order(0), order(1));
-    // the force is given, inside as at the ends
-    assert!(coarse[force][0][0] < 1e-12 && fine[force][0][0] < 1e-12);
 }
 
 #[test]
@@ -234,7 +164,7 @@ fn tolerances_and_impossible_loads_are_refused() {
     };
     assert!(matches!(error, Error::StepTooShort { .. }), "{error}");
 
-    // nor where the series of the body resolves longer times only: an end, not a step tried for ever; new contract
+    // nor where the series of the body resolves longer times only: an end, not a step tried for ever
     let body = Material::incompressible(FnRheology::new(|t: f64| 1.0e-6 * (1.0 + t.sqrt())));
     let mut contact = builder_on(Grid::square(16, 4.0e-3).unwrap(), body).times(1e-2..=1e4).build().unwrap();
     let mut follow = contact.follow(&noise, Stepping::adaptive(1e-3), 1.0);
@@ -298,11 +228,7 @@ fn steps_of_the_last_digit_come_to_an_end() {
                 assert!(asked.fetch_add(1, Ordering::Relaxed) < 1_000_000, "it is tried for ever");
                 Load::force(if t < at { 0.5 } else { 0.5 * jump })
             });
-            let mut contact = ViscoelasticContact::builder(Grid::square(8, 4.0e-3).unwrap())
-                .geometry(&sphere)
-                .material(body.clone())
-                .build()
-                .unwrap();
+            let mut contact = contact_of(&sphere, Grid::square(8, 4.0e-3).unwrap(), body.clone(), Settings::default());
             let mut run = contact.follow(&history, Stepping::adaptive(5e-3), 1.0);
             let end = loop {
                 match run.next_step() {

@@ -1,16 +1,13 @@
 //! Whether the error estimated for steps of given length is the one they make.
 
+use crate::common::spheres::sphere_on;
 use viscocontact::prelude::*;
 
 /// Approach, or force where the approach is given, at every multiple of `dt` by steps of that over `parts`, and the greatest
 /// error in time estimated.
 fn run(material: &Material, load: &dyn LoadHistory, dt: f64, parts: u32) -> (Vec<f64>, f64) {
-    let mut contact = ViscoelasticContact::builder(Grid::square(32, 4.0e-3).unwrap())
-        .geometry(&Sphere::new(10.0e-3).unwrap())
-        .material(material.clone())
-        .settings(Settings::default().with_tolerance(1e-9))
-        .build()
-        .unwrap();
+    let mut contact =
+        sphere_on(Grid::square(32, 4.0e-3).unwrap(), material.clone(), Settings::default().with_tolerance(1e-9));
     let mut run = contact.follow(load, Stepping::fixed(dt / f64::from(parts)), 5.0);
     let mut answer = Vec::new();
     while let Some(report) = run.next_step().unwrap() {
@@ -23,11 +20,11 @@ fn run(material: &Material, load: &dyn LoadHistory, dt: f64, parts: u32) -> (Vec
     (answer, run.error_budget().time.expect("steps were taken"))
 }
 
-/// Steps of the truth in one of those that are judged.
+/// Steps of the reference in one step of a run under test.
 const PARTS: u32 = 16;
 
 /// The true error, relative to the answer at its time, or to a part of the greatest, as estimates are: at most three times the
-/// estimate, and at least a third of it, for forces that jump or grow linearly. At most five times where nothing tells how a
+/// estimate, and at least a third of it, for forces that jump or grow linearly. At most five times where nothing determines how a
 /// load goes on within the first step.
 #[test]
 fn the_error_of_given_steps_is_estimated() {

@@ -39,7 +39,7 @@ fn corners_and_jumps_are_met_exactly() {
 }
 
 #[test]
-fn a_raster_does_not_drift_or_leave_crumbs() {
+fn fixed_steps_end_on_multiples_of_their_length() {
     let history = Ramp::new(Load::force(0.0), Load::force(0.4), 0.7).unwrap();
     let times: Vec<f64> = steps(&history, 0.1, 1.0).iter().map(|step| step.0).collect();
     let expected = [0.1, 0.2, 3.0 * 0.1, 0.4, 0.5, 6.0 * 0.1, 0.7, 0.8, 0.9, 1.0];

@@ -2,7 +2,7 @@
 //! without elastic response.
 
 use crate::common::protocol::Protocol;
-use crate::common::spheres::builder_on;
+use crate::common::spheres::{builder_of, builder_on};
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -49,7 +49,7 @@ struct Scene {
 }
 
 impl Scene {
-    /// With a rule whose steps know only their own ends, so that a jump has nothing to forget.
+    /// With a rule whose steps use only their own ends, which a jump does not reset.
     fn linear(mut self) -> Scene {
         if self.settings.time_rule == TimeRule::Exponential {
             self.settings.time_rule = TimeRule::ExponentialLinear;
@@ -77,9 +77,7 @@ impl Scene {
     }
 
     fn contact_of(&self, material: Material) -> ViscoelasticContact {
-        ViscoelasticContact::builder(Grid::new([20, 18], [LENGTH, 0.9 * LENGTH]).unwrap())
-            .geometry(&self.geometry())
-            .material(material)
+        builder_of(&self.geometry(), Grid::new([20, 18], [LENGTH, 0.9 * LENGTH]).unwrap(), material)
             .times(TIMES)
             .settings(self.settings)
             .build()
@@ -225,7 +223,7 @@ proptest! {
     fn jumps_are_the_limit_of_a_stiff_response(
         mut scene in scenes(),
         first in (0..5_usize, 0.0..1.0_f64),
-        // approaches that go on where a force left off would tell the bodies apart by what their displacements differ
+        // approaches that go on where a force left off would depend on the difference of the displacements
         parts in prop::collection::vec((parts(0..4), any::<bool>()), 1..6),
     ) {
         scene.body = 1;
@@ -276,6 +274,12 @@ proptest! {
         let mut twin = contact.clone();
         let error = contact.step(0.0, load).unwrap_err();
         prop_assert!(matches!(error, Error::NoElasticResponse { .. }), "{error}");
+        prop_assert!(error.to_string().contains("ramp the load"), "{error}");
+        if !pressed {
+            let history = StepLoad::new(load).unwrap();
+            let error = twin.clone().follow(&history, Stepping::fixed(DT), 1.0).next_step().unwrap_err();
+            prop_assert!(matches!(error, Error::NoElasticResponse { .. }), "{error}");
+        }
         prop_assert_eq!((contact.pressure(), contact.displacement()), (twin.pressure(), twin.displacement()));
         let load = Load::force(0.4 * FORCE);
         prop_assert_eq!(contact.step(DT, load), twin.step(DT, load));
@@ -285,7 +289,7 @@ proptest! {
 proptest! {
     #![proptest_config(ProptestConfig { failure_persistence: None, rng_seed: RngSeed::Fixed(7203), max_shrink_iters: 100, ..ProptestConfig::with_cases(24) })]
 
-    /// Adaptive runs of forces from whatever leaves the bodies apart agree with those that begin with no jump.
+    /// Adaptive runs of forces that begin with any load that keeps the bodies apart agree with runs that begin without a jump.
     #[test]
     fn adaptive_runs_begin_with_any_load(
         mut scene in scenes(),

@@ -2,12 +2,11 @@
 //!
 //! By hand: `PROTOCOLS_SCENES=5000 PROTOCOLS_SEED=7 cargo test --release --test suite time::protocols_run -- --nocapture`.
 
-use std::collections::BTreeMap;
-
 use crate::common::draws::Draws;
 use crate::common::environment::from_environment;
 use crate::common::random_histories::FromSmallLoad;
 use crate::common::random_scenes::RandomScene;
+use crate::common::ratios::Ratios;
 use crate::common::spheres::builder_on;
 use crate::common::watched_runs::watch;
 use viscocontact::prelude::*;
@@ -83,8 +82,7 @@ fn ordinary_protocols_run_to_their_end() {
 fn random_protocols_run_to_their_end() {
     let scenes = from_environment("PROTOCOLS_SCENES", 250);
     let seed = from_environment("PROTOCOLS_SEED", 2);
-    let (mut failures, mut compared, mut total) = (Vec::new(), Vec::new(), [0; 2]);
-    let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
+    let (mut failures, mut compared, mut total) = (Vec::new(), Ratios::default(), [0; 2]);
     for number in 0..scenes {
         let scene = RandomScene::new(seed, number);
         let tolerance = Draws::new(number.wrapping_add(77 * seed)).power_of_ten(-4.0, -2.0);
@@ -101,37 +99,18 @@ fn random_protocols_run_to_their_end() {
         match (steps(scene.load()), easier) {
             (Ok(run), Some(Ok(easier))) => {
                 total = [total[0] + run.problems(), total[1] + easier.problems()];
-                compared.push((run.problems() as f64 / easier.problems() as f64, run.problems(), name));
+                let name = format!("{} problems: {name}", run.problems());
+                compared.push(run.problems() as f64 / easier.problems() as f64, &name);
             }
             (Ok(_), None) => {}
-            (Ok(_), Some(Err(stopped))) => {
-                *reasons.entry(format!("{} from a small load", stopped.reason())).or_default() += 1;
-                failures.push(format!("from a small load, {stopped}: {name}"));
-            }
-            (Err(stopped), _) => {
-                *reasons.entry(stopped.reason()).or_default() += 1;
-                failures.push(format!("{stopped}: {name}"));
-            }
+            (Ok(_), Some(Err(stopped))) => failures.push(format!("from a small load, {stopped}: {name}")),
+            (Err(stopped), _) => failures.push(format!("{stopped}: {name}")),
         }
     }
-    compared.sort_by(|a, b| b.0.total_cmp(&a.0));
-    let at = |part: f64| compared.get((part * compared.len() as f64) as usize).map_or(f64::NAN, |run| run.0);
-    let above = compared.iter().filter(|run| run.0 > 2.0).count();
-    println!("seed {seed}: {} of {scenes} runs do not end: {reasons:?}", failures.len());
+    println!("seed {seed}: {} of {scenes} runs do not end", failures.len());
     failures.iter().take(12).for_each(|failure| println!("    {failure}"));
-    println!(
-        "{} compared with a start from a small load: {} contact problems, {} so: {:.2} times in the median, {:.2} in 90 %, {:.2} in 99 \
-         %; {above} more than twice as many",
-        compared.len(),
-        total[0],
-        total[1],
-        at(0.5),
-        at(0.1),
-        at(0.01)
-    );
-    for (ratio, problems, name) in compared.iter().take(12) {
-        println!("    {ratio:.2} times, {problems} problems: {name}");
-    }
+    println!("{} contact problems, {} from a small load; their ratio:", total[0], total[1]);
+    compared.print("over a small start", 12);
     assert!(failures.is_empty(), "{} do not end", failures.len());
-    assert_eq!(above, 0);
+    assert_eq!(compared.above(2.0), 0);
 }

@@ -2,10 +2,11 @@
 //! again, and the errors of many steps add up.
 //!
 //! The forge runs 300 scenes. By hand: `RETURNS_SCENES=1000 RETURNS_SEED=1 cargo test --release --test suite time::returns -- --nocapture`;
-//! `RETURNS_FIRST=17` begins with that number, `RETURNS_STEPS=300000` knows more of the truth.
+//! `RETURNS_FIRST=17` begins with that number, `RETURNS_STEPS=300000` finds the truth of more scenes.
 
 use crate::common::environment::from_environment;
 use crate::common::random_scenes::RandomScene;
+use crate::common::ratios::Ratios;
 use crate::common::truth::Truth;
 use crate::common::watched_runs::watch;
 use viscocontact::prelude::*;
@@ -16,26 +17,8 @@ const BOUNDS: [f64; 4] = [2.0, 2.0, 2.5, 3.5];
 const MOST: f64 = 6.0;
 /// A run of so many contact problems does not end.
 const MOST_PROBLEMS: u64 = 50_000;
-/// So many times more given steps know the truth where a run seems to err by too much.
+/// So many times more given steps find the truth where a run seems to err by too much.
 const MORE_STEPS: u64 = 16;
-
-/// Ascending, what a quantile is read from.
-#[derive(Default)]
-struct Ratios(Vec<(f64, String)>);
-
-impl Ratios {
-    fn quantile(&self, part: f64) -> f64 {
-        let last = self.0.len().saturating_sub(1) as f64;
-        self.0.get((part * last).round() as usize).map_or(f64::NAN, |ratio| ratio.0)
-    }
-
-    fn print(&mut self, what: &str) {
-        self.0.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let [median, high, higher, most] = [0.5, 0.9, 0.99, 1.0].map(|part| self.quantile(part));
-        println!("{what:<24} {:>5} judged: {median:.2} {high:.2} {higher:.2} {most:.2}", self.0.len());
-        self.0.iter().rev().take(3).for_each(|(ratio, scene)| println!("    {ratio:.2} {scene}"));
-    }
-}
 
 /// True errors are at most twice the tolerance in 99 % of random scenes at 1e-2 and 1e-3, somewhat more below, and in 98 % at most twice
 /// what the budget states in as many: of approach or force, and of the greatest pressure.
@@ -65,12 +48,12 @@ fn errors_are_honest_on_random_returns() {
             let known = |k: usize| truth.uncertainty[k] <= 0.1 * tolerance.max(errors[k]);
             unjudged += u64::from(!known(0));
             if known(0) {
-                ratios.0.push((errors[0] / tolerance, name.clone()));
+                ratios.push(errors[0] / tolerance, &name);
                 // an error far below the tolerance is no news
-                of_budget.0.push((errors[0] / run.time_budget.max(0.3 * tolerance), name.clone()));
+                of_budget.push(errors[0] / run.time_budget.max(0.3 * tolerance), &name);
             }
             if known(1) {
-                of_pressure.0.push((errors[1] / run.pressure_budget.max(tolerance), name));
+                of_pressure.push(errors[1] / run.pressure_budget.max(tolerance), &name);
             }
         }
     }
@@ -78,11 +61,11 @@ fn errors_are_honest_on_random_returns() {
         "seed {seed}, scenes {first} to {}: {problems} contact problems, {unjudged} of unknown truth",
         first + scenes
     );
-    for (tolerance, ratios) in tolerances.iter().zip(&mut of_tolerance) {
-        ratios.print(&format!("over {tolerance:.0e}"));
+    for (tolerance, ratios) in tolerances.iter().zip(&of_tolerance) {
+        ratios.print(&format!("over {tolerance:.0e}"), 3);
     }
-    of_budget.print("over the budget");
-    of_pressure.print("pressure over its budget");
+    of_budget.print("over the budget", 3);
+    of_pressure.print("pressure over its budget", 3);
     for ((tolerance, ratios), bound) in tolerances.iter().zip(&of_tolerance).zip(BOUNDS) {
         assert!(ratios.quantile(0.99) <= bound && ratios.quantile(1.0) < MOST, "at {tolerance:e}");
     }

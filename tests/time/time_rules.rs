@@ -1,7 +1,7 @@
 //! How each time rule converges, and what it survives.
 
-use crate::common::bodies::{elastic, maxwell};
-use crate::common::spheres::sphere_on;
+use crate::common::bodies::{maxwell, zener};
+use crate::common::spheres::{builder_of, contact_of, sphere_on};
 use crate::common::step_loaded_sphere::StepLoadedSphere;
 use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;
@@ -36,6 +36,41 @@ fn the_exponential_rule_is_third_order_and_second_without_its_correction() {
         for fall in falls(&scene, TimeRule::ExponentialLinear) {
             assert!((3.5..4.5).contains(&fall), "{}: {fall}", scene.name);
         }
+    }
+}
+
+/// Third order for a smooth load on any rheology with an elastic response, once steps resolve its fastest relaxation (a power law
+/// resolved from 0.3 s on); first order without. On a punch no cell comes or goes.
+#[test]
+fn the_order_is_that_of_the_rule_on_every_body() {
+    let power = FractionalMaxwell::findley(0.5e-6, 0.5e-6, 0.4).unwrap().series(0.3..=10.0, 1e-2).unwrap();
+    let bodies = [
+        ("Maxwell", maxwell()),
+        ("Zener", zener()),
+        ("Kelvin–Voigt", Material::incompressible(KelvinVoigt::new(1.0e6, 0.3e6).unwrap())),
+        ("Burgers", Material::incompressible(Burgers::new(1.0e6, 3.0e6, 1.0e6, 0.5e6).unwrap())),
+        ("power law", Material::incompressible(power)),
+        ("elastic bulk", Material::elastic_bulk(Zener::new(2.0e6, 1.0e6, 1.0e6).unwrap(), 3.0e6).unwrap()),
+    ];
+    let punch = FlatPunch::circular(0.8e-3).unwrap();
+    let force = |t: f64| (0.5 * std::f64::consts::PI * t).sin().powi(2);
+    for (name, material) in bodies {
+        let approach = |steps: u32| {
+            let settings = Settings::default().with_tolerance(1e-12);
+            let mut contact = contact_of(&punch, Grid::square(24, 2.2e-3).unwrap(), material.clone(), settings);
+            for k in 1..=steps {
+                let t = 0.8 * f64::from(k) / f64::from(steps);
+                contact.step(0.8 / f64::from(steps), Load::force(force(t))).unwrap();
+            }
+            contact.approach()
+        };
+        let fine = approach(8192);
+        let errors = [64, 128, 256].map(|steps| (approach(steps) / fine - 1.0).abs());
+        let order = (errors[0] / errors[2]).log2() / 2.0;
+        println!("{name}: errors {errors:?}, order {order:.2}");
+        // an immediate dashpot responds to the slope of u at the end of a step, which a straight line has to first order
+        let immediate = material.contact_compliance(0.0) == 0.0;
+        assert!(if immediate { order > 0.95 } else { order >= 1.95 }, "{name}: {errors:?}");
     }
 }
 
@@ -81,31 +116,6 @@ fn a_step_of_length_zero_is_elastic() {
     }
 }
 
-/// One step of any length over the relaxation time: the glassy answer, the relaxed one, and
-/// everything between without a sign of oscillation.
-#[test]
-fn the_default_rule_takes_steps_of_any_length() {
-    let scene = StepLoadedSphere::zener();
-    let exact = |modulus: f64| viscocontact::analytic::Hertz::new(scene.radius, modulus, scene.force).unwrap();
-    let (glassy, relaxed) = (exact(4.0e6).approach, exact(2.0e6).approach);
-    let mut last = 0.0;
-    for exponent in (-12..=12).step_by(3) {
-        let mut contact = scene.contact(64, Settings::default()).unwrap();
-        contact.step(0.0, Load::force(scene.force)).unwrap();
-        contact.step(10f64.powi(exponent), Load::force(scene.force)).unwrap();
-        let approach = contact.approach();
-        assert!(approach >= last * (1.0 - 1e-6) && approach > 0.999 * glassy && approach < 1.001 * relaxed);
-        last = approach;
-        // a second huge step changes nothing: L-stable
-        let step = contact.step(1e12, Load::force(scene.force)).unwrap();
-        assert!((step.approach / relaxed - 1.0).abs() < 1e-3, "{exponent}: {}", step.approach / relaxed);
-        let center = contact.pressure()[32 * 64 + 32];
-        contact.step(1e12, Load::force(scene.force)).unwrap();
-        assert_abs_diff_eq!(contact.pressure()[32 * 64 + 32] / center, 1.0, epsilon = 1e-4);
-    }
-    assert_abs_diff_eq!(last / relaxed, 1.0, epsilon = 1e-3);
-}
-
 /// Beyond Δ = 2τ the paper's rule loses the very centre of a Maxwell contact, which in truth stays
 /// pressed for ever; the other rules keep it and let it decay.
 #[test]
@@ -133,9 +143,7 @@ fn the_rectangle_rule_is_unstable_for_long_steps() {
 fn a_closure_matches_its_series() {
     let scene = StepLoadedSphere::maxwell();
     let run = |material: Material, time_rule| {
-        let mut contact = ViscoelasticContact::builder(scene.grid(32).unwrap())
-            .geometry(&Sphere::new(scene.radius).unwrap())
-            .material(material)
+        let mut contact = builder_of(&Sphere::new(scene.radius).unwrap(), scene.grid(32).unwrap(), material)
             .times(1e-3..=1e5)
             .settings(Settings::default().with_tolerance(1e-9).with_time_rule(time_rule))
             .build()
@@ -153,73 +161,6 @@ fn a_closure_matches_its_series() {
         for (a, b) in closure.iter().zip(&series) {
             assert!((a - b).abs() < 1e-7 * peak, "{time_rule:?}");
         }
-    }
-}
-
-/// K p is carried along from guess to guess; after thousands of steps it is still K p.
-#[test]
-fn nothing_drifts_in_five_thousand_steps() {
-    let grid = Grid::square(16, 4.0e-3).unwrap();
-    let mut contact = sphere_on(grid, elastic(), Settings::default().with_tolerance(1e-8));
-    let mut work = contact.kernel().workspace().unwrap();
-    let mut fresh = vec![0.0; contact.grid().len()];
-    for step in 0..5000 {
-        contact.step(0.01, Load::force(0.6 + 0.4 * (0.003 * step as f64).sin())).unwrap();
-        let kernel = contact.kernel().clone();
-        kernel.convolve(contact.pressure(), &mut fresh, &mut work).unwrap();
-        let scale = fresh.iter().copied().fold(0.0, f64::max);
-        // u = C K p, C = 1/4G
-        for (u, v) in contact.displacement().iter().zip(&fresh) {
-            assert!((4.0e6 * u - v).abs() < 1e-11 * scale, "step {step}");
-        }
-    }
-}
-
-/// Loads that fall by halves: the guess by extrapolation cancels, and what is left is noise. K p stays K p.
-#[test]
-fn falling_by_halves_leaves_no_noise() {
-    let shapes: [&dyn Geometry; 2] = [&Sphere::new(10.0e-3).unwrap(), &FlatPunch::circular(1.0e-3).unwrap()];
-    for shape in shapes {
-        for solver in [Solver::ActiveSet, Solver::PolonskyKeer] {
-            let mut contact = ViscoelasticContact::builder(Grid::square(32, 3.0e-3).unwrap())
-                .geometry(shape)
-                .material(elastic())
-                .settings(Settings::default().with_solver(solver))
-                .build()
-                .unwrap();
-            let mut work = contact.kernel().workspace().unwrap();
-            let mut fresh = vec![0.0; contact.grid().len()];
-            let mut step = |force: f64| {
-                contact.step(1.0, Load::force(force)).unwrap();
-                contact.kernel().clone().convolve(contact.pressure(), &mut fresh, &mut work).unwrap();
-                let scale = fresh.iter().copied().fold(0.0, f64::max);
-                for (u, v) in contact.displacement().iter().zip(&fresh) {
-                    assert!((4.0e6 * u - v).abs() < 1e-11 * scale, "{solver:?} at {force}");
-                }
-            };
-            (0..40).for_each(|k| step(0.4 * 0.5_f64.powi(k)));
-            (0..12).for_each(|k| step(0.4 * 0.65_f64.powi(k)));
-            [0.4, 0.2, 1e-3, 1e-6, 0.3, 0.3].into_iter().for_each(&mut step);
-        }
-    }
-}
-
-/// After a long, soft hold a stiff body is jumped at by nothing: the residual of the hold, relative to a
-/// displacement a thousand times larger than the jump's, must not come out as pressure.
-#[test]
-fn a_stiff_step_after_a_soft_one_keeps_the_pressure() {
-    for ratio in [1e3, 1e5] {
-        let body = Zener::new(1.0e6 * ratio, 1.0e6, 1.0e6).unwrap();
-        let mut contact =
-            sphere_on(Grid::square(64, 4.0e-3).unwrap(), Material::incompressible(body), Settings::default());
-        contact.step(0.0, Load::force(1.0)).unwrap();
-        contact.step(10.0, Load::force(1.0)).unwrap();
-        let held = contact.pressure().to_vec();
-        let peak = held.iter().copied().fold(0.0, f64::max);
-        contact.step(0.0, Load::force(1.0)).unwrap();
-        let change = contact.pressure().iter().zip(&held).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / peak;
-        println!("G/G_K = {ratio:e}: {change:.1e}");
-        assert!(change < 1e-4, "G/G_K = {ratio:e}: {change:e}");
     }
 }
 

@@ -118,7 +118,7 @@ fn foundation_converges_to_ting() {
 }
 
 /// A cone on a power law, E ∝ t^(−β), in at a constant velocity up to t = 1 and out as fast: with T = t − c (t − 1), c = 2^(1/(1−β)),
-/// F(t)/F(1) = t^(2−β) − 2 (t − 1)^(1−β) [(1 − β) T + t] (Ting 1966), and the radius is that of the time T on the way in.
+/// F(t)/F(1) = t^(2−β) − 2 (t − 1)^(1−β) [(1 − β) T + t] (Ting 1966), and the radius equals the radius at the time T on the way in.
 #[test]
 fn foundation_retracts_a_cone_as_ting() {
     for beta in [0.2_f64, 0.5] {
@@ -181,7 +181,7 @@ fn ellipses_tend_to_the_circle_and_the_line() {
     // W = (2π/3) p0 a b, and p(0) = p0
     assert_abs_diff_eq!(2.0 * PI / 3.0 * moderate.max_pressure * a * b, 1.0, epsilon = 1e-12);
     assert_eq!(moderate.pressure(0.0, 0.0), moderate.max_pressure);
-    // very slender: the short axis is that of a line contact under the peak line load, b = 2 p0 R/E*
+    // very slender: the short axis is the half-width of a line contact under the peak line load, b = 2 p0 R/E*
     let slender = HertzEllipse::new([1e8 * RADIUS, RADIUS], 4.0e6, 1.0).unwrap();
     let line = 2.0 * slender.max_pressure * RADIUS / 4.0e6;
     assert_abs_diff_eq!(slender.semi_axes[1] / line, 1.0, epsilon = 1e-4);

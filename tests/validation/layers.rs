@@ -8,9 +8,11 @@
 //! f = 2E*δ for a flat punch and 2E*(δ − x²/R) for a paraboloid, whose pressure ends smoothly where φ(a) = 0. The
 //! force is ∫₀ᵃ φ ds. L is the textbook's fraction here, nothing is shared with the crate.
 
+use crate::common::spheres::builder_of;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use crate::common::gauss;
 use crate::common::rolling::eliminate;
 use approx::assert_abs_diff_eq;
 use viscocontact::prelude::*;
@@ -29,23 +31,6 @@ fn frictionless(t: f64) -> f64 {
     if t < 1e-6 { 0.5 * t - 1.0 } else { ((2.0 * t).cosh() - 1.0) / ((2.0 * t).sinh() + 2.0 * t) - 1.0 }
 }
 
-/// Gauss–Legendre's five points on pieces of an interval.
-fn quadrature(from: f64, to: f64, pieces: usize) -> Vec<(f64, f64)> {
-    let (inner, outer) =
-        ((5.0 - 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0, (5.0 + 2.0 * (10.0_f64 / 7.0).sqrt()).sqrt() / 3.0);
-    let root = 13.0 * 70.0_f64.sqrt();
-    let rule = [
-        (-outer, (322.0 - root) / 900.0),
-        (-inner, (322.0 + root) / 900.0),
-        (0.0, 128.0 / 225.0),
-        (inner, (322.0 + root) / 900.0),
-        (outer, (322.0 - root) / 900.0),
-    ];
-    let half = 0.5 * (to - from) / pieces as f64;
-    let piece = |n: usize| rule.map(|(x, w)| (from + half * (2.0 * n as f64 + 1.0 + x), half * w));
-    (0..pieces).flat_map(piece).collect()
-}
-
 /// φ for several right-hand sides on a contact of radius a = 1, at the points of a rule and at its edge.
 struct Equation {
     points: Vec<(f64, f64)>,
@@ -54,11 +39,9 @@ struct Equation {
 
 impl Equation {
     fn new(less: impl Fn(f64) -> f64, thickness: f64) -> Equation {
-        let points = quadrature(0.0, 1.0, 8);
-        let waves: Vec<(f64, f64)> = quadrature(0.0, 18.0, 160)
-            .into_iter()
-            .map(|(t, w)| (t / thickness, w * less(t) / (PI * thickness)))
-            .collect();
+        let points: Vec<(f64, f64)> = gauss::points(0.0, 1.0, 4).collect();
+        let waves = gauss::points(0.0, 18.0, 80).map(|(t, w)| (t / thickness, w * less(t) / (PI * thickness)));
+        let waves: Vec<(f64, f64)> = waves.collect();
         let h = |y: f64| waves.iter().map(|(q, w)| w * (q * y).cos()).sum::<f64>();
         let places: Vec<f64> = points.iter().map(|point| point.0).chain([1.0]).collect();
         let matrix = places.iter().map(|x| points.iter().map(|(s, w)| w * (h(x - s) + h(x + s))).collect()).collect();
@@ -103,15 +86,22 @@ fn elastic(nu: f64) -> Material {
 fn press(layer: Layer, shape: &dyn Geometry, cells: usize, length: f64, load: Load) -> ViscoelasticContact {
     let grid = Grid::square(cells, length).unwrap();
     let kernel = Arc::new(InfluenceKernel::layer(&grid, layer).unwrap());
-    let mut contact = ViscoelasticContact::builder(grid)
-        .geometry(shape)
-        .material(elastic(layer.poisson_ratio()))
+    let mut contact = builder_of(shape, grid, elastic(layer.poisson_ratio()))
         .kernel(kernel)
         .settings(Settings::default().with_tolerance(1e-7))
         .build()
         .unwrap();
     contact.step(0.0, load).unwrap();
     contact
+}
+
+/// A layer on a rigid base and its equation, the contact being `ratio` times as wide as the layer is thick.
+fn layer(h: f64, nu: f64, ratio: f64, is_bonded: bool) -> (Layer, Equation) {
+    if is_bonded {
+        (Layer::bonded_to_rigid(h, nu).unwrap(), Equation::new(bonded(nu), 1.0 / ratio))
+    } else {
+        (Layer::frictionless_on_rigid(h, nu).unwrap(), Equation::new(frictionless, 1.0 / ratio))
+    }
 }
 
 #[test]
@@ -129,19 +119,15 @@ fn the_reference_has_the_published_values() {
 }
 
 #[test]
-fn flat_punches_on_layers() {
+fn flat_punches_on_layers_agree_with_the_integral_equation() {
     let radius = 1.0e-3;
     let cases =
         [(0.5, 0.2, true), (0.5, 1.0, true), (0.5, 2.0, true), (0.3, 1.0, true), (0.0, 3.0, true), (0.4, 1.0, false)];
     for (nu, ratio, is_bonded) in cases {
         let h = radius / ratio;
-        let (layer, equation) = if is_bonded {
-            (Layer::bonded_to_rigid(h, nu), Equation::new(bonded(nu), 1.0 / ratio))
-        } else {
-            (Layer::frictionless_on_rigid(h, nu), Equation::new(frictionless, 1.0 / ratio))
-        };
+        let (layer, equation) = layer(h, nu, ratio, is_bonded);
         let punch = FlatPunch::circular(radius).unwrap();
-        let contact = press(layer.unwrap(), &punch, 256, 2.04 * radius, Load::approach(1.0e-6));
+        let contact = press(layer, &punch, 256, 2.04 * radius, Load::approach(1.0e-6));
         let modulus = 1.0 / elastic(nu).contact_compliance(0.0);
         let error = contact.force() / (2.0 * modulus * radius * 1.0e-6) / equation.punch() - 1.0;
         println!("punch, ν = {nu}, a/h = {ratio}: {error:e}");
@@ -150,20 +136,16 @@ fn flat_punches_on_layers() {
 }
 
 #[test]
-fn paraboloids_on_layers() {
+fn balls_on_layers_agree_with_the_integral_equation() {
     let (radius, a) = (10.0e-3, 0.2e-3);
     for (nu, ratio, is_bonded) in
         [(0.5, 1.0, true), (0.5, 0.1, true), (0.5, 3.0, true), (0.3, 2.0, true), (0.2, 1.0, false)]
     {
         let h = a / ratio;
-        let (layer, equation) = if is_bonded {
-            (Layer::bonded_to_rigid(h, nu), Equation::new(bonded(nu), 1.0 / ratio))
-        } else {
-            (Layer::frictionless_on_rigid(h, nu), Equation::new(frictionless, 1.0 / ratio))
-        };
+        let (layer, equation) = layer(h, nu, ratio, is_bonded);
         let [depth, force] = equation.paraboloid();
         let ball = Sphere::new(radius).unwrap();
-        let contact = press(layer.unwrap(), &ball, 128, 2.3 * a, Load::approach(depth * a * a / radius));
+        let contact = press(layer, &ball, 128, 2.3 * a, Load::approach(depth * a * a / radius));
         let modulus = 1.0 / elastic(nu).contact_compliance(0.0);
         let error = contact.force() / (force * modulus * a * a * a / radius) - 1.0;
         let area = contact.contact_area() / (PI * a * a) - 1.0;
@@ -200,7 +182,7 @@ fn thin_layers_are_springs_or_squeezed() {
     }
 }
 
-/// As the contact grows, the approach at any time is that of an elastic layer with the compliance of then (Lee & Radok
+/// As the contact grows, the approach at any time equals the approach of an elastic layer with the compliance of that time (Lee & Radok
 /// 1960), of any thickness; on a thin compressible layer δ² ∝ C(t).
 #[test]
 fn a_ball_sinks_into_a_creeping_layer() {
@@ -212,9 +194,7 @@ fn a_ball_sinks_into_a_creeping_layer() {
         let grid = Grid::square(128, 2.8 * a).unwrap();
         let kernel = Arc::new(InfluenceKernel::layer(&grid, layer).unwrap());
         let contact = |material: Material| {
-            ViscoelasticContact::builder(grid.clone())
-                .geometry(&Sphere::new(radius).unwrap())
-                .material(material)
+            builder_of(&Sphere::new(radius).unwrap(), grid.clone(), material)
                 .kernel(Arc::clone(&kernel))
                 .build()
                 .unwrap()
@@ -292,15 +272,13 @@ fn layers_take_at_most_half_as_many_convolutions_again_as_a_half_space() {
 /// A wave pressed flat onto a creeping layer, the grid being its period: ω = A + C(t) K̄ p̄, and the pressure swings by
 /// A R(t)/K̂(q) about its mean, R being the relaxation that belongs to C.
 #[test]
-fn a_wave_in_full_contact_with_a_creeping_layer() {
+fn a_wave_in_full_contact_with_a_creeping_layer_is_the_closed_form() {
     let (length, amplitude, mean) = (1.0e-3, 1.0e-7, 2.0e3);
     let grid = Grid::new([64, 4], [length, length / 16.0]).unwrap();
     let q = 2.0 * PI / length;
     for layer in [Layer::bonded_to_rigid(0.3e-3, 0.3).unwrap(), Layer::frictionless_on_rigid(0.3e-3, 0.3).unwrap()] {
         let material = Material::constant_poisson(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap(), 0.3).unwrap();
-        let mut contact = ViscoelasticContact::builder(grid.clone())
-            .geometry(&Wavy::new(amplitude, length).unwrap())
-            .material(material.clone())
+        let mut contact = builder_of(&Wavy::new(amplitude, length).unwrap(), grid.clone(), material.clone())
             .kernel(Arc::new(InfluenceKernel::layer_periodic(&grid, layer).unwrap()))
             .settings(Settings::default().with_tolerance(1e-10))
             .build()
@@ -333,9 +311,7 @@ fn a_cylinder_on_a_thin_layer_rests_on_springs() {
     let material = elastic(0.3);
     let errors = [0.1e-3, 0.05e-3].map(|thickness| {
         let layer = Layer::bonded_to_rigid(thickness, 0.3).unwrap();
-        let mut contact = ViscoelasticContact::builder(grid.clone())
-            .geometry(&Cylinder::new(radius).unwrap())
-            .material(material.clone())
+        let mut contact = builder_of(&Cylinder::new(radius).unwrap(), grid.clone(), material.clone())
             .kernel(Arc::new(InfluenceKernel::layer_line(&grid, layer, None).unwrap()))
             .build()
             .unwrap();
@@ -350,7 +326,7 @@ fn a_cylinder_on_a_thin_layer_rests_on_springs() {
 
 /// A cylinder on a layer that is periodic along it is a line contact, and a chain of balls repeats.
 #[test]
-fn contacts_on_layers_that_are_periodic_along_one_axis() {
+fn cylinders_and_chains_of_balls_on_periodic_layers() {
     let layer = Layer::bonded_to_rigid(0.4e-3, 0.3).unwrap();
     let press = |kernel: InfluenceKernel, shape: &dyn Geometry| {
         let mut contact = ViscoelasticContact::builder(kernel.grid().clone())
@@ -378,31 +354,4 @@ fn contacts_on_layers_that_are_periodic_along_one_axis() {
     let alone = press(InfluenceKernel::layer(&apart, layer).unwrap(), &ball);
     println!("a chain over one ball: {:e}", chain.force() / alone.force() - 1.0);
     assert!((chain.force() / alone.force() - 1.0).abs() < 2e-3, "{} {}", chain.force(), alone.force());
-}
-
-#[cfg(feature = "checkpoint")]
-#[test]
-fn a_checkpoint_knows_its_layer() {
-    let build = |thickness: f64| {
-        let grid = Grid::square(24, 4.0e-3).unwrap();
-        let layer = Layer::bonded_to_rigid(thickness, 0.5).unwrap();
-        ViscoelasticContact::builder(grid.clone())
-            .geometry(&Sphere::new(10.0e-3).unwrap())
-            .material(Material::incompressible(Zener::new(1.0e6, 0.5e6, 0.5e6).unwrap()))
-            .kernel(Arc::new(InfluenceKernel::layer(&grid, layer).unwrap()))
-            .build()
-            .unwrap()
-    };
-    let path = std::env::temp_dir().join(format!("viscocontact-layer-{}", std::process::id()));
-    let mut whole = build(1.0e-3);
-    whole.step(0.0, Load::force(0.2)).unwrap();
-    whole.save(&path).unwrap();
-    whole.step(0.3, Load::force(0.3)).unwrap();
-    let mut resumed = build(1.0e-3);
-    resumed.resume(&path).unwrap();
-    resumed.step(0.3, Load::force(0.3)).unwrap();
-    assert_eq!(whole.pressure(), resumed.pressure());
-    let Error::Checkpoint { source, .. } = build(1.1e-3).resume(&path).unwrap_err() else { panic!() };
-    assert!(source.to_string().contains("layer"), "{source}");
-    std::fs::remove_file(path).unwrap();
 }

@@ -8,7 +8,6 @@ mod mesh_error;
 mod oscillation;
 mod paper_figures;
 mod plan;
-mod plan_population;
 mod plan_random;
 mod plane;
 mod rolling;

@@ -1,333 +1,332 @@
-//! Plans of random scenes, against closed forms or much finer runs. `PLAN_SCENES` and `PLAN_SEED` choose how many scenes
-//! and which; every scene is planned for 1e-2, with and without the area, and for 1e-3. `PLAN_CELLS` is the side of the
-//! largest mesh that is run, `PLAN_FINER_STEPS` divides the tolerance of the steps, and with `PLAN_REPORT` nothing fails.
+//! Plans of random scenes. Balls, cones, ellipsoids and punches, in the middle or aside, under steps, ramps, holds and sines of force
+//! and approach are compared with their equivalent foundation of independent springs; bodies that tilt with a finer run. `PLANS` and
+//! `PLANS_SEED` choose how many scenes and which, `PLANS_CELLS` the side of the largest mesh that is run.
 
-use std::env;
 use std::f64::consts::PI;
 use std::time::Instant;
 
-use viscocontact::analytic::{GrowingSphere, HertzEllipse};
+use viscocontact::analytic::{AxisymmetricContact, Hertz, HertzEllipse, Profile};
 use viscocontact::prelude::*;
 
-use crate::common::noise::uniform;
+use crate::common::draws::Draws;
+use crate::common::environment::from_environment;
+use crate::common::spheres::{RADIUS, builder_of};
 
-/// Approach (force where the approach is given), contact radius √(area/π), greatest pressure.
-type State = [Option<f64>; 3];
+const SLOPE: f64 = 0.05;
+const PUNCH: f64 = 1.0e-3;
+/// Modulus at once [Pa]: E* is four times that.
+const MODULUS: f64 = 1.0e6;
+/// Elements of a foundation.
+const ELEMENTS: usize = 3000;
+
+#[derive(Debug, Clone, Copy)]
+enum Shape {
+    Ball,
+    Cone,
+    Ellipsoid(f64),
+    Punch,
+}
+
+impl Shape {
+    fn geometry(self) -> Box<dyn Geometry> {
+        match self {
+            Shape::Ball => Box::new(Sphere::new(RADIUS).unwrap()),
+            Shape::Cone => Box::new(Cone::new(SLOPE).unwrap()),
+            Shape::Ellipsoid(other) => Box::new(Ellipsoid::new(RADIUS, other).unwrap()),
+            Shape::Punch => Box::new(FlatPunch::circular(PUNCH).unwrap()),
+        }
+    }
+
+    /// Profile of the foundation, and what multiplies its approach, its pressure and its contact radius. Ellipses of contact keep
+    /// their shape: they behave as the sphere whose contact radius is their semi-axis a.
+    fn foundation(self) -> (Profile, [f64; 3]) {
+        match self {
+            Shape::Ball => (Profile::sphere(RADIUS).unwrap(), [1.0; 3]),
+            Shape::Cone => (Profile::cone(SLOPE).unwrap(), [1.0; 3]),
+            Shape::Punch => (Profile::punch(PUNCH).unwrap(), [1.0; 3]),
+            Shape::Ellipsoid(other) => {
+                let ellipse = HertzEllipse::new([RADIUS, other], 4.0 * MODULUS, 1.0).unwrap();
+                let [a, b] = ellipse.semi_axes;
+                let radius = a.powi(3) * 4.0 * MODULUS / 0.75;
+                let sphere = Hertz::new(radius, 4.0 * MODULUS, 1.0).unwrap();
+                (Profile::sphere(radius).unwrap(), [ellipse.approach / sphere.approach, a / b, (b / a).sqrt()])
+            }
+        }
+    }
+
+    /// Approach and force of elastic bodies of a compliance whose contact is as large as a circle of this radius.
+    fn elastic(self, radius: f64, compliance: f64) -> [f64; 2] {
+        match self {
+            Shape::Ball => [radius * radius / RADIUS, radius.powi(3) / (0.75 * RADIUS * compliance)],
+            Shape::Cone => {
+                let depth = 0.5 * std::f64::consts::PI * SLOPE * radius;
+                [depth, depth * radius / compliance]
+            }
+            Shape::Ellipsoid(other) => {
+                let unit = HertzEllipse::new([RADIUS, other], 1.0 / compliance, 1.0).unwrap();
+                let force = (radius / unit.semi_axes[0]).powi(3);
+                [unit.approach * force.powf(2.0 / 3.0), force]
+            }
+            Shape::Punch => [0.02 * PUNCH, 0.04 * PUNCH * PUNCH / compliance],
+        }
+    }
+}
 
 struct Scene {
     name: String,
+    /// The shape of the foundation that is the reference, if there is one.
+    shape: Option<Shape>,
     geometry: Box<dyn Geometry>,
     material: Material,
     history: Box<dyn LoadHistory>,
     until: f64,
-    /// The closed form, if there is one; `None` for quantities that it does not give.
-    exact: Option<Box<dyn Fn(f64) -> State>>,
-    singular: bool,
+    by_force: bool,
+    accuracy: Accuracy,
+    /// Whether the area is promised, too.
+    area: bool,
+    /// Contact radius at the greatest load, roughly.
+    radius: f64,
 }
 
-struct Random(Box<dyn FnMut() -> f64>);
-
-/// Name, shape, history, exact solution, and whether the shape has an edge.
-type Drawn = (&'static str, Box<dyn Geometry>, Box<dyn LoadHistory>, Option<Box<dyn Fn(f64) -> State>>, bool);
-
-impl Random {
-    fn new(seed: u64) -> Random {
-        Random(Box::new(uniform(seed.wrapping_mul(0xD129_0B26_88CC_2169).rotate_left(29) ^ seed)))
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.0)()
-    }
-
-    fn scale(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-
-    fn below(&mut self, n: usize) -> usize {
-        (n as f64 * (self.0)()) as usize
-    }
-}
-
-/// A body that creeps by a factor of `ratio` within 1 s of times around it.
-fn body(random: &mut Random, ratio: f64, most: usize) -> (String, Material) {
-    let glassy = 1.0e-6;
-    let rheology = match random.below(most.min(4)) {
-        0 => ("Maxwell", GeneralizedKelvin::new(glassy, (ratio - 1.0) * glassy, &[])),
+fn body(draws: &mut Draws, ratio: f64, until: f64) -> (&'static str, Material) {
+    let glassy = 1.0 / MODULUS;
+    let (name, creep) = match draws.below(3) {
+        0 => {
+            let viscosity = until / ((ratio - 1.0) * glassy);
+            ("Maxwell", GeneralizedKelvin::new(glassy, 1.0 / viscosity, &[]))
+        }
         1 => {
-            let time = random.scale(0.02, 1.0);
-            let creep = (ratio - 1.0) * glassy / -(-1.0 / time).exp_m1();
-            ("Zener", GeneralizedKelvin::new(glassy, 0.0, &[(creep, time)]))
+            let time = until * draws.power_of_ten(-2.0, 0.3);
+            ("Zener", GeneralizedKelvin::new(glassy, 0.0, &[((ratio - 1.0) * glassy, time)]))
         }
         _ => {
-            let count = 2 + random.below(6);
-            let terms: Vec<_> = (0..count).map(|_| (random.scale(0.1, 1.0), random.scale(1e-4, 3.0))).collect();
-            let sum: f64 = terms.iter().map(|&(creep, time)| -creep * (-1.0 / time).exp_m1()).sum();
-            let scale = (ratio - 1.0) * glassy / sum;
-            let terms: Vec<_> = terms.into_iter().map(|(creep, time)| (creep * scale, time)).collect();
-            ("times", GeneralizedKelvin::new(glassy, 0.0, &terms))
+            let count = 2 + draws.below(4);
+            let mut term = || ((ratio - 1.0) * glassy / count as f64, until * draws.power_of_ten(-3.0, 0.3));
+            let terms: Vec<_> = (0..count).map(|_| term()).collect();
+            ("several times", GeneralizedKelvin::new(glassy, 0.0, &terms))
         }
     };
-    (format!("{} ×{ratio:.0}", rheology.0), Material::incompressible(rheology.1.unwrap()))
+    (name, Material::incompressible(creep.unwrap()))
 }
 
-fn table(entries: &[(f64, Load)]) -> Box<dyn LoadHistory> {
-    Box::new(PiecewiseLinear::new(entries).unwrap())
-}
-
-/// The greatest pressure of a growing sphere, over all radii.
-fn highest(exact: &GrowingSphere, t: f64) -> f64 {
-    let a = exact.contact_radius(t);
-    // towards the edge, where fast creep leaves a thin rim of high pressure
-    (0..18).map(|k| exact.pressure(a * (1.0 - 10f64.powf(-0.2 * f64::from(k))), t)).fold(0.0, f64::max)
-}
-
-fn scene(seed: u64) -> Scene {
-    let mut random = Random::new(seed);
-    let random = &mut random;
-    let radius = 10.0e-3;
-    let kind = random.below(10);
-    let ratio = random.scale(1.1, if kind <= 3 { 3.0e4 } else { 100.0 });
-    let (body_name, material) = body(random, ratio, if kind == 2 { 2 } else { 4 });
-    let ramp = random.scale(1e-3, 1.0);
-    let (name, geometry, history, exact, singular): Drawn = match kind {
-        0 | 1 => {
-            let exact = GrowingSphere::step(radius, &material, 1.0).unwrap();
-            let state =
-                move |t: f64| [Some(exact.approach(t)), Some(exact.contact_radius(t)), Some(highest(&exact, t))];
-            let held = Box::new(StepLoad::new(Load::force(1.0)).unwrap());
-            ("held sphere", Box::new(Sphere::new(radius).unwrap()), held, Some(Box::new(state)), false)
-        }
-        2 => {
-            let entries = [(0.0, Load::force(0.0)), (ramp, Load::force(1.0)), (2.0, Load::force(1.0))];
-            let exact = GrowingSphere::new(radius, &material, PiecewiseLinear::new(&entries).unwrap()).unwrap();
-            let state =
-                move |t: f64| [Some(exact.approach(t)), Some(exact.contact_radius(t)), Some(highest(&exact, t))];
-            ("ramped sphere", Box::new(Sphere::new(radius).unwrap()), table(&entries), Some(Box::new(state)), false)
-        }
-        3 => {
-            let radii = [radius, radius * random.scale(0.02, 50.0)];
-            let unit = HertzEllipse::new(radii, 1.0e6, 1.0).unwrap();
-            let [a, b] = unit.semi_axes;
-            // the sphere whose contact radius is the semi-axis a at all times: the pressure is a/b of its pressure
-            let equal = GrowingSphere::step(a.powi(3) * 1.0e6 / 0.75, &material, 1.0).unwrap();
-            let compliance = material.clone();
-            let state = move |t: f64| {
-                let now = HertzEllipse::new(radii, 1.0 / compliance.contact_compliance(t), 1.0).unwrap();
-                let [a, b] = now.semi_axes;
-                [Some(now.approach), Some((a * b).sqrt()), Some(a / b * highest(&equal, t))]
-            };
-            let held = Box::new(StepLoad::new(Load::force(1.0)).unwrap());
-            let _ = b;
-            (
-                "held ellipsoid",
-                Box::new(Ellipsoid::new(radii[0], radii[1]).unwrap()),
-                held,
-                Some(Box::new(state)),
-                false,
-            )
-        }
-        4 => {
-            let compliance = material.clone();
-            let state = move |t: f64| [Some(compliance.contact_compliance(t) / 2.0e-3), None, None];
-            let at = random.between(0.0, 0.3e-3);
-            let held = Box::new(StepLoad::new(Load::eccentric_force(1.0, [at, 0.0])).unwrap());
-            ("eccentric punch", Box::new(FlatPunch::circular(1.0e-3).unwrap()), held, Some(Box::new(state)), true)
-        }
-        5 => {
-            let exact = GrowingSphere::step(radius, &material, 1.0).unwrap();
-            let far = exact.contact_radius(1.0) * random.between(0.2, 4.0);
-            let state =
-                move |t: f64| [Some(exact.approach(t)), Some(exact.contact_radius(t)), Some(highest(&exact, t))];
-            let held = Box::new(StepLoad::new(Load::force(1.0)).unwrap());
-            let shape = Shifted::new(Sphere::new(radius).unwrap(), [far, -0.3 * far]).unwrap();
-            ("sphere off the centre", Box::new(shape), held, Some(Box::new(state)), false)
-        }
-        6 => {
-            let entries = [
-                (0.0, Load::force(0.0)),
-                (0.3, Load::force(1.0)),
-                (0.5, Load::force(0.1)),
-                (0.6, Load::force(0.1)),
-                (1.0, Load::force(random.between(0.2, 2.0))),
-            ];
-            ("force that comes and goes", Box::new(Sphere::new(radius).unwrap()), table(&entries), None, false)
-        }
-        7 => {
-            let depth = 1.0e-4;
-            let tilt = random.between(-0.05, 0.05);
-            let entries = [
-                (0.0, Load::approach_and_tilt(0.3 * depth, [0.0, 0.0])),
-                (0.4, Load::approach_and_tilt(depth, [tilt, 0.0])),
-                (1.0, Load::approach_and_tilt(random.between(0.8, 1.2) * depth, [0.0, 0.02])),
-            ];
-            ("tilting sphere", Box::new(Sphere::new(radius).unwrap()), table(&entries), None, false)
-        }
-        8 => {
-            let entries = [
-                (0.0, Load::force_and_tilt(1.0, [0.0, 0.0])),
-                (0.5, Load::force_and_tilt(1.0, [random.between(0.0, 1e-3), 0.0])),
-                (1.0, Load::force_and_tilt(0.5, [0.0, random.between(0.0, 5e-4)])),
-            ];
-            let face = FlatPunch::rectangular([1.0e-3, random.scale(0.3e-3, 3.0e-3)]).unwrap();
-            ("tilting punch", Box::new(face), table(&entries), None, true)
-        }
+fn scene(seed: u64, number: u64) -> Scene {
+    let draws = &mut Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number));
+    let shape = match draws.below(4) {
+        0 => Shape::Ball,
+        1 => Shape::Cone,
+        2 => Shape::Ellipsoid(RADIUS * draws.power_of_ten(-1.0, 1.0)),
+        _ => Shape::Punch,
+    };
+    let (ratio, until) = (draws.power_of_ten(0.1, 3.0), draws.power_of_ten(-2.0, 1.0));
+    let (body, material) = body(draws, ratio, until);
+    let radius = draws.power_of_ten(-4.0, -2.8);
+    let by_force = draws.chance(0.5);
+    let [depth, force] = shape.elastic(radius, material.contact_compliance(until));
+    let full = |share: f64| if by_force { Load::force(share * force) } else { Load::approach(share * depth) };
+    let (kind, part) = (draws.below(4), draws.power_of_ten(-1.5, 0.0));
+    let (history_name, history): (&str, Box<dyn LoadHistory>) = match kind {
+        0 => ("step", Box::new(StepLoad::new(full(1.0)).unwrap())),
+        1 => ("ramp", Box::new(Ramp::new(full(0.0), full(1.0), until * 1.001).unwrap())),
+        2 => ("ramp and hold", Box::new(Ramp::new(full(0.0), full(1.0), part * until).unwrap())),
         _ => {
-            let exact = {
-                let compliance = material.clone();
-                // Sneddon: F = (2/π) E* ω²/tan β with tan β the slope of the cone
-                move |t: f64| (0.5 * PI * 0.05 * compliance.contact_compliance(t)).sqrt()
-            };
-            let state = move |t: f64| [Some(exact(t)), Some(exact(t) / (0.5 * PI * 0.05)), None];
-            let held = Box::new(StepLoad::new(Load::force(1.0)).unwrap());
-            ("held cone", Box::new(Cone::new(0.05).unwrap()), held, Some(Box::new(state)), true)
+            let low = draws.between(0.2, 0.8);
+            let periods = draws.between(0.3, 3.0);
+            ("sine", Box::new(Sinusoid::new(full(low), full(1.0), periods / until).unwrap()))
         }
     };
-    Scene { name: format!("{seed}: {name}, {body_name}"), geometry, material, history, until: 1.0, exact, singular }
-}
-
-fn observed(contact: &ViscoelasticContact) -> State {
-    let main = match contact.load() {
-        Load::Approach { .. } => contact.force(),
-        _ => contact.approach(),
+    let accuracy = if draws.chance(0.7) { Accuracy::Coarse } else { Accuracy::Standard };
+    // a punch aside of the load tilts, and sinks in as much in its middle
+    let most = if matches!(shape, Shape::Punch) { 0.8 * PUNCH } else { f64::INFINITY };
+    let aside = if draws.chance(0.3) { f64::min(draws.between(0.1, 2.0) * radius, most) } else { 0.0 };
+    let area = draws.chance(0.3);
+    let (geometry, history): (Box<dyn Geometry>, _) = match shape {
+        Shape::Punch if aside > 0.0 && by_force => {
+            let at = [aside.min(0.3 * PUNCH), 0.0];
+            let held = Box::new(StepLoad::new(Load::eccentric_force(force, at)).unwrap()) as Box<dyn LoadHistory>;
+            (shape.geometry(), held)
+        }
+        _ if aside > 0.0 => (Box::new(Shifted::new(shape.geometry(), [aside, -0.3 * aside]).unwrap()), history),
+        _ => (shape.geometry(), history),
     };
-    [Some(main), Some((contact.contact_area() / PI).sqrt()), Some(contact.max_pressure())]
-}
-
-/// True error over what was asked, of each quantity; `None` where there is nothing to compare with.
-struct Outcome {
-    over: State,
-    line: String,
-}
-
-fn deliver(scene: &Scene, target: f64, area: bool) -> Result<Option<Outcome>, Error> {
-    let accuracy = Accuracy::target_of(target).unwrap();
-    let Scene { geometry, material, history, until, .. } = scene;
-    let started = Instant::now();
-    let options = PlanOptions { area, ..PlanOptions::default() };
-    let plan = match Plan::with(geometry, material, history, *until, accuracy, options) {
-        Err(error @ Error::CountOutOfRange { .. }) => {
-            println!("{}, {target:.0e}: {error}", scene.name);
-            return Ok(None);
-        }
-        other => other?,
-    };
-    let planning = started.elapsed().as_secs_f64();
-    let limit: usize = env::var("PLAN_CELLS").map_or(160, |n| n.parse().unwrap());
-    let [n1, n2] = plan.grid.cells();
-    if n1 * n2 > limit * limit {
-        println!("{}, {target:.0e}: left out: {plan}; planned in {planning:.1} s", scene.name);
-        return Ok(None);
-    }
-    let stepping = match (env::var("PLAN_FINER_STEPS"), plan.stepping) {
-        (Ok(factor), Stepping::Adaptive { tolerance }) => {
-            Stepping::adaptive(tolerance / factor.parse::<f64>().unwrap())
-        }
-        (_, stepping) => stepping,
-    };
-    let started = Instant::now();
-    let mut contact = plan.builder.clone().build()?;
-    let mut run = contact.follow(history, stepping, *until);
-    let (mut states, mut work) = (Vec::new(), 0.0);
-    while let Some(report) = run.next_step()? {
-        states.push((report.time, observed(run.contact()), !report.warnings.contains(Warnings::FEW_CELLS)));
-        work += report.convolution_equivalents();
-    }
-    let took = started.elapsed().as_secs_f64();
-    let steps = states.len();
-    let highest = states.iter().map(|state| state.1[2].unwrap()).fold(0.0, f64::max);
-    if scene.exact.is_some() {
-        let every = 1 + steps / 24;
-        let mut k = 0;
-        states.retain(|state| {
-            k += 1;
-            k <= 8 || k == steps || k % every == 0 || state.1[2] == Some(highest)
-        });
-    }
-    let truth: Vec<State> = match &scene.exact {
-        Some(exact) => states.iter().map(|&(t, ..)| exact(t)).collect(),
-        None => {
-            let finer = if scene.singular { 3 } else { 2 };
-            let grid = Grid::new([finer * n1, finer * n2], plan.grid.lengths()).unwrap();
-            let tolerance = 0.036 * target;
-            let settings = Settings::default().with_tolerance(1e-7);
-            let reference = ViscoelasticContact::builder(grid).geometry(geometry).material(material.clone());
-            let mut reference = reference.settings(settings).build()?;
-            let times: Vec<f64> = states.iter().map(|&(t, ..)| t).collect();
-            let mut run = reference.follow(history, Stepping::adaptive(tolerance), *until).stop_at(&times)?;
-            let mut truth = Vec::new();
-            let mut wanted = 0;
-            while let Some(report) = run.next_step()? {
-                if report.time == times[wanted] {
-                    truth.push(observed(run.contact()));
-                    wanted += 1;
-                }
-            }
-            assert_eq!(truth.len(), times.len());
-            truth
-        }
-    };
-    // approach, radius and pressure at all times, then the greatest pressure of the run
-    let error = plan.mesh_error;
-    let asked = target.max(plan.time_error.unwrap_or(0.0));
-    let promised = [asked, asked.max(0.5 * error.area), asked.max(plan.pressure_error_at_all_times), asked];
-    let (mut over, mut at) = ([None; 4], [0.0; 3]);
-    for which in 0..3 {
-        if truth[0][which].is_none() {
-            continue;
-        }
-        let greatest = truth.iter().map(|state| state[which].unwrap().abs()).fold(0.0, f64::max);
-        let errors = states.iter().zip(&truth).filter(|((.., resolved), _)| which == 0 || *resolved);
-        let errors =
-            errors.map(|((t, state, _), truth)| (*t, (state[which].unwrap() - truth[which].unwrap()).abs() / greatest));
-        let (time, worst) = errors.fold((0.0, 0.0), |worst, now| if now.1 > worst.1 { now } else { worst });
-        (over[which], at[which]) = (Some(worst / promised[which]), time);
-        if which == 2 && plan.pressure_converges() {
-            over[3] = Some((highest / greatest - 1.0).abs() / promised[3]);
-        }
-    }
-    let show = |value: Option<f64>| value.map_or("-".into(), |value| format!("{value:.2}"));
-    let line = format!(
-        "{}, {target:.0e}, {n1} × {n2}: {} {} {} {} (at {at:.2?}); said {:.2} {:.2} {:.2} {:.2}{}; steps {steps} planned {}; work \
-         {work:.0} planned {:.0}; error in time {:.2}; planned in {planning:.2} s, run in {took:.2} s",
-        scene.name,
-        show(over[0]),
-        show(over[1]),
-        show(over[2]),
-        show(over[3]),
-        error.approach / target,
-        0.5 * error.area / target,
-        plan.pressure_error_at_all_times / target,
-        error.max_pressure.unwrap_or(f64::NAN) / target,
-        if plan.pressure_converges() { "" } else { " (not)" },
-        plan.steps,
-        plan.convolutions,
-        plan.time_error.unwrap_or(f64::NAN) / target
+    let by = if by_force { "force" } else { "approach" };
+    let name = format!(
+        "{seed}:{number} {shape:?} {aside:.1e} m aside, {body} ×{ratio:.1}, {history_name} ({part:.2}) of {by}, {until:.1e} s, \
+         {accuracy:?}, area {area}"
     );
-    println!("{line}");
-    Ok(Some(Outcome { over: [over[0], over[1], over[3]], line }))
+    Scene { name, shape: Some(shape), geometry, material, history, until, by_force, accuracy, area, radius }
+}
+
+/// A ball or a punch that is turned while it is pressed.
+fn tilting(seed: u64, number: u64) -> Scene {
+    let draws = &mut Draws::new(seed.wrapping_mul(1_000_003).wrapping_add(number).wrapping_add(1 << 40));
+    let (ratio, by_force) = (draws.power_of_ten(0.1, 2.0), draws.chance(0.5));
+    let (body, material) = body(draws, ratio, 1.0);
+    let (geometry, loads): (Box<dyn Geometry>, [Load; 3]) = if by_force {
+        let [first, second] = [draws.between(0.0, 1e-3), draws.between(0.0, 5e-4)];
+        let face = FlatPunch::rectangular([1.0e-3, draws.power_of_ten(-3.5, -2.5)]).unwrap();
+        let loads = [(1.0, [0.0; 2]), (1.0, [first, 0.0]), (0.5, [0.0, second])];
+        (Box::new(face), loads.map(|(force, tilt)| Load::force_and_tilt(force, tilt)))
+    } else {
+        let (tilt, end) = (draws.between(-0.05, 0.05), draws.between(0.8, 1.2));
+        let loads = [(0.3, [0.0; 2]), (1.0, [tilt, 0.0]), (end, [0.0, 0.02])];
+        let ball = Sphere::new(RADIUS).unwrap();
+        (Box::new(ball), loads.map(|(depth, tilt)| Load::approach_and_tilt(1.0e-4 * depth, tilt)))
+    };
+    let table: Vec<_> = [0.0, 0.45, 1.0].into_iter().zip(loads).collect();
+    let (history, name) =
+        (PiecewiseLinear::new(&table).unwrap(), format!("{seed}:{number} tilting, {body} ×{ratio:.1}"));
+    let (history, accuracy) = (Box::new(history), Accuracy::Coarse);
+    let (shape, until, area, radius) = (None, 1.0, draws.chance(0.3), 0.0);
+    Scene { name, shape, geometry, material, history, until, by_force, accuracy, area, radius }
+}
+
+/// Approach (force where the approach is given) and contact radius √(area/π) at each time, and the greatest pressure of the run;
+/// `None` where the reference does not have them.
+type Truth = (Vec<[Option<f64>; 2]>, Option<f64>);
+
+/// By the foundation of a shape.
+fn of_foundation(scene: &Scene, shape: Shape, times: &[f64]) -> Truth {
+    let (profile, [approaches, pressures, radii]) = shape.foundation();
+    let punch = matches!(shape, Shape::Punch);
+    // the last element lies beyond the face of the punch
+    let reach = if punch { PUNCH * (1.0 + 1.0 / ELEMENTS as f64) } else { 1.6 * scene.radius };
+    let mut foundation = AxisymmetricContact::new(&profile, &scene.material, ELEMENTS + 1, reach).unwrap();
+    // steps are graded after the start: pressures may be greatest early
+    let mut fine: Vec<f64> = (0..240).map(|k| scene.until * 10f64.powf(-6.0 + 6.0 * f64::from(k) / 239.0)).collect();
+    fine.extend((1..=400).map(|k| scene.until * f64::from(k) / 400.0));
+    fine.extend(times.iter().copied().chain([0.0]));
+    let mut breakpoint = scene.history.next_breakpoint(0.0);
+    while let Some(at) = breakpoint.filter(|&at| at <= scene.until) {
+        fine.extend((0..20).map(|k| at + (scene.until - at) * 10f64.powf(-5.0 + 0.25 * f64::from(k))));
+        fine.push(at);
+        breakpoint = scene.history.next_breakpoint(at);
+    }
+    fine.retain(|&time| time <= scene.until);
+    fine.sort_by(f64::total_cmp);
+    fine.dedup();
+    let (mut states, mut highest) = (Vec::new(), 0.0_f64);
+    for time in fine {
+        let dt = time - foundation.time();
+        match scene.history.at(time) {
+            Load::Force { normal, .. } => foundation.press(dt, normal).unwrap(),
+            Load::Approach { approach, .. } => foundation.indent(dt, approach / approaches).unwrap(),
+            load => panic!("{load:?}"),
+        }
+        if times.contains(&time) {
+            let main = if scene.by_force { approaches * foundation.approach() } else { foundation.force() };
+            // under a given approach bodies part at a time that no plan promises
+            let grows = scene.by_force && !punch;
+            states.push([Some(main), grows.then(|| radii * foundation.contact_radius())]);
+        }
+        if !punch {
+            let edge = foundation.contact_radius();
+            let places = (0..24).map(|k| edge * (1.0 - 10f64.powf(-0.15 * f64::from(k))));
+            highest = places.map(|r| pressures * foundation.pressure(r)).fold(highest, f64::max);
+        }
+    }
+    (states, (!punch).then_some(highest))
+}
+
+/// By a run on cells of half the side or a third, in finer steps.
+fn of_finer_run(scene: &Scene, plan: &Plan, times: &[f64]) -> Result<Truth, Error> {
+    let finer = if scene.by_force { 3 } else { 2 };
+    let grid = Grid::new(plan.grid.cells().map(|cells| finer * cells), plan.grid.lengths()).unwrap();
+    let builder = builder_of(&scene.geometry, grid, scene.material.clone());
+    let mut contact = builder.settings(Settings::default().with_tolerance(1e-7)).build()?;
+    let stepping = Stepping::adaptive(0.036 * scene.accuracy.target());
+    let mut run = contact.follow(&scene.history, stepping, scene.until).stop_at(times)?;
+    let (mut states, mut highest) = (Vec::new(), 0.0_f64);
+    while let Some(report) = run.next_step()? {
+        highest = highest.max(run.contact().max_pressure());
+        if times.get(states.len()) == Some(&report.time) {
+            states.push(observed(scene, run.contact()));
+        }
+    }
+    Ok((states, Some(highest)))
+}
+
+fn observed(scene: &Scene, contact: &ViscoelasticContact) -> [Option<f64>; 2] {
+    let main = if scene.by_force { contact.approach() } else { contact.force() };
+    [Some(main), Some((contact.contact_area() / PI).sqrt())]
+}
+
+/// True errors over what was asked: of approach or force, of the contact radius, and of the greatest pressure if that is promised.
+struct Outcome {
+    over: [Option<f64>; 3],
+    note: String,
+}
+
+fn deliver(scene: &Scene) -> Result<Outcome, Error> {
+    let Scene { geometry, material, history, until, accuracy, .. } = scene;
+    let started = Instant::now();
+    let options = PlanOptions { area: scene.area, ..PlanOptions::default() };
+    let plan = Plan::with(geometry, material, history, *until, *accuracy, options)?;
+    let planning = started.elapsed().as_secs_f64();
+    let limit = from_environment("PLANS_CELLS", 150) as usize;
+    let note = format!("{plan}; planned in {planning:.2} s");
+    if plan.grid.len() > limit * limit {
+        return Ok(Outcome { over: [None; 3], note });
+    }
+    let mut contact = plan.builder.clone().build()?;
+    let mut run = contact.follow(history, plan.stepping, *until);
+    let (mut times, mut states, mut highest) = (vec![], vec![], 0.0_f64);
+    while let Some(report) = run.next_step()? {
+        // of several states at a time, the last
+        if times.last() == Some(&report.time) {
+            states.pop();
+        } else {
+            times.push(report.time);
+        }
+        let [main, radius] = observed(scene, run.contact());
+        // the radius of a few cells is not known
+        states.push([main, radius.filter(|_| !report.warnings.contains(Warnings::FEW_CELLS))]);
+        highest = highest.max(run.contact().max_pressure());
+    }
+    let (truth, peak) = match scene.shape {
+        Some(shape) => of_foundation(scene, shape, &times),
+        None => of_finer_run(scene, &plan, &times)?,
+    };
+    assert_eq!(truth.len(), states.len());
+    let asked = accuracy.target().max(plan.time_error.unwrap_or(0.0));
+    let promised = [asked, asked.max(0.5 * plan.mesh_error.area)];
+    let error = |which: usize| {
+        let greatest = truth.iter().filter_map(|truth| truth[which]).map(f64::abs).fold(0.0, f64::max);
+        let pairs = states.iter().zip(&truth).filter_map(|(state, truth)| Some((state[which]?, truth[which]?)));
+        let worst = pairs.map(|(found, exact)| (found - exact).abs() / greatest).reduce(f64::max)?;
+        Some(worst / promised[which])
+    };
+    let pressure = peak.map(|peak| (highest / peak - 1.0).abs() / asked);
+    let [main, radius, promised] = [error(0), error(1), pressure.filter(|_| plan.pressure_converges())];
+    let show = |value: Option<f64>| value.map_or("-".into(), |over| format!("{over:.2}"));
+    let note = format!("main {}, radius {}, pressure {}; {note}", show(main), show(radius), show(pressure));
+    Ok(Outcome { over: [main, radius, promised], note })
 }
 
 #[test]
-fn random_scenes_are_as_accurate_as_planned() {
-    let number = |name: &str, default: u64| env::var(name).map_or(default, |n| n.parse().unwrap());
-    let (first, count) = (number("PLAN_SEED", 1), number("PLAN_SCENES", 6));
-    let mut missed = Vec::new();
-    for seed in first..first + count {
-        let scene = scene(seed);
-        for (target, area) in [(1e-2, false), (1e-2, true), (1e-3, false)] {
-            match deliver(&scene, target, area) {
-                Err(error) => println!("FAILED {}, {target:.0e}: {error}", scene.name),
-                Ok(None) => {}
-                Ok(Some(outcome)) => {
-                    if outcome.over.iter().flatten().any(|&over| over > 2.0) {
-                        missed.push(outcome.line);
-                    }
+fn plans_of_random_scenes_keep_their_promise() {
+    let (seed, first, count) =
+        (from_environment("PLANS_SEED", 1), from_environment("PLANS_FIRST", 0), from_environment("PLANS", 8));
+    let (mut failed, mut delivered) = (vec![], [0; 3]);
+    let scenes = (first..first + count).flat_map(|number| {
+        [Some(scene(seed, number)), (number % 4 == 0).then(|| tilting(seed, number))].into_iter().flatten()
+    });
+    for scene in scenes {
+        match deliver(&scene) {
+            // a tilting punch needs more cells than a plan allows
+            Err(Error::CountOutOfRange { .. }) if scene.shape.is_none() && scene.by_force => {}
+            Err(error) => failed.push(format!("{}: {error}", scene.name)),
+            Ok(Outcome { over, note }) => {
+                println!("{}: {note}", scene.name);
+                delivered.iter_mut().zip(over).for_each(|(count, over)| *count += usize::from(over.is_some()));
+                if over.iter().flatten().any(|&over| over > 2.0) {
+                    failed.push(format!("{}: {over:.2?}, {note}", scene.name));
                 }
             }
         }
     }
-    println!("missed: {} of {count}\n{}", missed.len(), missed.join("\n"));
-    if env::var("PLAN_REPORT").is_err() {
-        assert!(missed.is_empty(), "{} scenes missed: {}", missed.len(), missed.join("\n"));
-    }
+    let [run, radius, pressure] = delivered;
+    println!(
+        "{run} of {count} plans run, {radius} with a contact radius, {pressure} with the greatest pressure promised"
+    );
+    assert!(failed.is_empty(), "{} of {count} plans:\n{}", failed.len(), failed.join("\n"));
 }

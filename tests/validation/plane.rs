@@ -1,6 +1,7 @@
 //! Contacts in plane strain against Westergaard's and Hertz's closed forms.
 
 use crate::common::bodies::{E_STAR, elastic};
+use crate::common::spheres::builder_of;
 use approx::assert_abs_diff_eq;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -8,13 +9,7 @@ use std::sync::Arc;
 use viscocontact::prelude::*;
 
 fn contact(grid: &Grid, kernel: InfluenceKernel, shape: &dyn Geometry, settings: Settings) -> ViscoelasticContact {
-    ViscoelasticContact::builder(grid.clone())
-        .geometry(shape)
-        .material(elastic())
-        .kernel(Arc::new(kernel))
-        .settings(settings)
-        .build()
-        .unwrap()
+    builder_of(shape, grid.clone(), elastic()).kernel(Arc::new(kernel)).settings(settings).build().unwrap()
 }
 
 /// A wavy surface under less than the pressure of full contact, against H. M. Westergaard, J. Appl. Mech. 6 (1939):
@@ -70,8 +65,8 @@ fn a_wavy_surface_in_full_contact_is_westergaards() {
     assert_abs_diff_eq!(greatest / 1e-3, 1.0, epsilon = 1e-9);
     contact.step(0.0, Load::approach(0.5e-3)).unwrap();
     assert!(contact.contact_cells() < 64);
-    let tilted = contact.step(0.0, Load::eccentric_force(1.0, [0.1, 0.0])).unwrap_err();
-    assert!(matches!(tilted, Error::TiltOfPeriodic { axis: 0, .. }), "{tilted}");
+    let error = contact.step(0.0, Load::eccentric_force(1.0, [0.1, 0.0])).unwrap_err();
+    assert!(matches!(error, Error::TiltOfPeriodic { axis: 0, .. }), "{error}");
 }
 
 /// Hertz's line contact: a² = 4 P R/(π E*), p0 = 2P/(πa), P the force on a unit of length; the approach to a depth d is

@@ -1,7 +1,7 @@
 //! Contact stiffness against closed forms, and against the slope of force over approach.
 
 use crate::common::bodies::{G, elastic};
-use crate::common::spheres::sphere_on;
+use crate::common::spheres::{builder_of, sphere_on};
 use approx::assert_abs_diff_eq;
 use std::sync::Arc;
 
@@ -31,9 +31,7 @@ fn stiffness_is_the_slope_of_the_force() {
     let grid = Grid::square(64, 1.0e-3).unwrap();
     let spec = self_affine(0.5e-3, 0.1e-3, 3);
     for kernel in [InfluenceKernel::periodic(&grid), InfluenceKernel::half_space(&grid)] {
-        let mut contact = ViscoelasticContact::builder(grid.clone())
-            .geometry(&Rough::new(&grid, spec).unwrap())
-            .material(elastic())
+        let mut contact = builder_of(&Rough::new(&grid, spec).unwrap(), grid.clone(), elastic())
             .kernel(Arc::new(kernel.unwrap()))
             .settings(Settings::default().with_edge(Edge::Allow).with_tolerance(1e-10))
             .build()
@@ -46,9 +44,7 @@ fn stiffness_is_the_slope_of_the_force() {
         let slope = 0.02 * 2e-3 / (high.0 - low.0) / (4.0 * G);
         assert_abs_diff_eq!(slope, middle.1, epsilon = 2e-3 * middle.1);
     }
-    let mut full = ViscoelasticContact::builder(grid.clone())
-        .geometry(&Wavy::new(1.0e-6, 1.0e-3).unwrap())
-        .material(elastic())
+    let mut full = builder_of(&Wavy::new(1.0e-6, 1.0e-3).unwrap(), grid.clone(), elastic())
         .kernel(Arc::new(InfluenceKernel::periodic(&grid).unwrap()))
         .build()
         .unwrap();

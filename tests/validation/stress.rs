@@ -1,6 +1,7 @@
 //! The stress below the surface, of whole contacts: against Hertz, against the published places where bodies yield, and against
 //! the closed forms of a body whose Poisson's ratio changes.
 
+use crate::common::spheres::{builder_of, contact_of};
 use std::sync::Arc;
 
 use super::rolling::{FINE, roll, scene};
@@ -69,7 +70,7 @@ fn the_greatest_stress_converges() {
 /// On the axis of a ball (K. L. Johnson, Contact Mechanics, 1985, (3.45)): σ33 = −p0/(1 + ζ²) and
 /// σ11 = σ22 = −(1 + ν) p0 (1 − ζ atan 1/ζ) + ½ p0/(1 + ζ²) at ζ = z/a.
 #[test]
-fn hertz_on_the_axis() {
+fn stress_on_the_axis_is_hertzs() {
     for nu in [0.0, 0.3, 0.5] {
         let (contact, hertz) = ball(256, nu);
         let (a, peak) = (hertz.contact_radius, hertz.pressure(0.0));
@@ -80,7 +81,7 @@ fn hertz_on_the_axis() {
             let lateral = 0.5 * normal - (1.0 + nu) * peak * (1.0 - zeta * (1.0 / zeta).atan());
             for (found, exact) in [(found.s33, -normal), (found.s11, lateral), (found.s22, lateral)] {
                 assert!((found - exact).abs() < 1e-3 * peak, "{nu} {zeta}: {found:e} {exact:e}");
-                // far below, relative to what is left there: force is given exactly
+                // far below, relative to the stress there: the force is exact
                 assert!((found - exact).abs() < 2e-3 * normal, "{nu} {zeta}: {found:e} {exact:e}");
             }
             assert!([found.s12, found.s13, found.s23].iter().all(|shear| shear.abs() < 1e-6 * peak));
@@ -131,11 +132,7 @@ fn a_cylinder_yields_where_hertz_says() {
 fn a_plane_carries_the_force() {
     let (contact, hertz) = ball(64, 0.3);
     let grid = Grid::square(192, 24.0 * hertz.contact_radius).unwrap();
-    let mut wide = ViscoelasticContact::builder(grid)
-        .geometry(&Sphere::new(RADIUS).unwrap())
-        .material(contact.material().clone())
-        .build()
-        .unwrap();
+    let mut wide = contact_of(&Sphere::new(RADIUS).unwrap(), grid, contact.material().clone(), Settings::default());
     wide.step(0.0, Load::force(0.5)).unwrap();
     let stress = wide.stress().unwrap();
     for over_a in [0.5, 1.0, 2.0] {
@@ -149,9 +146,9 @@ fn a_plane_carries_the_force() {
     }
 }
 
-/// The stress of a contact that computes a window alone, which grows as the contact does, is that of the whole grid.
+/// The stress of a contact that computes a growing window equals the stress of the whole grid.
 #[test]
-fn the_stress_below_a_window_that_grows() {
+fn stress_does_not_depend_on_the_window() {
     let scene = |window: bool| {
         ViscoelasticContact::builder(Grid::square(96, 6.0e-3).unwrap())
             .geometry(&Shifted::new(Sphere::new(RADIUS).unwrap(), [0.6e-3, -0.3e-3]).unwrap())
@@ -245,7 +242,7 @@ fn below_a_rolling_cylinder_the_stress_skews_with_the_pressure() {
 
 /// The second body has its own Poisson's ratio.
 #[test]
-fn the_counter_body() {
+fn the_counter_body_has_its_own_poisson_ratio() {
     let mut contact = ViscoelasticContact::builder(Grid::square(24, 2.0e-3).unwrap())
         .geometry(&Sphere::new(RADIUS).unwrap())
         .material(Material::incompressible(Maxwell::new(G, G).unwrap()))
@@ -275,14 +272,12 @@ fn the_counter_body() {
 /// A flat punch on a polymer with shear modulus of Maxwell's body and an elastic bulk. The pressure keeps its shape, so that
 /// r = p R(t) with the closed form of a step R = 3G/(3B + G) e^(−t/λ), λ = τ (3B + G)/3B, and of a ramp by its integral.
 #[test]
-fn a_ratio_that_changes() {
+fn a_changing_poisson_ratio_is_the_closed_form() {
     let (bulk, tau) = (3.0 * G, 2.0);
     let material = Material::elastic_bulk(Maxwell::new(G, G * tau).unwrap(), bulk).unwrap();
     let (first, late) = (3.0 * G / (3.0 * bulk + G), tau * (3.0 * bulk + G) / (3.0 * bulk));
     let new = || {
-        ViscoelasticContact::builder(Grid::square(24, 3.0e-3).unwrap())
-            .geometry(&FlatPunch::circular(1.0e-3).unwrap())
-            .material(material.clone())
+        builder_of(&FlatPunch::circular(1.0e-3).unwrap(), Grid::square(24, 3.0e-3).unwrap(), material.clone())
             .build()
             .unwrap()
     };
@@ -313,7 +308,7 @@ fn a_ratio_that_changes() {
         let t = contact.time();
         check(&contact, &history, first * late / t * (1.0 - (-t / late).exp()));
     }
-    // what the contact alone does not know
+    // without a history the contact refuses
     let error = contact.stress().unwrap_err();
     assert!(matches!(error, Error::Material(MaterialError::ChangingPoisson { body: 0 })), "{error}");
     let late = StressHistory::new(&contact).unwrap_err();
@@ -325,16 +320,14 @@ fn a_ratio_that_changes() {
     // a jump that was not recorded, in no time
     let mut jumped = contact.clone();
     jumped.step(0.0, Load::force(1.5)).unwrap();
-    let refused = history.stress(&jumped).unwrap_err();
-    assert!(matches!(refused, Error::OutOfRange { field: "peak pressure of the contact", .. }), "{refused}");
+    let error = history.stress(&jumped).unwrap_err();
+    assert!(matches!(error, Error::OutOfRange { field: "peak pressure of the contact", .. }), "{error}");
     assert!(history.stress(&contact).is_ok());
     assert!(matches!(history.record(&new()), Err(Error::OutOfRange { field: "time of the contact", .. })));
     assert!(before.reduced_pressure() != history.reduced_pressure());
     let other = ball(8, 0.3).0;
     assert_eq!(history.record(&other).unwrap_err(), Error::OtherContact);
-    let moving = ViscoelasticContact::builder(Grid::square(8, 3.0e-3).unwrap())
-        .geometry(&FlatPunch::circular(1.0e-3).unwrap())
-        .material(material.clone())
+    let moving = builder_of(&FlatPunch::circular(1.0e-3).unwrap(), Grid::square(8, 3.0e-3).unwrap(), material.clone())
         .settings(Settings::default().with_frame(Frame::Indenter))
         .build()
         .unwrap();
@@ -343,16 +336,13 @@ fn a_ratio_that_changes() {
 
 /// With an elastic bulk that does not creep, and with a constant ratio, nothing is remembered.
 #[test]
-fn a_ratio_that_is_constant() {
+fn a_constant_poisson_ratio_needs_no_history() {
     let elastic = Material::elastic_bulk(Elastic::new(G).unwrap(), 3.0 * G).unwrap();
     // (3B − 2G)/(6B + 2G)
     let nu = elastic.poisson_ratios().next().unwrap().unwrap();
     assert!((nu - 7.0 / 20.0).abs() < 1e-14, "{nu}");
-    let mut contact = ViscoelasticContact::builder(Grid::square(24, 2.0e-3).unwrap())
-        .geometry(&Sphere::new(RADIUS).unwrap())
-        .material(elastic)
-        .build()
-        .unwrap();
+    let mut contact =
+        contact_of(&Sphere::new(RADIUS).unwrap(), Grid::square(24, 2.0e-3).unwrap(), elastic, Settings::default());
     let mut history = StressHistory::new(&contact).unwrap();
     contact.step(0.0, Load::force(0.1)).unwrap();
     history.record(&contact).unwrap();
@@ -362,12 +352,10 @@ fn a_ratio_that_is_constant() {
 
 /// A body of which only the surface is known.
 #[test]
-fn a_layer_is_refused() {
+fn stress_below_a_user_defined_kernel_is_refused() {
     let grid = Grid::square(8, 2.0e-3).unwrap();
     let kernel = InfluenceKernel::from_spectrum(&grid, |q1, q2| if q1 + q2 > 0.0 { 1.0 / (q1 + q2) } else { 0.0 });
-    let contact = ViscoelasticContact::builder(grid)
-        .geometry(&Sphere::new(RADIUS).unwrap())
-        .material(Material::incompressible(Elastic::new(G).unwrap()))
+    let contact = builder_of(&Sphere::new(RADIUS).unwrap(), grid, Material::incompressible(Elastic::new(G).unwrap()))
         .kernel(Arc::new(kernel.unwrap()))
         .build()
         .unwrap();

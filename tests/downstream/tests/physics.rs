@@ -1,4 +1,4 @@
-//! The user's models obey the laws, and their contact is what the theory says.
+//! The user's models obey the laws, and their contact agrees with the theory.
 
 use downstream::{Bowl, Gel, Heartbeat, MeasuredGel};
 use proptest::prelude::*;
@@ -59,7 +59,7 @@ fn a_held_force_is_lee_and_radok() {
 /// Along a history of the user's own: the forces are carried, steps end on its corners, nothing rests on the gel while it
 /// waits, and each beat finds it pressed in a little deeper than the one before.
 #[test]
-fn beats_leave_their_mark() {
+fn each_beat_presses_deeper() {
     let beat = Heartbeat { force: 0.1, half_period: 0.3 };
     let mut contact = contact(GEL, 48);
     let mut run = contact.follow(&beat, Stepping::adaptive(1e-3), 1.8);

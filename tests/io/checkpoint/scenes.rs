@@ -1,4 +1,4 @@
-//! Random scenes and those that differ from them; files that many write.
+//! Checkpoints of random scenes refused by slightly different scenes; files that many threads write.
 
 use crate::common::bodies::three_times;
 use std::fs;
@@ -6,8 +6,9 @@ use std::fs;
 use viscocontact::contact::CheckpointError;
 use viscocontact::prelude::*;
 
-use super::{file, refused};
+use super::refused;
 use crate::common::noise::uniform;
+use crate::common::temporary::Temporary;
 
 const OWNERS: &str = "assignment of cells to rigid bodies";
 
@@ -53,7 +54,7 @@ fn gap(contact: &ViscoelasticContact) -> Vec<f64> {
 
 #[test]
 fn random_scenes_are_told_apart() {
-    let path = file("random-scenes");
+    let path = Temporary::file("random-scenes");
     let (mut accepted, mut swapped, mut reshaped, mut recut) = (0, 0, 0, 0);
     for seed in 0..300 {
         let mut number = uniform(seed);
@@ -148,7 +149,6 @@ fn random_scenes_are_told_apart() {
             recut += 1;
         }
     }
-    fs::remove_file(path).unwrap();
     println!("{accepted} accepted, {swapped} swapped, {reshaped} reshaped, {recut} cut elsewhere");
     assert!(accepted > 150 && swapped > 100 && reshaped > 800 && recut > 100);
 }
@@ -156,9 +156,7 @@ fn random_scenes_are_told_apart() {
 /// Contacts of several threads save to one path: no save fails, the file is one of theirs at any time, and nothing else is left.
 #[test]
 fn many_save_to_one_path() {
-    let folder = file("many");
-    let _ = fs::remove_dir_all(&folder);
-    fs::create_dir_all(&folder).unwrap();
+    let folder = Temporary::folder("many");
     let path = folder.join("run");
     let body = || [Box::new(Sphere::new(10.0e-3).unwrap()) as Box<dyn Geometry>];
     let grid = Grid::square(32, 4.0e-3).unwrap();
@@ -177,11 +175,10 @@ fn many_save_to_one_path() {
             });
         }
     });
-    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+    assert_eq!(folder.names(), ["run"]);
 
-    // what is no file is not replaced
+    // a folder is not replaced
     fs::create_dir(folder.join("folder")).unwrap();
     let error = build(&grid, &body()).unwrap().save(folder.join("folder")).unwrap_err();
     assert!(matches!(error, Error::NotAFile { kind: "a folder", .. }), "{error}");
-    fs::remove_dir_all(folder).unwrap();
 }

@@ -26,7 +26,7 @@ fn samples(text: &str, format: TextFormat) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn numbers_of_other_countries_and_languages() {
+fn decimal_commas_and_fortran_exponents_are_read() {
     let expected = [[0.5, 1.0], [1.0, 1.25], [2.0, 1.5], [4.0, 1.75]];
     for (text, format) in [
         ("0,5;1\n1;1,25\n2;1,5\n4;1,75\n", commas()),
@@ -52,7 +52,7 @@ fn numbers_of_other_countries_and_languages() {
 }
 
 #[test]
-fn what_is_not_understood_is_named() {
+fn fields_that_are_not_numbers_are_named() {
     let rest = "2;1.1\n4;1.3\n8;1.4\n16;1.5\n";
     let error = |text: String| creep(&text, Units::SI, points()).unwrap_err();
     for (row, column, text) in [
@@ -168,7 +168,7 @@ fn tables_are_read_exactly_or_refused_where_they_are_spoiled() {
             if dynamic { (&FREQUENCIES[..], &MODULI[..]) } else { (&TIMES[..], &COMPLIANCES[..]) };
         let (x_unit, value_unit) = (x_units[random(x_units.len())], value_units[random(value_units.len())]);
         let units = Units { abscissa: x_unit.1, value: value_unit.1 };
-        // columns in any order, and one that is not needed, where headings say so
+        // columns in any order, and one that is not needed, where there are headings
         // without names they are read in order, if the headings are a comment
         let headings = random(4);
         let mut order: Vec<usize> = (0..width).collect();

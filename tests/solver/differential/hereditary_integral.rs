@@ -1,18 +1,11 @@
 //! The hereditary integral as it is written: u at all nodes of the past, on every interval between them a polynomial through
 //! some of them, and ∫ E(t − s) du(s) over all of that by quadrature, anew in each step.
 
+use crate::common::gauss;
 use viscocontact::prelude::*;
 
 use super::scenes::Body;
 
-/// Gauss–Legendre points and weights on −1 … 1, exact for degree 19.
-const GAUSS: [(f64, f64); 5] = [
-    (0.148_874_338_981_631_22, 0.295_524_224_714_752_87),
-    (0.433_395_394_129_247_2, 0.269_266_719_309_996_35),
-    (0.679_409_568_299_024_4, 0.219_086_362_515_982_04),
-    (0.865_063_366_688_984_5, 0.149_451_349_150_580_6),
-    (0.973_906_528_517_171_7, 0.066_671_344_308_688_14),
-];
 /// What is older by so many relaxation times is forgotten.
 const FORGOTTEN: f64 = 45.0;
 
@@ -130,7 +123,7 @@ impl HereditaryIntegral {
         }
     }
 
-    /// The same with u of a `degree` on the step, which or which not tells the span before of its end.
+    /// The same with u of a `degree` on the step, which corrects the span before if `corrects`.
     fn predict_as(&mut self, dt: f64, degree: usize, corrects: bool) -> (f64, Vec<f64>) {
         let new = self.fields.len();
         self.tried.clone_from(&self.spans);
@@ -163,15 +156,10 @@ impl HereditaryIntegral {
                 }
                 // panels of a relaxation time from the end back to where nothing is left
                 let reach = length.min(FORGOTTEN / x);
-                let panels = (reach * x).ceil().max(1.0);
-                let half = 0.5 * reach / panels;
-                for panel in 0..panels as usize {
-                    let middle = ages[end] + (2 * panel + 1) as f64 * half;
-                    for (at, weight) in GAUSS.into_iter().flat_map(|(at, weight)| [(at, weight), (-at, weight)]) {
-                        let age = middle + half * at;
-                        let left = half * weight * e * (-x * age).exp();
-                        nodes.iter().for_each(|&node| weights[node] += left * slope(&ages, nodes, node, age));
-                    }
+                let panels = (reach * x).ceil().max(1.0) as usize;
+                for (age, weight) in gauss::points(ages[end], ages[end] + reach, panels) {
+                    let left = weight * e * (-x * age).exp();
+                    nodes.iter().for_each(|&node| weights[node] += left * slope(&ages, nodes, node, age));
                 }
             }
         }

@@ -5,26 +5,22 @@ mod reference;
 mod scenes;
 
 use crate::common::bodies::elastic;
+use crate::common::environment::from_environment;
 use crate::common::spheres::sphere_on;
 use approx::assert_abs_diff_eq;
 use reference::Reference;
 use scenes::Scene;
 use viscocontact::prelude::*;
 
-/// A number from the environment, for longer runs by hand.
-fn wanted(variable: &str, usual: usize) -> usize {
-    std::env::var(variable).ok().and_then(|text| text.parse().ok()).unwrap_or(usual)
-}
-
 /// Steps of one scene.
 const STEPS: usize = 8;
 
 #[test]
 fn eccentric_loads_may_jump() {
-    let (count, first) = (wanted("ECCENTRIC_STEPS", 2000), wanted("ECCENTRIC_SEED", 1));
+    let (count, first) = (from_environment("ECCENTRIC_STEPS", 2000), from_environment("ECCENTRIC_SEED", 1));
     let settings = Settings::default().with_edge(Edge::Allow);
     let (mut taken, mut refused, mut failed, mut warm, mut work, mut fallback) = (0, 0, 0, 0, 0.0, 0);
-    let mut seed = first as u64 * 1_000_000;
+    let mut seed = first * 1_000_000;
     let mut costs = Vec::new();
     while taken < count {
         seed += 1;
@@ -80,7 +76,7 @@ fn a_load_may_jump_beyond_the_contact() {
 #[test]
 fn more_iterations_help_where_the_error_advises_them() {
     let (mut short, mut solved) = (0, 0);
-    for seed in 1..wanted("ADVICE_SCENES", 60) as u64 {
+    for seed in 1..from_environment("ADVICE_SCENES", 60) {
         let scene = Scene::eccentric(seed, STEPS);
         let settings = Settings::default().with_edge(Edge::Allow);
         let (mut hasty, mut patient) =
@@ -121,9 +117,10 @@ fn a_dense_reference_of_the_linear_rule_agrees() {
 }
 
 fn agrees_with_a_dense_reference(time_rule: TimeRule) {
-    let (count, first) = (wanted("DIFFERENTIAL_SCENES", 500), wanted("DIFFERENTIAL_SEED", 1));
+    let (count, first) =
+        (from_environment("DIFFERENTIAL_SCENES", 500) as usize, from_environment("DIFFERENTIAL_SEED", 1));
     let (mut steps, mut refused, mut unsolved, mut worst) = (0, 0, 0, [0.0_f64; 3]);
-    for seed in (first as u64 * 1_000_000..).take(count) {
+    for seed in (first * 1_000_000..).take(count) {
         let scene = Scene::any(seed, 6);
         let settings = Settings::default().with_edge(Edge::Allow).with_tolerance(1e-10).with_time_rule(time_rule);
         let mut contact = match scene.contact(settings) {

@@ -3,42 +3,15 @@
 use viscocontact::Result;
 use viscocontact::prelude::*;
 
+use crate::common::draws::Draws;
 use crate::common::noise::uniform;
 
-/// Numbers that choose the parts of a scene.
-pub struct Dice(Box<dyn FnMut() -> f64>);
-
-impl Dice {
-    pub fn new(seed: u64) -> Dice {
-        let mut next = uniform(seed);
-        // the first numbers of neighbouring seeds resemble each other
-        for _ in 0..8 {
-            next();
-        }
-        Dice(Box::new(next))
-    }
-
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.0)()
-    }
-
-    /// Evenly on a logarithmic axis.
-    pub fn decades(&mut self, low: f64, high: f64) -> f64 {
-        low * (high / low).powf((self.0)())
-    }
-
-    pub fn below(&mut self, count: usize) -> usize {
-        ((self.0)() * count as f64) as usize
-    }
-
-    /// Up to four retardation times.
-    fn terms(&mut self, j: f64) -> Vec<(f64, f64)> {
-        (0..=self.below(4)).map(|_| (self.decades(0.1, 10.0) * j, self.decades(1e-3, 1e3))).collect()
-    }
-
-    pub fn chance(&mut self, share: f64) -> bool {
-        (self.0)() < share
-    }
+/// The numbers that choose the parts of a scene.
+fn draws(seed: u64) -> Draws {
+    let mut next = uniform(seed);
+    // the first numbers of neighbouring seeds resemble each other
+    (0..8).for_each(|_| _ = next());
+    Draws::of(next)
 }
 
 /// A contact and the steps it takes.
@@ -61,15 +34,15 @@ pub struct Body {
 }
 
 impl Body {
-    pub fn random(dice: &mut Dice) -> Body {
+    pub fn random(draws: &mut Draws) -> Body {
         let j = 1.0e-6;
-        match dice.below(6) {
+        match draws.below(6) {
             0 => Body { glassy: j, fluidity: 0.0, terms: Vec::new() },
             1 => Body { glassy: 0.0, fluidity: 0.0, terms: vec![(j, 1.0)] },
-            2 => Body { glassy: j, fluidity: 0.0, terms: vec![(dice.decades(0.3, 30.0) * j, 1.0)] },
+            2 => Body { glassy: j, fluidity: 0.0, terms: vec![(draws.scale(0.3, 30.0) * j, 1.0)] },
             3 => Body { glassy: j, fluidity: j, terms: Vec::new() },
-            4 => Body { glassy: j, fluidity: 0.0, terms: dice.terms(j) },
-            _ => Body { glassy: j * dice.between(0.0, 1.0), fluidity: j, terms: dice.terms(j) },
+            4 => Body { glassy: j, fluidity: 0.0, terms: terms(draws, j) },
+            _ => Body { glassy: j * draws.between(0.0, 1.0), fluidity: j, terms: terms(draws, j) },
         }
     }
 
@@ -84,27 +57,32 @@ impl Body {
     }
 }
 
+/// Up to four retardation times.
+fn terms(draws: &mut Draws, j: f64) -> Vec<(f64, f64)> {
+    (0..=draws.below(4)).map(|_| (draws.scale(0.1, 10.0) * j, draws.scale(1e-3, 1e3))).collect()
+}
+
 const SIDE: f64 = 4.0e-3;
 
 /// A shape whose face holds the square |x1|, |x2| < 1.2 mm, or what it may touch does.
-fn shape(dice: &mut Dice) -> (&'static str, Box<dyn Geometry>) {
+fn shape(draws: &mut Draws) -> (&'static str, Box<dyn Geometry>) {
     let radius = 10.0e-3;
-    match dice.below(6) {
+    match draws.below(6) {
         0 => ("sphere", Box::new(Sphere::new(radius).unwrap())),
-        1 => ("cone", Box::new(Cone::new(dice.decades(0.02, 0.3)).unwrap())),
-        2 => ("ellipsoid", Box::new(Ellipsoid::new(radius, dice.decades(0.2, 5.0) * radius).unwrap())),
-        3 => ("round punch", Box::new(FlatPunch::circular(dice.between(0.8e-3, 1.8e-3)).unwrap())),
+        1 => ("cone", Box::new(Cone::new(draws.scale(0.02, 0.3)).unwrap())),
+        2 => ("ellipsoid", Box::new(Ellipsoid::new(radius, draws.scale(0.2, 5.0) * radius).unwrap())),
+        3 => ("round punch", Box::new(FlatPunch::circular(draws.between(0.8e-3, 1.8e-3)).unwrap())),
         4 => {
-            let sides = [dice.between(1.0e-3, 3.4e-3), dice.between(1.0e-3, 3.4e-3)];
+            let sides = [draws.between(1.0e-3, 3.4e-3), draws.between(1.0e-3, 3.4e-3)];
             ("square punch", Box::new(FlatPunch::rectangular(sides).unwrap()))
         }
         _ => {
             // a bowl with waves in any direction
             let waves: Vec<[f64; 4]> = (0..12)
                 .map(|_| {
-                    let q = dice.decades(1.0e3, 1.0e4);
-                    let angle = dice.between(0.0, 6.3);
-                    [2.0e-3 / q * dice.between(0.2, 1.0), q * angle.cos(), q * angle.sin(), dice.between(0.0, 6.3)]
+                    let q = draws.scale(1.0e3, 1.0e4);
+                    let angle = draws.between(0.0, 6.3);
+                    [2.0e-3 / q * draws.between(0.2, 1.0), q * angle.cos(), q * angle.sin(), draws.between(0.0, 6.3)]
                 })
                 .collect();
             let height = move |x: f64, y: f64| {
@@ -119,16 +97,15 @@ fn shape(dice: &mut Dice) -> (&'static str, Box<dyn Geometry>) {
 impl Scene {
     /// One or two bodies under forces whose points jump by up to 2 mm.
     pub fn eccentric(seed: u64, steps: usize) -> Scene {
-        let mut dice = Dice::new(seed);
-        let dice = &mut dice;
-        let cells = [9 + dice.below(40), 9 + dice.below(40)];
-        let grid = Grid::new(cells, [SIDE, SIDE * dice.decades(0.7, 1.4)]).unwrap();
-        let (first, one) = shape(dice);
-        let two = dice.chance(0.2);
+        let draws = &mut draws(seed);
+        let cells = [9 + draws.below(40), 9 + draws.below(40)];
+        let grid = Grid::new(cells, [SIDE, SIDE * draws.scale(0.7, 1.4)]).unwrap();
+        let (first, one) = shape(draws);
+        let two = draws.chance(0.2);
         let mut name = format!("seed {seed}: {}x{} {first}", cells[0], cells[1]);
         let shapes: Vec<Box<dyn Geometry>> = if two {
             // beside each other, half as large
-            let (second, other) = shape(dice);
+            let (second, other) = shape(draws);
             name += &format!(" and {second}");
             let half = |shape: Box<dyn Geometry>, x: f64| -> Box<dyn Geometry> {
                 Box::new(FnGeometry::new(move |x1, x2| {
@@ -141,24 +118,24 @@ impl Scene {
             vec![one]
         };
         let centres: &[f64] = if two { &[-0.25 * SIDE, 0.25 * SIDE] } else { &[0.0] };
-        let body = Body::random(dice);
+        let body = Body::random(draws);
         let reach = if two { 0.4e-3 } else { 1.0e-3 };
-        let both = dice.chance(0.7);
+        let both = draws.chance(0.7);
         // an upright beginning is computed on a small window, by symmetry on a quarter of it
-        let upright_first = dice.chance(0.5);
+        let upright_first = draws.chance(0.5);
         let steps = (0..steps)
             .map(|k| {
-                let dt = if body.is_elastic_at_first() && (k == 0 || dice.chance(0.3)) {
+                let dt = if body.is_elastic_at_first() && (k == 0 || draws.chance(0.3)) {
                     0.0
                 } else {
-                    dice.decades(1.0e-3, 10.0)
+                    draws.scale(1.0e-3, 10.0)
                 };
                 let loads = centres.iter().map(|x| {
-                    let force = dice.between(0.005, 0.055);
+                    let force = draws.between(0.005, 0.055);
                     if upright_first && k == 0 {
                         return Load::force(force);
                     }
-                    let at = [x + dice.between(-reach, reach), dice.between(-1.0e-3, 1.0e-3)];
+                    let at = [x + draws.between(-reach, reach), draws.between(-1.0e-3, 1.0e-3)];
                     if both {
                         Load::eccentric_force(force, at)
                     } else {
@@ -173,20 +150,19 @@ impl Scene {
 
     /// Few cells, one to three bodies, and loads of every kind.
     pub fn any(seed: u64, steps: usize) -> Scene {
-        let mut dice = Dice::new(seed);
-        let dice = &mut dice;
-        let cells = [5 + dice.below(8), 5 + dice.below(8)];
-        let grid = Grid::new(cells, [SIDE, SIDE * dice.decades(0.5, 2.0)]).unwrap();
-        let bodies = [1, 1, 1, 2, 3][dice.below(5)];
+        let draws = &mut draws(seed);
+        let cells = [5 + draws.below(8), 5 + draws.below(8)];
+        let grid = Grid::new(cells, [SIDE, SIDE * draws.scale(0.5, 2.0)]).unwrap();
+        let bodies = [1, 1, 1, 2, 3][draws.below(5)];
         let mut name = format!("seed {seed}: {}x{}", cells[0], cells[1]);
         let width = SIDE / bodies as f64;
         let centres: Vec<f64> = (0..bodies).map(|body| (body as f64 + 0.5) * width - 0.5 * SIDE).collect();
         let shapes: Vec<Box<dyn Geometry>> = centres
             .iter()
             .map(|&centre| {
-                let (kind, shape) = shape(dice);
+                let (kind, shape) = shape(draws);
                 name += &format!(" {kind}");
-                let lift = dice.between(0.0, 1.0e-6);
+                let lift = draws.between(0.0, 1.0e-6);
                 let own = FnGeometry::new(move |x1, x2| {
                     if bodies == 1 {
                         return shape.initial_gap(x1, x2);
@@ -197,24 +173,24 @@ impl Scene {
                 Box::new(own) as Box<dyn Geometry>
             })
             .collect();
-        let body = Body::random(dice);
+        let body = Body::random(draws);
         let steps = (0..steps)
             .map(|k| {
-                let jumps = body.is_elastic_at_first() && (k == 0 || dice.chance(0.3));
-                let dt = if jumps { 0.0 } else { dice.decades(1.0e-3, 1.0e2) };
+                let jumps = body.is_elastic_at_first() && (k == 0 || draws.chance(0.3));
+                let dt = if jumps { 0.0 } else { draws.scale(1.0e-3, 1.0e2) };
                 let loads = centres.iter().map(|&centre| {
                     let reach = 0.3 * width;
-                    let tilt = |dice: &mut Dice, at: f64| match dice.below(3) {
+                    let tilt = |draws: &mut Draws, at: f64| match draws.below(3) {
                         0 => Tilt::Fixed(0.0),
-                        1 => Tilt::Fixed(dice.between(-2.0e-3, 2.0e-3)),
+                        1 => Tilt::Fixed(draws.between(-2.0e-3, 2.0e-3)),
                         _ => Tilt::Free { at },
                     };
-                    let at = [centre + dice.between(-reach, reach), dice.between(-1.0e-3, 1.0e-3)];
-                    let tilt = at.map(|at| tilt(dice, at));
-                    match dice.below(8) {
+                    let at = [centre + draws.between(-reach, reach), draws.between(-1.0e-3, 1.0e-3)];
+                    let tilt = at.map(|at| tilt(draws, at));
+                    match draws.below(8) {
                         0 => Load::Force { normal: 0.0, tilt },
-                        1 | 2 => Load::Approach { approach: dice.between(-1.0e-6, 2.0e-5), tilt },
-                        _ => Load::Force { normal: dice.decades(0.001, 1.0), tilt },
+                        1 | 2 => Load::Approach { approach: draws.between(-1.0e-6, 2.0e-5), tilt },
+                        _ => Load::Force { normal: draws.scale(0.001, 1.0), tilt },
                     }
                 });
                 (dt, loads.collect())

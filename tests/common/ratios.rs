@@ -1,0 +1,38 @@
+//! What is counted over many scenes, and its quantiles.
+
+/// Numbers with the names of their scenes, ascending.
+#[derive(Debug, Default)]
+pub struct Ratios(Vec<(f64, String)>);
+
+impl Ratios {
+    pub fn push(&mut self, ratio: f64, scene: &str) {
+        let place = self.0.partition_point(|other| other.0 <= ratio);
+        self.0.insert(place, (ratio, scene.into()));
+    }
+
+    pub fn count(&self) -> usize {
+        self.0.len()
+    }
+
+    pub fn mean(&self) -> f64 {
+        self.0.iter().map(|ratio| ratio.0).sum::<f64>() / self.count() as f64
+    }
+
+    pub fn above(&self, bound: f64) -> usize {
+        self.0.iter().filter(|ratio| ratio.0 > bound).count()
+    }
+
+    /// NaN if there are none.
+    pub fn quantile(&self, part: f64) -> f64 {
+        let last = self.0.len().saturating_sub(1) as f64;
+        self.0.get((part * last).round() as usize).map_or(f64::NAN, |ratio| ratio.0)
+    }
+
+    /// One line, and the scenes of the greatest.
+    pub fn print(&self, what: &str, scenes: usize) {
+        let [median, high, higher, most] = [0.5, 0.9, 0.99, 1.0].map(|part| self.quantile(part));
+        let (count, above) = (self.count(), self.above(2.0));
+        println!("  {what:<24} {count:>5}: {median:.3} {high:.3} {higher:.2} {most:.2}, above 2: {above}");
+        self.0.iter().rev().take(scenes).for_each(|(ratio, scene)| println!("    {ratio:.2} {scene}"));
+    }
+}
