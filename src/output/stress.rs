@@ -88,9 +88,13 @@ fn write_archive(
     archive.finish(metadata)
 }
 
+/// A quantity of the stress.
+#[cfg(feature = "npy")]
+type Quantity = fn(&Stress) -> f64;
+
 /// Names and values of the arrays of stress in an archive.
 #[cfg(feature = "npy")]
-const QUANTITIES: [(&str, fn(&Stress) -> f64); 8] = [
+const QUANTITIES: [(&str, Quantity); 8] = [
     ("s11", |s| s.s11),
     ("s22", |s| s.s22),
     ("s33", |s| s.s33),

@@ -2,10 +2,13 @@
 
 use crate::error::{MapError, Result, finite, positive};
 
+/// Returns the value of a key.
+type Find<'a> = Box<dyn Fn(&str) -> Option<&'a str> + 'a>;
+
 /// The entries of a header.
 pub(super) struct Header<'a> {
     format: &'static str,
-    find: Box<dyn Fn(&str) -> Option<&'a str> + 'a>,
+    find: Find<'a>,
 }
 
 impl<'a> Header<'a> {
