@@ -1,6 +1,6 @@
 //! The stress in a volume, as files.
 
-use std::io::{self, Seek, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use crate::ViscoelasticContact;
@@ -69,7 +69,7 @@ pub fn write_stress(
 
 #[cfg(feature = "npy")]
 fn write_archive(
-    out: &mut (impl Write + Seek),
+    out: &mut (impl Write + io::Seek),
     contact: &ViscoelasticContact,
     volume: &StressVolume,
     metadata: &str,
