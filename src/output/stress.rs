@@ -1,6 +1,6 @@
 //! The stress in a volume, as files.
 
-use std::io::{self, Seek, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use crate::ViscoelasticContact;
@@ -69,7 +69,7 @@ pub fn write_stress(
 
 #[cfg(feature = "npy")]
 fn write_archive(
-    out: &mut (impl Write + Seek),
+    out: &mut (impl Write + io::Seek),
     contact: &ViscoelasticContact,
     volume: &StressVolume,
     metadata: &str,
@@ -88,9 +88,13 @@ fn write_archive(
     archive.finish(metadata)
 }
 
+/// A quantity of the stress.
+#[cfg(feature = "npy")]
+type Quantity = fn(&Stress) -> f64;
+
 /// Names and values of the arrays of stress in an archive.
 #[cfg(feature = "npy")]
-const QUANTITIES: [(&str, fn(&Stress) -> f64); 8] = [
+const QUANTITIES: [(&str, Quantity); 8] = [
     ("s11", |s| s.s11),
     ("s22", |s| s.s22),
     ("s33", |s| s.s33),
