@@ -117,7 +117,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fast_lengths() {
+    fn fast_lengths_are_the_least_smooth_ones() {
         assert_eq!([1, 2, 3, 9, 63, 65, 95, 127, 129, 225].map(fast_length), [1, 2, 4, 12, 64, 80, 96, 128, 144, 256]);
         assert_eq!([511, 513, 641, 1023, 1999, 8191].map(fast_length), [512, 560, 672, 1024, 2048, 8192]);
         assert!((1..3000).all(|n| fast_length(n) >= n && fast_length(n) <= n + n / 3 + 16));

@@ -141,7 +141,7 @@ mod tests {
 
     /// Over an infinitely long strip the waves add up to Westergaard's 2/κ.
     #[test]
-    fn waves_add_up() {
+    fn waves_of_a_strip_add_up_to_westergaards() {
         for kappa in [0.05, 0.3, 2.0, 40.0] {
             let strip = Strip::new(1.0, 1.0);
             let sum = strip.coefficient(0, kappa) + 2.0 * (1..2000).map(|i| strip.coefficient(i, kappa)).sum::<f64>();
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn uniform_pressure_on_a_line() {
+    fn coefficients_add_up_to_a_uniform_pressure() {
         let (cells, strip) = (400, Strip::new(0.25, 300.0));
         let row = |i: usize| (0..cells).map(|j: usize| strip.coefficient(i.abs_diff(j), 0.0)).sum::<f64>();
         let mean = (0..cells).map(row).sum::<f64>() / cells as f64;

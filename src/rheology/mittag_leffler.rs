@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_and_extremes() {
+    fn the_rise_grows_from_0_to_1_at_all_arguments() {
         for alpha in [1e-3, 0.02, 0.5, 0.99, 0.999] {
             assert_eq!(mittag_leffler_rise(alpha, 0.0), 0.0);
             let mut previous = 0.0;

@@ -1,5 +1,5 @@
-//! Scenes that one process or several ranks compute. Those drawn at random have every kernel, shapes that come down along curves
-//! and are pulled off again, tilts, changing temperature, and steps that are given or chosen by their error.
+//! Scenes that one process or several ranks compute. Those drawn at random have every kernel, shapes that come down along
+//! curves and are pulled off again, tilts, changing temperature, and steps that are given or chosen by their error.
 
 use std::sync::Arc;
 

@@ -69,7 +69,8 @@ pub fn line() -> AnyScene {
     AnyScene { kernel, settings: scene.settings.with_symmetry(false), ..scene }
 }
 
-/// Steps chosen by their error on a body of two relaxation times: ranks begin within a block of the past, and one of five has no rows.
+/// Steps chosen by their error on a body of two relaxation times: ranks begin within a block of the past, and one of five has
+/// no rows.
 pub fn adaptive() -> AnyScene {
     let table = [(0.0, 0.0), (1.0, 1.0), (2.0, 0.3)].map(|(time, force)| (time, Load::force(force)));
     let history = Box::new(PiecewiseLinear::new(&table).unwrap());

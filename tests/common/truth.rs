@@ -28,7 +28,8 @@ pub struct Truth {
 
 /// The limit of runs each with half the steps of the one before, by the order that the last three show, one to four; and its
 /// uncertainty: half of its distance from the limit of the three runs before, or a part of the last difference. The limits of
-/// steps graded in two ways, on 150 scenes, differ by less than both uncertainties together in 94 %, by five times that at most.
+/// steps graded in two ways, on 150 scenes, differ by less than both uncertainties together in 94 %, by five times that at
+/// most.
 fn extrapolated(runs: &[Vec<f64>], scale: f64) -> (Vec<f64>, f64) {
     let limit = |runs: &[Vec<f64>]| -> Vec<f64> {
         let [.., coarse, middle, fine] = runs else { unreachable!("three runs or more") };

@@ -455,8 +455,8 @@ fn a_run_without_room() {
     few.write(&contact).unwrap();
 }
 
-/// On a full disk: each row that was reported as written is whole in the file and no other is there at all, no part of a frame is
-/// left, and nothing is printed.
+/// On a full disk: each row that was reported as written is whole in the file and no other is there at all, no part of a frame
+/// is left, and nothing is printed.
 #[cfg(all(unix, feature = "csv", feature = "npy", feature = "vtk"))]
 #[test]
 fn full_disks_leave_whole_files_and_print_nothing() {

@@ -154,8 +154,8 @@ fn lines_on_half_spaces_are_at_rest_at_their_datum() {
 }
 
 /// What a layer that is periodic along x2 adds to the half-space, for a wave along x2, from the sum over many images of what it
-/// adds to the coefficients of cells. That is smooth, so that uniform cells leave of the wave sin(κd/2)/(κd/2), and no other one
-/// as long as they are short against the thickness.
+/// adds to the coefficients of cells. That is smooth, so that uniform cells leave of the wave sin(κd/2)/(κd/2), and no other
+/// one as long as they are short against the thickness.
 #[test]
 fn layers_periodic_along_one_axis_are_sums_of_images() {
     let (side, count, cells, periods) = (0.25, 6, 32, 80);

@@ -81,8 +81,8 @@ impl Table {
     }
 }
 
-/// The greatest uncertainty bounds the error of 95 % of noisy tables, that at a time the error there, and no table that is off is without an interval that says
-/// so, or a warning.
+/// The greatest uncertainty bounds the error of 95 % of noisy tables, that at a time the error there, and no table that is off
+/// is without an interval that says so, or a warning.
 fn judge(kind: &str) {
     let (mut noisy, mut covered, mut off, mut late) = (0, 0, 0, 0);
     let (mut inside, mut times) = (0, 0);

@@ -149,8 +149,8 @@ fn dynamic(truth: &RelaxationSpectrum, times: &[f64], check: &[f64], mut measure
     Fitted::new(errors, table.report())
 }
 
-/// Without noise: within half a percent from 2.5 rows a decade on; fits of fewer rows that do worse have a warning; more rows never do
-/// worse, but for a tenth of a percent; the terms stay few.
+/// Without noise: within half a percent from 2.5 rows a decade on; fits of fewer rows that do worse have a warning; more rows
+/// never do worse, but for a tenth of a percent; the terms stay few.
 fn clean(kind: Kind) {
     let mut classes: [Vec<(f64, usize)>; CLASSES.len()] = Default::default();
     tables(kind, 0.0, |name, fits| {

@@ -1,5 +1,5 @@
-//! A contact that ranks share out is the same as in one process, bit by bit and whatever their number: its steps, its fields, its files, and
-//! the steps after a checkpoint. `RANKS_SCENES` (24) and `RANKS_SEED` (1) choose random scenes.
+//! A contact that ranks share out is the same as in one process, bit by bit and whatever their number: its steps, its fields,
+//! its files, and the steps after a checkpoint. `RANKS_SCENES` (24) and `RANKS_SEED` (1) choose random scenes.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -294,8 +294,8 @@ fn no_rank_waits_for_one_that_has_left() {
     assert_eq!(others, vec![(Error::Ranks(RanksError::Left { rank: 1 }), 0.0); 2]);
 }
 
-/// Whichever call of the group fails, what needed it returns the error, and the contact is as it was: the step then succeeds, with
-/// the same bits.
+/// Whichever call of the group fails, what needed it returns the error, and the contact is as it was: the step then succeeds,
+/// with the same bits.
 #[test]
 fn a_loss_at_any_call_is_an_error_and_leaves_the_contact_as_it_was() {
     let failed = within_a_minute(|| {

@@ -112,8 +112,8 @@ fn a_thousand_contacts_take_half_as_much_work_again_as_one() {
     }
 }
 
-/// From 128² to 1024² cells: of a cold start by a third at most, of a warm step less than twofold, where an edge that moved a ninth
-/// of a cell a step moves a whole one.
+/// From 128² to 1024² cells: of a cold start by a third at most, of a warm step less than twofold, where an edge that moved a
+/// ninth of a cell a step moves a whole one.
 #[test]
 fn iterations_hardly_grow_with_the_mesh() {
     let iterations = |cells: usize| {

@@ -112,7 +112,8 @@ fn elastic_bodies_dissipate_nothing() {
     assert!(contact.pressure().iter().zip(&pressure).all(|(a, b)| (a - b).abs() < 1e-3 * most));
 }
 
-/// Roughness of the creeping body stays in place, roughness of a slider moves: both scenes are equal at the start, not thereafter.
+/// Roughness of the creeping body stays in place, roughness of a slider moves: both scenes are equal at the start, not
+/// thereafter.
 #[test]
 fn roughness_moves_with_the_body_that_has_it() {
     let grid = Grid::new([128, 1], [8.0e-3, 1.0]).unwrap();

@@ -85,8 +85,8 @@ fn nearly_full_contact_converges() {
     assert!(report.convolutions <= 40 && report.fallback_iterations == 0, "{report:?}");
 }
 
-/// After the load drops to a constant, the area grows, if it changes at all (Li, Brenner & Frérot 2025): what the bodies remember
-/// of the greater load does not open the contact again.
+/// After the load drops to a constant, the area grows, if it changes at all (Li, Brenner & Frérot 2025): what the bodies
+/// remember of the greater load does not open the contact again.
 #[test]
 fn area_never_falls_in_a_hold() {
     let material = Material::incompressible(

@@ -24,8 +24,8 @@ fn run(material: &Material, load: &dyn LoadHistory, dt: f64, parts: u32) -> (Vec
 const PARTS: u32 = 16;
 
 /// The true error, relative to the answer at its time, or to a part of the greatest, as estimates are: at most three times the
-/// estimate, and at least a third of it, for forces that jump or grow linearly. At most five times where nothing determines how a
-/// load goes on within the first step.
+/// estimate, and at least a third of it, for forces that jump or grow linearly. At most five times where nothing determines how
+/// a load goes on within the first step.
 #[test]
 fn the_error_of_given_steps_is_estimated() {
     let burgers = |g, eta, g_k, eta_k| Material::incompressible(Burgers::new(g, eta, g_k, eta_k).unwrap());

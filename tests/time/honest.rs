@@ -1,8 +1,9 @@
 //! Whether the error that a run was asked for is the one it makes: random scenes against fine steps on the same mesh.
 //!
-//! The forge runs 300 scenes. By hand: `HONEST_SCENES=3000 HONEST_SEED=7 cargo test --release --test suite time::honest -- --nocapture`;
-//! `HONEST_FIRST=17` begins with that number, `HONEST_STEPS=300000` finds the truth of more scenes, and `HONEST_TRUTHS=/tmp/truths` keeps
-//! it in that file for the next time.
+//! The forge runs 300 scenes. By hand:
+//! `HONEST_SCENES=3000 HONEST_SEED=7 cargo test --release --test suite time::honest -- --nocapture`; `HONEST_FIRST=17` begins
+//! with that number, `HONEST_STEPS=300000` finds the truth of more scenes, and `HONEST_TRUTHS=/tmp/truths` keeps it in that
+//! file for the next time.
 
 use crate::common::environment::from_environment;
 use crate::common::random_scenes::RandomScene;

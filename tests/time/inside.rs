@@ -54,8 +54,8 @@ struct Seen {
     least: f64,
 }
 
-/// On a mesh the contact area changes by whole cells: it is off by the cells that are in contact in one of two states only, and so by
-/// the greatest pressure that acts on such a cell.
+/// On a mesh the contact area changes by whole cells: it is off by the cells that are in contact in one of two states only, and
+/// so by the greatest pressure that acts on such a cell.
 const QUANTITIES: [&str; 5] = ["approach", "force", "tilt", "greatest pressure", "contact area"];
 
 fn seen(contact: &ViscoelasticContact) -> Seen {
@@ -140,8 +140,8 @@ fn differences(one: &Seen, other: &Seen) -> [f64; 5] {
     [by(0), by(1), by(2), by(3), cells.fold(0.0, |most, (one, other)| most.max(one.max(*other)))]
 }
 
-/// In given steps: the state is the one of a shorter step from the same start, whatever is computed and by whichever rule. Where
-/// the indenter or the bodies move in a step, only its end is left.
+/// In given steps: the state is the one of a shorter step from the same start, whatever is computed and by whichever rule.
+/// Where the indenter or the bodies move in a step, only its end is left.
 #[test]
 fn a_state_within_a_given_step_is_a_shorter_step() {
     for (name, build, step) in scenes() {
@@ -224,8 +224,8 @@ fn a_state_within_a_long_step_follows_the_relaxation() {
     assert!(contact.within_step(time).is_err() && contact.within_step(10.0).is_ok());
 }
 
-/// A ball under steps, and ramps with holds, of force and approach: the quarters of all adaptive steps, some of which span the whole
-/// relaxation.
+/// A ball under steps, and ramps with holds, of force and approach: the quarters of all adaptive steps, some of which span the
+/// whole relaxation.
 #[test]
 fn states_within_steps_of_a_held_ball_are_exact() {
     let zener = || Material::incompressible(Zener::new(1.0e6, 0.3e6, 0.3e6).unwrap());
@@ -380,8 +380,8 @@ impl Inside {
     }
 }
 
-/// Greatest error of each quantity, relative to the greatest of the run, in tolerances; errors of pressures over what the budget states
-/// of them: within the steps of a run, and at their ends.
+/// Greatest error of each quantity, relative to the greatest of the run, in tolerances; errors of pressures over what the
+/// budget states of them: within the steps of a run, and at their ends.
 fn errors(inside: &Inside, tolerance: f64) -> Result<[[f64; 5]; 2], Box<dyn std::error::Error>> {
     let in_turn;
     let history: &dyn LoadHistory = if inside.what.starts_with("in turn") {
@@ -412,11 +412,11 @@ fn errors(inside: &Inside, tolerance: f64) -> Result<[[f64; 5]; 2], Box<dyn std:
     Ok(worst)
 }
 
-/// States within the steps of adaptive runs err by at most twice what was asked for, and greatest pressures by twice what the budget
-/// states: or as the ends of the steps do, where those err by more.
+/// States within the steps of adaptive runs err by at most twice what was asked for, and greatest pressures by twice what the
+/// budget states: or as the ends of the steps do, where those err by more.
 ///
-/// A body without elastic response answers each cell that it meets with a finite pressure at once, and the step control passes over
-/// events shorter than its resolution: of such bodies the approach is compared alone.
+/// A body without elastic response answers each cell that it meets with a finite pressure at once, and the step control passes
+/// over events shorter than its resolution: of such bodies the approach is compared alone.
 #[test]
 fn states_within_adaptive_steps_are_as_exact_as_the_ends_of_steps() {
     let (scenes, seed) = (from_environment("INSIDE_SCENES", 12), from_environment("INSIDE_SEED", 1));

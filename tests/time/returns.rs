@@ -1,8 +1,9 @@
 //! Whether runs keep to their tolerance where loads go back and return: the surface that recovers outside the contact is met
 //! again, and the errors of many steps add up.
 //!
-//! The forge runs 300 scenes. By hand: `RETURNS_SCENES=1000 RETURNS_SEED=1 cargo test --release --test suite time::returns -- --nocapture`;
-//! `RETURNS_FIRST=17` begins with that number, `RETURNS_STEPS=300000` finds the truth of more scenes.
+//! The forge runs 300 scenes. By hand:
+//! `RETURNS_SCENES=1000 RETURNS_SEED=1 cargo test --release --test suite time::returns -- --nocapture`; `RETURNS_FIRST=17`
+//! begins with that number, `RETURNS_STEPS=300000` finds the truth of more scenes.
 
 use crate::common::environment::from_environment;
 use crate::common::random_scenes::RandomScene;
@@ -20,8 +21,8 @@ const MOST_PROBLEMS: u64 = 50_000;
 /// So many times more given steps find the truth where a run seems to err by too much.
 const MORE_STEPS: u64 = 16;
 
-/// True errors are at most twice the tolerance in 99 % of random scenes at 1e-2 and 1e-3, somewhat more below, and in 98 % at most twice
-/// what the budget states in as many: of approach or force, and of the greatest pressure.
+/// True errors are at most twice the tolerance in 99 % of random scenes at 1e-2 and 1e-3, somewhat more below, and in 98 % at
+/// most twice what the budget states in as many: of approach or force, and of the greatest pressure.
 #[test]
 fn errors_are_honest_on_random_returns() {
     let [scenes, seed, first, most_steps] =

@@ -39,8 +39,8 @@ fn the_exponential_rule_is_third_order_and_second_without_its_correction() {
     }
 }
 
-/// Third order for a smooth load on any rheology with an elastic response, once steps resolve its fastest relaxation (a power law
-/// resolved from 0.3 s on); first order without. On a punch no cell comes or goes.
+/// Third order for a smooth load on any rheology with an elastic response, once steps resolve its fastest relaxation (a power
+/// law resolved from 0.3 s on); first order without. On a punch no cell comes or goes.
 #[test]
 fn the_order_is_that_of_the_rule_on_every_body() {
     let power = FractionalMaxwell::findley(0.5e-6, 0.5e-6, 0.4).unwrap().series(0.3..=10.0, 1e-2).unwrap();

@@ -117,8 +117,9 @@ fn foundation_converges_to_ting() {
     assert!(coarse / fine > 60.0, "order in space: {coarse:e} {fine:e}");
 }
 
-/// A cone on a power law, E ∝ t^(−β), in at a constant velocity up to t = 1 and out as fast: with T = t − c (t − 1), c = 2^(1/(1−β)),
-/// F(t)/F(1) = t^(2−β) − 2 (t − 1)^(1−β) [(1 − β) T + t] (Ting 1966), and the radius equals the radius at the time T on the way in.
+/// A cone on a power law, E ∝ t^(−β), in at a constant velocity up to t = 1 and out as fast: with T = t − c (t − 1), c =
+/// 2^(1/(1−β)), F(t)/F(1) = t^(2−β) − 2 (t − 1)^(1−β) [(1 − β) T + t] (Ting 1966), and the radius equals the radius at the time
+/// T on the way in.
 #[test]
 fn foundation_retracts_a_cone_as_ting() {
     for beta in [0.2_f64, 0.5] {

@@ -182,8 +182,8 @@ fn thin_layers_are_springs_or_squeezed() {
     }
 }
 
-/// As the contact grows, the approach at any time equals the approach of an elastic layer with the compliance of that time (Lee & Radok
-/// 1960), of any thickness; on a thin compressible layer δ² ∝ C(t).
+/// As the contact grows, the approach at any time equals the approach of an elastic layer with the compliance of that time (Lee
+/// & Radok 1960), of any thickness; on a thin compressible layer δ² ∝ C(t).
 #[test]
 fn a_ball_sinks_into_a_creeping_layer() {
     let (radius, a, nu) = (10.0e-3, 0.2e-3, 0.3);

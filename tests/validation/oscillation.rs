@@ -28,7 +28,8 @@ fn a_fixed_contact_loses_what_the_complex_compliance_says() {
     }
 }
 
-/// Under a ball the loss equals the loss of a fixed contact for small amplitudes; it is 7 % more when the force falls to zero in each cycle.
+/// Under a ball the loss equals the loss of a fixed contact for small amplitudes; it is 7 % more when the force falls to zero
+/// in each cycle.
 #[test]
 fn the_contact_of_a_ball_changes_the_loss_of_large_amplitudes() {
     let (material, ball) = (pmma(), 5.0e-3);

@@ -18,7 +18,8 @@ struct Outcome {
     plan: Plan,
 }
 
-/// Runs a plan; `exact` gives the approach and, if it is wanted, the pressure at a distance from the axis, by the time of the bodies.
+/// Runs a plan; `exact` gives the approach and, if it is wanted, the pressure at a distance from the axis, by the time of the
+/// bodies.
 fn deliver(
     geometry: &dyn Geometry,
     material: &Material,

@@ -1,6 +1,6 @@
-//! Plans of random scenes. Balls, cones, ellipsoids and punches, in the middle or aside, under steps, ramps, holds and sines of force
-//! and approach are compared with their equivalent foundation of independent springs; bodies that tilt with a finer run. `PLANS` and
-//! `PLANS_SEED` choose how many scenes and which, `PLANS_CELLS` the side of the largest mesh that is run.
+//! Plans of random scenes. Balls, cones, ellipsoids and punches, in the middle or aside, under steps, ramps, holds and sines of
+//! force and approach are compared with their equivalent foundation of independent springs; bodies that tilt with a finer run.
+//! `PLANS` and `PLANS_SEED` choose how many scenes and which, `PLANS_CELLS` the side of the largest mesh that is run.
 
 use std::f64::consts::PI;
 use std::time::Instant;
@@ -37,8 +37,8 @@ impl Shape {
         }
     }
 
-    /// Profile of the foundation, and what multiplies its approach, its pressure and its contact radius. Ellipses of contact keep
-    /// their shape: they behave as the sphere whose contact radius is their semi-axis a.
+    /// Profile of the foundation, and what multiplies its approach, its pressure and its contact radius. Ellipses of contact
+    /// keep their shape: they behave as the sphere whose contact radius is their semi-axis a.
     fn foundation(self) -> (Profile, [f64; 3]) {
         match self {
             Shape::Ball => (Profile::sphere(RADIUS).unwrap(), [1.0; 3]),
@@ -180,8 +180,8 @@ fn tilting(seed: u64, number: u64) -> Scene {
     Scene { name, shape, geometry, material, history, until, by_force, accuracy, area, radius }
 }
 
-/// Approach (force where the approach is given) and contact radius √(area/π) at each time, and the greatest pressure of the run;
-/// `None` where the reference does not have them.
+/// Approach (force where the approach is given) and contact radius √(area/π) at each time, and the greatest pressure of the
+/// run; `None` where the reference does not have them.
 type Truth = (Vec<[Option<f64>; 2]>, Option<f64>);
 
 /// By the foundation of a shape.
@@ -250,7 +250,8 @@ fn observed(scene: &Scene, contact: &ViscoelasticContact) -> [Option<f64>; 2] {
     [Some(main), Some((contact.contact_area() / PI).sqrt())]
 }
 
-/// True errors over what was asked: of approach or force, of the contact radius, and of the greatest pressure if that is promised.
+/// True errors over what was asked: of approach or force, of the contact radius, and of the greatest pressure if that is
+/// promised.
 struct Outcome {
     over: [Option<f64>; 3],
     note: String,

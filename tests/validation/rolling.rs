@@ -99,9 +99,9 @@ fn very_slow_and_very_fast_rolling_is_hertzs() {
     }
 }
 
-/// The limits of the friction of the reference itself. Slow: v m₁/(R C∞), m₁ = C₁ λ, and a term of the order of v λ/a more, which two
-/// speeds eliminate. Fast: (a²/2Rv) (C₁/λC₀) [ln(2vλ/a) + 1/4 − γ], the mean of ln(2L/a) + 1/4 over lengths L of the past that
-/// count by e^(−L/vλ).
+/// The limits of the friction of the reference itself. Slow: v m₁/(R C∞), m₁ = C₁ λ, and a term of the order of v λ/a more,
+/// which two speeds eliminate. Fast: (a²/2Rv) (C₁/λC₀) [ln(2vλ/a) + 1/4 − γ], the mean of ln(2L/a) + 1/4 over lengths L of the
+/// past that count by e^(−L/vλ).
 #[test]
 fn friction_of_the_reference_has_the_limits_of_slow_and_fast_rolling() {
     let scene = scene(1.0);

@@ -71,8 +71,8 @@ fn punches_pressed_in_turn_superpose() {
     }
 }
 
-/// What two indenters do to each other along the surface is equal and opposite: ∬ p ∇u over both vanishes, because the response of
-/// an elastic body is even.
+/// What two indenters do to each other along the surface is equal and opposite: ∬ p ∇u over both vanishes, because the response
+/// of an elastic body is even.
 #[test]
 fn lateral_forces_of_two_indenters_are_opposite() {
     let grid = Grid::new([96, 48], [4.0e-3, 2.0e-3]).unwrap();

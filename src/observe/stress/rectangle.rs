@@ -189,7 +189,7 @@ mod tests {
 
     /// At the surface the traction is the pressure, and beside the rectangle none.
     #[test]
-    fn traction_at_the_surface() {
+    fn the_traction_at_the_surface_is_the_pressure() {
         for z in [1e-6, 1e-9, 1e-30] {
             for nu in [0.3, 0.5] {
                 let inside = below([1.0, 0.5], [0.3, -0.2, z], nu);
@@ -205,7 +205,7 @@ mod tests {
 
     /// Above a corner a quarter of the pressure, above an edge half.
     #[test]
-    fn corners_and_edges() {
+    fn corners_bear_a_quarter_of_the_pressure_and_edges_half() {
         for (point, share) in [([1.0, 0.5], 0.25), ([-1.0, -0.5], 0.25), ([1.0, 0.0], 0.5), ([0.0, -0.5], 0.5)] {
             let stress = below([1.0, 0.5], [point[0], point[1], 1e-7], 0.3);
             assert!((stress.s33 + share).abs() < 1e-6, "{point:?} {stress:?}");
@@ -225,7 +225,7 @@ mod tests {
 
     /// A long rectangle is a strip, and a strip is Johnson's (2.30).
     #[test]
-    fn strips() {
+    fn a_long_rectangle_is_a_strip() {
         let (grid, weights) = (Grid::new([1, 1], [2.0, 1.0]).unwrap(), [1.0, 1.0 - 2.0 * 0.3]);
         for point in [[0.3, 0.0, 0.4], [-2.0, 0.0, 1.5], [1.0, 0.0, 0.1]] {
             let strip = below_strips(&grid, 0, &[1.0], point, weights);

@@ -153,7 +153,8 @@ fn random_scenes_are_told_apart() {
     assert!(accepted > 150 && swapped > 100 && reshaped > 800 && recut > 100);
 }
 
-/// Contacts of several threads save to one path: no save fails, the file is one of theirs at any time, and nothing else is left.
+/// Contacts of several threads save to one path: no save fails, the file is one of theirs at any time, and nothing else is
+/// left.
 #[test]
 fn many_save_to_one_path() {
     let folder = Temporary::folder("many");
