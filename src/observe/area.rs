@@ -113,8 +113,9 @@ impl Pressed<'_> {
                 add([0, 1].map(|axis| UNIT[from][axis] + end * (UNIT[to][axis] - UNIT[from][axis])));
             }
         }
-        let sides = polygon[..count].iter().zip(polygon[..count].iter().cycle().skip(1));
-        0.5 * sides.map(|([x1, x2], [y1, y2])| x1 * y2 - x2 * y1).sum::<f64>()
+        let sides = polygon[..count].windows(2).map(|side| side[0][0] * side[1][1] - side[0][1] * side[1][0]);
+        let ([x1, x2], [y1, y2]) = (polygon[count - 1], polygon[0]);
+        0.5 * (sides.sum::<f64>() + x1 * y2 - x2 * y1)
     }
 
     /// Distance of the end of contact from the centre of a cell in contact towards its neighbour out of contact, in cells.
