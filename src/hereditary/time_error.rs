@@ -39,6 +39,9 @@ pub(crate) struct ErrorMeasure<'a> {
     /// C(age)/C(Δ), by which an error in u grows in the end if the next steps err alike: a step responds to a defect of v
     /// with the compliance of a step, all steps together with the compliance of their age.
     pub(crate) amplification: f64,
+    /// The error of v that a unit of this defect of v leaves where a given approach follows a given force: the error of u at that
+    /// moment, to which bodies respond as glass. 0 where no such switch is to come.
+    pub(crate) on_switch: f64,
     /// How far the defects so far agree in sign, 0 … 1.
     pub(crate) agreement: f64,
     /// An immediate dashpot presses on a body that meets a cell with a finite pressure at once, however short the step: that counts
@@ -150,7 +153,7 @@ impl History {
         let error_of_v = if v_matters { relative(of_v, scales[1]) } else { 0.0 };
         // without an elastic response the force is unbounded at short times
         let stiffness = match (measure.matters[1], rule.has_dashpot()) {
-            (false, _) => 0.0,
+            (false, _) => measure.on_switch / rule.compliance(),
             (true, false) => measure.stiffness,
             (true, true) => measure.stiffness.min(1.0 / rule.compliance()),
         };
@@ -158,10 +161,12 @@ impl History {
         let left = (on_return / measure.tolerance).min(MOST_OF_SURFACE);
         let error_on_return =
             RECOVERING * relative(stiffness * rule.compliance() * of_surface, whole[1]) * (1.0 + SURFACE_WEIGHT * left);
-        let error = error_of_u.max(error_of_v);
+        let error_on_switch = if u_matters { relative(measure.on_switch * smooth, whole[1]) } else { 0.0 };
+        let error = error_of_u.max(error_of_v).max(error_on_switch);
         TimeError {
             relative: error.max(error_on_return),
             by_kinks: error >= error_on_return
+                && error > error_on_switch
                 && if error_of_u > error_of_v { edge * kinks > growth * smooth } else { EDGE * kinks > smooth },
             greatest: relative(greatest, scales[1]),
             sizes: if pressed { sizes } else { [0.0; 2] },
