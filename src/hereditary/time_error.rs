@@ -198,6 +198,7 @@ impl History {
                 sums.weight += w;
                 (sums.of_u, sums.of_v) = (sums.of_u + w * u.abs(), sums.of_v + w * v.abs());
                 sums.touching += f64::from(u8::from(touches));
+                sums.touched += f64::from(u8::from(touched));
                 let going_on = if lacking > 0 { to_first * first[k] } else { 0.0 };
                 let bend = (u - u_before) - going_on;
                 if touches && !touched {
@@ -236,7 +237,7 @@ fn relative(part: f64, whole: f64) -> f64 {
 
 named_sums! {
     /// Sums over the cells, with their weights w.
-    Sums[14] {
+    Sums[15] {
         weight: +,
         /// Σ w |u|.
         of_u: +,
@@ -252,6 +253,8 @@ named_sums! {
         left: max,
         /// Number of cells in contact.
         touching: +,
+        /// Number of cells in contact before the step.
+        touched: +,
         /// Sum of what v lacks by kinks.
         kinks: +,
         /// Sum of the squares of the most that v can lack by each kink.
@@ -290,7 +293,9 @@ impl Sums {
             None => 0.0,
         };
         let counts = !rule.has_dashpot() || rule.tried.dt > resolution;
-        let left = if counts { LEFT * self.left } else { 0.0 };
+        // the load of cells that leave goes to those that stay
+        let shed = if self.touching > 0.0 { (self.touched / self.touching).max(1.0) } else { 1.0 };
+        let left = if counts { LEFT * shed * self.left } else { 0.0 };
         let kinks = if counts { self.kinks.abs().max(LASTING * self.squares.sqrt()) } else { 0.0 };
         Defect {
             signed: scale * self.signed / self.weight,
