@@ -42,6 +42,8 @@ pub(crate) struct ErrorMeasure<'a> {
     /// The error of v that a unit of this defect of v leaves where a given approach follows a given force: the error of u at that
     /// moment, to which bodies respond as glass. 0 where no such switch is to come.
     pub(crate) on_switch: f64,
+    /// The mean v of the greatest loads, to which that error is relative; 0 where no such switch is to come.
+    pub(crate) greatest_on_switch: f64,
     /// How far the defects so far agree in sign, 0 … 1.
     pub(crate) agreement: f64,
     /// An immediate dashpot presses on a body that meets a cell with a finite pressure at once, however short the step: that counts
@@ -138,7 +140,10 @@ impl History {
         let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
         // bodies apart have no force that could be wrong, but a surface
         let [u_matters, v_matters] = if pressed { measure.matters } else { [true, false] };
-        let whole = [scales[0].max(LASTING_PART * measure.greatest[0]), scales[1].max(measure.greatest[1])];
+        let whole = [
+            scales[0].max(LASTING_PART * measure.greatest[0]),
+            scales[1].max(measure.greatest[1]).max(measure.greatest_on_switch),
+        ];
         let [in_contact, outside] = measure.lasting;
         let lasting = match (measure.matters[0], pressed) {
             (true, true) => relative(in_contact, whole[0]),

@@ -129,6 +129,11 @@ impl RunScale {
         }
     }
 
+    /// Estimated mean v under the greatest loads.
+    pub(super) fn greatest_potential(&self) -> f64 {
+        self.depth_over_compliance.max(self.stress)
+    }
+
     /// The first time from `now` on at which a given approach follows a given force; infinite if there is none.
     pub(super) fn next_switch(&self, now: f64) -> f64 {
         self.switches.iter().copied().find(|&time| time >= now).unwrap_or(f64::INFINITY)

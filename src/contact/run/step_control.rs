@@ -159,6 +159,8 @@ impl StepControl {
         let span = stop - self.since;
         let resolution = SHORTEST * self.tolerance * span;
         let shortest = self.defects.as_ref().map_or(f64::INFINITY, DefectAccumulation::shortest_time);
+        let on_switch = self.on_switch(scene, [now, age, dt], SHORTEST_TOUCH * resolution)?;
+        let greatest = self.scale.as_ref().map_or(0.0, RunScale::greatest_potential);
         Ok(StepContext {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
             coming_back: self.scale.as_ref().map_or(0.0, |scale| scale.coming_back(scene, load, [age, now])),
@@ -166,7 +168,8 @@ impl StepControl {
                 .lasting
                 .as_ref()
                 .map_or([0.0; 2], |errors| errors.each_ref().map(LastingError::of_displacement)),
-            on_switch: self.on_switch(scene, [now, age, dt], SHORTEST_TOUCH * resolution)?,
+            on_switch,
+            greatest_on_switch: if on_switch[1] > 0.0 { greatest } else { 0.0 },
             tolerance: self.tolerance,
             agreement: self.defects.as_ref().map_or(1.0, DefectAccumulation::agreement),
             steps: self.steps as f64 + 1.0,

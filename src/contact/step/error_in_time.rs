@@ -62,6 +62,8 @@ pub(in crate::contact) struct StepContext {
     /// Where a given approach is to follow a given force: the errors of u at that moment, each over the glassy compliance, that a
     /// unit of a defect of v leaves in this step and in all steps; 0 where none is to follow.
     pub(in crate::contact) on_switch: [f64; 2],
+    /// The mean v of the greatest loads, to which the error at that moment is relative; 0 where none is to follow.
+    pub(in crate::contact) greatest_on_switch: f64,
     /// How far the defects of the run agree in sign, 0 … 1.
     pub(in crate::contact) agreement: f64,
     /// Steps so far, this one included.
@@ -82,6 +84,7 @@ impl Default for StepContext {
             lasting: [0.0; 2],
             tolerance: 1.0,
             on_switch: [0.0; 2],
+            greatest_on_switch: 0.0,
             agreement: 1.0,
             steps: f64::INFINITY,
             resolution: 0.0,
@@ -103,7 +106,7 @@ pub(in crate::contact) fn error_in_time(
     outlook: StepContext,
 ) -> TimeError {
     let StepContext { expected, coming_back, lasting, tolerance, on_switch: [one, all], agreement, .. } = outlook;
-    let StepContext { steps, resolution, beginning, is_given, .. } = outlook;
+    let StepContext { greatest_on_switch, steps, resolution, beginning, is_given, .. } = outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();
@@ -159,6 +162,7 @@ pub(in crate::contact) fn error_in_time(
         advance,
         amplification,
         on_switch,
+        greatest_on_switch,
         agreement,
         resolution,
         beginning,
