@@ -58,9 +58,9 @@ impl Scene {
         }
     }
 
-    /// The first corner of the temperature after a time.
-    pub(super) fn next_temperature_corner(&self, after: f64) -> f64 {
-        let corner = self.temperature.as_ref().and_then(|history| history.next_corner(after));
-        corner.unwrap_or(f64::INFINITY)
+    /// The first corner of the temperature after a time, and whether the temperature jumps there.
+    pub(super) fn next_temperature_corner(&self, after: f64) -> (f64, bool) {
+        let Some(history) = &self.temperature else { return (f64::INFINITY, false) };
+        history.next_corner(after).map_or((f64::INFINITY, false), |corner| (corner, history.jumps_at(corner)))
     }
 }

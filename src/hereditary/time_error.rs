@@ -39,6 +39,11 @@ pub(crate) struct ErrorMeasure<'a> {
     /// C(age)/C(Δ), by which an error in u grows in the end if the next steps err alike: a step responds to a defect of v
     /// with the compliance of a step, all steps together with the compliance of their age.
     pub(crate) amplification: f64,
+    /// The error of v that a unit of this defect of v leaves where a given approach follows a given force: the error of u at that
+    /// moment, to which bodies respond as glass. 0 where no such switch is to come.
+    pub(crate) on_switch: f64,
+    /// The mean v of the greatest loads, to which that error is relative; 0 where no such switch is to come.
+    pub(crate) greatest_on_switch: f64,
     /// How far the defects so far agree in sign, 0 … 1.
     pub(crate) agreement: f64,
     /// An immediate dashpot presses on a body that meets a cell with a finite pressure at once, however short the step: that counts
@@ -135,7 +140,10 @@ impl History {
         let edge = if rule.has_dashpot() { EDGE } else { 1.0 };
         // bodies apart have no force that could be wrong, but a surface
         let [u_matters, v_matters] = if pressed { measure.matters } else { [true, false] };
-        let whole = [scales[0].max(LASTING_PART * measure.greatest[0]), scales[1].max(measure.greatest[1])];
+        let whole = [
+            scales[0].max(LASTING_PART * measure.greatest[0]),
+            scales[1].max(measure.greatest[1]).max(measure.greatest_on_switch),
+        ];
         let [in_contact, outside] = measure.lasting;
         let lasting = match (measure.matters[0], pressed) {
             (true, true) => relative(in_contact, whole[0]),
@@ -150,7 +158,7 @@ impl History {
         let error_of_v = if v_matters { relative(of_v, scales[1]) } else { 0.0 };
         // without an elastic response the force is unbounded at short times
         let stiffness = match (measure.matters[1], rule.has_dashpot()) {
-            (false, _) => 0.0,
+            (false, _) => measure.on_switch / rule.compliance(),
             (true, false) => measure.stiffness,
             (true, true) => measure.stiffness.min(1.0 / rule.compliance()),
         };
@@ -158,10 +166,12 @@ impl History {
         let left = (on_return / measure.tolerance).min(MOST_OF_SURFACE);
         let error_on_return =
             RECOVERING * relative(stiffness * rule.compliance() * of_surface, whole[1]) * (1.0 + SURFACE_WEIGHT * left);
-        let error = error_of_u.max(error_of_v);
+        let error_on_switch = if u_matters { relative(measure.on_switch * smooth, whole[1]) } else { 0.0 };
+        let error = error_of_u.max(error_of_v).max(error_on_switch);
         TimeError {
             relative: error.max(error_on_return),
             by_kinks: error >= error_on_return
+                && error > error_on_switch
                 && if error_of_u > error_of_v { edge * kinks > growth * smooth } else { EDGE * kinks > smooth },
             greatest: relative(greatest, scales[1]),
             sizes: if pressed { sizes } else { [0.0; 2] },
@@ -193,6 +203,7 @@ impl History {
                 sums.weight += w;
                 (sums.of_u, sums.of_v) = (sums.of_u + w * u.abs(), sums.of_v + w * v.abs());
                 sums.touching += f64::from(u8::from(touches));
+                sums.touched += f64::from(u8::from(touched));
                 let going_on = if lacking > 0 { to_first * first[k] } else { 0.0 };
                 let bend = (u - u_before) - going_on;
                 if touches && !touched {
@@ -231,7 +242,7 @@ fn relative(part: f64, whole: f64) -> f64 {
 
 named_sums! {
     /// Sums over the cells, with their weights w.
-    Sums[14] {
+    Sums[15] {
         weight: +,
         /// Σ w |u|.
         of_u: +,
@@ -247,6 +258,8 @@ named_sums! {
         left: max,
         /// Number of cells in contact.
         touching: +,
+        /// Number of cells in contact before the step.
+        touched: +,
         /// Sum of what v lacks by kinks.
         kinks: +,
         /// Sum of the squares of the most that v can lack by each kink.
@@ -285,7 +298,9 @@ impl Sums {
             None => 0.0,
         };
         let counts = !rule.has_dashpot() || rule.tried.dt > resolution;
-        let left = if counts { LEFT * self.left } else { 0.0 };
+        // the load of cells that leave goes to those that stay
+        let shed = if self.touching > 0.0 { (self.touched / self.touching).max(1.0) } else { 1.0 };
+        let left = if counts { LEFT * shed * self.left } else { 0.0 };
         let kinks = if counts { self.kinks.abs().max(LASTING * self.squares.sqrt()) } else { 0.0 };
         Defect {
             signed: scale * self.signed / self.weight,

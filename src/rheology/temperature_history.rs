@@ -69,6 +69,8 @@ const NOISE: f64 = 0.75;
 /// magnitude matters.
 const LENGTH_TOLERANCE: f64 = 1e-3;
 const MAX_TRIALS: usize = 100;
+/// Relative change of the temperature within the resolution of a time, beyond which it jumps.
+const CONTINUOUS: f64 = 1e-9;
 
 impl TemperatureHistory {
     /// A temperature \[K\] that never changes.
@@ -149,6 +151,12 @@ impl TemperatureHistory {
             Course::Table(table) => table.after(after),
             Course::Function { corners, .. } => corners.after(after),
         }
+    }
+
+    /// Whether the temperature jumps at a corner.
+    pub(crate) fn jumps_at(&self, corner: f64) -> bool {
+        let before = self.at(corner.next_down());
+        (self.at(corner) - before).abs() > CONTINUOUS * before.abs()
     }
 
     /// Approximate time after `from` in which the reduced time grows by `reduced`; at most `most`.

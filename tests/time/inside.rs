@@ -423,7 +423,7 @@ fn states_within_adaptive_steps_are_as_exact_as_the_ends_of_steps() {
     let first = from_environment("INSIDE_FIRST", 0);
     let lines = from_environment("INSIDE_LINES", 0) > 0;
     let mut all: [[Ratios; 5]; 2] = Default::default();
-    let (mut worse, mut failed) = ([0; 5], 0);
+    let (mut worse, mut failed, mut beyond) = ([0; 5], 0, 0);
     for number in first..first + scenes {
         let inside = Inside::new(seed, number);
         for tolerance in [1e-3, 1e-4] {
@@ -440,6 +440,7 @@ fn states_within_adaptive_steps_are_as_exact_as_the_ends_of_steps() {
                 errors.iter_mut().for_each(|errors| errors[1..].fill(0.0));
             }
             let [within, ends] = errors;
+            beyond += usize::from(within[..3].iter().any(|&error| error > 2.0));
             if lines || within.iter().any(|&error| error > 2.0) {
                 println!("{within:.2?}, ends {ends:.2?} {name}");
             }
@@ -457,7 +458,9 @@ fn states_within_adaptive_steps_are_as_exact_as_the_ends_of_steps() {
         ends.print("", 0);
     }
     let runs = all[0][0].count() + failed;
+    println!("{beyond} of {runs} runs are beyond 2 in approach, force or tilt within steps");
     println!("{failed} of {runs} runs failed; worse within steps than at their ends, of each quantity: {worse:?}");
     // three times as many looks see more of the moments just before a cell joins or leaves
     assert!(failed == 0 && worse.iter().all(|worse| 100 * worse <= runs));
+    assert!(100 * beyond <= 4 * runs);
 }

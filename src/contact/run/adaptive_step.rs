@@ -2,9 +2,8 @@
 
 use crate::contact::computation::Computation;
 use crate::contact::read::report::StepReport;
-use crate::contact::run::follow::Follow;
 use crate::contact::run::progress::StepErrors;
-use crate::contact::run::step_control::{NODES, StepControl};
+use crate::contact::run::step_control::{LEAST_TOLERANCE, NODES, StepControl};
 use crate::contact::scene::Scene;
 use crate::contact::settings::Settings;
 use crate::contact::state::State;
@@ -30,77 +29,95 @@ const FIRST_FRACTION: f64 = 1e-6;
 /// them.
 const SHARES: [f64; 5] = [0.153, 0.381, 0.5, 0.677, 0.891];
 
-impl Follow<'_> {
-    /// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step,
-    /// judges its error, and accepts it or tries a shorter one.
-    pub(super) fn adaptive_step(&mut self, control: &mut StepControl, corner: f64) -> Result<StepReport> {
-        let ViscoelasticContact { scene, computation, .. } = &*self.contact;
-        let now = self.contact.time();
-        control.begin(scene, &computation.state, &*self.history, self.until)?;
-        let tolerance = control.solver_tolerance(scene.settings.tolerance);
-        let corner = corner.min(control.first_touch(&computation.state, &*self.history, corner.min(self.until)));
-        let stop = corner.min(self.until).min(self.next_stop(now));
-        let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
-        loop {
-            let ViscoelasticContact { scene, computation, .. } = &*self.contact;
-            let [wanted, reduced] = control.length(scene, &computation.state, &*self.history, self.until - now)?;
-            let (order, dashpot) = order_of(&computation.state, &scene.settings);
-            let (time, dt) = towards(now, stop, wanted);
-            // near the resolution of the time, a shortened step may round to the same end again and again
-            if time <= now || time >= tried {
-                return Err(Error::StepTooShort { time: now, dt, tolerance: control.tolerance });
-            }
-            tried = time;
-            let loads = [self.history.before(time).validated_at(time)?];
-            let mut step = self.contact.request(time, dt, &loads, tolerance)?;
-            let clock = &computation.state.clock;
-            let straying = control.watch(&*self.history, [now, time], |time| scene.reduced_time(clock, time))?;
-            let parted = computation.state.current.contact_cells == 0 && control.stays_away(&*self.history, now, time);
-            if straying > control.tolerance && !parted {
-                control.judge(step.interval.dt, straying, order, dashpot);
+/// What a run prescribes of its next adaptive step.
+#[derive(Clone, Copy)]
+pub(super) struct Course<'a> {
+    pub(super) history: &'a dyn LoadHistory,
+    /// End of the run.
+    pub(super) until: f64,
+    /// The next time at which a step has to end, and the next at which the displacement may have a kink.
+    pub(super) stop: f64,
+    pub(super) kink: f64,
+}
+
+/// Takes one step as long as its error allows: proposes a length, checks the load within the step, tries the step, judges its
+/// error, and accepts it or tries a shorter one.
+pub(super) fn adaptive_step(
+    contact: &mut ViscoelasticContact,
+    control: &mut StepControl,
+    course: Course<'_>,
+) -> Result<(StepReport, StepErrors)> {
+    let Course { history, until, .. } = course;
+    let ViscoelasticContact { scene, computation, .. } = &*contact;
+    let now = computation.state.clock.time;
+    control.begin(scene, &computation.state, history, until)?;
+    let tolerance = control.solver_tolerance(scene.settings.tolerance);
+    let touch = control.first_touch(&computation.state, history, course.stop);
+    let (kink, stop) = (course.kink.min(touch), course.stop.min(touch));
+    let (mut wasted, mut failures, mut tried) = ([0; 2], 0, f64::INFINITY);
+    loop {
+        let ViscoelasticContact { scene, computation, .. } = &*contact;
+        let (state, clock) = (&computation.state, &computation.state.clock);
+        let [wanted, reduced] = control.length(scene, state, history, until - now)?;
+        let (order, dashpot) = order_of(state, &scene.settings);
+        let (time, dt) = towards(now, stop, wanted);
+        // near the resolution of the time, a shortened step may round to the same end again and again
+        if time <= now || time >= tried {
+            return Err(Error::StepTooShort { time: now, dt, tolerance: control.tolerance });
+        }
+        tried = time;
+        let loads = [history.before(time).validated_at(time)?];
+        let mut step = contact.request(time, dt, &loads, tolerance)?;
+        let straying = control.watch(history, [now, time], |time| scene.reduced_time(clock, time))?;
+        let parted = state.current.contact_cells == 0 && control.stays_away(history, now, time);
+        if straying > control.tolerance && !parted {
+            control.judge(step.interval.dt, straying, order, dashpot);
+            continue;
+        }
+        let age = step.interval.reduced - clock.undisturbed_until;
+        let end = scene.reduced_time(clock, kink.min(until))?;
+        let outlook = control.outlook(scene, &loads[0], [time, age, step.interval.dt, end])?;
+        step.interval.interpolant = scene.settings.adaptive_interpolant();
+        step.tolerance = tolerance.min((tolerance / outlook.on_switch[1]).max(LEAST_TOLERANCE));
+        let attempt = match contact.attempt(&step) {
+            Err(Error::NotConverged { .. }) if failures < MAX_SOLVER_RETRIES => {
+                failures += 1;
+                control.shorten(step.interval.dt);
+                add_work(&mut wasted, &contact.computation);
                 continue;
             }
-            step.interval.interpolant = scene.settings.adaptive_interpolant();
-            let attempt = match self.contact.attempt(&step) {
-                Err(Error::NotConverged { .. }) if failures < MAX_SOLVER_RETRIES => {
-                    failures += 1;
-                    control.shorten(step.interval.dt);
-                    add_work(&mut wasted, &self.contact.computation);
-                    continue;
-                }
-                other => other?,
-            };
-            let ViscoelasticContact { scene, computation, .. } = &*self.contact;
-            let computed = attempt.computation(computation);
-            let age = step.interval.reduced - computed.state.clock.undisturbed_until;
-            let end = scene.reduced_time(&computation.state.clock, corner.min(self.until))?;
-            let outlook = control.outlook(scene, &loads[0], [time, age, end]);
-            let mut error = error_in_time(scene, computed, &step, outlook);
-            computed.state.region.rows().intact()?;
-            // the path of bodies that stay apart does not matter
-            if !parted || computed.state.region.is_positive_anywhere(&computed.trial.solution.pressure) {
-                error.relative = error.relative.max(straying);
-            }
-            let by_kinks = error.by_kinks && error.relative > control.tolerance;
-            let order = if by_kinks { ORDER_OF_KINKS } else { order };
-            if control.judge(step.interval.dt, error.relative, order, dashpot) {
-                let is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
-                control.include(computed.state.history.exponential_rule(), step.interval.dt, &error, is_given);
-                control.accept(step.interval.reduced, loads[0], [reduced, step.interval.dt], time == corner, order);
-                let mut report = self.contact.accept(attempt, step, error)?;
-                if time == corner {
-                    self.contact.computation.state.history.reset_differences();
-                }
-                report.convolutions += wasted[0];
-                report.preconditioner_applications += wasted[1];
-                let time = error.relative.max(error.lasting);
-                let errors = StepErrors { time, pressure: error.greatest, residual: report.residual };
-                self.progress.include(errors, self.contact.mesh_error().unwrap_or_default());
-                return Ok(report);
-            }
+            other => other?,
+        };
+        let ViscoelasticContact { scene, computation, .. } = &*contact;
+        let computed = attempt.computation(computation);
+        let mut error = error_in_time(scene, computed, &step, outlook);
+        computed.state.region.rows().intact()?;
+        // the path of bodies that stay apart does not matter
+        if !parted || computed.state.region.is_positive_anywhere(&computed.trial.solution.pressure) {
+            error.relative = error.relative.max(straying);
+        }
+        let by_kinks = error.by_kinks && error.relative > control.tolerance;
+        let order = if by_kinks { ORDER_OF_KINKS } else { order };
+        if !control.judge(step.interval.dt, error.relative, order, dashpot) {
             events::rejected(time, dt, error.relative, control.tolerance);
             add_work(&mut wasted, computed);
+            continue;
         }
+        let is_given = !computed.trial.free.iter().any(|freedom| freedom.translation);
+        control.include(computed.state.history.exponential_rule(), step.interval.dt, &error, is_given);
+        let is_kink = time == kink && !is_held(history, [now, time]);
+        control.accept(step.interval.reduced, loads[0], [reduced, step.interval.dt], is_kink, order);
+        let mut report = contact.accept(attempt, step, error)?;
+        // bodies apart do not respond to a given approach before they touch
+        let apart = matches!(loads[0], Load::Approach { .. }) && report.contact_cells == 0 && time < touch;
+        if is_kink && !apart {
+            contact.computation.state.history.reset_differences();
+        }
+        report.convolutions += wasted[0];
+        report.preconditioner_applications += wasted[1];
+        let time = error.relative.max(error.lasting);
+        let errors = StepErrors { time, pressure: error.greatest, residual: report.residual };
+        return Ok((report, errors));
     }
 }
 
@@ -207,6 +224,12 @@ fn order_of(state: &State, settings: &Settings) -> (u32, bool) {
         Some(rule) => (rule.order(settings.adaptive_interpolant()), rule.has_dashpot()),
         None => (1, false),
     }
+}
+
+/// Whether the load is the same from `now` to `time`, and for as long after it.
+fn is_held(history: &dyn LoadHistory, [now, time]: [f64; 2]) -> bool {
+    let load = history.at(now);
+    load == history.at(time) && load == history.at(time + (time - now))
 }
 
 /// Adds the convolutions and preconditioner applications of a rejected step.

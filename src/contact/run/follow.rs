@@ -2,6 +2,7 @@
 
 use crate::ascending::Ascending;
 use crate::contact::read::report::StepReport;
+use crate::contact::run::adaptive_step::{Course, adaptive_step};
 #[cfg(feature = "checkpoint")]
 use crate::contact::run::progress::Autosave;
 use crate::contact::run::progress::{ErrorBudget, Progress, StepErrors, Stepping};
@@ -194,11 +195,20 @@ impl<'a> Follow<'a> {
         if corner <= now || corner.is_nan() {
             return Err(LoadError::InvalidBreakpoint { after: now, breakpoint: corner }.into());
         }
-        let corner = corner.min(self.contact.scene.next_temperature_corner(now));
-        if let Some(mut control) = self.progress.control.take() {
-            let rows = self.contact.computation.state.region.rows();
-            let report = rows.together(|| self.adaptive_step(&mut control, corner));
-            self.progress.control = Some(control);
+        let (turn, jumps) = self.contact.scene.next_temperature_corner(now);
+        let kink = if jumps { corner.min(turn) } else { corner };
+        let corner = corner.min(turn);
+        let stop = corner.min(self.until).min(self.next_stop(now));
+        let Follow { contact, history, until, progress, .. } = self;
+        if let Some(mut control) = progress.control.take() {
+            let rows = contact.computation.state.region.rows();
+            let course = Course { history: &**history, until: *until, stop, kink };
+            let report = rows.together(|| {
+                let (report, errors) = adaptive_step(contact, &mut control, course)?;
+                progress.include(errors, contact.mesh_error().unwrap_or_default());
+                Ok(report)
+            });
+            progress.control = Some(control);
             return report.map(Some);
         }
         let Stepping::Fixed { dt } = self.stepping else { return Ok(None) };

@@ -35,6 +35,8 @@ pub(super) struct RunScale {
     /// Estimated final depth under the greatest force, divided by the final compliance.
     depth_over_compliance: f64,
     returns: Returns,
+    /// Times at which a given approach follows a given force, ascending.
+    switches: Vec<f64>,
 }
 
 impl RunScale {
@@ -60,10 +62,16 @@ impl RunScale {
         let mut times: Vec<f64> = equal.chain(corners.take(BREAKPOINTS)).collect();
         times.sort_by(f64::total_cmp);
         scale.returns = Returns::new(history, touch, &times)?;
-        for time in times.into_iter().chain(decades) {
+        let mut times: Vec<f64> = times.into_iter().chain(decades).collect();
+        times.sort_by(f64::total_cmp);
+        let mut last = None;
+        for time in times {
             for load in [LoadHistory::before, LoadHistory::at] {
                 let load = load(history, time).validated_at(time)?;
                 scale.include(&load);
+                if let (Load::Approach { .. }, Some(Load::Force { .. })) = (load, last.replace(load)) {
+                    scale.switches.push(time);
+                }
                 if let (Load::Approach { .. }, true) = (load, time > now) {
                     scale.stress = scale.stress.max(scale.magnitude(&load) / compliance_at(time)?);
                 }
@@ -121,6 +129,16 @@ impl RunScale {
         }
     }
 
+    /// Estimated mean v under the greatest loads.
+    pub(super) fn greatest_potential(&self) -> f64 {
+        self.depth_over_compliance.max(self.stress)
+    }
+
+    /// The first time from `now` on at which a given approach follows a given force; infinite if there is none.
+    pub(super) fn next_switch(&self, now: f64) -> f64 {
+        self.switches.iter().copied().find(|&time| time >= now).unwrap_or(f64::INFINITY)
+    }
+
     /// The depth below first touch to which the bodies may return after `now`, when they have been loaded for the time
     /// `age`; 0 if they do not return.
     pub(super) fn coming_back(&self, scene: &Scene, load: &Load, [age, now]: [f64; 2]) -> f64 {
@@ -165,7 +183,11 @@ impl Returns {
         let (mut returns, mut receded, mut last) = (Returns::default(), false, None);
         for &time in times {
             for load in [LoadHistory::before, LoadHistory::at] {
-                let Load::Approach { approach, .. } = load(history, time).validated_at(time)? else { continue };
+                let Load::Approach { approach, .. } = load(history, time).validated_at(time)? else {
+                    // a force may have receded, too
+                    (receded, last) = (true, None);
+                    continue;
+                };
                 if let Some(before) = last.replace(approach) {
                     receded |= approach < before;
                     if receded && approach > before.max(touch) {

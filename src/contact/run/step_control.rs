@@ -3,7 +3,7 @@
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::scene::Scene;
 use crate::contact::state::State;
-use crate::contact::step::error_in_time::StepContext;
+use crate::contact::step::error_in_time::{SHORTEST_TOUCH, StepContext};
 use crate::error::Result;
 use crate::hereditary::{ExponentialRule, LastingError, TimeError};
 use crate::load::{Load, LoadHistory};
@@ -48,6 +48,11 @@ const INTEGRAL: f64 = 0.7;
 const PROPORTIONAL: f64 = 0.2;
 /// Error of the solver relative to that in time.
 const SOLVER_SHARE: f64 = 0.03;
+/// An error of u before a switch to a given approach counts at most so many times: the force by which stiffer glass answers is over
+/// before the first step ends.
+const MOST_ON_SWITCH: f64 = 3e3;
+/// The solver attains this tolerance in all scenes.
+pub(super) const LEAST_TOLERANCE: f64 = 1e-10;
 /// Events shorter than this fraction of the time between corners, times the tolerance, are not resolved.
 const SHORTEST: f64 = 0.03;
 /// Nodes of the quadratic and its correction, besides the end of the step.
@@ -109,7 +114,8 @@ impl StepControl {
         self.rejected += 1;
     }
 
-    /// Tolerance of the solver that suits the tolerance in time, at least `wanted`.
+    /// Tolerance of the solver that suits the tolerance in time, at least `wanted`, where no switch from a given force to a given
+    /// approach is to come.
     pub(super) fn solver_tolerance(&self, wanted: f64) -> f64 {
         wanted.max(SOLVER_SHARE * self.tolerance)
     }
@@ -149,23 +155,43 @@ impl StepControl {
 
     /// Context of a step under `load` that ends `now`, when the bodies have been loaded for `age`, before a corner or
     /// the end of the run at `stop`.
-    pub(super) fn outlook(&self, scene: &Scene, load: &Load, [now, age, stop]: [f64; 3]) -> StepContext {
+    pub(super) fn outlook(&self, scene: &Scene, load: &Load, [now, age, dt, stop]: [f64; 4]) -> Result<StepContext> {
         let span = stop - self.since;
+        let resolution = SHORTEST * self.tolerance * span;
         let shortest = self.defects.as_ref().map_or(f64::INFINITY, DefectAccumulation::shortest_time);
-        StepContext {
+        let on_switch = self.on_switch(scene, [now, age, dt], SHORTEST_TOUCH * resolution)?;
+        let greatest = self.scale.as_ref().map_or(0.0, RunScale::greatest_potential);
+        Ok(StepContext {
             expected: self.scale.as_ref().map_or([0.0; 2], |scale| scale.expected(scene, load, age)),
             coming_back: self.scale.as_ref().map_or(0.0, |scale| scale.coming_back(scene, load, [age, now])),
             lasting: self
                 .lasting
                 .as_ref()
                 .map_or([0.0; 2], |errors| errors.each_ref().map(LastingError::of_displacement)),
+            on_switch,
+            greatest_on_switch: if on_switch[1] > 0.0 { greatest } else { 0.0 },
             tolerance: self.tolerance,
             agreement: self.defects.as_ref().map_or(1.0, DefectAccumulation::agreement),
             steps: self.steps as f64 + 1.0,
-            resolution: SHORTEST * self.tolerance * span,
+            resolution,
             beginning: SHORTEST * self.tolerance * span.min(shortest),
             is_given: false,
+        })
+    }
+
+    /// Errors of u where the next given approach follows a given force, each over the glassy compliance, that a unit of a defect of
+    /// v leaves: in a step of length `dt` that ends `now`, and in all steps of bodies that have been loaded for `age`. Bodies without
+    /// elastic response have the compliance of a `touch`.
+    fn on_switch(&self, scene: &Scene, [now, age, dt]: [f64; 3], touch: f64) -> Result<[f64; 2]> {
+        let switch = self.scale.as_ref().map_or(f64::INFINITY, |scale| scale.next_switch(now));
+        if switch.is_infinite() {
+            return Ok([0.0; 2]);
         }
+        let left = scene.reduced_length([now, switch], switch - now)?;
+        let compliance = |t: f64| scene.material.contact_compliance(t);
+        let glassy = if compliance(0.0) > 0.0 { compliance(0.0) } else { compliance(touch) };
+        let responses = [dt, age].map(|length| (compliance(left + length) - compliance(left)) / glassy);
+        Ok(responses.map(|response| response * (MOST_ON_SWITCH / responses[1]).min(1.0)))
     }
 
     /// Chooses the length of the next step after a step of length `dt` with the given error, which grows with the power

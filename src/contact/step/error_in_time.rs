@@ -47,7 +47,7 @@ fn first_touch(tried: &Computation, gap: &[f64]) -> f64 {
 const SHARE_OF_DIRECT_SUM: f64 = 0.5;
 
 /// A body that comes back to a surface meets it with the modulus of this time, in times that matter.
-const SHORTEST_TOUCH: f64 = 10.0;
+pub(in crate::contact) const SHORTEST_TOUCH: f64 = 10.0;
 
 /// Data of a run besides the step.
 #[derive(Debug, Clone, Copy)]
@@ -59,6 +59,11 @@ pub(in crate::contact) struct StepContext {
     /// The mean errors of u that earlier steps have left, in contact and outside, and the tolerance of each step.
     pub(in crate::contact) lasting: [f64; 2],
     pub(in crate::contact) tolerance: f64,
+    /// Where a given approach is to follow a given force: the errors of u at that moment, each over the glassy compliance, that a
+    /// unit of a defect of v leaves in this step and in all steps; 0 where none is to follow.
+    pub(in crate::contact) on_switch: [f64; 2],
+    /// The mean v of the greatest loads, to which the error at that moment is relative; 0 where none is to follow.
+    pub(in crate::contact) greatest_on_switch: f64,
     /// How far the defects of the run agree in sign, 0 … 1.
     pub(in crate::contact) agreement: f64,
     /// Steps so far, this one included.
@@ -78,6 +83,8 @@ impl Default for StepContext {
             coming_back: 0.0,
             lasting: [0.0; 2],
             tolerance: 1.0,
+            on_switch: [0.0; 2],
+            greatest_on_switch: 0.0,
             agreement: 1.0,
             steps: f64::INFINITY,
             resolution: 0.0,
@@ -98,8 +105,8 @@ pub(in crate::contact) fn error_in_time(
     step: &Step<'_>,
     outlook: StepContext,
 ) -> TimeError {
-    let StepContext { expected, coming_back, lasting, tolerance, agreement, steps, resolution, beginning, is_given } =
-        outlook;
+    let StepContext { expected, coming_back, lasting, tolerance, on_switch: [one, all], agreement, .. } = outlook;
+    let StepContext { greatest_on_switch, steps, resolution, beginning, is_given, .. } = outlook;
     let (Computation { state, trial, .. }, interval) = (tried, step.interval);
     if interval.dt == 0.0 || interval.stride != [0; 2] {
         return TimeError::default();
@@ -126,7 +133,9 @@ pub(in crate::contact) fn error_in_time(
     let age = state.clock.age();
     let (old, young) = (compliance(age + interval.dt), compliance(interval.dt));
     // so many steps cannot add up to more than as many times the error of one
-    let amplification = if young > 0.0 { (old / young).clamp(1.0, steps.max(1.0)) } else { 1.0 };
+    let amplified = |one: f64, all: f64| if one > 0.0 { (all / one).clamp(1.0, steps.max(1.0)) } else { 1.0 };
+    let amplification = amplified(young, old);
+    let on_switch = one * (1.0 + agreement * (amplified(one, all) - 1.0));
     let pressure = [&pressure[..], &before.pressure, &state.previous.solution.pressure];
     let forces = trial.free.iter().filter(|freedom| freedom.translation).count();
     let matters = [forces > 0, forces < trial.free.len()];
@@ -152,6 +161,8 @@ pub(in crate::contact) fn error_in_time(
         tolerance,
         advance,
         amplification,
+        on_switch,
+        greatest_on_switch,
         agreement,
         resolution,
         beginning,
