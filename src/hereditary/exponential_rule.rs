@@ -138,6 +138,11 @@ impl ExponentialRule {
         }
     }
 
+    /// E_i of each relaxation time.
+    pub(super) fn moduli(&self) -> impl Iterator<Item = f64> + '_ {
+        self.relaxation.terms().iter().map(|&(modulus, _)| modulus)
+    }
+
     /// Number of relaxation times.
     pub(crate) fn branches(&self) -> usize {
         self.relaxation.terms().len()
