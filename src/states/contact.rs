@@ -89,9 +89,13 @@ impl StatesContact {
     /// state beyond it, or a group of levels leaves its order; if `dt` = 0 and the body has no elastic response, or the time is beyond the
     /// material's. A step that fails changes nothing.
     pub fn step(&mut self, dt: f64, load: Load) -> Result<StatesReport> {
+        self.step_to(self.time + dt, dt, load)
+    }
+
+    /// Advances by `dt` to `time`.
+    pub(super) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StatesReport> {
         non_negative("time step", dt)?;
         load.validate()?;
-        let time = self.time + dt;
         let length = match &self.temperature {
             Some(history) => history.reduced_time(self.time, time)?,
             None => dt,
@@ -104,6 +108,27 @@ impl StatesContact {
         self.levels.step(&self.states, (time, length), self.interpolant, demand)?;
         (self.time, self.reduced_time) = (time, reduced);
         Ok(self.report())
+    }
+
+    /// Takes the state of another contact on the same states and of the same material, without allocating where there is room: a
+    /// caller that iterates keeps a clone, tries steps and copies the clone back.
+    pub fn copy_from(&mut self, other: &StatesContact) {
+        self.levels.copy_from(&other.levels);
+        (self.time, self.reduced_time) = (other.time, other.reduced_time);
+    }
+
+    pub(super) fn reset_differences(&mut self) {
+        self.levels.reset_differences();
+    }
+
+    /// The first corner of the temperature after a time; infinite where there is none.
+    pub(super) fn next_temperature_corner(&self, after: f64) -> f64 {
+        self.temperature.as_ref().and_then(|history| history.next_corner(after)).unwrap_or(f64::INFINITY)
+    }
+
+    /// Depth of the load point \[m\].
+    pub(super) fn depth(&self) -> f64 {
+        self.levels.motions.depth
     }
 
     fn demand(&self, load: Load) -> Result<Demand> {

@@ -41,9 +41,11 @@
 mod contact;
 mod curve;
 mod levels;
+mod run;
 mod sweep;
 
 pub use crate::error::StatesError;
 pub use contact::{StatesContact, StatesReport};
 pub use curve::{ElasticState, ElasticStates};
+pub use run::StatesRun;
 pub use sweep::{Reach, Sweep};
