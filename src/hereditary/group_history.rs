@@ -108,6 +108,10 @@ impl GroupHistory {
         let [before, row] = [group - 1, group].map(|group| &self.rows[group * stride..(group + 1) * stride]);
         let same = |scale: f64, a: f64, b: f64| (a - b).abs() <= 1e-14 * scale;
         before[..HEAD].iter().zip(&row[..HEAD]).all(|(&a, &b)| same(1.0, a, b))
-            && before[HEAD..].iter().zip(&row[HEAD..]).zip(self.rule.moduli()).all(|((&a, &b), modulus)| same(modulus, a, b))
+            && before[HEAD..]
+                .iter()
+                .zip(&row[HEAD..])
+                .zip(self.rule.moduli())
+                .all(|((&a, &b), modulus)| same(modulus, a, b))
     }
 }

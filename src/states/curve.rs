@@ -185,7 +185,11 @@ impl ElasticStates {
         // Newton's steps, halved intervals where one leaves the bracket
         for _ in 0..MAX_STEPS {
             let excess = hermite([a.depth, b.depth], slopes, s) - wanted;
-            if excess > 0.0 { high = s } else { low = s }
+            if excess > 0.0 {
+                high = s
+            } else {
+                low = s
+            }
             let next = s - excess / hermite_slope([a.depth, b.depth], slopes, s);
             let next = if next > low && next < high { next } else { 0.5 * (low + high) };
             if (next - s).abs() <= f64::EPSILON {

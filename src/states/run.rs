@@ -62,7 +62,20 @@ impl StatesContact {
         let (start, before) = (self.time(), self.clone());
         let whole = before.clone();
         let (load, steps, next, greatest, rejected) = (None, 0, 0.0, [0.0; 2], 0);
-        StatesRun { contact: self, history, stepping, until, start, steps, load, next, before, whole, greatest, rejected }
+        StatesRun {
+            contact: self,
+            history,
+            stepping,
+            until,
+            start,
+            steps,
+            load,
+            next,
+            before,
+            whole,
+            greatest,
+            rejected,
+        }
     }
 }
 

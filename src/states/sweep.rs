@@ -3,6 +3,7 @@
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
+use crate::Grid;
 use crate::contact::{Builder, Settings, ViscoelasticContact};
 use crate::error::{Error, Result, StatesError, count_within, finite, positive, within};
 use crate::geometry::Geometry;
@@ -10,7 +11,6 @@ use crate::kernel::{InfluenceKernel, Layer};
 use crate::load::{Load, Tilt};
 use crate::rheology::{Elastic, Material};
 use crate::states::curve::{ElasticState, ElasticStates, Rest, approach_at, load_point};
-use crate::Grid;
 
 /// How far a sweep goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,11 +37,10 @@ pub struct Sweep {
     settings: Settings,
 }
 
-/// The smallest contact of a sweep, in cells, and the smallest level over the greatest.
-const FEWEST_CELLS: usize = 12;
+/// The smallest level of a sweep over the greatest.
 const LEAST_LEVEL: f64 = 1e-12;
-/// The level, over the greatest, below which a contact of more cells counts as the smallest if it stays the same.
-const LINEAR_LEVEL: f64 = 1e-3;
+/// The level, over the greatest, below which a contact that stays the same is the smallest.
+const LINEAR_LEVEL: f64 = 1e-6;
 /// Levels closer than by this factor have no state between them.
 const FINEST: f64 = 1.01;
 /// Greatest fall of a pressure, over the greatest pressure, that is taken for an error of the solver.
@@ -112,7 +111,8 @@ impl Sweep {
         to: Reach,
         progress: impl FnMut(&[ElasticState]) -> ControlFlow<()>,
     ) -> Result<Arc<ElasticStates>> {
-        let accuracy = within("accuracy of a sweep", self.accuracy, (1e-8..=0.1).contains(&self.accuracy), "in [1e-8, 0.1]")?;
+        let accuracy =
+            within("accuracy of a sweep", self.accuracy, (1e-8..=0.1).contains(&self.accuracy), "in [1e-8, 0.1]")?;
         count_within("states of a sweep", self.max_states, self.max_states >= 3, "3 or more")?;
         let (Reach::Level(reach) | Reach::Approach(reach)) = to;
         positive("reach of a sweep", reach)?;
@@ -212,7 +212,11 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
         self.contact.step(0.0, Load::Approach { approach, tilt: self.tilt })?;
         match self.contact.force() {
             force if force > 0.0 => Ok(force),
-            _ => Err(Error::OutOfRange { field: "approach that a sweep reaches", value: approach, allowed: "beyond the first touch" }),
+            _ => Err(Error::OutOfRange {
+                field: "approach that a sweep reaches",
+                value: approach,
+                allowed: "beyond the first touch",
+            }),
         }
     }
 
@@ -243,11 +247,11 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
     /// Levels from `last` down by halves to the smallest contact, then what lies between them, the largest contacts first.
     fn sweep(&mut self, last: f64) -> Result<()> {
         let mut coarse = vec![self.solve(last)?];
-        // on the same cells, motions are linear in the level
-        let mut is_linear = false;
+        // on the same cells, motions are linear in the level; no contact has fewer than one cell for each free motion
+        let (mut is_linear, free) = (false, self.tilt.iter().filter(|tilt| matches!(tilt, Tilt::Free { .. })).count());
         loop {
             let Solved { state, pressure } = coarse.last().expect("the first state was solved");
-            let is_smallest = is_linear && (state.cells <= FEWEST_CELLS || state.level < LINEAR_LEVEL * last);
+            let is_smallest = is_linear && (state.cells <= 1 + free || state.level < LINEAR_LEVEL * last);
             if is_smallest || state.level < LEAST_LEVEL * last {
                 break;
             }
