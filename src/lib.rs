@@ -200,6 +200,7 @@ mod quadrature;
 pub mod rheology;
 mod rounded;
 mod solver;
+pub mod states;
 mod sum;
 
 pub use contact::ViscoelasticContact;

@@ -11,6 +11,7 @@ mod map;
 mod material;
 mod output;
 mod ranks;
+mod states;
 mod table;
 mod text;
 mod violation;
@@ -27,6 +28,7 @@ pub use map::MapError;
 pub use material::MaterialError;
 pub use output::OutputError;
 pub use ranks::RanksError;
+pub use states::StatesError;
 pub use table::{Place, TableError};
 pub use text::TextError;
 pub use violation::{Location, Verdict, Violation};
@@ -267,6 +269,10 @@ pub enum Error {
     /// A contact that [ranks](crate::parallel) share out does not support the call, or a rank has left or failed.
     #[error(transparent)]
     Ranks(#[from] RanksError),
+
+    /// A contact on elastic states is not covered by them.
+    #[error(transparent)]
+    States(#[from] StatesError),
 
     /// Something other than a regular file exists at the path. It is left unchanged: only regular files are replaced.
     #[error("{path} cannot be written: it is {kind}, not a regular file")]

@@ -55,7 +55,7 @@ pub(crate) struct ExponentialRule {
     kept: usize,
     /// The term that the last step lacks, 0 for none.
     lacking: usize,
-    /// The three above at the start of the last step.
+    /// `spans`, `known` and `lacking` at the start of the last step.
     at_start: ([f64; 2], usize, usize),
     /// Of the step predicted last.
     pub(super) tried: Weights,
@@ -128,6 +128,11 @@ impl ExponentialRule {
             greatest: 0.0,
             repeated: 0,
         }
+    }
+
+    /// E_i of each relaxation time.
+    pub(super) fn moduli(&self) -> impl Iterator<Item = f64> + '_ {
+        self.relaxation.terms().iter().map(|&(modulus, _)| modulus)
     }
 
     /// Number of relaxation times.

@@ -24,6 +24,7 @@ mod direct_sum;
 mod error_weight;
 mod exponential_rule;
 mod field;
+mod group_history;
 mod history;
 mod interval;
 mod lasting_error;
@@ -39,6 +40,7 @@ pub(crate) use exponential_rule::{ExponentialRule, Interpolant};
 pub(crate) use field::{Field, Role};
 #[cfg(feature = "checkpoint")]
 pub(crate) use field::{interleaved, runs};
+pub(crate) use group_history::GroupHistory;
 pub(crate) use history::{History, HistoryInputs};
 pub(crate) use interval::Interval;
 pub(crate) use lasting_error::LastingError;

@@ -87,9 +87,9 @@ const EDGE: f64 = 3.0;
 const LASTING: f64 = 1.3;
 /// Errors that last count relative to this part of the greatest displacement at least.
 const LASTING_PART: f64 = 0.5;
-/// Errors that earlier steps have left count where they exceed this part of the tolerance; a tolerance beyond it makes a step count
-/// so many times more.
+/// Part of the tolerance up to which errors left by earlier steps are ignored.
 const TOLERATED: f64 = 0.8;
+/// The error of a step is multiplied by 1 + this weight times the excess, in tolerances.
 const LASTING_WEIGHT: f64 = 5.0;
 /// The same for a surface to come back to, whose defects are of one sign while it recovers: they count so many times as much, and
 /// the defects of earlier steps up to a few tolerances.

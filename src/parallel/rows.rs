@@ -176,7 +176,8 @@ impl Rows {
         self.sum_of(|band| sum::sum_of_pairs(&a[band.clone()], &b[band], &f))
     }
 
-    /// Merges the numbers of the ranks in their order: for merges that do not depend on the grouping.
+    /// Merges the numbers of the ranks, rank by rank: for a maximum or a minimum. A sum would depend on the number of ranks: see
+    /// [`Rows::merge`].
     pub(crate) fn join<const K: usize>(
         &self,
         own: [f64; K],
@@ -250,7 +251,8 @@ impl Rows {
         shared.call(|group| group.exchange(send, send_counts, received, receive_counts));
     }
 
-    /// Runs `job`, a call of all ranks. If one is lost meanwhile, that is the error, whatever `job` has found: its sums are NaN.
+    /// Runs `job`, a call of all ranks, and returns its result. If a rank was lost, in `job` or before it, the loss is returned instead, once, and
+    /// forgotten: sums and gathered values of `job` are NaN then. It does not wait for other ranks.
     pub(crate) fn together<T>(&self, job: impl FnOnce() -> Result<T>) -> Result<T> {
         let done = job();
         match self.shared.as_ref().and_then(|shared| lock(&shared.lost).take()) {

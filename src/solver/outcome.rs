@@ -77,7 +77,8 @@ impl ResidualSums {
         ResidualSums { greatest_gap: set.greatest_gap, cells: set.count(), ..ResidualSums::default() }
     }
 
-    /// Writes the residual to `solution` and its trace; `rounding` is the rounding of c K p of the guess.
+    /// Finds the rounding of the gap from that of the guess, `rounding`, and writes the relative residual and its own rounding to `solution`,
+    /// the residual to its trace, too. The step judges convergence and warns of rounding by them.
     pub(crate) fn note(&mut self, problem: &Problem<'_>, rounding: f64, solution: &mut Solution) {
         self.cancellation = problem.rounding(&solution.pressure) + rounding;
         // where a rank is lost, the sums are NaN, which ends the iterations

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The modules at the top of `src`: each may use the modules above it, none below it. docs/design.md describes them.
-const ORDER: [&str; 30] = [
+const ORDER: [&str; 31] = [
     "extent",
     "guide",
     "linalg",
@@ -31,6 +31,7 @@ const ORDER: [&str; 30] = [
     "analytic",
     "observe",
     "contact",
+    "states",
     "laws",
     "output",
     "plan",

@@ -8,6 +8,7 @@ mod inside;
 mod protocols;
 mod protocols_run;
 mod returns;
+mod states;
 mod temperature;
 mod time_rules;
 mod uncached;

@@ -97,8 +97,9 @@ impl Default for StepContext {
 /// Displacements, and v, below this part of the greatest are measured relative to that part.
 const SMALL: [f64; 2] = [0.05, 0.2];
 
-/// The estimated error in time of the step that was `tried`, relative to the displacement, or to a small part of the greatest
-/// so far.
+/// The estimated error in time of the step that was `tried`: under a given force relative to the mean displacement in contact, under a
+/// given motion to the mean of v = K p, both weighted by the pressure. Where they are small, it is relative to the parts [`SMALL`] of the
+/// greatest of the run, expected ones included.
 pub(in crate::contact) fn error_in_time(
     scene: &Scene,
     tried: &Computation,

@@ -7,8 +7,8 @@
 //! | gap before any pressure (Eq. 1) | [`gap`] |
 //! | initial guess of the pressure | [`initial_guess`] |
 //! | contact problem of an elastic body (Eq. 2 to Eq. 8), by conjugate gradients | [`Window::solve`] |
-//! | pressure and displacement kept for the steps to come (Eq. 11) | [`History::respond`](crate::hereditary::History::respond) |
-//! | next step | [`ViscoelasticContact::accept`] |
+//! | displacement at the end of the step | [`History::respond`](crate::hereditary::History::respond) |
+//! | pressure and displacement kept for the steps to come (Eq. 11); next step | [`ViscoelasticContact::accept`] |
 //!
 //! Beyond the paper, a step checks whether the bodies might touch outside the computed region. If so, it continues in a copy
 //! of the state on a larger region ([`outgrown`]). A step writes to its trial, to this copy, and to the part of the history

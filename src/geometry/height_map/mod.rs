@@ -46,7 +46,8 @@ const SAME_SPACING: f64 = 1e-12;
 /// assert_eq!(map.missing(), 1);
 /// assert!(map.initial_gap(0.0, 0.0).is_nan());
 ///
-/// let map = map.filled()?.leveled(Form::Tilt)?;
+/// // the form first, from the known heights: holes are filled on the level surface
+/// let map = map.leveled(Form::Tilt)?.filled()?;
 /// assert!(map.initial_gap(0.0, 0.0).abs() < 1e-18);
 /// assert!((map.initial_gap(1e-6, 1e-6) - 1e-9).abs() < 1e-18);
 /// assert_eq!(map.initial_gap(2e-6, 0.0), f64::INFINITY);

@@ -22,7 +22,8 @@ use crate::solver::extension::passes::{Blocks, Known, Operation, Pass, RowBuffer
 /// Blocks hold the sums S = Σ w m over their parts, and the factor φ = κ/(4 + 4 (κ − 1) s). The weights are
 /// linear in φ: w m = φ S, and w = (κ − 4 φ)/(κ − 1).
 ///
-/// An [`Attenuation`] multiplies x of one level before the next finer one is computed: the factor is 1 near A and decays with distance.
+/// An [`Attenuation`] multiplies x of one level before the next finer one is computed: near A, within the reach, the residual is
+/// extended as it is, beyond it times the factor.
 ///
 /// Axes that are not periodic are mirrored at their ends, as the symmetric parts of a grid are.
 ///
@@ -48,12 +49,12 @@ pub(crate) struct Extension {
     attenuation: Option<Attenuation>,
 }
 
-/// Range of an extension, and the factor beyond it.
+/// Range of an extension, and the factor that its values are multiplied by beyond it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Attenuation {
-    /// In cells.
+    /// Range \[cells\].
     pub(crate) reach: f64,
-    /// Negative for a change of sign.
+    /// Factor, without unit; negative where the extended residual changes its sign.
     pub(crate) remains: f64,
 }
 

@@ -1,0 +1,64 @@
+use crate::rounded::{TIME, rounded};
+
+/// What the elastic states of a contact cannot answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum StatesError {
+    /// The pressure of an elastic contact falls somewhere while its load grows, so that its states are no family of contacts that only
+    /// grow. [`ViscoelasticContact`](crate::ViscoelasticContact) computes such a scene.
+    #[error(
+        "between the levels {} and {} m² the pressure of the elastic contact falls by {} of the greatest pressure somewhere, where at most {} is rounding: its elastic states do not superpose; step it with ViscoelasticContact",
+        rounded(.levels[0], 3), rounded(.levels[1], 3), rounded(*.fall, 3), rounded(*.allowed, 3)
+    )]
+    Shrinks {
+        /// Levels between which the pressure falls \[m²\].
+        levels: [f64; 2],
+        /// Greatest fall of the pressure of a cell over the greatest pressure.
+        fall: f64,
+        /// Greatest fall that is taken for rounding.
+        allowed: f64,
+    },
+
+    /// The contact needs a state beyond the last one of the sweep.
+    #[error("at t = {} s the contact needs {needed}, beyond the last elastic state at {}: sweep further ([`Reach`](crate::states::Reach))", rounded(*.time, TIME), rounded(*.last, TIME))]
+    Beyond {
+        /// End of the step \[s\].
+        time: f64,
+        /// What is needed: a level, or an approach.
+        needed: String,
+        /// The level of the last state \[m²\], or its approach \[m\].
+        last: f64,
+    },
+
+    /// The contact needs a level below the first from which the elastic contact only grows.
+    #[error("at t = {} s the contact needs the level {level:.3e} m², below {first:.3e} m², from which the pressure of the elastic contact falls nowhere: step it with ViscoelasticContact", rounded(*.time, TIME))]
+    Below {
+        /// End of the step \[s\].
+        time: f64,
+        /// The level needed \[m²\].
+        level: f64,
+        /// The first level \[m²\].
+        first: f64,
+    },
+
+    /// The tilts of a load are not those of the sweep: a load point that moves and tilts that change are not covered.
+    /// [`ViscoelasticContact`](crate::ViscoelasticContact) computes them.
+    #[error(
+        "the states were swept for {swept}, and {given} was given: a load point or a prescribed tilt that changes is no superposition of elastic states; step it with ViscoelasticContact"
+    )]
+    OtherTilt {
+        /// The tilts of the sweep, in words.
+        swept: String,
+        /// The load given, in words.
+        given: String,
+    },
+
+    /// A group of levels left 0 ≤ W ≤ 1, or pulls: the levels are not in order, and the superposition is not proved.
+    #[error("at t = {} s a group of levels has W = {displacement}, outside [0, 1]: take a shorter step, or ViscoelasticContact", rounded(*.time, TIME))]
+    OutOfOrder {
+        /// End of the step \[s\].
+        time: f64,
+        /// Displacement of the group, 1 in contact.
+        displacement: f64,
+    },
+}

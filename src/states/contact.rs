@@ -1,0 +1,206 @@
+//! A creeping contact on elastic states.
+
+use std::fmt;
+use std::sync::Arc;
+
+use crate::error::{Error, Result, StatesError, non_negative};
+use crate::hereditary::{ExponentialRule, Interpolant};
+use crate::load::Load;
+use crate::rheology::{Material, TemperatureHistory, is_known};
+use crate::states::curve::{ElasticStates, approach_at};
+use crate::states::levels::{Demand, Levels};
+
+/// A contact of one material on the [`ElasticStates`] of its surface, advanced step by step like a
+/// [`ViscoelasticContact`](crate::ViscoelasticContact), by the same time rule.
+///
+/// A step costs about N (N_τ + 3) multiplications for N groups of levels and N_τ relaxation times: microseconds. Every step adds a group at
+/// most; groups with the same past merge. A step allocates nothing unless there are more groups than ever before.
+#[derive(Clone)]
+pub struct StatesContact {
+    states: Arc<ElasticStates>,
+    levels: Levels,
+    temperature: Option<TemperatureHistory>,
+    known_until: f64,
+    time: f64,
+    reduced_time: f64,
+    interpolant: Interpolant,
+}
+
+/// The state after a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct StatesReport {
+    /// Time \[s\].
+    pub time: f64,
+    /// Normal force \[N\].
+    pub force: f64,
+    /// Approach of the origin \[m\].
+    pub approach: f64,
+    /// Tilt along x1 and x2 \[rad\].
+    pub tilt: [f64; 2],
+    /// Level c(t) of the elastic contact with the same area \[m²\]; 0 without contact.
+    pub level: f64,
+    /// Contact area \[m²\].
+    pub area: f64,
+    /// Number of groups of levels.
+    pub groups: usize,
+}
+
+impl StatesContact {
+    /// An undisturbed contact of a material on the surface of these states.
+    ///
+    /// # Errors
+    /// If the material has no exponential series ([`Material::fitted`] gives it one), or another Poisson's ratio than the layer of the sweep.
+    pub fn new(states: &Arc<ElasticStates>, material: &Material) -> Result<StatesContact> {
+        material.validate()?;
+        if let Some(layer) = &states.layer {
+            layer.check_material(&material.poisson_ratios().collect::<Vec<_>>())?;
+        }
+        let creep = material.contact_spectrum()?.ok_or_else(|| material.no_series("a contact on elastic states"))?;
+        Ok(StatesContact {
+            states: Arc::clone(states),
+            levels: Levels::new(ExponentialRule::new(&creep)),
+            temperature: None,
+            known_until: material.known_until(),
+            time: 0.0,
+            reduced_time: 0.0,
+            interpolant: Interpolant::CorrectedLinear,
+        })
+    }
+
+    /// With a temperature that changes: the material creeps in reduced time.
+    #[must_use]
+    pub fn with_temperature(mut self, temperature: TemperatureHistory) -> StatesContact {
+        self.temperature = Some(temperature);
+        self
+    }
+
+    /// With steps that are linear and stay so, as [`TimeRule::ExponentialLinear`](crate::contact::TimeRule::ExponentialLinear).
+    #[must_use]
+    pub fn with_linear_steps(mut self) -> StatesContact {
+        self.interpolant = Interpolant::Linear;
+        self
+    }
+
+    /// Advances by `dt` \[s\] to a load; `dt` = 0 is a jump.
+    ///
+    /// # Errors
+    /// If `dt` is negative or not finite, or the load invalid; [`StatesError`] if the load has other tilts or another load point than the sweep, needs a
+    /// state beyond it, or a group of levels leaves its order; if `dt` = 0 and the body has no elastic response, or the time is beyond the
+    /// material's. A step that fails changes nothing.
+    pub fn step(&mut self, dt: f64, load: Load) -> Result<StatesReport> {
+        self.step_to(self.time + dt, dt, load)
+    }
+
+    /// Advances by `dt` to `time`.
+    pub(super) fn step_to(&mut self, time: f64, dt: f64, load: Load) -> Result<StatesReport> {
+        non_negative("time step", dt)?;
+        load.validate()?;
+        let length = match &self.temperature {
+            Some(history) => history.reduced_time(self.time, time)?,
+            None => dt,
+        };
+        let reduced = if self.temperature.is_some() { self.reduced_time + length } else { time };
+        if !is_known(reduced, self.known_until) {
+            return Err(Error::BeyondMaterial { time, age: reduced, known_until: self.known_until });
+        }
+        let demand = self.demand(load)?;
+        self.levels.step(&self.states, (time, length), self.interpolant, demand)?;
+        (self.time, self.reduced_time) = (time, reduced);
+        Ok(self.report())
+    }
+
+    /// Takes the state of another contact on the same states and of the same material, without allocating where there is room: a
+    /// caller that iterates keeps a clone, tries steps and copies the clone back.
+    pub fn copy_from(&mut self, other: &StatesContact) {
+        self.levels.copy_from(&other.levels);
+        (self.time, self.reduced_time) = (other.time, other.reduced_time);
+    }
+
+    pub(super) fn reset_differences(&mut self) {
+        self.levels.reset_differences();
+    }
+
+    /// The first corner of the temperature after a time; infinite where there is none.
+    pub(super) fn next_temperature_corner(&self, after: f64) -> f64 {
+        self.temperature.as_ref().and_then(|history| history.next_corner(after)).unwrap_or(f64::INFINITY)
+    }
+
+    /// Depth of the load point \[m\].
+    pub(super) fn depth(&self) -> f64 {
+        self.levels.motions.depth
+    }
+
+    fn demand(&self, load: Load) -> Result<Demand> {
+        if load.tilt() != self.states.tilt {
+            let swept = Load::Force { normal: 0.0, tilt: self.states.tilt }.to_string();
+            return Err(StatesError::OtherTilt { swept, given: load.to_string() }.into());
+        }
+        match load {
+            Load::Force { normal, .. } => Ok(Demand::Force(normal)),
+            Load::Approach { approach, .. } => Ok(Demand::Depth(approach - self.states.rest.approach)),
+        }
+    }
+
+    /// The state.
+    pub fn report(&self) -> StatesReport {
+        StatesReport {
+            time: self.time,
+            force: self.force(),
+            approach: self.approach(),
+            tilt: self.tilt(),
+            level: self.levels.level,
+            area: self.contact_area(),
+            groups: self.levels.count(),
+        }
+    }
+
+    /// Time \[s\].
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
+    /// Normal force \[N\].
+    pub fn force(&self) -> f64 {
+        self.levels.force
+    }
+
+    /// Approach of the origin \[m\].
+    pub fn approach(&self) -> f64 {
+        let depth = self.levels.motions.depth + self.states.rest.approach;
+        depth - approach_at(self.states.load_point(), 0.0, self.tilt())
+    }
+
+    /// Tilt along x1 and x2 \[rad\].
+    pub fn tilt(&self) -> [f64; 2] {
+        let (rest, turned) = (self.states.rest.tilt, self.levels.motions.tilt);
+        [rest[0] + turned[0], rest[1] + turned[1]]
+    }
+
+    /// Level c(t): the elastic contact at this level has the same area \[m²\]; 0 without contact.
+    pub fn level(&self) -> f64 {
+        self.levels.level
+    }
+
+    /// Contact area \[m²\].
+    pub fn contact_area(&self) -> f64 {
+        self.states.area(self.levels.level)
+    }
+
+    /// Stiffness over the contact modulus \[m\], see [`ElasticState::stiffness`](crate::states::ElasticState::stiffness).
+    pub fn stiffness_over_modulus(&self) -> f64 {
+        self.states.stiffness(self.levels.level)
+    }
+
+    /// The pressure as a sum of elastic ones: level l_i at the top of each group that carries pressure, and its traction w_i \[Pa\]. With
+    /// p_e(l) the pressure of the elastic contact of unit compliance, p = Σ w_i (p_e(l_i) − p_e(l_i−1)), l_0 = 0.
+    pub fn tractions(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.levels.tractions().take_while(|(top, _)| *top <= self.levels.level)
+    }
+}
+
+impl fmt::Debug for StatesContact {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("StatesContact").field("report", &self.report()).finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,279 @@
+//! The elastic states of a contact, and what lies between them.
+
+use std::fmt;
+
+use crate::kernel::Layer;
+use crate::load::Tilt;
+
+/// Upper limit of the steps of Newton's method.
+const MAX_STEPS: usize = 100;
+
+/// An elastic contact of unit compliance at one level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct ElasticState {
+    /// Level l: force times compliance \[m²\].
+    pub level: f64,
+    /// Approach of the origin \[m\].
+    pub approach: f64,
+    /// Tilt along x1 and x2 \[rad\].
+    pub tilt: [f64; 2],
+    /// Stiffness over the contact modulus, dl/dy for a motion of the body without tilt \[m\]: 2a for a circle of radius a. Infinite on periodic
+    /// bodies in full contact.
+    pub stiffness: f64,
+    /// Contact area, fractions of cells included \[m²\].
+    pub area: f64,
+    /// Number of cells in contact.
+    pub cells: usize,
+    /// Number of contact patches.
+    pub patches: usize,
+}
+
+/// The elastic states of one contact, by ascending level, from a [`Sweep`](crate::states::Sweep).
+///
+/// Between states the logarithm of the approach is a cubic of the logarithm of the level, and area and tilt are linear in it; below the
+/// first state the approach is a power of the level.
+#[derive(Clone)]
+pub struct ElasticStates {
+    pub(super) states: Vec<ElasticState>,
+    pub(super) rest: Rest,
+    /// Tilts, or load points, along x1 and x2.
+    pub(super) tilt: [Tilt; 2],
+    pub(super) layer: Option<Layer>,
+    /// Greatest error that a state in the middle of two others showed, after which none was added.
+    pub(super) error: f64,
+    /// Below this level the elastic contact does not only grow: these levels are held or free as a whole.
+    pub(super) first_level: f64,
+    nodes: Vec<Node>,
+}
+
+/// Motions of the elastic contact in the limit of no load: where the body rests.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rest {
+    /// Approach of the load point \[m\].
+    pub(super) approach: f64,
+    pub(super) tilt: [f64; 2],
+}
+
+/// ln l, ln δ and its slope, with δ the depth of the load point.
+#[derive(Debug, Clone, Copy)]
+struct Node {
+    level: f64,
+    depth: f64,
+    slope: f64,
+}
+
+/// Motions since the body rested on the undisturbed surface.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Motions {
+    /// δ, of the load point \[m\].
+    pub(super) depth: f64,
+    pub(super) tilt: [f64; 2],
+}
+
+impl Motions {
+    /// Adds `share` of the motions from `lower` to `upper`.
+    pub(super) fn add(&mut self, share: f64, lower: Motions, upper: Motions) {
+        self.depth += share * (upper.depth - lower.depth);
+        for axis in 0..2 {
+            self.tilt[axis] += share * (upper.tilt[axis] - lower.tilt[axis]);
+        }
+    }
+}
+
+impl ElasticStates {
+    pub(super) fn new(
+        states: Vec<ElasticState>,
+        rest: Rest,
+        tilt: [Tilt; 2],
+        layer: Option<Layer>,
+        error: f64,
+    ) -> ElasticStates {
+        let mut elastic = ElasticStates { states, rest, tilt, layer, error, first_level: 0.0, nodes: Vec::new() };
+        elastic.nodes = elastic.nodes();
+        elastic
+    }
+
+    /// The states, by ascending level.
+    pub fn states(&self) -> &[ElasticState] {
+        &self.states
+    }
+
+    /// Greatest error of the depth δ between two states, relative to √(δ δ_last), measured by the states in the middle of two others.
+    pub fn interpolation_error(&self) -> f64 {
+        self.error
+    }
+
+    /// The level from which the contact only grows as the load grows \[m²\]: contacts of a level between 0 and this one are refused.
+    pub fn first_level(&self) -> f64 {
+        self.first_level
+    }
+
+    /// The coordinates at which the load acts: those of free tilts, the origin along the other axes.
+    pub(super) fn load_point(&self) -> [f64; 2] {
+        load_point(&self.tilt)
+    }
+
+    /// Depth of the load point at a state.
+    fn depth_of(&self, state: &ElasticState) -> f64 {
+        approach_at(self.load_point(), state.approach, state.tilt) - self.rest.approach
+    }
+
+    fn nodes(&self) -> Vec<Node> {
+        let upright = self.tilt.iter().all(|tilt| matches!(tilt, Tilt::Fixed(_)));
+        let point = |state: &ElasticState| [state.level.ln(), self.depth_of(state).ln()];
+        let slope = |k: usize| {
+            let state = &self.states[k];
+            if upright {
+                return state.level / (self.depth_of(state) * state.stiffness);
+            }
+            // a parabola through three neighbours
+            let first = k.saturating_sub(1).min(self.states.len().saturating_sub(3));
+            slope_of_parabola(self.states[first..].iter().take(3).map(point), state.level.ln())
+        };
+        let node = |(k, state): (usize, &ElasticState)| {
+            let [level, depth] = point(state);
+            Node { level, depth, slope: slope(k) }
+        };
+        self.states.iter().enumerate().map(node).collect()
+    }
+
+    /// The greatest level of the sweep \[m²\].
+    pub(super) fn last_level(&self) -> f64 {
+        self.states.last().map_or(0.0, |state| state.level)
+    }
+
+    /// The greatest depth of the sweep \[m\].
+    pub(super) fn last_depth(&self) -> f64 {
+        self.states.last().map_or(0.0, |state| self.depth_of(state))
+    }
+
+    /// The two states around a level, by the index of the first, and the place of ln l between them in \[0, 1\].
+    fn between(&self, level: f64) -> Option<(usize, f64)> {
+        let at = self.nodes.partition_point(|node| node.level <= level);
+        let lower = at.checked_sub(1)?.min(self.nodes.len().checked_sub(2)?);
+        let [a, b] = [self.nodes[lower].level, self.nodes[lower + 1].level];
+        Some((lower, ((level - a) / (b - a)).clamp(0.0, 1.0)))
+    }
+
+    /// δ(l) \[m\].
+    pub(super) fn depth(&self, level: f64) -> f64 {
+        let Some(first) = self.nodes.first().filter(|_| level > 0.0) else { return 0.0 };
+        let level = level.ln();
+        let Some((k, s)) = self.between(level) else {
+            return (first.depth + first.slope * (level - first.level)).exp();
+        };
+        let [a, b] = [self.nodes[k], self.nodes[k + 1]];
+        hermite([a.depth, b.depth], [a.slope, b.slope].map(|slope| slope * (b.level - a.level)), s).exp()
+    }
+
+    /// The level of a depth \[m²\]: 0 without depth, NaN beyond the last state.
+    pub(super) fn level_at(&self, depth: f64) -> f64 {
+        let Some((first, last)) = self.nodes.first().zip(self.nodes.last()).filter(|_| depth > 0.0) else { return 0.0 };
+        let wanted = depth.ln();
+        if wanted > last.depth {
+            return f64::NAN;
+        }
+        if wanted <= first.depth {
+            return (first.level + (wanted - first.depth) / first.slope).exp();
+        }
+        let upper = self.nodes.partition_point(|node| node.depth < wanted);
+        let [a, b] = [self.nodes[upper - 1], self.nodes[upper]];
+        let slopes = [a.slope, b.slope].map(|slope| slope * (b.level - a.level));
+        let (mut low, mut high) = (0.0, 1.0);
+        let mut s = (wanted - a.depth) / (b.depth - a.depth);
+        // Newton's steps, halved intervals where one leaves the bracket
+        for _ in 0..MAX_STEPS {
+            let excess = hermite([a.depth, b.depth], slopes, s) - wanted;
+            if excess > 0.0 {
+                high = s
+            } else {
+                low = s
+            }
+            let next = s - excess / hermite_slope([a.depth, b.depth], slopes, s);
+            let next = if next > low && next < high { next } else { 0.5 * (low + high) };
+            if (next - s).abs() <= f64::EPSILON {
+                break;
+            }
+            s = next;
+        }
+        (a.level + s * (b.level - a.level)).exp()
+    }
+
+    /// A quantity of the states that is linear in ln l; that of the first state below it, but for `below` times (l/l₁)^`power`.
+    fn linear(&self, level: f64, of: impl Fn(&ElasticState) -> f64, power: Option<f64>) -> f64 {
+        let Some(first) = self.states.first().filter(|_| level > 0.0) else { return 0.0 };
+        match self.between(level.ln()) {
+            Some((k, s)) => (1.0 - s) * of(&self.states[k]) + s * of(&self.states[k + 1]),
+            None => of(first) * power.map_or(1.0, |power| (level / first.level).powf(power)),
+        }
+    }
+
+    pub(super) fn motions(&self, level: f64) -> Motions {
+        let tilt = |axis: usize| self.linear(level, |state| state.tilt[axis] - self.rest.tilt[axis], Some(1.0));
+        Motions { depth: self.depth(level), tilt: [tilt(0), tilt(1)] }
+    }
+
+    /// Contact area at a level \[m²\]. Below the first state it falls as the square of the contact radius does under a ball.
+    pub fn area(&self, level: f64) -> f64 {
+        self.linear(level, |state| state.area, Some(2.0 / 3.0))
+    }
+
+    /// Stiffness over the contact modulus at a level \[m\], see [`ElasticState::stiffness`].
+    pub fn stiffness(&self, level: f64) -> f64 {
+        self.linear(level, |state| state.stiffness, Some(1.0 / 3.0))
+    }
+
+    /// Conductance of the contact of two conductors of resistivities ρ₁ and ρ₂, electrical \[Ω m → S\] or thermal
+    /// \[m K/W → W/K\]: 2 S/(E* (ρ₁ + ρ₂)), with S/E* the stiffness over the modulus (J. R. Barber, Proc. R. Soc. A 459, 2003). Exact for
+    /// half-spaces that conduct through the contact alone.
+    pub fn conductance(&self, level: f64, resistivities: [f64; 2]) -> f64 {
+        2.0 * self.stiffness(level) / resistivities.iter().sum::<f64>()
+    }
+}
+
+/// The coordinates at which a load of these tilts acts.
+pub(super) fn load_point(tilt: &[Tilt; 2]) -> [f64; 2] {
+    tilt.map(|tilt| if let Tilt::Free { at } = tilt { at } else { 0.0 })
+}
+
+/// Approach of a point of the body.
+pub(super) fn approach_at(point: [f64; 2], approach: f64, tilt: [f64; 2]) -> f64 {
+    approach + tilt[0] * point[0] + tilt[1] * point[1]
+}
+
+/// Cubic with the values `f` and slopes `m` at 0 and 1.
+fn hermite([f0, f1]: [f64; 2], [m0, m1]: [f64; 2], s: f64) -> f64 {
+    let (r, d) = (1.0 - s, f1 - f0);
+    f0 + s * d + s * r * (r * (m0 - d) - s * (m1 - d))
+}
+
+/// Its slope.
+fn hermite_slope([f0, f1]: [f64; 2], [m0, m1]: [f64; 2], s: f64) -> f64 {
+    let (r, d) = (1.0 - s, f1 - f0);
+    d + (r - s) * (r * (m0 - d) - s * (m1 - d)) - s * r * (m0 + m1 - 2.0 * d)
+}
+
+/// Slope at `x` of the parabola through three points, of the line through two, 1 for fewer.
+fn slope_of_parabola(points: impl Iterator<Item = [f64; 2]>, x: f64) -> f64 {
+    let points: Vec<[f64; 2]> = points.collect();
+    let chord = |a: [f64; 2], b: [f64; 2]| (b[1] - a[1]) / (b[0] - a[0]);
+    match points[..] {
+        [a, b, c] => {
+            let [first, second] = [chord(a, b), chord(b, c)];
+            first + (second - first) / (c[0] - a[0]) * (2.0 * x - a[0] - b[0])
+        }
+        [a, b] => chord(a, b),
+        _ => 1.0,
+    }
+}
+
+impl fmt::Debug for ElasticStates {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("ElasticStates")
+            .field("states", &self.states.len())
+            .field("last_level", &self.last_level())
+            .field("error", &self.error)
+            .finish_non_exhaustive()
+    }
+}

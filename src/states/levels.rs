@@ -1,0 +1,202 @@
+//! The levels of a contact: groups with one past each, and the level up to which they are held.
+
+use crate::error::{Error, Result, StatesError};
+use crate::hereditary::{ExponentialRule, GroupHistory, Interpolant};
+use crate::states::curve::{ElasticStates, Motions};
+
+/// Rounding of a displacement between 0 and 1, and of levels that are one.
+const ROUNDING: f64 = 1e-9;
+const SAME_LEVEL: f64 = 1e-15;
+/// Room for so many groups is made at once.
+const GROUPS: usize = 256;
+
+/// What is prescribed at the end of a step.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Demand {
+    /// A force \[N\].
+    Force(f64),
+    /// A depth of the load point below the first touch of the undisturbed bodies \[m\].
+    Depth(f64),
+}
+
+/// Levels from the top of the group before to its own, with one past.
+#[derive(Debug, Clone, Copy)]
+struct Group {
+    /// Level and motions at its top.
+    top: f64,
+    motions: Motions,
+    /// w at the end of the last step \[Pa\]: 0 where the group is free.
+    traction: f64,
+}
+
+/// Groups by ascending levels, their past, and the state that they make.
+#[derive(Debug, Clone)]
+pub(super) struct Levels {
+    history: GroupHistory,
+    groups: Vec<Group>,
+    /// W of each group at the end of the step being tried.
+    trial: Vec<f64>,
+    /// Level up to which the groups are held \[m²\].
+    pub(super) level: f64,
+    /// Σ w Δl \[N\].
+    pub(super) force: f64,
+    /// Σ W Δy.
+    pub(super) motions: Motions,
+}
+
+impl Levels {
+    pub(super) fn new(rule: ExponentialRule) -> Levels {
+        Levels {
+            history: GroupHistory::new(rule, GROUPS),
+            groups: Vec::with_capacity(GROUPS),
+            trial: Vec::with_capacity(GROUPS),
+            level: 0.0,
+            force: 0.0,
+            motions: Motions::default(),
+        }
+    }
+
+    /// Copies another without reallocating where there is room.
+    pub(super) fn copy_from(&mut self, other: &Levels) {
+        self.history.copy_from(&other.history);
+        self.groups.clone_from(&other.groups);
+        self.trial.clone_from(&other.trial);
+        (self.level, self.force, self.motions) = (other.level, other.force, other.motions);
+    }
+
+    /// Number of groups.
+    pub(super) fn count(&self) -> usize {
+        self.groups.len()
+    }
+
+    /// Level at the top of each group, and its traction w.
+    pub(super) fn tractions(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.groups.iter().map(|group| (group.top, group.traction))
+    }
+
+    /// The past does not determine how the groups continue, as after a corner of the load.
+    pub(super) fn reset_differences(&mut self) {
+        self.history.reset_differences();
+    }
+
+    /// Advances by `dt` to `time`. A step that fails changes nothing.
+    pub(super) fn step(
+        &mut self,
+        states: &ElasticStates,
+        (time, dt): (f64, f64),
+        interpolant: Interpolant,
+        demand: Demand,
+    ) -> Result<()> {
+        self.history.predict(dt, interpolant, &mut self.trial);
+        let compliance = self.history.rule().compliance();
+        if compliance == 0.0 {
+            return Err(Error::NoElasticResponse { time, what: "a jump of the load (ramp it instead)" });
+        }
+        if let Some(&displacement) = self.trial.iter().find(|w| **w > 1.0 + ROUNDING) {
+            return Err(StatesError::OutOfOrder { time, displacement }.into());
+        }
+        let level = match demand {
+            Demand::Force(force) => self.level_of_force(compliance, force),
+            Demand::Depth(depth) => self.level_of_depth(states, depth),
+        };
+        if level.is_nan() || level > states.last_level() {
+            let (needed, last) = match demand {
+                Demand::Force(_) => (format!("the level {level:.3e} m²"), states.last_level()),
+                Demand::Depth(depth) => (format!("the depth {depth:.3e} m"), states.last_depth()),
+            };
+            return Err(StatesError::Beyond { time, needed, last }.into());
+        }
+        if level > 0.0 && level < states.first_level() * (1.0 - ROUNDING) {
+            return Err(StatesError::Below { time, level, first: states.first_level() }.into());
+        }
+        self.cut_at(states, level);
+        self.accept(level, compliance);
+        Ok(())
+    }
+
+    /// The groups, each with its bottom, that of the first being 0, and its W if nothing holds it.
+    fn spans(&self) -> impl DoubleEndedIterator<Item = (f64, Motions, &Group, f64)> {
+        self.groups.iter().zip(&self.trial).enumerate().map(|(k, (group, &free))| {
+            let (bottom, motions) = self.bottom(k);
+            (bottom, motions, group, free)
+        })
+    }
+
+    /// Level and motions at the bottom of a group.
+    fn bottom(&self, group: usize) -> (f64, Motions) {
+        group.checked_sub(1).map_or((0.0, Motions::default()), |k| (self.groups[k].top, self.groups[k].motions))
+    }
+
+    /// The level c up to which groups are held under a force: F(c) = Σ w Δl below c, w = (1 − W)/c_Δ.
+    fn level_of_force(&self, compliance: f64, force: f64) -> f64 {
+        let mut carried = 0.0;
+        for (bottom, _, group, free) in self.spans() {
+            let traction = (1.0 - free) / compliance;
+            let more = traction * (group.top - bottom);
+            if carried + more >= force {
+                return if force > carried { bottom + (force - carried) / traction } else { bottom };
+            }
+            carried += more;
+        }
+        self.bottom(self.groups.len()).0 + (force - carried) * compliance
+    }
+
+    /// The level c up to which groups are held at a depth D(c) = δ(c) + Σ W Δδ above c; NaN beyond the sweep.
+    fn level_of_depth(&self, states: &ElasticStates, depth: f64) -> f64 {
+        if depth > self.bottom(self.groups.len()).1.depth {
+            return states.level_at(depth);
+        }
+        let mut above = 0.0;
+        for (bottom, lower, group, free) in self.spans().rev() {
+            let upper = group.motions.depth;
+            let whole = above + free * (upper - lower.depth);
+            if depth > lower.depth + whole {
+                let at_edge = (depth - above - free * upper) / (1.0 - free);
+                return states.level_at(at_edge).clamp(bottom, group.top);
+            }
+            above = whole;
+        }
+        0.0
+    }
+
+    /// Splits the group that contains a level there, or adds a group up to it.
+    fn cut_at(&mut self, states: &ElasticStates, level: f64) {
+        let group = self.groups.partition_point(|group| group.top < level);
+        let is_near = |other: f64| (other - level).abs() <= SAME_LEVEL * level;
+        if is_near(self.bottom(group).0) || self.groups.get(group).is_some_and(|group| is_near(group.top)) {
+            return;
+        }
+        if group == self.groups.len() {
+            self.history.push();
+            self.trial.push(0.0);
+        } else {
+            self.history.split(group);
+            self.trial.insert(group, self.trial[group]);
+        }
+        self.groups.insert(group, Group { top: level, motions: states.motions(level), traction: 0.0 });
+    }
+
+    /// Holds the groups up to a level, accepts the step, and merges groups with the same past.
+    fn accept(&mut self, level: f64, compliance: f64) {
+        let held = self.groups.partition_point(|group| group.top <= level * (1.0 + SAME_LEVEL));
+        let (mut force, mut motions) = (0.0, Motions::default());
+        for k in 0..self.groups.len() {
+            let (bottom, lower) = self.bottom(k);
+            let group = &mut self.groups[k];
+            group.traction = if k < held { (1.0 - self.trial[k]) / compliance } else { 0.0 };
+            if k < held {
+                self.trial[k] = 1.0;
+            }
+            force += group.traction * (group.top - bottom);
+            motions.add(self.trial[k], lower, group.motions);
+        }
+        self.history.commit(&self.trial);
+        (self.level, self.force, self.motions) = (level, force, motions);
+        for group in (1..self.groups.len()).rev().filter(|group| *group != held) {
+            if self.history.is_like_the_one_before(group) {
+                self.history.merge(group);
+                self.groups.remove(group - 1);
+            }
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! Is a creeping contact the superposition of its own elastic states? The stepper in space is the reference.
+
+use std::sync::Arc;
+
+use crate::common::draws::Draws;
+use crate::common::environment::from_environment;
+use approx::assert_relative_eq;
+use viscocontact::contact::{Edge, TimeRule};
+use viscocontact::geometry::Sum;
+use viscocontact::load::Tilt;
+use viscocontact::prelude::*;
+use viscocontact::states::{ElasticStates, Reach, StatesContact, StatesError, Sweep};
+
+/// A contact modulus E(t) [Pa] of an incompressible body, G = E/4.
+fn body(equilibrium: f64, terms: &[(f64, f64)]) -> Material {
+    let terms: Vec<(f64, f64)> = terms.iter().map(|&(modulus, time)| (modulus / 4.0, time)).collect();
+    Material::incompressible(GeneralizedMaxwell::new(equilibrium / 4.0, &terms).unwrap())
+}
+
+fn ball_states() -> Arc<ElasticStates> {
+    let grid = Grid::square(24, 4.0e-3).unwrap();
+    Sweep::new(grid, &Sphere::new(10.0e-3).unwrap()).accuracy(1e-3).run(Reach::Level(5.0e-7)).unwrap()
+}
+
+/// The level under a given force depends on force and material alone: values of the integral equation, with E = ¼ + ¾ e^(−t).
+#[test]
+fn levels_under_a_force_do_not_depend_on_the_shape() {
+    let (states, unit, steps) = (ball_states(), 3.0e-7, 400);
+    let mut contact = StatesContact::new(&states, &body(0.25, &[(0.75, 1.0)])).unwrap();
+    contact.step(0.0, Load::force(0.0)).unwrap();
+    let expected =
+        [(0.5, 0.5899628), (1.0, 1.3456094), (1.25, 1.2185243), (1.5, 0.9822654), (1.75, 0.5932171), (1.9, 0.2649620)];
+    let mut compared = 0;
+    for k in 1..=760 {
+        let time = f64::from(k) / f64::from(steps);
+        let force = unit * if time <= 1.0 { time } else { 2.0 - time };
+        contact.step(1.0 / f64::from(steps), Load::force(force)).unwrap();
+        if let Some((_, level)) = expected.iter().find(|(at, _)| (at - time).abs() < 1e-9) {
+            assert_relative_eq!(contact.level() / unit, *level, max_relative = 1e-6);
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, expected.len());
+
+    let mut contact = StatesContact::new(&states, &body(0.25, &[(0.75, 1.0)])).unwrap();
+    contact.step(0.0, Load::force(unit)).unwrap();
+    let held = |contact: &mut StatesContact, time: f64, force: f64| {
+        while contact.time() < time - 1e-9 {
+            contact.step(2.5e-3, Load::force(force * unit)).unwrap();
+        }
+        contact.level() / unit
+    };
+    assert_relative_eq!(held(&mut contact, 1.0, 1.0), 1.6635977, max_relative = 1e-6);
+    contact.step(0.0, Load::force(0.4 * unit)).unwrap();
+    assert_relative_eq!(contact.level() / unit, 0.7605870, max_relative = 1e-5);
+    for (time, level) in [(1.25, 0.8522827), (2.0, 1.0542604), (5.0, 1.3876905), (20.0, 1.5953345)] {
+        assert_relative_eq!(held(&mut contact, time, 0.4), level, max_relative = 1e-5);
+    }
+}
+
+/// A scene of which the elastic contact only grows.
+struct Scene {
+    name: String,
+    grid: Grid,
+    geometry: Box<dyn Geometry>,
+    kernel: Arc<InfluenceKernel>,
+    tilt: [Tilt; 2],
+    nu: f64,
+    depth: f64,
+}
+
+fn random_scene(number: u64) -> Scene {
+    let mut draws = Draws::new(number.wrapping_add(7_000_003));
+    let cells = 12 + draws.below(12);
+    let grid = Grid::square(cells, 1.0).unwrap();
+    let rough = |grid: &Grid, height: f64, seed: usize| {
+        let spec = RoughSpec::new(0.5, 0.2, Roughness::RmsHeight(height)).with_seed(seed as u64);
+        Rough::new(grid, spec).unwrap()
+    };
+    let (seed, height) = (draws.below(10_000), draws.power_of_ten(-3.5, -2.0));
+    let ball = || Sum::new(Ellipsoid::new(2.0, 1.3).unwrap(), rough(&grid, height, seed));
+    let (mut tilt, mut nu, kind) = ([Tilt::Fixed(0.0); 2], 0.5, draws.below(7));
+    let half_space = || InfluenceKernel::half_space(&grid);
+    let (name, geometry, kernel, depth): (&str, Box<dyn Geometry>, _, f64) = match kind {
+        0 => ("rough ball", Box::new(ball()), half_space(), 0.04),
+        1 => ("periodic", Box::new(rough(&grid, 0.02, seed)), InfluenceKernel::periodic(&grid), 0.03),
+        2 => {
+            nu = draws.between(0.0, 0.5);
+            let layer = Layer::bonded_to_rigid(draws.between(0.3, 2.0), nu).unwrap();
+            ("layer", Box::new(ball()), InfluenceKernel::layer(&grid, layer), 0.03)
+        }
+        3 => {
+            let angle = draws.between(-0.02, 0.02);
+            tilt = [Tilt::Fixed(angle), Tilt::Fixed(-0.5 * angle)];
+            ("tilted ball", Box::new(ball()), half_space(), 0.04)
+        }
+        4 | 5 => {
+            tilt = [Tilt::Free { at: draws.between(-0.05, 0.05) }, Tilt::Free { at: draws.between(-0.05, 0.05) }];
+            let punch = Sum::new(FlatPunch::rectangular([0.7, 0.5]).unwrap(), rough(&grid, 1e-3, seed));
+            ("rough punch, free tilt", Box::new(punch), half_space(), 0.04)
+        }
+        _ => ("cone", Box::new(Cone::new(0.1).unwrap()), half_space(), 0.06),
+    };
+    Scene { name: format!("{name} {number}"), geometry, kernel: Arc::new(kernel.unwrap()), tilt, nu, depth, grid }
+}
+
+impl Scene {
+    fn settings() -> Settings {
+        Settings::default().with_edge(Edge::Allow).with_tolerance(1e-11).with_time_rule(TimeRule::ExponentialLinear)
+    }
+
+    fn contact(&self, material: Material) -> ViscoelasticContact {
+        let builder = ViscoelasticContact::builder(self.grid.clone()).geometry(&*self.geometry).material(material);
+        builder.kernel(Arc::clone(&self.kernel)).settings(Scene::settings()).build().unwrap()
+    }
+
+    fn sweep(&self) -> viscocontact::Result<Arc<ElasticStates>> {
+        let sweep = Sweep::new(self.grid.clone(), &*self.geometry).kernel(Arc::clone(&self.kernel));
+        sweep.tilt(self.tilt).accuracy(1e-5).settings(Scene::settings()).run(Reach::Approach(self.depth))
+    }
+
+    fn of(&self, terms: &[(f64, f64)], equilibrium: f64) -> Material {
+        // C = (1 − ν) J/2
+        let factor = 0.5 * (1.0 - self.nu);
+        let terms: Vec<(f64, f64)> = terms.iter().map(|&(modulus, time)| (modulus * factor, time)).collect();
+        Material::constant_poisson(GeneralizedMaxwell::new(equilibrium * factor, &terms).unwrap(), self.nu).unwrap()
+    }
+}
+
+/// Pressures, motions and cells of both, step by step, in histories of force or approach with jumps, holds, separation and renewed contact.
+#[test]
+fn random_contacts_are_superpositions_of_their_elastic_states() {
+    let (mut compared, mut refused, mut apart) = (0, 0, 0);
+    for number in 0..from_environment("STATES_SCENES", 28) {
+        let scene = random_scene(number);
+        let mut draws = Draws::new(number);
+        let states = match scene.sweep() {
+            Ok(states) => states,
+            Err(Error::States(StatesError::Shrinks { .. })) => {
+                refused += 1;
+                continue;
+            }
+            Err(error) => panic!("{}: {error}", scene.name),
+        };
+        let terms: Vec<(f64, f64)> =
+            (0..1 + draws.below(6)).map(|_| (draws.between(0.05, 0.5), draws.power_of_ten(-2.0, 1.0))).collect();
+        let equilibrium = draws.between(0.1, 0.5);
+        let material = scene.of(&terms, equilibrium);
+        let mut full = scene.contact(material.clone());
+        let mut contact = StatesContact::new(&states, &material).unwrap().with_linear_steps();
+        let unit = Elastic::new(0.5 * (1.0 - scene.nu)).unwrap();
+        let mut elastic = scene.contact(Material::constant_poisson(unit, scene.nu).unwrap());
+        let last = states.states().last().unwrap();
+        let is_upright = matches!(scene.tilt[0], Tilt::Fixed(_));
+        let by_force = !is_upright || draws.chance(0.6);
+        for step in 0..14 {
+            let dt = if step % 6 == 0 { 0.0 } else { draws.power_of_ten(-2.0, 1.0) };
+            let share = if draws.chance(0.12) { 0.0 } else { draws.between(0.05, 0.95) };
+            let load = if by_force {
+                Load::Force { normal: share * last.level * equilibrium, tilt: scene.tilt }
+            } else {
+                Load::Approach { approach: share * scene.depth, tilt: scene.tilt }
+            };
+            let report = match contact.step(dt, load) {
+                Err(Error::States(StatesError::Below { .. })) => {
+                    refused += 1;
+                    break;
+                }
+                other => other.unwrap(),
+            };
+            full.step(dt, load).unwrap_or_else(|error| panic!("{}: {error}", scene.name));
+            if report.level == 0.0 {
+                assert_eq!(full.contact_cells(), 0, "{} step {step}", scene.name);
+                apart += 1;
+                continue;
+            }
+            // interpolated between states under a given approach
+            let tolerance = if by_force { 1e-7 } else { 3e-3 };
+            assert_relative_eq!(full.force(), contact.force(), max_relative = tolerance);
+            let deep = full.approach().abs().max(1e-3 * scene.depth);
+            let off = (full.approach() - contact.approach()).abs() / deep;
+            assert!(off < 3e-4, "{} step {step}: approach off by {off:.1e}, {} groups", scene.name, report.groups);
+            let (mut pressure, mut below) = (vec![0.0; scene.grid.len()], vec![0.0; scene.grid.len()]);
+            for (level, traction) in contact.tractions() {
+                elastic.step(0.0, Load::Force { normal: level, tilt: scene.tilt }).unwrap();
+                for (cell, now) in elastic.pressure().iter().enumerate() {
+                    pressure[cell] += traction * (now - below[cell]);
+                }
+                below.copy_from_slice(elastic.pressure());
+            }
+            let most = full.max_pressure();
+            let differ = pressure.iter().zip(full.pressure()).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(differ < 3.0 * tolerance * most, "{} step {step}: {:.1e}", scene.name, differ / most);
+            let cells = below.iter().zip(full.pressure()).filter(|(a, b)| (**a > 0.0) != (**b > 0.0)).count();
+            // cells join in eights on an even shape
+            assert!(cells == 0 || !by_force && cells <= 8, "{} step {step}: {cells} cells differ", scene.name);
+            compared += 1;
+        }
+    }
+    println!("{compared} states compared, {apart} apart, {refused} scenes refused");
+    assert!(compared > 4 * refused && apart > 0, "{compared} {refused} {apart}");
+}
+
+/// What the states do not cover is refused by name, and changes nothing.
+#[test]
+fn other_load_points_and_levels_beyond_the_sweep_are_refused() {
+    let states = ball_states();
+    let mut contact = StatesContact::new(&states, &body(1.0, &[(1.0, 1.0)])).unwrap();
+    contact.step(1.0, Load::force(1.0e-7)).unwrap();
+    let before = contact.report();
+    let refused = contact.step(1.0, Load::eccentric_force(1.0e-7, [1.0e-4, 0.0])).unwrap_err();
+    assert!(matches!(refused, Error::States(StatesError::OtherTilt { .. })), "{refused}");
+    let refused = contact.step(1.0, Load::force(1.0e-6)).unwrap_err();
+    assert!(matches!(refused, Error::States(StatesError::Beyond { .. })), "{refused}");
+    assert!(refused.to_string().contains("sweep further"), "{refused}");
+    let refused = contact.step(1.0, Load::approach(1.0)).unwrap_err();
+    assert!(matches!(refused, Error::States(StatesError::Beyond { .. })), "{refused}");
+    assert_eq!(contact.report(), before);
+}
+
+/// Adaptive runs keep to their tolerance: against runs at a hundredth of it.
+#[test]
+fn adaptive_runs_keep_their_tolerance() {
+    let states = ball_states();
+    let mut worst = 0.0f64;
+    for number in 0..from_environment("STATES_RUNS", 40) {
+        let mut draws = Draws::new(number.wrapping_add(91));
+        let terms: Vec<(f64, f64)> =
+            (0..1 + draws.below(8)).map(|_| (draws.between(0.05, 0.5), draws.power_of_ten(-3.0, 1.0))).collect();
+        let material = body(draws.between(0.1, 0.5), &terms);
+        let (unit, tolerance) = (3.0e-8, draws.power_of_ten(-5.0, -2.0));
+        let points: Vec<(f64, Load)> =
+            (0..6).map(|k| (f64::from(k), Load::force(unit * draws.between(0.1, 1.0)))).collect();
+        let load = PiecewiseLinear::new(&points).unwrap();
+        let mut fine = StatesContact::new(&states, &material).unwrap();
+        let mut contact = fine.clone();
+        let mut run = contact.follow(&load, Stepping::adaptive(tolerance), 8.0);
+        let mut exact = fine.follow(&load, Stepping::adaptive(1e-2 * tolerance), 8.0);
+        let mut deepest = 0.0f64;
+        for stop in 1..=8 {
+            let [mut coarse, mut reference] = [0.0; 2];
+            for (run, depth) in [(&mut run, &mut coarse), (&mut exact, &mut reference)] {
+                while run.contact().time() < f64::from(stop) {
+                    let Some(report) = run.next_step().unwrap() else { break };
+                    *depth = report.approach;
+                }
+            }
+            deepest = deepest.max(reference.abs());
+            if stop <= 5 {
+                worst = worst.max((coarse - reference).abs() / deepest / tolerance);
+            }
+        }
+    }
+    println!("greatest error over the tolerance {worst:.2}");
+    assert!(worst < 1.0, "{worst}");
+}
