@@ -40,7 +40,7 @@ def address(name, pages):
         if part is None:
             return relative
         text = file.read_text(encoding="utf8")
-        for kind in ("method", "tymethod", "variant", "structfield"):
+        for kind in ("method", "tymethod", "variant", "structfield", "associatedconstant"):
             if f'id="{kind}.{part}"' in text:
                 return f"{relative}#{kind}.{part}"
     return None

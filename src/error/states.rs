@@ -20,7 +20,7 @@ pub enum StatesError {
     },
 
     /// The contact needs a state beyond the last one of the sweep.
-    #[error("at t = {} s the contact needs {needed}, beyond the last elastic state at {}: sweep further ([`Reach`](crate::states::Reach))", rounded(*.time, TIME), rounded(*.last, TIME))]
+    #[error("at t = {} s the contact needs {needed}, beyond the last elastic state at {}: sweep further (states::Reach)", rounded(*.time, TIME), rounded(*.last, TIME))]
     Beyond {
         /// End of the step \[s\].
         time: f64,
