@@ -253,23 +253,18 @@ pub enum Error {
     /// A table in a text file cannot be read.
     #[error(transparent)]
     Text(#[from] TextError),
-
     /// A table of measured data is not allowed.
     #[error(transparent)]
     Table(#[from] TableError),
-
     /// A height map, or its file, is not allowed.
     #[error(transparent)]
     Map(#[from] MapError),
-
     /// A file of results cannot be written. The cause is the [`source`](std::error::Error::source) of the error.
     #[error(transparent)]
     Output(#[from] OutputError),
-
     /// A contact that [ranks](crate::parallel) share out does not support the call, or a rank has left or failed.
     #[error(transparent)]
     Ranks(#[from] RanksError),
-
     /// A contact on elastic states is not covered by them.
     #[error(transparent)]
     States(#[from] StatesError),
