@@ -120,11 +120,10 @@ impl ElasticStates {
     }
 
     fn nodes(&self) -> Vec<Node> {
-        let upright = self.tilt.iter().all(|tilt| matches!(tilt, Tilt::Fixed(_)));
         let point = |state: &ElasticState| [state.level.ln(), self.depth_of(state).ln()];
         let slope = |k: usize| {
             let state = &self.states[k];
-            if upright {
+            if self.is_upright() {
                 return state.level / (self.depth_of(state) * state.stiffness);
             }
             // a parabola through three neighbours
@@ -165,6 +164,22 @@ impl ElasticStates {
         };
         let [a, b] = [self.nodes[k], self.nodes[k + 1]];
         hermite([a.depth, b.depth], [a.slope, b.slope].map(|slope| slope * (b.level - a.level)), s).exp()
+    }
+
+    /// Error of the interpolation at a state, in ln δ: of the depth, or, where stiffnesses give slopes, an eighth of the slope's over the
+    /// interval. A kink between two states shows in the slope where the depth happens to agree.
+    pub(super) fn error_at(&self, state: &ElasticState) -> f64 {
+        let (level, depth) = (state.level.ln(), self.depth_of(state));
+        let value = (self.depth(state.level) / depth).ln().abs();
+        let Some((k, s)) = self.between(level).filter(|_| self.is_upright()) else { return value };
+        let [a, b] = [self.nodes[k], self.nodes[k + 1]];
+        let length = b.level - a.level;
+        let slope = hermite_slope([a.depth, b.depth], [a.slope, b.slope].map(|slope| slope * length), s);
+        value.max(0.125 * (slope - length * state.level / (depth * state.stiffness)).abs())
+    }
+
+    fn is_upright(&self) -> bool {
+        self.tilt.iter().all(|tilt| matches!(tilt, Tilt::Fixed(_)))
     }
 
     /// The level of a depth \[m²\]: 0 without depth, NaN beyond the last state.

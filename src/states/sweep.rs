@@ -24,7 +24,7 @@ pub enum Reach {
 
 /// Finds the elastic states of a shape on a body, each by the stepper with an elastic body of unit compliance.
 ///
-/// A first pass takes levels that double. Then a state is added in the middle, in ln l, of two others, and more beside it where its depth δ differs from
+/// A first pass takes levels that double. Then a state is added in the middle, in ln l, of two others, and more beside it where depth or slope differ from
 /// their interpolation by more than the accuracy times √(δ δ_last): small contacts have few cells, whose own error is larger. A sweep costs about as much as so many jumps of the load.
 #[derive(Debug, Clone)]
 #[must_use = "a sweep does nothing until it is run"]
@@ -249,8 +249,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
         let mut coarse = vec![self.solve(last)?];
         // on the same cells, motions are linear in the level; no contact has fewer than one cell for each free motion
         let (mut is_linear, free) = (false, self.tilt.iter().filter(|tilt| matches!(tilt, Tilt::Free { .. })).count());
-        loop {
-            let Solved { state, pressure } = coarse.last().expect("the first state was solved");
+        while let Some(Solved { state, pressure }) = coarse.last() {
             let is_smallest = is_linear && (state.cells <= 1 + free || state.level < LINEAR_LEVEL * last);
             if is_smallest || state.level < LEAST_LEVEL * last {
                 break;
@@ -304,8 +303,7 @@ impl<P: FnMut(&[ElasticState]) -> ControlFlow<()>> Solver<P> {
         self.check_growth(lower, upper)?;
         let pair = ElasticStates::new(vec![lower.state, upper.state], self.rest, self.tilt, None, 0.0);
         let middle = self.solve((lower.state.level * upper.state.level).sqrt())?;
-        let depth = self.depth(&middle.state);
-        let error = (pair.depth(middle.state.level) - depth).abs() / (depth * self.last_depth).sqrt();
+        let error = pair.error_at(&middle.state) * (self.depth(&middle.state) / self.last_depth).sqrt();
         let is_fine = error <= self.accuracy || upper.state.level < FINEST * lower.state.level;
         if self.add(middle.state).is_break() || is_fine {
             self.error = self.error.max(error);
