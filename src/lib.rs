@@ -84,7 +84,7 @@
 //!
 //! A convolution of N cells is one forward and one inverse real transform of the zero-padded grid, O(N log N). Periodic
 //! bodies are not padded and cost a third; a line of N × 1 cells is transformed in one dimension. A step of the default
-//! solver takes 3 to 5 convolutions in the scenes of the README at 256² cells; tilts cost nothing in a scene without
+//! solver takes about 3 convolutions in the scenes of the README at 256² cells; tilts cost nothing in a scene without
 //! them. Where gap and load are even in x1, x2 or both, only half or a quarter of the cells is computed
 //! ([`contact::Settings::symmetry`]); cells that contact cannot reach are not computed at all
 //! ([`contact::Settings::window`]). `docs/performance.md` gives the cost of a step with each method.
@@ -94,7 +94,7 @@
 //! exponential series is fitted by one when the contact is built ([`rheology::Rheology::series`]): about two relaxation
 //! times per decade for an error of 1e-4, in a tenth of a second.
 //!
-//! Memory: about 183 bytes per computed cell (369 for a line contact, whose transform tables are as long as the line),
+//! Memory: 157 to 164 bytes per computed cell (370 for a line contact, whose transform tables are as long as the line),
 //! and 8 for each further relaxation time, 16 where the grid follows the indenter (an elastic bulk doubles their
 //! number). [`contact::Builder::memory`] returns it before a contact is built; insufficient memory is an error
 //! ([`Error::OutOfMemory`]) and does not abort the process. A step of the default rule allocates nothing, except the
