@@ -1,7 +1,7 @@
 //! A contact on elastic states along a load history.
 
 use crate::contact::Stepping;
-use crate::error::{Error, LoadError, Result, finite, positive, within};
+use crate::error::{Error, LoadError, Result};
 use crate::load::{Load, LoadHistory};
 use crate::states::contact::{StatesContact, StatesReport};
 
@@ -87,15 +87,7 @@ impl StatesRun<'_> {
     /// If the end of the run, the fixed step or the tolerance is not allowed, the history returns an invalid load, or a step fails
     /// ([`StatesContact::step`]).
     pub fn next_step(&mut self) -> Result<Option<StatesReport>> {
-        match self.stepping {
-            Stepping::Fixed { dt } => positive("fixed step", dt)?,
-            Stepping::Adaptive { tolerance } => {
-                let inside = (1e-9..=0.1).contains(&tolerance);
-                within("tolerance of the adaptive steps", tolerance, inside, "in [1e-9, 0.1]")?
-            }
-        };
-        finite("end of the run", self.until)?;
-        within("end of the run", self.until, self.until >= self.start, "at or after the time of the contact")?;
+        self.stepping.validate_run(self.start, self.until)?;
         let now = self.contact.time();
         let load = self.history.at(now).validated_at(now)?;
         if self.load != Some(load) {

@@ -10,7 +10,7 @@ use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::{OwnedOrBorrowed, RunContact, RunHistory};
 use crate::contact::step::error_in_time::StepContext;
 use crate::contact::stepper::ViscoelasticContact;
-use crate::error::{Error, LoadError, Result, finite, positive, within};
+use crate::error::{Error, LoadError, Result};
 use crate::load::{Load, LoadHistory};
 
 /// Two times closer than this fraction of a step are the same time.
@@ -170,15 +170,7 @@ impl<'a> Follow<'a> {
     }
 
     fn take_step(&mut self) -> Result<Option<StepReport>> {
-        match self.stepping {
-            Stepping::Fixed { dt } => positive("fixed step", dt)?,
-            Stepping::Adaptive { tolerance } => {
-                let inside = (1e-9..=0.1).contains(&tolerance);
-                within("tolerance of the adaptive steps", tolerance, inside, "in [1e-9, 0.1]")?
-            }
-        };
-        finite("end of the run", self.until)?;
-        within("end of the run", self.until, self.until >= self.progress.start, "at or after the time of the contact")?;
+        self.stepping.validate_run(self.progress.start, self.until)?;
 
         let now = self.contact.time();
         let load = self.history.at(now).validated_at(now)?;

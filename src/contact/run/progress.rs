@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::contact::run::run_scale::RunScale;
 use crate::contact::run::step_control::StepControl;
+use crate::error::{Result, finite, positive, within};
 use crate::observe::MeshError;
 
 /// The rule for the length of steps.
@@ -39,6 +40,19 @@ impl Stepping {
     /// [`Settings::tolerance`](crate::contact::Settings::tolerance) or 0.03 of `tolerance`, whichever is greater.
     pub fn adaptive(tolerance: f64) -> Stepping {
         Stepping::Adaptive { tolerance }
+    }
+
+    /// Accepts steps and tolerances in range, and a run that does not end before its `start`.
+    pub(crate) fn validate_run(&self, start: f64, until: f64) -> Result<()> {
+        match *self {
+            Stepping::Fixed { dt } => positive("fixed step", dt)?,
+            Stepping::Adaptive { tolerance } => {
+                let inside = (1e-9..=0.1).contains(&tolerance);
+                within("tolerance of the adaptive steps", tolerance, inside, "in [1e-9, 0.1]")?
+            }
+        };
+        finite("end of the run", until)?;
+        within("end of the run", until, until >= start, "at or after the time of the contact").map(drop)
     }
 }
 
