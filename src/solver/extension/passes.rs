@@ -162,19 +162,22 @@ impl Pass<'_> {
         let read = self.read;
         let (n2, m2) = (self.fine[1], self.fine[1].div_ceil(2));
         let fine = &mut buffers.fine[..2 * m2 + 4];
-        let parts = self.parts(i);
-        let (rows, shares) = (parts.map(|(row, _)| read.row(row)), parts.map(|(_, share)| share));
+        let (rows, shares) = self.parts(i);
         let sums = &mut fine[2..n2 + 2];
         match self.known {
             Known::Members(member) => {
-                let known =
-                    parts.map(|(row, _)| read.kept(row).map_or(&read.halo.no_members[..], |cells| &member[cells]));
-                add_open(sums, shares, rows, known, |inside, f| if inside { 0.0 } else { f });
+                let known = |row| read.kept(row).map_or(&read.halo.no_members[..], |cells| &member[cells]);
+                add_open(
+                    sums,
+                    shares,
+                    rows,
+                    |row| (known(row), read.row(row)),
+                    |inside, f| if inside { 0.0 } else { f },
+                );
             }
             Known::Factors(factors) => {
-                let known =
-                    parts.map(|(row, _)| read.kept(row).map_or(&read.halo.nothing_known[..], |cells| &factors[cells]));
-                add_open(sums, shares, rows, known, |factor, f| (1.0 - weight(factor)) * f);
+                let known = |row| read.kept(row).map_or(&read.halo.nothing_known[..], |cells| &factors[cells]);
+                add_open(sums, shares, rows, |row| (known(row), read.row(row)), |factor, f| (1.0 - weight(factor)) * f);
             }
         }
         fine[n2 + 2..2 * m2 + 2].fill(0.0);
@@ -189,14 +192,20 @@ impl Pass<'_> {
 
     /// The rows of the level that row `i` of blocks reaches, and the part of each row that it gets: 0 for rows beyond the end.
     #[inline(always)]
-    fn parts(&self, i: usize) -> [(usize, f64); 4] {
+    fn parts(&self, i: usize) -> ([usize; 4], [f64; 4]) {
         let (n1, rows) = (self.fine[0], 2 * self.fine[0].div_ceil(2));
         let [before, after] = match self.periodic[0] {
             true => [(2 * i + rows - 1) % rows, (2 * i + 2) % rows],
             false => [(2 * i).saturating_sub(1), (2 * i + 2).min(rows - 1)],
         };
-        let part = |row: usize, part: f64| if row < n1 { (row, part) } else { (2 * i, 0.0) };
-        [part(before, 0.25), part(2 * i, 0.75), part(2 * i + 1, 0.75), part(after, 0.25)]
+        let (row, part) = (
+            |row: usize| if row < n1 { row } else { 2 * i },
+            |row: usize, part: f64| if row < n1 { part } else { 0.0 },
+        );
+        (
+            [row(before), 2 * i, row(2 * i + 1), row(after)],
+            [part(before, 0.25), 0.75, part(2 * i + 1, 0.75), part(after, 0.25)],
+        )
     }
 
     /// Row `i` of x from the same value on all cells of a block.
@@ -219,7 +228,7 @@ impl Pass<'_> {
     /// Row `i` of x from 9/16 of the block of a cell, 3/16 of two neighbours and 1/16 of the third.
     #[inline(always)]
     fn interpolate(&self, i: usize, rows: &mut RowBuffers, values: &mut [f64]) {
-        let [m1, m2] = self.fine.map(|n| n.div_ceil(2));
+        let (m1, m2) = (self.fine[0].div_ceil(2), self.fine[1].div_ceil(2));
         let (near, last) = (i / 2, m1 - 1);
         let far = match (i.is_multiple_of(2), self.periodic[0]) {
             (true, true) => (near + last) % m1,
@@ -228,7 +237,7 @@ impl Pass<'_> {
             (false, false) => (near + 1).min(last),
         };
         let across = &mut rows.blocks[..m2 + 2];
-        let [near, far] = [near, far].map(|i| &self.read.row(i)[..m2]);
+        let (near, far) = (&self.read.row(near)[..m2], &self.read.row(far)[..m2]);
         for ((a, &near), &far) in across[1..=m2].iter_mut().zip(near).zip(far) {
             *a = 0.75 * near + 0.25 * far;
         }
@@ -258,15 +267,16 @@ pub(super) fn weight(factor: f64) -> f64 {
     (TRUST - 4.0 * factor) / (TRUST - 1.0)
 }
 
-/// out = Σ part · open(known, value) over four rows.
+/// out = Σ part · open(known, value) over four rows, of which `of` gives the weights and the values.
 #[inline(always)]
-fn add_open<K: Copy>(
+fn add_open<'a, K: Copy + 'a>(
     out: &mut [f64],
     parts: [f64; 4],
-    [a, b, c, d]: [&[f64]; 4],
-    [ka, kb, kc, kd]: [&[K]; 4],
+    rows: [usize; 4],
+    of: impl Fn(usize) -> (&'a [K], &'a [f64]),
     open: impl Fn(K, f64) -> f64,
 ) {
+    let [(ka, a), (kb, b), (kc, c), (kd, d)] = [of(rows[0]), of(rows[1]), of(rows[2]), of(rows[3])];
     let values = a.iter().zip(b).zip(c.iter().zip(d));
     let known = ka.iter().zip(kb).zip(kc.iter().zip(kd));
     for ((out, ((&a, &b), (&c, &d))), ((&ka, &kb), (&kc, &kd))) in out.iter_mut().zip(values).zip(known) {
