@@ -1,33 +1,53 @@
 //! Sums in lanes: additions are independent of each other, and rounding errors grow more slowly with the number of
 //! values.
 
-/// A struct of sums and maxima over cells, each with a name, that bands and ranks reduce as an array of numbers.
+/// A struct of sums and maxima over cells, each with a name, that bands and ranks reduce.
 ///
-/// `named_sums!(Found { force: +, deepest: max })` declares `Found` with the constructor `of` from numbers, the method `numbers`, and
-/// `joined`, which adds the one and takes the greater of the other. All begin at zero.
+/// `named_sums!(Found { force: +, moments: modes, deepest: max })` declares `Found` with five numbers: a sum, three sums, and the
+/// greatest of values ≥ 0. `most` is the greatest of values of either sign. `joined` adds sums, and takes the greater of maxima.
+/// `numbers` and `of` convert to an array and back, for ranks.
 macro_rules! named_sums {
-    ($(#[$of:meta])* $name:ident [$count:literal] { $($(#[$doc:meta])* $field:ident: $join:tt,)* }) => {
+    ($(#[$of:meta])* $name:ident { $($(#[$doc:meta])* $field:ident: $kind:tt,)* }) => {
         $(#[$of])*
-        #[derive(Default)]
-        struct $name { $($(#[$doc])* $field: f64,)* }
+        #[derive(Debug, Clone, Copy)]
+        pub(crate) struct $name { $($(#[$doc])* pub(crate) $field: named_sums!(@type $kind),)* }
 
         impl $name {
-            fn of([$($field),*]: [f64; $count]) -> $name {
-                $name { $($field),* }
+            pub(crate) const NUMBERS: usize = 0 $(+ named_sums!(@count $kind))*;
+
+            /// The sums over no cells.
+            pub(crate) const NOTHING: $name = $name { $($field: named_sums!(@nothing $kind)),* };
+
+            pub(crate) fn joined(self, next: $name) -> $name {
+                $name { $($field: named_sums!(@joined $kind self.$field, next.$field)),* }
             }
 
-            fn numbers(self) -> [f64; $count] {
-                [$(self.$field),*]
+            pub(crate) fn numbers(self) -> [f64; $name::NUMBERS] {
+                let mut numbers = [].into_iter()$(.chain(named_sums!(@numbers $kind self.$field)))*;
+                std::array::from_fn(|_| numbers.next().unwrap_or(f64::NAN))
             }
 
-            fn joined(a: [f64; $count], b: [f64; $count]) -> [f64; $count] {
-                let (a, b) = ($name::of(a), $name::of(b));
-                [$(named_sums!(@ $join a.$field, b.$field)),*]
+            pub(crate) fn of(numbers: [f64; $name::NUMBERS]) -> $name {
+                let mut numbers = numbers.into_iter();
+                let mut next = || numbers.next().unwrap_or(f64::NAN);
+                $name { $($field: named_sums!(@of $kind next)),* }
             }
         }
     };
-    (@ + $a:expr, $b:expr) => { $a + $b };
-    (@ max $a:expr, $b:expr) => { f64::max($a, $b) };
+    (@type modes) => { [f64; 3] };
+    (@type $other:tt) => { f64 };
+    (@count modes) => { 3 };
+    (@count $other:tt) => { 1 };
+    (@nothing modes) => { [0.0; 3] };
+    (@nothing most) => { f64::NEG_INFINITY };
+    (@nothing $other:tt) => { 0.0 };
+    (@joined + $a:expr, $b:expr) => { $a + $b };
+    (@joined modes $a:expr, $b:expr) => { crate::sum::add($a, $b) };
+    (@joined $max:tt $a:expr, $b:expr) => { f64::max($a, $b) };
+    (@numbers modes $a:expr) => { $a };
+    (@numbers $other:tt $a:expr) => { [$a] };
+    (@of modes $next:ident) => { [$next(), $next(), $next()] };
+    (@of $other:tt $next:ident) => { $next() };
 }
 pub(crate) use named_sums;
 

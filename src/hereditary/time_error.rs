@@ -189,7 +189,7 @@ impl History {
         let (new, old) = (&self.displacement.trial, &self.displacement.now);
         let [tried, now, before] = measure.pressure;
         let part = |cells: Range<usize>| {
-            let mut sums = Sums::default();
+            let mut sums = Sums::NOTHING;
             for k in cells {
                 let (u, u_before, v) = (new[k], old[k], measure.potential[k]);
                 let pressure = [tried[k], now[k], before[k]];
@@ -230,7 +230,7 @@ impl History {
             }
             sums.numbers()
         };
-        Sums::of(measure.rows.merge(part, Sums::joined))
+        Sums::of(measure.rows.merge(part, |a, b| Sums::of(a).joined(Sums::of(b)).numbers()))
     }
 }
 
@@ -242,7 +242,7 @@ fn relative(part: f64, whole: f64) -> f64 {
 
 named_sums! {
     /// Sums over the cells, with their weights w.
-    Sums[15] {
+    Sums {
         weight: +,
         /// Σ w |u|.
         of_u: +,

@@ -3,73 +3,34 @@
 use std::ops::Range;
 
 use crate::parallel::{Rows, cut, fork, lanes};
+use crate::sum::named_sums;
 
-/// Sums and maxima of a pass over the cells in contact under one body, with the modes B of its motion. Each pass computes some
-/// of them.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct BandSums {
-    /// Σ B r, of the residual r or of the preconditioned residual z.
-    pub(crate) residual_modes: [f64; 3],
-    /// Σ B d.
-    pub(crate) direction_modes: [f64; 3],
-    /// Σ B K d.
-    pub(crate) image_modes: [f64; 3],
-    /// Σ r².
-    pub(crate) residual_square: f64,
-    /// Σ (c v)².
-    pub(crate) displacement_square: f64,
-    /// Σ p² of negative pressures.
-    pub(crate) negative_square: f64,
-    /// Σ r d.
-    pub(crate) residual_direction: f64,
-    /// Σ z K d.
-    pub(crate) residual_image: f64,
-    /// Σ d K d.
-    pub(crate) direction_image: f64,
-    /// The greatest r.
-    pub(crate) peak: f64,
-    /// The deepest penetration of cells outside the contact.
-    pub(crate) penetration: f64,
-}
-
-impl BandSums {
-    const NOTHING: BandSums = BandSums {
-        residual_modes: [0.0; 3],
-        direction_modes: [0.0; 3],
-        image_modes: [0.0; 3],
-        residual_square: 0.0,
-        displacement_square: 0.0,
-        negative_square: 0.0,
-        residual_direction: 0.0,
-        residual_image: 0.0,
-        direction_image: 0.0,
-        peak: f64::NEG_INFINITY,
-        penetration: f64::NEG_INFINITY,
-    };
-    const SUMS: usize = 15;
-    const MAXIMA: usize = 2;
-    const NUMBERS: usize = BandSums::SUMS + BandSums::MAXIMA;
-
-    /// All numbers, the maxima last.
-    fn numbers_mut(&mut self) -> [&mut f64; BandSums::NUMBERS] {
-        let [r0, r1, r2] = &mut self.residual_modes;
-        let [d0, d1, d2] = &mut self.direction_modes;
-        let [i0, i1, i2] = &mut self.image_modes;
-        let squares = [&mut self.residual_square, &mut self.displacement_square, &mut self.negative_square];
-        let products = [&mut self.residual_direction, &mut self.residual_image, &mut self.direction_image];
-        let ([rr, vv, pp], [rd, zi, di]) = (squares, products);
-        [r0, r1, r2, d0, d1, d2, i0, i1, i2, rr, vv, pp, rd, zi, di, &mut self.peak, &mut self.penetration]
-    }
-
-    fn numbers(mut self) -> [f64; BandSums::NUMBERS] {
-        self.numbers_mut().map(|number| *number)
-    }
-
-    /// Adds the sums of the next band, and takes the greater of the maxima.
-    fn join(&mut self, next: [f64; BandSums::NUMBERS]) {
-        for (n, (number, next)) in self.numbers_mut().into_iter().zip(next).enumerate() {
-            *number = if n < BandSums::SUMS { *number + next } else { number.max(next) };
-        }
+named_sums! {
+    /// Sums and maxima of a pass over the cells in contact under one body, with the modes B of its motion. Each pass computes some
+    /// of them.
+    BandSums {
+        /// Σ B r, of the residual r or of the preconditioned residual z.
+        residual_modes: modes,
+        /// Σ B d.
+        direction_modes: modes,
+        /// Σ B K d.
+        image_modes: modes,
+        /// Σ r².
+        residual_square: +,
+        /// Σ (c v)².
+        displacement_square: +,
+        /// Σ p² of negative pressures.
+        negative_square: +,
+        /// Σ r d.
+        residual_direction: +,
+        /// Σ z K d.
+        residual_image: +,
+        /// Σ d K d.
+        direction_image: +,
+        /// The greatest r.
+        peak: most,
+        /// The deepest penetration of cells outside the contact.
+        penetration: most,
     }
 }
 
@@ -120,7 +81,7 @@ impl Bands {
         }
         let (all, others) = found.split_at_mut(bodies);
         for band in others.chunks(bodies) {
-            all.iter_mut().zip(band).for_each(|(all, sums)| all.join(sums.numbers()));
+            all.iter_mut().zip(band).for_each(|(all, sums)| *all = all.joined(*sums));
         }
         all
     }
@@ -130,8 +91,8 @@ impl Bands {
 #[cold]
 fn join_ranks(rows: &Rows, found: &[BandSums]) -> BandSums {
     let own = found.iter().flat_map(|sums| sums.numbers());
-    let mut joined = BandSums::NOTHING;
-    let join = |all: &[f64]| all.as_chunks().0.iter().for_each(|sums| joined.join(*sums));
-    rows.gather(own, |rank| BandSums::NUMBERS * rows.bands_of(rank), join);
-    joined
+    let sums = |all: &[f64]| {
+        all.as_chunks().0.iter().map(|numbers| BandSums::of(*numbers)).fold(BandSums::NOTHING, BandSums::joined)
+    };
+    rows.gather(own, |rank| BandSums::NUMBERS * rows.bands_of(rank), sums)
 }

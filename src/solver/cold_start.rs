@@ -2,10 +2,8 @@
 
 use std::f64::consts::PI;
 
-use crate::solver::contact_set::ContactSet;
-use crate::solver::problem::{Problem, Solution};
-use crate::solver::resting_position::RestingPosition;
-use crate::solver::rigid_motion::ModeCoefficients;
+use super::{ContactSet, ModeCoefficients, Problem, RestingPosition, Solution};
+use crate::quadrature::bisect;
 
 /// Bisections for the level, far beyond the accuracy that a guess needs.
 const LEVEL_BISECTIONS: usize = 40;
@@ -109,19 +107,10 @@ fn fill_hertz(problem: &Problem<'_>, body: usize, set: &ContactSet, solution: &m
         let rise = |level: f64| {
             0.375 * PI.sqrt() * problem.compliance * freedom.total * (images * area / cells_below(level)).sqrt()
         };
-        // the rise falls with the level: the balance is unique, and above the highest gap if the load
-        // presses the whole face
-        let mut level = highest;
-        if level - lowest < rise(level) {
-            level = lowest + rise(level);
-        } else {
-            let mut low = lowest;
-            for _ in 0..LEVEL_BISECTIONS {
-                let middle = 0.5 * (low + level);
-                if middle - lowest < rise(middle) { low = middle } else { level = middle }
-            }
-        }
-        (level, 1.0)
+        // the rise falls with the level: the balance is unique, and above the highest gap if the load presses the whole face
+        let is_low = |level: f64| level - lowest < rise(level);
+        let between = || bisect(lowest, highest, LEVEL_BISECTIONS, is_low)[1];
+        (if is_low(highest) { lowest + rise(highest) } else { between() }, 1.0)
     } else if lowest < 0.0 {
         let level = 0.5 * lowest;
         let radius = (images * cells_below(level) * area / PI).sqrt();

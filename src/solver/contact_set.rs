@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
-use crate::solver::bands::Bands;
-use crate::solver::passes::Passes;
-use crate::solver::problem::Problem;
-#[cfg(doc)]
-use crate::solver::rigid_motion::Modes;
-use crate::solver::rigid_motion::{Gram, ModeCoefficients};
-use crate::solver::row_segments::RowSegments;
+use super::{Bands, Gram, ModeCoefficients, Passes, Problem, RowSegments, dot};
 use crate::sum::{self, greatest, sum};
+
+/// Newton iterations of [`ContactSet::balance`]; it needs one where nothing is clipped.
+const MAX_BALANCE_ITERATIONS: usize = 60;
+
+/// Imbalance, relative to the load, that counts as rounding.
+const BALANCE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
 
 /// The cells in contact under all bodies.
 #[derive(Debug, Clone)]
@@ -162,7 +162,9 @@ impl ContactSet {
         Passes { problem, segments: &self.segments, bands }
     }
 
-    /// The y of [`Modes::balance`] on the cells in contact under one body; zero for a body whose motion is given.
+    /// Finds y such that the pressures max(0, base + weight · B y) on the cells in contact under one body carry the force and moments of
+    /// its load: the minimum of the convex ½ Σ weight (base/weight + B y)₊² − b·y, by Newton's method with step halving. `None` if there
+    /// is none, because the load does not act inside the convex hull of the cells; zero for a body whose motion is given.
     pub(crate) fn balance(
         &self,
         problem: &Problem<'_>,
@@ -173,7 +175,67 @@ impl ContactSet {
         if !problem.bodies[body].moves() {
             return Some(ModeCoefficients::default());
         }
-        problem.modes(body).balance(problem.rows(), |band| self.pieces(problem, body, band), base, weight)
+        let (rows, modes, pieces) = (problem.rows(), problem.modes(body), |band| self.pieces(problem, body, band));
+        let wanted = modes.load().map(|share| share * modes.freedom.total);
+        let within = |y: [f64; 3], band: Range<usize>| {
+            let (mut gram, mut sums, mut value) = (Gram::default(), [0.0; 3], 0.0);
+            // piece by piece, so that rounding does not grow with the number of cells
+            for piece in pieces(band) {
+                let middle = 0.5 * (piece.len() - 1) as f64;
+                let line = modes.line(piece.start).from(middle);
+                let [start, slope] = line.of(ModeCoefficients(y));
+                let (mut weights, mut pressures) = ([0.0; 3], [0.0; 2]);
+                for (j, k) in piece.enumerate() {
+                    let (j, w) = (j as f64 - middle, weight(k));
+                    let moved = start + slope * j;
+                    let p = base(k) + w * moved;
+                    if p > 0.0 {
+                        weights = [weights[0] + w, weights[1] + w * j, weights[2] + w * j * j];
+                        pressures = [pressures[0] + p, pressures[1] + p * j];
+                        // without weight p does not depend on y
+                        value += if w > 0.0 { 0.5 * p * p / w } else { p * moved };
+                    }
+                }
+                gram.add(&line, weights);
+                let part = line.sums(pressures);
+                (0..3).for_each(|m| sums[m] += part[m]);
+            }
+            let [a, b, c] = gram.entries;
+            [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], sums[0], sums[1], sums[2], value]
+        };
+        let evaluate = |y: [f64; 3]| {
+            let found = rows.merge(|band| within(y, band), sum::add);
+            let gram = Gram { entries: [0, 3, 6].map(|n| [found[n], found[n + 1], found[n + 2]]) };
+            (gram, [0, 1, 2].map(|m| found[9 + m] - wanted[m]), found[12] - dot(wanted, y))
+        };
+        // in these units a moment is at most the moment of the whole force at the end of the grid
+        let size = rows.sum_of(|band| pieces(band).flatten().map(|k| base(k).abs()).sum()).max(wanted[0].abs());
+        if size == 0.0 {
+            return Some(ModeCoefficients::default());
+        }
+        let mut y = [0.0; 3];
+        let (mut gram, mut sums, mut value) = evaluate(y);
+        for _ in 0..MAX_BALANCE_ITERATIONS {
+            if sums.iter().all(|sum| sum.abs() <= BALANCE_TOLERANCE * size) {
+                return Some(ModeCoefficients(y));
+            }
+            let step = gram.solve(sums);
+            let descent = dot(step, sums);
+            let lengths = std::iter::successors(Some(1.0), |length| Some(0.5 * length)).take_while(|&a| a >= 1e-6);
+            let mut trials = lengths.map(|length| {
+                let next = [0, 1, 2].map(|m| y[m] - length * step[m]);
+                (length, next, evaluate(next))
+            });
+            // near the minimum the value is rounded, but the gradient still falls
+            let next = trials.find(|(length, _, (_, next_sums, next_value))| {
+                *next_value <= value - 1e-4 * length * descent
+                    || dot(*next_sums, *next_sums).sqrt() <= 0.5 * dot(sums, sums).sqrt()
+            });
+            // if no trial falls, rounding hides any further descent: the balance decides
+            let Some((_, next, state)) = next else { break };
+            (y, (gram, sums, value)) = (next, state);
+        }
+        sums.iter().all(|sum| sum.abs() <= 1e-12 * size).then_some(ModeCoefficients(y))
     }
 
     /// Sets the contact to the cells with positive pressure.

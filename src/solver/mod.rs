@@ -24,3 +24,15 @@ pub(crate) use polonsky_keer::PolonskyKeer;
 pub(crate) use problem::{Counts, Problem, Solution, Solve};
 pub(crate) use rigid_motion::{Freedom, Modes, RigidMotion};
 pub(crate) use stiffness::{FLAT_PUNCH_TOLERANCE, flat_punch};
+
+use bands::BandSums;
+use cold_start::{balance, cold_start, make_feasible, press_everywhere};
+use contact_set::ContactSet;
+use extension::{Attenuation, ExtensionKind};
+use outcome::ResidualSums;
+use passes::{Passes, Search, add};
+use preconditioner::Preconditioner;
+use resting_position::RestingPosition;
+use rigid_motion::{Gram, Line, ModeCoefficients, dot};
+use row_segments::{Cut, PIECE_CELLS, Piece, RowSegments};
+use trace::Trace;

@@ -1,7 +1,6 @@
 //! The residual of a state, and the outcome of a solve.
 
-use crate::solver::contact_set::ContactSet;
-use crate::solver::problem::{Problem, Solution};
+use super::{ContactSet, Problem, Solution};
 
 /// When to stop.
 #[derive(Debug, Clone, Copy)]

@@ -3,12 +3,7 @@
 //! Each pass works on pieces of [`RowSegments`], along which the motion of a body is affine, and does all work that reads the
 //! same fields at once. Sums are taken for each body: Σ B f of its modes B from Σ f and Σ j f of every piece.
 
-use std::ops::Range;
-
-use crate::solver::bands::{BandSums, Bands};
-use crate::solver::problem::{Problem, Solution, Solve};
-use crate::solver::rigid_motion::{Line, ModeCoefficients};
-use crate::solver::row_segments::{PIECE_CELLS, Piece, RowSegments};
+use super::{BandSums, Bands, Line, ModeCoefficients, PIECE_CELLS, Piece, Problem, RowSegments, Solution, Solve};
 use crate::sum::{most, sum, sum_of_pairs};
 
 /// The numbers j = 0, 1, … of the cells of a piece, as values.
@@ -48,8 +43,7 @@ pub(crate) struct Passes<'a> {
 
 /// A piece of cells under one body, in a pass.
 struct Visit<'p, T, const M: usize> {
-    cells: Range<usize>,
-    body: usize,
+    piece: Piece,
     in_contact: bool,
     /// The parts of the fields that the pass writes.
     outputs: [&'p mut [T]; M],
@@ -71,11 +65,11 @@ impl<'a> Passes<'a> {
         let cut = problem.cut();
         bands.over(outputs, |band, mut outputs, sums| {
             let mut residual = [0.0; PIECE_CELLS];
-            segments.walk(&band, cut, |Piece { cells, body }, in_contact| {
-                let here = cells.start - band.start..cells.end - band.start;
+            segments.walk(&band, cut, |piece, in_contact| {
+                let here = piece.cells.start - band.start..piece.cells.end - band.start;
                 let outputs = outputs.each_mut().map(|output| &mut output[here.clone()]);
-                let (residual, sums) = (&mut residual[..cells.len()], &mut sums[body]);
-                visit(Visit { cells, body, in_contact, outputs, residual, sums });
+                let (residual, sums) = (&mut residual[..here.len()], &mut sums[piece.body]);
+                visit(Visit { piece, in_contact, outputs, residual, sums });
             });
         });
         bands
@@ -88,21 +82,20 @@ impl<'a> Passes<'a> {
         let (problem, c) = (self.problem, self.problem.compliance);
         let Solution { motions, pressure, potential, .. } = solution;
         let bands = self.over([pressure, potential], |visit| {
-            let Visit { cells, body, in_contact, outputs: [p, v], residual: r, sums } = visit;
+            let Visit { piece, in_contact, outputs: [p, v], residual: r, sums } = visit;
             if a != 0.0 {
-                add(v, a, &search.image[cells.clone()]);
+                add(v, a, &search.image[piece.cells.clone()]);
             }
-            if !in_contact && problem.released(body) {
+            if !in_contact && problem.released(piece.body) {
                 return;
             }
-            let line = problem.line(body, cells.start);
-            fill_residual(line.of(motions[body]), r, c, v, &problem.gap[cells.clone()]);
+            let line = fill_residual(problem, &piece, motions, v, r);
             if !in_contact {
                 sums.penetration = sums.penetration.max(most(r));
                 return;
             }
             if a != 0.0 {
-                add(p, a, &search.direction[cells]);
+                add(p, a, &search.direction[piece.cells]);
             }
             add_modes(&mut sums.residual_modes, &line, r);
             sums.peak = sums.peak.max(most(r));
@@ -116,10 +109,9 @@ impl<'a> Passes<'a> {
     /// The deepest penetration of the cells outside that may carry pressure, 0 if there is none.
     pub(crate) fn penetration(self, solution: &Solution) -> f64 {
         let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
-        let bands = self.over::<f64, 0>([], |Visit { cells, body, in_contact, residual: depth, sums, .. }| {
-            if !in_contact && !problem.released(body) {
-                let (motion, v) = (problem.line(body, cells.start).of(motions[body]), &potential[cells.clone()]);
-                fill_residual(motion, depth, problem.compliance, v, &problem.gap[cells]);
+        let bands = self.over::<f64, 0>([], |Visit { piece, in_contact, residual: depth, sums, .. }| {
+            if !in_contact && !problem.released(piece.body) {
+                fill_residual(problem, &piece, motions, &potential[piece.cells.clone()], depth);
                 sums.penetration = sums.penetration.max(most(depth));
             }
         });
@@ -129,15 +121,11 @@ impl<'a> Passes<'a> {
     /// Takes cells without pressure that penetrate deeper than `least` into the set.
     pub(crate) fn add_penetrating(self, least: f64, solution: &Solution, member: &mut [bool]) {
         let (problem, Solution { motions, pressure, potential, .. }) = (self.problem, solution);
-        self.over([member], |Visit { cells, body, in_contact, outputs: [member], residual: depth, .. }| {
-            if !in_contact && !problem.released(body) {
-                let (motion, v) = (problem.line(body, cells.start).of(motions[body]), &potential[cells.clone()]);
-                fill_residual(motion, depth, problem.compliance, v, &problem.gap[cells.clone()]);
-                let fields = pressure[cells].iter().zip(depth);
-                member
-                    .iter_mut()
-                    .zip(fields)
-                    .for_each(|(member, (&p, &mut depth))| *member = (p == 0.0) & (depth > least));
+        self.over([member], |Visit { piece, in_contact, outputs: [member], residual: depth, .. }| {
+            if !in_contact && !problem.released(piece.body) {
+                fill_residual(problem, &piece, motions, &potential[piece.cells.clone()], depth);
+                let members = member.iter_mut().zip(pressure[piece.cells].iter().zip(depth));
+                members.for_each(|(member, (&p, &mut depth))| *member = (p == 0.0) & (depth > least));
             }
         });
     }
@@ -145,12 +133,11 @@ impl<'a> Passes<'a> {
     /// z ← r = motion − (c v + gap) in contact, zero elsewhere; returns Σ r² and the greatest r.
     pub(crate) fn residual(self, solution: &Solution, z: &mut [f64]) -> [f64; 2] {
         let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
-        let bands = self.over([z], |Visit { cells, body, in_contact, outputs: [z], sums, .. }| {
+        let bands = self.over([z], |Visit { piece, in_contact, outputs: [z], sums, .. }| {
             if !in_contact {
                 return z.fill(0.0);
             }
-            let (motion, v) = (problem.line(body, cells.start).of(motions[body]), &potential[cells.clone()]);
-            fill_residual(motion, z, problem.compliance, v, &problem.gap[cells]);
+            fill_residual(problem, &piece, motions, &potential[piece.cells.clone()], z);
             sums.residual_square += sum_of_pairs(z, z, |z, _| z * z);
             sums.peak = sums.peak.max(most(z));
         });
@@ -161,7 +148,7 @@ impl<'a> Passes<'a> {
     /// Sums Σ B z, Σ B Kd, Σ B d and Σ z·Kd in contact.
     pub(crate) fn overlaps(self, z: &[f64], search: &Search) -> &'a [BandSums] {
         let problem = self.problem;
-        let bands = self.over::<f64, 0>([], |Visit { cells, body, in_contact, sums, .. }| {
+        let bands = self.over::<f64, 0>([], |Visit { piece: Piece { cells, body }, in_contact, sums, .. }| {
             if !in_contact {
                 return;
             }
@@ -184,7 +171,7 @@ impl<'a> Passes<'a> {
         direction: &mut [f64],
     ) {
         let problem = self.problem;
-        self.over([direction], |Visit { cells, body, in_contact, outputs: [d], .. }| {
+        self.over([direction], |Visit { piece: Piece { cells, body }, in_contact, outputs: [d], .. }| {
             if !in_contact {
                 return d.fill(0.0);
             }
@@ -207,7 +194,7 @@ impl<'a> Passes<'a> {
         direction: &mut [f64],
     ) {
         let problem = self.problem;
-        self.over([direction], |Visit { cells, body, in_contact, outputs: [d], .. }| {
+        self.over([direction], |Visit { piece: Piece { cells, body }, in_contact, outputs: [d], .. }| {
             let Some(motion) = motions[body].filter(|_| in_contact) else { return };
             let motion = problem.line(body, cells.start).of(motion);
             map(motion, d, [&pressure[cells.clone()], &shape[cells]], |d, p, shape, motion| {
@@ -223,15 +210,14 @@ impl<'a> Passes<'a> {
     /// Sums Σ B Kd of bodies that tilt, and Σ r·d and Σ d·Kd, in contact.
     pub(crate) fn slope_and_curvature(self, solution: &Solution, search: &Search) -> &'a [BandSums] {
         let (problem, Solution { motions, potential, .. }) = (self.problem, solution);
-        let bands = self.over::<f64, 0>([], |Visit { cells, body, in_contact, residual: r, sums, .. }| {
+        let bands = self.over::<f64, 0>([], |Visit { piece, in_contact, residual: r, sums, .. }| {
             if !in_contact {
                 return;
             }
-            let (d, kd, v) =
-                (&search.direction[cells.clone()], &search.image[cells.clone()], &potential[cells.clone()]);
-            let line = problem.line(body, cells.start);
-            fill_residual(line.of(motions[body]), r, problem.compliance, v, &problem.gap[cells]);
-            if problem.bodies[body].tilts() {
+            let cells = || piece.cells.clone();
+            let (d, kd) = (&search.direction[cells()], &search.image[cells()]);
+            let line = fill_residual(problem, &piece, motions, &potential[cells()], r);
+            if problem.bodies[piece.body].tilts() {
                 add_modes(&mut sums.image_modes, &line, kd);
             }
             sums.residual_direction += sum_of_pairs(r, d, |r, d| r * d);
@@ -241,10 +227,18 @@ impl<'a> Passes<'a> {
     }
 }
 
-/// r = motion − (c v + gap) on the cells of a piece.
+/// r ← motion − (c v + gap) on the cells of a piece; returns the modes of the body along it.
 #[inline]
-fn fill_residual(motion: [f64; 2], r: &mut [f64], c: f64, v: &[f64], gap: &[f64]) {
-    map(motion, r, [v, gap], |_, v, h, motion| motion - (c * v + h));
+fn fill_residual(
+    problem: &Problem<'_>,
+    Piece { cells, body }: &Piece,
+    motions: &[ModeCoefficients],
+    v: &[f64],
+    r: &mut [f64],
+) -> Line {
+    let (line, c) = (problem.line(*body, cells.start), problem.compliance);
+    map(line.of(motions[*body]), r, [v, &problem.gap[cells.clone()]], |_, v, h, motion| motion - (c * v + h));
+    line
 }
 
 /// x += a y.

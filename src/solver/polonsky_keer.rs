@@ -1,14 +1,10 @@
 //! The reference solver of the source paper.
 
+use super::{
+    Bands, ContactSet, Freedom, ModeCoefficients, Modes, Outcome, Problem, ResidualSums, RestingPosition, Search,
+    Solution, Solve, balance, dot, make_feasible, press_everywhere,
+};
 use crate::parallel::Rows;
-use crate::solver::bands::Bands;
-use crate::solver::cold_start::{balance, make_feasible, press_everywhere};
-use crate::solver::contact_set::ContactSet;
-use crate::solver::outcome::{Outcome, ResidualSums};
-use crate::solver::passes::Search;
-use crate::solver::problem::{Problem, Solution, Solve};
-use crate::solver::resting_position::RestingPosition;
-use crate::solver::rigid_motion::{Freedom, ModeCoefficients, Modes, dot};
 
 /// Relative difference between the pressures and the force that still counts as balanced.
 const FORCE_TOLERANCE: f64 = 1e-9;

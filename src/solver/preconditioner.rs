@@ -2,9 +2,8 @@
 
 use std::sync::Arc;
 
+use super::{Attenuation, ContactSet, Extension, ExtensionKind};
 use crate::kernel::{LocalKernel, SpectralOperator, TransformWorkspace, Workspace};
-use crate::solver::contact_set::ContactSet;
-use crate::solver::extension::{Attenuation, Extension, ExtensionKind};
 
 /// Factor of the extended residual where the distance from the contact exceeds the thickness of a layer on a rigid
 /// base. There M acts as K⁻¹ of a bed of springs, which needs no extension, or of an incompressible layer, −∇⁻², whose
@@ -86,12 +85,10 @@ fn attenuation(kernel: &LocalKernel) -> Option<Attenuation> {
     let remains = BEYOND_LAYER + (1.0 - BEYOND_LAYER) * layer.longest_over_half_space();
     let (cells, spacing) = (kernel.rows().cells(), kernel.grid().spacing());
     // blocks are as long as broad in cells
-    let side = if cells[1] == 1 {
-        spacing[0]
-    } else if cells[0] == 1 {
-        spacing[1]
-    } else {
-        (spacing[0] * spacing[1]).sqrt()
+    let side = match cells {
+        [_, 1] => spacing[0],
+        [1, _] => spacing[1],
+        _ => (spacing[0] * spacing[1]).sqrt(),
     };
     (remains < 1.0).then(|| Attenuation { reach: layer.thickness() / side, remains })
 }

@@ -2,12 +2,9 @@
 
 use educe::Educe;
 
+use super::{Cut, Freedom, Line, ModeCoefficients, Modes, Stop, Trace};
 use crate::kernel::{LocalKernel, Workspace};
 use crate::parallel::Rows;
-use crate::solver::outcome::Stop;
-use crate::solver::rigid_motion::{Freedom, Line, ModeCoefficients, Modes};
-use crate::solver::row_segments::Cut;
-use crate::solver::trace::Trace;
 use crate::sum::greatest;
 
 /// Find p ≥ 0 and the free motions of the bodies with h = c K p + gap − motion ≥ 0, p h = 0, and the balance
@@ -30,7 +27,7 @@ pub(crate) struct Problem<'a> {
 }
 
 /// A guess on entry, the solution on return.
-#[derive(Debug, Educe)]
+#[derive(Debug, Default, Educe)]
 #[educe(Clone)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Solution {
@@ -48,7 +45,7 @@ pub(crate) struct Solution {
     /// Rounding of the gap, in the same measure: a smaller residual cannot be detected.
     pub(crate) rounding: f64,
     /// The residual over the iterations.
-    #[cfg_attr(feature = "checkpoint", serde(skip, default = "Trace::new"))]
+    #[cfg_attr(feature = "checkpoint", serde(skip))]
     pub(crate) trace: Trace,
 }
 
@@ -134,10 +131,7 @@ impl Solution {
             pressure: vec![0.0; cells],
             potential: vec![0.0; cells],
             motions: vec![ModeCoefficients::default(); bodies],
-            counts: Counts::default(),
-            residual: 0.0,
-            rounding: 0.0,
-            trace: Trace::new(),
+            ..Solution::default()
         }
     }
 

@@ -1,9 +1,7 @@
 //! The position in which a rigid body rests on the undeformed surface.
 
+use super::{ContactSet, ModeCoefficients, Modes, Problem};
 use crate::linalg;
-use crate::solver::contact_set::ContactSet;
-use crate::solver::problem::Problem;
-use crate::solver::rigid_motion::{ModeCoefficients, Modes};
 
 /// Number of pivots after which the search ends: its result is a guess, and any motion serves as a guess.
 const MAX_PIVOTS: usize = 200;

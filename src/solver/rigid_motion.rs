@@ -1,11 +1,8 @@
 //! The rigid motion of a body: the modes that a load leaves free, and the balance of force and moments of each free mode.
 
-use std::ops::Range;
-
 use crate::Grid;
 use crate::linalg;
 use crate::parallel::Rows;
-use crate::sum;
 
 /// The motions ω + α1 ξ1 + α2 ξ2 of one body that a load leaves free, ξ = x − e measured from the point e
 /// at which the load acts. Each freedom has its balance: Σ p = `total`, Σ p ξ1 = 0, Σ p ξ2 = 0 (Eq. 4 and
@@ -72,12 +69,6 @@ impl ModeCoefficients {
 /// Fraction of the square of a mode, independent of the other modes, that counts as zero: the cells do not determine
 /// the motion (fewer than three, or all on a line).
 const DEPENDENT_FRACTION: f64 = 1e-11;
-
-/// Newton iterations of [`Modes::balance`]; it needs one where nothing is clipped.
-const MAX_BALANCE_ITERATIONS: usize = 60;
-
-/// Imbalance, relative to the load, that counts as rounding.
-const BALANCE_TOLERANCE: f64 = 4.0 * f64::EPSILON;
 
 /// The free motions of a body as functions on the grid.
 #[derive(Debug, Clone, Copy)]
@@ -156,79 +147,6 @@ impl<'a> Modes<'a> {
         let held = motion.approach + alpha[0] * point[0] + alpha[1] * point[1];
         ModeCoefficients([if translation { held } else { 0.0 }, alpha[0] * self.scale[0], alpha[1] * self.scale[1]])
     }
-
-    /// Finds y such that the pressures max(0, base + weight · B y) on the `pieces` of each band carry the force and moments
-    /// of the load: the minimum of the convex ½ Σ weight (base/weight + B y)₊² − b·y, by
-    /// Newton's method with step halving. `None` if there is none, because the load does not act inside
-    /// the convex hull of the cells.
-    pub(crate) fn balance<P: Iterator<Item = Range<usize>>>(
-        &self,
-        rows: &Rows,
-        pieces: impl Fn(Range<usize>) -> P + Sync,
-        base: impl Fn(usize) -> f64 + Sync,
-        weight: impl Fn(usize) -> f64 + Sync,
-    ) -> Option<ModeCoefficients> {
-        let wanted = self.load().map(|share| share * self.freedom.total);
-        let within = |y: [f64; 3], band: Range<usize>| {
-            let (mut gram, mut sums, mut value) = (Gram::default(), [0.0; 3], 0.0);
-            // piece by piece, so that rounding does not grow with the number of cells
-            for piece in pieces(band) {
-                let middle = 0.5 * (piece.len() - 1) as f64;
-                let line = self.line(piece.start).from(middle);
-                let [start, slope] = line.of(ModeCoefficients(y));
-                let (mut weights, mut pressures) = ([0.0; 3], [0.0; 2]);
-                for (j, k) in piece.enumerate() {
-                    let (j, w) = (j as f64 - middle, weight(k));
-                    let moved = start + slope * j;
-                    let p = base(k) + w * moved;
-                    if p > 0.0 {
-                        weights = [weights[0] + w, weights[1] + w * j, weights[2] + w * j * j];
-                        pressures = [pressures[0] + p, pressures[1] + p * j];
-                        // without weight p does not depend on y
-                        value += if w > 0.0 { 0.5 * p * p / w } else { p * moved };
-                    }
-                }
-                gram.add(&line, weights);
-                let part = line.sums(pressures);
-                (0..3).for_each(|m| sums[m] += part[m]);
-            }
-            let [a, b, c] = gram.entries;
-            [a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2], sums[0], sums[1], sums[2], value]
-        };
-        let evaluate = |y: [f64; 3]| {
-            let found = rows.merge(|band| within(y, band), sum::add);
-            let gram = Gram { entries: [0, 3, 6].map(|n| [found[n], found[n + 1], found[n + 2]]) };
-            (gram, [0, 1, 2].map(|m| found[9 + m] - wanted[m]), found[12] - dot(wanted, y))
-        };
-        // in these units a moment is at most the moment of the whole force at the end of the grid
-        let size = rows.sum_of(|band| pieces(band).flatten().map(|k| base(k).abs()).sum()).max(wanted[0].abs());
-        if size == 0.0 {
-            return Some(ModeCoefficients::default());
-        }
-        let mut y = [0.0; 3];
-        let (mut gram, mut sums, mut value) = evaluate(y);
-        for _ in 0..MAX_BALANCE_ITERATIONS {
-            if sums.iter().all(|sum| sum.abs() <= BALANCE_TOLERANCE * size) {
-                return Some(ModeCoefficients(y));
-            }
-            let step = gram.solve(sums);
-            let descent = dot(step, sums);
-            let lengths = std::iter::successors(Some(1.0), |length| Some(0.5 * length)).take_while(|&a| a >= 1e-6);
-            let mut trials = lengths.map(|length| {
-                let next = [0, 1, 2].map(|m| y[m] - length * step[m]);
-                (length, next, evaluate(next))
-            });
-            // near the minimum the value is rounded, but the gradient still falls
-            let next = trials.find(|(length, _, (_, next_sums, next_value))| {
-                *next_value <= value - 1e-4 * length * descent
-                    || dot(*next_sums, *next_sums).sqrt() <= 0.5 * dot(sums, sums).sqrt()
-            });
-            // if no trial falls, rounding hides any further descent: the balance decides
-            let Some((_, next, state)) = next else { break };
-            (y, (gram, sums, value)) = (next, state);
-        }
-        sums.iter().all(|sum| sum.abs() <= 1e-12 * size).then_some(ModeCoefficients(y))
-    }
 }
 
 impl Line {
@@ -236,7 +154,7 @@ impl Line {
     pub(crate) const UPRIGHT: Line = Line { first: [1.0, 0.0, 0.0], step: 0.0 };
 
     /// The same modes, with j counted from elsewhere.
-    fn from(self, j: f64) -> Line {
+    pub(super) fn from(self, j: f64) -> Line {
         let [mode0, mode1, mode2] = self.first;
         Line { first: [mode0, mode1, mode2 + self.step * j], step: self.step }
     }
@@ -256,7 +174,7 @@ impl Line {
 
 impl Gram {
     /// Adds Σ w B Bᵀ of a line, from Σ w, Σ w j and Σ w j².
-    fn add(&mut self, line: &Line, [weight, moment, square]: [f64; 3]) {
+    pub(super) fn add(&mut self, line: &Line, [weight, moment, square]: [f64; 3]) {
         let modes = line.first;
         for (m, row) in self.entries.iter_mut().enumerate() {
             let part = line.sums([weight, moment]).map(|sum| modes[m] * sum);

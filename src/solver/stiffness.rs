@@ -1,7 +1,7 @@
 //! The stiffness of a contact of given area.
 
+use super::Preconditioner;
 use crate::kernel::LocalKernel;
-use crate::solver::preconditioner::Preconditioner;
 
 /// Residual of the displacement, relative to it.
 pub(crate) const FLAT_PUNCH_TOLERANCE: f64 = 1e-7;

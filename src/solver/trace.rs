@@ -1,37 +1,33 @@
 //! The residuals of a solve, in memory of fixed size.
 
-/// Residuals stored.
+/// Number of residuals that are stored.
 const MAX_SAMPLES: usize = 32;
 
-/// Residuals over the iterations of one solve. When the memory is full every second one is dropped, and from then on only
-/// every second is stored: the samples are always spread over the whole solve.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Residuals over the iterations of one solve, as pairs of an iteration and its residual. When the memory is full, every second
+/// sample is dropped, and from then on half as many are stored: the samples are always spread over the whole solve.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Trace {
     samples: [(u32, f64); MAX_SAMPLES],
     len: usize,
-    /// Iterations from one sample to the next.
-    stride: usize,
+    /// How often samples were dropped: every 2^`halvings`-th iteration is stored.
+    halvings: u32,
     last: (u32, f64),
 }
 
 impl Trace {
-    pub(crate) fn new() -> Trace {
-        Trace { samples: [(0, 0.0); MAX_SAMPLES], len: 0, stride: 1, last: (0, 0.0) }
-    }
-
     pub(crate) fn clear(&mut self) {
-        (self.len, self.stride) = (0, 1);
+        (self.len, self.halvings) = (0, 0);
     }
 
     /// Adds the residual after some iterations.
     pub(crate) fn note(&mut self, iterations: usize, residual: f64) {
         self.last = (u32::try_from(iterations).unwrap_or(u32::MAX), residual);
-        if self.len == MAX_SAMPLES && iterations.is_multiple_of(self.stride) {
-            self.stride = self.stride.saturating_mul(2);
+        if self.len == MAX_SAMPLES && iterations.is_multiple_of(1 << self.halvings) {
+            self.halvings += 1;
             self.len = MAX_SAMPLES / 2;
             (1..self.len).for_each(|k| self.samples[k] = self.samples[2 * k]);
         }
-        if iterations.is_multiple_of(self.stride) {
+        if iterations.is_multiple_of(1 << self.halvings) {
             self.samples[self.len] = self.last;
             self.len += 1;
         }
@@ -54,7 +50,7 @@ mod tests {
     #[test]
     fn it_spreads_over_any_number_of_iterations() {
         for count in [1, 5, 32, 33, 100, 1000, 100_000] {
-            let mut trace = Trace::new();
+            let mut trace = Trace::default();
             (0..count).for_each(|k| trace.note(k, 1.0 / (k + 1) as f64));
             let samples = trace.samples();
             assert!(

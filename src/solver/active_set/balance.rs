@@ -2,9 +2,7 @@
 
 use super::{ActiveSet, MAX_MOVED_SHARE, Shape};
 use crate::parallel::for_each_band;
-use crate::solver::cold_start::{balance, cold_start, press_everywhere};
-use crate::solver::outcome::ResidualSums;
-use crate::solver::problem::{Problem, Solution, Solve};
+use crate::solver::{Problem, ResidualSums, Solution, Solve, balance, cold_start, press_everywhere};
 
 /// Share of the force by which a converged pressure may be changed in order to balance it.
 const MAX_CLOSING_CHANGE: f64 = 1e-9;

@@ -13,10 +13,7 @@
 
 use super::iteration::Towards;
 use super::{ActiveSet, JOIN_OVER_RMS};
-use crate::solver::cold_start::make_feasible;
-use crate::solver::outcome::{Outcome, ResidualSums};
-use crate::solver::passes::add;
-use crate::solver::problem::{Problem, Solution, Solve};
+use crate::solver::{Outcome, Problem, ResidualSums, Solution, Solve, add, make_feasible};
 
 /// Number of times that cells may join A without a gain in between; then the remaining residual is rounding.
 const MAX_JOINS_WITHOUT_GAIN: usize = 3;

@@ -1,10 +1,7 @@
 //! One iteration of the active set: its residual, its direction and its length.
 
 use super::{ActiveSet, CORRECTION_LENGTH, JOIN_OVER_RMS};
-use crate::solver::outcome::{Outcome, ResidualSums};
-use crate::solver::passes::add;
-use crate::solver::problem::{Problem, Solution, Solve};
-use crate::solver::rigid_motion::{ModeCoefficients, dot};
+use crate::solver::{ModeCoefficients, Outcome, Problem, ResidualSums, Solution, Solve, add, dot};
 
 /// Σ (r − mean)² is computed afresh, not from Σ r², where less than this fraction of Σ r² is left.
 const MIN_CENTRED_FRACTION: f64 = 1e-6;

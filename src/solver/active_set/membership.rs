@@ -4,11 +4,7 @@ use std::ops::Range;
 
 use super::{ActiveSet, LEAVE_OVER_RMS, Shape};
 use crate::parallel::for_each_band;
-use crate::solver::cold_start::cold_start;
-use crate::solver::contact_set::ContactSet;
-use crate::solver::outcome::{ResidualSums, Stop};
-use crate::solver::passes::{Passes, Search, add};
-use crate::solver::problem::{Problem, Solution, Solve};
+use crate::solver::{ContactSet, Passes, Problem, ResidualSums, Search, Solution, Solve, Stop, add, cold_start};
 
 impl ActiveSet {
     /// Sets A to {p > 0}, or to the cells that are likely to be in contact, and balances the pressure on A. Other cells that

@@ -29,13 +29,7 @@ mod iteration;
 mod membership;
 
 use crate::kernel::{LocalKernel, Workspace};
-use crate::solver::bands::Bands;
-use crate::solver::contact_set::ContactSet;
-use crate::solver::outcome::{Outcome, PENETRATION_SLACK};
-use crate::solver::passes::Search;
-use crate::solver::preconditioner::Preconditioner;
-use crate::solver::problem::Solve;
-use crate::solver::rigid_motion::ModeCoefficients;
+use crate::solver::{Bands, ContactSet, ModeCoefficients, Outcome, PENETRATION_SLACK, Preconditioner, Search, Solve};
 use crate::sum::greatest;
 
 /// Cells join A when the deepest penetration exceeds this many times rms |r|. It must be below the
