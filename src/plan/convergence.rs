@@ -222,7 +222,7 @@ pub(super) fn converge(scene: &TrialScene<'_>, size: &ContactSize, area: bool) -
     let steps = Steps::find(scene, &first)?;
     let scene = &TrialScene { tolerance: steps.tolerance, ..*scene };
     let zoomed = match scene.before_growth(&steps.run).map(|until| small_contact(scene, until, size)) {
-        Some(Err(error @ Error::OutOfMemory { .. })) => return Err(error),
+        Some(Err(error @ (Error::OutOfMemory { .. } | Error::Cancelled { .. }))) => return Err(error),
         // the run succeeds without a separate domain for this part
         Some(law) => Some(law.unwrap_or(ErrorLaw::NONE)),
         None => None,

@@ -61,7 +61,8 @@ impl Sweep {
     }
 
     /// On another body than a half-space.
-    pub fn kernel(mut self, kernel: Arc<InfluenceKernel>) -> Sweep {
+    pub fn kernel(mut self, kernel: impl Into<Arc<InfluenceKernel>>) -> Sweep {
+        let kernel = kernel.into();
         self.layer = kernel.layer_of().cloned();
         self.builder = self.builder.kernel(kernel);
         self
